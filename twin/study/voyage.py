@@ -1,0 +1,107 @@
+"""A voyage: what was measured on one stretch of sea, by the names and units of the table of channels.
+
+A missing sample is NaN and stays NaN: nothing here invents a measurement.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+
+from twin.errors import DataError, did_you_mean
+from twin.live.channels import BY_NAME, CHANNELS, Channel
+from twin.study.resample import continuous, resampled, wrapped
+
+SLOW_S = 60.0  # a channel that may be this old is a state of the sea or of the loading: its ends are held
+
+
+@dataclass(frozen=True)
+class Voyage:
+    """Samples at `time_s` (N,) [s, increasing]; `columns`: (N,) float64 in the unit of the channel's name.
+
+    `meta` says where it came from: `source`, `map`, `ship`, `datum` {latitude_deg, longitude_deg},
+    `start_time_utc`, `derived` {column: how}. What is not known is not there.
+    """
+
+    name: str
+    time_s: np.ndarray
+    columns: Mapping[str, np.ndarray]
+    meta: Mapping[str, Any] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for name, values in self.columns.items():
+            if name not in BY_NAME:
+                raise DataError(f"{self.name}: no channel is called {name!r}.{did_you_mean(name, BY_NAME)}")
+            if values.shape != self.time_s.shape:
+                raise DataError(
+                    f"{self.name}: {name} has {values.size} samples, time_s has {self.time_s.size}."
+                )
+
+    def __len__(self) -> int:
+        return int(self.time_s.size)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """(N,) samples in the unit the name ends with; all NaN when the channel is absent."""
+        channel(name)
+        return self.columns[name] if name in self.columns else np.full(self.time_s.shape, np.nan)
+
+    def has(self, *names: str) -> bool:
+        """True when every named channel holds at least one sample."""
+        return all(bool(np.isfinite(self[name]).any()) for name in names)
+
+    def absent(self) -> tuple[str, ...]:
+        """Channels of the table without a single sample, in the table's order."""
+        return tuple(c.name for c in CHANNELS if not self.has(c.name))
+
+    @property
+    def duration_s(self) -> float:
+        """From first to last sample [s]."""
+        return float(self.time_s[-1] - self.time_s[0]) if len(self) else 0.0
+
+    @property
+    def step_s(self) -> float:
+        """The usual time between two samples (median) [s]; NaN with fewer than two."""
+        return float(np.median(np.diff(self.time_s))) if len(self) > 1 else float("nan")
+
+    def between(self, start_s: float, end_s: float) -> "Voyage":
+        """The samples with start_s <= time < end_s; the clock is kept."""
+        keep = (self.time_s >= start_s) & (self.time_s < end_s)
+        return self.with_rows(self.time_s[keep], {name: x[keep] for name, x in self.columns.items()})
+
+    def on_grid(self, step_s: float, max_gap_s: float | None = None) -> "Voyage":
+        """The same voyage every `step_s` [s]: means where samples are denser, lines where they are sparser.
+
+        No line is drawn over a gap longer than `max_gap_s` (default: the channel's `stale_s`, or 1.5 steps if
+        that is longer): there it stays NaN. Angles are averaged along the circle. Slow channels (`stale_s` of
+        SLOW_S or more) keep their first and last value at the ends, for as long as they may be old.
+        """
+        if not step_s > 0 or not len(self):
+            raise DataError(f"{self.name}: cannot be put on a grid of {step_s:g} s with {len(self)} samples.")
+        steps = int(np.floor(self.duration_s / step_s + 1e-6))
+        grid = self.time_s[0] + step_s * np.arange(steps + 1)
+        return self.with_rows(
+            grid, {name: self._on(grid, step_s, BY_NAME[name], max_gap_s) for name in self.columns}
+        )
+
+    def _on(self, grid: np.ndarray, step_s: float, ch: Channel, max_gap_s: float | None) -> np.ndarray:
+        limit = max(ch.stale_s if max_gap_s is None else max_gap_s, 1.5 * step_s)
+        hold = ch.stale_s if ch.stale_s >= SLOW_S else 0.0
+        values = continuous(self.columns[ch.name], ch.wraps)
+        return wrapped(resampled(self.time_s, values, grid, step_s, limit, hold), ch.wraps)
+
+    def si(self, name: str) -> np.ndarray:
+        """(N,) in the units of physics (m, rad, m/s, rad/s, 1/s); angles that wrap come without jumps."""
+        ch = channel(name)
+        return continuous(self[name], ch.wraps) * ch.to_si
+
+    def with_rows(self, time_s: np.ndarray, columns: Mapping[str, np.ndarray]) -> "Voyage":
+        """The same voyage (name, meta) with other samples."""
+        return replace(self, time_s=time_s, columns=dict(columns))
+
+
+def channel(name: str) -> Channel:
+    """The channel of that name, or a DataError that names the nearest."""
+    if name not in BY_NAME:
+        raise DataError(f"no channel is called {name!r}.{did_you_mean(name, BY_NAME)}")
+    return BY_NAME[name]
