@@ -1,0 +1,89 @@
+"""The `twin` command: a thin shell over one module for each verb, loaded only when the verb is used."""
+
+import argparse
+import importlib
+import os
+import sys
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from twin.errors import DataError, TwinError
+
+
+class Verb(NamedTuple):
+    """Where a verb lives (a module with `add_arguments(parser)` and `run(args) -> int`), what it does, and how it is typed."""
+
+    module: str
+    help: str
+    example: str
+
+
+VERBS: dict[str, Verb] = {
+    "run": Verb("twin.live.run", "the service: Zenoh in, Zenoh out, MCAP log", "twin run --config /etc/shiptwin/twin.toml"),
+    "replay": Verb("twin.live.replay", "a recorded voyage through the same loop", "twin replay logs/voyage.mcap -o again.mcap"),
+    "init": Verb(
+        "twin.study.init",
+        "a first model of my ship from what its owner knows",
+        "twin init 'MV Alma' --length-pp-m 180 --beam-m 30 --draught-m 10.5 -o alma.toml",
+    ),
+    "import": Verb("twin.study.import_voyage", "measurements in, checked", "twin import log.csv --map log-map.toml -o voyage.mcap"),
+    "calibrate": Verb(
+        "twin.study.calibrate", "fits the core to reference voyages", "twin calibrate calm.mcap --ship alma.toml -o alma2.toml"
+    ),
+    "compare": Verb("twin.study.compare", "model against measurement: how wrong, and where", "twin compare v.mcap --ship alma2.toml"),
+    "diagnose": Verb(
+        "twin.study.diagnose", "which physical effect is missing", "twin diagnose v.mcap --ship alma2.toml --reference calm.mcap"
+    ),
+    "add": Verb(
+        "twin.study.add",
+        "adds an effect, fits it, proves the fall on held-out voyages",
+        "twin add Wind --ship alma2.toml --voyage v.mcap --held-out w.mcap -o alma3.toml",
+    ),
+    "remove": Verb("twin.study.remove", "takes an effect out again", "twin remove Wind --ship alma3.toml -o alma4.toml"),
+    "history": Verb("twin.study.history", "the ladder of what was added and how far the error fell", "twin history alma3.toml"),
+    "effects": Verb("twin.study.effects", "the catalogue: formula, inputs, parameters, units, source", "twin effects Wind"),
+    "train": Verb("export.train", "trains and exports the residual", "twin train v*.mcap --ship alma3.toml -o residual.onnx"),
+    "demo": Verb("twin.live.demo", "the whole story on a bundled voyage, in a minute or two", "twin demo"),
+    "health": Verb("twin.live.health", "is the twin on this machine alive and well?", "twin health"),
+}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one verb; a problem is one line on standard error and an exit code (see twin/errors.py)."""
+    argv = sys.argv[1:] if argv is None else list(argv)
+    parser = argparse.ArgumentParser(prog="twin", description="A digital twin of a ship's motion that its owner can correct.")
+    verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
+    for name, verb in VERBS.items():
+        sub = verbs.add_parser(
+            name,
+            help=verb.help,
+            description=verb.help,
+            epilog=f"example: {verb.example}",
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
+        if name in argv[:1]:
+            importlib.import_module(verb.module).add_arguments(sub)
+    args = parser.parse_args(argv)
+    return guarded(lambda: importlib.import_module(VERBS[args.verb].module).run(args))
+
+
+def guarded(action: "object") -> int:
+    """Call it, and turn what went wrong into one line and an exit code."""
+    try:
+        return action() or 0  # type: ignore[operator]
+    except TwinError as error:
+        print(f"{type(error).__name__}: {error}", file=sys.stderr)
+        return error.exit_code
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except FileNotFoundError as error:
+        print(f"{DataError.__name__}: {error.filename}: no such file. Check the path.", file=sys.stderr)
+        return DataError.exit_code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,148 @@
+"""The 3-DOF Fossen core: inertia, Coriolis, damping, propeller and rudder, by components.
+
+    M nu_dot_r + C(nu_r) nu_r + D(nu_r) nu_r = tau_propeller + tau_rudder + ...        [Fossen 2021, eq. (6.95) ff.]
+
+Derivatives are stored in prime form, made non-dimensional by 1/2 rho L T U^2 (forces) and 1/2 rho L^2 T U^2 (moment), with
+v' = v/U and r' = r L/U, so that one set of priors serves every size of ship; `coefficients` gives them back their units.
+"""
+
+from dataclasses import dataclass
+from math import pi
+from typing import TYPE_CHECKING
+
+from .maths import cos, positive, sin, sqrt
+from .state import Force, Number
+
+if TYPE_CHECKING:
+    from .ship import Ship
+
+GRAVITY = 9.80665  # m/s2
+
+
+@dataclass(frozen=True, slots=True)
+class Coefficients:
+    """The ship's derivatives with their units, and what M needs to be inverted; made once for a ship."""
+
+    m: Number
+    mx_G: Number
+    X_udot: Number
+    Y_vdot: Number
+    Y_rdot: Number
+    N_vdot: Number
+    m_u: Number  # m - X_udot
+    m_v: Number  # m - Y_vdot
+    m_vr: Number  # m x_G - Y_rdot
+    m_rv: Number  # m x_G - N_vdot
+    m_r: Number  # I_z - N_rdot
+    det: Number  # m_v m_r - m_vr m_rv
+    X_u: Number
+    X_uu: Number
+    X_vv: Number
+    X_vr: Number
+    X_rr: Number
+    Y_v: Number
+    Y_uv: Number
+    Y_ur: Number
+    Y_vv: Number
+    Y_vr: Number
+    Y_rv: Number
+    Y_rr: Number
+    N_r: Number
+    N_uv: Number
+    N_ur: Number
+    N_vv: Number
+    N_vr: Number
+    N_rv: Number
+    N_rr: Number
+    T_nn: Number  # thrust [N] = T_nn |n| n + T_nu |n| u_a
+    T_nu: Number
+    thrust_share: Number  # 1 - t: what of the thrust drives the ship
+    wake_share: Number  # 1 - w: the propeller's inflow over u_r
+    slipstream: Number  # inflow speed^2 at the rudder per newton of thrust
+    inflow: Number  # epsilon^2: inflow speed^2 at the rudder over the propeller's
+    rudder: Number  # 1/2 rho A_R C_L
+    drag_R: Number  # 1 - t_R
+    side_R: Number  # 1 + a_H
+    lever_R: Number  # x_R + a_H x_H [m]
+    gamma_v: Number
+    gamma_r: Number  # times L [m]
+
+
+def coefficients(ship: "Ship") -> Coefficients:
+    """Prime derivatives of the ship with their units back."""
+    d, L, T, rho = ship.derivatives, ship.L_pp, ship.T, ship.rho
+    f = 0.5 * rho * L * T  # force for 1 m/s
+    m_ = f * L  # mass
+    slow = f * (GRAVITY * L) ** 0.5  # a damping that stays linear at rest
+    m_u, m_v = ship.m - d.X_udot * m_, ship.m - d.Y_vdot * m_
+    mx_G = ship.m * ship.x_G
+    m_vr, m_rv = mx_G - d.Y_rdot * m_ * L, mx_G - d.N_vdot * m_ * L
+    m_r = ship.I_z - d.N_rdot * m_ * L**2
+    D, n_scale = ship.D_P, rho * ship.D_P**4
+    return Coefficients(
+        m=ship.m, mx_G=mx_G,
+        X_udot=d.X_udot * m_, Y_vdot=d.Y_vdot * m_, Y_rdot=d.Y_rdot * m_ * L, N_vdot=d.N_vdot * m_ * L,
+        m_u=m_u, m_v=m_v, m_vr=m_vr, m_rv=m_rv, m_r=m_r, det=m_v * m_r - m_vr * m_rv,
+        X_u=d.X_u * slow, X_uu=d.X_uu * f, X_vv=d.X_vv * f, X_vr=d.X_vr * f * L, X_rr=d.X_rr * f * L**2,
+        Y_v=d.Y_v * slow, Y_uv=d.Y_uv * f, Y_ur=d.Y_ur * f * L,
+        Y_vv=d.Y_vv * f, Y_vr=d.Y_vr * f * L, Y_rv=d.Y_rv * f * L, Y_rr=d.Y_rr * f * L**2,
+        N_r=d.N_r * slow * L**2, N_uv=d.N_uv * f * L, N_ur=d.N_ur * f * L**2,
+        N_vv=d.N_vv * f * L, N_vr=d.N_vr * f * L**2, N_rv=d.N_rv * f * L**2, N_rr=d.N_rr * f * L**3,
+        T_nn=d.K_T0 * n_scale, T_nu=d.K_T1 * n_scale / D, thrust_share=1.0 - d.t, wake_share=1.0 - d.w,
+        slipstream=d.kappa * 8.0 / (pi * rho * D**2), inflow=d.epsilon**2, rudder=0.5 * rho * ship.A_R * d.C_L,
+        drag_R=1.0 - d.t_R, side_R=1.0 + d.a_H, lever_R=(d.x_R + d.a_H * d.x_H) * L,
+        gamma_v=d.gamma_v, gamma_r=d.gamma_r * L,
+    )  # fmt: skip
+
+
+def damping(u: Number, v: Number, r: Number, c: Coefficients) -> Force:
+    """-D(nu_r) nu_r: linear, quadratic and cross-coupled drag of the hull, |.|. in Norrbin's second-order modulus form."""
+    U, V, R = abs(u), abs(v), abs(r)
+    return Force(
+        X=(c.X_u + c.X_uu * U) * u + (c.X_vv * v + c.X_vr * r) * v + c.X_rr * r * r,
+        Y=(c.Y_v + c.Y_uv * U + c.Y_vv * V + c.Y_rv * R) * v + (c.Y_ur * U + c.Y_vr * V + c.Y_rr * R) * r,
+        N=(c.N_uv * u + c.N_vv * V + c.N_rv * R) * v + (c.N_r + c.N_ur * U + c.N_vr * V + c.N_rr * R) * r,
+    )
+
+
+def coriolis(u: Number, v: Number, r: Number, c: Coefficients) -> Force:
+    """-C(nu_r) nu_r: rigid body and added mass, whose Munk moment turns a drifting ship broadside."""
+    a_v = c.Y_vdot * v + c.Y_rdot * r
+    return Force(
+        X=c.m * v * r + c.mx_G * r * r - a_v * r,
+        Y=(c.X_udot - c.m) * u * r,
+        N=-c.mx_G * u * r + a_v * u - c.X_udot * u * v,
+    )
+
+
+def thrust(u: Number, n: Number, c: Coefficients) -> Number:
+    """Propeller thrust [N], linear in the advance ratio [Fossen 2021, sec. 9.6]."""
+    N = abs(n)
+    return c.T_nn * N * n + c.T_nu * N * (c.wake_share * u)
+
+
+def propeller(u: Number, n: Number, c: Coefficients) -> Force:
+    """What of the thrust drives the ship."""
+    return Force(X=c.thrust_share * thrust(u, n, c))
+
+
+def rudder(u: Number, v: Number, r: Number, delta: Number, n: Number, c: Coefficients) -> Force:
+    """Rudder force in the propeller's slipstream (momentum theory), with the flow that drift and turning send across it.
+
+    q = eps^2 (u_a |u_a| + kappa 8 T/(pi rho D^2)),  F = 1/2 rho A_R C_L (q sin(delta) + sqrt|q| (gamma_v v + gamma_r L r) cos(delta))
+    """
+    u_a = c.wake_share * u
+    q = c.inflow * (u_a * abs(u_a) + c.slipstream * positive(thrust(u, n, c)))
+    si, co = sin(delta), cos(delta)
+    across = sqrt(abs(q) + 1e-9) * (c.gamma_v * v + c.gamma_r * r)
+    normal = c.rudder * (q * si + across * co)
+    return Force(X=-c.drag_R * normal * si, Y=-c.side_R * normal * co, N=-c.lever_R * normal * co)
+
+
+def accelerations(tau: Force, c: Coefficients) -> tuple[Number, Number, Number]:
+    """M^-1 tau by components: surge stands alone, sway and yaw are a 2 x 2 system."""
+    return (
+        tau.X / c.m_u,
+        (c.m_r * tau.Y - c.m_vr * tau.N) / c.det,
+        (c.m_v * tau.N - c.m_rv * tau.Y) / c.det,
+    )

@@ -1,0 +1,152 @@
+"""What an effect is: one physical cause, declared once, read by the loop, the study, the training and the documentation.
+
+Four kinds. A Force pushes the ship. A Flow changes the water that the hull, propeller and rudder feel. A Lag gives an actuator
+a state of its own. A SensorFault leaves the ship alone and changes what an instrument says of it.
+"""
+
+from dataclasses import MISSING, dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+from twin.errors import SettingsError
+
+from .state import Force as ForceVector
+from .state import Number, Situation, Water
+
+if TYPE_CHECKING:
+    from .ship import Ship
+
+SCALES = ("force", "moment", "speed", "time", "length")
+
+
+class Param(NamedTuple):
+    """One number of an effect: what it is, where it may lie, and what it is before any data (a prior).
+
+    `lo, hi` is the box of fits and of the adaptation; `sd` the width of the prior around `null`, the value at which the
+    effect is not there (half-normal where the box has one side). With `of`, the four are multiples of one of the ship's
+    own scales (see Ship.scale), so that one declaration serves a 2 m boat and a 320 m tanker.
+    """
+
+    name: str
+    default: float
+    unit: str
+    lo: float
+    hi: float
+    sd: float
+    null: float
+    of: str | None
+    doc: str
+
+    def scale(self, ship: "Ship") -> float:
+        return ship.scale(self.of) if self.of else 1.0
+
+    def box(self, ship: "Ship") -> tuple[float, float]:
+        k = self.scale(ship)
+        return self.lo * k, self.hi * k
+
+
+def param(
+    default: float, *, unit: str, lo: float, hi: float, doc: str, sd: float | None = None, null: float = 0.0, of: str | None = None
+) -> Any:
+    """Declare a parameter: its plausible value when the effect is there, unit, box, prior width and meaning."""
+    if of is not None and of not in SCALES:
+        raise ValueError(f"of={of!r}: one of {SCALES}")
+    meta = dict(default=default, unit=unit, lo=lo, hi=hi, sd=abs(default - null) if sd is None else sd, null=null, of=of, doc=doc)
+    return field(default=default if of is None else MISSING, metadata=meta, kw_only=True)
+
+
+class Effect:
+    """Base of the four kinds; a subclass is final and frozen, and its docstring is the plain sentence of the report."""
+
+    kind: ClassVar[str]
+    needs: ClassVar[tuple[str, ...]] = ()  # fields of Situation without which the effect is switched off
+    needs_ship: ClassVar[tuple[str, ...]] = ()  # particulars without which it cannot be sized
+    source: ClassVar[str] = ""
+
+    def __init_subclass__(cls, **kwargs: Any) -> None:
+        super().__init_subclass__(**kwargs)
+        dataclass(frozen=True)(cls)
+
+    @classmethod
+    def params(cls) -> tuple[Param, ...]:
+        return tuple(Param(f.name, **f.metadata) for f in fields(cls))  # type: ignore[arg-type]
+
+    @classmethod
+    def plausible(cls, ship: "Ship") -> "Effect":
+        """The effect at its published or typical size on this ship."""
+        return cls(**{p.name: p.default * p.scale(ship) for p in cls.params()})
+
+    @classmethod
+    def absent(cls, ship: "Ship") -> "Effect":
+        """The effect at the size at which it does nothing."""
+        return cls(**{p.name: p.null * p.scale(ship) for p in cls.params()})
+
+    def values(self) -> dict[str, Number]:
+        return {p.name: getattr(self, p.name) for p in self.params()}
+
+    def but(self, **values: Number) -> "Effect":
+        """The same effect with some of its numbers changed."""
+        return replace(self, **values)  # type: ignore[type-var]
+
+    def check(self, ship: "Ship", where: str = "") -> None:
+        """Refuse a parameter outside its box, or a ship that lacks a particular it needs."""
+        name = type(self).__name__
+        for p in self.params():
+            lo, hi = p.box(ship)
+            value = getattr(self, p.name)
+            if not lo <= value <= hi:
+                raise SettingsError(
+                    f"{where}effects.{name}.{p.name} = {value:g} {p.unit} lies outside its box [{lo:g}, {hi:g}]. "
+                    f"Correct the number, or remove [effects.{name}]."
+                )
+        for particular in self.needs_ship:
+            if getattr(ship, particular, None) is None:
+                raise SettingsError(
+                    f"{where}effects.{name} needs {particular}. Add it under [particulars], or remove [effects.{name}]."
+                )
+
+
+class Force(Effect):
+    """Pushes the ship, or changes its inertia."""
+
+    kind = "Force"
+
+    def force(self, s: Situation, ship: "Ship") -> ForceVector:
+        """The force in body axes [N, N, N m]."""
+        return ForceVector()
+
+    def alter(self, ship: "Ship") -> "Ship":
+        """The ship as this effect leaves it (loading changes its mass); most effects leave it alone."""
+        return ship
+
+
+class Flow(Effect):
+    """Changes the water that hull, propeller and rudder feel: nu_r = nu - nu_c."""
+
+    kind = "Flow"
+
+    def water(self, s: Situation, ship: "Ship") -> Water:
+        raise NotImplementedError
+
+
+class Lag(Effect):
+    """Gives an actuator a state of its own: what is ordered is not at once what acts."""
+
+    kind = "Lag"
+
+    def dead_time(self) -> Number:
+        """How long after the order the gear begins to move [s]."""
+        raise NotImplementedError
+
+    def step(self, actual: Number, order: Number, h: Number) -> Number:
+        """The actuator h seconds on, given where it is and the (already delayed) order."""
+        raise NotImplementedError
+
+
+class SensorFault(Effect):
+    """The ship is right, the instrument is wrong."""
+
+    kind = "SensorFault"
+
+    def read(self, s: Situation, ship: "Ship") -> Situation:
+        """What the instruments say (a changed copy) of a ship that is truly in situation s."""
+        raise NotImplementedError

@@ -1,0 +1,28 @@
+"""The steering gear: after a dead time the rudder follows its order at no more than its greatest rate.
+
+    delta(t + h) = delta + clip(order(t - delay) - delta, -rate h, rate h),   rate = 65 deg / travel_time
+"""
+
+from math import pi
+
+from twin.physics.effect import Lag, param
+from twin.physics.maths import clip
+from twin.physics.state import Number
+
+TRAVEL = 65.0 * pi / 180.0  # 35 deg on one side to 30 deg on the other, SOLAS II-1/29
+
+
+class SteeringLag(Lag):
+    """The rudder answers late and slowly: the gear's dead time and its greatest rate stand between order and angle."""
+
+    source = "SOLAS II-1/29 (65 deg in 28 s); Van Amerongen (1982) Adaptive steering of ships, ch. 2"
+
+    delay: float = param(0.05, unit="s", lo=0.0, hi=0.5, sd=0.05, of="time", doc="dead time between order and movement")
+    travel_time: float = param(0.7, unit="s", lo=0.0, hi=3.0, sd=0.5, of="time", doc="35 deg one side to 30 deg the other, at full rate")
+
+    def dead_time(self) -> Number:
+        return self.delay
+
+    def step(self, actual: Number, order: Number, h: Number) -> Number:
+        most = h * TRAVEL / (self.travel_time + 1e-9)
+        return actual + clip(order - actual, -most, most)

@@ -1,0 +1,75 @@
+"""The few functions physics needs, for floats, arrays, tensors, symbols and intervals alike.
+
+Each looks at its argument and calls the library that the argument came from, so that one file of physics serves the loop, the
+study, the training and the certificate, and imports none of them.
+"""
+
+import math
+import sys
+from typing import Any
+
+_FLOATS = (float, int)
+
+
+def _library(*values: Any) -> Any:
+    """The module that owns the first value that is not a plain number."""
+    for value in values:
+        if type(value) not in _FLOATS:
+            return sys.modules[type(value).__module__.partition(".")[0] if not hasattr(value, "_maths") else value._maths]
+    return math
+
+
+def sin(x: Any) -> Any:
+    return math.sin(x) if type(x) is float else _library(x).sin(x)
+
+
+def cos(x: Any) -> Any:
+    return math.cos(x) if type(x) is float else _library(x).cos(x)
+
+
+def tanh(x: Any) -> Any:
+    return math.tanh(x) if type(x) is float else _library(x).tanh(x)
+
+
+def exp(x: Any) -> Any:
+    return math.exp(x) if type(x) is float else _library(x).exp(x)
+
+
+def sqrt(x: Any) -> Any:
+    """Square root; physics adds a floor under it wherever its argument can be zero (its gradient is infinite there)."""
+    return math.sqrt(x) if type(x) is float else _library(x).sqrt(x)
+
+
+def hypot(x: Any, y: Any, floor: float = 1e-9) -> Any:
+    """sqrt(x^2 + y^2 + floor): a length whose gradient is finite at rest."""
+    return sqrt(x * x + y * y + floor)
+
+
+def atan2(y: Any, x: Any) -> Any:
+    library = _library(y, x)
+    return getattr(library, "atan2", None)(y, x) if hasattr(library, "atan2") else library.arctan2(y, x)
+
+
+def where(condition: Any, yes: Any, no: Any) -> Any:
+    """`yes` where the condition holds, else `no`, element by element; both sides are evaluated, so both must be finite."""
+    if isinstance(condition, bool):
+        return yes if condition else no
+    library = _library(condition)
+    return library.Piecewise((yes, condition), (no, True)) if hasattr(library, "Piecewise") else library.where(condition, yes, no)
+
+
+def minimum(x: Any, y: Any) -> Any:
+    return where(x < y, x, y)
+
+
+def maximum(x: Any, y: Any) -> Any:
+    return where(x > y, x, y)
+
+
+def clip(x: Any, low: Any, high: Any) -> Any:
+    return minimum(maximum(x, low), high)
+
+
+def positive(x: Any, width: float = 1e-6) -> Any:
+    """A smooth max(x, 0): differs from it by at most sqrt(width)/2, near zero."""
+    return 0.5 * (x + sqrt(x * x + width))

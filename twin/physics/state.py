@@ -1,0 +1,82 @@
+"""Names, units and frames: what a ship is doing, what is done to it, and the force that results.
+
+Earth axes are north-east-down, body axes x forward, y to starboard, origin at midship on the centreline [Fossen 2021, ch. 2].
+SI and radians throughout. Every number may be a float, an array, a tensor or a symbol.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+Number = Any
+
+
+class Force(NamedTuple):
+    """Force and moment in body axes: X ahead [N], Y to starboard [N], N turning to starboard [N m]."""
+
+    X: Number = 0.0
+    Y: Number = 0.0
+    N: Number = 0.0
+
+    def __add__(self, other: "Force") -> "Force":  # type: ignore[override]
+        return Force(self.X + other.X, self.Y + other.Y, self.N + other.N)
+
+    def times(self, factor: Number) -> "Force":
+        return Force(self.X * factor, self.Y * factor, self.N * factor)
+
+
+class Water(NamedTuple):
+    """The water an effect makes the ship feel.
+
+    (u, v): its velocity in body axes [m/s]. (k_u, k_v, k_r): how much faster than nu_r the hull feels it flow past, as
+    fractions (a bottom or a bank squeezes the stream; propeller and rudder, in the wake, do not feel that part).
+    """
+
+    u: Number = 0.0
+    v: Number = 0.0
+    k_u: Number = 0.0
+    k_v: Number = 0.0
+    k_r: Number = 0.0
+
+
+class Rates(NamedTuple):
+    """d(nu)/dt in body axes [m/s2, m/s2, rad/s2]."""
+
+    u: Number
+    v: Number
+    r: Number
+
+
+@dataclass(slots=True)
+class Situation:
+    """A ship at one moment (or at many: every field may be an array over time).
+
+    eta = (x, y, psi) [m, m, rad]; nu = (u, v, r) over ground, body axes [m/s, m/s, rad/s]; (u_r, v_r) through the water.
+    A field that is None was not measured; an effect that needs it is switched off.
+    """
+
+    x: Number = 0.0
+    y: Number = 0.0
+    psi: Number = 0.0
+    u: Number = 0.0
+    v: Number = 0.0
+    r: Number = 0.0
+    u_r: Number = 0.0
+    v_r: Number = 0.0
+    delta: Number = 0.0  # rudder [rad], positive turns to starboard
+    n: Number = 0.0  # propeller [1/s], positive ahead
+    t: Number = 0.0  # time since the voyage began [s]
+    wind_speed: Number = None  # over ground [m/s]
+    wind_to: Number = None  # the direction it blows to [rad]
+    depth: Number = None  # surface to bottom [m]
+    H_s: Number = None  # significant wave height [m]
+    T_p: Number = None  # peak period [s]
+    wave_to: Number = None  # the direction the waves run to [rad]
+    draught: Number = None  # mean draught [m]
+    bank_port: Number = None  # from the ship's side to the bank [m]
+    bank_starboard: Number = None
+    phi: Number = None  # roll [rad], starboard side down positive
+
+
+WEATHER = (
+    "wind_speed", "wind_to", "depth", "H_s", "T_p", "wave_to", "draught", "bank_port", "bank_starboard", "phi",
+)
