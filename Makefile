@@ -1,0 +1,43 @@
+# The project's words; CI uses the same ones. `make demo` and `make test` work on a fresh machine.
+VENV := .venv
+BIN := $(VENV)/bin
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
+	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
+
+.PHONY: demo test lint types tests bench clean help
+
+help:  ## these words
+	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
+
+demo: $(VENV)/.on-board  ## makes .venv, installs what goes on board, and shows a ship's twin alive
+	$(BIN)/twin demo
+
+test: lint types tests  ## the same with the tools of development: ruff, mypy and all tests
+
+lint: $(VENV)/.development  ## ruff
+	$(BIN)/ruff check .
+
+types: $(VENV)/.development  ## mypy on public signatures
+	$(BIN)/mypy
+
+tests: $(VENV)/.development  ## pytest
+	$(BIN)/python -m pytest
+
+bench: $(VENV)/.development  ## the budget: 12 ms and 48 MB
+	$(BIN)/twin-bench --steps 10000
+
+clean:  ## takes away .venv and what the tools left
+	rm -rf $(VENV) .pytest_cache .ruff_cache .mypy_cache .hypothesis *.egg-info
+
+$(VENV)/.on-board: pyproject.toml | $(BIN)/python
+	$(PIP) --editable .
+	@touch $@
+
+$(VENV)/.development: pyproject.toml | $(BIN)/python
+	$(PIP) --editable '.[dev]'
+	@touch $@ $(VENV)/.on-board
+
+$(BIN)/python:
+	@test -n "$(PYTHON)" || { echo "Python 3.11 or newer is needed. Install it, or name it: make PYTHON=/path/to/python3"; exit 1; }
+	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); echo "$(PYTHON) cannot make an environment. On Debian: apt install python3-venv"; exit 1; }
