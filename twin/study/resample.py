@@ -36,7 +36,7 @@ def resampled(
 
 
 def nodes(t: np.ndarray, x: np.ndarray, start: float, step_s: float) -> tuple[np.ndarray, np.ndarray]:
-    """(times, values): the mean of each step's samples at the mean of their times, and both ends as they are."""
+    """(times, values): each step's mean at the mean of its times, and both ends as they are."""
     cell = np.floor((t - start) / step_s + 0.5).astype(np.int64)
     first = np.flatnonzero(np.r_[True, np.diff(cell) != 0])
     count = np.diff(np.r_[first, t.size])

@@ -1,0 +1,57 @@
+"""The header of a file that comes without a map: contract names are taken, near misses refused, others named as unused."""
+
+import difflib
+from pathlib import Path
+
+from twin.errors import DataError
+from twin.live.channels import BY_NAME
+from twin.study.mapping import PLACES, Column, Layout, Map, TimeColumn
+from twin.study.table import Sheet, open_text
+
+TIMES = ("time_s", "time_utc")
+ALLOWED = (*BY_NAME, *PLACES, *TIMES)
+MISSPELT = 0.85  # a name this much alike is a slip of the pen, not another quantity
+
+
+def own_names(path: Path) -> tuple[Map, tuple[str, ...]]:
+    """(the map of the contract's own names, one sentence for each column that is not used)."""
+    names = column_names(path)
+    unused = tuple(unknown(path, name) for name in names if name and name not in ALLOWED)
+    times = [name for name in TIMES if name in names]
+    if not times:
+        raise DataError(
+            f"{path}: has no column time_s or time_utc. {'; '.join(unused)[:300] or 'Its header is blank'}. "
+            "Rename it, or say in a map which column is the time (--map)."
+        )
+    time = TimeColumn(times[0], "iso" if times[0] == "time_utc" else "s")
+    return Map(time=time, columns={n: Column(n) for n in names if n in BY_NAME or n in PLACES}), unused
+
+
+def column_names(path: Path) -> list[str]:
+    """The cells of the first line; DataError when they are numbers."""
+    with open_text(path, None) as stream:
+        names = Sheet(path, stream, Layout()).names
+    if any(is_number(name) for name in names):
+        raise DataError(
+            f"{path}: line 1 has numbers where column names should be ({', '.join(names)[:60]}). Add a header line, "
+            "or give a map with header = false and columns by number (--map)."
+        )
+    return names
+
+
+def unknown(path: Path, name: str) -> str:
+    """What to say of a column that the contract does not know; DataError when it is nearly one that it knows."""
+    near = difflib.get_close_matches(name, ALLOWED, n=1, cutoff=0.5)
+    if near and difflib.SequenceMatcher(None, name, near[0]).ratio() >= MISSPELT:
+        raise DataError(
+            f"{path}: no column is called {name!r}. Did you mean {near[0]!r}? Rename it, or map it (--map)."
+        )
+    return f"{name!r} is not used" + (f" (did you mean {near[0]!r}?)" if near else "")
+
+
+def is_number(text: str) -> bool:
+    try:
+        float(text.replace(",", "."))
+    except ValueError:
+        return False
+    return True

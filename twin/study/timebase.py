@@ -1,0 +1,96 @@
+"""The clock of a file: stamps as numbers or as text, to seconds; and stamps that were rounded, made even again."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+import numpy as np
+
+from twin.errors import DataError
+from twin.study.mapping import TimeColumn
+from twin.study.units import UNITS
+
+EPOCH_S = 1e8  # a number of seconds above this counts from 1970, not from the start of the voyage
+DAY_S = 86400.0
+
+
+@dataclass(frozen=True)
+class Clock:
+    """(N,) seconds, and the UTC time of zero when the file knows it."""
+
+    time_s: np.ndarray
+    start_time_utc: str | None = None
+
+
+def clock_from_numbers(stamps: np.ndarray, spec: TimeColumn) -> Clock:
+    """Numbers in the map's unit; seconds since 1970 become seconds since the first sample."""
+    time_s = stamps * UNITS["s"][spec.unit]
+    finite = time_s[np.isfinite(time_s)]
+    if finite.size and finite[0] > EPOCH_S:
+        return Clock(time_s - finite[0], utc(finite[0]))
+    return Clock(time_s)
+
+
+def clock_from_text(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: TimeColumn) -> Clock:
+    """ISO-8601 or strptime stamps; without a zone they are taken as UTC."""
+    seconds = np.array([moment(path, n, s, spec) for n, s in zip(lines.tolist(), stamps, strict=True)])
+    finite = seconds[np.isfinite(seconds)]
+    return Clock(seconds - finite[0], utc(finite[0])) if finite.size else Clock(seconds)
+
+
+def moment(path: Path, line: int, stamp: str, spec: TimeColumn) -> float:
+    """Seconds since 1970 of one stamp; NaN for an empty cell."""
+    if not stamp:
+        return np.nan
+    try:
+        t = datetime.strptime(stamp, spec.format) if spec.format else datetime.fromisoformat(stamp)
+    except ValueError:
+        form = spec.format or "ISO 8601, such as 2024-05-17T08:30:00.25Z"
+        raise DataError(
+            f"{path}: line {line}: the time {stamp!r} is not {form}. Correct it, or give its format in a map: "
+            '[time] format = "%d.%m.%Y %H:%M:%S".'
+        ) from None
+    return (t if t.tzinfo else t.replace(tzinfo=UTC)).timestamp()
+
+
+def utc(seconds: float) -> str:
+    return datetime.fromtimestamp(seconds, UTC).isoformat().replace("+00:00", "Z")
+
+
+def refuse_backwards(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
+    """Time may stand still (a check says so) but not go back: nobody can tell which half is right."""
+    back = np.flatnonzero(np.diff(time_s) < 0.0)
+    if not back.size:
+        return
+    i = int(back[0])
+    why = "Two files pasted together, or rows out of order? Split or sort it."
+    if DAY_S * 0.9 < time_s[i] - time_s[i + 1] <= DAY_S:
+        why = "The clock passes midnight: export the date too."
+    raise DataError(
+        f"{path}: line {lines[i + 1]}: time goes back from {time_s[i]:g} s to {time_s[i + 1]:g} s "
+        f"({back.size} times in all). {why}"
+    )
+
+
+def rebuilt(path: Path, time_s: np.ndarray, step: bool | float) -> tuple[np.ndarray, str]:
+    """Even stamps in place of rounded ones, and a sentence that says so.
+
+    The step is the given one [s], or the straight line through the stamps. Refused when a stamp lies farther from the
+    line than rounding explains: then rows are missing.
+    """
+    k = np.arange(time_s.size)
+    if step is True:
+        step, start = (float(c) for c in np.polyfit(k, time_s, 1)) if time_s.size > 1 else (1.0, time_s[0])
+    else:
+        step = float(step)
+        start = float(np.mean(time_s - step * k))
+    off = np.abs(time_s - start - step * k)
+    worst, allowed = int(np.argmax(off)), 1.5 * np.diff(time_s).max(initial=0.0) + step
+    if off[worst] > allowed:
+        raise DataError(
+            f"{path}: row {worst + 1}: the stamp {time_s[worst]:g} s lies {off[worst]:.3g} s from an even step of "
+            f"{step:.6g} s; rounding explains {allowed:.2g} s. Rows are missing, or the step is wrong: leave rebuild out."
+        )
+    note = f"time stamps rebuilt with an even step of {step:.6g} s (the stamps are within {off.max():.2g} s of it)"
+    return time_s[0] + step * k, note
