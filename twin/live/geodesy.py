@@ -2,10 +2,10 @@
 
     north, east = rows of R(datum) (ecef(lat, lon) - ecef(datum))
 
-Exact geometry, so the antimeridian needs no care. What a plane cannot hold: at 100 km a distance reads 4 m short, and
-the meridians turn against the chart's north by `convergence_deg` (1.3 deg at 100 km east of 55 N, nothing at the datum).
-Within MAX_LATITUDE_DEG of a pole, and farther than MAX_DISTANCE_M, a position is refused.
-Source: Hofmann-Wellenhof et al., GNSS (2008), sections 8.2 and 8.4.
+Exact geometry, so the antimeridian needs no care. What a plane cannot hold: at 100 km a distance reads 4 m
+short, and the meridians turn against the chart's north by `convergence_deg` (1.3 deg at 100 km east of 55 N,
+nothing at the datum). Within MAX_LATITUDE_DEG of a pole, and farther than MAX_DISTANCE_M, a position is
+refused. Source: Hofmann-Wellenhof et al., GNSS (2008), sections 8.2 and 8.4.
 """
 
 from math import atan2, cos, degrees, hypot, isfinite, radians, sin, sqrt
@@ -37,11 +37,11 @@ class Datum(NamedTuple):
 def datum(latitude_deg: float, longitude_deg: float) -> Datum:
     """The chart that touches the earth here; refuses what has no chart."""
     if not (isfinite(latitude_deg) and isfinite(longitude_deg)) or not -180.0 <= longitude_deg <= 360.0:
-        raise SettingsError(f"Datum ({latitude_deg}, {longitude_deg}) is not a position. Give degrees north and east.")
+        raise SettingsError(f"Datum ({latitude_deg}, {longitude_deg}) is not a position in degrees.")
     if abs(latitude_deg) > MAX_LATITUDE_DEG:
         raise SettingsError(
-            f"Datum latitude {latitude_deg} deg is within {90 - MAX_LATITUDE_DEG} deg of a pole, where north turns "
-            "about within a ship's reach. Sail, or simulate, at a lower latitude."
+            f"Datum latitude {latitude_deg} deg is within {90 - MAX_LATITUDE_DEG} deg of a pole, where a flat "
+            "chart has no north. Sail, or simulate, at a lower latitude."
         )
     lat, lon = radians(latitude_deg), radians(longitude_deg)
     place = _ecef(lat, lon, 0.0)
@@ -61,7 +61,7 @@ def to_chart(at: Datum, latitude_deg: float, longitude_deg: float) -> tuple[floa
 
 
 def from_chart(at: Datum, north_m: float, east_m: float) -> tuple[float, float]:
-    """(latitude_deg, longitude_deg) of the sea surface under a point of the chart; to a millimetre within 200 km."""
+    """(latitude_deg, longitude_deg) of the sea under a point of the chart; to a millimetre within 200 km."""
     up = 0.0
     for _ in range(4):  # sink from the plane to the ellipsoid: the height shrinks 30-fold or more each time
         latitude, longitude, height = _geodetic(*_lifted(at, north_m, east_m, up))

@@ -1,7 +1,8 @@
-"""What the twin says and logs: the wide record of one tick, the row of an imported voyage, and Keelson's envelope.
+"""What the twin says and logs: the wide record of one tick, the row of a voyage, and Keelson's envelope.
 
-`Row` has one optional number for each channel of the table; `Tick` holds everything one tick knew. Both are flat
-enough to plot by path in Lichtblick, Foxglove and PlotJuggler: `estimate.heading_true_north_deg`, `known[0].X_N`.
+`Row` has one optional number for each channel of the table; `Tick` holds everything one tick knew. Both are
+flat enough to plot by path in Lichtblick, Foxglove and PlotJuggler: `estimate.heading_true_north_deg`,
+`known[0].X_N`.
 """
 
 from typing import Any
@@ -33,7 +34,11 @@ TABLE: dict[str, list[Field]] = {
     "Codes": each_channel("int32?"),  # readings.Quality
     "State": STATE,
     "NamedForce": [("name", "string"), *FORCE],
-    "LearnedForce": [*FORCE, ("bound_N", "double"), ("bound_Nm", "double"), ("weight", "double"), ("share", "double")],
+    "LearnedForce": [
+        *FORCE, ("bound_N", "double"), ("bound_Nm", "double"),
+        ("weight", "double"),  # 0 switched off .. 1 inside its training envelope
+        ("share", "double"),  # of the whole force, 0..1
+    ],
     "Parameter": [
         ("name", "string"), ("value", "double"), ("low", "double"), ("high", "double"), ("sigma", "double?"),
         ("unit", "string"), ("status", "string"),  # unestimated | estimated | invalid

@@ -1,7 +1,7 @@
 """What came in from one sensor: a number that may be used, or the reason why it may not.
 
-The gates without memory (decoding, range, sentinels) and the gates with memory (jump, frozen, stale ...) speak with
-the same codes, so a channel's quality reads the same in the log, on the bus and in the report.
+The gates without memory (decoding, range, sentinels) and the gates with memory (jump, frozen, stale ...)
+speak with the same codes, so a channel's quality reads the same in the log, on the bus and in the report.
 """
 
 from enum import IntEnum
@@ -30,6 +30,7 @@ class Quality(IntEnum):
     UNKNOWN_KEY = 16
     OUTSIDE_AREA = 17
     NOT_GIVEN = 18
+    UNCONFIRMED = 19
 
 
 WORDS: dict[Quality, str] = {
@@ -52,13 +53,15 @@ WORDS: dict[Quality, str] = {
     Quality.UNKNOWN_KEY: "a key the table of topics does not have",
     Quality.OUTSIDE_AREA: "a position too far from the datum, or too near a pole, for a flat chart",
     Quality.NOT_GIVEN: "this voyage does not have it",
+    Quality.UNCONFIRMED: "the first of its kind; a second must agree with it",
 }
 
 
 class Reading(NamedTuple):
     """One sample that passed decoding: `value` in the channel's border unit, finite and in range.
 
-    `time_s` is the source's own stamp (UTC, seconds since 1970), `received_s` the monotonic time of arrival [s].
+    `time_s` is the source's own stamp (UTC, seconds since 1970), `received_s` the monotonic time of arrival
+    [s].
     """
 
     channel: str
