@@ -1,0 +1,99 @@
+"""Every number that could be wrong, as a column: what one unit of it does to the accelerations and to the readings.
+
+Derivatives of the core and parameters of the effects are treated alike; a column is a secant over a plausible size, so that a
+parameter which is not quite linear counts with what it would really do.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.physics.effect import Effect
+from twin.physics.model import Model
+from twin.physics.ship import DERIVATIVES
+
+from .respond import respond
+from .track import Track
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """One number to be found: whose it is, where it may lie and how wide its prior is (all in the number's own unit)."""
+
+    owner: str  # "core" or the name of an effect
+    name: str
+    unit: str
+    centre: float  # prior mean: the ship file's value, or the null of an effect
+    sd: float
+    lo: float
+    hi: float
+
+    @property
+    def label(self) -> str:
+        return f"{self.owner}.{self.name}"
+
+
+FIXED = ("t", "w", "C_L", "x_R", "epsilon")  # scale other derivatives one for one: the data cannot tell them apart
+
+
+def core_unknowns(model: Model) -> list[Unknown]:
+    """The core's derivatives, with the ship file's own standard errors where it has them."""
+    own = model.ship.notes.get("derivatives", {})
+    out = []
+    for f in DERIVATIVES:
+        value, m = float(getattr(model.ship.derivatives, f.name)), f.metadata
+        if f.name in FIXED or m["sd"] == 0.0:
+            continue
+        entry = own.get(f.name, {})
+        sd = entry.get("prior_sd", None) if isinstance(entry, dict) else None
+        sd = float(sd) if sd else max(m["sd"], 0.15 * abs(value))
+        out.append(Unknown("core", f.name, m["unit"], value, sd, m["lo"], m["hi"]))
+    return out
+
+
+def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:
+    """The parameters of one effect on this ship, centred on "not there"."""
+    out = []
+    for p in effect.params():
+        k, (lo, hi) = p.scale(model.ship), p.box(model.ship)
+        out.append(Unknown(effect.__name__, p.name, p.unit, p.null * k, p.sd * k, lo, hi))
+    return out
+
+
+def columns(
+    track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """(N, 3, P) accelerations and (N, 8, P) readings for one unit of each unknown, about the model (or `at` label -> value)."""
+    acceleration, reading = respond(track, model)
+    A = np.zeros((len(track), 3, len(unknowns)))
+    R = np.zeros((len(track), 8, len(unknowns)))
+    for j, unknown in enumerate(unknowns):
+        here = (at or {}).get(unknown.label)
+        step = _step(unknown, here)
+        a, r = respond(track, changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue))
+        A[:, :, j], R[:, :, j] = (a - acceleration) / step, (r - reading) / step
+    return A, R
+
+
+def _step(unknown: Unknown, here: float | None) -> float:
+    """A plausible step that stays in the box: a whole prior width from null, a tenth of one about a found value."""
+    size = unknown.sd if here is None else 0.1 * unknown.sd
+    start = unknown.centre if here is None else here
+    return size if start + size <= unknown.hi else -size
+
+
+def changed(model: Model, unknown: Unknown, value: float, catalogue: dict[str, type[Effect]]) -> Model:
+    """The model with one number changed; an effect that is not in it yet is put in at null first."""
+    if unknown.owner == "core":
+        return Model(model.ship.with_derivatives(**{unknown.name: value}), model.effects)
+    present = next((e for e in model.effects if type(e).__name__ == unknown.owner), None)
+    effect = present or catalogue[unknown.owner].absent(model.ship)
+    return model.but(effect.but(**{unknown.name: value}))
+
+
+def with_values(model: Model, unknowns: Sequence[Unknown], values: Sequence[float], catalogue: dict[str, type[Effect]]) -> Model:
+    """The model with all these numbers put in, each kept inside its box."""
+    for unknown, value in zip(unknowns, values, strict=True):
+        model = changed(model, unknown, float(np.clip(value, unknown.lo, unknown.hi)), catalogue)
+    return model

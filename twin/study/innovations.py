@@ -1,0 +1,267 @@
+"""What the model cannot predict one step ahead, and how that depends on every unknown: a Kalman filter with its tangents.
+
+Along the smooth motion the ship is linear: delta = (x, y, psi, u, v, r), a slowly varying acceleration b (what any model of this
+kind leaves over: its structural error) and a slowly varying current c, both first-order Gauss-Markov. The filter's gains do
+not depend on the unknowns theta, so its innovations are affine in them: epsilon = e - G theta. Whitened, they give the normal
+equations A = G'G, b = G'e of every later question. Tracks are cut into segments that are filtered side by side.
+
+Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy & O'Hagan (2001) (model discrepancy).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from twin.physics import core
+from twin.physics.effect import Effect
+from twin.physics.effects import find
+from twin.physics.model import Model
+
+from .columns import Unknown, columns
+from .respond import advance, jacobian, lagged, respond
+from .track import Track
+
+STATES = 11  # delta (6), b (3), c (2)
+SEGMENT_LENGTHS = 16  # a segment lasts while the ship sails so many of her lengths
+MEMORY_B, MEMORY_C = 3.0, 12.0  # correlation times of b and c, in ship lengths sailed
+
+
+@dataclass(frozen=True)
+class Floor:
+    """What a correct model of this kind still leaves unexplained on this ship: the structural floor.
+
+    `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller cause at that moment,
+    in surge, sway, yaw; `calm`: the same share of a standard acceleration, there even when nothing happens; `white`: fast
+    part; `flow`: scatter of the water's own motion, as a share of U_0; `sensor`: factor on the readings' scatter.
+    """
+
+    share: tuple[float, float, float] = (0.05, 0.05, 0.05)
+    calm: float = 0.5
+    white: float = 0.05
+    flow: float = 0.004
+    sensor: float = 1.3
+
+    def scaled(self, factor: float) -> "Floor":
+        return replace(self, share=tuple(factor * s for s in self.share), white=factor * self.white)
+
+
+@dataclass(frozen=True)
+class Linear:
+    """One track, linearised about its smooth motion and a model: all that the filter needs, for any floor."""
+
+    track: Track
+    F: np.ndarray  # (N, 11, 11)
+    defect: np.ndarray  # (N, 6): model's step minus the smooth motion's
+    H: np.ndarray  # (N, 8, 11)
+    e: np.ndarray  # (N, 8): measured minus read, NaN where there was none
+    A: np.ndarray  # (N, 3, P) float32, m/s2 per unit of each unknown
+    R: np.ndarray  # (N, 8, P) float32
+    busy: np.ndarray  # (N, 3): acceleration that hull, rudder and propeller cause
+    model: Model = field(repr=False)
+
+
+def linearise(track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]]) -> Linear:
+    """Everything about one track that does not depend on the floor."""
+    h, n = track.h, len(track)
+    _, reading = respond(track, model)
+    A, R = columns(track, model, unknowns, catalogue)
+    U = float(model.ship.scale("speed"))
+    current = [Unknown("Current", axis, "m/s", 0.0, 0.02 * U, -U, U) for axis in ("north", "east")]
+    flow, _ = columns(track, _without_current(model), current, {"Current": find("Current")})
+    F = np.zeros((n, STATES, STATES))
+    psi, u, v = track.state[:, 2], track.state[:, 3], track.state[:, 4]
+    c, s = np.cos(psi), np.sin(psi)
+    rate = np.zeros((n, STATES, STATES))  # the continuous system matrix
+    rate[:, 0, 2], rate[:, 0, 3], rate[:, 0, 4] = -u * s - v * c, c, -s
+    rate[:, 1, 2], rate[:, 1, 3], rate[:, 1, 4] = u * c - v * s, s, c
+    rate[:, 2, 5] = 1.0
+    rate[:, 3:6, :6] = jacobian(track, model)
+    rate[:, 3:6, 6:9] = np.eye(3)
+    rate[:, 3:6, 9:11] = flow
+    time = float(model.ship.scale("time"))
+    F = np.eye(STATES) + h * rate + 0.5 * h * h * rate @ rate
+    F[:, 6:9, 6:9] = np.eye(3) * np.exp(-h / (MEMORY_B * time))
+    F[:, 9:11, 9:11] = np.eye(2) * np.exp(-h / (MEMORY_C * time))
+    defect = advance(track, model)
+    defect[:-1] -= track.state[1:]
+    defect[-1] = 0.0
+    H = np.zeros((n, 8, STATES))
+    H[:, :6, :6] = np.eye(6)
+    H[:, 6, 3] = H[:, 7, 4] = 1.0
+    H[:, 6, 9], H[:, 6, 10], H[:, 7, 9], H[:, 7, 10] = -c, -s, s, -c
+    e = track.measured - reading
+    e[:, 2] = (e[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
+    return Linear(track, F, defect, H, e, A.astype(np.float32), R.astype(np.float32), busy(track, model), model)
+
+
+def _without_current(model: Model) -> Model:
+    return Model(model.ship, tuple(e for e in model.effects if type(e).__name__ != "Current"))
+
+
+def busy(track: Track, model: Model) -> np.ndarray:
+    """(N, 3) how hard hull, propeller and rudder are at work, as accelerations [m/s2, m/s2, rad/s2], over the last length."""
+    s = track.situation(delta=lagged(track, model))
+    forces = model.known(s)
+    width = max(3, int(model.ship.scale("time") / track.h))
+    out = np.empty((len(track), 3))
+    for i, axis in enumerate("XYN"):
+        square = sum(np.broadcast_to(getattr(forces[k], axis), track.t.shape) ** 2 for k in ("hull", "propeller", "rudder", "coriolis"))
+        mean = np.convolve(square, np.ones(width) / width, "same")
+        out[:, i] = np.sqrt(mean) / (model.c.m_u, model.c.m_v, model.c.m_r)[i]
+    return out
+
+
+def standard(model: Model) -> np.ndarray:
+    """(3,) accelerations by the ship's own force and moment scale [m/s2, m/s2, rad/s2]."""
+    c: core.Coefficients = model.c
+    force, moment = float(model.ship.scale("force")), float(model.ship.scale("moment"))
+    return np.array([force / c.m_u, force / c.m_v, 0.3 * moment / c.m_r])
+
+
+@dataclass(frozen=True)
+class Normal:
+    """Normal equations of whitened innovations, one for each segment: epsilon = e - G theta, A = G'G, b = G'e."""
+
+    A: np.ndarray  # (S, P, P)
+    b: np.ndarray  # (S, P)
+    ee: np.ndarray  # (S,)
+    logdet: np.ndarray  # (S,) sum of log det of the innovations' covariance
+    count: np.ndarray  # (S,) readings
+    energy: np.ndarray  # (S, 8) sum of squares by reading
+    where: tuple[tuple[int, int, int], ...]  # (track, first step, last step)
+
+    def total(self) -> tuple[np.ndarray, np.ndarray, float]:
+        return self.A.sum(0), self.b.sum(0), float(self.ee.sum())
+
+    def only(self, keep: np.ndarray) -> "Normal":
+        """Some of the segments."""
+        rows = np.flatnonzero(keep)
+        return Normal(
+            self.A[rows], self.b[rows], self.ee[rows], self.logdet[rows], self.count[rows], self.energy[rows],
+            tuple(self.where[i] for i in rows),
+        )  # fmt: skip
+
+
+def segments(lines: Sequence[Linear]) -> list[tuple[int, int, int]]:
+    """(track, first, last) of the stretches that are filtered on their own; a break in the controls ends one."""
+    out = []
+    for i, line in enumerate(lines):
+        length = max(32, int(SEGMENT_LENGTHS * float(line.model.ship.scale("time")) / line.track.h))
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], line.track.whole, [False]]).astype(int)))
+        for start, stop in zip(edges[::2], edges[1::2], strict=True):
+            pieces = max(1, round((stop - start) / length))
+            cuts = np.linspace(start, stop, pieces + 1).astype(int)
+            out += [(i, int(a), int(b)) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b - a >= 24]
+    return out
+
+
+def innovate(lines: Sequence[Linear], floor: Floor, unknowns: slice | np.ndarray = slice(None)) -> Normal:
+    """Filter every segment of every track side by side and gather their normal equations."""
+    where = segments(lines)
+    S, T = len(where), max(b - a for _, a, b in where)
+    P = lines[0].A[:, :, unknowns].shape[2]
+
+    def stack(pick: "object", shape: tuple[int, ...], fill: float = 0.0, kind: type = float) -> np.ndarray:
+        out = np.full((T, S, *shape), fill, kind)
+        for k, (i, a, b) in enumerate(where):
+            out[: b - a, k] = pick(lines[i])[a:b]  # type: ignore[operator]
+        return out
+
+    F, H = stack(lambda x: x.F, (STATES, STATES)), stack(lambda x: x.H, (8, STATES))
+    e = stack(lambda x: x.e, (8,), np.nan)
+    defect = stack(lambda x: x.defect, (6,))
+    A = stack(lambda x: x.A[:, :, unknowns], (3, P), kind=np.float32)
+    R = stack(lambda x: x.R[:, :, unknowns], (8, P), kind=np.float32)
+    turn = stack(_turn, (3, 3))
+    noise = np.stack([(floor.sensor * lines[i].track.sd) ** 2 for i, _, _ in where])  # (S, 8)
+    slow = stack(lambda x: _slow(x, floor), (3,))
+    h = np.array([lines[i].track.h for i, _, _ in where])
+    model = lines[0].model
+    time = np.array([float(lines[i].model.ship.scale("time")) for i, _, _ in where])
+    keep_b, keep_c = 1.0 - np.exp(-2.0 * h / (MEMORY_B * time)), 1.0 - np.exp(-2.0 * h / (MEMORY_C * time))
+    flow = floor.flow * float(model.ship.scale("speed"))
+    fast = (floor.white * standard(model)) ** 2 * (h * time)[:, None]  # (S, 3) variance of velocity in one step
+    P0 = _start(lines, where, slow[0], flow)
+    X = np.zeros((S, STATES, 1 + P))
+    C = P0
+    eye, sums = np.arange(STATES), _Sums(S, P)
+    for k in range(T):
+        here = np.isfinite(e[k])
+        Hk = H[k] * here[:, :, None]
+        E = -(Hk @ X)
+        E[:, :, 0] += np.where(here, e[k], 0.0)
+        E[:, :, 1:] -= np.where(here[:, :, None], R[k], 0.0)
+        CH = C @ Hk.transpose(0, 2, 1)
+        Sk = Hk @ CH
+        Sk[:, eye[:8], eye[:8]] += np.where(here, noise, 1.0)
+        L = np.linalg.cholesky(Sk)
+        W = np.linalg.solve(L, np.concatenate([E, Hk @ C], axis=2))  # whitened innovations | whitened H C
+        white, V = W[:, :, : 1 + P], W[:, :, 1 + P :]
+        sums.add(white, L, here)
+        VT = V.transpose(0, 2, 1)
+        X = X + VT @ white
+        C = C - VT @ V
+        X = F[k] @ X
+        X[:, :6, 0] += defect[k]
+        hA = h[:, None, None] * A[k]
+        X[:, 3:6, 1:] += hA
+        X[:, 0:3, 1:] += 0.5 * h[:, None, None] * (turn[k] @ hA)
+        C = F[k] @ C @ F[k].transpose(0, 2, 1)
+        C[:, eye[3:6], eye[3:6]] += fast
+        C[:, eye[6:9], eye[6:9]] += keep_b[:, None] * slow[k]
+        C[:, eye[9:], eye[9:]] += (keep_c * flow**2)[:, None]
+    return sums.normal(tuple(where))
+
+
+class _Sums:
+    """Running sums of whitened innovations by segment."""
+
+    def __init__(self, S: int, P: int) -> None:
+        self.M = np.zeros((S, 1 + P, 1 + P))
+        self.logdet, self.count, self.energy = np.zeros(S), np.zeros(S), np.zeros((S, 8))
+        self.held: list[np.ndarray] = []
+
+    def add(self, white: np.ndarray, L: np.ndarray, here: np.ndarray) -> None:
+        self.held.append(white)
+        if len(self.held) == 16:
+            self._fold()
+        self.logdet += 2.0 * np.log(np.diagonal(L, axis1=1, axis2=2)).sum(1)
+        self.count += here.sum(1)
+        self.energy += white[:, :, 0] ** 2 * here
+
+    def _fold(self) -> None:
+        if self.held:
+            W = np.concatenate(self.held, axis=1)
+            self.M += W.transpose(0, 2, 1) @ W
+            self.held = []
+
+    def normal(self, where: tuple[tuple[int, int, int], ...]) -> Normal:
+        self._fold()
+        M = self.M
+        return Normal(M[:, 1:, 1:], -M[:, 1:, 0], M[:, 0, 0], self.logdet, self.count, self.energy, where)
+
+
+def _turn(line: Linear) -> np.ndarray:
+    """(N, 3, 3) body velocities to d(x, y, psi)/dt."""
+    c, s = np.cos(line.track.state[:, 2]), np.sin(line.track.state[:, 2])
+    out = np.zeros((c.size, 3, 3))
+    out[:, 0, 0], out[:, 0, 1], out[:, 1, 0], out[:, 1, 1], out[:, 2, 2] = c, -s, s, c, 1.0
+    return out
+
+
+def _slow(line: Linear, floor: Floor) -> np.ndarray:
+    """(N, 3) variance of the slowly varying acceleration error."""
+    calm = floor.calm * standard(line.model)
+    return (np.array(floor.share) ** 2) * (line.busy**2 + calm**2)
+
+
+def _start(lines: Sequence[Linear], where: Sequence[tuple[int, int, int]], slow: np.ndarray, flow: float) -> np.ndarray:
+    """(S, 11, 11) covariance at the start of each segment: the motion nearly unknown, b and c as they usually are."""
+    ship = lines[0].model.ship
+    L, U, time = float(ship.L_pp), float(ship.scale("speed")), float(ship.scale("time"))
+    motion = np.array([0.05 * L, 0.05 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time]) ** 2
+    C = np.zeros((len(where), STATES, STATES))
+    for k in range(len(where)):
+        C[k][np.diag_indices(STATES)] = np.concatenate([motion, slow[k], [flow**2, flow**2]])
+    return C

@@ -1,0 +1,64 @@
+"""What a model says along a track: the accelerations it would give the ship there, and what the instruments would read."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from twin.physics.model import Model
+from twin.physics.state import Situation
+
+from .track import READINGS, STATE, Track
+
+
+def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
+    """(N, 3) accelerations [m/s2, m/s2, rad/s2] and (N, 8) readings (see READINGS) of a ship that moves along the track."""
+    s = track.situation(delta=lagged(track, model))
+    acceleration = np.column_stack([np.broadcast_to(a, track.t.shape) for a in model.nu_dot(s)])
+    return acceleration, readings(s, model)
+
+
+def readings(s: Situation, model: Model) -> np.ndarray:
+    """(N, 8): what the instruments say of situation s (whose u_r and v_r the model has set), faults and all."""
+    for fault in model.faults:
+        s = fault.read(replace(s), model.loaded)
+    return np.column_stack([np.broadcast_to(getattr(s, name), np.shape(s.psi)) for name in READINGS])
+
+
+def lagged(track: Track, model: Model) -> np.ndarray:
+    """(N,) the rudder as it truly stands [rad], when the track holds its order and the model has a lag."""
+    delta = track.delta
+    for lag in model.lags:
+        order = np.interp(track.t - lag.dead_time(), track.t, delta)
+        out = np.empty_like(order)
+        actual, h = float(order[0]), track.h
+        for k, wanted in enumerate(order.tolist()):
+            out[k] = actual = lag.step(actual, wanted, h)
+        delta = out
+    return delta
+
+
+def advance(track: Track, model: Model) -> np.ndarray:
+    """(N, 6) where the model would be one grid step on, from each point of the smooth motion."""
+    s = track.situation(delta=_between(lagged(track, model)), n=_between(track.n))
+    state = tuple(track.state.T)
+    return np.column_stack(model.step(state, s, track.h))
+
+
+def _between(values: np.ndarray) -> np.ndarray:
+    """Inputs half a step on."""
+    return np.append(0.5 * (values[1:] + values[:-1]), values[-1])
+
+
+def jacobian(track: Track, model: Model) -> np.ndarray:
+    """(N, 3, 6) derivative of the accelerations by x, y, psi, u, v, r, by central differences (position does not matter)."""
+    delta = lagged(track, model)
+    U, r = float(model.ship.scale("speed")), 1.0 / float(model.ship.scale("time"))
+    out = np.zeros((len(track), 3, 6))
+    for j, size in ((2, 1e-3), (3, 1e-3 * U), (4, 1e-3 * U), (5, 1e-3 * r)):
+        sides = []
+        for sign in (1.0, -1.0):
+            s = track.situation(delta=delta)
+            setattr(s, STATE[j], getattr(s, STATE[j]) + sign * size)
+            sides.append(np.column_stack([np.broadcast_to(a, track.t.shape) for a in model.nu_dot(s)]))
+        out[:, :, j] = (sides[0] - sides[1]) / (2.0 * size)
+    return out

@@ -1,0 +1,201 @@
+"""A track: a voyage on an even grid in SI units, with the smooth motion underneath its measurements.
+
+The smooth motion is kinematics alone (no ship model): the path of least jerk, in units of the ship's own time L/U_0, that
+agrees with the measured positions, headings and rates. The study linearises along it; it is never shown as a prediction.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solveh_banded
+
+from twin.errors import DataError
+from twin.physics.ship import Ship
+from twin.physics.state import WEATHER, Situation
+
+from .voyage import Voyage
+
+MEASURED = {  # reading -> channel
+    "x": "north_m", "y": "east_m", "psi": "heading_true_north_deg", "u": "surge_velocity_mps", "v": "sway_velocity_mps",
+    "r": "yaw_rate_degps", "u_r": "surge_velocity_through_water_mps", "v_r": "sway_velocity_through_water_mps",
+}  # fmt: skip
+READINGS = tuple(MEASURED)
+STATE = ("x", "y", "psi", "u", "v", "r")
+STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail her own length
+LONGEST_HOLD_S = 5.0  # a control that is missing for longer breaks the track
+
+
+@dataclass(frozen=True)
+class Track:
+    """One voyage, ready for the study; every array is (N,) on the grid `t` [s]."""
+
+    name: str
+    t: np.ndarray
+    h: float
+    state: np.ndarray  # (N, 6): x, y, psi, u, v, r of the smooth motion
+    delta: np.ndarray
+    n: np.ndarray
+    weather: Mapping[str, np.ndarray]  # only what was measured, by its name in Situation
+    measured: np.ndarray  # (N, 8): READINGS, NaN where there was none
+    sd: np.ndarray  # (8,): scatter of each reading about the smooth motion
+    whole: np.ndarray  # (N,) bool: controls known, so that the model can be run through
+
+    def __len__(self) -> int:
+        return self.t.size
+
+    def situation(self, **replaced: np.ndarray) -> Situation:
+        """The whole track as one Situation of arrays."""
+        values = dict(zip(STATE, self.state.T, strict=True))
+        return Situation(**(values | dict(delta=self.delta, n=self.n, t=self.t) | dict(self.weather) | replaced))
+
+    def missing(self) -> set[str]:
+        """Fields of Situation that were not measured: effects that need one are switched off."""
+        return {name for name in WEATHER if name not in self.weather}
+
+    def part(self, first: int, last: int) -> "Track":
+        """Grid steps first <= k < last."""
+        cut = slice(first, last)
+        return Track(
+            self.name, self.t[cut], self.h, self.state[cut], self.delta[cut], self.n[cut],
+            {k: w[cut] for k, w in self.weather.items()}, self.measured[cut], self.sd, self.whole[cut],
+        )  # fmt: skip
+
+
+def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH) -> Track:
+    """Put a voyage on the ship's own grid and find the smooth motion under it; DataError when that cannot be done."""
+    length_s = float(ship.scale("time"))
+    h = max(voyage.step_s, length_s / steps_per_length)
+    if voyage.duration_s < 3.0 * length_s:
+        raise DataError(
+            f"{voyage.name}: {voyage.duration_s:.0f} s is less than three ship lengths of sailing ({3 * length_s:.0f} s): "
+            "nothing can be judged from it. Record at least twenty minutes of manoeuvring."
+        )
+    grid = voyage.on_grid(h)
+    measured = np.column_stack([grid.si(channel) for channel in MEASURED.values()])
+    controls, whole = _controls(grid)
+    if not whole.any():
+        raise DataError(f"{voyage.name}: rudder_angle_deg and propeller_rate_rpm are never there together. Check the map.")
+    state, sd = _smooth_motion(measured, h, ship)
+    return Track(
+        voyage.name, grid.time_s - voyage.time_s[0], h, state, *controls, _weather(grid, measured, state), measured, sd, whole
+    )
+
+
+def _controls(grid: Voyage) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Rudder and propeller, short holes bridged, and where both are known."""
+    bridged = [_bridge(grid.si(name), LONGEST_HOLD_S, grid.step_s) for name in ("rudder_angle_deg", "propeller_rate_rpm")]
+    whole = np.isfinite(bridged[0]) & np.isfinite(bridged[1])
+    return (np.nan_to_num(bridged[0]), np.nan_to_num(bridged[1])), whole
+
+
+def _bridge(values: np.ndarray, longest_s: float, h: float) -> np.ndarray:
+    """Hold the last value through holes of at most longest_s."""
+    ok = np.isfinite(values)
+    last = np.maximum.accumulate(np.where(ok, np.arange(values.size), -1))
+    age = np.arange(values.size) - last
+    held = values[np.maximum(last, 0)]
+    return np.where((last >= 0) & (age * h <= longest_s), held, np.nan)
+
+
+def _weather(grid: Voyage, measured: np.ndarray, state: np.ndarray) -> dict[str, np.ndarray]:
+    """What was measured of wind, waves, depth, loading and banks, under the names and directions of Situation."""
+    out: dict[str, np.ndarray] = {}
+
+    def put(name: str, channel: str, turn: float = 0.0) -> None:
+        if grid.has(channel):
+            out[name] = _fill(grid.si(channel)) + turn
+
+    put("depth", "water_depth_m"), put("H_s", "wave_height_significant_m"), put("T_p", "wave_period_peak_s")
+    put("wave_to", "wave_direction_deg", np.pi), put("draught", "draught_mean_m"), put("phi", "roll_deg")
+    put("bank_port", "bank_distance_port_m"), put("bank_starboard", "bank_distance_starboard_m")
+    if grid.has("true_wind_speed_mps", "true_wind_direction_deg"):
+        put("wind_speed", "true_wind_speed_mps"), put("wind_to", "true_wind_direction_deg", np.pi)
+    elif grid.has("apparent_wind_speed_mps", "apparent_wind_angle_deg"):
+        speed, angle = _fill(grid.si("apparent_wind_speed_mps")), _fill(grid.si("apparent_wind_angle_deg")) + np.pi
+        ahead, aside = speed * np.cos(angle) + state[:, 3], speed * np.sin(angle) + state[:, 4]
+        out["wind_speed"], out["wind_to"] = np.hypot(ahead, aside), np.arctan2(aside, ahead) + state[:, 2]
+    return out
+
+
+def _fill(values: np.ndarray) -> np.ndarray:
+    """Holes filled along straight lines; the ends are held."""
+    ok = np.isfinite(values)
+    k = np.arange(values.size)
+    return np.interp(k, k[ok], values[ok])
+
+
+def _smooth_motion(measured: np.ndarray, h: float, ship: Ship) -> tuple[np.ndarray, np.ndarray]:
+    """The path of least jerk through the readings (N, 6), and the scatter of the readings about it (8,)."""
+    x, y, psi, u, v, r, u_r, v_r = measured.T
+    time, speed = float(ship.scale("time")), float(ship.scale("speed"))
+    turn = (1.0 / time**3) ** 2 * time * h**5  # what third differences of heading do by themselves: (rad)^2
+    sd = {name: _scatter(column) for name, column in zip(READINGS, measured.T, strict=True)}
+    floor = dict(x=1e-4 * ship.L_pp, y=1e-4 * ship.L_pp, psi=2e-4, r=1e-3 / time)
+    floor |= dict.fromkeys(("u", "v", "u_r", "v_r"), 1e-3 * speed)
+    sd = {name: max(value if np.isfinite(value) else 0.0, floor[name]) for name, value in sd.items()}
+    psi_s = _least_jerk(psi, sd["psi"], r, sd["r"], turn, h)
+    r_s = np.gradient(psi_s, h)
+    c, s = np.cos(psi_s), np.sin(psi_s)
+    sd_uv = np.hypot(sd["u"], sd["v"]) / np.sqrt(2.0)
+    x_s = _least_jerk(x, sd["x"], u * c - v * s, sd_uv, turn * ship.L_pp**2, h)
+    y_s = _least_jerk(y, sd["y"], u * s + v * c, sd_uv, turn * ship.L_pp**2, h)
+    north, east = np.gradient(x_s, h), np.gradient(y_s, h)
+    u_s, v_s = north * c + east * s, east * c - north * s
+    state = np.column_stack([x_s, y_s, psi_s, u_s, v_s, r_s])
+    log = [(u_r - u_s) - _running_mean(u_r - u_s, 41), (v_r - v_s) - _running_mean(v_r - v_s, 41)]
+    residuals = [*(measured[:, :6] - state).T, *log]
+    found = [
+        max(1.4826 * np.nanmedian(np.abs(e)) if np.isfinite(e).any() else np.nan, floor[name])
+        for name, e in zip(READINGS, residuals, strict=True)
+    ]
+    return state, np.array(found)
+
+
+def _running_mean(values: np.ndarray, width: int) -> np.ndarray:
+    ok = np.isfinite(values)
+    kernel = np.ones(min(width, values.size))
+    weight = np.convolve(ok, kernel, "same")
+    return np.convolve(np.where(ok, values, 0.0), kernel, "same") / np.maximum(weight, 1.0)
+
+
+def _scatter(values: np.ndarray) -> float:
+    """White scatter of a series, from its third differences: what is smooth drops out."""
+    d = np.diff(values, 3)
+    d = d[np.isfinite(d)]
+    return 1.4826 * float(np.median(np.abs(d))) / np.sqrt(20.0) if d.size else np.nan
+
+
+def _least_jerk(y: np.ndarray, sd: float, rate: np.ndarray, sd_rate: float, jerk: float, h: float) -> np.ndarray:
+    """argmin sum (z - y)^2/sd^2 + sum (z' - rate)^2/sd_rate^2 + sum (third difference of z)^2/jerk, a banded system.
+
+    Samples far outside (6 sigma of the first pass) do not count in the second.
+    """
+    w, w_rate = np.isfinite(y) / sd**2, np.isfinite(rate) / sd_rate**2
+    for _ in range(2):
+        z = _solve(w, np.nan_to_num(y), w_rate, np.nan_to_num(rate), jerk, h)
+        off = np.abs(y - z)
+        limit = 6.0 * max(sd, 1.4826 * float(np.nanmedian(off)) if np.isfinite(off).any() else sd)
+        w = w * ~(off > limit)
+        off = np.abs(rate - np.gradient(z, h))
+        limit = 6.0 * max(sd_rate, 1.4826 * float(np.nanmedian(off)) if np.isfinite(off).any() else sd_rate)
+        w_rate = w_rate * ~(off > limit)
+    return z
+
+
+def _solve(w: np.ndarray, y: np.ndarray, w_rate: np.ndarray, rate: np.ndarray, jerk: float, h: float) -> np.ndarray:
+    size = y.size
+    band = np.zeros((4, size))  # lower diagonals of the normal matrix
+    band[0] += w + 1e-12
+    right = w * y
+    inner = w_rate[1:-1] / (4.0 * h * h)  # central differences
+    band[0, 2:] += inner
+    band[0, :-2] += inner
+    band[2, :-2] -= inner
+    right[2:] += inner * 2.0 * h * rate[1:-1]
+    right[:-2] -= inner * 2.0 * h * rate[1:-1]
+    d = np.array([-1.0, 3.0, -3.0, 1.0])
+    for i in range(4):
+        for j in range(i + 1):
+            band[i - j, j : size - 3 + j] += d[i] * d[j] / jerk
+    return solveh_banded(band, right, lower=True)
