@@ -106,6 +106,7 @@ def froude(hull: Hull, name: str, L: float, rho: float, **changes) -> Hull:
 kvlcc2_model = froude(kvlcc2, "kvlcc2_model", 7.0, 1000.0, w_P0=0.40, engine_time=0.4,
                       noise=(0.01, 0.005, 0.10, 0.05, 0.01))
 
+
 _L_d = 175.0 / 8.5          # SN81 normalises by L^2, we by L d
 _sn = lambda *c: tuple(v * _L_d for v in c)
 
@@ -132,7 +133,7 @@ container = replace(container, k_xx=sqrt((0.0000176 + 0.0000034) / 0.00792) * 17
 _seiun = Hull(
     "seiun_maru", L=105.0, B=17.91, d=5.966, m=5701.565 / (0.5 * 105**2 * 5.966), mx=0.0087, my=0.1576, Jz=0.009,  # YM12
     x_G=-2.249, k_zz=0.25, U0=0.34 * sqrt(9.81 * 105), R0=0.024,   # R0: ITTC-57 at 2 m plus residuary 0.002, wetted 3.2 L d (EST)
-    X=(-0.0804, -0.072, 0.022, 0.439),                                                                        # YM12
+    X=(-0.0804, 0.072, 0.022, 0.439),                                                                        # YM12
     Y=(-0.317, 0.052, -1.604, -0.75, -0.8599, -0.051),                                                        # YM12
     N=(-0.1136, -0.0795, -0.3095, -0.6257, -0.3143, -0.0502),                                                 # YM12
     D_P=4.7, x_P=-0.48, t_P=0.21, w_P0=0.204, K_T=(0.40, -0.40, 0.0), C1=2.0, C2=(1.2, 1.2),                  # YM12; C2 EST

@@ -1,0 +1,55 @@
+"""The helmsman of every ship of a fleet: follows the legs, orders rudder and propeller rate."""
+import numpy as np
+
+from .manoeuvres import COURSE, RUDDER, ZIGZAG
+
+
+def wrap(angle):
+    """Angle in radians to [-pi, pi)."""
+    return (angle + np.pi) % (2 * np.pi) - np.pi
+
+
+class Autopilot:
+    """Heading, yaw rate and speed in; rudder order [rad] and propeller rate [1/s] out.
+
+    Course keeping by PD with a slow integral, gains by the ship's time L/U0; not above 25 degrees of rudder.
+    """
+
+    def __init__(self, plans, h, n_start, heading):
+        count, self.h, self.n_start = max(map(len, plans)), h, n_start
+        get = lambda f, last: np.array([[f(*p) for p in plan] + [last] * (count - len(plan)) for plan in plans], float)
+        self.start = get(lambda leg, t: t, np.inf)
+        self.mode, self.a = get(lambda leg, t: leg.mode, 0), np.radians(get(lambda leg, t: leg.a, 0))
+        self.b, self.rate = np.radians(get(lambda leg, t: leg.b, 0)), get(lambda leg, t: leg.rate, 1)
+        self.rows, self.index = np.arange(len(plans)), np.full(len(plans), -1)
+        self.course, self.base = heading.copy(), heading.copy()
+        self.side, self.integral = np.ones(len(plans)), np.zeros(len(plans))
+        self.held = np.ones(len(plans), bool)
+
+    def _begin(self, psi, new):
+        """Take up the next leg where it is due."""
+        i = self.index + new
+        mode, a = self.mode[self.rows, i], self.a[self.rows, i]
+        self.course = np.where(new, np.where(self.held, self.course, psi) + np.where(mode == COURSE, a, 0), self.course)
+        self.base, self.side = np.where(new, psi, self.base), np.where(new, 1.0, self.side)
+        self.base = np.where(new & self.held, self.course - np.where(mode == COURSE, a, 0), self.base)
+        self.integral, self.held = np.where(new, 0.0, self.integral), np.where(new, mode == COURSE, self.held)
+        self.index = i
+
+    def order(self, t, psi, r, u, dt):
+        """Rudder order and propeller rate order at time t."""
+        following = np.minimum(self.index + 1, self.start.shape[1] - 1)
+        new = (self.start[self.rows, following] <= t + 1e-9) & (following > self.index)
+        if new.any():
+            self._begin(psi, new)
+        mode, a, b = (f[self.rows, self.index] for f in (self.mode, self.a, self.b))
+        unit = self.h.L / self.h.U0
+        error = wrap(self.course - psi)
+        near = np.abs(error) < 0.2
+        self.integral = np.clip(self.integral + np.where(near, error * dt / (20 * unit), 0), -0.1, 0.1)
+        pilot = np.clip(1.2 * error - 1.4 * unit * r + self.integral, -0.436, 0.436)
+        swing = wrap(psi - self.base) * np.sign(a) * self.side
+        self.side = np.where((mode == ZIGZAG) & (swing >= b), -self.side, self.side)
+        rudder = np.select([mode == RUDDER, mode == ZIGZAG], [a, a * self.side], pilot)
+        rate = self.rate[self.rows, self.index] * self.n_start
+        return rudder, np.where((rate < 0) & (u < 0.02 * self.h.U0), 0.0, rate)

@@ -1,0 +1,20 @@
+"""Steering gear and engine: what lies between an order and the blade."""
+import numpy as np
+
+
+def steer(h, rudder, order, dt, rate_share=1.0):
+    """Next rudder angle [rad]: a first-order servo, its speed limited by the pumps."""
+    limit = np.radians(h.rudder_max)
+    speed = (np.clip(order, -limit, limit) - rudder) / np.maximum(h.rudder_time, dt)
+    fastest = np.radians(h.rudder_rate) * rate_share
+    return rudder + dt * np.clip(speed, -fastest, fastest)
+
+
+def turn_engine(h, n, order, dt):
+    """Next propeller rate [1/s]: first-order."""
+    return n + dt * (order - n) / np.maximum(h.engine_time, dt)
+
+
+def play(blade, feedback, slack):
+    """Blade angle behind a linkage with `slack` [rad] of play: it moves only when the play is used up."""
+    return np.clip(blade, feedback - slack, feedback + slack)

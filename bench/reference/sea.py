@@ -1,0 +1,156 @@
+"""The sea itself: a fleet of ships, each with her helmsman, weather, flaws and instruments, stepped tick by tick."""
+from types import SimpleNamespace
+
+import numpy as np
+
+from . import flaws, gear, motion
+from .autopilot import Autopilot
+from .environment import Environment
+from .fleet import stack
+from .hidden import prepare, stack_flaws
+from .hulls import HULLS, Hull
+from .manoeuvres import legs
+from .sensors import COLUMNS, Instruments, compass_error
+from .weather import WEATHERS, Weather, rotated
+
+ORIGINS = ("hull", "propeller", "rudder", "wind", "waves", "hidden", "known")
+TRUE = """north east psi u v r u_r v_r phi p heave pitch rudder rudder_feedback rudder_order rudder_recorded n
+wind_speed wind_from current_north current_east depth bank""".split()
+LAG_TICKS = 512
+
+
+def hull_of(case) -> Hull:
+    if isinstance(case.hull, Hull):
+        return case.hull
+    if case.hull not in HULLS:
+        raise ValueError(f"unknown hull {case.hull!r}. Known: {', '.join(HULLS)}.")
+    return HULLS[case.hull]
+
+
+def weather_of(case) -> Weather:
+    if isinstance(case.weather, Weather):
+        return case.weather
+    if case.weather not in WEATHERS:
+        raise ValueError(f"unknown weather {case.weather!r}. Known: {', '.join(WEATHERS)}.")
+    return WEATHERS[case.weather]
+
+
+def first_heading(case):
+    """[rad]; drawn from the seed unless the case fixes it."""
+    drawn = np.random.default_rng([case.seed, 8]).uniform(0, 360)
+    return np.radians(drawn if case.heading_deg is None else case.heading_deg)
+
+
+class Sea:
+    """Ships at sea. `advance(dt)` moves them on; `readings()` gives what their instruments say now.
+
+    For one case the readings are floats, for a sequence arrays (B,). Everything comes from the cases' seeds.
+    """
+
+    def __init__(self, cases, tick_s=0.1):
+        self.single = not isinstance(cases, (list, tuple))
+        self.cases = [cases, cases] if self.single else list(cases)      # numpy sums one ship otherwise than many
+        self.dt, self.tick, self.ahead = tick_s, 0, 0.0
+        self._build()
+        self._tick()
+
+    def _build(self):
+        cases, seeds = self.cases, [c.seed for c in self.cases]
+        calm = [hull_of(c) for c in cases]
+        self.heading = np.array([first_heading(c) for c in cases])
+        turned = [rotated(weather_of(c), float(np.degrees(p))) for c, p in zip(cases, self.heading)]
+        real = [prepare(x, w, c.hidden, c.decoys, c.seed) for x, w, c in zip(calm, turned, cases)]
+        self.hulls, self.weathers, numbers, self.hidden = (list(z) for z in zip(*real))
+        self.h, self.f = stack(self.hulls), stack_flaws(numbers)
+        self.on = SimpleNamespace(**{n: bool(getattr(self.f, n).any()) for n in flaws.FIELDS})
+        self.on.ext_north = self.on.ext_north or self.on.ext_east
+        self.on.shallow = any(np.isfinite(w.depth_m) for w in self.weathers)
+        has = lambda name: np.array([name in c.decoys for c in cases], float)
+        self.known_wind, self.known_waves = has("wind"), has("waves")
+        self.env = Environment(self.hulls, self.h, self.weathers, self.f, None, seeds, self.dt)
+        self.substeps = max(1, round(self.dt / (0.05 if min(x.L for x in self.hulls) < 20 else 0.1)))
+        share = np.array([c.speed_fraction for c in cases])
+        n_start = stack(calm).n0 * share
+        plans = [legs(c.manoeuvre, x, c.duration_s or 24 * 3600, np.random.default_rng([c.seed, 9])) for c, x in zip(cases, calm)]
+        self.pilot = Autopilot(plans, self.h, n_start, self.heading)
+        perfect = [c.sensors == "perfect" for c in cases]
+        self.instruments = Instruments(self.h, self.f, np.array([x.d for x in calm]), self.weathers, seeds, self.dt, perfect)
+        self._rest(share, n_start)
+
+    def _rest(self, share, n_start):
+        count = len(self.cases)
+        self.s, self.old = np.zeros((14, count)), None
+        self.s[motion.PSI], self.s[motion.U] = self.heading, self.h.U0 * share
+        self.n, self.gear, self.blade = n_start.copy(), np.zeros(count), np.zeros(count)
+        self.orders = np.zeros((LAG_TICKS, count))
+        self.tally = motion.Tally(count)
+
+    def _controls(self, t):
+        """Orders from the helmsman, through gear and engine, to blade and shaft."""
+        s, f, h = self.s, self.f, self.h
+        heading = s[motion.PSI] + compass_error(f, s[motion.PSI])
+        order, rate = self.pilot.order(t, heading, s[motion.R], s[motion.U], self.dt)
+        self.orders[self.tick % LAG_TICKS] = order
+        back = np.minimum(np.rint(f.lag_time / self.dt).astype(int), min(self.tick, LAG_TICKS - 1))
+        late = self.orders[(self.tick - back) % LAG_TICKS, np.arange(len(back))]
+        self.gear = gear.steer(h, self.gear, late, self.dt, f.lag_rate)
+        self.blade = gear.play(self.blade, flaws.blade_angle(f, h, self.gear), f.backlash)
+        self.n = gear.turn_engine(h, self.n, rate, self.dt)
+        self.order = np.clip(order, -np.radians(h.rudder_max), np.radians(h.rudder_max))
+
+    def _tick(self):
+        """Look at this instant: surroundings, controls, forces, instruments. The state stays."""
+        t, s = self.tick * self.dt, self.s
+        self.env.t = t
+        self.env.step(self.tick, t, s[motion.NORTH], s[motion.EAST], s[motion.PSI])
+        self._controls(t)
+        self.slope = self._slope(t)
+        self.forces = self._forces()
+        self.true = self._true()
+        self.row = self.instruments.read(self.tick, t, self.true, self.env)
+
+    def _slope(self, t):
+        sway = 0.0 if self.old is None else self.old[motion.V] + self.s[motion.U] * self.s[motion.R]
+        return motion.rate(self.tally, self.f, self.on, self.h, self.s, sway, self.env, t, self.n, self.blade, self.gear)
+
+    def _forces(self):
+        """Force by origin, (7, 3, B); and the running size of what weather does."""
+        zero, by = np.zeros(len(self.cases)), self.tally.by
+        known = [self.known_wind * a + self.known_waves * b for a, b in zip(by["wind"], self.env.drift)]
+        self.tally.remember("Wind", *by["wind"])
+        self.tally.remember("WaveDrift", *self.env.drift)
+        if self.f.squall_mps.any():
+            self.tally.remember("Squall", *by["hidden"])
+        return np.array([[zero + c for c in (known if o == "known" else by.get(o, (0.0, 0.0, 0.0)))] for o in ORIGINS])
+
+    def _true(self):
+        s, env = self.s, self.env
+        cos, sin = np.cos(s[motion.PSI]), np.sin(s[motion.PSI])
+        north, east = env.current
+        recorded = np.where(self.f.lag_time > 0, self.order, self.gear)
+        values = (s[0], s[1], s[2], s[3] + north * cos + east * sin, s[4] + east * cos - north * sin, s[5], s[3], s[4], s[6], s[7],
+                  s[8], s[10], self.blade, self.gear, self.order, recorded, self.n, env.wind_speed, env.wind_from, north, east, env.depth, env.bank)
+        return dict(zip(TRUE, values))
+
+    def step(self):
+        """One tick onward: Adams-Bashforth of second order, in substeps that a small boat's heave needs."""
+        h = self.dt / self.substeps
+        for i in range(self.substeps):
+            slope = self.slope if i == 0 else self._slope(self.tick * self.dt + i * h)
+            self.s = self.s + h * (slope if self.old is None else 1.5 * slope - 0.5 * self.old)
+            self.old = slope
+        self.tick += 1
+        self._tick()
+
+    def advance(self, dt):
+        """Sail on for `dt` seconds (whole ticks; what is left over is carried to the next call)."""
+        self.ahead += dt
+        while self.ahead > self.dt - 1e-9:
+            self.step()
+            self.ahead -= self.dt
+
+    def readings(self):
+        """What the instruments say at this tick: a dict of columns, NaN where there is no new sample."""
+        if self.single:
+            return {name: float(self.row[name][0]) for name in COLUMNS}
+        return {name: self.row[name].copy() for name in COLUMNS}

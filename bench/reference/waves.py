@@ -1,0 +1,87 @@
+"""A short-crested JONSWAP sea, its first-order loads on a box of the ship's size, and its slow drift.
+
+Components a_i cos(w_i t - k_i (x cos m_i + y sin m_i) + e_i), m_i the direction of travel. First order: the Froude-Krylov
+pressure integrated over a box L x B x d (Journee & Massie 2001, ch. 6), enlarged by the added mass. Second order: Newman (1974), F = |sum a_i sqrt(D_i)
+exp(i p_i)|^2, whose D_i are those of a wall that reflects the share R^2 = 1 - exp(-k d) twice over.
+"""
+from types import SimpleNamespace
+
+import numpy as np
+
+G = 9.81
+N_FREQUENCY, SPREAD = 14, np.radians([-25.0, 0.0, 25.0])
+
+
+def jonswap(f, height, peak, gamma=3.3):
+    """Spectrum [m2 s] at frequency f [Hz], scaled afterwards to the wanted height (Hasselmann et al. 1973)."""
+    fp = 1 / peak
+    sigma = np.where(f <= fp, 0.07, 0.09)
+    shape = f**-5.0 * np.exp(-1.25 * (fp / f) ** 4) * gamma ** np.exp(-0.5 * ((f - fp) / (sigma * fp)) ** 2)
+    return shape
+
+
+def components(weather, rng):
+    """Amplitude, angular frequency, wave number, direction of travel and phase of each component, shape (42,) each."""
+    edges = np.geomspace(0.65, 2.2, N_FREQUENCY + 1) / weather.wave_period_s
+    f = edges[:-1] + rng.uniform(0.2, 0.8, N_FREQUENCY) * np.diff(edges)
+    energy = jonswap(f, weather.wave_height_m, weather.wave_period_s) * np.diff(edges)
+    energy *= weather.wave_height_m**2 / 16 / energy.sum()
+    share = np.array([0.25, 0.5, 0.25])
+    a = np.sqrt(2 * np.outer(energy, share)).ravel()
+    w = np.repeat(2 * np.pi * f, 3) * (1 + 0.01 * rng.uniform(-1, 1, 3 * N_FREQUENCY))
+    to = np.radians(weather.wave_from_deg + 180) + np.tile(SPREAD, N_FREQUENCY)
+    return a, w, w * w / G, to, rng.uniform(0, 2 * np.pi, a.size)
+
+
+def stack_seas(seas):
+    """Components of B ships as arrays (42, B)."""
+    return SimpleNamespace(**dict(zip(("a", "w", "k", "to", "e"), (np.stack(c, 1) for c in zip(*seas)))))
+
+
+def _sinc(q):
+    return np.sinc(q / np.pi)
+
+
+def _arm(q):
+    """(sin q - q cos q)/q^2: how unevenly a wave of half-length phase q loads bow and stern."""
+    q = np.where(np.abs(q) < 1e-3, 1e-3, q)
+    return (np.sin(q) - q * np.cos(q)) / (q * q)
+
+
+def loads(h, sea, t, x, y, psi):
+    """First-order X, Y, N, K, heave force Z, pitch moment M; and drift X, Y, N; each (B,)."""
+    chi = sea.to - psi
+    cos, sin = np.cos(chi), np.sin(chi)
+    phase = sea.w * t - sea.k * (x * np.cos(sea.to) + y * np.sin(sea.to)) + sea.e
+    c, s = sea.a * np.cos(phase), sea.a * np.sin(phase)
+    ql, qb = 0.5 * sea.k * h.L * cos, 0.5 * sea.k * h.B * sin
+    deep = np.exp(-0.5 * sea.k * h.d)
+    length, arm = _sinc(ql) * _sinc(qb) * deep, _arm(ql) * _sinc(qb) * deep
+    push = G * sea.k
+    X = -h.M * (push * cos * length * s).sum(0)
+    Y = -(h.M + h.My) * (push * sin * length * s).sum(0)
+    N = (h.M + h.My) * 0.5 * h.L * (push * sin * arm * c).sum(0)
+    K = -h.GZ * (sea.k * sin * length * s).sum(0)
+    plane = h.rho * G * h.L * h.B * 0.85
+    Z, M = plane * (length * c).sum(0), plane * 0.5 * h.L * (arm * s).sum(0)
+    return (X, Y, N, K, Z, M), _drift(h, sea, c, s, cos, sin, deep)
+
+
+def _drift(h, sea, c, s, cos, sin, deep):
+    """Slow drift: what is reflected pushes; the bow quarter feels it further forward (moment of a box, 1/8 L)."""
+    reflect = (1 - deep**2) ** 2 * 0.5 * h.rho * G
+    ahead, aside = reflect * h.B * 0.35 * cos * np.abs(cos), reflect * h.L * sin * np.abs(sin)
+    out = []
+    for D in (ahead, aside, -0.125 * h.L * reflect * h.L * sin * cos):
+        plus, minus = np.sqrt(np.maximum(D, 0)), np.sqrt(np.maximum(-D, 0))
+        out.append((c * plus).sum(0) ** 2 + (s * plus).sum(0) ** 2 - (c * minus).sum(0) ** 2 - (s * minus).sum(0) ** 2)
+    return tuple(out)
+
+
+def oscillator(h):
+    """Heave and pitch as masses on springs: natural frequencies [rad/s] and damping shares.
+
+    w = sqrt(rho g A_w / (2 m)) with the added mass taken equal to the mass (strip theory, B/d near 2.5).
+    """
+    w = np.sqrt(h.rho * G * h.L * h.B * 0.85 / (2 * h.M))
+    return w, 0.3, 1.05 * w, 0.3, 2 * h.M, 2 * h.M * (0.26 * h.L) ** 2
