@@ -100,7 +100,7 @@ def damping(u: Number, v: Number, r: Number, c: Coefficients) -> Force:
     U, V, R = abs(u), abs(v), abs(r)
     return Force(
         X=(c.X_u + c.X_uu * U) * u + (c.X_vv * v + c.X_vr * r) * v + c.X_rr * r * r,
-        Y=(c.Y_v + c.Y_uv * U + c.Y_vv * V + c.Y_rv * R) * v + (c.Y_ur * U + c.Y_vr * V + c.Y_rr * R) * r,
+        Y=(c.Y_v + c.Y_uv * U + c.Y_vv * V + c.Y_rv * R) * v + (c.Y_ur * u + c.Y_vr * V + c.Y_rr * R) * r,
         N=(c.N_uv * u + c.N_vv * V + c.N_rv * R) * v + (c.N_r + c.N_ur * U + c.N_vr * V + c.N_rr * R) * r,
     )
 
@@ -121,22 +121,22 @@ def thrust(u: Number, n: Number, c: Coefficients) -> Number:
     return c.T_nn * N * n + c.T_nu * N * (c.wake_share * u)
 
 
-def propeller(u: Number, n: Number, c: Coefficients) -> Force:
+def propeller(thrust: Number, c: Coefficients) -> Force:
     """What of the thrust drives the ship."""
-    return Force(X=c.thrust_share * thrust(u, n, c))
+    return Force(c.thrust_share * thrust, 0.0, 0.0)
 
 
-def rudder(u: Number, v: Number, r: Number, delta: Number, n: Number, c: Coefficients) -> Force:
+def rudder(u: Number, v: Number, r: Number, delta: Number, thrust: Number, c: Coefficients) -> Force:
     """Rudder force in the propeller's slipstream (momentum theory), with the flow that drift and turning send across it.
 
     q = eps^2 (u_a |u_a| + kappa 8 T/(pi rho D^2)),  F = 1/2 rho A_R C_L (q sin(delta) + sqrt|q| (gamma_v v + gamma_r L r) cos(delta))
     """
     u_a = c.wake_share * u
-    q = c.inflow * (u_a * abs(u_a) + c.slipstream * positive(thrust(u, n, c)))
+    q = c.inflow * (u_a * abs(u_a) + c.slipstream * positive(thrust))
     si, co = sin(delta), cos(delta)
     across = sqrt(abs(q) + 1e-9) * (c.gamma_v * v + c.gamma_r * r)
     normal = c.rudder * (q * si + across * co)
-    return Force(X=-c.drag_R * normal * si, Y=-c.side_R * normal * co, N=-c.lever_R * normal * co)
+    return Force(-c.drag_R * normal * si, -c.side_R * normal * co, -c.lever_R * normal * co)
 
 
 def accelerations(tau: Force, c: Coefficients) -> tuple[Number, Number, Number]:

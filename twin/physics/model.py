@@ -37,7 +37,7 @@ class Model:
         for push in self.pushes:
             ship = push.alter(ship)
         object.__setattr__(self, "loaded", ship)
-        object.__setattr__(self, "c", core.coefficients(ship))
+        object.__setattr__(self, "c", ship.c)
 
     @classmethod
     def of(cls, ship: Ship) -> "Model":
@@ -66,11 +66,12 @@ class Model:
         w = self.water(s) if water is None else water
         s.u_r, s.v_r = s.u - w.u, s.v - w.v
         c, u, v, r = self.c, s.u_r, s.v_r, s.r
+        thrust = core.thrust(u, s.n, c)
         forces = {
             "hull": core.damping(u * (1.0 + w.k_u), v * (1.0 + w.k_v), r * (1.0 + w.k_r), c),
             "coriolis": core.coriolis(u, v, r, c),
-            "propeller": core.propeller(u, s.n, c),
-            "rudder": core.rudder(u, v, r, s.delta, s.n, c),
+            "propeller": core.propeller(thrust, c),
+            "rudder": core.rudder(u, v, r, s.delta, thrust, c),
         }
         for push in self.pushes:
             forces[type(push).__name__] = push.force(s, self.loaded)

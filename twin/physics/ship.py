@@ -10,11 +10,13 @@ import tempfile
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 from twin.errors import SettingsError, did_you_mean
 
+from .core import Coefficients, coefficients
 from .effect import Effect
 from .state import Number
 
@@ -93,6 +95,11 @@ class Ship:
     derivatives: Derivatives = field(default_factory=Derivatives, kw_only=True)
     effects: tuple[Effect, ...] = field(default=(), kw_only=True)
     notes: Mapping[str, Any] = field(default_factory=dict, kw_only=True, compare=False)  # sources, sd, structural, history ...
+
+    @cached_property
+    def c(self) -> Coefficients:
+        """Her derivatives with their units."""
+        return coefficients(self)
 
     def scale(self, of: str) -> Number:
         """The ship's own size of a quantity: 'force' is 1 % of 1/2 rho L T U_0^2, about half of her resistance.

@@ -8,15 +8,38 @@ from functools import lru_cache
 from twin.errors import SettingsError, did_you_mean
 from twin.physics.effect import Effect
 
+from .antenna_offset import AntennaOffset
+from .bank import Bank
+from .cross_flow_drag import CrossFlowDrag
 from .current import Current
+from .external_force import ExternalForce
+from .gyro_bias import GyroBias
+from .heading_bias import HeadingBias
+from .hull_fouling import HullFouling
+from .loading import Loading
+from .propeller_walk import PropellerWalk
+from .propeller_wear import PropellerWear
+from .roll_coupling import RollCoupling
+from .rudder_offset import RudderOffset
+from .rudder_wear import RudderWear
+from .sensor_delay import SensorDelay
+from .shallow_water import ShallowWater
+from .speed_log_bias import SpeedLogBias
+from .speed_log_misalignment import SpeedLogMisalignment
+from .speed_log_scale import SpeedLogScale
 from .steering_lag import SteeringLag
+from .tow_force import TowForce
+from .varying_current import VaryingCurrent
+from .wave_drift import WaveDrift
 from .wind import Wind
 
 BUILT_IN: tuple[type[Effect], ...] = (
-    Wind,
-    Current,
+    Wind, WaveDrift, CrossFlowDrag, HullFouling, PropellerWear, RudderWear, RudderOffset, Loading, Bank, TowForce, ExternalForce,
+    PropellerWalk, RollCoupling,
+    Current, VaryingCurrent, ShallowWater,
     SteeringLag,
-)
+    HeadingBias, SpeedLogBias, SpeedLogScale, SpeedLogMisalignment, AntennaOffset, SensorDelay, GyroBias,
+)  # fmt: skip
 
 
 @lru_cache(maxsize=1)

@@ -1,0 +1,28 @@
+"""Extra quadratic cross-flow drag, integrated over strips along the hull.
+
+    Y = -1/2 rho T  c_d  int |v_r + x r| (v_r + x r) dx
+    N = -1/2 rho T  c_d  int |v_r + x r| (v_r + x r) x dx,      x from -L/2 to L/2, ten strips
+"""
+
+from twin.physics.effect import Force, param
+from twin.physics.state import Force as ForceVector
+from twin.physics.state import Situation
+
+STRIPS = tuple((i + 0.5) / 10.0 - 0.5 for i in range(10))  # middle of each strip, in L
+
+
+class CrossFlowDrag(Force):
+    """Bilge keels, growth or a blunt bilge hold the ship against the water that crosses under her when she drifts and turns."""
+
+    source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 6.5 (ITTC drag and cross-flow drag); Faltinsen (1990) sec. 6"
+
+    c_d: float = param(0.4, unit="-", lo=0.0, hi=2.0, sd=0.4, doc="drag coefficient beyond that of the hull's derivatives")
+
+    def force(self, s: Situation, ship: "object") -> ForceVector:
+        L, Y, N = ship.L_pp, 0.0, 0.0
+        for xi in STRIPS:
+            cross = s.v_r + xi * L * s.r
+            y = abs(cross) * cross
+            Y, N = Y + y, N + xi * y
+        q = -0.05 * ship.rho * ship.T * L * self.c_d
+        return ForceVector(Y=q * Y, N=q * L * N)

@@ -1,0 +1,20 @@
+"""The rate gyro is off by a constant.
+
+    r_m = r + bias
+"""
+
+from dataclasses import replace
+
+from twin.physics.effect import SensorFault, param
+from twin.physics.state import Situation
+
+
+class GyroBias(SensorFault):
+    """The rate gyro shows a turn when there is none; the heading does not turn with it."""
+
+    source = "IEEE Std 952-1997 (gyro bias); IMO MSC.526(106) (rate-of-turn indicators: 0.5 deg/min)"
+
+    bias: float = param(0.0005, unit="rad/s", lo=-0.02, hi=0.02, sd=0.0007, doc="shown yaw rate less the true one")
+
+    def read(self, s: Situation, ship: object) -> Situation:
+        return replace(s, r=s.r + self.bias)

@@ -1,0 +1,19 @@
+"""Fouling: a fraction of the calm-water resistance is added.
+
+    X = -extra R(u_r),   R = -(X_u + X_uu |u_r|) u_r
+"""
+
+from twin.physics.effect import Force, param
+from twin.physics.state import Force as ForceVector
+from twin.physics.state import Situation
+
+
+class HullFouling(Force):
+    """Growth on the hull makes her harder to drive: the same shaft speed gives less speed."""
+
+    source = "ITTC 7.5-02-03-01.4 (roughness allowance); Schultz (2007) Biofouling 23, 331-341 (+10 % slime to +80 % heavy shell)"
+
+    extra: float = param(0.3, unit="-", lo=0.0, hi=2.0, sd=0.25, doc="added resistance over calm-water resistance")
+
+    def force(self, s: Situation, ship: "object") -> ForceVector:
+        return ForceVector(X=self.extra * (ship.c.X_u + ship.c.X_uu * abs(s.u_r)) * s.u_r)

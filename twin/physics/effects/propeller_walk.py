@@ -1,0 +1,21 @@
+"""Propeller walk: the blades push the stern sideways, with the square of the shaft speed.
+
+    Y = rho D^4   c_y n |n|,   N = rho D^4 L c_n n |n|
+"""
+
+from twin.physics.effect import Force, param
+from twin.physics.state import Force as ForceVector
+from twin.physics.state import Situation
+
+
+class PropellerWalk(Force):
+    """The single screw pushes her stern to one side, so she needs helm to go straight and turns easier one way."""
+
+    source = "Yasukawa & Yoshimura (2015) sec. 2; Hooft & Quadvlieg (1996) Non-linear hydrodynamic forces, MARSIM: side force of a screw"
+
+    c_y: float = param(0.01, unit="-", lo=-0.1, hi=0.1, sd=0.01, doc="side force, positive to starboard when going ahead")
+    c_n: float = param(-0.005, unit="-", lo=-0.05, hi=0.05, sd=0.005, doc="yaw moment, positive to starboard when going ahead")
+
+    def force(self, s: Situation, ship: "object") -> ForceVector:
+        f = ship.rho * ship.D_P**4 * s.n * abs(s.n)
+        return ForceVector(Y=f * self.c_y, N=f * ship.L_pp * self.c_n)

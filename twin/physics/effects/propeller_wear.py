@@ -1,0 +1,24 @@
+"""A worn, bent or fouled propeller: a fraction of the thrust is lost, and with it part of the slipstream at the rudder.
+
+    X = -(1 - t) loss T(u_r, n)  +  X_rudder((1 - loss) T) - X_rudder(T),   Y, N likewise from the rudder
+"""
+
+from twin.physics import core
+from twin.physics.effect import Force, param
+from twin.physics.state import Force as ForceVector
+from twin.physics.state import Situation
+
+
+class PropellerWear(Force):
+    """The propeller gives less thrust than it did, so she is slower and her rudder, in a weaker slipstream, bites less."""
+
+    source = "Carlton (2018) Marine Propellers and Propulsion, 4th ed., sec. 24 (blade roughness and damage)"
+
+    loss: float = param(0.1, unit="-", lo=0.0, hi=0.7, sd=0.1, doc="share of the thrust that is lost")
+
+    def force(self, s: Situation, ship: "object") -> ForceVector:
+        c = ship.c
+        thrust = core.thrust(s.u_r, s.n, c)
+        new = core.rudder(s.u_r, s.v_r, s.r, s.delta, thrust, c)
+        worn = core.rudder(s.u_r, s.v_r, s.r, s.delta, thrust * (1.0 - self.loss), c)
+        return ForceVector(X=worn.X - new.X - c.thrust_share * self.loss * thrust, Y=worn.Y - new.Y, N=worn.N - new.N)

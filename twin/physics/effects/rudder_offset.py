@@ -1,0 +1,24 @@
+"""The neutral angle: the rudder stands at delta + offset where the indicator says delta.
+
+    (X, Y, N) = (X, Y, N)_rudder(delta + offset) - (X, Y, N)_rudder(delta)
+"""
+
+from twin.physics import core
+from twin.physics.effect import Force, param
+from twin.physics.state import Force as ForceVector
+from twin.physics.state import Situation
+
+
+class RudderOffset(Force):
+    """The rudder's zero is not where the indicator says, so she needs helm to go straight and turns easier one way."""
+
+    source = "IMO MSC/Circ.1053 (2002), neutral rudder angle; Yasukawa & Yoshimura (2015) eq. (20)-(27)"
+
+    offset: float = param(0.02, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="true rudder angle less the indicated one, positive to starboard")
+
+    def force(self, s: Situation, ship: "object") -> ForceVector:
+        c = ship.c
+        thrust = core.thrust(s.u_r, s.n, c)
+        told = core.rudder(s.u_r, s.v_r, s.r, s.delta, thrust, c)
+        true = core.rudder(s.u_r, s.v_r, s.r, s.delta + self.offset, thrust, c)
+        return ForceVector(true.X - told.X, true.Y - told.Y, true.N - told.N)

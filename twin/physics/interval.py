@@ -1,0 +1,217 @@
+"""An interval [lo, hi] that goes through the physics like a number and comes out enclosing every value it can take.
+
+Every operation widens its result by more than its rounding error, so the enclosure is a proof, not an estimate; lo and hi may be
+arrays (many boxes at once). Three forms that physics uses are recognised, because taking their parts apart loses too much:
+x*x (never negative), min and max written with `where`, and x + sqrt(x*x + c) (`maths.positive`, increasing in x).
+Source: Moore, Kearfott & Cloud (2009) Introduction to Interval Analysis, ch. 2 and 5.
+"""
+
+from typing import Any
+
+import numpy as np
+
+ULP = 2.0**-52  # twice the rounding error of + - * / sqrt
+LIBRARY = 1e-15  # numpy's sin, cos, exp, tanh, arctan2, power are good to 4 ulp
+TINY = 5e-324
+
+
+class Interval:
+    """All numbers from lo to hi; `square_of` = (x, c) when it was made as x*x + c, `root_of` when as sqrt(x*x + c)."""
+
+    __slots__ = ("hi", "lo", "root_of", "square_of")
+    _maths = "twin.physics.interval"
+    __array_ufunc__ = None  # array * Interval is ours to answer
+
+    def __init__(self, lo: Any, hi: Any) -> None:
+        self.lo, self.hi, self.square_of, self.root_of = lo, hi, None, None
+
+    def __repr__(self) -> str:
+        return f"Interval({self.lo}, {self.hi})"
+
+    @property
+    def magnitude(self) -> Any:
+        """The greatest absolute value inside."""
+        return np.maximum(np.abs(self.lo), np.abs(self.hi))
+
+    def __neg__(self) -> "Interval":
+        return Interval(-self.hi, -self.lo)
+
+    def __add__(self, other: Any) -> "Interval":
+        o = of(other)
+        for x, root in ((self, o), (o, self)):
+            if root.root_of is not None and root.root_of[0] is x:
+                return _increasing(lambda z, c=root.root_of[1]: z + np.sqrt(z * z + c), x)
+        total = _out(self.lo + o.lo, self.hi + o.hi, 2.0 * ULP)
+        if self.square_of is not None and isinstance(other, float):
+            total.square_of = (self.square_of[0], self.square_of[1] + other)
+        return total
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Any) -> "Interval":
+        o = of(other)
+        return _out(self.lo - o.hi, self.hi - o.lo)
+
+    def __rsub__(self, other: Any) -> "Interval":
+        return -self + other
+
+    def __mul__(self, other: Any) -> "Interval":
+        if other is self:
+            return self._squared()
+        o = of(other)
+        return _out(*_extremes(self.lo * o.lo, self.lo * o.hi, self.hi * o.lo, self.hi * o.hi))
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: Any) -> "Interval":
+        o = of(other)
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            a, b = _extremes(self.lo / o.lo, self.lo / o.hi, self.hi / o.lo, self.hi / o.hi)
+        through_zero = (o.lo <= 0.0) & (o.hi >= 0.0)
+        return _out(np.where(through_zero, -np.inf, a), np.where(through_zero, np.inf, b))
+
+    def __rtruediv__(self, other: Any) -> "Interval":
+        return of(other) / self
+
+    def __pow__(self, p: float) -> "Interval":
+        """Whole powers of anything, other powers of what is not negative."""
+        if p == 2:
+            return self * self
+        if p == int(p) and p < 0:
+            return 1.0 / self**-p
+        a, b = np.power(self.lo, p), np.power(self.hi, p)
+        if p == int(p) and p % 2 == 0:
+            smallest = np.where((self.lo <= 0.0) & (self.hi >= 0.0), 0.0, np.minimum(a, b))
+            return _out(smallest, np.maximum(a, b), LIBRARY)
+        return _out(np.minimum(a, b), np.maximum(a, b), LIBRARY)
+
+    def __abs__(self) -> "Interval":
+        a, b = np.abs(self.lo), np.abs(self.hi)
+        return Interval(np.where((self.lo <= 0.0) & (self.hi >= 0.0), 0.0, np.minimum(a, b)), np.maximum(a, b))
+
+    def __lt__(self, other: Any) -> "Unsure":
+        o = of(other)
+        return Unsure(self.hi < o.lo, self.lo >= o.hi, less=self, more=other)
+
+    def __le__(self, other: Any) -> "Unsure":
+        o = of(other)
+        return Unsure(self.hi <= o.lo, self.lo > o.hi, less=self, more=other)
+
+    def __gt__(self, other: Any) -> "Unsure":
+        o = of(other)
+        return Unsure(self.lo > o.hi, self.hi <= o.lo, less=other, more=self)
+
+    def __ge__(self, other: Any) -> "Unsure":
+        o = of(other)
+        return Unsure(self.lo >= o.hi, self.hi < o.lo, less=other, more=self)
+
+    def _squared(self) -> "Interval":
+        a = abs(self)
+        square = _out(a.lo * a.lo, a.hi * a.hi)
+        square.lo, square.square_of = np.maximum(square.lo, 0.0), (self, 0.0)
+        return square
+
+
+class Unsure:
+    """A comparison of intervals: surely true, surely false, or neither; and what was compared, for minimum and maximum."""
+
+    __slots__ = ("less", "more", "no", "yes")
+    _maths = "twin.physics.interval"
+
+    def __init__(self, yes: Any, no: Any, less: Any = None, more: Any = None) -> None:
+        self.yes, self.no, self.less, self.more = yes, no, less, more
+
+    def __bool__(self) -> bool:
+        raise TypeError("physics branched on a value: an effect uses maths.where, never `if`.")
+
+    def __and__(self, other: "Unsure") -> "Unsure":
+        return Unsure(self.yes & other.yes, self.no | other.no)
+
+    def __or__(self, other: "Unsure") -> "Unsure":
+        return Unsure(self.yes | other.yes, self.no & other.no)
+
+    def __invert__(self) -> "Unsure":
+        return Unsure(self.no, self.yes)
+
+
+def of(x: Any) -> Interval:
+    """A number as the interval of itself."""
+    return x if isinstance(x, Interval) else Interval(x, x)
+
+
+def hull(*parts: Any) -> Interval:
+    """The smallest interval that holds all the others."""
+    parts = tuple(map(of, parts))
+    lo, hi = parts[0].lo, parts[0].hi
+    for p in parts[1:]:
+        lo, hi = np.minimum(lo, p.lo), np.maximum(hi, p.hi)
+    return Interval(lo, hi)
+
+
+def where(condition: Unsure, yes: Any, no: Any) -> Any:
+    """`yes`, `no`, or, where the condition is not decided, all that lies between; min and max stay exact."""
+    for side in (yes, no):
+        if hasattr(side, "where"):
+            return side.where(condition, yes, no)
+    a, b = of(yes), of(no)
+    if yes is condition.less and no is condition.more:
+        return Interval(np.minimum(a.lo, b.lo), np.minimum(a.hi, b.hi))
+    if yes is condition.more and no is condition.less:
+        return Interval(np.maximum(a.lo, b.lo), np.maximum(a.hi, b.hi))
+    both = hull(a, b)
+    return Interval(
+        np.where(condition.yes, a.lo, np.where(condition.no, b.lo, both.lo)),
+        np.where(condition.yes, a.hi, np.where(condition.no, b.hi, both.hi)),
+    )
+
+
+def sqrt(x: Interval) -> Interval:
+    root = _out(np.sqrt(np.maximum(x.lo, 0.0)), np.sqrt(np.maximum(x.hi, 0.0)))
+    root.lo = np.maximum(root.lo, 0.0)
+    root.root_of = x.square_of
+    return root
+
+
+def exp(x: Interval) -> Interval:
+    return _increasing(np.exp, x)
+
+
+def tanh(x: Interval) -> Interval:
+    return _increasing(np.tanh, x)
+
+
+def cos(x: Interval) -> Interval:
+    """Extremes at the ends, and at every multiple of pi inside."""
+    x = _out(x.lo, x.hi, LIBRARY)  # so that a multiple of pi at the very end is not missed by rounding
+    a, b = np.cos(x.lo), np.cos(x.hi)
+    top = np.floor(x.hi / (2.0 * np.pi)) >= np.ceil(x.lo / (2.0 * np.pi))
+    bottom = np.floor((x.hi - np.pi) / (2.0 * np.pi)) >= np.ceil((x.lo - np.pi) / (2.0 * np.pi))
+    wide = _out(np.where(bottom, -1.0, np.minimum(a, b)), np.where(top, 1.0, np.maximum(a, b)), LIBRARY)
+    return Interval(np.maximum(wide.lo, -1.0), np.minimum(wide.hi, 1.0))
+
+
+def sin(x: Interval) -> Interval:
+    return cos(x - 0.5 * np.pi)
+
+
+def atan2(y: Any, x: Any) -> Interval:
+    """Extremes at the corners; the whole circle when the box touches the origin or the cut behind it."""
+    y, x = of(y), of(x)
+    corners = [np.arctan2(b, a) for a in (x.lo, x.hi) for b in (y.lo, y.hi)]
+    cut = (x.lo <= 0.0) & (y.lo <= 0.0) & (y.hi >= 0.0)
+    lo, hi = _extremes(*corners)
+    return _out(np.where(cut, -np.pi, lo), np.where(cut, np.pi, hi), LIBRARY)
+
+
+def _increasing(f: Any, x: Interval) -> Interval:
+    return _out(f(x.lo), f(x.hi), LIBRARY)
+
+
+def _extremes(a: Any, b: Any, c: Any, d: Any) -> tuple[Any, Any]:
+    """Least and greatest; fmin and fmax pass over the NaN that 0 * inf leaves."""
+    return np.fmin(np.fmin(a, b), np.fmin(c, d)), np.fmax(np.fmax(a, b), np.fmax(c, d))
+
+
+def _out(lo: Any, hi: Any, relative: float = ULP) -> Interval:
+    """Rounded outward by a relative error."""
+    return Interval(lo - (np.abs(lo) * relative + TINY), hi + (np.abs(hi) * relative + TINY))
