@@ -1,0 +1,35 @@
+"""The answer of a check."""
+
+from dataclasses import dataclass
+from typing import Any
+
+
+@dataclass(frozen=True)
+class Check:
+    """`name` of the check, whether the data passes, and a sentence; `unusable`: the mistake is proved."""
+
+    name: str
+    ok: bool
+    text: str
+    unusable: bool = False
+
+    def as_json(self) -> dict[str, Any]:
+        """The entry of `data_checks`."""
+        return {"check": self.name, "ok": self.ok, "text": self.text}
+
+
+def good(name: str, text: str) -> Check:
+    return Check(name, True, text)
+
+
+def cannot_tell(name: str, why: str) -> Check:
+    return Check(name, True, f"cannot tell: {why}")
+
+
+def doubtful(name: str, text: str) -> Check:
+    return Check(name, False, text)
+
+
+def wrong(name: str, text: str) -> Check:
+    """Proved: the voyage must not be used as it is."""
+    return Check(name, False, text, unusable=True)

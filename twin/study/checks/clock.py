@@ -1,0 +1,54 @@
+"""The clock of a voyage: stamps that repeat, that are rounded, that jump."""
+
+import numpy as np
+
+from twin.study.checks.answer import Check, doubtful, good, wrong
+from twin.study.checks.view import View
+
+FEW = 0.01  # share of repeated stamps that a logger's hiccup explains
+UNEVEN = 0.35  # scatter of the steps, in usual steps
+GAP_STEPS, GAP_S = 5.0, 5.0
+
+
+def time_stamps(view: View) -> Check:
+    """Repeated (rounded) stamps, and uneven steps."""
+    name, t = "time_stamps", view.voyage.time_s
+    steps = np.diff(t)
+    repeated = steps <= 0.0
+    share, usual = float(np.mean(repeated)), float(np.median(steps))
+    mean = view.voyage.duration_s / steps.size
+    if share > FEW:
+        return wrong(
+            name,
+            f"{100 * share:.0f} % of the time stamps repeat, the first at {t[np.flatnonzero(repeated)[0]]:g} s; steps of up to "
+            f"{steps.max():g} s beside a mean of {mean:.6g} s: the stamps are believed to be rounded. In the map: "
+            f"[time] rebuild = true (even steps of {mean:.6g} s), or give more digits.",
+        )
+    if repeated.any():
+        i = int(np.flatnonzero(repeated)[0])
+        return doubtful(name, f"{repeated.sum()} time stamps repeat, the first at {t[i]:g} s; such samples are averaged.")
+    inside = steps[steps < GAP_STEPS * usual]
+    scatter = float(np.std(inside) / usual)
+    if scatter > UNEVEN:
+        return doubtful(
+            name,
+            f"the steps are uneven: {inside.min():.3g} to {inside.max():.3g} s, usually {usual:.3g} s. Were the stamps taken at "
+            "arrival? Log the sensor's own time.",
+        )
+    return good(name, f"a sample every {usual:.6g} s, scatter {100 * scatter:.1f} % of a step.")
+
+
+def time_gaps(view: View) -> Check:
+    """Stretches without any row."""
+    name, t = "time_gaps", view.voyage.time_s
+    steps = np.diff(t)
+    usual = float(np.median(steps[steps > 0.0]))
+    gaps = np.flatnonzero(steps > max(GAP_STEPS * usual, min(GAP_S, 20.0 * usual)))
+    if not gaps.size:
+        return good(name, "no gaps.")
+    worst = int(gaps[np.argmax(steps[gaps])])
+    return doubtful(
+        name,
+        f"{gaps.size} gaps, {steps[gaps].sum():.4g} s in all, the longest {steps[worst]:.4g} s after {t[worst]:g} s. Nothing is "
+        "made up there; predictions are not run across them.",
+    )

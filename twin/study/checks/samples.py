@@ -1,0 +1,116 @@
+"""Single channels: samples that are missing, implausible, alone, or that stand still while the ship moves."""
+
+import numpy as np
+
+from twin.live.channels import BY_NAME
+from twin.study.checks.answer import Check, doubtful, good
+from twin.study.checks.view import View
+from twin.study.samples import spikes as spike_rows
+from twin.study.voyage import Voyage
+
+REQUIRED = ("north_m", "east_m", "surge_velocity_mps", "sway_velocity_mps", "heading_true_north_deg", "yaw_rate_degps",
+            "rudder_angle_deg", "propeller_rate_rpm")  # fmt: skip
+
+
+def missing_samples(view: View) -> Check:
+    """Holes and tails longer than a channel may be old."""
+    v = view.voyage
+    found = [text for name in v.columns if (text := hole(v, name))]
+    absent = ", ".join(v.absent()) or "nothing"
+    if found:
+        return doubtful("missing_samples", f"{'; '.join(found)}. Nothing is made up there. Absent altogether: {absent}.")
+    return good("missing_samples", f"no holes. Absent altogether: {absent}.")
+
+
+def hole(v: Voyage, name: str) -> str:
+    """The longest stretch without a sample of a channel that has some, if that is longer than it may be old."""
+    at = np.flatnonzero(np.isfinite(v[name]))
+    if not at.size:
+        return ""
+    limit = max(BY_NAME[name].stale_s, 5.0 * v.step_s)
+    edges = np.r_[v.time_s[0], v.time_s[at], v.time_s[-1]]
+    gaps = np.diff(edges)
+    i = int(np.argmax(gaps))
+    if gaps[i] <= limit:
+        return ""
+    where = "begins late," if i == 0 else "ends early," if i == gaps.size - 1 else "has a hole,"
+    return f"{name} {where} {gaps[i]:.4g} s from {edges[i]:g} s"
+
+
+def plausible_values(view: View) -> Check:
+    """What reading blanked because no ship measures it."""
+    notes = [n for n in view.voyage.meta.get("notes", ()) if "blanked" in n]
+    if any("outside" in n for n in notes):
+        return doubtful("plausible_values", f"{'; '.join(notes)}. In the map: unit, or [file] missing = [...].")
+    return good("plausible_values", "; ".join(notes) or "every sample is one that a ship can have.")
+
+
+def spikes(view: View) -> Check:
+    """One or two samples that leave the line and come back."""
+    found = []
+    for name, values in view.voyage.columns.items():
+        rows = spike_rows(values, BY_NAME[name].wraps)
+        if rows.size:
+            i = int(rows[0])
+            found.append(f"{name} {rows.size}, first {values[i]:.4g} at {view.voyage.time_s[i]:g} s")
+    if found:
+        return doubtful("spikes", f"lonely samples: {'; '.join(found)}. In the map: despike = true blanks them.")
+    return good("spikes", "no lonely samples.")
+
+
+def frozen(view: View) -> Check:
+    """Channels that stand still, to the last digit, while another one says that they cannot."""
+    found = [text for f in (frozen_heading, frozen_position, frozen_speed, frozen_yaw_rate) if (text := f(view))]
+    if found:
+        return doubtful("frozen", f"{'; '.join(found)}. A sensor that hangs: blank this stretch, or cut it off.")
+    return good("frozen", "nothing stands still that should move.")
+
+
+def frozen_heading(view: View) -> str:
+    turned = running(view, view.si("yaw_rate_degps")) if not view.derived("yaw_rate_degps") else None
+    return standing(view, "heading_true_north_deg", turned, np.radians(5.0), "the yaw rate turns {:.0f} deg", 180 / np.pi)
+
+
+def frozen_yaw_rate(view: View) -> str:
+    r = view.si("yaw_rate_degps")
+    rest = view.psi - running(view, r)
+    return standing(view, "yaw_rate_degps", rest, np.radians(5.0), "the heading turns {:.0f} deg otherwise", 180 / np.pi)
+
+
+def frozen_position(view: View) -> str:
+    if view.derived("north_m", "surge_velocity_mps"):
+        return ""
+    w = view.velocity * np.exp(1j * view.psi)
+    far = max(5.0, 20.0 * view.speed * view.step_s)
+    north = standing(view, "north_m", running(view, w.real), far, "the ship sails {:.0f} m north or south")
+    return north or standing(view, "east_m", running(view, w.imag), far, "the ship sails {:.0f} m east or west")
+
+
+def frozen_speed(view: View) -> str:
+    if view.derived("north_m", "surge_velocity_mps"):
+        return ""
+    rest = view.place - running(view, view.velocity * np.exp(1j * view.psi))
+    far = max(10.0, 20.0 * view.speed * view.step_s)
+    return standing(view, "surge_velocity_mps", np.abs(rest - rest[0]), far, "the position moves {:.0f} m otherwise")
+
+
+def running(view: View, rate: np.ndarray) -> np.ndarray:
+    """The rate summed from the start, missing samples as zero."""
+    return np.cumsum(np.where(np.isfinite(rate), rate, 0.0)) * view.step_s
+
+
+def standing(view: View, name: str, other: np.ndarray | None, far: float, text: str, unit: float = 1.0) -> str:
+    """The longest stretch of one same value of `name` in which `other` changes by more than `far`."""
+    x = view.even[name]
+    if other is None or x.size < 20:
+        return ""
+    with np.errstate(invalid="ignore"):
+        starts = np.flatnonzero(np.r_[True, np.abs(np.diff(x)) > 1e-9 * np.nanmax(np.abs(x))])
+    ends = np.r_[starts[1:], x.size] - 1
+    moved = np.where((ends - starts >= 10) & np.isfinite(x[starts]), np.abs(other[ends] - other[starts]), 0.0)
+    i = int(np.nanargmax(moved))
+    if not moved[i] > far:
+        return ""
+    t = view.even.time_s
+    said = text.format(moved[i] * unit)
+    return f"{name} stays {x[starts[i]]:.6g} from {t[starts[i]]:.4g} to {t[ends[i]]:.4g} s while {said}"

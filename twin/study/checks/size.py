@@ -1,0 +1,64 @@
+"""Is this voyage of this ship, and long enough to say something about her?"""
+
+import numpy as np
+
+from twin.study.checks.answer import Check, cannot_tell, doubtful, good
+from twin.study.checks.view import View
+
+G = 9.81  # [m/s2]
+FASTEST_FROUDE = 0.7  # U / sqrt(g L); a displacement hull stays below 0.5
+TIGHTEST_TURN = 2.0  # r L / U; the tightest turning circles of ships reach 1
+SHORT_S = 480.0
+SHORT_LENGTHS = 10.0  # ship lengths sailed
+STEADY_RUDDER_DEG = 1.0
+
+
+def ship_size(view: View) -> Check:
+    """Speed and turning against the length of the ship, and her draught."""
+    name = "ship_size"
+    if view.ship is None:
+        return cannot_tell(name, "give --ship to compare speed, turning and draught with her size.")
+    length, speed = float(view.ship.L_pp), view.speed
+    froude = speed / np.sqrt(G * length)
+    turning = tightest(view, length)
+    draught = float(np.nanmedian(view.voyage["draught_mean_m"])) if view.voyage.has("draught_mean_m") else 0.0
+    saw = f"Froude number {froude:.3f}, tightest turn r L/U = {turning:.2f} with L = {length:.4g} m"
+    other = f"Another ship's file, or a model's (then [scale] froude = ...)? {view.ship.name} is {length:.4g} m long."
+    if froude > FASTEST_FROUDE:
+        return doubtful(name, f"{saw}: {speed:.3g} m/s is too fast for her. {other}")
+    if turning > TIGHTEST_TURN:
+        return doubtful(name, f"{saw}: no ship turns within {1 / turning:.2f} lengths. {other}")
+    if draught and not 0.4 < draught / float(view.ship.T) < 2.0:
+        return doubtful(name, f"draught {draught:.3g} m, but {view.ship.name} has {float(view.ship.T):.3g} m. {other}")
+    return good(name, f"{saw}: possible for {view.ship.name}.")
+
+
+def tightest(view: View, length: float) -> float:
+    """The 99 % quantile of |r| L / U, means over a ship length's time, under way."""
+    if not view.speed > 0.02:
+        return 0.0
+    first, last = view.windows(length / view.speed)
+    turned = np.abs(view.summed(view.si("yaw_rate_degps"), first, last))
+    sailed = view.summed(np.abs(view.velocity), first, last)
+    ratio = turned * length / np.maximum(sailed, 0.3 * length)
+    return float(np.nanquantile(ratio, 0.99)) if np.isfinite(ratio).any() else 0.0
+
+
+def duration(view: View) -> Check:
+    """Long enough, and with enough going on, to judge a model by."""
+    name, seconds = "duration", view.voyage.duration_s
+    sailed = float(np.nansum(np.abs(view.velocity)) * view.step_s)
+    rudder = float(np.nanstd(view.voyage["rudder_angle_deg"]))
+    calm = " The rudder hardly moves: nothing about turning can be learned from it." if rudder < STEADY_RUDDER_DEG else ""
+    if view.ship is not None:
+        lengths = sailed / float(view.ship.L_pp)
+        saw = f"{seconds:.4g} s, {lengths:.0f} ship lengths"
+        short = lengths < SHORT_LENGTHS
+    else:
+        saw, short = f"{seconds:.4g} s, {sailed:.4g} m", seconds < SHORT_S
+    if short:
+        return doubtful(
+            name,
+            f"{saw}: too short to judge a cause by. Use it beside other voyages; 20 minutes with manoeuvres are good.{calm}",
+        )
+    return good(name, f"{saw}.{calm}")

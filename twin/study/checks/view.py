@@ -1,0 +1,98 @@
+"""A voyage as the checks look at it: once on an even grid, in SI, with windows over which motion is summed."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from twin.physics.ship import Ship
+from twin.study.voyage import Voyage
+
+MOST_ROWS = 20_000
+MOVED_MPS = 0.02  # slower than this a ship lies still
+
+
+@dataclass(frozen=True)
+class View:
+    """A voyage and, if known, its ship."""
+
+    voyage: Voyage
+    ship: Ship | None = None
+
+    @cached_property
+    def even(self) -> Voyage:
+        """The voyage on an even grid of its own step, or a coarser one when it is long."""
+        v = self.voyage
+        step = max(v.duration_s / max(len(v) - 1, 1), v.duration_s / MOST_ROWS, 1e-6)
+        return v.on_grid(step)
+
+    @cached_property
+    def step_s(self) -> float:
+        return float(self.even.time_s[1] - self.even.time_s[0]) if len(self.even) > 1 else 1.0
+
+    def si(self, name: str) -> np.ndarray:
+        """(N,) on the even grid, in SI."""
+        return self.even.si(name)
+
+    def derived(self, *names: str) -> bool:
+        """True when a column was made from others, so that comparing it with them proves nothing."""
+        return any(name in self.voyage.meta.get("derived", {}) for name in names)
+
+    @cached_property
+    def place(self) -> np.ndarray:
+        """Position as north + i east [m]."""
+        return self.si("north_m") + 1j * self.si("east_m")
+
+    @cached_property
+    def velocity(self) -> np.ndarray:
+        """Velocity in the ship's axes, ahead + i to starboard [m/s]."""
+        return self.si("surge_velocity_mps") + 1j * self.si("sway_velocity_mps")
+
+    @cached_property
+    def psi(self) -> np.ndarray:
+        return self.si("heading_true_north_deg")
+
+    @cached_property
+    def speed(self) -> float:
+        """Usual speed [m/s]: the 75 % quantile, so that a voyage that starts at rest still has one."""
+        speed = np.abs(self.velocity)
+        return float(np.nanquantile(speed, 0.75)) if np.isfinite(speed).any() else 0.0
+
+    def windows(self, seconds: float) -> tuple[np.ndarray, np.ndarray]:
+        """(first, last) rows of windows this long, each starting half a window after the one before."""
+        length = int(np.clip(round(seconds / self.step_s), 2, max(len(self.even) - 1, 2)))
+        first = np.arange(0, len(self.even) - length, max(length // 2, 1))
+        return first, first + length
+
+    def summed(self, rate: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
+        """Integral of a rate over each window (trapezes); NaN where a sample is missing."""
+        steps = (rate[1:] + rate[:-1]) / 2.0 * self.step_s
+        missing = np.r_[0, np.cumsum(~np.isfinite(steps))]
+        total = np.r_[0.0, np.cumsum(np.where(np.isfinite(steps), steps, 0.0))]
+        return np.where(missing[last] == missing[first], total[last] - total[first], np.nan)
+
+
+def fit(columns: list[np.ndarray], target: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+    """Least squares: (coefficients, their standard errors, share of the target's energy left over).
+
+    Real coefficients; complex columns count as two equations. Rows with a missing number are left out.
+    """
+    a = np.stack(columns, axis=1)
+    keep = np.isfinite(a).all(axis=1) & np.isfinite(target)
+    a, b = both_parts(a[keep]), both_parts(target[keep])
+    if b.shape[0] <= a.shape[1] + 1 or not np.any(b):
+        return np.full(a.shape[1], np.nan), np.full(a.shape[1], np.inf), 1.0
+    x = np.linalg.lstsq(a, b, rcond=None)[0]
+    rest = float(np.sum((b - a @ x) ** 2))
+    covariance = np.linalg.pinv(a.T @ a) * rest / (b.shape[0] - a.shape[1])
+    return x, np.sqrt(np.maximum(np.diag(covariance), 0.0)), rest / float(np.sum(b * b))
+
+
+def both_parts(x: np.ndarray) -> np.ndarray:
+    return np.concatenate([x.real, x.imag]) if np.iscomplexobj(x) else x
+
+
+def rms(x: np.ndarray) -> float:
+    """Root of the mean square of the samples that are there; 0 when none is."""
+    x = x[np.isfinite(x)]
+    return float(np.sqrt(np.mean(np.abs(x) ** 2))) if x.size else 0.0
