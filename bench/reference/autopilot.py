@@ -1,6 +1,7 @@
 """The helmsman of every ship of a fleet: follows the legs, orders rudder and propeller rate."""
 import numpy as np
 
+from .fleet import limit
 from .manoeuvres import COURSE, RUDDER, ZIGZAG
 
 
@@ -46,10 +47,10 @@ class Autopilot:
         unit = self.h.L / self.h.U0
         error = wrap(self.course - psi)
         near = np.abs(error) < 0.2
-        self.integral = np.clip(self.integral + np.where(near, error * dt / (20 * unit), 0), -0.1, 0.1)
-        pilot = np.clip(1.2 * error - 1.4 * unit * r + self.integral, -0.436, 0.436)
+        self.integral = limit(self.integral + np.where(near, error * dt / (20 * unit), 0), -0.1, 0.1)
+        pilot = limit(1.2 * error - 1.4 * unit * r + self.integral, -0.436, 0.436)
         swing = wrap(psi - self.base) * np.sign(a) * self.side
         self.side = np.where((mode == ZIGZAG) & (swing >= b), -self.side, self.side)
-        rudder = np.select([mode == RUDDER, mode == ZIGZAG], [a, a * self.side], pilot)
+        rudder = np.where(mode == RUDDER, a, np.where(mode == ZIGZAG, a * self.side, pilot))
         rate = self.rate[self.rows, self.index] * self.n_start
         return rudder, np.where((rate < 0) & (u < 0.02 * self.h.U0), 0.0, rate)

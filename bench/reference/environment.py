@@ -9,7 +9,7 @@ GUST_TIME, VEER_TIME, BANK_TIME, GNSS_TIME = 25.0, 60.0, 6.0, 120.0    # [s]; th
 class Environment:
     """Holds what the motion and the sensors need at this tick: current, depth, bank, wind, wave loads."""
 
-    def __init__(self, hulls, h, weathers, f, known, seeds, dt):
+    def __init__(self, hulls, h, weathers, f, seeds, dt):
         from .chance import Wander
         g = lambda field: np.array([getattr(w, field) for w in weathers], float)
         self.h, self.f, self.dt, unit = h, f, dt, h.L / h.U0
@@ -25,7 +25,7 @@ class Environment:
         self.tables = np.stack([wind.table(x) for x in hulls])
         self.sea = waves.stack_seas([waves.components(w, np.random.default_rng([s, 4])) for w, s in zip(weathers, seeds)])
         self.oscillator, self.has_waves = waves.oscillator(h), bool(self.sea.a.any())
-        self.known, self.current, self.bank = known, None, None
+        self.current, self.has_tide, self.has_squall = None, bool(f.tide_mps.any()), bool(f.squall_mps.any())
         self.wave_force = self.drift = self.heave = self.pitch = np.zeros(len(hulls))
 
     def step(self, tick, t, north, east, psi):
@@ -42,10 +42,11 @@ class Environment:
     def _stream(self, t, c_n, c_e):
         """Mean current, eddies and tide; and their rate of change."""
         f, old = self.f, self.current
-        turn = 2 * np.pi * t / f.tide_period
-        tide = f.tide_mps * np.stack([np.cos(f.tide_to + 0.8 * np.sin(turn)) * np.sin(turn + 0.5),
-                                      np.sin(f.tide_to + 0.8 * np.sin(turn)) * np.sin(turn + 0.5)])
-        self.current = self.current_mean + self.spread * np.stack([c_n, c_e]) + tide
+        self.current = self.current_mean + self.spread * np.stack([c_n, c_e])
+        if self.has_tide:
+            turn = 2 * np.pi * t / f.tide_period
+            to = f.tide_to + 0.8 * np.sin(turn)
+            self.current = self.current + f.tide_mps * np.sin(turn + 0.5) * np.stack([np.cos(to), np.sin(to)])
         self.current_rate = np.zeros_like(self.current) if old is None else (self.current - old) / self.dt
 
     def _waves(self, t, north, east, psi):
@@ -69,7 +70,7 @@ class Environment:
         ua, va = self.apparent(u, v, cos, sin)
         there = 1 - self.f.windless
         out = {"wind": [there * c for c in wind.force(self.h, self.tables, ua, va)]}
-        if self.f.squall_mps.any():
+        if self.has_squall:
             gust = flaws.squall(self.f, self.t)
             ahead, aside = gust * np.cos(self.f.squall_from), gust * np.sin(self.f.squall_from)
             blown = wind.force(self.h, self.tables, ua + ahead * cos + aside * sin, va + aside * cos - ahead * sin)

@@ -5,6 +5,11 @@ from types import SimpleNamespace
 import numpy as np
 
 
+def limit(x, low, high):
+    """np.clip without its overhead."""
+    return np.minimum(np.maximum(x, low), high)
+
+
 def stack(hulls) -> SimpleNamespace:
     """Every numeric field as (B,), every tuple as a tuple of (B,); and the SI inertias that the motion needs."""
     h = SimpleNamespace()
@@ -37,6 +42,7 @@ def _with_inertia(h):
     h.inv_pK = (a22 * h.Izz - a23**2) / det
     h.GZ = h.M * 9.81 * h.GM
     h.B44 = 2 * h.roll_damping * np.sqrt(h.GZ * h.Ixx)
+    h.heels = any(np.any(c) for table in (h.heel_X, h.heel_Y, h.heel_N, h.heel_K) for c in table)
     h.n0 = propeller_rate_service(h)
     return h
 

@@ -1,13 +1,14 @@
 """Steering gear and engine: what lies between an order and the blade."""
 import numpy as np
 
+from .fleet import limit
+
 
 def steer(h, rudder, order, dt, rate_share=1.0):
     """Next rudder angle [rad]: a first-order servo, its speed limited by the pumps."""
-    limit = np.radians(h.rudder_max)
-    speed = (np.clip(order, -limit, limit) - rudder) / np.maximum(h.rudder_time, dt)
-    fastest = np.radians(h.rudder_rate) * rate_share
-    return rudder + dt * np.clip(speed, -fastest, fastest)
+    hard_over, fastest = np.radians(h.rudder_max), np.radians(h.rudder_rate) * rate_share
+    speed = (limit(order, -hard_over, hard_over) - rudder) / np.maximum(h.rudder_time, dt)
+    return rudder + dt * limit(speed, -fastest, fastest)
 
 
 def turn_engine(h, n, order, dt):
@@ -17,4 +18,4 @@ def turn_engine(h, n, order, dt):
 
 def play(blade, feedback, slack):
     """Blade angle behind a linkage with `slack` [rad] of play: it moves only when the play is used up."""
-    return np.clip(blade, feedback - slack, feedback + slack)
+    return limit(blade, feedback - slack, feedback + slack)

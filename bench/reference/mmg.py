@@ -4,6 +4,8 @@ Everything takes a fleet `h` (see fleet.stack) and arrays (B,); forces in N and 
 """
 import numpy as np
 
+from .fleet import limit
+
 R_CLIP = 1.2        # r' beyond which the polynomial has never been measured (pivoting at rest)
 
 
@@ -15,14 +17,15 @@ def hull(h, u, v, r, p, phi, shallow=(1.0, 1.0, 1.0)):
     `shallow` multiplies resistance, sway and yaw derivatives.
     """
     U = np.sqrt(u * u + v * v + (0.02 * h.U0) ** 2)
-    a, b, r1 = np.clip(u / (0.05 * h.U0), -1, 1), v / U, r * h.L / U
-    c = np.clip(r1, -R_CLIP, R_CLIP)
+    a, b, c = limit(u / (0.05 * h.U0), -1, 1), v / U, limit(r * h.L / U, -R_CLIP, R_CLIP)
     q = 0.5 * h.rho * h.L * h.d * U * U
     bb, cc, ff = b * b, c * c, phi * phi
     X = q * (-h.R0 * shallow[0] * u / U + h.X[0] * bb + h.X[1] * b * c * a + h.X[2] * cc + h.X[3] * bb * bb + h.heel_X[0] * ff)
     Y = q * shallow[1] * (b * (h.Y[0] + h.Y[2] * bb + h.Y[4] * cc) + a * c * (h.Y[1] + h.Y[3] * bb + h.Y[5] * cc))
     N = q * h.L * shallow[2] * (a * b * (h.N[0] + h.N[2] * bb + h.N[4] * cc) + c * (h.N[1] + h.N[3] * bb + h.N[5] * cc))
     N -= 0.02 * 0.5 * h.rho * h.d * h.L**4 * np.abs(r) * (r - c * U / h.L)
+    if not h.heels:
+        return X, Y, N, -h.z_H * Y
     Yh, Nh, Kh = _heel(h, b, c, p * h.L / U, phi)
     return X, Y + q * Yh, N + q * h.L * Nh, q * h.L * Kh - h.z_H * Y
 
@@ -53,7 +56,7 @@ def open_water(h, n, u_P):
 def inflow(h, u, v, r):
     """Axial speed at the propeller [m/s]: the wake thins with drift (Yasukawa & Yoshimura 2015, eq. 16-18)."""
     U = np.sqrt(u * u + v * v + (0.02 * h.U0) ** 2)
-    b = -v / U - h.x_P * np.clip(r * h.L / U, -R_CLIP, R_CLIP)
+    b = -v / U - h.x_P * limit(r * h.L / U, -R_CLIP, R_CLIP)
     gain = 1 + (1 - np.exp(-h.C1 * np.abs(b))) * (np.where(b > 0, h.C2[0], h.C2[1]) - 1) + h.C_quad * b * b
     return u * np.where(u > 0, np.minimum((1 - h.w_P0) * gain, 1.1), 1.0)
 
@@ -65,15 +68,15 @@ def rudder(h, u, v, r, u_P, thrust, delta, gain=1.0, gamma_gain=1.0):
     without its division by J, so that it also holds with the propeller stopped or astern.
     """
     U = np.sqrt(u * u + v * v + (0.02 * h.U0) ** 2)
-    v1, r1 = v / U, np.clip(r * h.L / U, -R_CLIP, R_CLIP)
+    sin, cos = np.sin(delta), np.cos(delta)
+    v1, r1 = v / U, limit(r * h.L / U, -R_CLIP, R_CLIP)
     lever = v1 + h.l_R * r1
     gamma = np.where(lever < 0, h.gamma[0], h.gamma[1]) * gamma_gain
-    v_R = U * (gamma * lever + h.r_turn[0] * r1**3 + h.r_turn[1] * r1 * r1 * v1)
+    v_R = U * (gamma * lever + r1 * r1 * (h.r_turn[0] * r1 + h.r_turn[1] * v1))
     jet = np.sqrt(np.maximum(u_P * u_P + 8 * thrust / (np.pi * h.rho * h.D_P**2), 0))
     mixed = np.sqrt(h.eta * (u_P + h.kappa * (jet - u_P)) ** 2 + (1 - h.eta) * u_P**2)
     u_R = h.epsilon * np.where(u_P >= 0, mixed, u_P)
-    normal = u_R * np.sin(delta) + v_R * np.cos(delta)
-    F = 0.5 * h.rho * h.A_R * h.f_alpha * np.hypot(u_R, v_R) * normal * gain
-    Y = -(1 + h.a_H) * F * np.cos(delta)
-    X, N = -(1 - h.t_R) * F * np.sin(delta), -(-0.5 + h.a_H * h.x_H) * h.L * F * np.cos(delta)
+    normal = u_R * sin + v_R * cos
+    F = 0.5 * h.rho * h.A_R * h.f_alpha * np.sqrt(u_R * u_R + v_R * v_R) * normal * gain
+    X, Y, N = -(1 - h.t_R) * F * sin, -(1 + h.a_H) * F * cos, -(-0.5 + h.a_H * h.x_H) * h.L * F * cos
     return X, Y, N, -h.z_R * Y

@@ -23,9 +23,10 @@ class Tally:
         self.total, self.by = [np.zeros(self.count) for _ in range(4)], {}
 
     def add(self, origin, X=0.0, Y=0.0, N=0.0, K=0.0):
-        self.total = [a + b for a, b in zip(self.total, (X, Y, N, K))]
-        old = self.by.get(origin, (0.0, 0.0, 0.0))
-        self.by[origin] = tuple(a + b for a, b in zip(old, (X, Y, N)))
+        new = (X, Y, N, K)
+        self.total = [a if isinstance(b, float) else a + b for a, b in zip(self.total, new)]
+        old = self.by.get(origin)
+        self.by[origin] = new[:3] if old is None else tuple(a + b for a, b in zip(old, new))
 
     def remember(self, effect, X=0.0, Y=0.0, N=0.0):
         """Note the size of a hidden effect (its sum is already among the forces)."""

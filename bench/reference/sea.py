@@ -6,7 +6,7 @@ import numpy as np
 from . import flaws, gear, motion
 from .autopilot import Autopilot
 from .environment import Environment
-from .fleet import stack
+from .fleet import limit, stack
 from .hidden import prepare, stack_flaws
 from .hulls import HULLS, Hull
 from .manoeuvres import legs
@@ -67,7 +67,7 @@ class Sea:
         self.on.shallow = any(np.isfinite(w.depth_m) for w in self.weathers)
         has = lambda name: np.array([name in c.decoys for c in cases], float)
         self.known_wind, self.known_waves = has("wind"), has("waves")
-        self.env = Environment(self.hulls, self.h, self.weathers, self.f, None, seeds, self.dt)
+        self.env = Environment(self.hulls, self.h, self.weathers, self.f, seeds, self.dt)
         self.substeps = max(1, round(self.dt / (0.05 if min(x.L for x in self.hulls) < 20 else 0.1)))
         share = np.array([c.speed_fraction for c in cases])
         n_start = stack(calm).n0 * share
@@ -96,7 +96,7 @@ class Sea:
         self.gear = gear.steer(h, self.gear, late, self.dt, f.lag_rate)
         self.blade = gear.play(self.blade, flaws.blade_angle(f, h, self.gear), f.backlash)
         self.n = gear.turn_engine(h, self.n, rate, self.dt)
-        self.order = np.clip(order, -np.radians(h.rudder_max), np.radians(h.rudder_max))
+        self.order = limit(order, -np.radians(h.rudder_max), np.radians(h.rudder_max))
 
     def _tick(self):
         """Look at this instant: surroundings, controls, forces, instruments. The state stays."""
@@ -119,7 +119,7 @@ class Sea:
         known = [self.known_wind * a + self.known_waves * b for a, b in zip(by["wind"], self.env.drift)]
         self.tally.remember("Wind", *by["wind"])
         self.tally.remember("WaveDrift", *self.env.drift)
-        if self.f.squall_mps.any():
+        if self.env.has_squall:
             self.tally.remember("Squall", *by["hidden"])
         return np.array([[zero + c for c in (known if o == "known" else by.get(o, (0.0, 0.0, 0.0)))] for o in ORIGINS])
 

@@ -37,7 +37,8 @@ class Instruments:
         self.noise, self.lost = Chance(seeds, 3, 24), Chance(seeds, 5, len(INSTRUMENTS))
         self.perfect, self.ring = np.array(perfect), np.zeros((MEMORY, len(DELAYED), len(seeds)))
         self.noisy = np.where(self.perfect, 0.0, 1.0)
-        self.rows = np.arange(len(seeds))
+        self.rows, self.any_perfect = np.arange(len(seeds)), bool(self.perfect.any())
+        self.nothing = np.full(len(seeds), np.nan)
         eye = np.stack([np.random.default_rng([s, 6]).standard_normal(2) for s in seeds], 1) * self.noisy
         get = lambda name: np.array([getattr(w, name) for w in weathers], float)
         self.height, self.period = get("wave_height_m") * (1 + 0.1 * eye[0]), get("wave_period_s")
@@ -53,25 +54,25 @@ class Instruments:
 
     def read(self, tick, t, true, env):
         """Measured columns of this tick, a dict of arrays (B,)."""
-        h, f, e = self.h, self.f, self.noise.at(tick) * self.noisy
+        e = self.noise.at(tick) * self.noisy
         self.ring[tick % MEMORY] = [true[name] for name in DELAYED]
-        out = {"time_s": np.full(len(self.rows), t)}
-        self._position(tick, out, e, env)
-        self._compass(true, out, e)
-        self._log(tick, out, e)
-        self._air(true, env, out, e)
-        out["rudder_angle_deg"] = np.degrees(true["rudder_recorded"]) + 0.05 * e[9]
-        out["propeller_rate_rpm"] = 60 * true["n"] * (1 + 0.001 * e[10])
-        deep = np.where(np.isfinite(env.depth), env.depth, DEEP * h.d)
-        out["water_depth_m"] = deep * (1 + 0.005 * e[15])
-        away = np.abs(env.bank)
-        out["bank_distance_port_m"] = np.where(env.bank < 0, away, OPEN * h.B) + 0.02 * h.B * e[16]
-        out["bank_distance_starboard_m"] = np.where((env.bank >= 0) & np.isfinite(env.bank), away, OPEN * h.B) + 0.02 * h.B * e[17]
-        out["wave_height_significant_m"], out["wave_period_peak_s"] = self.height, self.period
-        out["wave_direction_deg"], out["draught_mean_m"] = self.wave_from % 360, self.draught
-        return self._sampled(tick, out)
+        out = dict.fromkeys(COLUMNS, self.nothing)
+        out["time_s"] = np.full(len(self.rows), t)
+        for i, (name, (period, _, share, columns)) in enumerate(INSTRUMENTS.items()):
+            due = tick % max(1, round(period / self.dt)) == 0
+            if due or self.any_perfect:
+                getattr(self, "_" + name)(tick, true, env, out, e)
+                self._blank(out, columns, due, np.abs(self.lost.at(tick)[i]) < 1.2533 * share)   # a normal number that small: `share`
+        return out
 
-    def _position(self, tick, out, e, env):
+    def _blank(self, out, columns, due, lost):
+        """NaN where the instrument has no sample at this tick, or has lost it; a perfect one has all."""
+        gone = (lost if due else ~self.perfect) & ~self.perfect
+        if np.any(gone):
+            for name in columns.split():
+                out[name] = np.where(gone, np.nan, out[name])
+
+    def _gnss(self, tick, true, env, out, e):
         f, latency = self.f, INSTRUMENTS["gnss"][1] * self.noisy
         north, east, psi, u, v, r, _, _ = self._late(tick, latency + f.gnss_delay)
         cos, sin = np.cos(psi), np.sin(psi)
@@ -82,14 +83,14 @@ class Instruments:
         out["surge_velocity_mps"] = u - r * f.antenna_y + speed * e[2]
         out["sway_velocity_mps"] = v + r * f.antenna_x + speed * e[3]
 
-    def _compass(self, true, out, e):
+    def _compass(self, tick, true, env, out, e):
         f, psi = self.f, true["psi"]
         heading = psi + compass_error(f, psi)
         out["heading_true_north_deg"] = (np.degrees(heading) + self.h.noise[2] * e[4]) % 360
         out["yaw_rate_degps"] = np.degrees(true["r"] + f.gyro_bias) + self.h.noise[3] * e[5]
         out["roll_deg"] = np.degrees(true["phi"]) + self.h.noise[2] * e[6]
 
-    def _log(self, tick, out, e):
+    def _log(self, tick, true, env, out, e):
         f, h = self.f, self.h
         *_, u, v = self._late(tick, INSTRUMENTS["log"][1] * self.noisy)
         scale = 1 + f.log_scale * (0.9 + 0.1 * np.abs(u) / h.U0)
@@ -98,7 +99,7 @@ class Instruments:
         out["surge_velocity_through_water_mps"] = scale * (cos * u + sin * v) + bias + h.noise[4] * e[7]
         out["sway_velocity_through_water_mps"] = scale * (cos * v - sin * u) + h.noise[4] * e[8]
 
-    def _air(self, true, env, out, e):
+    def _anemometer(self, tick, true, env, out, e):
         psi = true["psi"]
         ahead, aside = env.apparent(true["u"], true["v"], np.cos(psi), np.sin(psi))
         out["true_wind_speed_mps"] = env.wind_speed * (1 + 0.03 * e[11])
@@ -107,17 +108,24 @@ class Instruments:
         angle = np.degrees(np.arctan2(aside, ahead)) + 2 * e[14]
         out["apparent_wind_angle_deg"] = (angle + 180) % 360 - 180
 
-    def _sampled(self, tick, out):
-        """Blank what an instrument has not sampled at this tick, or has lost."""
-        lost = self.lost.at(tick)
-        for i, (period, _, share, names) in enumerate(INSTRUMENTS.values()):
-            every = max(1, round(period / self.dt))
-            gone = np.full(len(self.rows), tick % every != 0) | (np.abs(lost[i]) < 1.2533 * share)
-            gone &= ~self.perfect
-            if gone.any():
-                for name in names.split():
-                    out[name] = np.where(gone, np.nan, out[name])
-        return out
+    def _rudder(self, tick, true, env, out, e):
+        out["rudder_angle_deg"] = np.degrees(true["rudder_recorded"]) + 0.05 * e[9]
+
+    def _engine(self, tick, true, env, out, e):
+        out["propeller_rate_rpm"] = 60 * true["n"] * (1 + 0.001 * e[10])
+
+    def _sounder(self, tick, true, env, out, e):
+        deep = np.where(np.isfinite(env.depth), env.depth, DEEP * self.h.d)
+        out["water_depth_m"] = deep * (1 + 0.005 * e[15])
+
+    def _shore(self, tick, true, env, out, e):
+        there, away, far, beam = np.isfinite(env.bank), np.abs(env.bank), OPEN * self.h.B, 0.02 * self.h.B
+        out["bank_distance_port_m"] = np.where(there & (env.bank < 0), away, far) + beam * e[16]
+        out["bank_distance_starboard_m"] = np.where(there & (env.bank >= 0), away, far) + beam * e[17]
+
+    def _bridge(self, tick, true, env, out, e):
+        out["wave_height_significant_m"], out["wave_period_peak_s"] = self.height, self.period
+        out["wave_direction_deg"], out["draught_mean_m"] = self.wave_from % 360, self.draught
 
 
 def compass_error(f, psi):

@@ -43,7 +43,8 @@ def force(h, tables, u_air, v_air):
     angle = np.abs(np.degrees(np.arctan2(v_air, u_air))) / STEP
     low = np.minimum(angle.astype(int), 17)
     rest, rows = angle - low, np.arange(len(low))
-    cx, cy, cn = [(1 - rest) * tables[rows, i, low] + rest * tables[rows, i, low + 1] for i in range(3)]
+    near, far = tables[rows, :, low].T, tables[rows, :, low + 1].T
+    cx, cy, cn = near + rest * (far - near)
     q, side = 0.5 * RHO_AIR * speed2, np.sign(v_air)
     Y = -side * q * h.A_L * cy
     return q * h.A_F * cx, Y, -side * q * h.A_L * h.L * cn, h.z_W * Y
