@@ -40,8 +40,8 @@ def datum(latitude_deg: float, longitude_deg: float) -> Datum:
         raise SettingsError(f"Datum ({latitude_deg}, {longitude_deg}) is not a position in degrees.")
     if abs(latitude_deg) > MAX_LATITUDE_DEG:
         raise SettingsError(
-            f"Datum latitude {latitude_deg} deg is within {90 - MAX_LATITUDE_DEG} deg of a pole, where a flat "
-            "chart has no north. Sail, or simulate, at a lower latitude."
+            f"Datum latitude {latitude_deg} deg is within {90 - MAX_LATITUDE_DEG} deg of a pole: a flat "
+            "chart has no north there. Sail, or simulate, at a lower latitude."
         )
     lat, lon = radians(latitude_deg), radians(longitude_deg)
     place = _ecef(lat, lon, 0.0)

@@ -105,7 +105,7 @@ def message_indexes(entries: dict[int, list[tuple[int, int]]], offset: int) -> t
 
 
 class OpenChunk:
-    """Records not yet written: `index` {channel: [(log time, place in chunk)]}, the schemas it is first to hold."""
+    """Records not yet written, `index` {channel: [(log time, place in chunk)]}, and the schemas new in it."""
 
     def __init__(self) -> None:
         self.parts: list[bytes] = []
@@ -126,9 +126,9 @@ class OpenChunk:
 
 
 class McapWriter:
-    """Messages in, whole chunks out through `sink(bytes)`; when that raises OSError, the chunk stays pending."""
+    """Messages in, whole chunks out through `sink(bytes)`; when that fails, the chunk stays pending."""
 
-    def __init__(self, sink: Callable[[bytes], None], compress: Callable[[bytes], bytes] | None = None):
+    def __init__(self, sink: Callable[[bytes], object], compress: Callable[[bytes], bytes] | None = None):
         self._sink = sink
         self._compress = compress or _zstd()
         self.offset = 0

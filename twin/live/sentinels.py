@@ -9,6 +9,7 @@ from math import pi
 
 from twin.live.channels import CHANNELS
 
+Field = tuple[tuple[int, ...], float]  # (raw codes, resolution in border units)
 DEG = 180.0 / pi
 KNOT = 1852.0 / 3600.0
 
@@ -16,11 +17,11 @@ UINT16 = (65535, 65534, 65533)
 INT16 = (32767, 32766, 32765)
 INT32 = (2147483647, 2147483646, 2147483645)
 UINT32 = (4294967295, 4294967294, 4294967293)
-DIRECTION = [(UINT16, 1e-4 * DEG)]  # 0 to 360: [deg]
-ANGLE = [(INT16, 1e-4 * DEG)]  # to either side: [deg]
-SPEED = [(UINT16, 0.01), (INT16, 0.01), (UINT16, 0.01 * KNOT), ((1023,), 0.1 * KNOT)]  # [m/s]
+DIRECTION: list[Field] = [(UINT16, 1e-4 * DEG)]  # 0 to 360: [deg]
+ANGLE: list[Field] = [(INT16, 1e-4 * DEG)]  # to either side: [deg]
+SPEED: list[Field] = [(UINT16, 0.01), (INT16, 0.01), (UINT16, 0.01 * KNOT), ((1023,), 0.1 * KNOT)]  # [m/s]
 
-FIELDS: dict[str, list[tuple[tuple[int, ...], float]]] = {  # channel: [(raw codes, resolution)]
+FIELDS: dict[str, list[Field]] = {
     "heading_true_north_deg": [*DIRECTION, ((511,), 1.0)],
     "true_wind_direction_deg": DIRECTION,
     "apparent_wind_angle_deg": DIRECTION,

@@ -1,0 +1,236 @@
+"""The log: a thread that writes MCAP files and never holds up the loop, and files written in one go.
+
+`Recorder.write` only puts a message in a queue. The thread writes a chunk each `PERIOD_S` and calls
+fdatasync, so a kill or a power cut loses at most half a second. When the disk is full, read-only or gone, the
+log stops, says so in words and counts what it could not keep; the twin goes on, and the log resumes by
+itself.
+"""
+
+import os
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from pathlib import Path
+from threading import Event, Thread
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from twin.errors import TwinError
+from twin.live.mcap_read import McapReader, Message
+from twin.live.mcap_write import McapWriter
+from twin.live.messages import schema_bytes
+from twin.live.recover import recover_folder
+from twin.live.segment import Segment
+
+if TYPE_CHECKING:
+    import numpy as np
+
+PERIOD_S = 0.25  # between two writes: half of what may be lost
+RETRY_S = 1.0  # between two tries on a disk that fails
+QUEUE = 4096  # messages the loop may be ahead of the disk (4 s at 50 Hz with 20 sensors); the oldest go first
+Item = tuple[str, str, bytes, int, int]  # topic, type name, payload, log and publish time [ns since 1970]
+
+
+class LogState(NamedTuple):
+    """How the log fares: the alarm in words ("" when there is none), where it writes, what it counted."""
+
+    ok: bool
+    alarm: str
+    path: str
+    written: int
+    dropped: int  # the queue was full: the disk is too slow
+    lost: int  # the disk would not take them
+
+
+class Recorder:
+    """Logs into `folder` as numbered files; starts even when the folder cannot be written."""
+
+    def __init__(
+        self,
+        folder: str | Path,
+        name: str = "twin",
+        max_bytes: int = 256 * 1024 * 1024,
+        max_seconds: float = 3600.0,
+        sync: Callable[[int], None] = os.fdatasync,
+    ):
+        self.folder, self.name = Path(folder), name
+        self.max_bytes, self.max_seconds = max_bytes, max_seconds
+        self.repaired: list[str] = []
+        self._sync = sync
+        self._queue: deque[Item] = deque(maxlen=QUEUE)
+        self._stop = Event()
+        self._thread = Thread(target=self._run, name="recorder", daemon=True)
+        self._segment: Segment | None = None
+        self._retry_at = 0.0
+        self._alarm = ""
+        self._taken = self._closed = 0  # messages out of the queue, messages in finished files
+        self._written = self._dropped = self._lost = 0
+
+    def __enter__(self) -> "Recorder":
+        self.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def start(self) -> None:
+        """Repairs what a crash left in the folder (see `repaired`) and starts the thread."""
+        self.repaired = recover_folder(self.folder)
+        self._thread.start()
+
+    def write(
+        self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int | None = None
+    ) -> None:
+        """Queues one message (no envelope); never waits. Times are nanoseconds since 1970."""
+        if len(self._queue) == QUEUE:
+            self._dropped += 1
+        self._queue.append((topic, type_name, payload, log_ns, log_ns if publish_ns is None else publish_ns))
+
+    @property
+    def state(self) -> LogState:
+        path = str(self._segment.path) if self._segment else ""
+        alarm = self._alarm or self._slow()
+        return LogState(not self._alarm, alarm, path, self._written, self._dropped, self._lost)
+
+    def close(self, timeout_s: float = 2.0) -> LogState:
+        """Writes what is queued, finishes the file and stops; gives up waiting after `timeout_s`."""
+        self._stop.set()
+        if self._thread.is_alive():
+            self._thread.join(timeout_s)
+        return self.state
+
+    def _slow(self) -> str:
+        if self._dropped == 0:
+            return ""
+        return f"log: the disk at {self.folder} is too slow, {self._dropped} messages dropped so far"
+
+    def _run(self) -> None:
+        while not self._stop.wait(PERIOD_S):
+            self._cycle(time.monotonic())
+        self._retry_at = 0.0
+        self._cycle(time.monotonic())
+        with suppress(OSError):  # then the next start finishes it
+            self._close_segment(finish=True)
+
+    def _cycle(self, now_s: float) -> None:
+        """Writes everything that is queued, as one chunk or more, and syncs."""
+        batch = [self._queue.popleft() for _ in range(len(self._queue))]
+        self._taken += len(batch)
+        if now_s >= self._retry_at:
+            try:
+                self._write(batch, now_s)
+                self._alarm = ""
+            except OSError as failure:
+                self._fail(failure.strerror or str(failure), now_s)
+            except Exception as failure:  # a message no log can hold: say so, never die in silence
+                self._fail(f"{type(failure).__name__}: {failure}", now_s)
+        self._written = self._closed + (self._segment.kept if self._segment else 0)
+        self._lost = self._taken - self._written
+
+    def _write(self, batch: list[Item], now_s: float) -> None:
+        segment = self._current(now_s)
+        for item in batch:
+            segment.add(*item)
+        segment.sync()
+
+    def _current(self, now_s: float) -> Segment:
+        """The file to write to: the one in use, or the next when that is old, full or deleted."""
+        segment = self._segment
+        if segment and segment.deleted():
+            self._close_segment(finish=False)
+        elif segment and (segment.size >= self.max_bytes or now_s - segment.opened_s >= self.max_seconds):
+            self._close_segment(finish=True)
+        if self._segment is None:
+            self._segment = Segment(self.folder, self.name, now_s, self._sync)
+        return self._segment
+
+    def _close_segment(self, finish: bool) -> None:
+        segment, self._segment = self._segment, None
+        if segment is None:
+            return
+        try:
+            if finish:
+                segment.finish()
+        finally:
+            self._closed += 0 if segment.deleted() else segment.kept
+            segment.close()
+
+    def _fail(self, why: str, now_s: float) -> None:
+        self._retry_at = now_s + RETRY_S
+        if self._segment:
+            self._segment.give_up()
+            if self._segment.broken:
+                self._close_segment(finish=False)
+        self._alarm = (
+            f"log stopped: {self.folder}: {why}. Free or remount the disk: the log resumes by itself, "
+            "the twin goes on without it"
+        )
+
+
+class LogFile:
+    """A log written in one go: aside first, renamed when whole, gone when something fails.
+
+    The same messages give the same bytes: no clock, no random number and no version is in it.
+    """
+
+    def __init__(self, path: str | Path):
+        self.path = Path(path)
+        self._aside = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
+
+    def __enter__(self) -> "LogFile":
+        try:
+            self._stream = open(self._aside, "wb")
+        except OSError as failure:
+            raise self._error(failure) from None
+        self._writer = McapWriter(self._stream.write)
+        self._writer.start()
+        return self
+
+    def add(
+        self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int | None = None
+    ) -> None:
+        """One message without its envelope; times are nanoseconds since 1970."""
+        channel = self._writer.channel(topic, type_name, schema_bytes)
+        try:
+            self._writer.add(channel, payload, log_ns, log_ns if publish_ns is None else publish_ns)
+        except OSError as failure:
+            raise self._error(failure) from None
+
+    def describe(self, name: str, values: dict[str, str]) -> None:
+        """A named table of words about the file (MCAP metadata)."""
+        try:
+            self._writer.metadata(name, values)
+        except OSError as failure:
+            raise self._error(failure) from None
+
+    def __exit__(self, kind: Any, *_: object) -> None:
+        try:
+            if kind is None:
+                self._writer.finish()
+                self._stream.flush()
+                os.fsync(self._stream.fileno())
+                os.replace(self._aside, self.path)
+        except OSError as failure:
+            raise self._error(failure) from None
+        finally:
+            self._stream.close()
+            with suppress(OSError):
+                self._aside.unlink()
+
+    def _error(self, failure: OSError) -> TwinError:
+        return TwinError(f"{self.path}: cannot be written ({failure.strerror}). Nothing was left behind.")
+
+
+def read(path: str | Path, notes: list[str] | None = None) -> Iterator[Message]:
+    """The messages of a log in file order; what is damaged is left out and said in `notes`."""
+    reader = McapReader(path)
+    yield from reader.messages()
+    if notes is not None:
+        notes += reader.problems
+
+
+def read_rows(path: str | Path, notes: list[str] | None = None) -> "tuple[np.ndarray, dict[str, np.ndarray]]":
+    """(time_s (N,), {channel: (N,)}) of a log, NaN where nothing was measured; see `rows.read_rows`."""
+    from twin.live.rows import read_rows as rows
+
+    return rows(path, notes)

@@ -1,0 +1,146 @@
+"""A log that a crash left unfinished is finished: cut behind its last whole chunk, its index rebuilt.
+
+Runs on the log folder when the recorder starts. The good part is never touched, so a repair that is itself
+cut off is simply done again. A file that another process is writing is left alone (it holds a lock).
+"""
+
+import fcntl
+import os
+from pathlib import Path
+from struct import error, unpack_from
+from typing import IO, NamedTuple
+
+from twin.errors import DataError
+from twin.live.mcap_read import Broken, ends_well, open_log, records, string, unpacked
+from twin.live.mcap_write import (
+    CHANNEL,
+    CHUNK,
+    DATA_END,
+    HEAD,
+    MESSAGE,
+    METADATA,
+    SCHEMA,
+    ChunkInfo,
+    Summary,
+    message_indexes,
+)
+
+
+class Scan(NamedTuple):
+    """The good part of a file: where to cut, what to write there before the index, and the index."""
+
+    cut: int
+    missing: bytes
+    summary: Summary
+
+
+def recover_folder(folder: str | Path) -> list[str]:
+    """Finishes every unfinished log in a folder; one sentence for each, of what was kept and lost."""
+    try:
+        files = sorted(Path(folder).glob("*.mcap"))
+    except OSError:
+        return []
+    return [said for file in files if (said := recover(file))]
+
+
+def recover(path: str | Path) -> str:
+    """Finishes one log file if it is not; returns what happened in one sentence, or "" when it was whole."""
+    path = Path(path)
+    try:
+        with open(path, "r+b") as stream:
+            return _recover(path, stream)
+    except OSError as failure:
+        return f"{path.name}: not repaired, it cannot be written ({failure.strerror})"
+
+
+def _recover(path: Path, stream: IO[bytes]) -> str:
+    try:
+        fcntl.flock(stream, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        return ""  # somebody is writing it
+    if ends_well(stream):
+        return ""
+    size = stream.seek(0, os.SEEK_END)
+    try:
+        found = scan(path)
+    except DataError:
+        return _set_aside(path, size)
+    _finish(stream, found)
+    kept, lost = sum(found.summary.counts.values()), size - found.cut
+    return f"{path.name}: unfinished log repaired, {kept} messages kept, {lost} bytes at the end lost"
+
+
+def scan(path: Path) -> Scan:
+    """Walks a file chunk by chunk as far as it is good."""
+    summary = Summary()
+    with open_log(path) as stream:
+        cut = stream.tell()
+        try:
+            for opcode, offset, content in records(stream):
+                if opcode == DATA_END:
+                    break
+                missing = b""
+                if opcode == CHUNK:
+                    missing = _chunk(summary, offset, content)
+                elif opcode == METADATA:
+                    summary.metadata.append((offset, 9 + len(content), string(content, 0)[0]))
+                elif opcode in (SCHEMA, CHANNEL):
+                    _describe(summary, opcode, HEAD.pack(opcode, len(content)) + content)
+                cut = offset + 9 + len(content)
+                if missing:
+                    here = stream.tell()
+                    if stream.read(len(missing)) != missing:
+                        return Scan(cut, missing, summary)
+                    stream.seek(here)
+        except (Broken, error, UnicodeDecodeError):
+            pass
+    if cut == 8:
+        raise DataError(f"{path}: nothing in it can be read.")
+    return Scan(cut, b"", summary)
+
+
+def _chunk(summary: Summary, offset: int, content: bytes) -> bytes:
+    """Adds a verified chunk to the summary; returns the index records that belong behind it."""
+    raw = unpacked(content)
+    rows: dict[int, list[tuple[int, int]]] = {}
+    at = 0
+    while at < len(raw):
+        opcode, length = HEAD.unpack_from(raw, at)
+        if opcode == MESSAGE:
+            channel, _, log_ns = unpack_from("<HIQ", raw, at + 9)
+            rows.setdefault(channel, []).append((log_ns, at))
+        elif opcode in (SCHEMA, CHANNEL):
+            _describe(summary, opcode, raw[at : at + 9 + length])
+        at += 9 + length
+    start_ns, end_ns = unpack_from("<QQ", content)
+    length = 9 + len(content)
+    indexes, places = message_indexes(rows, offset + length)
+    packed = len(content) - 40 - len(string(content, 28)[0])
+    summary.chunks.append(ChunkInfo(start_ns, end_ns, offset, length, places, len(indexes), packed, len(raw)))
+    for channel, entries in rows.items():
+        summary.counts[channel] = summary.counts.get(channel, 0) + len(entries)
+    return indexes
+
+
+def _describe(summary: Summary, opcode: int, whole: bytes) -> None:
+    group = summary.schemas if opcode == SCHEMA else summary.channels
+    group[unpack_from("<H", whole, 9)[0]] = whole
+
+
+def _finish(stream: IO[bytes], found: Scan) -> None:
+    """Cuts and writes the index; when that fails (disk full) the cut stays and the next start tries again."""
+    stream.truncate(found.cut)
+    stream.seek(found.cut)
+    try:
+        stream.write(found.missing + found.summary.tail(found.cut + len(found.missing)))
+        stream.flush()
+        os.fdatasync(stream.fileno())
+    except OSError:
+        stream.truncate(found.cut)
+        raise
+
+
+def _set_aside(path: Path, size: int) -> str:
+    """A file without one readable record is renamed, never deleted."""
+    path.rename(path.with_suffix(".unreadable"))
+    return f"{path.name}: {size} bytes without one readable record, renamed to {path.stem}.unreadable"

@@ -1,0 +1,110 @@
+"""One file of the log: numbered, locked while written, whole after every write.
+
+A number that only grows names it and O_EXCL opens it, so neither a clock set back nor a second process
+overwrites a log. A write that fails is cut back to the last whole chunk.
+"""
+
+import fcntl
+import os
+import re
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from twin.live.mcap_write import McapWriter
+from twin.live.messages import schema_bytes
+
+
+class Segment:
+    """The file being written; raises OSError from the constructor, `add`, `sync` and `finish`."""
+
+    def __init__(self, folder: Path, name: str, now_s: float, sync: Callable[[int], None]):
+        folder.mkdir(parents=True, exist_ok=True)
+        self.opened_s = now_s
+        self.size = 0
+        self.broken = False
+        self._sync = sync
+        self.path, self._fd = _create(folder, name)
+        self._writer = McapWriter(self._put)
+        try:
+            self._writer.start()
+        except OSError:
+            os.unlink(self.path)
+            self.close()
+            raise
+
+    def add(self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int) -> None:
+        self._writer.add(self._writer.channel(topic, type_name, schema_bytes), payload, log_ns, publish_ns)
+
+    def sync(self) -> None:
+        """Puts everything added so far on the disk."""
+        self._writer.flush()
+        self._sync(self._fd)
+
+    def give_up(self) -> None:
+        """Forgets what could not be written."""
+        self._writer.discard()
+
+    @property
+    def kept(self) -> int:
+        """Messages that are whole in the file."""
+        return sum(self._writer.summary.counts.values())
+
+    def finish(self) -> None:
+        self._writer.finish()
+        self._sync(self._fd)
+
+    def close(self) -> None:
+        os.close(self._fd)
+
+    def deleted(self) -> bool:
+        """Whether somebody removed the file under our hands."""
+        return os.fstat(self._fd).st_nlink == 0
+
+    def _put(self, data: bytes) -> None:
+        """All of `data` or nothing: behind a short write nothing could be read."""
+        done = 0
+        try:
+            while done < len(data):
+                done += os.write(self._fd, data[done:])
+        except OSError:
+            self._cut_back()
+            raise
+        self.size += len(data)
+
+    def _cut_back(self) -> None:
+        try:
+            os.ftruncate(self._fd, self.size)
+            os.lseek(self._fd, self.size, os.SEEK_SET)
+        except OSError:
+            self.broken = True
+
+
+def _create(folder: Path, name: str) -> tuple[Path, int]:
+    """A new file with the next number; the wall clock is only for people to read."""
+    number = _last_number(folder, name) + 1
+    while True:
+        stamp = time.strftime("%Y%m%dT%H%M%SZ", time.gmtime())
+        path = folder / f"{name}-{number:06d}-{stamp}.mcap"
+        try:
+            fd = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o640)
+        except FileExistsError:
+            number += 1
+            continue
+        fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        _sync_folder(folder)
+        return path, fd
+
+
+def _last_number(folder: Path, name: str) -> int:
+    pattern = re.compile(re.escape(name) + r"-(\d+)-.*")
+    return max((int(m[1]) for file in os.listdir(folder) if (m := pattern.match(file))), default=0)
+
+
+def _sync_folder(folder: Path) -> None:
+    """A new name is on the disk, too."""
+    fd = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(fd)
+    finally:
+        os.close(fd)
