@@ -11,12 +11,13 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from .maths import cos, positive, sin, sqrt
-from .state import Force, Number
+from .state import Number
 
 if TYPE_CHECKING:
     from .ship import Ship
 
 GRAVITY = 9.80665  # m/s2
+Tau = tuple[Number, Number, Number]  # (X, Y, N), as plain a tuple as can be: the loop makes thousands
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,23 +96,23 @@ def coefficients(ship: "Ship") -> Coefficients:
     )  # fmt: skip
 
 
-def damping(u: Number, v: Number, r: Number, c: Coefficients) -> Force:
+def damping(u: Number, v: Number, r: Number, c: Coefficients) -> Tau:
     """-D(nu_r) nu_r: linear, quadratic and cross-coupled drag of the hull, |.|. in Norrbin's second-order modulus form."""
     U, V, R = abs(u), abs(v), abs(r)
-    return Force(
-        X=(c.X_u + c.X_uu * U) * u + (c.X_vv * v + c.X_vr * r) * v + c.X_rr * r * r,
-        Y=(c.Y_v + c.Y_uv * U + c.Y_vv * V + c.Y_rv * R) * v + (c.Y_ur * u + c.Y_vr * V + c.Y_rr * R) * r,
-        N=(c.N_uv * u + c.N_vv * V + c.N_rv * R) * v + (c.N_r + c.N_ur * U + c.N_vr * V + c.N_rr * R) * r,
+    return (
+        (c.X_u + c.X_uu * U) * u + (c.X_vv * v + c.X_vr * r) * v + c.X_rr * r * r,
+        (c.Y_v + c.Y_uv * U + c.Y_vv * V + c.Y_rv * R) * v + (c.Y_ur * u + c.Y_vr * V + c.Y_rr * R) * r,
+        (c.N_uv * u + c.N_vv * V + c.N_rv * R) * v + (c.N_r + c.N_ur * U + c.N_vr * V + c.N_rr * R) * r,
     )
 
 
-def coriolis(u: Number, v: Number, r: Number, c: Coefficients) -> Force:
+def coriolis(u: Number, v: Number, r: Number, c: Coefficients) -> Tau:
     """-C(nu_r) nu_r: rigid body and added mass, whose Munk moment turns a drifting ship broadside."""
     a_v = c.Y_vdot * v + c.Y_rdot * r
-    return Force(
-        X=c.m * v * r + c.mx_G * r * r - a_v * r,
-        Y=(c.X_udot - c.m) * u * r,
-        N=-c.mx_G * u * r + a_v * u - c.X_udot * u * v,
+    return (
+        (c.m * v + c.mx_G * r - a_v) * r,
+        (c.X_udot - c.m) * u * r,
+        (a_v - c.mx_G * r - c.X_udot * v) * u,
     )
 
 
@@ -121,12 +122,12 @@ def thrust(u: Number, n: Number, c: Coefficients) -> Number:
     return c.T_nn * N * n + c.T_nu * N * (c.wake_share * u)
 
 
-def propeller(thrust: Number, c: Coefficients) -> Force:
+def propeller(thrust: Number, c: Coefficients) -> Tau:
     """What of the thrust drives the ship."""
-    return Force(c.thrust_share * thrust, 0.0, 0.0)
+    return c.thrust_share * thrust, 0.0, 0.0
 
 
-def rudder(u: Number, v: Number, r: Number, delta: Number, thrust: Number, c: Coefficients) -> Force:
+def rudder(u: Number, v: Number, r: Number, delta: Number, thrust: Number, c: Coefficients) -> Tau:
     """Rudder force in the propeller's slipstream (momentum theory), with the flow that drift and turning send across it.
 
     q = eps^2 (u_a |u_a| + kappa 8 T/(pi rho D^2)),  F = 1/2 rho A_R C_L (q sin(delta) + sqrt|q| (gamma_v v + gamma_r L r) cos(delta))
@@ -136,13 +137,10 @@ def rudder(u: Number, v: Number, r: Number, delta: Number, thrust: Number, c: Co
     si, co = sin(delta), cos(delta)
     across = sqrt(abs(q) + 1e-9) * (c.gamma_v * v + c.gamma_r * r)
     normal = c.rudder * (q * si + across * co)
-    return Force(-c.drag_R * normal * si, -c.side_R * normal * co, -c.lever_R * normal * co)
+    athwart = -normal * co
+    return -c.drag_R * normal * si, c.side_R * athwart, c.lever_R * athwart
 
 
-def accelerations(tau: Force, c: Coefficients) -> tuple[Number, Number, Number]:
+def accelerations(X: Number, Y: Number, N: Number, c: Coefficients) -> Tau:
     """M^-1 tau by components: surge stands alone, sway and yaw are a 2 x 2 system."""
-    return (
-        tau.X / c.m_u,
-        (c.m_r * tau.Y - c.m_vr * tau.N) / c.det,
-        (c.m_v * tau.N - c.m_rv * tau.Y) / c.det,
-    )
+    return X / c.m_u, (c.m_r * Y - c.m_vr * N) / c.det, (c.m_v * N - c.m_rv * Y) / c.det

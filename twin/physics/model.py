@@ -8,8 +8,9 @@ from .effect import Effect, Flow, Lag, SensorFault
 from .effect import Force as ForceEffect
 from .maths import cos, sin
 from .ship import Ship
-from .state import Force, Number, Rates, Situation, Water
+from .state import STILL, Force, Number, Rates, Situation, Water
 
+CORE = ("hull", "coriolis", "propeller", "rudder")
 Eta_nu = tuple[Number, Number, Number, Number, Number, Number]
 
 
@@ -29,6 +30,7 @@ class Model:
     lags: tuple[Lag, ...] = field(init=False, repr=False)
     loaded: Ship = field(init=False, repr=False)
     c: core.Coefficients = field(init=False, repr=False)
+    names: tuple[str, ...] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         for name, kind in (("flows", Flow), ("pushes", ForceEffect), ("faults", SensorFault), ("lags", Lag)):
@@ -38,6 +40,7 @@ class Model:
             ship = push.alter(ship)
         object.__setattr__(self, "loaded", ship)
         object.__setattr__(self, "c", ship.c)
+        object.__setattr__(self, "names", (*CORE, *(type(push).__name__ for push in self.pushes)))
 
     @classmethod
     def of(cls, ship: Ship) -> "Model":
@@ -56,37 +59,40 @@ class Model:
 
     def water(self, s: Situation) -> Water:
         """The water as all flows together make it."""
-        total = Water()
+        total = STILL
         for flow in self.flows:
-            total = Water(*(a + b for a, b in zip(total, flow.water(s, self.loaded), strict=True)))
+            water = flow.water(s, self.loaded)
+            total = water if total is STILL else Water(*[a + b for a, b in zip(total, water, strict=True)])
         return total
+
+    def forces(self, s: Situation, w: Water) -> list[core.Tau]:
+        """Every known force, in the order of `names`. Sets s.u_r and s.v_r."""
+        s.u_r, s.v_r = u, v = s.u - w.u, s.v - w.v
+        c, r, ship = self.c, s.r, self.loaded
+        thrust = core.thrust(u, s.n, c)
+        return [
+            core.damping(u * (1.0 + w.k_u), v * (1.0 + w.k_v), r * (1.0 + w.k_r), c),
+            core.coriolis(u, v, r, c),
+            core.propeller(thrust, c),
+            core.rudder(u, v, r, s.delta, thrust, c),
+            *[push.force(s, ship) for push in self.pushes],
+        ]
 
     def known(self, s: Situation, water: Water | None = None) -> dict[str, Force]:
         """Every known force by its name: hull, Coriolis, propeller, rudder, and each effect. Sets s.u_r and s.v_r."""
-        w = self.water(s) if water is None else water
-        s.u_r, s.v_r = s.u - w.u, s.v - w.v
-        c, u, v, r = self.c, s.u_r, s.v_r, s.r
-        thrust = core.thrust(u, s.n, c)
-        forces = {
-            "hull": core.damping(u * (1.0 + w.k_u), v * (1.0 + w.k_v), r * (1.0 + w.k_r), c),
-            "coriolis": core.coriolis(u, v, r, c),
-            "propeller": core.propeller(thrust, c),
-            "rudder": core.rudder(u, v, r, s.delta, thrust, c),
-        }
-        for push in self.pushes:
-            forces[type(push).__name__] = push.force(s, self.loaded)
-        return forces
+        forces = self.forces(s, self.water(s) if water is None else water)
+        return {name: Force(*f) for name, f in zip(self.names, forces, strict=True)}
 
     def nu_dot(self, s: Situation) -> Rates:
         """d(nu)/dt over ground; sets s.u_r and s.v_r."""
         w = self.water(s)
-        X = Y = N = 0.0
-        for f in self.known(s, w).values():
-            X, Y, N = X + f.X, Y + f.Y, N + f.N
+        forces = self.forces(s, w)
         if self.residual is not None:
-            f = self.residual(s)
-            X, Y, N = X + f.X, Y + f.Y, N + f.N
-        u_dot, v_dot, r_dot = core.accelerations(Force(X, Y, N), self.c)
+            forces.append(self.residual(s))
+        X = Y = N = 0.0
+        for x, y, n in forces:
+            X, Y, N = X + x, Y + y, N + n
+        u_dot, v_dot, r_dot = core.accelerations(X, Y, N, self.c)
         return Rates(u_dot + s.r * w.v, v_dot - s.r * w.u, r_dot)  # the ship turns in a current that does not
 
     def derivative(self, state: Eta_nu, s: Situation) -> Eta_nu:
@@ -104,9 +110,9 @@ class Model:
         k4 = self.derivative(_along(state, k3, h), s)
         w = h / 6.0
         return tuple(  # type: ignore[return-value]
-            x + w * (a + 2.0 * (b + c) + d) for x, a, b, c, d in zip(state, k1, k2, k3, k4, strict=True)
+            [x + w * (a + 2.0 * (b + c) + d) for x, a, b, c, d in zip(state, k1, k2, k3, k4, strict=True)]
         )
 
 
 def _along(state: Eta_nu, slope: Eta_nu, h: Number) -> Eta_nu:
-    return tuple(x + h * k for x, k in zip(state, slope, strict=True))  # type: ignore[return-value]
+    return tuple([x + h * k for x, k in zip(state, slope, strict=True)])  # type: ignore[return-value]

@@ -38,6 +38,9 @@ class Water(NamedTuple):
     k_r: Number = 0.0
 
 
+STILL = Water()
+
+
 class Rates(NamedTuple):
     """d(nu)/dt in body axes [m/s2, m/s2, rad/s2]."""
 

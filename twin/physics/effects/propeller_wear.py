@@ -21,4 +21,4 @@ class PropellerWear(Force):
         thrust = core.thrust(s.u_r, s.n, c)
         new = core.rudder(s.u_r, s.v_r, s.r, s.delta, thrust, c)
         worn = core.rudder(s.u_r, s.v_r, s.r, s.delta, thrust * (1.0 - self.loss), c)
-        return ForceVector(X=worn.X - new.X - c.thrust_share * self.loss * thrust, Y=worn.Y - new.Y, N=worn.N - new.N)
+        return ForceVector(worn[0] - new[0] - c.thrust_share * self.loss * thrust, worn[1] - new[1], worn[2] - new[2])

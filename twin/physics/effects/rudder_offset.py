@@ -21,4 +21,4 @@ class RudderOffset(Force):
         thrust = core.thrust(s.u_r, s.n, c)
         told = core.rudder(s.u_r, s.v_r, s.r, s.delta, thrust, c)
         true = core.rudder(s.u_r, s.v_r, s.r, s.delta + self.offset, thrust, c)
-        return ForceVector(true.X - told.X, true.Y - told.Y, true.N - told.N)
+        return ForceVector(true[0] - told[0], true[1] - told[1], true[2] - told[2])

@@ -18,4 +18,5 @@ class RudderWear(Force):
 
     def force(self, s: Situation, ship: "object") -> ForceVector:
         c = ship.c
-        return core.rudder(s.u_r, s.v_r, s.r, s.delta, core.thrust(s.u_r, s.n, c), c).times(-self.loss)
+        X, Y, N = core.rudder(s.u_r, s.v_r, s.r, s.delta, core.thrust(s.u_r, s.n, c), c)
+        return ForceVector(-self.loss * X, -self.loss * Y, -self.loss * N)
