@@ -9,8 +9,10 @@ Source: Griewank & Walther (2008) Evaluating Derivatives, ch. 3; Moore, Kearfott
 
 from typing import Any
 
+import numpy as np
+
 from . import maths
-from .interval import Interval, Unsure, hull
+from .interval import Interval, Unsure
 
 
 class Dual:
@@ -75,8 +77,7 @@ class Dual:
         return Dual(self.value**p, _chain(p * self.value ** (p - 1), self.slopes))
 
     def __abs__(self) -> "Dual":
-        sign = maths.where(self.value > 0.0, 1.0, maths.where(self.value < 0.0, -1.0, self.value * 0.0 + _either(self.value)))
-        return Dual(abs(self.value), _chain(sign, self.slopes))
+        return Dual(abs(self.value), _chain(_sign(self.value), self.slopes))
 
     def __lt__(self, other: Any) -> "Choice":
         return Choice(self.value < _value(other), self, other)
@@ -190,6 +191,9 @@ def _sum(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[Any, ...]:
     return tuple(y if _nothing(x) else x if _nothing(y) else x + y for x, y in zip(a, b, strict=True))
 
 
-def _either(value: Any) -> Any:
-    """The slope of |x| at x = 0: nothing for a number, anything from -1 to 1 for an interval."""
-    return hull(-1.0, 1.0) if isinstance(value, Interval) else 0.0
+def _sign(x: Any) -> Any:
+    """The slope of |x|; of a box that only touches zero, that of its inside."""
+    if not isinstance(x, Interval):
+        return maths.where(x >= 0.0, 1.0, -1.0)
+    left, right = np.where(x.lo >= 0.0, 1.0, -1.0), np.where(x.hi <= 0.0, -1.0, 1.0)
+    return Interval(np.minimum(left, right), np.maximum(left, right))

@@ -6,6 +6,8 @@ x*x (never negative), min and max written with `where`, and x + sqrt(x*x + c) (`
 Source: Moore, Kearfott & Cloud (2009) Introduction to Interval Analysis, ch. 2 and 5.
 """
 
+from collections.abc import Callable
+from functools import wraps
 from typing import Any
 
 import numpy as np
@@ -13,6 +15,16 @@ import numpy as np
 ULP = 2.0**-52  # twice the rounding error of + - * / sqrt
 LIBRARY = 1e-15  # numpy's sin, cos, exp, tanh, arctan2, power are good to 4 ulp
 TINY = 5e-324
+
+
+def _ours(operation: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+    """An operation on intervals and numbers; what carries slopes answers for itself."""
+
+    @wraps(operation)
+    def operate(self: Any, other: Any) -> Any:
+        return NotImplemented if hasattr(other, "slopes") else operation(self, other)
+
+    return operate
 
 
 class Interval:
@@ -36,25 +48,29 @@ class Interval:
     def __neg__(self) -> "Interval":
         return Interval(-self.hi, -self.lo)
 
+    @_ours
     def __add__(self, other: Any) -> "Interval":
         o = of(other)
         for x, root in ((self, o), (o, self)):
             if root.root_of is not None and root.root_of[0] is x:
-                return _increasing(lambda z, c=root.root_of[1]: z + np.sqrt(z * z + c), x)
-        total = _out(self.lo + o.lo, self.hi + o.hi, 2.0 * ULP)
-        if self.square_of is not None and isinstance(other, float):
+                return _with_its_root(x, root.root_of[1])
+        total = _out(self.lo + o.lo, self.hi + o.hi)
+        if self.square_of is not None and isinstance(other, float) and other >= 0.0:
             total.square_of = (self.square_of[0], self.square_of[1] + other)
         return total
 
     __radd__ = __add__
 
+    @_ours
     def __sub__(self, other: Any) -> "Interval":
         o = of(other)
         return _out(self.lo - o.hi, self.hi - o.lo)
 
+    @_ours
     def __rsub__(self, other: Any) -> "Interval":
         return -self + other
 
+    @_ours
     def __mul__(self, other: Any) -> "Interval":
         if other is self:
             return self._squared()
@@ -63,6 +79,7 @@ class Interval:
 
     __rmul__ = __mul__
 
+    @_ours
     def __truediv__(self, other: Any) -> "Interval":
         o = of(other)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
@@ -70,6 +87,7 @@ class Interval:
         through_zero = (o.lo <= 0.0) & (o.hi >= 0.0)
         return _out(np.where(through_zero, -np.inf, a), np.where(through_zero, np.inf, b))
 
+    @_ours
     def __rtruediv__(self, other: Any) -> "Interval":
         return of(other) / self
 
@@ -89,18 +107,22 @@ class Interval:
         a, b = np.abs(self.lo), np.abs(self.hi)
         return Interval(np.where((self.lo <= 0.0) & (self.hi >= 0.0), 0.0, np.minimum(a, b)), np.maximum(a, b))
 
+    @_ours
     def __lt__(self, other: Any) -> "Unsure":
         o = of(other)
         return Unsure(self.hi < o.lo, self.lo >= o.hi, less=self, more=other)
 
+    @_ours
     def __le__(self, other: Any) -> "Unsure":
         o = of(other)
         return Unsure(self.hi <= o.lo, self.lo > o.hi, less=self, more=other)
 
+    @_ours
     def __gt__(self, other: Any) -> "Unsure":
         o = of(other)
         return Unsure(self.lo > o.hi, self.hi <= o.lo, less=other, more=self)
 
+    @_ours
     def __ge__(self, other: Any) -> "Unsure":
         o = of(other)
         return Unsure(self.lo >= o.hi, self.hi < o.lo, less=other, more=self)
@@ -205,6 +227,12 @@ def atan2(y: Any, x: Any) -> Interval:
 
 def _increasing(f: Any, x: Interval) -> Interval:
     return _out(f(x.lo), f(x.hi), LIBRARY)
+
+
+def _with_its_root(x: Interval, c: float) -> Interval:
+    """x + sqrt(x^2 + c), which increases with x and is never negative; its error is that of x, not of the small result."""
+    lo, hi = (z + np.sqrt(z * z + c) for z in (x.lo, x.hi))
+    return Interval(np.maximum(lo - 4.0 * ULP * (np.abs(x.lo) + c), 0.0), hi + 4.0 * ULP * (np.abs(x.hi) + c))
 
 
 def _extremes(a: Any, b: Any, c: Any, d: Any) -> tuple[Any, Any]:

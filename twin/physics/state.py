@@ -78,6 +78,8 @@ class Situation:
     bank_port: Number = None  # from the ship's side to the bank [m]
     bank_starboard: Number = None
     phi: Number = None  # roll [rad], starboard side down positive
+    u_dot: Number = 0.0  # acceleration over ground in body axes [m/s2], where it was worked out: only a late sensor asks for it
+    v_dot: Number = 0.0
 
 
 WEATHER = (

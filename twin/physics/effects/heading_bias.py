@@ -1,6 +1,9 @@
-"""The compass is off: the heading, and all that is turned into body or earth axes by it.
+"""The compass is off: the heading, and what is turned into body or earth axes by it.
 
-    psi_m = psi + bias;   (u, v)_m = R(bias)^T (u, v)  over ground, since they come from GNSS by the heading;   wind_to_m = wind_to + bias
+    psi_m = psi + bias,   wind_to_m = wind_to + bias
+    u_m = u cos(turned) + v sin(turned),   v_m = v cos(turned) - u sin(turned)      (over ground)
+`turned` = bias where the velocity over ground is turned into body axes by this compass, and 0 where the receiver has an
+attitude of its own (an inertial unit, two antennas).
 """
 
 from dataclasses import replace
@@ -13,12 +16,13 @@ from twin.physics.state import Situation
 class HeadingBias(SensorFault):
     """The compass shows a heading that is off by a constant, so she seems to drift sideways wherever she goes."""
 
-    source = "IMO A.424(XI) and ISO 8728 (gyro settle-point error); Fossen (2021) sec. 13"
+    source = "ISO 8728 and IMO A.424(XI) (gyro-compass settle-point error)"
 
-    bias: float = param(0.015, unit="rad", lo=-0.2, hi=0.2, sd=0.015, doc="shown heading less the true one")
+    bias: float = param(0.02, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="shown heading less the true one")
+    turned: float = param(0.0, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="the same for the velocity over ground: bias, or 0 (see above)")
 
     def read(self, s: Situation, ship: object) -> Situation:
-        c, si = cos(self.bias), sin(self.bias)
+        c, si = cos(self.turned), sin(self.turned)
         return replace(
             s,
             psi=s.psi + self.bias,

@@ -1,7 +1,10 @@
 """GNSS is late: what it says now was true `delay` seconds ago, to first order in the delay.
 
     (x, y)_m = (x, y) - delay R(psi) (u, v)
-    u_m = u + delay r v,   v_m = v - delay r u      (the velocity's turning; its change of size is second to it and left out)
+    u_m = u - delay du/dt + turned r v
+    v_m = v - delay dv/dt - turned r u
+`turned` = delay where a late velocity over ground is turned into body axes by the present heading (a compass), and 0 where
+the receiver does so itself by an attitude of its own (an inertial unit).
 """
 
 from dataclasses import replace
@@ -14,16 +17,17 @@ from twin.physics.state import Situation
 class SensorDelay(SensorFault):
     """Satellite position and velocity come late, so she seems to lag behind herself on the track."""
 
-    source = "Skog & Haendel (2011) Time synchronization errors in loosely coupled GPS-aided INS, IEEE Trans. ITS 12, 1014-1023, eq. (4)"
+    source = "Skog & Haendel (2011) Time synchronization errors in loosely coupled GPS-aided INS, IEEE Trans. ITS 12, 1014-1023"
 
     delay: float = param(0.6, unit="s", lo=0.0, hi=6.0, sd=0.6, doc="age of position and velocity over ground")
+    turned: float = param(0.0, unit="s", lo=0.0, hi=6.0, sd=0.6, doc="the same for the turning of the velocity: delay, or 0 (see above)")
 
     def read(self, s: Situation, ship: object) -> Situation:
-        c, si, d = cos(s.psi), sin(s.psi), self.delay
+        c, si, d, turned = cos(s.psi), sin(s.psi), self.delay, self.turned * s.r
         return replace(
             s,
             x=s.x - d * (s.u * c - s.v * si),
             y=s.y - d * (s.u * si + s.v * c),
-            u=s.u + d * s.r * s.v,
-            v=s.v - d * s.r * s.u,
+            u=s.u - d * s.u_dot + turned * s.v,
+            v=s.v - d * s.v_dot - turned * s.u,
         )
