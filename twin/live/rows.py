@@ -37,9 +37,9 @@ LEADERS = (
 def read_rows(path: str | Path, notes: list[str] | None = None) -> tuple[np.ndarray, Columns]:
     """(time_s (N,) [s], {channel: (N,) in border units}), NaN where nothing was measured.
 
-    The time is the records' own: the voyage's clock for rows, UTC since 1970 for ticks (the monotonic clock put
-    on the first wall time, so that a step of the wall clock does not show) and for scalars. What was damaged,
-    refused or absent is said in `notes`.
+    The time is the records' own: the voyage's clock for rows, UTC since 1970 for ticks (the monotonic clock
+    put on the first wall time, so that a step of the wall clock does not show) and for scalars. What was
+    damaged, refused or absent is said in `notes`.
     """
     reader = McapReader(path)
     found = Found(reader)
@@ -86,11 +86,11 @@ class Found:
         if self._samples:
             return _on_one_base(self._samples)
         raise DataError(
-            f"{self._reader.path}: no measurements in it: no {ROW}, no {TICK}, no Keelson subject the twin knows."
+            f"{self._reader.path}: no measurements in it: no {ROW}, no {TICK}, no Keelson subject we know."
         )
 
     def _named(self, type_name: str) -> tuple[Columns, np.ndarray]:
-        """The wide records as columns by the names the log's own schema gives, and which records were good."""
+        """The wide records as columns, named by the log's own schema, and which records were good."""
         row_class = classes_from_set(self._reader.schemas[type_name], [ROW])[0]
         numbers, odd = double_columns(self._wide[type_name])
         if odd.any():

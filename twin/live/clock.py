@@ -1,0 +1,135 @@
+"""When the next tick is: absolute deadlines on the monotonic clock, or the instants of a log.
+
+Every clock has one verb, `wait()`, which gives the next `Instant` or None when there are no more. State
+depends on the monotonic time alone; the wall clock is only written down, and a step of it is announced.
+"""
+
+import time
+from collections.abc import Callable, Iterable
+from typing import NamedTuple, Protocol
+
+WALL_STEP_S = 0.5  # a wall clock that moves this much against the monotonic one was set
+
+
+class Instant(NamedTuple):
+    """One tick's time: `time_s` monotonic, `wall_s` UTC since 1970; periods skipped; how the wall clock stepped."""
+
+    index: int
+    time_s: float
+    wall_s: float
+    late_s: float = 0.0  # how long after its deadline the tick woke
+    skipped: int = 0  # periods missed just before this tick: counted, never made up
+    wall_step_s: float = 0.0  # not zero: the wall clock was set by this much since the last tick
+
+
+class Clock(Protocol):
+    """The face every clock has."""
+
+    def wait(self) -> Instant | None:
+        """The next tick, when it is time; None when there are no more."""
+        ...
+
+    def slack_s(self) -> float | None:
+        """Time left until the next deadline [s], negative when it has passed; None where there are no deadlines."""
+        ...
+
+
+class MonotonicClock:
+    """A tick each 1/rate_hz [s]; a tick that comes too late skips whole periods and keeps the grid."""
+
+    def __init__(
+        self,
+        rate_hz: float,
+        monotonic: Callable[[], float] = time.monotonic,
+        wall: Callable[[], float] = time.time,
+        sleep: Callable[[float], None] = time.sleep,
+    ):
+        self.period_s = 1.0 / rate_hz
+        self.overruns = 0
+        self._monotonic, self._wall, self._sleep = monotonic, wall, sleep
+        self._start_s = monotonic()
+        self._period = 0  # whole periods from the start to the next deadline
+        self._index = 0
+        self._offset_s = wall() - self._start_s
+
+    def wait(self) -> Instant:
+        skipped = self._skip()
+        deadline = self._start_s + self._period * self.period_s
+        while (left := deadline - self._monotonic()) > 0.0:
+            self._sleep(left)
+        now_s = self._monotonic()
+        wall_s = self._wall()
+        instant = Instant(
+            self._index, now_s, wall_s, now_s - deadline, skipped, self._wall_step(wall_s - now_s)
+        )
+        self._index += 1
+        self._period += 1
+        return instant
+
+    def slack_s(self) -> float:
+        return self._start_s + self._period * self.period_s - self._monotonic()
+
+    def _skip(self) -> int:
+        """Moves the next deadline past every whole period that is over; a tick that is merely late is not skipped."""
+        behind = int((self._monotonic() - self._start_s) / self.period_s) - self._period
+        if behind <= 0:
+            return 0
+        self._period += behind
+        self.overruns += behind
+        return behind
+
+    def _wall_step(self, offset_s: float) -> float:
+        step_s = offset_s - self._offset_s
+        self._offset_s = offset_s
+        return step_s if abs(step_s) >= WALL_STEP_S else 0.0
+
+
+class ReplayClock:
+    """The instants of a log, one after the other; `pace` 1.0 sleeps as the voyage did, 0.0 not at all."""
+
+    def __init__(self, times: Iterable[tuple[float, float]], pace: float = 0.0):
+        self._times = iter(times)
+        self._pace = pace
+        self._index = 0
+        self._began: tuple[float, float] | None = None
+
+    def wait(self) -> Instant | None:
+        try:
+            time_s, wall_s = next(self._times)
+        except StopIteration:
+            return None
+        if self._pace > 0.0:
+            self._keep_pace(time_s)
+        instant = Instant(self._index, time_s, wall_s)
+        self._index += 1
+        return instant
+
+    def slack_s(self) -> None:
+        return None
+
+    def _keep_pace(self, time_s: float) -> None:
+        now_s = time.monotonic()
+        if self._began is None:
+            self._began = (now_s, time_s)
+        began_s, first_s = self._began
+        time.sleep(max(0.0, began_s + (time_s - first_s) / self._pace - now_s))
+
+
+class ManualClock:
+    """A clock a test turns by hand: `advance` moves it, `wait` gives a tick now."""
+
+    def __init__(self, time_s: float = 0.0, wall_s: float = 1.7e9):
+        self.time_s, self.wall_s = time_s, wall_s
+        self._index = 0
+
+    def advance(self, seconds: float) -> None:
+        self.time_s += seconds
+        self.wall_s += seconds
+
+    def wait(self) -> Instant:
+        instant = Instant(self._index, self.time_s, self.wall_s)
+        self._index += 1
+        return instant
+
+    def slack_s(self) -> None:
+        return None

@@ -1,0 +1,177 @@
+"""Keelson over Zenoh: subscriptions the loop drains, publishers that drop rather than wait.
+
+No Python callback is registered anywhere: with one, an uncaught exception hangs the interpreter for ever.
+Each subject has a ring of its own, so that a flood on one leaves the others alone and what is handed out is
+the newest.
+"""
+
+import time
+from contextlib import suppress
+from threading import Event, Thread
+from typing import Any
+
+from twin.errors import SettingsError
+from twin.live.bus import BusState, Incoming
+from twin.live.topics import liveliness_key, subjects
+from twin.live.zenoh_config import MAX_BYTES, BusSettings, configuration, endpoints, is_client
+
+RETRY_S = 0.5  # between two tries to reach a router that was not there at the start
+CAUSES = (
+    "Possible causes: nobody listens there (is the router running?), a firewall, TLS on one side only, a wrong or "
+    "expired certificate or a name that does not match it, a wrong user or password"
+)
+
+
+class ZenohBus:
+    """A session that opens at once (peer) or as soon as its router answers (client); the loop never waits."""
+
+    def __init__(self, settings: BusSettings, wanted: list[str] | None = None):
+        self._settings = settings
+        self._subjects = subjects(wanted)
+        self._config = configuration(settings)
+        self._client = is_client(self._config)
+        self._link: Link | None = None
+        self._closing = Event()
+        self._why = ""
+        self._thread: Thread | None = None
+        self._received = self._published = self._refused = 0
+
+    def __enter__(self) -> "ZenohBus":
+        self._try_to_open()
+        if self._link is None and not self._client:
+            raise SettingsError(self._cannot_open())
+        if self._link is None:
+            self._thread = Thread(target=self._keep_trying, name="bus", daemon=True)
+            self._thread.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._closing.set()
+        if self._thread:
+            self._thread.join(1.0)
+        if self._link:
+            self._link.close()
+
+    def drain(self, now_s: float) -> list[Incoming]:
+        if self._link is None:
+            return []
+        messages, refused = self._link.drain(now_s)
+        self._received += len(messages)
+        self._refused += refused
+        return messages
+
+    def publish(self, key: str, data: bytes) -> None:
+        if self._link is not None and self._link.publish(key, data):
+            self._published += 1
+        else:
+            self._refused += 1
+
+    @property
+    def state(self) -> BusState:
+        counts = (self._received, self._published, self._refused)
+        if self._link is None:
+            return BusState(
+                False, f"bus: {self._cannot_open()}; trying on, the twin runs without it", 0, 0, *counts
+            )
+        alarm = self._link.alarm(self._client)
+        return BusState(self._link.peers > 0, alarm, self._link.peers, self._link.outages, *counts)
+
+    def _try_to_open(self) -> None:
+        import zenoh
+
+        try:
+            session = zenoh.open(self._config)
+        except zenoh.ZError as failure:
+            self._why = str(failure).split(" at /")[0].strip()
+            return
+        self._link = Link(session, self._settings, self._subjects)
+
+    def _keep_trying(self) -> None:
+        while self._link is None and not self._closing.wait(RETRY_S):
+            self._try_to_open()
+
+    def _cannot_open(self) -> str:
+        where = endpoints(self._config)
+        if "in use" in self._why:
+            return f"cannot open Zenoh ({where}): {self._why.rstrip('].')}. Another twin or router has that port: choose another"
+        return f"cannot open Zenoh ({where}): {self._why.rstrip('!.') or 'no answer yet'}. {CAUSES}"
+
+
+class Link:
+    """An open session: a ring for each subject, a publisher for each key, who is connected, the sign of life."""
+
+    def __init__(self, session: Any, settings: BusSettings, wanted: list[str]):
+        import zenoh
+
+        self._session = session
+        self.outages = 0
+        self._lost_at = 0.0
+        self._peers: set[str] = set()
+        self._publishers: dict[str, Any] = {}
+        self._drop = zenoh.CongestionControl.DROP
+        self._put = zenoh.SampleKind.PUT
+        self._error = zenoh.ZError
+        ring = zenoh.handlers.RingChannel
+        pattern = f"{settings.base}/@v0/{settings.entity}/pubsub"
+        self._rings = [
+            session.declare_subscriber(
+                f"{pattern}/{subject}/**", ring(settings.depth), allowed_origin=zenoh.Locality.REMOTE
+            )
+            for subject in wanted
+        ]
+        self._events = session.info.declare_transport_events_listener(ring(64), history=True)
+        self._token = session.liveliness().declare_token(liveliness_key(settings.base, settings.entity))
+
+    @property
+    def peers(self) -> int:
+        """Transports open now."""
+        self._watch()
+        return len(self._peers)
+
+    def drain(self, now_s: float) -> tuple[list[Incoming], int]:
+        """(messages, how many were too large)."""
+        messages: list[Incoming] = []
+        refused = 0
+        for ring in self._rings:
+            while (sample := ring.try_recv()) is not None:
+                payload = sample.payload
+                if len(payload) > MAX_BYTES or sample.kind != self._put:
+                    refused += 1
+                else:
+                    messages.append((str(sample.key_expr), payload.to_bytes(), now_s))
+        return messages, refused
+
+    def publish(self, key: str, data: bytes) -> bool:
+        try:
+            publisher = self._publishers.get(key)
+            if publisher is None:
+                publisher = self._session.declare_publisher(key, congestion_control=self._drop)
+                self._publishers[key] = publisher
+            publisher.put(data)
+        except self._error:
+            return False
+        return True
+
+    def alarm(self, client: bool) -> str:
+        """What is wrong with the connection, in words."""
+        if self.peers or not (self.outages or client):
+            return ""
+        since = f"{time.monotonic() - self._lost_at:.0f} s" if self._lost_at else "the start"
+        who = "the router" if client else "everybody"
+        return f"bus: {who} has been out of reach for {since}; it comes back by itself, the twin goes on meanwhile"
+
+    def close(self) -> None:
+        with suppress(self._error):
+            self._session.close()
+
+    def _watch(self) -> None:
+        """Transport events: the only sign of an outage, for put() raises nothing while the router is dead."""
+        while (event := self._events.try_recv()) is not None:
+            peer = str(event.transport.zid)
+            if event.kind == self._put:
+                self._peers.add(peer)
+                continue
+            self._peers.discard(peer)
+            if not self._peers:
+                self.outages += 1
+                self._lost_at = time.monotonic()

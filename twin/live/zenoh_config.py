@@ -1,0 +1,115 @@
+"""Zenoh's settings: locked down unless a Zenoh file says otherwise.
+
+By default the twin listens on loopback only, finds nobody by itself (no multicast, no gossip), shares no
+memory, takes no message larger than a sensor sends and no sensor faster than a loop can use. With a router it
+is a client: two peers behind a router without gossip exchange nothing, and nothing would say so.
+"""
+
+import json
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from twin.errors import SettingsError
+from twin.live.topics import subjects
+
+MAX_HZ = 200.0  # of each subject
+MAX_BYTES = 4096  # of one sample
+RETRY = {"period_init_ms": 200, "period_increase_factor": 1.5, "period_max_ms": 1000}
+
+LOCKED: dict[str, Any] = {
+    "scouting/multicast/enabled": False,
+    "scouting/gossip/enabled": False,
+    "transport/shared_memory/enabled": False,
+    "transport/unicast/accept_timeout": 2000,  # [ms]
+    "transport/unicast/open_timeout": 2000,
+    "transport/unicast/accept_pending": 20,
+    "transport/unicast/max_sessions": 32,
+    "transport/link/tx/lease": 2000,
+    "transport/link/rx/max_message_size": 262144,
+    "connect/retry": RETRY,
+    "connect/exit_on_failure": False,
+}
+
+
+class BusSettings(NamedTuple):
+    """Where the twin listens and speaks; `router` makes it a client, `file` is a Zenoh file (TLS, access control)."""
+
+    base: str = "twin"
+    entity: str = "ship"
+    listen: str = "tcp/127.0.0.1:7447"
+    connect: tuple[str, ...] = ()
+    router: str = ""
+    file: str = ""
+    depth: int = 16  # newest samples kept for each subject between two drains
+
+
+def configuration(settings: BusSettings) -> Any:
+    """The zenoh.Config for these settings; what a Zenoh file sets stays, the rest is locked down."""
+    import zenoh
+
+    _check_names(settings)
+    plain, config = zenoh.Config(), _from_file(settings.file) if settings.file else zenoh.Config()
+    for key, value in _wanted(settings, config).items():
+        if config.get_json(key) == plain.get_json(key):
+            config.insert_json5(key, json.dumps(value))
+    return config
+
+
+def is_client(config: Any) -> bool:
+    return bool(json.loads(config.get_json("mode")) == "client")
+
+
+def endpoints(config: Any) -> str:
+    """Where a configuration listens and connects, for a message."""
+    ways = ("connect",) if is_client(config) else ("listen", "connect")
+    places = {way: json.loads(config.get_json(f"{way}/endpoints")) for way in ways}
+    return ", ".join(f"{way} {' '.join(where)}" for way, where in places.items() if where) or "no endpoint"
+
+
+def _wanted(settings: BusSettings, config: Any) -> dict[str, Any]:
+    client = bool(settings.router) or is_client(config)
+    places = [settings.router] if settings.router else list(settings.connect)
+    wanted = {"mode": "client" if client else "peer", "connect/endpoints": places, **LOCKED}
+    if not client:
+        wanted["listen/endpoints"] = [settings.listen] if settings.listen else []
+    pattern = f"{settings.base}/@v0/{settings.entity}/pubsub"
+    wanted["downsampling"] = [
+        {
+            "id": "sensors",
+            "flows": ["ingress"],
+            "messages": ["put"],
+            "rules": [{"key_expr": f"{pattern}/{subject}/**", "freq": MAX_HZ} for subject in subjects()],
+        }
+    ]
+    wanted["low_pass_filter"] = [
+        {
+            "id": "size",
+            "flows": ["ingress"],
+            "messages": ["put"],
+            "key_exprs": [f"{pattern}/{subject}/**" for subject in subjects()],
+            "size_limit": MAX_BYTES,
+        }
+    ]
+    return wanted
+
+
+def _check_names(settings: BusSettings) -> None:
+    for field in ("base", "entity"):
+        name = getattr(settings, field)
+        bad = sorted(set(name) & set("*$#?")) or (["@"] if "@" in name else [])
+        if bad or not name or name != name.strip("/") or "//" in name:
+            raise SettingsError(
+                f"[bus] {field} = {name!r} cannot be part of a key"
+                f"{' because of ' + ' '.join(bad) if bad else ''}. Use words parted by '/', such as 'fleet/anna'."
+            )
+
+
+def _from_file(path: str) -> Any:
+    import zenoh
+
+    if not Path(path).is_file():
+        raise SettingsError(f"{path}: there is no such Zenoh file. Correct [bus] file, or leave it out.")
+    try:
+        return zenoh.Config.from_file(path)
+    except zenoh.ZError as failure:
+        raise SettingsError(f"{path}: not a Zenoh file: {str(failure).split(' at /')[0]}") from None
