@@ -12,9 +12,9 @@ WALL_STEP_S = 0.5  # a wall clock that moves this much against the monotonic one
 
 
 class Instant(NamedTuple):
-    """One tick's time: `time_s` monotonic, `wall_s` UTC since 1970; periods skipped; how the wall clock stepped."""
+    """One tick's time: `time_s` monotonic [s], `wall_s` UTC since 1970 [s]."""
 
-    index: int
+    number: int  # of this tick, from 0
     time_s: float
     wall_s: float
     late_s: float = 0.0  # how long after its deadline the tick woke
@@ -30,7 +30,7 @@ class Clock(Protocol):
         ...
 
     def slack_s(self) -> float | None:
-        """Time left until the next deadline [s], negative when it has passed; None where there are no deadlines."""
+        """Time left until the next deadline [s], negative when it is over; None where there are none."""
         ...
 
 
@@ -70,7 +70,7 @@ class MonotonicClock:
         return self._start_s + self._period * self.period_s - self._monotonic()
 
     def _skip(self) -> int:
-        """Moves the next deadline past every whole period that is over; a tick that is merely late is not skipped."""
+        """Moves the next deadline past every whole period that is over; merely late is not skipped."""
         behind = int((self._monotonic() - self._start_s) / self.period_s) - self._period
         if behind <= 0:
             return 0

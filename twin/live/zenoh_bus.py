@@ -17,8 +17,8 @@ from twin.live.zenoh_config import MAX_BYTES, BusSettings, configuration, endpoi
 
 RETRY_S = 0.5  # between two tries to reach a router that was not there at the start
 CAUSES = (
-    "Possible causes: nobody listens there (is the router running?), a firewall, TLS on one side only, a wrong or "
-    "expired certificate or a name that does not match it, a wrong user or password"
+    "Possible causes: nobody listens there (is the router running?), a firewall, TLS on one side only, "
+    "a wrong or expired certificate or a name that does not match it, a wrong user or password"
 )
 
 
@@ -91,14 +91,14 @@ class ZenohBus:
             self._try_to_open()
 
     def _cannot_open(self) -> str:
-        where = endpoints(self._config)
-        if "in use" in self._why:
-            return f"cannot open Zenoh ({where}): {self._why.rstrip('].')}. Another twin or router has that port: choose another"
-        return f"cannot open Zenoh ({where}): {self._why.rstrip('!.') or 'no answer yet'}. {CAUSES}"
+        where, why = endpoints(self._config), self._why.rstrip("[]!. ") or "no answer yet"
+        if "in use" in why:
+            return f"cannot open Zenoh ({where}): {why}. Another twin or router has that port: choose another"
+        return f"cannot open Zenoh ({where}): {why}. {CAUSES}"
 
 
 class Link:
-    """An open session: a ring for each subject, a publisher for each key, who is connected, the sign of life."""
+    """An open session: a ring for each subject, a publisher for each key, who is connected, a sign of life."""
 
     def __init__(self, session: Any, settings: BusSettings, wanted: list[str]):
         import zenoh
@@ -156,9 +156,9 @@ class Link:
         """What is wrong with the connection, in words."""
         if self.peers or not (self.outages or client):
             return ""
-        since = f"{time.monotonic() - self._lost_at:.0f} s" if self._lost_at else "the start"
+        since = f"{time.monotonic() - self._lost_at:.0f} s ago" if self._lost_at else "the start"
         who = "the router" if client else "everybody"
-        return f"bus: {who} has been out of reach for {since}; it comes back by itself, the twin goes on meanwhile"
+        return f"bus: {who} out of reach since {since}; it comes back by itself, the twin goes on meanwhile"
 
     def close(self) -> None:
         with suppress(self._error):

@@ -32,7 +32,7 @@ LOCKED: dict[str, Any] = {
 
 
 class BusSettings(NamedTuple):
-    """Where the twin listens and speaks; `router` makes it a client, `file` is a Zenoh file (TLS, access control)."""
+    """Where the twin listens and speaks; `router` makes it a client, `file` is a Zenoh file (TLS, access)."""
 
     base: str = "twin"
     entity: str = "ship"
@@ -94,13 +94,10 @@ def _wanted(settings: BusSettings, config: Any) -> dict[str, Any]:
 
 
 def _check_names(settings: BusSettings) -> None:
-    for field in ("base", "entity"):
-        name = getattr(settings, field)
-        bad = sorted(set(name) & set("*$#?")) or (["@"] if "@" in name else [])
-        if bad or not name or name != name.strip("/") or "//" in name:
+    for field, name in (("base", settings.base), ("entity", settings.entity)):
+        if not name or name != name.strip("/") or "//" in name or set(name) & set("*$#?@"):
             raise SettingsError(
-                f"[bus] {field} = {name!r} cannot be part of a key"
-                f"{' because of ' + ' '.join(bad) if bad else ''}. Use words parted by '/', such as 'fleet/anna'."
+                f"[bus] {field} = {name!r} cannot be part of a key. Use words parted by '/', as in 'fleet/anna'."
             )
 
 
