@@ -57,7 +57,7 @@ TABLE: dict[str, list[Field]] = {
         ("overruns", "int64"),  # periods skipped since start
         ("rejected", "int64"),  # samples refused since start
         ("log_dropped", "int64"),  # messages the log had to drop since start
-        ("measured", "Row"),
+        ("measured", "Row"),  # the newest good sample of each channel, held until it is stale
         ("age_s", "Ages"),
         ("quality", "Codes"),
         ("estimate", "State"),
@@ -72,6 +72,7 @@ TABLE: dict[str, list[Field]] = {
 Float: Any = keelson_class("keelson.TimestampedFloat")
 LocationFix: Any = keelson_class("foxglove.LocationFix")
 Vector: Any = keelson_class("keelson.Decomposed3DVector")
+String: Any = keelson_class("keelson.TimestampedString")
 _CLASSES = classes_from_table("shiptwin", TABLE)
 Row: Any = _CLASSES["Row"]
 Tick: Any = _CLASSES["Tick"]
@@ -82,7 +83,7 @@ Envelope: Any = classes_from_table(
     {"Envelope": [("enclosed_at", _TIMESTAMP), ("payload", "bytes")]},
     imports=("google/protobuf/timestamp.proto",),
 )["Envelope"]
-CLASSES: dict[str, Any] = {c.DESCRIPTOR.full_name: c for c in (Row, Tick, Float, LocationFix, Vector)}
+CLASSES: dict[str, Any] = {c.DESCRIPTOR.full_name: c for c in (Row, Tick, Float, LocationFix, Vector, String)}
 
 
 def schema_bytes(type_name: str) -> bytes:
@@ -112,6 +113,13 @@ def stamp(timestamp: Any, wall_ns: int) -> None:
 def encode_float(value: float, wall_ns: int) -> bytes:
     """keelson.TimestampedFloat."""
     message = Float(value=value)
+    stamp(message.timestamp, wall_ns)
+    return message.SerializeToString()
+
+
+def encode_string(value: str, wall_ns: int) -> bytes:
+    """keelson.TimestampedString."""
+    message = String(value=value)
     stamp(message.timestamp, wall_ns)
     return message.SerializeToString()
 

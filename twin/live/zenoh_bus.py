@@ -98,7 +98,7 @@ class ZenohBus:
 
 
 class Link:
-    """An open session: a ring for each subject, a publisher for each key, who is connected, a sign of life."""
+    """An open session: a ring for each subject, a publisher for each key, a watch on who is connected."""
 
     def __init__(self, session: Any, settings: BusSettings, wanted: list[str]):
         import zenoh

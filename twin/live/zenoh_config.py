@@ -97,7 +97,7 @@ def _check_names(settings: BusSettings) -> None:
     for field, name in (("base", settings.base), ("entity", settings.entity)):
         if not name or name != name.strip("/") or "//" in name or set(name) & set("*$#?@"):
             raise SettingsError(
-                f"[bus] {field} = {name!r} cannot be part of a key. Use words parted by '/', as in 'fleet/anna'."
+                f"[bus] {field} = {name!r} cannot be part of a key. Use words parted by '/', as in 'a/b'."
             )
 
 
