@@ -4,7 +4,9 @@ import numpy as np
 
 from twin.live.channels import BY_NAME
 from twin.live.sentinels import CODES, GENERIC, IN_RANGE_TOO
+from twin.study.resample import continuous
 
+FEWEST = 20  # samples, to know what is usual
 FAR_M = 1e5  # positions farther from zero than this count from another origin (UTM)
 
 
@@ -51,18 +53,23 @@ def from_zero(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
 
 
 def spikes(values: np.ndarray, period: float = 0.0) -> np.ndarray:
-    """Places where one or two samples leave the line and come back: more than 10 sigma and 1/5 of the usual range."""
-    from twin.study.resample import continuous
+    """Places where one or two samples leave the line and come back, as a sensor does and a ship does not.
 
+    Away from the median of five by more than 10 sigma, by more than 6 usual steps from sample to sample (97 of 100 are
+    smaller; a wave that is sampled coarsely has large ones), and by more than five steps of the sensor's resolution.
+    """
     at = np.flatnonzero(np.isfinite(values))
-    if at.size < 7:
+    if at.size < FEWEST:
         return at[:0]
     x = continuous(values[at], period)
-    padded = np.pad(x, 2, mode="edge")
-    middle = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=1)
+    middle = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(x, 2, mode="edge"), 5), axis=1)
     away = np.abs(x - middle)
-    sigma = 1.4826 * np.median(away)
-    usual = np.subtract(*np.percentile(x, (95, 5)))
-    quantum = np.diff(np.unique(x)).min(initial=np.inf)
-    limit = max(10.0 * sigma, 0.2 * usual, 5.0 * quantum if np.isfinite(quantum) else 0.0)
+    limit = max(10.0 * 1.4826 * np.median(away), 6.0 * np.quantile(np.abs(np.diff(x)), 0.97), 5.0 * resolution(x))
     return at[away > limit] if limit > 0.0 else at[:0]
+
+
+def resolution(x: np.ndarray) -> float:
+    """The smallest step between two different samples; 0 when there is only one value."""
+    steps = np.diff(np.unique(x))
+    steps = steps[steps > 1e-9 * max(float(np.abs(x).max()), 1e-12)]
+    return float(steps.min()) if steps.size else 0.0

@@ -1,6 +1,8 @@
 """Do rudder and propeller act on this ship as their signs and units say?
 
-    dr/dt = a r + b delta + c   with b > 0: a rudder to starboard turns the ship to starboard (Nomoto's first order)
+    dr/dt = b U^2 delta - a U r - d |r| r + c   with b > 0: a rudder to starboard turns the ship to starboard
+
+Nomoto's first order, its gains as they grow with speed, and Norrbin's cubic damping in its quadratic form.
 """
 
 import numpy as np
@@ -34,19 +36,20 @@ def rudder_sign(view: View) -> Check:
 
 
 def rudder_gain(view: View, rudder: np.ndarray, r: np.ndarray, seconds: float) -> tuple[float, float]:
-    """(share of the changes of r that the rudder explains beside r itself, b [1/s2])."""
+    """(share of the changes of r that the rudder explains beside r itself, b)."""
     first, last = view.windows(seconds)
-    change = r[last] - r[first]
-    held, turned = view.summed(rudder, first, last), view.summed(r, first, last)
-    ones = np.ones(first.size)
-    both = np.isfinite(change) & np.isfinite(held) & np.isfinite(turned)
+    change, speed = r[last] - r[first], np.abs(view.velocity)
+    held = view.summed(rudder * speed**2, first, last)
+    damping = [view.summed(speed * r, first, last), view.summed(np.abs(r) * r, first, last), np.ones(first.size)]
+    both = np.isfinite(change) & np.isfinite(held) & np.isfinite(damping[0])
     if np.count_nonzero(both) < 10:
         return 0.0, 0.0
-    (_, b, _), (_, error, _), left = fit([turned[both], held[both], ones[both]], change[both])
-    without = fit([turned[both], ones[both]], change[both])[2]
-    if without <= 0.0 or abs(b) < 4.0 * error:
+    others = [x[both] for x in damping]
+    x, error, left = fit([held[both], *others], change[both])
+    without = fit(others, change[both])[2]
+    if without <= 0.0 or abs(x[0]) < 4.0 * error[0]:
         return 0.0, 0.0
-    return float(1.0 - left / without), float(b)
+    return float(1.0 - left / without), float(x[0])
 
 
 def rudder_unit(view: View) -> Check:

@@ -9,6 +9,7 @@ from twin.study.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.study.checks.view import View, fit
 
 FASTEST_CURRENT_MPS = 4.0
+ALIKE_S = 30.0  # neighbours within this time carry the same wave and the same gust
 SCALES = ((1.0 / (1852.0 / 3600.0), "kn"), (3.6, "km/h"), (1.0 / 0.3048, "ft/s"))
 
 
@@ -21,7 +22,7 @@ def speed_log(view: View) -> Check:
     if view.derived("surge_velocity_mps") and not view.voyage.has("north_m"):
         return cannot_tell(name, "no speed over ground was recorded.")
     ground = view.velocity.real
-    k, current, sure = factor(ground, water, view.psi)
+    k, current, sure = factor(ground, water, view.psi, view.step_s)
     saw = f"the log shows {k:.3g} of the speed over ground beside a current of {current:.2f} m/s"
     if not sure:
         k = float(np.nanmedian(water) / np.nanmedian(ground)) if np.nanmedian(ground) else 1.0
@@ -37,12 +38,13 @@ def speed_log(view: View) -> Check:
     return good(name, f"{saw}.")
 
 
-def factor(ground: np.ndarray, water: np.ndarray, psi: np.ndarray) -> tuple[float, float, bool]:
+def factor(ground: np.ndarray, water: np.ndarray, psi: np.ndarray, step_s: float) -> tuple[float, float, bool]:
     """(k, size of the current [m/s], whether k stands by itself)."""
     x, error, _ = fit([ground, -np.cos(psi), -np.sin(psi)], water)
     shape = np.stack([ground, np.cos(psi), np.sin(psi)], axis=1)
     shape = shape[np.isfinite(shape).all(axis=1)]
     shape = shape / np.maximum(np.sqrt(np.mean(shape**2, axis=0)), 1e-9)
     alone = shape.shape[0] > 10 and np.linalg.svd(shape, compute_uv=False)[-1] > 0.1 * np.sqrt(shape.shape[0])
-    sure = bool(alone and error[0] < 0.02 * max(abs(x[0]), 0.1))
+    spread = error[0] * np.sqrt(max(ALIKE_S / step_s, 1.0))
+    sure = bool(alone and spread < 0.1 * max(abs(x[0]), 0.1))
     return float(x[0]), float(np.hypot(x[1], x[2]) / max(abs(x[0]), 1e-9)), sure
