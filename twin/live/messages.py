@@ -30,7 +30,7 @@ FORCE: list[Field] = [("X_N", "double"), ("Y_N", "double"), ("N_Nm", "double")]
 TABLE: dict[str, list[Field]] = {
     # one row of measurements, border units; what is absent was not measured
     "Row": [("time_s", "double"), *each_channel("double?")],
-    "Ages": each_channel("float?"),  # [s] since the source's stamp
+    "Ages": each_channel("double?"),  # [s] since the source's stamp
     "Codes": each_channel("int32?"),  # readings.Quality
     "State": STATE,
     "NamedForce": [("name", "string"), *FORCE],

@@ -1,13 +1,11 @@
 """A log as columns, for replay and for the study ashore: one array for each channel on one time base.
 
-Wide records (`shiptwin.Row`, or what each `shiptwin.Tick` measured) are read as they are, by the schema the
-log itself carries. A foreign log of Keelson scalars is put on the stamps of its most frequent channel of
-position, heading or controls; between two samples of a channel the value is on the line between them, across
-a gap it is NaN.
+Wide records (`shiptwin.Row`, or what each `shiptwin.Tick` measured) are read by the schema that the log
+itself carries; a foreign log of Keelson scalars is put on one base (see `onebase`).
 """
 
 from collections import Counter
-from math import nan
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,23 +13,14 @@ import numpy as np
 from google.protobuf.message import DecodeError
 
 from twin.errors import DataError
-from twin.live.channels import BY_NAME
 from twin.live.decode import Decoder, Result
 from twin.live.mcap_read import McapReader
+from twin.live.onebase import Columns, on_one_base, without_repeats
 from twin.live.readings import WORDS, Reading
 from twin.live.schema import classes_from_set
 from twin.live.wire import double_columns
 
-ROW, TICK = "shiptwin.Row", "shiptwin.Tick"
-Columns = dict[str, np.ndarray]
-Samples = dict[str, tuple[list[float], list[float]]]  # channel: (stamps [s], values)
-LEADERS = (
-    "north_m",
-    "heading_true_north_deg",
-    "rudder_angle_deg",
-    "propeller_rate_rpm",
-    "surge_velocity_mps",
-)
+ROW, TICK, AGES = "shiptwin.Row", "shiptwin.Tick", "shiptwin.Ages"
 
 
 def read_rows(path: str | Path, notes: list[str] | None = None) -> tuple[np.ndarray, Columns]:
@@ -53,66 +42,74 @@ def read_rows(path: str | Path, notes: list[str] | None = None) -> tuple[np.ndar
 
 
 class Found:
-    """What a log holds: wide rows as bytes, their times, scalars by channel, and what was refused."""
+    """What a log holds: wide records as bytes, scalars by channel, and what was refused."""
 
     def __init__(self, reader: McapReader):
         self.refused: Counter[str] = Counter()
         self._reader = reader
         self._decoder = Decoder()
-        self._wide: dict[str, list[bytes]] = {ROW: [], TICK: []}
-        self._tick_times: list[float] = []
-        self._samples: Samples = {}
-        self._tick_class: Any = None
-        self._wall_minus_time = 0.0
+        self._rows: list[bytes] = []
+        self._ticks: list[bytes] = []
+        self._samples: dict[str, tuple[list[float], list[float]]] = {}
 
     def take(self, topic: str, type_name: str, data: bytes) -> None:
         if type_name == ROW:
-            self._wide[ROW].append(data)
+            self._rows.append(data)
         elif type_name == TICK:
-            self._tick(data)
-        elif not (self._wide[ROW] or self._wide[TICK]):
+            self._ticks.append(data)
+        elif not (self._rows or self._ticks):
             for result in self._decoder.decode_stripped(topic, data, 0.0):
                 self._sample(result)
 
     def columns(self) -> tuple[np.ndarray, Columns]:
         """Rows if there are any, else what the ticks measured, else the scalars."""
-        if self._wide[ROW]:
-            columns, good = self._named(ROW)
-            return columns.pop("time_s", np.zeros(int(good.sum()))), columns
-        if self._wide[TICK]:
-            columns, good = self._named(TICK)
-            columns.pop("time_s", None)
-            return np.array(self._tick_times)[good], columns
+        if self._rows:
+            columns, good = self._doubles(ROW, ROW, self._rows)
+            time_s = columns.pop("time_s", np.zeros(len(self._rows)))
+            time_s = np.nan_to_num(time_s)[good]  # protobuf leaves out a zero
+            return time_s, {name: values[good] for name, values in columns.items()}
+        if self._ticks:
+            return self._of_ticks()
         if self._samples:
-            return _on_one_base(self._samples)
+            return on_one_base({k: (np.array(t), np.array(x)) for k, (t, x) in self._samples.items()})
         raise DataError(
             f"{self._reader.path}: no measurements in it: no {ROW}, no {TICK}, no Keelson subject we know."
         )
 
-    def _named(self, type_name: str) -> tuple[Columns, np.ndarray]:
-        """The wide records as columns, named by the log's own schema, and which records were good."""
-        row_class = classes_from_set(self._reader.schemas[type_name], [ROW])[0]
-        numbers, odd = double_columns(self._wide[type_name])
-        if odd.any():
-            self.refused[f"{type_name} that cannot be decoded"] += int(odd.sum())
-        names = {field.number: field.name for field in row_class.DESCRIPTOR.fields}
-        columns = {names[number]: values[~odd] for number, values in numbers.items() if number in names}
-        if "time_s" in columns:  # protobuf leaves out a zero
-            columns["time_s"] = np.nan_to_num(columns["time_s"])
-        return columns, ~odd
+    def _of_ticks(self) -> tuple[np.ndarray, Columns]:
+        parts = list(self._parts_of_ticks())
+        if not parts:
+            raise DataError(f"{self._reader.path}: none of its {len(self._ticks)} {TICK} can be decoded.")
+        times, walls, measured, ages = zip(*parts, strict=True)
+        time_s = np.array(times) + (walls[0] - times[0])
+        columns, _ = self._doubles(TICK, ROW, list(measured))
+        columns.pop("time_s", None)
+        return time_s, without_repeats(time_s, columns, self._doubles(TICK, AGES, list(ages))[0])
 
-    def _tick(self, data: bytes) -> None:
-        if self._tick_class is None:
-            self._tick_class = classes_from_set(self._reader.schemas[TICK], [TICK])[0]
+    def _parts_of_ticks(self) -> Iterator[tuple[float, float, bytes, bytes]]:
+        tick_class = self._class(TICK, TICK)
+        for data in self._ticks:
+            try:
+                tick = tick_class.FromString(data)
+            except DecodeError:
+                self.refused[f"{TICK} that cannot be decoded"] += 1
+                continue
+            yield tick.time_s, tick.wall_s, tick.measured.SerializeToString(), tick.age_s.SerializeToString()
+
+    def _class(self, type_name: str, wanted: str) -> Any:
+        """A message class as the log's own schema defines it."""
         try:
-            tick = self._tick_class.FromString(data)
-        except DecodeError:
-            self.refused[f"{TICK} that cannot be decoded"] += 1
-            return
-        if not self._tick_times:
-            self._wall_minus_time = tick.wall_s - tick.time_s
-        self._tick_times.append(tick.time_s + self._wall_minus_time)
-        self._wide[TICK].append(tick.measured.SerializeToString())
+            return classes_from_set(self._reader.schemas[type_name], [wanted])[0]
+        except (KeyError, TypeError, DecodeError):
+            raise DataError(f"{self._reader.path}: its schema of {type_name} cannot be read.") from None
+
+    def _doubles(self, type_name: str, wanted: str, messages: list[bytes]) -> tuple[Columns, np.ndarray]:
+        """Messages of numbers as columns, named by the log's own schema, and which could be decoded."""
+        numbers, odd = double_columns(messages)
+        if odd.any():
+            self.refused[f"{wanted} that cannot be decoded"] += int(odd.sum())
+        names = {field.number: field.name for field in self._class(type_name, wanted).DESCRIPTOR.fields}
+        return {names[number]: values for number, values in numbers.items() if number in names}, ~odd
 
     def _sample(self, result: Result) -> None:
         if isinstance(result, Reading):
@@ -121,23 +118,3 @@ class Found:
             values.append(result.value)
         elif result.channel:
             self.refused[f"{result.channel}, {WORDS[result.quality]}"] += 1
-
-
-def _on_one_base(samples: Samples) -> tuple[np.ndarray, Columns]:
-    leaders = [name for name in LEADERS if name in samples] or list(samples)
-    base = np.unique(samples[max(leaders, key=lambda name: len(samples[name][0]))][0])
-    return base, {name: _along(base, name, *map(np.array, lists)) for name, lists in samples.items()}
-
-
-def _along(base: np.ndarray, name: str, stamps: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Values on the line between their neighbours; NaN outside and in gaps longer than `stale_s`."""
-    channel = BY_NAME[name]
-    stamps, first = np.unique(stamps, return_index=True)
-    values = values[first]
-    if channel.wraps:
-        values = np.unwrap(values, period=channel.wraps)
-    line = np.interp(base, stamps, values, left=nan, right=nan)
-    after = np.clip(np.searchsorted(stamps, base), 1, max(stamps.size - 1, 1))
-    if stamps.size > 1:
-        line[(stamps[after] - stamps[after - 1] > channel.stale_s) & ~np.isin(base, stamps)] = nan
-    return np.mod(line, channel.wraps) if channel.wraps else line
