@@ -1,0 +1,74 @@
+"""The `twin-bench` command: a thin shell over one module for each benchmark, loaded only when it is used."""
+
+import argparse
+import importlib
+import sys
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+from twin.cli import guarded
+from twin.errors import TwinError
+
+FIRST = "tick"  # what `twin-bench --steps 10000` runs
+
+
+class Bench(NamedTuple):
+    """Where a benchmark lives (`add_arguments(parser)`, `run(args) -> int`), what it shows, how it is typed."""
+
+    module: str
+    help: str
+    example: str
+
+
+BENCHES: dict[str, Bench] = {
+    "tick": Bench(
+        "bench.tick", "the budget: time and memory of the loop, part by part", "twin-bench --steps 10000"
+    ),
+    "sea": Bench(
+        "bench.sea_process", "the reference sea, speaking Keelson in real time", "twin-bench sea --hull usv"
+    ),
+    "paper": Bench(
+        "bench.paper", "the paper's tables beside the paper's numbers", "twin-bench paper --quick"
+    ),
+    "hidden-effects": Bench(
+        "bench.hidden_effects", "the hidden-effect league", "twin-bench hidden-effects --json -"
+    ),
+}
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run one benchmark; without a name it is the budget of the loop."""
+    argv = sys.argv[1:] if argv is None else list(argv)
+    if not argv or (argv[0].startswith("-") and argv[0] not in ("-h", "--help")):
+        argv = [FIRST, *argv]
+    parser = argparse.ArgumentParser(prog="twin-bench", description="What the twin costs and how good it is.")
+    parser.epilog = (
+        f"Without a name it is {FIRST}: twin-bench --steps 10000. Its options: twin-bench {FIRST} --help"
+    )
+    benches = parser.add_subparsers(dest="bench", required=True, metavar="BENCH")
+    for name, bench in BENCHES.items():
+        sub = benches.add_parser(
+            name, help=bench.help, description=bench.help, epilog=f"example: {bench.example}"
+        )
+        if name == argv[0]:
+            code = guarded(lambda sub=sub, bench=bench: load(bench).add_arguments(sub))  # type: ignore[misc]
+            if code:
+                return code
+    args = parser.parse_args(argv)
+    return guarded(lambda: load(BENCHES[args.bench]).run(args))
+
+
+def load(bench: Bench) -> Any:
+    """The benchmark's module; one clear line when this version does not have it."""
+    try:
+        return importlib.import_module(bench.module)
+    except ModuleNotFoundError as error:
+        if error.name != bench.module:
+            raise TwinError(
+                f"`{bench.example}` needs {error.name!r}. Run: pip install {error.name}"
+            ) from None
+        raise TwinError(f"`{bench.example}` is not in this version. Known: twin-bench {FIRST}.") from None
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,124 @@
+"""The reference sea as a process: a ship that sails in real time and whose instruments speak Keelson.
+
+twin-bench sea --hull usv --manoeuvre zigzag_20 --connect tcp/127.0.0.1:7447
+"""
+
+import argparse
+import math
+import os
+import signal
+import time
+
+import zenoh
+
+from bench.reference import HULLS, WEATHERS, Case, Sea
+from bench.reference.manoeuvres import MANOEUVRES
+from twin.errors import SettingsError, did_you_mean
+from twin.live import geodesy
+from twin.live.messages import encode_fix, encode_float, wrap
+from twin.live.topics import INPUTS, key
+from twin.live.zenoh_config import BusSettings, configuration
+
+SOURCE = "sea"
+MATCHING_S = 10.0  # the longest wait for somebody who listens
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--connect", metavar="ENDPOINT", help="where the twin listens: tcp/127.0.0.1:7447")
+    parser.add_argument("--listen", default="", metavar="ENDPOINT", help="or where the sea listens")
+    parser.add_argument("--base", default="twin", help="first part of the keys (default: twin)")
+    parser.add_argument("--entity", default="ship", help="the ship's name in the keys (default: ship)")
+    parser.add_argument("--hull", default="usv", help=f"one of {', '.join(HULLS)} (default: usv, 2 m long)")
+    parser.add_argument("--manoeuvre", default="mixed", help="what the helmsman does (default: mixed)")
+    parser.add_argument("--weather", default="TS-01", help=f"one of {', '.join(WEATHERS)} (default: TS-01)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--hz", type=float, default=10.0, help="how often the sea moves on (default: 10)")
+    parser.add_argument(
+        "--duration", type=float, default=math.inf, metavar="S", help="how long (default: until stopped)"
+    )
+    parser.add_argument(
+        "--latitude-deg", type=float, default=57.62, help="of the chart's origin (default: off Vinga)"
+    )
+    parser.add_argument("--longitude-deg", type=float, default=11.58)
+
+
+def run(args: argparse.Namespace) -> int:
+    sea = Sea(_case(args), 1.0 / args.hz)
+    signal.signal(signal.SIGTERM, lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    place = BusSettings(args.base, args.entity, args.listen, (args.connect,) if args.connect else ())
+    session = zenoh.open(configuration(place))
+    try:
+        voice = Voice(session, args)
+        voice.wait_for_listener()
+        _sail(sea, voice, args)
+    except KeyboardInterrupt:
+        pass
+    finally:
+        session.close()
+    return 0
+
+
+class Voice:
+    """One publisher for each subject the ship's instruments speak on."""
+
+    def __init__(self, session: zenoh.Session, args: argparse.Namespace):
+        self.datum = geodesy.datum(args.latitude_deg, args.longitude_deg)
+        self.scalars, self.fix = {}, None
+        for topic in INPUTS:
+            publisher = session.declare_publisher(key(args.base, args.entity, topic.subject, SOURCE))
+            if topic.subject == "location_fix":
+                self.fix = publisher
+            elif topic.factor == 1.0:
+                self.scalars[topic.channels[0]] = publisher
+
+    def wait_for_listener(self) -> None:
+        """Slow instruments speak once a minute: their first word should not be lost."""
+        until = time.monotonic() + MATCHING_S
+        while not self.fix.matching_status.matching and time.monotonic() < until:
+            time.sleep(0.02)
+
+    def say(self, row: dict[str, float], wall_ns: int) -> int:
+        """Publish what has a new sample, stamped now; how many messages that was."""
+        said = 0
+        for channel, publisher in self.scalars.items():
+            value = row.get(channel, math.nan)
+            if value == value:
+                publisher.put(wrap(encode_float(value, wall_ns), wall_ns))
+                said += 1
+        if row["north_m"] == row["north_m"]:
+            place = geodesy.from_chart(self.datum, row["north_m"], row["east_m"])
+            self.fix.put(wrap(encode_fix(*place, wall_ns), wall_ns))
+            said += 1
+        return said
+
+
+def _sail(sea: Sea, voice: Voice, args: argparse.Namespace) -> None:
+    """In real time by absolute deadlines; ends when the process that started it is gone."""
+    start, parent, tick = time.monotonic(), os.getppid(), 0
+    while tick / args.hz < args.duration and os.getppid() == parent:
+        voice.say(sea.readings(), time.time_ns())
+        sea.step()
+        tick += 1
+        time.sleep(max(0.0, start + tick / args.hz - time.monotonic()))
+
+
+def _case(args: argparse.Namespace) -> Case:
+    for what, known in (("hull", HULLS), ("manoeuvre", MANOEUVRES), ("weather", WEATHERS)):
+        value = getattr(args, what)
+        if value not in known:
+            raise SettingsError(f"--{what} {value}: the reference sea has none.{did_you_mean(value, known)}")
+    return Case(args.hull, args.manoeuvre, args.weather, seed=args.seed, duration_s=None)
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    add_arguments(parser)
+    return run(parser.parse_args())
+
+
+if __name__ == "__main__":
+    code = 1
+    try:
+        code = main()
+    finally:
+        os._exit(code)  # an open session must never hold up the end
