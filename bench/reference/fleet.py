@@ -41,6 +41,7 @@ def _with_inertia(h):
     h.inv_rN, h.inv_rK = (a22 * h.Ixx - a24**2) / det, a23 * a24 / det
     h.inv_pK = (a22 * h.Izz - a23**2) / det
     h.GZ = h.M * 9.81 * h.GM
+    h.w_roll = np.sqrt(h.GZ / h.Ixx)
     h.B44 = 2 * h.roll_damping * np.sqrt(h.GZ * h.Ixx)
     h.heels = any(np.any(c) for table in (h.heel_X, h.heel_Y, h.heel_N, h.heel_K) for c in table)
     h.n0 = propeller_rate_service(h)

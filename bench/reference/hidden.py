@@ -43,7 +43,7 @@ def wave_drift(hull, rng, s):
 
 
 def cross_flow(hull, rng, s):
-    return Plan({"crossflow": 0.6 * s}, truth={"drag_coefficient": 0.6 * s * float(flaws.STRIP_CD.mean())})
+    return Plan({"crossflow": 0.4 * s}, truth={"drag_coefficient": 0.4 * s * float(flaws.STRIP_CD.mean())})
 
 
 def fouling(hull, rng, s):
@@ -94,11 +94,11 @@ def external_force(hull, rng, s):
 
 
 def propeller_walk(hull, rng, s):
-    return Plan({"walk": 0.12 * s}, truth={"side_share_of_thrust": 0.12 * s})
+    return Plan({"walk": 0.06 * s}, truth={"side_share_of_thrust": 0.06 * s})
 
 
 def roll_coupling(hull, rng, s):
-    lost = (0.35 if hull.name == "container" else 0.75) * min(s, 1.2)
+    lost = (0.75 if hull.GM > 0.08 * hull.B else 0.35) * min(s, 1.2)
     return Plan({"heel_N": -0.06 * s, "heel_Y": 0.05 * s}, hull={"GM": hull.GM * (1 - lost)},
                 truth={"N_phi": -0.06 * s, "Y_phi": 0.05 * s, "lost_GM_share": lost})
 
@@ -119,8 +119,9 @@ def varying_current(hull, rng, s):
 
 
 def shallow_water(hull, rng, s):
-    depth = hull.d / min(0.67 * s**0.4, 0.85)
-    return Plan(weather={"depth_m": depth, "depth_swing": 0.08}, truth={"depth_over_draught": depth / hull.d})
+    share = min(0.67 * s**0.4, 0.85)                     # draught / depth
+    depth, heavier = hull.d / share, flaws.shallow(share)[2]
+    return Plan(hull={"my": hull.my * heavier, "Jz": hull.Jz * heavier}, weather={"depth_m": depth, "depth_swing": 0.08}, truth={"depth_over_draught": depth / hull.d})
 
 
 def steering_lag(hull, rng, s):
@@ -183,7 +184,7 @@ def rudder_backlash(hull, rng, s):
 
 def squall(hull, rng, s):
     unit = hull.L / hull.U0
-    return Plan({"squall_mps": (22.0 if hull.L > FULL_SCALE else 9.0) * sqrt(s), "squall_from": rng.uniform(0, 2 * pi),
+    return Plan({"squall_mps": (28.0 if hull.L > FULL_SCALE else 9.0) * sqrt(s), "squall_from": rng.uniform(0, 2 * pi),
                  "squall_every": 18 * unit, "squall_width": 2.0 * unit})
 
 

@@ -70,7 +70,7 @@ class Hull:
     heel_Y: tuple = (0.0,) * 5   # phi vvphi vphiphi rrphi rphiphi
     heel_N: tuple = (0.0,) * 6   # p phi vvphi vphiphi rrphi rphiphi
     heel_K: tuple = (0.0,) * 12  # v r p phi vvv rrr vvr vrr vvphi vphiphi rrphi rphiphi
-    roll_damping: float = 0.05   # share of critical
+    roll_damping: float = 0.05   # share of critical at small angles; grows with the rate (bilge vortices)
     rho: float = 1025.0
     rudder_max: float = 35.0     # [deg]
     scale: float = 1.0           # length / full-scale length, for sea states
@@ -142,7 +142,7 @@ _seiun = Hull(
     GM=0.9, k_xx=0.42, z_H=2.2, z_R=2.6, l_y=2.2, A_F=170.0, A_L=900.0, house=(0.40, 1.35, 0.48, 2.0), z_W=5.0,  # EST
     rudder_rate=4.0, rudder_time=0.6, engine_time=3.0, noise=(0.5, 0.03, 0.1, 0.01, 0.05))
 
-# A 2 m uncrewed boat: the Seiun Maru hull form by Froude's law, one propeller and one rudder, RTK positioning.
-usv = froude(_seiun, "usv", 2.0, 1025.0, roll_damping=0.12, noise=(0.02, 0.015, 0.20, 0.15, 0.02))
+# A 2 m uncrewed boat: the Seiun Maru hull form by Froude's law, one propeller and one rudder, batteries low (GM EST), RTK.
+usv = froude(_seiun, "usv", 2.0, 1025.0, GM=0.04, roll_damping=0.12, noise=(0.02, 0.015, 0.20, 0.15, 0.02))
 
 HULLS = {h.name: h for h in (kvlcc2, kvlcc2_model, container, usv)}

@@ -31,14 +31,6 @@ MANOEUVRES = {
     "square": [Leg(COURSE, 11), Leg(COURSE, 11, 90), Leg(COURSE, 11, 90), Leg(COURSE, 11, 90)],
     "straight": [Leg(COURSE, 45)],
     "mixed": None,               # drawn from the seed: course changes, zigzags, turns, speeds
-    "zigzag_10_port": [Leg(COURSE, 2), Leg(ZIGZAG, 43, -10, 10)],
-    "zigzag_20_port": [Leg(COURSE, 2), Leg(ZIGZAG, 43, -20, 20)],
-    "turn_35": [Leg(RUDDER, 45, 35)],
-    "turn_35_port": [Leg(RUDDER, 45, -35)],
-    "standard_zigzag_10": [Leg(ZIGZAG, 45, 10, 10)],
-    "standard_zigzag_20": [Leg(ZIGZAG, 45, 20, 20)],
-    "standard_zigzag_10_port": [Leg(ZIGZAG, 45, -10, 10)],
-    "standard_zigzag_20_port": [Leg(ZIGZAG, 45, -20, 20)],
 }
 
 
@@ -58,13 +50,14 @@ def mixed_leg(rng):
 
 
 def legs(name, hull, duration_s, rng):
-    """The legs of a voyage, repeated (or drawn) until they last; a boat's legs are twice as many lengths."""
-    if name not in MANOEUVRES:
+    """Pairs (leg, start [s]) of a voyage, by name or from a sequence of Legs; repeated (or drawn) until they last; a boat's legs are twice as many lengths."""
+    if isinstance(name, str) and name not in MANOEUVRES:
         raise ValueError(f"unknown manoeuvre {name!r}. Known: {', '.join(MANOEUVRES)}.")
+    plan = MANOEUVRES[name] if isinstance(name, str) else name
     unit = hull.L / hull.U0 * (2.0 if hull.L < 5 else 1.0)
     out, seconds = [], 0.0
     while seconds < duration_s:
-        for leg in MANOEUVRES[name] or [mixed_leg(rng)]:
+        for leg in plan or [mixed_leg(rng)]:
             out.append((leg, seconds))
             seconds += leg.lengths * unit
     return out

@@ -121,7 +121,7 @@ def rate(tally, f, on, h, s, sway_acceleration, env, t, n, blade, feedback):
     X = X + (h.M + h.My) * v * r + h.M * h.x_G * r * r - h.M * (north_dot * cos + east_dot * sin)
     pull = h.M * (east_dot * cos - north_dot * sin)
     Y, N = Y - (h.M + h.Mx) * u * r - pull, N - h.M * h.x_G * u * r - h.x_G * pull
-    K = K + h.Mx * h.l_y * u * r - h.GZ * np.sin(phi) - h.B44 * p
+    K = K + h.Mx * h.l_y * u * r - h.GZ * np.sin(phi) - h.B44 * p * (1 + 8 * np.abs(p) / h.w_roll)
     w3, z3, w5, z5, m3, m5 = env.oscillator
     cu, cv = env.current[0] * cos + env.current[1] * sin, env.current[1] * cos - env.current[0] * sin
     out = np.empty_like(s)

@@ -16,9 +16,9 @@ class Case:
 
     `weather` is relative to the first heading, which the seed draws unless `heading_deg` fixes it; `sensors` is "ship" or "perfect".
     """
-    hull: object = "kvlcc2"
-    manoeuvre: str = "mixed"
-    weather: object = "calm"
+    hull: object = "kvlcc2"            # a name of hulls.HULLS or a Hull
+    manoeuvre: object = "mixed"        # a name of manoeuvres.MANOEUVRES or a tuple of Legs
+    weather: object = "calm"           # a name of weather.WEATHERS or a Weather
     hidden: tuple = ()
     decoys: tuple = ()
     seed: int = 0

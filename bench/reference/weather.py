@@ -34,14 +34,14 @@ WEATHERS = {
 
 
 def strong_wind(hull, strength, from_deg) -> dict:
-    """13.5 m/s on a ship, 6 m/s on a boat, at strength 1."""
-    return dict(wind_mps=(13.5 if hull.L > 50 else 6.0) * strength, wind_from_deg=from_deg)
+    """15 m/s on a ship, 6 m/s on a boat, at strength 1."""
+    return dict(wind_mps=(15.0 if hull.L > 50 else 6.0) * strength, wind_from_deg=from_deg)
 
 
 def strong_waves(hull, strength, from_deg) -> dict:
-    """3.5 m and 9.5 s on a ship of 175 m or more, less on a boat: Hs/L no more than 0.05, Tp by a steepness of 1/30."""
-    height = min(3.5, 0.05 * hull.L) * strength**0.5
-    return dict(wave_height_m=height, wave_period_s=max(1.3, 5.1 * height**0.5), wave_from_deg=from_deg)
+    """3.5 m and 9.5 s on a ship of 175 m or more, less on a boat: Hs/L no more than 0.04; Tp = 5.1 sqrt(Hs), a sea half grown."""
+    height = min(3.5, 0.04 * hull.L) * strength**0.5
+    return dict(wave_height_m=height, wave_period_s=max(1.2, 5.1 * height**0.5), wave_from_deg=from_deg)
 
 
 def rotated(weather: Weather, by_deg: float) -> Weather:
