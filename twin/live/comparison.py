@@ -1,0 +1,89 @@
+"""Three-by-three algebra of comparison systems, on plain floats: what bounds an error component by component.
+
+If |e+| <= G |e| + g with G >= 0, the error stays under b = (I - G)^-1 g as soon as the greatest eigenvalue of G is below one.
+Source: Berman & Plemmons (1994) Nonnegative Matrices in the Mathematical Sciences, ch. 6 (M-matrices).
+"""
+
+from collections.abc import Callable
+from math import exp
+
+Row = tuple[float, float, float]
+Matrix = tuple[Row, Row, Row]
+
+AXES = (0, 1, 2)
+IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+def matrix(entry: Callable[[int, int], float]) -> Matrix:
+    """The matrix of entry(i, j)."""
+    return tuple(tuple(float(entry(i, j)) for j in AXES) for i in AXES)  # type: ignore[return-value]
+
+
+def diagonal(d: Row) -> Matrix:
+    return matrix(lambda i, j: d[i] if i == j else 0.0)
+
+
+def plus(*parts: Matrix) -> Matrix:
+    return matrix(lambda i, j: sum(p[i][j] for p in parts))
+
+
+def scaled(factor: float, a: Matrix) -> Matrix:
+    return matrix(lambda i, j: factor * a[i][j])
+
+
+def product(a: Matrix, b: Matrix) -> Matrix:
+    return matrix(lambda i, j: sum(a[i][k] * b[k][j] for k in AXES))
+
+
+def apply(a: Matrix, x: Row) -> Row:
+    return tuple(a[i][0] * x[0] + a[i][1] * x[1] + a[i][2] * x[2] for i in AXES)  # type: ignore[return-value]
+
+
+def add(*rows: Row) -> Row:
+    return tuple(sum(r[i] for r in rows) for i in AXES)  # type: ignore[return-value]
+
+
+def inverse(a: Matrix) -> Matrix | None:
+    """By cofactors; None when the matrix is singular."""
+    c = matrix(lambda i, j: a[j - 2][i - 2] * a[j - 1][i - 1] - a[j - 2][i - 1] * a[j - 1][i - 2])
+    det = sum(a[0][k] * c[k][0] for k in AXES)
+    return scaled(1.0 / det, c) if abs(det) > 1e-300 else None
+
+
+def contracts(a: Matrix, under: float = 1.0) -> bool:
+    """True when every eigenvalue of a matrix with no negative entry lies under a number: the minors of (under I - A) are positive."""
+    (a00, a01, a02), (a10, a11, a12), (a20, a21, a22) = a
+    p, q, r = under - a00, under - a11, under - a22
+    second = p * q - a01 * a10
+    third = r * second - a12 * (p * a21 + a01 * a20) - a02 * (a10 * a21 + q * a20)
+    return p > 0.0 and second > 0.0 and third > 0.0
+
+
+def radius(a: Matrix) -> float:
+    """Greatest eigenvalue of a matrix with no negative entry (Perron), from above, to a part in 10^12."""
+    if not all(x < float("inf") for row in a for x in row):
+        return float("inf")
+    low, high = 0.0, max(max(map(max, a)), 1e-300)
+    while not contracts(a, high):
+        low, high = high, 2.0 * high
+    while high - low > 1e-12 * high:
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if contracts(a, middle) else (middle, high)
+    return high
+
+
+def settled(g: Matrix) -> Matrix | None:
+    """(I - G)^-1 when G is a contraction (its inverse then has no negative entry), else None."""
+    return inverse(plus(IDENTITY, scaled(-1.0, g))) if contracts(g) else None
+
+
+def exponential(a: "tuple[tuple[float, ...], ...]") -> "tuple[tuple[float, ...], ...]":
+    """exp(a) for a square matrix of any size whose entries off the diagonal are not negative (a sum without cancellation)."""
+    axes = range(len(a))
+    shift = max(0.0, *(-a[i][i] for i in axes))
+    a = tuple(tuple(a[i][j] + (shift if i == j else 0.0) for j in axes) for i in axes)
+    term = total = [[float(i == j) for j in axes] for i in axes]
+    for k in range(1, 40):
+        term = [[sum(row[n] * a[n][j] for n in axes) / k for j in axes] for row in term]
+        total = [[x + y for x, y in zip(*rows, strict=True)] for rows in zip(total, term, strict=True)]
+    return tuple(tuple(x * exp(-shift) for x in row) for row in total)

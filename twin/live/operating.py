@@ -1,0 +1,108 @@
+"""The operating set: the motions and the inputs for which something is promised.
+
+In the ship's own scales, so that one rule serves a 2 m boat and a 320 m tanker: speed in U_0, turning in U_0/L, depth in draughts,
+propeller in the rate that drives her at U_0. Outside it the certificate says nothing, and the twin says that.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite, pi
+from typing import Any
+
+from twin.errors import SettingsError
+from twin.physics import core
+from twin.physics.model import Model
+from twin.physics.state import Situation
+
+NU = ("u", "v", "r")
+WORDS = {
+    "u": "surge speed", "v": "sway speed", "r": "rate of turn", "delta": "rudder angle", "n": "propeller rate", "wind_speed": "wind",
+    "depth": "water depth", "H_s": "wave height", "T_p": "wave period", "draught": "draught", "bank_port": "distance to the port bank",
+    "bank_starboard": "distance to the starboard bank", "phi": "roll",
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class OperatingSet:
+    """Field of Situation -> (least, greatest) in SI; an angle that runs round the circle is always inside."""
+
+    ranges: Mapping[str, tuple[float, float]]
+
+    def clip(self, nu: tuple[float, float, float]) -> tuple[float, float, float]:
+        """The motion inside the set that is nearest: where the observer evaluates the physics."""
+        return tuple(min(max(x, self.ranges[name][0]), self.ranges[name][1]) for name, x in zip(NU, nu, strict=True))  # type: ignore[return-value]
+
+    def outside(self, s: Situation, within: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> str | None:
+        """The first thing that lies outside, in words; None when all is inside. `within` widens the motion by its bound."""
+        margin = dict(zip(NU, within, strict=True))
+        for name in WORDS:
+            value = getattr(s, name)
+            if value is None or name not in self.ranges:
+                continue
+            lo, hi = self.ranges[name]
+            b = margin.get(name, 0.0)
+            if not lo + b <= value <= hi - b:
+                how = f" (+-{b:.3g})" if b else ""
+                return f"{WORDS[name]} {value:.3g}{how} outside [{lo:.3g}, {hi:.3g}]"
+        return None
+
+    def widened(self, by: tuple[float, float, float]) -> dict[str, tuple[float, float]]:
+        """The ranges with room for the motion of one sample."""
+        return dict(self.ranges) | {n: (self.ranges[n][0] - d, self.ranges[n][1] + d) for n, d in zip(NU, by, strict=True)}
+
+
+def of_ship(model: Model, **ranges: tuple[float, float]) -> OperatingSet:
+    """The set a ship is certified for unless told otherwise; named ranges replace those of the rule."""
+    ship = model.loaded
+    U, L, T = ship.U_0, ship.L_pp, ship.T
+    n, stream = propeller_rate(model), strongest_stream(model)
+    rule = {
+        "u": (0.15 * U + stream, 1.1 * U + stream),
+        "v": (-0.25 * U - stream, 0.25 * U + stream),
+        "r": (-0.5 * U / L, 0.5 * U / L),
+        "psi": (-pi, pi),
+        "delta": (-35.0 * pi / 180.0, 35.0 * pi / 180.0),
+        "n": (-0.6 * n, 1.25 * n),
+        "t": (0.0, 3600.0),
+        "wind_speed": (0.0, 22.0),
+        "wind_to": (-pi, pi),
+        "depth": (1.5 * T, 1e4 * T),
+        "H_s": (0.0, min(8.0, 0.1 * L)),
+        "T_p": (1.0, 25.0),
+        "wave_to": (-pi, pi),
+        "draught": (0.6 * T, 1.2 * T),
+        "bank_port": (0.5 * ship.B, 1e4 * L),
+        "bank_starboard": (0.5 * ship.B, 1e4 * L),
+        "phi": (-0.35, 0.35),
+    }
+    for name, (lo, hi) in ranges.items():
+        if name not in rule or not lo < hi or not (isfinite(lo) and isfinite(hi)):
+            raise SettingsError(f"operating set: {name} = [{lo}, {hi}] is no range of {', '.join(rule)}. Correct it.")
+    return OperatingSet(rule | ranges)
+
+
+def propeller_rate(model: Model) -> float:
+    """The propeller rate that drives the ship straight at U_0 [1/s], by bisection."""
+    c, U = model.c, model.loaded.U_0
+
+    def surplus(n: float) -> float:
+        return core.propeller(core.thrust(U, n, c), c)[0] + core.damping(U, 0.0, 0.0, c)[0]
+
+    low, high = 0.0, 2.0 * U / model.loaded.D_P
+    while surplus(high) < 0.0 and high < 1e4:
+        high *= 2.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (low, middle) if surplus(middle) > 0.0 else (middle, high)
+    return high
+
+
+def strongest_stream(model: Model) -> float:
+    """How fast the water of the ship's flows can run [m/s]: looked for every 10 deg of heading and 5 min of the hour."""
+    if not model.flows:
+        return 0.0
+    calm = {"wind_speed": 0.0, "wind_to": 0.0, "depth": 1e4 * model.loaded.T, "H_s": 0.0, "T_p": 10.0, "wave_to": 0.0}
+    waters: list[Any] = [
+        model.water(Situation(psi=a * pi / 18.0, t=300.0 * k, u=model.loaded.U_0, n=0.0, **calm)) for a in range(36) for k in range(12)
+    ]
+    return max(max(abs(w.u), abs(w.v)) for w in waters)

@@ -1,0 +1,181 @@
+"""How steep the equations of motion can be: sure bounds of d(nu_dot)/d(u, v, r, psi) over a whole operating set.
+
+The set is cut into boxes, each box goes through the physics once as dual numbers over intervals, and the hull of what comes out
+holds every slope and every acceleration in the set, not only those at sampled points. Forces that share inputs are summed box by
+box; forces that do not (wind and rudder) are summed as ranges, which is sure, and a little wide.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from . import core
+from .dual import Dual
+from .effect import Effect
+from .interval import Interval, of
+from .model import CORE, Model
+from .state import Situation
+
+Ranges = Mapping[str, tuple[float, float]]
+NU, STATES = ("u", "v", "r"), ("u", "v", "r", "psi")
+PIECES = {
+    "u": 8, "v": 6, "r": 6, "delta": 6, "n": 6, "psi": 4, "wind_to": 8, "wind_speed": 2, "wave_to": 8, "H_s": 2,
+    "T_p": 2, "depth": 4, "draught": 1, "bank_port": 3, "bank_starboard": 3, "phi": 2, "t": 4,
+}  # fmt: skip
+# What is cut together. A force belongs to the first line that names an input it needs; hull, propeller and rudder to the first.
+GROUPS = (("delta", "n"), ("psi", "wind_to", "wind_speed"), ("psi", "wave_to", "H_s", "T_p"), ("bank_port", "bank_starboard"), ("phi",))
+
+
+@dataclass(frozen=True)
+class Slopes:
+    """Bounds over the set, SI: d(nu_dot_i)/d(u, v, r, psi)_j lies in [lo, hi][i][j], nu_dot_i itself in rate[i] = (least, greatest)."""
+
+    lo: tuple[tuple[float, ...], ...]
+    hi: tuple[tuple[float, ...], ...]
+    rate: tuple[tuple[float, float], ...]
+    boxes: int
+
+    @property
+    def most(self) -> tuple[float, ...]:
+        """The greatest |nu_dot|."""
+        return tuple(max(-a, b) for a, b in self.rate)
+
+    @classmethod
+    def of(cls, lo: list[float], hi: list[float], boxes: int) -> "Slopes":
+        """From rows of (value, four slopes) for each of the three rates."""
+        rows = [tuple(tuple(x[5 * i + 1 : 5 * i + 5]) for i in range(3)) for x in (lo, hi)]
+        return cls(rows[0], rows[1], tuple((lo[5 * i], hi[5 * i]) for i in range(3)), boxes)
+
+
+def slopes(model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES) -> Slopes:
+    """Sure bounds of the slopes of the known physics (the learned residual is an input, not a slope)."""
+    total: list[Any] = [0.0] * 15
+    boxes = 0
+    with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
+        for group in GROUPS:
+            names = _forces(model, group)
+            if not names:
+                continue
+            s = boxed(ranges, group, pieces)
+            parts = _flat(contribution(model, s, names))
+            boxes += max(np.broadcast(of(p).lo).size for p in parts)
+            total = [a + Interval(np.min(p.lo, axis=1), np.max(p.hi, axis=1)) for a, p in zip(total, map(_two_axes, parts), strict=True)]
+    lo, hi = [float(np.min(t.lo)) for t in total], [float(np.max(t.hi)) for t in total]
+    return Slopes.of(lo, hi, boxes)
+
+
+def sampled(model: Model, ranges: Ranges, count: int = 20000, seed: int = 0) -> Slopes:
+    """The same from random points and corners: what the sure bounds are compared with, never what is certified."""
+    s = Situation(**{name: _seed(name, x) for name, x in _points(ranges, count, seed).items()})
+    names = frozenset(name for group in GROUPS for name in _forces(model, group))
+    parts = [np.broadcast_to(p, count) for p in _flat(contribution(model, s, names))]
+    lo, hi = [float(p.min()) for p in parts], [float(p.max()) for p in parts]
+    return Slopes.of(lo, hi, count)
+
+
+def way_out(model: Model, ranges: Ranges, room: tuple[float, ...], h: float) -> tuple[float, float, float]:
+    """How far (u, v, r) can get out of the set within h seconds: the outward rate near each end, with room around the others."""
+    wide = dict(ranges) | {n: (ranges[n][0] - d, ranges[n][1] + d) for n, d in zip(NU, room, strict=True)}
+    coarse = {name: (p + 1) // 2 for name, p in PIECES.items()}
+    most = slopes(model, wide, coarse).most
+    out = []
+    for i, name in enumerate(NU):
+        (lo, hi), reach = ranges[name], h * most[i]
+        top = slopes(model, wide | {name: (max(hi - reach, lo), hi + room[i])}, coarse).rate[i][1]
+        bottom = slopes(model, wide | {name: (lo - room[i], min(lo + reach, hi))}, coarse).rate[i][0]
+        out.append(h * max(top, -bottom, 0.0))
+    return tuple(out)  # type: ignore[return-value]
+
+
+def step_error(model: Model, ranges: Ranges, h: float, count: int = 2048, seed: int = 0) -> tuple[float, float, float]:
+    """Ten times the greatest error of one Runge-Kutta step found at points and corners of the set, per second of it [m/s2, rad/s2].
+
+    Measured, not proved: what can be proved from the slopes alone is a thousand times wider than what the fourth order leaves.
+    """
+    at = _points(ranges, count, seed)
+    start = (0.0, 0.0, at.pop("psi"), at.pop("u"), at.pop("v"), at.pop("r"))
+    s = Situation(**at)
+    fine = start
+    for _ in range(8):
+        fine = model.step(fine, s, h / 8.0)
+    coarse = model.step(start, s, h)
+    return tuple(10.0 / h * float(np.max(np.abs(a - b))) for a, b in zip(coarse[3:], fine[3:], strict=True))  # type: ignore[return-value]
+
+
+def _points(ranges: Ranges, count: int, seed: int) -> dict[str, np.ndarray]:
+    """Random points of the set; half of each coordinate lies on its ends."""
+    rng = np.random.default_rng(seed)
+    at = {}
+    for name, (lo, hi) in ranges.items():
+        share, corner = rng.random(count), rng.random(count) < 0.5
+        at[name] = lo + (hi - lo) * np.where(corner, np.round(share), share)
+    return at
+
+
+def boxed(ranges: Ranges, group: tuple[str, ...], pieces: Mapping[str, int]) -> Situation:
+    """The operating set as boxes: motions along the first axis, the inputs of one group along the second."""
+    axes = tuple(_cut(NU, ranges, pieces)), tuple(_cut(group, ranges, pieces))
+    values = {name: Interval(lo, hi) for name, (lo, hi) in ranges.items()}
+    values |= {name: Interval(lo[:, None], hi[:, None]) for name, lo, hi in axes[0]}
+    values |= {name: Interval(lo[None, :], hi[None, :]) for name, lo, hi in axes[1]}
+    return Situation(**{name: _seed(name, x) for name, x in values.items()})
+
+
+def contribution(model: Model, s: Situation, names: frozenset[str]) -> tuple[Any, Any, Any]:
+    """What the named forces add to nu_dot; "hull" stands with the turning of the current (see Model.nu_dot)."""
+    water = model.water(s)
+    X = Y = N = 0.0
+    for name, (x, y, n) in zip(model.names, model.forces(s, water), strict=True):
+        if name in names:
+            X, Y, N = X + x, Y + y, N + n
+    u_dot, v_dot, r_dot = core.accelerations(X, Y, N, model.c)
+    if "hull" in names:
+        u_dot, v_dot = u_dot + s.r * water.v, v_dot - s.r * water.u
+    return u_dot, v_dot, r_dot
+
+
+def _forces(model: Model, group: tuple[str, ...]) -> frozenset[str]:
+    own = {type(e).__name__ for e in model.pushes if _group(e) == group}
+    return frozenset(own.union(CORE) if group is GROUPS[0] else own)
+
+
+def _group(effect: Effect) -> tuple[str, ...]:
+    return next((g for g in GROUPS if set(g).intersection(effect.needs)), GROUPS[0])
+
+
+def _seed(name: str, value: Any) -> Dual:
+    """The value, with slope one along its own direction when it is one of the states."""
+    return Dual(value, tuple(1.0 if name == state else 0.0 for state in STATES))
+
+
+def _cut(names: tuple[str, ...], ranges: Ranges, pieces: Mapping[str, int]) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+    """(name, lo, hi) of every box of the grid over these names, flattened."""
+    names = tuple(n for n in names if n in ranges)
+    edges = [_edges(*ranges[n], pieces.get(n, 1)) for n in names]
+    for i, name in enumerate(names):
+        shape = [1] * len(names)
+        shape[i] = -1
+        size = [len(e) - 1 for e in edges]
+        yield name, *(np.broadcast_to(e.reshape(shape), size).ravel() for e in (edges[i][:-1], edges[i][1:]))
+
+
+def _edges(lo: float, hi: float, pieces: int) -> np.ndarray:
+    """Equal steps; equal ratios where the range is positive (a speed counts by its logarithm)."""
+    return np.geomspace(lo, hi, pieces + 1) if lo > 0.0 else np.linspace(lo, hi, pieces + 1)
+
+
+def _flat(rates: tuple[Any, Any, Any]) -> list[Any]:
+    """Value and four slopes of each of the three rates, in one row of 15."""
+    row = []
+    for rate in rates:
+        row += [rate.value, *rate.slopes] if isinstance(rate, Dual) else [rate, 0.0, 0.0, 0.0, 0.0]
+    return [of(x) if not isinstance(x, (float, np.ndarray)) else x for x in row]
+
+
+def _two_axes(x: Any) -> Interval:
+    x = of(x)
+    lo, hi = np.atleast_2d(x.lo), np.atleast_2d(x.hi)
+    return Interval(lo, hi)
+
