@@ -14,7 +14,7 @@ import numpy as np
 from bench.reference.hulls import HULLS, Hull
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship, save
-from twin.study.modulus import error_share, modulus_form
+from twin.study.modulus import WORKING_J, error_share, modulus_form, slipstream
 from twin.study.trial import straight_line_stability, turning_circle, zigzag
 
 FOLDER = Path(__file__).parent.parent / "twin" / "ships"
@@ -33,7 +33,6 @@ SOURCES = {
 }
 SOURCE = {"kvlcc2": "YY15", "kvlcc2_model": "YY15", "usv": "YM12", "container": "SN81"}
 TURN = 0.4  # r' at which a rudder inflow of third order (SN81) is made linear
-LINEAR_J = np.linspace(0.05, 0.8, 40)  # advance ratios over which K_T and the slipstream are made linear
 
 # Free-running tests of the 7 m model (SIMMAN 2008, MARIN), scaled to the ship: first and second overshoot [deg] to starboard and to port.
 MEASURED_ZIGZAG = {10: ((8.0, 22.1), (9.4, 15.1)), 20: ((12.8, 15.8), (15.6, 12.8))}
@@ -53,25 +52,15 @@ def published(h: Hull) -> dict[str, float]:
 
 def thrust_line(h: Hull) -> tuple[float, float]:
     """K_T0 and K_T1 of the straight line nearest to K_T(J) where it is positive."""
-    K = np.polynomial.Polynomial(h.K_T)(LINEAR_J)
-    slope, start = np.polyfit(LINEAR_J[K > 0], K[K > 0], 1)
+    K = np.polynomial.Polynomial(h.K_T)(WORKING_J)
+    slope, start = np.polyfit(WORKING_J[K > 0], K[K > 0], 1)
     return float(start), float(slope)
-
-
-def slipstream(h: Hull, K_T0: float, K_T1: float) -> tuple[float, float]:
-    """epsilon and kappa for which eps^2 (J^2 + kappa 8 K_T/pi) is nearest to the MMG inflow at the rudder."""
-    J = LINEAR_J[LINEAR_J < 0.95 * K_T0 / -K_T1]
-    loading = 8.0 / pi * (K_T0 + K_T1 * J)
-    jet = np.sqrt(J**2 + loading)
-    q = h.epsilon**2 * (h.eta * (J + h.kappa * (jet - J)) ** 2 + (1.0 - h.eta) * J**2)
-    a, b = np.linalg.lstsq(np.stack([J**2, loading], 1), q, rcond=None)[0]
-    return float(a**0.5), float(b / a)
 
 
 def derivatives(h: Hull) -> dict[str, float]:
     """Everything the core needs, in prime form."""
     K_T0, K_T1 = thrust_line(h)
-    epsilon, kappa = slipstream(h, K_T0, K_T1)
+    epsilon, kappa = slipstream(K_T0, K_T1, h.epsilon, h.kappa, h.eta)
     gamma = sum(h.gamma) / 2.0
     inflow = {"gamma_v": gamma + h.r_turn[1] * TURN**2, "gamma_r": gamma * h.l_R + h.r_turn[0] * TURN**2}
     hull = modulus_form(published(h), h.mx, h.my)

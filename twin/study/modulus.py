@@ -1,4 +1,4 @@
-"""Published manoeuvring polynomials (MMG: v, r, vvv, vvr ...) turned into the core's modulus form (|v| v, |r| v ...).
+"""Published manoeuvring polynomials (MMG: v, r, vvv, vvr ...) and inflows turned into the core's forms (|v| v, |r| v ...).
 
 Least squares over the range in which tank tests are made and ships turn: drift to 25 deg, |r'| to 0.9, weighted to where a turning
 ship is (bow in, v' near -0.4 r') and to small angles, and pulled toward the published linear derivatives, on which straight-line
@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 import numpy as np
 
 DRIFT, TURN = np.radians(25.0), 0.9  # range of the fit
+WORKING_J = np.linspace(0.05, 0.8, 40)  # advance ratios at which propellers work
 PULL = 0.3  # weight of a published linear derivative against all the force it stands for
 Terms = dict[str, Callable[[np.ndarray, np.ndarray, np.ndarray], np.ndarray]]
 
@@ -48,6 +49,21 @@ def error_share(published: Mapping[str, float], derivatives: Mapping[str, float]
         got = sum(derivatives[name] * term(u, v, r) for name, term in terms.items()) - munk * u * v
         shares.append(float(np.sqrt((weight * (got - want) ** 2).sum() / (weight * want**2).sum())))
     return shares[0], shares[1]
+
+
+def slipstream(
+    K_T0: float, K_T1: float, epsilon: float, kappa: float, eta: float, J: np.ndarray = WORKING_J
+) -> tuple[float, float]:
+    """epsilon and kappa for which eps^2 (J^2 + kappa 8 K_T/pi) is nearest to the MMG inflow at the rudder [YY15 eq. (26)].
+
+    `eta`: propeller diameter over rudder height, the part of the rudder that the slipstream covers.
+    """
+    J = J[0.95 * K_T0 + K_T1 * J > 0.0]
+    loading = 8.0 / np.pi * (K_T0 + K_T1 * J)
+    jet = np.sqrt(J**2 + loading)
+    q = epsilon**2 * (eta * (J + kappa * (jet - J)) ** 2 + (1.0 - eta) * J**2)
+    a, b = np.linalg.lstsq(np.stack([J**2, loading], 1), q, rcond=None)[0]
+    return float(a**0.5), float(b / a)
 
 
 def _cubic(p: Mapping[str, float], axis: str, v: np.ndarray, r: np.ndarray) -> np.ndarray:

@@ -1,0 +1,243 @@
+"""`twin init`: a first model of my ship from what its owner knows; every estimated number says where it comes from."""
+
+import argparse
+import json
+import sys
+from collections.abc import Callable, Mapping
+from math import radians
+from pathlib import Path
+from typing import Any
+
+from twin.errors import SettingsError
+from twin.physics.model import Model
+from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship, save
+
+from . import regressions as reg
+from .modulus import modulus_form, slipstream
+from .trial import shaft_speed, straight_line_stability, turning_circle, zigzag
+
+# option, what it is, unit, smallest and largest that is not a slip of the pen
+OPTIONS: tuple[tuple[str, str, float, float], ...] = (
+    ("length-pp-m", "length between perpendiculars", 0.2, 500.0),
+    ("beam-m", "beam at the waterline", 0.05, 90.0),
+    ("draught-m", "mean draught", 0.01, 40.0),
+    ("mass-kg", "mass (displacement)", 0.05, 1e9),
+    ("block-coefficient", "block coefficient C_b", 0.2, 0.99),
+    ("service-speed-mps", "service speed", 0.05, 40.0),
+    ("shaft-speed-rpm", "propeller rate at service speed: sets the thrust", 1.0, 10000.0),
+    ("x-g-m", "centre of gravity ahead of midship", -60.0, 60.0),
+    ("rho-kg-m3", "density of the water", 900.0, 1100.0),
+    ("propeller-diameter-m", "propeller diameter", 0.005, 15.0),
+    ("pitch-ratio", "propeller pitch over diameter", 0.3, 2.0),
+    ("rudder-area-m2", "moveable rudder area", 1e-5, 250.0),
+    ("rudder-height-m", "rudder height", 0.005, 20.0),
+    ("frontal-area-m2", "frontal area above the water", 1e-4, 5000.0),
+    ("lateral-area-m2", "lateral area above the water", 1e-4, 20000.0),
+)
+REQUIRED = ("length-pp-m", "beam-m", "draught-m")
+Given = Mapping[str, float | None]
+Numbers = dict[str, tuple[float, str]]  # name -> value, source
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", metavar="NAME", help="the ship's name")
+    for option, doc, lo, hi in OPTIONS:
+        parser.add_argument(f"--{option}", type=float, required=option in REQUIRED, metavar="X", help=f"{doc} [{lo:g} to {hi:g}]")
+    parser.add_argument("-o", "--output", required=True, metavar="SHIP.toml", help="the ship file to write")
+    parser.add_argument("--json", metavar="FILE", help="the same as JSON; - is standard output")
+
+
+def run(args: argparse.Namespace) -> int:
+    given = {option: getattr(args, option.replace("-", "_")) for option, *_ in OPTIONS}
+    ship, warnings = first_model(args.name, given)
+    figures = sea_trial(ship)
+    warnings += doubts(figures)
+    save(ship, args.output)
+    out = sys.stderr if args.json == "-" else sys.stdout
+    print(summary(ship, figures, warnings), file=out)
+    print(f"\nwritten: {args.output}\nnext:    twin calibrate CALM.mcap --ship {args.output} -o {_next(args.output)}", file=out)
+    if args.json:
+        text = json.dumps({"schema_version": 1, "ship": ship.name, "file": str(args.output), "trial": figures, "warnings": warnings}, indent=2)
+        print(text) if args.json == "-" else Path(args.json).write_text(text + "\n", encoding="utf-8")
+    return 0
+
+
+def _next(path: str) -> str:
+    return str(Path(path).with_name(Path(path).stem + "-calibrated.toml"))
+
+
+def first_model(name: str, given: Given) -> tuple[Ship, list[str]]:
+    """The ship, and in words what to doubt about her; SettingsError where a number cannot be right."""
+    if not name.strip():
+        raise SettingsError("NAME is empty. Give the ship a name.")
+    _check(given)
+    p = _particulars(given)
+    h = reg.Hull(*(p[k][0] for k in ("L_pp", "B", "T", "C_b", "U_0", "x_G", "rho")))
+    d = _derivatives(reg.nearest(h), p, given)
+    known = {key: value for key, (value, _) in p.items()}
+    notes = {
+        "particulars": {k: {"value": v, "source": s} for k, (v, s) in p.items()},
+        "derivatives": {k: {"value": v, "source": s} for k, (v, s) in d.items()},
+    }
+    used = {part for _, source in (*p.values(), *d.values()) for part in source.split("; ")}
+    notes["sources"] = {key: text for key, text in reg.SOURCES.items() if key in used}
+    ship = Ship(name.strip(), **known, derivatives=Derivatives(**{k: v for k, (v, _) in d.items()}), notes=notes)
+    _in_ranges(ship)
+    rough = [k for k, (_, s) in p.items() if s == "ROUGH"]
+    guessed = [f"{', '.join(rough)}: guessed by size only; give them if you can"] if rough else []
+    return ship, reg.outside(h) + guessed
+
+
+def _check(given: Given) -> None:
+    for option, doc, lo, hi in OPTIONS:
+        value = given[option]
+        if value is not None and not lo <= value <= hi:
+            raise SettingsError(f"--{option} {value:g} lies outside {lo:g} to {hi:g} ({doc}). Check its unit.")
+    L, B, T = (float(given[o]) for o in REQUIRED)  # type: ignore[arg-type]
+    if B >= L or T >= L:
+        raise SettingsError(f"a ship {L:g} m long, {B:g} m wide and {T:g} m deep is no ship. Check the order of the numbers.")
+
+
+def _particulars(given: Given) -> Numbers:
+    """Particulars with their sources, given or estimated."""
+    L, B, T = (float(given[o]) for o in REQUIRED)  # type: ignore[arg-type]
+    rho, box = given["rho-kg-m3"] or 1025.0, L * B * T
+    mass, C_b, speed = given["mass-kg"], given["block-coefficient"], given["service-speed-mps"]
+    by_mass = None if mass is None else mass / (rho * box)
+    if by_mass is not None and not 0.2 <= by_mass <= 0.99:
+        raise SettingsError(
+            f"--mass-kg {mass:g} fills {by_mass:.0%} of length x beam x draught; a ship fills 20 to 99 %. Check the mass (kg) and the draught."
+        )
+    if by_mass is not None and C_b is not None and abs(by_mass / C_b - 1.0) > 0.05:
+        raise SettingsError(f"--mass-kg gives C_b = {by_mass:.3f}, but --block-coefficient is {C_b:g}. Leave one of them out.")
+    if by_mass is not None:
+        fullness = (by_mass, "given")
+    else:
+        fullness = (C_b, "given") if C_b is not None else reg.typical_block_coefficient(L, speed)
+    C = fullness[0]
+    x_G = given["x-g-m"] or 0.0
+    if abs(x_G) > 0.1 * L:
+        raise SettingsError(f"--x-g-m {x_G:g} is more than a tenth of the length from midship. Check it.")
+    m = mass if mass is not None else rho * C * box
+
+    def said(option: str, estimate: float, source: str) -> tuple[float, str]:
+        value = given[option]
+        return (estimate, source) if value is None else (value, "given")
+
+    p = {
+        "L_pp": (L, "given"), "B": (B, "given"), "T": (T, "given"),
+        "m": (m, "given" if mass is not None else fullness[1]), "C_b": fullness,
+        "x_G": said("x-g-m", 0.0, "ZERO"), "I_z": (m * ((0.25 * L) ** 2 + x_G**2), "GYR"), "rho": said("rho-kg-m3", rho, "SEA"),
+        "U_0": said("service-speed-mps", reg.service_speed(L, C), "ALEX"),
+        "D_P": said("propeller-diameter-m", T * min(0.85, max(0.35, 1.386 - 1.126 * C)), "RULE"),
+        "A_R": said("rudder-area-m2", 0.01 * T * L * (1.0 + 25.0 * (B / L) ** 2), "DNV"),
+        "A_F": said("frontal-area-m2", 0.5 * B * B, "ROUGH"), "A_L": said("lateral-area-m2", 0.06 * L * L, "ROUGH"),
+    }  # fmt: skip
+    return {k: (float(f"{v:.6g}"), s) for k, (v, s) in p.items()}
+
+
+def _derivatives(h: reg.Hull, p: Numbers, given: Given) -> Numbers:
+    """Derivatives with their sources; sets the propeller's diameter in p where only her shaft speed is known."""
+    out: Numbers = {f.name: (0.0, "ZERO") for f in DERIVATIVES}
+    out |= reg.added_masses(h)
+    m_x, m_y = -out["X_udot"][0], -out["Y_vdot"][0]
+    polynomial = reg.hull_polynomial(h, m_x, m_y) | {"R0": reg.resistance(h)}
+    out |= {k: (v, "HAS80; LSQ" if k == "X_vr" else "YM12; LSQ") for k, v in modulus_form(polynomial, m_x, m_y).items()}
+    out["X_uu"] = (-polynomial["R0"], "ITTC57")
+    height = given["rudder-height-m"] or min(0.7 * h.T, (2.2 * p["A_R"][0]) ** 0.5)
+    out |= reg.steering(h, height**2 / p["A_R"][0])
+    screw = reg.propulsion(h, _pitch_ratio(h, p, given, out))
+    eta = min(1.0, p["D_P"][0] / height)
+    epsilon, kappa = slipstream(screw["K_T0"][0], screw["K_T1"][0], 1.0, 0.55 - 0.8 * h.C_b * h.B / h.L, eta)
+    out |= screw | {"epsilon": (epsilon, "YM12; LSQ"), "kappa": (kappa, "YM12; LSQ")}
+    return {k: (float(f"{v:.5g}") + 0.0, s) for k, (v, s) in out.items()}
+
+
+def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
+    """Given, or usual for a hull as full as this, or such that the shaft speed given drives her at service speed."""
+    usual = given["pitch-ratio"] or min(1.2, max(0.6, 1.7 - 1.2 * h.C_b))
+    rpm = given["shaft-speed-rpm"]
+    if not rpm:
+        return usual
+
+    def turns(diameter: float, pitch: float) -> float:
+        values = {k: v for k, (v, _) in p.items()} | {"D_P": diameter}
+        derivatives = {k: v for k, (v, _) in (d | reg.propulsion(h, pitch)).items()}
+        return 60.0 * shaft_speed(Model(Ship("", **values, derivatives=Derivatives(**derivatives))), h.U)
+
+    D = p["D_P"][0]
+    if given["propeller-diameter-m"] is None and not turns(D, 1.4) < rpm < turns(D, 0.5):
+        p["D_P"] = (float(f"{_matching(lambda x: turns(x, usual), rpm, 0.2 * h.T, 1.2 * h.T):.4g}"), "RPM")
+        D = p["D_P"][0]
+    pitch = _matching(lambda x: turns(D, x), rpm, 0.3, 2.0)
+    if abs(turns(D, pitch) / rpm - 1.0) > 0.02:
+        raise SettingsError(
+            f"--shaft-speed-rpm {rpm:g} cannot drive her at {h.U:.3g} m/s with a propeller of {D:.3g} m: no usual pitch does. "
+            "Check shaft speed, service speed and propeller diameter."
+        )
+    return pitch
+
+
+def _matching(falling: Callable[[float], float], target: float, lo: float, hi: float) -> float:
+    """Where a falling function meets its target, by halving."""
+    for _ in range(40):
+        middle = 0.5 * (lo + hi)
+        lo, hi = (middle, hi) if falling(middle) > target else (lo, middle)
+    return 0.5 * (lo + hi)
+
+
+def _in_ranges(ship: Ship) -> None:
+    """Refuse what the ship file would refuse when it is read again."""
+    for where, owner, known in (("particulars", ship, PARTICULARS), ("derivatives", ship.derivatives, DERIVATIVES)):
+        for f in known:
+            value = getattr(owner, f.name)
+            if not f.metadata["lo"] <= value <= f.metadata["hi"]:
+                raise SettingsError(
+                    f"the regressions give {where}.{f.name} = {value:.3g} {f.metadata['unit']} ({f.metadata['doc']}), outside "
+                    f"[{f.metadata['lo']:g}, {f.metadata['hi']:g}]: this hull is too unlike a ship. Check length, beam and draught."
+                )
+
+
+def sea_trial(ship: Ship) -> dict[str, Any]:
+    """What this model does in the standard manoeuvres: the check that an owner can make by eye."""
+    model = Model.of(ship)
+    circle = turning_circle(model, radians(35.0))
+    over = zigzag(model, radians(20.0), radians(20.0))
+    figures = {
+        "shaft_speed_rpm": 60.0 * shaft_speed(model, ship.U_0), "service_speed_mps": ship.U_0, "advance_L": circle.advance,
+        "tactical_diameter_L": circle.tactical_diameter, "speed_left": circle.speed_left,
+        "overshoot_20_20_deg": over[0] if over else None, "straight_line_stability": straight_line_stability(model),
+    }  # fmt: skip
+    return {k: None if v is None else float(f"{v:.4g}") for k, v in figures.items()}
+
+
+def doubts(figures: Mapping[str, Any]) -> list[str]:
+    """In words, what is unusual about a trial."""
+    out = []
+    if not 1.8 <= figures["tactical_diameter_L"] <= 6.5:
+        out.append(f"tactical diameter {figures['tactical_diameter_L']:.1f} L is unusual (2 to 6 L): check rudder area and speed, and calibrate")
+    if figures["speed_left"] < 0.2:
+        out.append(f"only {figures['speed_left']:.0%} of the speed is left in the turn: check draught and propeller, and calibrate")
+    if figures["overshoot_20_20_deg"] is None or figures["overshoot_20_20_deg"] > 40.0:
+        out.append("the 20/20 zigzag does not settle as ships do: check rudder area, and calibrate")
+    return out
+
+
+def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str]) -> str:
+    """What was given, what was estimated and from where, and the sea trial."""
+    notes = ship.notes["particulars"]
+    lines = [f"{ship.name}: a first model from her main particulars", ""]
+    for f in PARTICULARS:
+        source = notes[f.name]["source"]
+        mark = "" if source == "given" else f"estimated: {reg.SOURCES.get(source, source).split(':')[0]}"
+        lines.append(f"  {f.name:5} {getattr(ship, f.name):>12.5g} {f.metadata['unit']:6} {f.metadata['doc']:38} {mark}".rstrip())
+    stable = "goes straight by herself" if figures["straight_line_stability"] > 0 else "does not go straight by herself, as many full ships"
+    over = figures["overshoot_20_20_deg"]
+    lines += [
+        "", "  sea trial of this model",
+        f"    {figures['shaft_speed_rpm']:.0f} rpm at {ship.U_0:.3g} m/s ({ship.U_0 / 0.514444:.1f} kn): compare it with the bridge's",
+        f"    turning circle 35 deg: advance {figures['advance_L']:.1f} L, tactical diameter {figures['tactical_diameter_L']:.1f} L,"
+        f" {100 * figures['speed_left']:.0f} % of the speed left",
+        f"    zigzag 20/20: first overshoot {'none' if over is None else f'{over:.0f} deg'};  {stable}",
+    ]  # fmt: skip
+    return "\n".join(lines + ([""] + [f"  careful: {w}" for w in warnings] if warnings else []))
