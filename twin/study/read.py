@@ -3,6 +3,7 @@
 What cannot be used is a DataError; what was blanked, assumed or derived stands in the voyage's `meta`.
 """
 
+import json
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -57,13 +58,24 @@ def read_voyage(path: str | Path, by: Map | None = None) -> Voyage:
 
 
 def from_log(path: Path) -> Raw:
-    """The samples of an MCAP file: the twin's own log, or one that Keelson recorded."""
-    from twin.live.record import read_rows
+    """The samples of an MCAP file: an imported voyage, the twin's own log, or one that Keelson recorded."""
+    from twin.live.rows import read_rows
 
-    time_s, columns = read_rows(path)
-    clock = clock_from_numbers(np.asarray(time_s, float), TimeColumn())
-    known = {name: np.asarray(x, float) for name, x in columns.items() if name in BY_NAME}
-    return Raw(path, np.arange(1, clock.time_s.size + 1), clock.time_s, known, about(path, clock))
+    notes: list[str] = []
+    time_s, columns = read_rows(path, notes)
+    clock = clock_from_numbers(time_s, TimeColumn())
+    known = {name: x for name, x in columns.items() if name in BY_NAME}
+    return Raw(path, np.arange(1, time_s.size + 1), clock.time_s, known, about(path, clock) | words(path), notes)
+
+
+def words(path: Path) -> dict[str, Any]:
+    """What an imported voyage says about itself: where it came from, what in it is derived."""
+    from twin.live.mcap_read import McapReader
+    from twin.study.write import ABOUT
+
+    reader = McapReader(path)
+    next(reader.messages(), None)
+    return {key: json.loads(value) for key, value in reader.metadata.get(ABOUT, {}).items()}
 
 
 def from_text(path: Path, by: Map | None) -> Raw:
@@ -119,8 +131,10 @@ def finished(raw: Raw) -> Voyage:
         raw.notes += blanked
     require(raw)
     columns, derived = derive(raw.time_s, raw.columns)
-    meta = {k: v for k, v in raw.meta.items() if v} | {"derived": derived, "notes": tuple(raw.notes)}
-    return Voyage(raw.path.stem, raw.time_s, columns, meta)
+    meta = {k: v for k, v in raw.meta.items() if v}
+    meta["derived"] = meta.get("derived", {}) | derived
+    meta["notes"] = (*meta.get("notes", ()), *raw.notes)
+    return Voyage(meta.pop("name", raw.path.stem), raw.time_s, columns, meta)
 
 
 def with_time(raw: Raw) -> None:

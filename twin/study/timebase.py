@@ -58,6 +58,11 @@ def utc(seconds: float) -> str:
     return datetime.fromtimestamp(seconds, UTC).isoformat().replace("+00:00", "Z")
 
 
+def moment_of(stamp: str | None) -> float:
+    """Seconds since 1970 of an ISO-8601 stamp; 0 when there is none."""
+    return datetime.fromisoformat(stamp).timestamp() if stamp else 0.0
+
+
 def refuse_backwards(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
     """Time may stand still (a check says so) but not go back: nobody can tell which half is right."""
     back = np.flatnonzero(np.diff(time_s) < 0.0)

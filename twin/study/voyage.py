@@ -99,6 +99,10 @@ class Voyage:
         """The same voyage (name, meta) with other samples."""
         return replace(self, time_s=time_s, columns=dict(columns))
 
+    def with_meta(self, **facts: Any) -> "Voyage":
+        """The same voyage that knows more of itself."""
+        return replace(self, meta={**self.meta, **facts})
+
 
 def channel(name: str) -> Channel:
     """The channel of that name, or a DataError that names the nearest."""

@@ -10,29 +10,62 @@ import numpy as np
 from twin.study.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.study.checks.view import View, fit, rms
 
-RUDDER_SHARE = 0.3  # the rudder must explain this share of the changes of yaw rate to be asked for its sign
+RUDDER_SHARE = 0.15  # the rudder must explain this share of the changes of yaw rate to be asked for its sign
+HELD_RUDDER_DEG, HELD_TURN_DEG = 5.0, 30.0
 PROOF_SHARE = 0.5  # and this share to prove it
 LEAST_RUDDER_DEG = 0.7  # a ship that manoeuvres with less than this has it in radians
 SLOWEST_RPM = 20.0  # no propeller drives a ship with fewer turns
 ADVANCE = (0.08, 2.0)  # plausible J = U / (n D) of a ship under way
 
+ADVANCE_MISTAKES = (
+    (1.0 / 60.0, 'the turns are in 1/s (in the map: unit = "1/s")', "a larger"),
+    (np.pi / 30.0, 'the turns are in rad/s (in the map: unit = "rad/s")', "a larger"),
+    (60.0, "the turns are 60 times too large (converted twice)", "a smaller"),
+)
+
 
 def rudder_sign(view: View) -> Check:
-    """The sign of b, over the window length at which the rudder explains most."""
+    """Which way the rudder turns the ship: where it is held over, or else by its share in the changes of yaw rate."""
     name = "rudder_sign"
+    same, against = held_turns(view)
+    if same + against and min(same, against) == 0:
+        return sign_seen(name, f"with the rudder held over the ship turns {same + against} times", same > 0, True)
+    share, b = best_gain(view)
+    if share < RUDDER_SHARE:
+        text = f"the rudder explains {100 * share:.0f} % of the changes of yaw rate; a zigzag or a turn would show it."
+        return cannot_tell(name, text)
+    saw = f"the rudder explains {100 * share:.0f} % of the changes of yaw rate"
+    return sign_seen(name, saw, b > 0.0, share > PROOF_SHARE)
+
+
+def sign_seen(name: str, saw: str, to_own_side: bool, proved: bool) -> Check:
+    if to_own_side:
+        return good(name, f"{saw}, always to the rudder's own side.")
+    text = f"{saw}, to the other side: it is believed to be positive to port. In the map: sign = -1 for rudder_angle_deg."
+    return wrong(name, text) if proved else doubtful(name, text)
+
+
+def held_turns(view: View) -> tuple[int, int]:
+    """How often a rudder held over turned the ship by HELD_TURN_DEG or more: (to its own side, to the other)."""
+    rudder = view.even["rudder_angle_deg"]
+    most = float(np.nanmax(np.abs(rudder)))
+    if not most >= HELD_RUDDER_DEG:
+        return 0, 0
+    ahead = view.velocity.real > 0.2 * view.speed
+    side = np.where((np.abs(rudder) > 0.6 * most) & ahead, np.sign(rudder), 0.0)
+    starts = np.flatnonzero(np.r_[True, np.diff(side) != 0.0])
+    ends = np.r_[starts[1:], side.size] - 1
+    turned = np.degrees(view.psi[ends] - view.psi[starts]) * side[starts]
+    return int(np.sum(turned > HELD_TURN_DEG)), int(np.sum(turned < -HELD_TURN_DEG))
+
+
+def best_gain(view: View) -> tuple[float, float]:
+    """`rudder_gain` over the window length at which the rudder explains most."""
     rudder, r = view.si("rudder_angle_deg"), view.si("yaw_rate_degps")
     r = np.where(view.velocity.real > 0.2 * view.speed, r, np.nan)  # astern the rudder works the other way
     lengths = view.step_s * np.array([2, 5, 10, 20, 40, 80, 160])
-    share, b = max((rudder_gain(view, rudder, r, w) for w in lengths if w < view.voyage.duration_s / 10.0), default=(0.0, 0.0))
-    if share < RUDDER_SHARE or rms(rudder) == 0.0:
-        return cannot_tell(
-            name, f"the rudder explains {100 * share:.0f} % of the changes of yaw rate; a zigzag or a turn would show it."
-        )
-    saw = f"the rudder explains {100 * share:.0f} % of the changes of yaw rate"
-    if b > 0.0:
-        return good(name, f"{saw}, and turns the ship to its own side.")
-    text = f"{saw}, and turns the ship to the other side: it is believed to be positive to port. In the map: sign = -1 for it."
-    return wrong(name, text) if share > PROOF_SHARE else doubtful(name, text)
+    usable = lengths[lengths < view.voyage.duration_s / 10.0]
+    return max((rudder_gain(view, rudder, r, w) for w in usable), default=(0.0, 0.0))
 
 
 def rudder_gain(view: View, rudder: np.ndarray, r: np.ndarray, seconds: float) -> tuple[float, float]:
@@ -95,9 +128,7 @@ def advance(name: str, way: float, rate: float, diameter: float) -> Check:
     saw = f"advance ratio J = U/(nD) = {way:.3g}/({rate:.3g} x {diameter:.3g}) = {j:.3g}"
     if low <= j <= high:
         return good(name, f"{saw}, as a ship under way has it.")
-    for factor, said, unit in ((60.0, "1/s", "1/s"), (30.0 / np.pi, "rad/s", "rad/s")):
-        if 0.25 <= j / factor <= 1.4:
-            return wrong(name, f'{saw}; {j / factor:.2g} if the turns are in {said}: that is believed. In the map: unit = "{unit}".')
-    if 0.25 <= j * 60.0 <= 1.4:
-        return wrong(name, f"{saw}; {j * 60:.2g} if the turns are 60 times too large: rpm were converted twice.")
+    for factor, said, other in ADVANCE_MISTAKES:
+        if 0.25 <= j * factor <= 1.4:
+            return wrong(name, f"{saw}; {j * factor:.2g} if {said}: that is believed, unless the file is of {other} ship.")
     return doubtful(name, f"{saw}, expected {low:g} to {high:g}: another ship's file, a wrong unit, or a wrong diameter?")

@@ -1,0 +1,27 @@
+"""A voyage as an MCAP file: one wide row a sample, and what is known about the file as a table of words."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+
+from twin.live.messages import Row
+from twin.live.record import LogFile
+from twin.study.timebase import moment_of
+from twin.study.voyage import Voyage
+
+TOPIC = "shiptwin/voyage/row"
+ABOUT = "shiptwin.voyage"  # the table of words; values are JSON
+NS = 1_000_000_000
+
+
+def write_voyage(voyage: Voyage, path: str | Path) -> None:
+    """Writes aside and renames: the file is whole, or it is not there. Missing samples are left out of their row."""
+    start_ns = round(moment_of(voyage.meta.get("start_time_utc")) * NS)
+    names = sorted(voyage.columns)
+    table = np.stack([voyage.columns[name] for name in names], axis=1)
+    with LogFile(path) as log:
+        log.describe(ABOUT, {key: json.dumps(value) for key, value in (*voyage.meta.items(), ("name", voyage.name))})
+        for time_s, values, there in zip(voyage.time_s.tolist(), table.tolist(), np.isfinite(table).tolist(), strict=True):
+            row = Row(time_s=time_s, **{n: x for n, x, ok in zip(names, values, there, strict=True) if ok})
+            log.add(TOPIC, "shiptwin.Row", row.SerializeToString(), max(start_ns + round(time_s * NS), 0))
