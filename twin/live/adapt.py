@@ -1,0 +1,204 @@
+"""Slow learning on board: a few numbers on top of the trained last layer, kept small, and thrown away when they do not help.
+
+    learned force_r = W_r phi + g_r a_r q_r         q_r = [whitened components of phi | known forces of row r | 1]
+    e = clip(d_r - a_r q_f, +-3 s_r)                K = P q_f / (R s_r^2/h + q_f' P q_f)
+    a_r <- (1 - h/T_leak) a_r + K e                 P <- (1 - 2h/T_leak) P + h Q I - K (P q_f)'
+
+each row a Kalman filter on the filtered regression (evidence.py), with saturation, leakage to the trained weights, projection
+on boxes and on ||A|| <= A_MAX. The evidence gate g opens only as far as the error with A is below the error without.
+"""
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from math import isfinite, sqrt
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from twin.live.evidence import Filtered, Three
+from twin.live.residual import dot
+from twin.physics.ship import Ship
+from twin.physics.state import Force
+
+ROWS = ("surge", "sway", "yaw")
+COLUMNS = (("hull", "propeller"), ("hull", "rudder"), ("hull", "rudder"))  # known forces whose size each row may correct
+A_MAX = 1.0  # norm of all numbers together
+BOX_COMPONENT, BOX_KNOWN, BOX_CONSTANT = 0.5, 0.3, 0.5
+P_FIRST, P_TRACE = 0.05, 1.0
+NOISE_S = 0.75  # time over which noise hangs together, in L/U_0
+LEAK, SPREAD, GATE = 15.0, 1.5, 3.0  # time constants, in L/U_0
+WALK = 8e-4  # Q: how fast the truth may wander, per L/U_0
+EXCITED = 0.02  # rms of the regressors' motion below which there is nothing to learn from
+
+
+class Parameter(NamedTuple):
+    """One adapted number as it is published; status: unestimated, estimated or invalid."""
+
+    name: str
+    value: float
+    low: float
+    high: float
+    sigma: float
+    unit: str
+    status: str
+
+
+@dataclass(slots=True)
+class Row:
+    """One row's numbers, their covariance, and the evidence for and against them."""
+
+    a: list[float]
+    P: list[list[float]]
+    spread: float = 0.05  # s_r^2
+    without: float = 0.0  # mean squared error without and with A
+    with_a: float = 0.0
+    gate: float = 0.0
+    at_bound: bool = False
+
+
+class Adaptation:
+    """Learns from the unexplained force; `correction(rows)` is what it adds, in units of the force scale."""
+
+    def __init__(self, ship: Ship, scale: Force, components: int):
+        self.time_s = ship.L_pp / ship.U_0
+        self.scale, self.components = scale, components
+        self.width = components + 3
+        self.frozen = "nothing measured yet"
+        self.notes: list[str] = []  # what was wrong with saved numbers
+        self.updates = 0
+        self._boxes = [BOX_COMPONENT] * components + [BOX_KNOWN] * 2 + [BOX_CONSTANT]
+        self._rows = [self._blank() for _ in ROWS]
+        self._filters = [Filtered() for _ in ROWS]
+        self._slow = [Filtered() for _ in ROWS]
+        self._excited = 0.0
+        self._turn = 0
+        self._since = [0.0, 0.0, 0.0]
+
+    def regressors(self, components: list[float], known: Mapping[str, Force]) -> list[list[float]]:
+        """q of each row."""
+        q = components or [0.0] * self.components
+        return [
+            [*q, *(min(max(known[name][r] / self.scale[r], -5.0), 5.0) for name in COLUMNS[r]), 1.0] for r in range(3)
+        ]
+
+    def correction(self, regressors: list[list[float]]) -> Three:
+        """g A q, in units of the force scale."""
+        rows = self._rows
+        return tuple([row.gate * dot(row.a, q) if row.gate else 0.0 for row, q in zip(rows, regressors, strict=True)])  # type: ignore[return-value]
+
+    def learn(self, d: Three, trained_f: list[float], regressors: list[list[float]], lam: float, dt: float, frozen: str) -> None:
+        """One tick. d: unexplained force; trained_f: what the trained layer explains of it; `frozen`: why not to learn, or ""."""
+        a = min(lam * dt, 0.5)
+        filtered = [f.feed(q, a) for f, q in zip(self._filters, regressors, strict=True)]
+        self._watch(filtered, dt)
+        self.frozen = frozen or ("" if self._excited > EXCITED else "waits for a manoeuvre: nothing moves that could teach it")
+        for r in range(3):
+            self._since[r] += dt
+        if self.frozen:
+            self._since = [0.0, 0.0, 0.0]
+            return
+        self._turn = (self._turn + 1) % 3  # one row each tick keeps the tick short
+        self._update(self._turn, d[self._turn] - trained_f[self._turn], filtered[self._turn])
+
+    def _watch(self, filtered: list[list[float]], dt: float) -> None:
+        """How much the regressors move about their slow means."""
+        a = min(dt / (3.0 * self.time_s), 0.5)
+        motion = 0.0
+        for slow, q in zip(self._slow, filtered, strict=True):
+            motion += sum((x - m) ** 2 for x, m in zip(q, slow.feed(q, a), strict=True))
+        self._excited = sqrt(max(self._excited**2 + a * (motion - self._excited**2), 0.0))
+
+    def _update(self, r: int, wanted: float, q: list[float]) -> None:
+        row, h = self._rows[r], self._since[r] / self.time_s  # in L/U_0
+        self._since[r] = 0.0
+        limit = 3.0 * sqrt(row.spread)
+        error = min(max(wanted - dot(row.a, q), -limit), limit)
+        if not (isfinite(error) and h > 0.0):
+            return
+        self.updates += 1
+        row.spread += min(h / SPREAD, 0.2) * (error * error + 1e-5 - row.spread)
+        g = min(h / GATE, 0.2)
+        row.without += g * (min(wanted * wanted, 9.0) - row.without)
+        row.with_a += g * (error * error - row.with_a)
+        Pq = [dot(p, q) for p in row.P]
+        gain = 1.0 / (NOISE_S * row.spread / h + dot(q, Pq))
+        leak = 1.0 - h / LEAK
+        row.a = [leak * x + gain * p * error for x, p in zip(row.a, Pq, strict=True)]
+        self._covariance(row, Pq, gain, h)
+        self._project(row)
+        ratio = row.with_a / row.without if row.without > 0.0 else 1.0
+        row.gate = min(max((1.0 - ratio - 0.02) / 0.15, 0.0), 1.0)
+
+    def _covariance(self, row: Row, Pq: list[float], gain: float, h: float) -> None:
+        keep, walk = 1.0 - 2.0 * h / LEAK, h * WALK
+        row.P = [[keep * p - gain * x * y for p, y in zip(line, Pq, strict=True)] for line, x in zip(row.P, Pq, strict=True)]
+        for i in range(self.width):
+            row.P[i][i] = max(row.P[i][i] + walk, 1e-9)
+        trace = sum(row.P[i][i] for i in range(self.width))
+        if not trace < P_TRACE:
+            shrink = P_TRACE / trace if isfinite(trace) else 0.0
+            row.P = [[shrink * p for p in line] for line in row.P] if shrink else self._blank().P
+
+    def _project(self, row: Row) -> None:
+        """On the boxes, then on the ball of all three rows."""
+        inside = [min(max(x, -b), b) if isfinite(x) else 0.0 for x, b in zip(row.a, self._boxes, strict=True)]
+        row.at_bound = inside != row.a
+        row.a = inside
+        norm = sqrt(sum(dot(other.a, other.a) for other in self._rows))
+        if norm > A_MAX:
+            row.at_bound = True
+            for other in self._rows:
+                other.a = [x * A_MAX / norm for x in other.a]
+
+    def norm(self) -> float:
+        return sqrt(sum(dot(row.a, row.a) for row in self._rows))
+
+    def parameters(self) -> list[Parameter]:
+        """All numbers with their bounds and status."""
+        out = []
+        for r, row in enumerate(self._rows):
+            names = [*(f"feature {i + 1}" for i in range(self.components)), *COLUMNS[r], "constant"]
+            for i, (name, value, box) in enumerate(zip(names, row.a, self._boxes, strict=True)):
+                sigma = sqrt(row.P[i][i])
+                known = sigma < 0.7 * sqrt(P_FIRST) and row.gate > 0.3
+                status = "invalid" if abs(value) >= box else "estimated" if known else "unestimated"
+                out.append(Parameter(f"{ROWS[r]} {name}", value, -box, box, sigma, "-", status))
+        return out
+
+    def save(self, path: str | Path, mark: str) -> None:
+        """Write the numbers aside and rename them into place; `mark` names ship and network they belong to."""
+        path = Path(path)
+        table = {"mark": mark, "rows": [{"a": row.a, "gate": row.gate} for row in self._rows]}
+        aside = path.with_name(f".{path.name}.part")
+        aside.write_text(json.dumps(table))
+        aside.replace(path)
+
+    def restore(self, path: str | Path, mark: str) -> None:
+        """Read the numbers back, clamped; what cannot be used is left out, and `notes` says why."""
+        try:
+            table = json.loads(Path(path).read_bytes()[:1_000_000])
+            if table["mark"] != mark:
+                self.notes.append(f"{path}: learned for another ship or network, left out")
+                return
+            self._restore(table["rows"])
+        except FileNotFoundError:
+            return
+        except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
+            self.notes.append(f"{path}: cannot be used ({type(error).__name__}), learning begins anew")
+
+    def _restore(self, rows: list[Any]) -> None:
+        fresh = []
+        for entry, box in zip(rows, (self._boxes,) * 3, strict=True):
+            values = [float(x) for x in entry["a"]]
+            if len(values) != self.width or not all(map(isfinite, values)):
+                raise ValueError("numbers that are not finite or too many")
+            fresh.append([min(max(x, -b), b) for x, b in zip(values, box, strict=True)])
+        for row, values, entry in zip(self._rows, fresh, rows, strict=True):
+            row.a = values
+            self._project(row)
+            row.gate = 0.0  # the old numbers must prove themselves again
+            row.with_a, row.without = 1.0, 1.0
+
+    def _blank(self) -> Row:
+        P = [[P_FIRST if i == j else 0.0 for j in range(self.width)] for i in range(self.width)]
+        return Row([0.0] * self.width, P)

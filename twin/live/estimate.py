@@ -1,0 +1,242 @@
+"""The observer: the ship's model runs along, and every measurement pulls it a little, with gain K.
+
+    nu_hat+  = nu_hat + h nu_dot(model) + h K (nu - nu_hat)         (compared at the time nu was measured)
+    eta_hat+ = eta_hat + h R(psi_hat) nu_hat + h K (eta - eta_hat)
+
+K = 12 U_0/L unless the settings say otherwise (0.3 1/s for a 320 m ship). A slow sensor's sample pulls until its next one is
+due. What is not measured is predicted, and its uncertainty grows.
+"""
+
+from collections import deque
+from dataclasses import dataclass
+from math import cos, pi, sin, sqrt
+from typing import TYPE_CHECKING
+
+from twin.live.derive import turn
+from twin.physics.ship import Ship
+from twin.physics.state import Rates
+
+if TYPE_CHECKING:
+    from twin.live.sensors import Measured
+
+STATES = ("x", "y", "psi", "u", "v", "r")
+WATER = {"u": "u_r", "v": "v_r"}  # what stands in for a speed over ground
+A_MAX = 0.5  # no sample pulls more than half way in one tick
+OUTLIER = 4.0  # usual deviations beyond which a sample pulls no more
+MAX_GAP_S = 3.0  # the model is not carried over a longer pause of the machine
+HISTORY = 128  # ticks remembered, to compare a late sample with its own time
+
+
+@dataclass(slots=True)
+class Estimate:
+    """Where the ship is and how she moves [SI], `sigma` of each, and the current towards north and east [m/s]."""
+
+    x: float = 0.0
+    y: float = 0.0
+    psi: float = 0.0
+    u: float = 0.0
+    v: float = 0.0
+    r: float = 0.0
+    sigma: tuple[float, ...] = (0.0,) * 6
+    current_north: float = 0.0
+    current_east: float = 0.0
+    ready: bool = False
+
+    def velocity_ned(self) -> tuple[float, float]:
+        c, s = cos(self.psi), sin(self.psi)
+        return self.u * c - self.v * s, self.u * s + self.v * c
+
+    def current_body(self) -> tuple[float, float]:
+        c, s = cos(self.psi), sin(self.psi)
+        return self.current_north * c + self.current_east * s, self.current_east * c - self.current_north * s
+
+    def state(self) -> tuple[float, ...]:
+        return self.x, self.y, self.psi, self.u, self.v, self.r
+
+
+class Observer:
+    """Measured in, Estimate out; `steer(rates)` says how the model moves until the next tick."""
+
+    def __init__(self, ship: Ship, gain: float = 0.0, current: tuple[float, float] = (0.0, 0.0)):
+        self.gain = gain or gain_for(ship)
+        self.estimate = Estimate(current_north=current[0], current_east=current[1])
+        self.innovation: dict[str, float] = {}  # measured less estimated, by state, as last compared
+        self.received: dict[str, bool] = dict.fromkeys(STATES, False)  # which pulled in this tick, unclipped
+        self.restarts = 0
+        self.sigma = Sigma(ship)
+        self._rates = Rates(0.0, 0.0, 0.0)
+        self._now_s: float | None = None
+        self._past: deque[tuple[float, tuple[float, ...]]] = deque(maxlen=HISTORY)
+        self._current = CurrentFilter(ship, *current)
+
+    def steer(self, rates: Rates) -> None:
+        """The model's accelerations from now on."""
+        self._rates = rates
+
+    def correct(self, measured: "Measured") -> Estimate:
+        """The model carried to now, then pulled by what is measured."""
+        now_s = measured.now_s
+        dt, self._now_s = now_s - (self._now_s if self._now_s is not None else now_s), now_s
+        e = self.estimate
+        if not e.ready or not 0.0 <= dt <= MAX_GAP_S:
+            self._begin(measured)
+            return e
+        self._move(dt)
+        self._past.append((now_s, e.state()))
+        self._compare(measured)
+        for state in STATES:
+            self._pull(state, dt, measured)
+        e.psi %= 2.0 * pi
+        e.sigma = self.sigma.all()
+        e.current_north, e.current_east = self._current.feed(measured, e)
+        return e
+
+    def _begin(self, measured: "Measured") -> None:
+        """Start, or start again after a pause: from what is measured now, as soon as heading and speed or place are."""
+        si, e = measured.si, self.estimate
+        self.restarts += e.ready
+        if "psi" not in si or not ("u" in si or "u_r" in si or "x" in si):
+            e.ready = False
+            return
+        drift = e.current_body()
+        speeds = {"u": si.get("u_r", 0.0) + drift[0], "v": si.get("v_r", 0.0) + drift[1], "r": 0.0}
+        start = {"x": e.x, "y": e.y} | speeds | {s: si[s] for s in STATES if s in si}
+        for state in STATES:
+            setattr(e, state, start[state])
+        self.sigma.begin(si)
+        self.innovation.clear()
+        self._past.clear()
+        self._rates = Rates(0.0, 0.0, 0.0)
+        e.sigma, e.ready = self.sigma.all(), True
+
+    def _move(self, dt: float) -> None:
+        """Model: nu by the rates of the last tick, eta along the mean of old and new nu."""
+        e, rates = self.estimate, self._rates
+        u, v, r = e.u + rates.u * dt, e.v + rates.v * dt, e.r + rates.r * dt
+        psi = e.psi + 0.25 * (e.r + r) * dt  # heading half way
+        c, s, mean_u, mean_v = cos(psi), sin(psi), 0.5 * (e.u + u), 0.5 * (e.v + v)
+        e.x += (mean_u * c - mean_v * s) * dt
+        e.y += (mean_u * s + mean_v * c) * dt
+        e.psi += 0.5 * (e.r + r) * dt
+        e.u, e.v, e.r = u, v, r
+        self.sigma.grow(dt)
+
+    def _compare(self, measured: "Measured") -> None:
+        """The innovation of what is fresh, at the time it was measured; water speed stands in for a missing ground speed."""
+        si, fresh, e = measured.si, measured.fresh, self.estimate
+        drift = dict(zip("uv", e.current_body(), strict=True))
+        for i, state in enumerate(STATES):
+            if state in measured.steps and state in si:
+                self._take_over(i, state, si[state])
+            elif state in si:
+                if state in fresh:
+                    self._innovate(i, state, si[state], measured.age_s[state])
+            elif WATER.get(state) in fresh:
+                self._innovate(i, state, si[WATER[state]] + drift[state], measured.age_s[WATER[state]])
+
+    def _innovate(self, i: int, state: str, value: float, age_s: float) -> None:
+        gap = value - self._at(age_s)[i]
+        self.innovation[state] = turn(gap) if state == "psi" else gap
+
+    def _at(self, age_s: float) -> tuple[float, ...]:
+        """The estimate of `age_s` seconds ago, on the line between the ticks around it."""
+        want = self._past[-1][0] - age_s
+        after_t, after = self._past[-1]
+        for k in range(len(self._past) - 2, -1, -1):
+            t, state = self._past[k]
+            if t <= want:
+                share = (want - t) / (after_t - t) if after_t > t else 1.0
+                return tuple([a + share * (b - a) if i != 2 else a + share * turn(b - a) for i, (a, b) in enumerate(zip(state, after, strict=True))])
+            after_t, after = t, state
+        return after
+
+    def _take_over(self, i: int, state: str, value: float) -> None:
+        """A step that lasted: the estimate jumps, and so does its past."""
+        step = value - getattr(self.estimate, state)
+        setattr(self.estimate, state, value)
+        self._past = deque(((t, (*p[:i], p[i] + step, *p[i + 1 :])) for t, p in self._past), maxlen=HISTORY)
+        self.innovation[state] = 0.0
+        self.sigma.begin_one(state)
+
+    def _pull(self, state: str, dt: float, measured: "Measured") -> None:
+        """The last innovation pulls until the next is due; an outlier pulls as much as four usual deviations do."""
+        gap = self.innovation.get(state)
+        source = state if state in measured.si else WATER.get(state, state)
+        self.received[state] = False
+        if gap is None or measured.since_s.get(source, 1e9) > measured.hold_s.get(source, 0.0) + 1e-9:
+            return
+        limit = self.sigma.limit(state)
+        a = min(self.gain * dt, A_MAX)
+        setattr(self.estimate, state, getattr(self.estimate, state) + a * min(max(gap, -limit), limit))
+        self.received[state] = abs(gap) <= limit
+        self.sigma.shrink(state, gap, a, source in measured.fresh)
+
+
+class Sigma:
+    """One standard deviation for each state: it grows while the model runs alone and shrinks with every sample."""
+
+    def __init__(self, ship: Ship):
+        speed, rate, push = 0.03 * ship.U_0, 0.05 * ship.U_0 / ship.L_pp, 0.015 * ship.U_0**2 / ship.L_pp
+        self._usual = {"x": 3.0, "y": 3.0, "psi": 0.01, "u": speed, "v": speed, "r": rate}  # an innovation, to begin with
+        self._astray = {"u": push, "v": push, "r": 1.5 * push / ship.L_pp}  # how fast the model alone goes astray
+        self._now = dict.fromkeys(STATES, 0.0)
+        self._spread = {s: self._usual[s] ** 2 for s in STATES}  # mean squared innovation
+
+    def all(self) -> tuple[float, ...]:
+        return tuple([self._now[s] for s in STATES])
+
+    def begin(self, measured: "dict[str, float]") -> None:
+        self._now = {s: self._usual[s] * (1.0 if s in measured else 10.0) for s in STATES}
+
+    def begin_one(self, state: str) -> None:
+        self._now[state] = self._usual[state]
+
+    def limit(self, state: str) -> float:
+        """Beyond this an innovation is an outlier."""
+        return OUTLIER * sqrt(self._spread[state] + self._now[state] ** 2)
+
+    def grow(self, dt: float) -> None:
+        now, astray = self._now, self._astray
+        moving = (now["u"] + now["v"]) * dt
+        now["x"] += moving
+        now["y"] += moving
+        now["psi"] += now["r"] * dt
+        for state in ("u", "v", "r"):
+            now[state] += astray[state] * dt
+
+    def shrink(self, state: str, gap: float, a: float, fresh: bool) -> None:
+        floor = 0.01 * self._usual[state] ** 2
+        if fresh:
+            bounded = min(gap * gap, self.limit(state) ** 2)
+            self._spread[state] += 0.02 * (1.2 * bounded + floor - self._spread[state])
+        noise = max(self._spread[state] - self._now[state] ** 2, floor)
+        self._now[state] = sqrt(((1.0 - a) * self._now[state]) ** 2 + a * a * noise)
+
+
+class CurrentFilter:
+    """The current over three ship lengths: speed over ground less speed through water, bounded."""
+
+    def __init__(self, ship: Ship, north: float, east: float):
+        self.north, self.east = north, east
+        self.time_s = 3.0 * ship.L_pp / ship.U_0
+        self.bound = min(max(0.6 * ship.U_0, 1.0), 5.0)  # [m/s]
+
+    def feed(self, measured: "Measured", e: Estimate) -> tuple[float, float]:
+        """Only along those axes of the ship on which both speeds are measured."""
+        si, fresh = measured.si, measured.fresh
+        c, s = cos(e.psi), sin(e.psi)
+        for ground, water, axis_north, axis_east in (("u", "u_r", c, s), ("v", "v_r", -s, c)):
+            if water in fresh and ground in si:
+                a = min(fresh[water] / self.time_s, 0.1)
+                gap = si[ground] - si[water] - (self.north * axis_north + self.east * axis_east)
+                self.north += a * gap * axis_north
+                self.east += a * gap * axis_east
+        size = sqrt(self.north * self.north + self.east * self.east)
+        if size > self.bound:
+            self.north, self.east = self.north * self.bound / size, self.east * self.bound / size
+        return self.north, self.east
+
+
+def gain_for(ship: Ship) -> float:
+    """K [1/s] by the ship's own time."""
+    return float(12.0 * ship.U_0 / ship.L_pp)

@@ -1,0 +1,137 @@
+"""How much may be believed: the ladder of modes, each step down with its reasons in words, each step up only after a while.
+
+    hybrid -> physics only -> dead reckoning -> invalid          ("starting" before the first estimate)
+"""
+
+from typing import NamedTuple
+
+from twin.live.estimate import Estimate
+from twin.live.learned import Learned, LearnedForce
+from twin.live.plausible import Plausibility
+from twin.live.sensors import Measured
+from twin.physics.ship import Ship
+
+STARTING, HYBRID, PHYSICS, RECKONING, INVALID = "starting", "hybrid", "physics only", "dead reckoning", "invalid"
+CONTROLS = {"delta": "rudder_angle_deg", "n": "propeller_rate_rpm"}
+WORSE, BETTER = 1.1, 0.9  # error with the learned force over the error without: off above, on again below
+CLIPPED_SHARE = 0.5
+
+
+class Verdict(NamedTuple):
+    """The mode, why it is not better, whether the learned force acts, and why learning stands still ("" when it does not)."""
+
+    mode: str
+    reasons: list[str]
+    use_learned: bool
+    frozen: str
+
+
+class Held:
+    """A fault counts at once, and until it was gone for `hold_s`."""
+
+    def __init__(self, hold_s: float):
+        self.hold_s = hold_s
+        self.why = ""
+        self._last_s = -1e18
+
+    def feed(self, why: str, now_s: float) -> str:
+        if why:
+            self.why, self._last_s = why, now_s
+        elif now_s - self._last_s >= self.hold_s:
+            self.why = ""
+        return self.why
+
+
+class Guard:
+    """Judges each tick."""
+
+    def __init__(self, ship: Ship, learned: LearnedForce, reckoning_s: float = 60.0, hold_s: float = 0.0):
+        T = ship.L_pp / ship.U_0
+        self.reckoning_s = reckoning_s  # how long the model may run without measurements before nothing is promised
+        self.learned = learned
+        self.plausible = Plausibility(ship)
+        hold_s = hold_s or 3.0 * T
+        self._worse = Held(hold_s)
+        self._broken = Held(hold_s)
+        self._clipped = Held(hold_s)
+        self._clipped_share = 0.0
+        self._bad = self._outside = ""
+        self._reckoning_since: float | None = None
+        self._announced: list[tuple[float, str]] = []
+
+    def judge(self, measured: Measured, estimate: Estimate, sensors: list[str], dt: float) -> Verdict:
+        """The verdict of this tick; `sensors`: what is wrong with the channels, in words."""
+        self.plausible.feed(measured, dt)
+        self._announce(measured)
+        odd = self.plausible.reasons()
+        said = [text for _, text in self._announced] + sensors + odd
+        if not estimate.ready:
+            return Verdict(STARTING, [_waiting(measured), *said], False, "no estimate yet")
+        lost = _lost(measured)
+        if lost:
+            return self._reckon(measured.now_s, lost, said)
+        self._reckoning_since = None
+        off = self._off(measured.now_s, dt)
+        frozen = odd[0] if odd else next((text for text in sensors if _matters(text)), "")
+        return Verdict(PHYSICS if off else HYBRID, [*off, *([self._outside] if self._outside else []), *said], not off, frozen)
+
+    def note(self, learned: Learned, dt: float) -> None:
+        """How the learned force came out in this tick; it counts in the next."""
+        share = min(dt / 10.0, 0.5)
+        self._clipped_share += share * (learned.clipped - self._clipped_share)
+        self._bad = learned.why if learned.weight == 0.0 and learned.why and not any(learned.shadow) else ""
+        self._outside = f"learned force shrunk: {learned.why}" if learned.why and any(learned.shadow) else ""
+
+    def _off(self, now_s: float, dt: float) -> list[str]:
+        """Why the learned force may not act."""
+        evidence = self.learned.evidence
+        if self.learned.residual is None:
+            return [f"no learned force: {self.learned.why_not}"]
+        limit = BETTER if self._worse.why else WORSE
+        worse = evidence.judged and evidence.with_learned > limit * evidence.without
+        broken = "gives" in self._bad or "failed" in self._bad or "absurd" in self._bad
+        reasons = [
+            self._worse.feed("the learned force made it worse than the physics alone" if worse else "", now_s),
+            self._broken.feed(self._bad if broken else "", now_s),
+            self._clipped.feed("the learned force stays at its bound" if self._clipped_share > CLIPPED_SHARE else "", now_s),
+            self._bad if not broken else "",
+        ]
+        return [f"learned force off: {why}" for why in reasons if why]
+
+    def _reckon(self, now_s: float, lost: str, said: list[str]) -> Verdict:
+        if self._reckoning_since is None:
+            self._reckoning_since = now_s
+        for_s = now_s - self._reckoning_since
+        mode = INVALID if for_s > self.reckoning_s else RECKONING
+        return Verdict(mode, [f"{lost}, for {for_s:.0f} s; the model runs on alone", *said], mode == RECKONING, lost)
+
+    def _announce(self, measured: Measured) -> None:
+        now_s = measured.now_s
+        for attribute, step in measured.steps.items():
+            self._announced.append((now_s, f"{attribute} stepped by {step:.4g} (SI) and stayed: the new value is believed"))
+        if measured.clock_step_s:
+            self._announced.append((now_s, f"the wall clock was set by {measured.clock_step_s:+.1f} s; the state is not touched"))
+        self._announced = [(t, text) for t, text in self._announced if now_s - t < 10.0][-8:]
+
+
+def _waiting(measured: Measured) -> str:
+    needs = [] if "psi" in measured.si else ["heading"]
+    if not any(a in measured.si for a in ("x", "u", "u_r")):
+        needs.append("position or speed")
+    return f"waiting for {' and '.join(needs) or 'the next sample'}"
+
+
+def _lost(measured: Measured) -> str:
+    """What is missing that only the model can stand in for; "" when nothing essential is."""
+    si = measured.si
+    missing = [name for a, name in CONTROLS.items() if a not in si]
+    if "psi" not in si:
+        missing.append("heading")
+    if not any(a in si for a in ("x", "u", "u_r")):
+        missing.append("position and speed")
+    return f"no {', no '.join(missing)}" if missing else ""
+
+
+def _matters(text: str) -> bool:
+    """Whether a channel's trouble is one that learning must not see."""
+    return text.startswith(("heading", "surge", "sway", "yaw", "rudder", "propeller"))

@@ -1,0 +1,58 @@
+"""Ears: what came in since the last tick, written to the log as it came, and decoded."""
+
+from collections.abc import Callable, Iterable
+
+from google.protobuf.message import DecodeError
+
+from twin.live import messages
+from twin.live.bus import Bus
+from twin.live.clock import Instant
+from twin.live.decode import Decoder, Result
+from twin.live.geodesy import Datum
+from twin.live.topics import BY_SUBJECT, address, is_own
+
+Log = Callable[[str, str, bytes, int], None]  # topic, type name, payload, time [ns since 1970]
+
+
+class Inbox:
+    """The bus, seen by the loop; every sample of a known subject is logged, also one that will be refused."""
+
+    def __init__(self, bus: Bus, log: Log | None = None, datum: Datum | None = None):
+        self.bus, self.log = bus, log
+        self.decoder = Decoder(datum)
+
+    @property
+    def datum(self) -> Datum | None:
+        """Where north and east are counted from, once it is known."""
+        return self.decoder.datum
+
+    def read(self, instant: Instant) -> list[Result]:
+        """Never waits."""
+        results: list[Result] = []
+        for key, envelope, received_s in self.bus.drain(instant.time_s):
+            results += self.decoder.decode(key, envelope, received_s)
+            if self.log is not None:
+                self._keep(key, envelope, instant)
+        return results
+
+    def _keep(self, key: str, envelope: bytes, instant: Instant) -> None:
+        place = address(key)
+        topic = BY_SUBJECT.get(place.subject) if place else None
+        if topic is None or place is None or is_own(place.source) or self.log is None:
+            return
+        try:
+            payload = messages.unwrap(envelope)[1]
+        except (DecodeError, OverflowError):
+            return
+        self.log(key, topic.type_name, payload, round(instant.wall_s * 1e9))
+
+
+class Played:
+    """Ears for a replay or a test: each tick's results, made beforehand; an empty list when there are no more."""
+
+    def __init__(self, ticks: Iterable[list[Result]], datum: Datum | None = None):
+        self._ticks = iter(ticks)
+        self.datum = datum
+
+    def read(self, instant: Instant) -> list[Result]:
+        return next(self._ticks, [])

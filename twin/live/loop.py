@@ -1,0 +1,134 @@
+"""The page to read first: one tick of the twin, from what came in to what goes out.
+
+Each object takes messages and gives messages; none of them knows a clock, a file or a socket. So the same objects run live, in
+a replay and in a test, and the same messages give the same states.
+"""
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from twin.live.clock import Instant
+from twin.live.decode import Result
+from twin.live.dynamics import Dynamics
+from twin.live.estimate import Observer
+from twin.live.geodesy import Datum
+from twin.live.guard import INVALID, Guard
+from twin.live.learned import LearnedForce
+from twin.live.outbox import Outbox
+from twin.live.parts import Parts
+from twin.live.predict import Predictor
+from twin.live.publish import Pace
+from twin.live.sensors import Measured, Sensors
+from twin.live.stabilizer import Stabilizer
+from twin.physics.ship import Ship
+from twin.physics.state import Force, Situation
+
+PARAMETERS_EVERY = 10  # ticks between two lists of adapted numbers
+
+
+class Ears(Protocol):
+    """Where results come from."""
+
+    @property
+    def datum(self) -> Datum | None: ...
+
+    def read(self, instant: Instant) -> list[Result]: ...
+
+
+class Loop:
+    """A ship's twin between two ticks; `watched` adds alarms of bus and log to the reasons, `dropped` what the log lost."""
+
+    def __init__(
+        self,
+        ship: Ship,
+        ears: Ears,
+        voice: Outbox,
+        learned: LearnedForce,
+        rate_hz: float = 10.0,
+        gain: float = 0.0,
+        stabilizer: Stabilizer | None = None,
+        predictor: Predictor | None = None,
+        sensors: Sensors | None = None,
+        guard: Guard | None = None,
+    ):
+        self.ship, self.rate_hz, self.period_s = ship, rate_hz, 1.0 / rate_hz
+        self.ears, self.voice, self.learned = ears, voice, learned
+        self.sensors = sensors or Sensors(ship)
+        self.dynamics = Dynamics(ship)
+        self.observer = Observer(ship, gain, self.dynamics.first_current)
+        self.guard = guard or Guard(ship, learned)
+        self.predictor = predictor or Predictor(ship, rate_hz=rate_hz)
+        self.stabilizer = stabilizer or Stabilizer()
+        self.publisher = voice.publisher
+        self.pace = Pace(rate_hz)
+        self.overruns = 0
+        self.notes: list[str] = []  # said once, at the start: files left out, rights not granted
+        self.watched: Callable[[], list[str]] = list
+        self.dropped: Callable[[], int] = int
+        self._last_s: float | None = None
+
+    def tick(self, instant: Instant) -> Any:
+        """One tick: the wide record of everything that was known in it."""
+        dt = self._elapsed(instant)
+        arrived = self.ears.read(instant)
+        measured = self.sensors.read(arrived, instant.time_s, instant.wall_s, self.observer.estimate)
+        estimate = self.observer.correct(measured)
+        situation = self.dynamics.situation(estimate, measured)
+        known = self.dynamics.now.force(situation)
+        verdict = self.guard.judge(measured, estimate, self.sensors.reasons(instant.time_s), dt)
+        learned, regressors = self.learned.at(situation, known, verdict.use_learned)
+        self.guard.note(learned, dt)
+        self.learned.learn(_nu(measured), self.dynamics.now.rates_of(situation, known), learned, regressors, self.dynamics.now, dt, verdict.frozen)
+        self.observer.steer(self.dynamics.now.mean_rates(situation, learned.force, self.period_s))
+        ahead = self.predictor.advance(instant.time_s, estimate, situation, self.dynamics.now, self._learned_at(verdict.use_learned), verdict.mode != INVALID)
+        certified = self.stabilizer.step(self.observer, measured, situation)
+        tick = self.publisher.tick(
+            instant, self.pace, verdict._replace(reasons=self._all_reasons(verdict.reasons, instant)), measured,
+            self.sensors.qualities(instant.time_s), estimate, known, learned, self._parameters(instant), ahead, certified,
+            self.sensors.rejected, self.dropped(),
+        )  # fmt: skip
+        self.voice.send(tick, self.ears.datum)
+        return tick
+
+    def measure_parts(self) -> Parts:
+        """Stop-watches around every part from now on (the bench asks)."""
+        parts = Parts()
+        for part, thing, method in (
+            ("read", self.ears, "read"), ("sensors", self.sensors, "read"), ("correct", self.observer, "correct"),
+            ("known", self.dynamics, "situation"), ("guard", self.guard, "judge"), ("learned", self.learned, "at"),
+            ("adapt", self.learned, "learn"), ("predict", self.predictor, "advance"), ("certificate", self.stabilizer, "step"),
+            ("publish", self.publisher, "tick"), ("record", self.voice, "send"), ("tick", self, "tick"),
+        ):  # fmt: skip
+            parts.watch(part, thing, method)
+        return parts
+
+    def _elapsed(self, instant: Instant) -> float:
+        dt = instant.time_s - (self._last_s if self._last_s is not None else instant.time_s)
+        self._last_s = instant.time_s
+        self.overruns += instant.skipped
+        self.pace = self.pace._replace(overruns=self.overruns)
+        return dt
+
+    def _learned_at(self, allowed: bool) -> Callable[[Situation, dict[str, Force]], Force]:
+        """The learned force as the predictor carries it ahead."""
+        return lambda s, known: self.learned.at(s, known, allowed)[0].force
+
+    def _parameters(self, instant: Instant) -> list[Any]:
+        adaptation = self.learned.adaptation
+        return adaptation.parameters() if adaptation and instant.number % PARAMETERS_EVERY == 0 else []
+
+    def _all_reasons(self, reasons: list[str], instant: Instant) -> list[str]:
+        said = [*reasons, *self.watched()]
+        if self.dynamics.off:
+            said.append(f"effects without their inputs: {', '.join(type(e).__name__ for e in self.dynamics.off)}")
+        if instant.number < 10.0 * self.rate_hz:
+            said += self.notes
+        return said
+
+
+def _nu(measured: Measured) -> tuple[float, float, float] | None:
+    """What the adaptation learns from: speed over ground and rate of turn, measured, with controls; else None."""
+    si = measured.si
+    if "u" in measured.derived or not measured.has("u", "v", "r", "delta", "n", "psi"):
+        return None
+    return si["u"], si["v"], si["r"]

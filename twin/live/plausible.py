@@ -1,0 +1,106 @@
+"""Do the instruments agree with each other? Signs and units, by pairs that must move together.
+
+    yaw rate against the turning of the heading, speed over ground against the positions, yaw rate against the rudder
+
+Each pair is two slow sums, k = sum(a b)/sum(b b) over a few ship lengths; a factor near -1, 57.3 or 1.94 has a name.
+"""
+
+from math import sqrt
+from typing import TYPE_CHECKING
+
+from twin.live.derive import turn
+from twin.physics.ship import Ship
+
+if TYPE_CHECKING:
+    from twin.live.sensors import Measured
+
+FACTORS = (
+    (-1.0, "has the wrong sign"), (57.2958, "is in degrees where radians were meant"), (0.0174533, "is in radians where degrees were meant"),
+    (60.0, "is per minute"), (1.943844, "is in knots"), (0.514444, "was converted from knots twice"),
+)  # fmt: skip
+
+
+class Pair:
+    """How one signal goes with another that it should equal."""
+
+    def __init__(self, time_s: float, enough: float):
+        self.time_s, self.enough = time_s, enough  # `enough`: rms of b, times sqrt(time), that may be judged
+        self.ab = self.bb = self.aa = self.heard_s = 0.0
+
+    def feed(self, a: float, b: float, dt: float) -> None:
+        w = min(dt / self.time_s, 0.5)
+        self.ab += w * (a * b - self.ab)
+        self.bb += w * (b * b - self.bb)
+        self.aa += w * (a * a - self.aa)
+        self.heard_s += dt
+
+    @property
+    def judged(self) -> bool:
+        return self.heard_s > 1.5 * self.time_s and self.bb > self.enough**2
+
+    def factor(self) -> float:
+        return self.ab / self.bb
+
+    def correlation(self) -> float:
+        return self.ab / sqrt(self.aa * self.bb) if self.aa > 0.0 else 0.0
+
+
+class Plausibility:
+    """Watches the pairs; `reasons()` says what cannot be true."""
+
+    def __init__(self, ship: Ship):
+        T = ship.L_pp / ship.U_0
+        self.time_s = T
+        self._turn = Pair(2.0 * T, 0.02 / T)
+        self._speed = Pair(2.0 * T, 0.15 * ship.U_0)
+        self._helm = Pair(3.0 * T, 0.04)  # a: yaw rate [U_0/L], b: rudder, low-passed [rad]
+        self._rudder = 0.0
+        self._last: dict[str, tuple[float, ...]] = {}
+
+    def feed(self, measured: "Measured", dt: float) -> None:
+        """One tick's measurements."""
+        if not 0.0 < dt < 1.0 or measured.steps:
+            return
+        si = measured.si
+        if "psi" in measured.fresh and "r" in si and "r" not in measured.derived:
+            self._compare_turn(si["psi"], si["r"], measured.now_s - measured.age_s["psi"])
+        if "x" in measured.fresh and measured.has("y", "u", "v") and "u" not in measured.derived:
+            self._compare_speed(si["x"], si["y"], sqrt(si["u"] ** 2 + si["v"] ** 2), measured.now_s - measured.age_s["x"])
+        if measured.has("delta", "r", "n") and si["n"] > 0.0 and si.get("u", 0.0) > 0.0:
+            self._rudder += min(dt / self.time_s, 0.5) * (si["delta"] - self._rudder)
+            self._helm.feed(si["r"] * self.time_s, self._rudder, dt)
+
+    def _compare_turn(self, psi: float, r: float, t: float) -> None:
+        """Over half a ship length at a time, so that the heading's noise does not matter."""
+        psi0, sum_r, count, t0 = self._last.get("psi", (psi, 0.0, 0.0, t))
+        if t - t0 >= 0.2 * self.time_s:
+            self._turn.feed((sum_r + r) / (count + 1.0), turn(psi - psi0) / (t - t0), t - t0)
+            self._last["psi"] = (psi, 0.0, 0.0, t)
+        else:
+            self._last["psi"] = (psi0, sum_r + r, count + 1.0, t0)
+
+    def _compare_speed(self, x: float, y: float, speed: float, t: float) -> None:
+        x0, y0, total, count, t0 = self._last.get("x", (x, y, 0.0, 0.0, t))
+        if t - t0 >= 0.2 * self.time_s:
+            way = sqrt((x - x0) ** 2 + (y - y0) ** 2) / (t - t0)
+            self._speed.feed((total + speed) / (count + 1.0), way, t - t0)
+            self._last["x"] = (x, y, 0.0, 0.0, t)
+        else:
+            self._last["x"] = (x0, y0, total + speed, count + 1.0, t0)
+
+    def reasons(self) -> list[str]:
+        said = []
+        for pair, what in ((self._turn, "yaw_rate_degps against the turning heading"), (self._speed, "speed over ground against the positions")):
+            if pair.judged and (word := _word(pair.factor())):
+                said.append(f"{what}: it {word} (factor {pair.factor():.3g})")
+        if self._helm.judged and self._helm.correlation() < -0.3:
+            said.append("yaw_rate_degps against rudder_angle_deg: she turns against her rudder; one of the two has the wrong sign")
+        return said
+
+
+def _word(factor: float) -> str:
+    """What a factor that should be 1 looks like; "" when it may be 1."""
+    for value, word in FACTORS:
+        if abs(factor / value - 1.0) < 0.2:
+            return word
+    return "" if 0.6 < factor < 1.6 else "does not fit"

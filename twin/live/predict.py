@@ -1,0 +1,151 @@
+"""Where the ship will be in 10, 60 and 120 seconds if helm, engine and weather stay as they are, and how sure that is.
+
+The model is carried ahead by Runge-Kutta steps of 0.08 L/U_0, a few in each tick, so that no tick is long. How far
+predictions were off is learned for each horizon: the 68 % quantile of past errors,  log q += eta (1[error > q] - 0.32).
+"""
+
+from collections import deque
+from collections.abc import Callable
+from dataclasses import replace
+from math import ceil, exp, hypot, log, pi
+from typing import NamedTuple
+
+from twin.live.derive import turn
+from twin.live.dynamics import Known
+from twin.live.estimate import Estimate
+from twin.physics.maths import cos, sin
+from twin.physics.ship import Ship
+from twin.physics.state import Force, Situation
+
+STEP = 0.08  # of L/U_0
+RAYLEIGH = 1.51  # the 68 % quantile of a distance in the plane, in deviations along one axis
+LEARNED = 20  # errors seen before the uncertainty counts as learned
+LearnedAt = Callable[[Situation, dict[str, Force]], Force]
+
+
+class Prediction(NamedTuple):
+    """eta and nu `horizon_s` after `made_s` [SI], one sigma of each; status: "prior" until past errors have taught it, then "learned"."""
+
+    horizon_s: float
+    state: tuple[float, ...]
+    sigma: tuple[float, ...]
+    made_s: float
+    status: str
+
+
+class Predictor:
+    """`advance(...)` each tick; gives the predictions when a round is done, [] otherwise."""
+
+    def __init__(self, ship: Ship, horizons_s: tuple[float, ...] = (10.0, 60.0, 120.0), refresh_s: float = 2.0, rate_hz: float = 10.0):
+        self.horizons_s = tuple(sorted(horizons_s))
+        first = self.horizons_s[0]
+        self.step_s = first / ceil(first / (STEP * ship.L_pp / ship.U_0))
+        steps = ceil(self.horizons_s[-1] / self.step_s)
+        self.steps_a_tick = min(max(ceil(steps / (refresh_s * rate_hz)), 1), 8)
+        self.sureness = {h: Sureness(ship, h) for h in self.horizons_s}
+        self._round: Round | None = None
+        self._due: dict[float, deque[tuple[float, tuple[float, ...]]]] = {h: deque(maxlen=1024) for h in self.horizons_s}
+
+    def advance(self, now_s: float, e: Estimate, s: Situation, physics: Known, learned: LearnedAt, good: bool) -> list[Prediction]:
+        """Check what fell due, then carry the present round on by a few steps."""
+        if not (e.ready and good):
+            self._round = None
+            for waiting in self._due.values():
+                waiting.clear()
+            return []
+        self._check(now_s, e)
+        if self._round is None:
+            self._round = Round(now_s, e, replace(s), physics, self.step_s)
+        done = self._round.run(self.steps_a_tick, self.horizons_s, learned)
+        if len(done) < len(self.horizons_s):
+            return []
+        made = self._round
+        self._round = None
+        return [self._finished(made, h, state, now_s) for h, state in done.items()]
+
+    def _finished(self, made: "Round", horizon_s: float, state: tuple[float, ...], now_s: float) -> Prediction:
+        self._due[horizon_s].append((made.start_s + horizon_s, state))
+        sure = self.sureness[horizon_s]
+        return Prediction(horizon_s, state, sure.sigma(made.sigma), made.start_s, sure.status)
+
+    def _check(self, now_s: float, e: Estimate) -> None:
+        """Predictions for this moment against the estimate."""
+        for horizon_s, waiting in self._due.items():
+            while waiting and waiting[0][0] <= now_s:
+                due_s, state = waiting.popleft()
+                if now_s - due_s < 0.5:
+                    self.sureness[horizon_s].feed(state, e.state())
+
+
+class Round:
+    """One prediction under way."""
+
+    def __init__(self, start_s: float, e: Estimate, s: Situation, physics: Known, step_s: float):
+        self.start_s, self.sigma, self.step_s = start_s, e.sigma, step_s
+        self._s, self._physics = s, physics
+        self._ahead_s = 0.0
+        self._done: dict[float, tuple[float, ...]] = {}
+
+    def run(self, steps: int, horizons_s: tuple[float, ...], learned: LearnedAt) -> dict[float, tuple[float, ...]]:
+        """A few steps on; the states at the horizons reached so far."""
+        for _ in range(steps):
+            left = [h for h in horizons_s if h not in self._done]
+            if not left:
+                break
+            step = min(self.step_s, left[0] - self._ahead_s)
+            self._s = carried(self._s, self._physics, learned(self._s, self._physics.force(self._s)), step)
+            self._ahead_s += step
+            if self._ahead_s >= left[0] - 1e-9:
+                s = self._s
+                self._done[left[0]] = (s.x, s.y, s.psi % (2.0 * pi), s.u, s.v, s.r)
+        return self._done
+
+
+def carried(s: Situation, physics: Known, learned: Force, h: float) -> Situation:
+    """The situation h seconds on: nu by one Runge-Kutta step, eta along the mean of old and new nu."""
+    rates = physics.mean_rates(s, learned, h)
+    u, v, r = s.u + h * rates.u, s.v + h * rates.v, s.r + h * rates.r
+    psi = s.psi + 0.25 * h * (s.r + r)
+    c, si, mean_u, mean_v = cos(psi), sin(psi), 0.5 * (s.u + u), 0.5 * (s.v + v)
+    return replace(
+        s, x=s.x + h * (mean_u * c - mean_v * si), y=s.y + h * (mean_u * si + mean_v * c),
+        psi=s.psi + 0.5 * h * (s.r + r), u=u, v=v, r=r, t=s.t + h,
+    )  # fmt: skip
+
+
+class Sureness:
+    """How far predictions of one horizon were off: a 68 % quantile for place, heading, u, v and r."""
+
+    def __init__(self, ship: Ship, horizon_s: float):
+        push = 0.015 * ship.U_0**2 / ship.L_pp
+        psi = min(0.75 * push / ship.L_pp * horizon_s**2 + 0.01, 1.0)
+        place = 0.5 * push * horizon_s**2 + 0.3 * ship.U_0 * horizon_s * psi + 1.0
+        first = (place, psi, push * horizon_s + 0.01, push * horizon_s + 0.01, 1.5 * push / ship.L_pp * horizon_s + 1e-5)
+        self._log_q = [log(q) for q in first]
+        self.seen = 0
+
+    @property
+    def status(self) -> str:
+        return "learned" if self.seen >= LEARNED else "prior"
+
+    def feed(self, predicted: tuple[float, ...], true: tuple[float, ...]) -> None:
+        """One prediction and what came."""
+        place = hypot(predicted[0] - true[0], predicted[1] - true[1]) / RAYLEIGH
+        errors = (place, abs(turn(predicted[2] - true[2])), *(abs(p - t) for p, t in zip(predicted[3:], true[3:], strict=True)))
+        self.seen += 1
+        eta = max(1.0 / (1.0 + 0.1 * self.seen), 0.1)
+        self._log_q = [q + eta * ((e > exp(q)) - 0.32) for q, e in zip(self._log_q, errors, strict=True)]
+
+    def sigma(self, start: tuple[float, ...]) -> tuple[float, ...]:
+        """One sigma of (x, y, psi, u, v, r), never below that of the state it started from."""
+        place, *rest = [exp(q) for q in self._log_q]
+        return tuple([max(q, s) for q, s in zip((place, place, *rest), start, strict=True)])
+
+
+def ensemble(s: Situation, physics: Known, learned: Force, horizon_s: float, step_s: float) -> Situation:
+    """Many ships at once (fields of s may be arrays), `horizon_s` ahead with a held learned force."""
+    steps = ceil(horizon_s / step_s)
+    for _ in range(steps):
+        s = carried(s, physics, learned, horizon_s / steps)
+    return s
+

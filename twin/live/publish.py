@@ -1,0 +1,162 @@
+"""What the twin says: the wide record of one tick, and the few subjects that others listen to.
+
+Nothing that is not a finite number is ever put into a message: such a field stays absent, and is counted.
+"""
+
+from collections.abc import Iterable
+from math import degrees, isfinite
+from typing import Any, NamedTuple
+
+from twin.live import messages
+from twin.live.adapt import Parameter
+from twin.live.clock import Instant
+from twin.live.estimate import Estimate
+from twin.live.geodesy import Datum, from_chart
+from twin.live.guard import Verdict
+from twin.live.learned import Learned
+from twin.live.predict import Prediction
+from twin.live.sensors import Measured
+from twin.live.topics import OUTPUTS, Output
+from twin.physics.state import Force
+
+
+class Pace(NamedTuple):
+    """How the loop keeps time."""
+
+    rate_hz: float
+    overruns: int = 0  # periods skipped since start
+    slack_us: float | None = None  # time that was left when the tick before was done; absent in a replay
+    step_us: float | None = None  # what the tick before took
+
+
+class Certified(NamedTuple):
+    """The certificate's margin, the live bound of the observer's error in speed [m/s], and whether it holds now."""
+
+    margin: float = 0.0
+    bound: float = 0.0
+    inside: bool = False
+
+
+class Publisher:
+    """Builds messages; `withheld` counts the numbers that were not finite."""
+
+    def __init__(self) -> None:
+        self.withheld = 0
+        self._next: dict[Output, float] = {}
+
+    def tick(
+        self,
+        instant: Instant,
+        pace: Pace,
+        verdict: Verdict,
+        measured: Measured,
+        codes: dict[str, int],
+        estimate: Estimate,
+        known: dict[str, Force],
+        learned: Learned,
+        parameters: Iterable[Parameter],
+        predictions: Iterable[Prediction],
+        certified: Certified,
+        rejected: int,
+        log_dropped: int,
+    ) -> Any:
+        """The wide record."""
+        tick = messages.Tick(
+            index=instant.number, time_s=instant.time_s, wall_s=instant.wall_s, mode=verdict.mode, reasons=verdict.reasons,
+            rate_hz=pace.rate_hz, overruns=pace.overruns, rejected=rejected, log_dropped=log_dropped,
+        )  # fmt: skip
+        self._fill(tick, {"slack_us": pace.slack_us, "step_us": pace.step_us})
+        tick.measured.time_s = instant.wall_s
+        self._fill(tick.measured, measured.border)
+        self._fill(tick.age_s, measured.age_by_channel())
+        self._fill(tick.quality, codes)
+        if estimate.ready:
+            self._state(tick.estimate, estimate)
+            self._sigma(tick.sigma, estimate.sigma)
+        for name, force in known.items():
+            self._fill(tick.known.add(name=name), named(force))
+        self._learned(tick.learned, learned)
+        for parameter in parameters:
+            self._parameter(tick.parameters.add(), parameter)
+        for prediction in predictions:
+            self._prediction(tick.predictions.add(), prediction)
+        self._fill(tick.certificate, {"margin": certified.margin, "bound": certified.bound})
+        tick.certificate.inside = certified.inside
+        return tick
+
+    def due(self, tick: Any, datum: Datum | None) -> list[tuple[Output, bytes]]:
+        """The subjects whose time has come, encoded; `datum` is the origin of north and east."""
+        ns = int(tick.wall_s * 1e9)
+        said = []
+        for output in OUTPUTS:
+            if tick.time_s < self._next.get(output, 0.0):
+                continue
+            data = _encode(output, tick, datum, ns)
+            if data is not None:
+                said.append((output, data))
+                self._next[output] = tick.time_s + output.every_s - 1e-6
+        return said
+
+    def _fill(self, message: Any, values: dict[str, Any]) -> None:
+        for name, value in values.items():
+            if value is not None:
+                if isfinite(value):
+                    setattr(message, name, value)
+                else:
+                    self.withheld += 1
+
+    def _state(self, message: Any, e: Estimate) -> None:
+        self._fill(message, border_state(e.x, e.y, e.psi, e.u, e.v, e.r))
+        self._fill(message, {"current_north_mps": e.current_north, "current_east_mps": e.current_east})
+
+    def _sigma(self, message: Any, sigma: tuple[float, ...]) -> None:
+        self._fill(message, border_state(*sigma))
+
+    def _learned(self, message: Any, learned: Learned) -> None:
+        self._fill(message, named(learned.force))
+        bounds = {"bound_N": learned.bound_N, "bound_Nm": learned.bound_Nm}
+        self._fill(message, bounds | {"weight": learned.weight, "share": learned.share})
+
+    def _parameter(self, message: Any, p: Parameter) -> None:
+        message.name, message.unit, message.status = p.name, p.unit, p.status
+        self._fill(message, {"value": p.value, "low": p.low, "high": p.high, "sigma": p.sigma})
+
+    def _prediction(self, message: Any, p: Prediction) -> None:
+        message.horizon_s = p.horizon_s
+        if "made_s" in message.DESCRIPTOR.fields_by_name:
+            message.made_s, message.status = p.made_s, p.status
+        self._fill(message.state, border_state(*p.state))
+        self._fill(message.sigma, border_state(*p.sigma))
+
+
+def border_state(x: float, y: float, psi: float, u: float, v: float, r: float) -> dict[str, float]:
+    """The six numbers of eta and nu by their names outside."""
+    return {
+        "north_m": x, "east_m": y, "heading_true_north_deg": degrees(psi) % 360.0 if isfinite(psi) else psi,
+        "surge_velocity_mps": u, "sway_velocity_mps": v, "yaw_rate_degps": degrees(r),
+    }  # fmt: skip
+
+
+def named(force: Force) -> dict[str, float]:
+    return {"X_N": force[0], "Y_N": force[1], "N_Nm": force[2]}
+
+
+def _encode(output: Output, tick: Any, datum: Datum | None, ns: int) -> bytes | None:
+    """One subject from the wide record; None when there is nothing to say."""
+    e = tick.estimate
+    if output.subject == "twin_tick":
+        return bytes(tick.SerializeToString())
+    if output.subject == "twin_status":
+        return messages.encode_string("; ".join([tick.mode, *tick.reasons]), ns)
+    if output.subject == "location_fix":
+        return messages.encode_fix(*from_chart(datum, e.north_m, e.east_m), ns) if datum and e.HasField("north_m") else None
+    if output.subject in ("force_newton", "moment_newton_meter"):
+        return _vector(output, tick, ns)
+    return messages.encode_float(getattr(e, output.subject), ns) if e.HasField(output.subject) else None
+
+
+def _vector(output: Output, tick: Any, ns: int) -> bytes:
+    forces = [tick.learned] if output.source.endswith("learned") else tick.known
+    if output.subject == "force_newton":
+        return messages.encode_vector(sum(f.X_N for f in forces), sum(f.Y_N for f in forces), 0.0, ns)
+    return messages.encode_vector(0.0, 0.0, sum(f.N_Nm for f in forces), ns)
