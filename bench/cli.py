@@ -13,7 +13,7 @@ FIRST = "tick"  # what `twin-bench --steps 10000` runs
 
 
 class Bench(NamedTuple):
-    """Where a benchmark lives (`add_arguments(parser)`, `run(args) -> int`), what it shows, how it is typed."""
+    """Where a benchmark lives (`add_arguments(parser)`, `run(args)`), what it shows, how it is typed."""
 
     module: str
     help: str

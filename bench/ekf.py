@@ -1,8 +1,8 @@
 """The classical peer: filterpy's extended Kalman filter on the twin's own equations, and a slow disturbance.
 
 State: x, y, psi, u, v, r and the accelerations X/m, Y/m, N/I that no known force explains (random walks). The
-state is predicted by the same Model.step as the twin's; the Jacobian is that of the kinematics with the damping
-held constant, the cheapest that serves.
+state is predicted by the same Model.step as the twin's; the Jacobian is that of the kinematics with the
+damping held constant, the cheapest that serves.
 """
 
 from math import cos, sin

@@ -1,4 +1,4 @@
-"""An LSTM of the paper's kind (two layers of 128) in ONNX; weights are drawn, the cost does not depend on them."""
+"""An LSTM of the paper's kind (two layers of 128) in ONNX; weights drawn, for any cost the same."""
 
 import numpy as np
 import onnx

@@ -1,8 +1,8 @@
 """The N-body problem in plain Python: a yardstick of interpreted arithmetic that also ran on a Cortex-A72.
 
 Five million steps of the Benchmarks Game's program took 158.3 s on a Raspberry Pi 4 at 1.5 GHz (performance
-governor; https://chaitanyamehta.github.io/projects/performance-analysis-of-programming-languages),
-with a Python older than 3.11. So this machine is about PI_4_US / step_us() times as fast as the board.
+governor; https://chaitanyamehta.github.io/projects/performance-analysis-of-programming-languages;
+the version of Python is not given). So this machine is about PI_4_US / step_us() times as fast as the board.
 """
 
 import time

@@ -1,0 +1,117 @@
+"""What the others cost for one step, measured hot in a process of their own (their memory is not the twin's).
+
+analytic: one Runge-Kutta step of the equations. ekf: filterpy's filter on the same equations. lstm: two
+layers of 128 in ONNX Runtime, one thread, re-run over its window of 50 each step (the paper's kind) and,
+beside it, carrying its state. look_ahead: 120 s in 1200 steps, for one ship and for an ensemble of 64.
+
+    python -m bench.peers [--repeats 2000]      prints JSON
+"""
+
+import argparse
+import json
+import os
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from bench.ekf import ShipFilter
+from bench.lstm import HIDDEN, INPUTS, LAYERS, lstm_bytes
+from bench.timing import hot_us, quantiles
+from twin.physics.model import Model
+from twin.physics.ship import load
+from twin.physics.state import Situation
+
+WINDOW = 50
+STEP_S, AHEAD_STEPS, ENSEMBLE = 0.1, 1200, 64
+SHIP = "kvlcc2"
+
+
+def situation(ship: Any, **changed: Any) -> Situation:
+    """Under way at service speed, turning a little, in wind: every term of the model is at work."""
+    given = {"u": ship.U_0, "v": 0.1, "r": 0.002, "delta": 0.1, "n": 1.5, "wind_speed": 8.0, "wind_to": 0.7}
+    return Situation(**(given | changed))
+
+
+def analytic(ship: Any) -> Callable[[], object]:
+    model, s = Model.of(ship), situation(ship)
+    state = (0.0, 0.0, 0.0, s.u, s.v, s.r)
+    return lambda: model.step(state, s, STEP_S)
+
+
+def ekf(ship: Any) -> Callable[[], object]:
+    peer = ShipFilter(Model.of(ship), situation(ship), STEP_S)
+    measured = np.array([0.0, 0.0, 0.0, ship.U_0, 0.0, 0.0])
+    return lambda: peer.tick(measured)
+
+
+def lstm(ship: Any) -> Callable[[], object]:
+    session, window = _session(lstm_bytes(False)), np.zeros((WINDOW, 1, INPUTS), np.float32)
+    newest = np.ones(INPUTS, np.float32)
+
+    def step() -> object:
+        window[:-1] = window[1:]
+        window[-1, 0] = newest
+        return session.run(["y"], {"x": window})
+
+    return step
+
+
+def lstm_stateful(ship: Any) -> Callable[[], object]:
+    session, feed = _session(lstm_bytes(True)), {"x": np.ones((1, 1, INPUTS), np.float32)}
+    names = [f"{s}{layer}" for layer in range(LAYERS) for s in "hc"]
+    feed |= {name: np.zeros((1, 1, HIDDEN), np.float32) for name in names}
+
+    def step() -> object:
+        y, *carried = session.run(["y", *(f"{name}_out" for name in names)], feed)
+        feed.update(zip(names, carried, strict=True))
+        return y
+
+    return step
+
+
+PEERS = {"analytic": analytic, "ekf": ekf, "lstm": lstm, "lstm_stateful": lstm_stateful}
+
+
+def look_ahead(ship: Any, members: int) -> Callable[[], object]:
+    """120 s open loop by the equations; for an ensemble every number is an array over its members."""
+    model = Model.of(ship)
+    spread = np.linspace(-1.0, 1.0, members) if members > 1 else 0.0
+    s = situation(ship, wind_speed=8.0 + 2.0 * spread)
+
+    def run() -> object:
+        state = (0.0, 0.0, 0.0, ship.U_0 + 0.1 * spread, 0.1 + 0.0 * spread, 0.002 + 0.0 * spread)
+        for _ in range(AHEAD_STEPS):
+            state = model.step(state, s, STEP_S)
+        return state
+
+    return run
+
+
+def measure(repeats: int) -> dict[str, Any]:
+    """{"peers": {name: {"median_us", "p99_us"}}, "look_ahead_ms": {...}}."""
+    ship = load(SHIP)
+    result: dict[str, Any] = {"peers": {}, "look_ahead_ms": {}}
+    for name, make in PEERS.items():
+        found = quantiles(hot_us(make(ship), repeats), ("median", "p99"))
+        result["peers"][name] = {f"{quantile}_us": value for quantile, value in found.items()}
+    for name, members in (("one_ship", 1), (f"ensemble_{ENSEMBLE}", ENSEMBLE)):
+        times = hot_us(look_ahead(ship, members), 3, warm_up=1)
+        result["look_ahead_ms"][name] = round(sorted(times)[1] * 1e-3, 1)
+    return result
+
+
+def _session(model: bytes) -> Any:
+    os.environ["ORT_DISABLE_TELEMETRY"] = "1"
+    import onnxruntime
+
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
+    return onnxruntime.InferenceSession(model, options, providers=["CPUExecutionProvider"])
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--repeats", type=int, default=2000)
+    print(json.dumps(measure(parser.parse_args().repeats)))

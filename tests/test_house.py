@@ -1,0 +1,116 @@
+"""The house: imports go one way, the loop's process stays light, and every verb is documented.
+
+    physics <- live <- study; export -> all three; nothing in twin imports export, bench or deploy
+"""
+
+import ast
+import importlib.util
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from bench.cli import BENCHES
+from twin.cli import VERBS
+
+ROOT = Path(__file__).parents[1]
+ROOMS = ("twin.physics", "twin.live", "twin.study", "export", "bench", "deploy")
+MAY_IMPORT = {
+    "twin.physics": {"twin.physics"},
+    "twin.live": {"twin.physics", "twin.live"},
+    "twin.study": {"twin.physics", "twin.live", "twin.study"},
+    "export": {"twin.physics", "twin.live", "twin.study", "export"},
+}
+PHYSICS_MAY_LOAD = {"tomli_w"}  # to write a ship file, and only then
+ONLY_IN_EXPORT = {"torch"}
+NOT_ON_BOARD = ("torch", "scipy", "matplotlib", "pydantic", "filterpy", "sympy", "pandas")
+
+
+def sources(room):
+    return sorted((ROOT / room.replace(".", "/")).rglob("*.py"))
+
+
+def imports(path):
+    """Full names of what a file imports, relative ones resolved; those for a type checker do not count."""
+    tree = ast.parse(path.read_text())
+    unused = {id(n) for top in ast.walk(tree) if _for_types_only(top) for b in top.body for n in ast.walk(b)}
+    package = path.relative_to(ROOT).with_suffix("").parts[:-1]
+    for node in ast.walk(tree):
+        if id(node) in unused:
+            continue
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            above = package[: len(package) - node.level + 1] if node.level else ()
+            module = ".".join((*above, *(node.module or "").split("."))).strip(".")
+            yield from (f"{module}.{alias.name}" for alias in node.names)
+
+
+def _for_types_only(node):
+    return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
+
+
+def room_of(module):
+    return next((room for room in ROOMS if module == room or module.startswith(room + ".")), None)
+
+
+@pytest.mark.parametrize("room", MAY_IMPORT)
+def test_imports_go_one_way(room):
+    """Test: every import statement of a room. Expected: only rooms it may know."""
+    wrong = [
+        f"{path.relative_to(ROOT)} imports {module}"
+        for path in sources(room)
+        for module in imports(path)
+        if room_of(module) not in (None, *MAY_IMPORT[room])
+    ]
+    assert not wrong
+
+
+def test_nothing_in_twin_imports_export_bench_or_deploy():
+    outer = {"export", "bench", "deploy"}
+    wrong = [(str(p), m) for p in sources("twin") for m in imports(p) if m.split(".")[0] in outer]
+    assert not wrong
+
+
+def test_physics_loads_no_library():
+    """Expected: the standard library and the twin's own errors, nothing else."""
+    known = sys.stdlib_module_names | PHYSICS_MAY_LOAD | {"twin"}
+    wrong = [(p.name, m) for p in sources("twin.physics") for m in imports(p) if m.split(".")[0] not in known]
+    assert not wrong
+
+
+def test_torch_is_loaded_in_export_only():
+    wrong = [(str(p), m) for p in sources("twin") for m in imports(p) if m.split(".")[0] in ONLY_IN_EXPORT]
+    assert not wrong
+
+
+def test_the_loops_process_stays_light():
+    """Test: import the service, in a process of its own. Expected: no library of the training or the study."""
+    code = f"import sys, twin.live.run as _; print(*set({NOT_ON_BOARD}) & set(sys.modules))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == []
+
+
+@pytest.mark.parametrize("name", VERBS)
+def test_every_verb_shows_an_example_in_its_help(name):
+    verb = VERBS[name]
+    if importlib.util.find_spec(verb.module) is None:
+        pytest.skip(f"{verb.module} is not in this version")
+    assert verb.example.startswith(f"twin {name}")
+    command = [sys.executable, "-m", "twin.cli", name, "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert verb.example in done.stdout
+
+
+@pytest.mark.parametrize("name", VERBS)
+def test_every_verb_is_in_the_documents(name):
+    documents = "".join(p.read_text() for p in (ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))))
+    assert f"twin {name}" in documents
+
+
+@pytest.mark.parametrize("name", BENCHES)
+def test_every_benchmark_is_typed_as_its_example_says(name):
+    assert BENCHES[name].example.startswith("twin-bench")
