@@ -18,6 +18,7 @@ ATTACHMENT, ATTACHMENT_INDEX, STATISTICS, METADATA, METADATA_INDEX, SUMMARY_OFFS
 HEAD = Struct("<BQ")  # opcode, length
 MESSAGE_HEAD = Struct("<BQHIQQ")  # opcode, length, channel, sequence, log time, publish time
 CHUNK_BYTES = 256 * 1024
+Compress = Callable[[bytes], bytes]
 
 
 def record(opcode: int, *parts: bytes) -> bytes:
@@ -128,9 +129,9 @@ class OpenChunk:
 class McapWriter:
     """Messages in, whole chunks out through `sink(bytes)`; when that fails, the chunk stays pending."""
 
-    def __init__(self, sink: Callable[[bytes], object], compress: Callable[[bytes], bytes] | None = None):
+    def __init__(self, sink: Callable[[bytes], object], compress: Compress | None = None):
         self._sink = sink
-        self._compress = compress or _zstd()
+        self._compress = compress or zstd()
         self.offset = 0
         self.summary = Summary()
         self._chunk = OpenChunk()
@@ -251,7 +252,8 @@ def _metadata_index(offset: int, length: int, name: str) -> bytes:
     return record(METADATA_INDEX, pack("<QQ", offset, length), text(name))
 
 
-def _zstd() -> Callable[[bytes], bytes]:
+def zstd() -> Compress:
+    """The compressor; its library is loaded here and not before (2 MB)."""
     import zstandard
 
     return zstandard.ZstdCompressor(level=1, threads=0).compress

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 from twin.errors import TwinError
 from twin.live.mcap_read import McapReader, Message
-from twin.live.mcap_write import McapWriter
+from twin.live.mcap_write import McapWriter, zstd
 from twin.live.messages import schema_bytes
 from twin.live.recover import recover_folder
 from twin.live.segment import Segment
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 PERIOD_S = 0.25  # between two writes: half of what may be lost
 RETRY_S = 1.0  # between two tries on a disk that fails
+NOTICE_S = 10.0  # how long a loss that is over is still said
 QUEUE = 4096  # messages the loop may be ahead of the disk (4 s at 50 Hz with 20 sensors); the oldest go first
 Item = tuple[str, str, bytes, int, int]  # topic, type name, payload, log and publish time [ns since 1970]
 
@@ -57,12 +58,14 @@ class Recorder:
         self.max_bytes, self.max_seconds = max_bytes, max_seconds
         self.repaired: list[str] = []
         self._sync = sync
+        self._compress = zstd()
         self._queue: deque[Item] = deque(maxlen=QUEUE)
         self._stop = Event()
         self._thread = Thread(target=self._run, name="recorder", daemon=True)
         self._segment: Segment | None = None
         self._retry_at = 0.0
         self._alarm = ""
+        self._notice, self._notice_until = "", 0.0
         self._taken = self._closed = 0  # messages out of the queue, messages in finished files
         self._written = self._dropped = self._lost = 0
 
@@ -84,12 +87,13 @@ class Recorder:
         """Queues one message (no envelope); never waits. Times are nanoseconds since 1970."""
         if len(self._queue) == QUEUE:
             self._dropped += 1
+            self._say(f"log: the disk at {self.folder} is too slow, messages are dropped")
         self._queue.append((topic, type_name, payload, log_ns, log_ns if publish_ns is None else publish_ns))
 
     @property
     def state(self) -> LogState:
         path = str(self._segment.path) if self._segment else ""
-        alarm = self._alarm or self._slow()
+        alarm = self._alarm or (self._notice if time.monotonic() < self._notice_until else "")
         return LogState(not self._alarm, alarm, path, self._written, self._dropped, self._lost)
 
     def close(self, timeout_s: float = 2.0) -> LogState:
@@ -99,10 +103,9 @@ class Recorder:
             self._thread.join(timeout_s)
         return self.state
 
-    def _slow(self) -> str:
-        if self._dropped == 0:
-            return ""
-        return f"log: the disk at {self.folder} is too slow, {self._dropped} messages dropped so far"
+    def _say(self, notice: str) -> None:
+        """Something went wrong and the log goes on: said for a while."""
+        self._notice, self._notice_until = notice, time.monotonic() + NOTICE_S
 
     def _run(self) -> None:
         while not self._stop.wait(PERIOD_S):
@@ -138,10 +141,11 @@ class Recorder:
         segment = self._segment
         if segment and segment.deleted():
             self._close_segment(finish=False)
+            self._say(f"log: a file in {self.folder} was deleted while being written, a new one is begun")
         elif segment and (segment.size >= self.max_bytes or now_s - segment.opened_s >= self.max_seconds):
             self._close_segment(finish=True)
         if self._segment is None:
-            self._segment = Segment(self.folder, self.name, now_s, self._sync)
+            self._segment = Segment(self.folder, self.name, now_s, self._sync, self._compress)
         return self._segment
 
     def _close_segment(self, finish: bool) -> None:

@@ -11,21 +11,24 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from twin.live.mcap_write import McapWriter
+from twin.live.mcap_write import Compress, McapWriter
 from twin.live.messages import schema_bytes
 
 
 class Segment:
     """The file being written; raises OSError from the constructor, `add`, `sync` and `finish`."""
 
-    def __init__(self, folder: Path, name: str, now_s: float, sync: Callable[[int], None]):
+    def __init__(
+        self, folder: Path, name: str, now_s: float, sync: Callable[[int], None], compress: Compress
+    ):
         folder.mkdir(parents=True, exist_ok=True)
         self.opened_s = now_s
         self.size = 0
         self.broken = False
+        self._named = False  # the folder with our name in it is on the disk
         self._sync = sync
+        self._writer = McapWriter(self._put, compress)
         self.path, self._fd = _create(folder, name)
-        self._writer = McapWriter(self._put)
         try:
             self._writer.start()
         except OSError:
@@ -38,8 +41,11 @@ class Segment:
 
     def sync(self) -> None:
         """Puts everything added so far on the disk."""
-        self._writer.flush()
-        self._sync(self._fd)
+        self._writer.flush()  # now a kill loses nothing of it
+        self._sync(self._fd)  # now a power cut neither
+        if not self._named:
+            _sync_folder(self.path.parent)
+            self._named = True
 
     def give_up(self) -> None:
         """Forgets what could not be written."""
@@ -92,7 +98,6 @@ def _create(folder: Path, name: str) -> tuple[Path, int]:
             number += 1
             continue
         fcntl.flock(fd, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        _sync_folder(folder)
         return path, fd
 
 

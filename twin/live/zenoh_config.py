@@ -109,4 +109,5 @@ def _from_file(path: str) -> Any:
     try:
         return zenoh.Config.from_file(path)
     except zenoh.ZError as failure:
-        raise SettingsError(f"{path}: not a Zenoh file: {str(failure).split(' at /')[0]}") from None
+        said = " ".join(str(failure).split(" at /")[0].split())
+        raise SettingsError(f"{path}: not a Zenoh file: {said}") from None

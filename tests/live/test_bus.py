@@ -1,0 +1,287 @@
+"""Zenoh as the twin uses it: locked down, never waiting, honest about outages (Q5, N1, N2, N6, I27, I28)."""
+
+import json
+import socket
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from time import monotonic, sleep, time_ns
+from typing import Any
+
+import pytest
+import zenoh
+
+from twin.errors import SettingsError
+from twin.live import messages, topics
+from twin.live.bus import MemoryBus
+from twin.live.zenoh_bus import ZenohBus
+from twin.live.zenoh_config import BusSettings, configuration
+
+HEADING = topics.key("twin", "ship", "heading_true_north_deg", "gyro")
+IMPORTS = "from twin.live.zenoh_bus import ZenohBus\nfrom twin.live.zenoh_config import BusSettings\n"
+RUDDER = topics.key("twin", "ship", "rudder_angle_deg", "steering")
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def sample(value: float) -> bytes:
+    now = time_ns()
+    return messages.wrap(messages.encode_float(value, now), now)
+
+
+def until(true, seconds: float = 5.0) -> float:
+    began = monotonic()
+    while not true():
+        assert monotonic() - began < seconds, "it did not happen in time"
+        sleep(0.005)
+    return monotonic() - began
+
+
+Pair = tuple[ZenohBus, ZenohBus]
+
+
+@pytest.fixture
+def pair() -> Iterator[Pair]:
+    """The twin's bus, and a sensor's connected to it."""
+    port = free_port()
+    with (
+        ZenohBus(BusSettings(listen=f"tcp/127.0.0.1:{port}")) as twin,
+        ZenohBus(BusSettings(listen="", connect=(f"tcp/127.0.0.1:{port}",))) as sensor,
+    ):
+        until(lambda: twin.state.connected and sensor.state.connected)
+        sleep(0.2)  # declarations travel
+        yield twin, sensor
+
+
+def router(port: int) -> Any:
+    config = zenoh.Config()
+    for key, value in (
+        ("mode", "router"),
+        ("listen/endpoints", [f"tcp/127.0.0.1:{port}"]),
+        ("scouting/multicast/enabled", False),
+    ):
+        config.insert_json5(key, json.dumps(value))
+    return zenoh.open(config)
+
+
+def received(bus: ZenohBus) -> list[float]:
+    return [messages.Float.FromString(messages.unwrap(data)[1]).value for _, data, _ in bus.drain(1.0)]
+
+
+def test_what_a_sensor_publishes_arrives_with_its_key_and_the_ticks_time(pair: Pair) -> None:
+    twin, sensor = pair
+    data = sample(12.5)
+    sensor.publish(HEADING, data)
+    got: list[Any] = []
+    until(lambda: got.extend(twin.drain(7.0)) or got)
+    assert got == [(HEADING, data, 7.0)]
+
+
+def test_what_the_twin_publishes_reaches_others_and_not_itself(pair: Pair) -> None:
+    twin, sensor = pair
+    twin.publish(HEADING, sample(3.0))
+    until(lambda: 3.0 in received(sensor))
+    assert twin.drain(1.0) == []
+
+
+def test_a_source_with_parts_in_its_name_is_heard(pair: Pair) -> None:
+    twin, sensor = pair
+    sensor.publish(HEADING + "/0", sample(3.0))
+    until(lambda: 3.0 in received(twin))
+
+
+def test_I28_a_flood_on_one_subject_hands_out_the_newest_and_leaves_the_others(pair: Pair) -> None:
+    """Test: 20 000 headings at once. Expected: at most a ring of them, and the rudder too."""
+    twin, sensor = pair
+    sensor.publish(RUDDER, sample(-5.0))
+    for i in range(20_000):
+        sensor.publish(HEADING, sample(i * 0.01))
+    sleep(0.3)
+    began = monotonic()
+    got = twin.drain(1.0)
+    assert monotonic() - began < 0.05
+    assert 1 <= sum(key == HEADING for key, _, _ in got) <= 16
+    assert sum(key == RUDDER for key, _, _ in got) == 1
+
+
+def test_I27_a_sample_of_ten_megabytes_never_reaches_the_loop(pair: Pair) -> None:
+    twin, sensor = pair
+    sensor.publish(HEADING, bytes(10_000_000))
+    sensor.publish(RUDDER, bytes(10_000))
+    sleep(0.5)
+    assert twin.drain(1.0) == []
+    until(lambda: sensor.publish(RUDDER, sample(1.0)) or 1.0 in received(twin), 10.0)
+
+
+def test_neither_drain_nor_publish_waits(pair: Pair) -> None:
+    twin, _ = pair
+    slowest = 0.0
+    for _ in range(500):
+        began = monotonic()
+        twin.drain(1.0)
+        twin.publish(HEADING, bytes(900))
+        slowest = max(slowest, monotonic() - began)
+    assert slowest < 0.1
+
+
+def test_Q5_only_the_configured_socket_listens_and_only_on_loopback() -> None:
+    """Expected: one TCP listener on 127.0.0.1, no UDP socket at all (no 7446 scouting)."""
+    port = free_port()
+    script = (
+        f"{IMPORTS}with ZenohBus(BusSettings(listen='tcp/127.0.0.1:{port}')):\n"
+        "    print('open', flush=True)\n    input()\n"
+    )
+    process = subprocess.Popen([sys.executable, "-c", script], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+    assert process.stdout is not None
+    try:
+        assert process.stdout.readline() == b"open\n"
+        inodes = socket_inodes(process.pid)
+        assert listeners("tcp", inodes) == [("0100007F", port)]
+        assert [listeners(kind, inodes) for kind in ("tcp6", "udp", "udp6")] == [[], [], []]
+    finally:
+        process.communicate(b"\n", timeout=10)
+    assert process.returncode == 0
+
+
+def socket_inodes(pid: int) -> set[str]:
+    links = []
+    for file in Path(f"/proc/{pid}/fd").iterdir():
+        links.append(str(file.readlink()))
+    return {link[8:-1] for link in links if link.startswith("socket:[")}
+
+
+def listeners(kind: str, inodes: set[str]) -> list[tuple[str, int]]:
+    """(address in hexadecimal, port) of a process's sockets that take what comes."""
+    rows = [line.split() for line in Path(f"/proc/net/{kind}").read_text().splitlines()[1:]]
+    ours = [row for row in rows if row[9] in inodes and (kind[:3] == "udp" or row[3] == "0A")]
+    waiting = [row[1].split(":") for row in ours]
+    return [(address, int(port, 16)) for address, port in waiting]
+
+
+def test_N1_a_twin_whose_router_is_dead_starts_says_so_and_connects_later() -> None:
+    port = free_port()
+    began = monotonic()
+    with ZenohBus(BusSettings(router=f"tcp/127.0.0.1:{port}")) as twin:
+        assert monotonic() - began < 2.0
+        assert not twin.state.connected
+        assert str(port) in twin.state.alarm and "is the router running?" in twin.state.alarm
+        twin.publish(HEADING, sample(1.0))
+        assert twin.drain(1.0) == [] and twin.state.refused == 1
+        session = router(port)
+        try:
+            until(lambda: twin.state.connected, 3.0)
+            assert twin.state.alarm == ""
+        finally:
+            session.close()
+
+
+def test_N2_a_router_that_dies_is_noticed_and_its_return_as_well() -> None:
+    port = free_port()
+    session = router(port)
+    with ZenohBus(BusSettings(router=f"tcp/127.0.0.1:{port}")) as twin:
+        until(lambda: twin.state.connected)
+        session.close()
+        assert until(lambda: not twin.state.connected) < 1.0
+        assert "the router out of reach" in twin.state.alarm and twin.state.outages == 1
+        twin.publish(HEADING, sample(1.0))
+        session = router(port)
+        try:
+            assert until(lambda: twin.state.connected) < 1.5
+            assert twin.state.alarm == ""
+        finally:
+            session.close()
+
+
+def test_two_twins_behind_a_router_hear_each_other() -> None:
+    """N8's cure: with a router both are clients."""
+    port = free_port()
+    session = router(port)
+    settings = BusSettings(router=f"tcp/127.0.0.1:{port}")
+    try:
+        with ZenohBus(settings) as a, ZenohBus(settings) as b:
+            until(lambda: a.publish(HEADING, sample(4.0)) or 4.0 in received(b))
+    finally:
+        session.close()
+
+
+def test_N6_a_port_in_use_is_an_error_that_names_it() -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = taken.getsockname()[1]
+        with pytest.raises(SettingsError, match=f"{port}.*in use.*choose another"):
+            ZenohBus(BusSettings(listen=f"tcp/127.0.0.1:{port}")).__enter__()
+
+
+def test_an_outage_of_the_only_sensor_process_is_said(pair: Pair) -> None:
+    twin, sensor = pair
+    sensor.__exit__()
+    until(lambda: not twin.state.connected)
+    assert "everybody out of reach" in twin.state.alarm
+
+
+def alive(session: Any) -> bool:
+    return any(reply.ok for reply in session.liveliness().get("twin/@v0/**", timeout=1.0))
+
+
+def test_the_sign_of_life_is_there_while_the_bus_is_open() -> None:
+    port = free_port()
+    session = router(port)
+    try:
+        with ZenohBus(BusSettings(router=f"tcp/127.0.0.1:{port}")) as twin:
+            until(lambda: twin.state.connected)
+            until(lambda: alive(session))
+        until(lambda: not alive(session))
+    finally:
+        session.close()
+
+
+def test_a_zenoh_file_is_obeyed_and_the_rest_stays_locked(tmp_path: Path) -> None:
+    file = tmp_path / "zenoh.json5"
+    tls = 'mode: "client", connect: {endpoints: ["tls/bridge:7447"]}'
+    file.write_text("{" + tls + ", transport: {link: {tx: {lease: 9000}}}}")
+    config = configuration(BusSettings(file=str(file)))
+    assert json.loads(config.get_json("transport/link/tx/lease")) == 9000
+    assert json.loads(config.get_json("connect/endpoints")) == ["tls/bridge:7447"]
+    assert json.loads(config.get_json("mode")) == "client"
+    assert json.loads(config.get_json("scouting/multicast/enabled")) is False
+    assert json.loads(config.get_json("transport/link/rx/max_message_size")) == 262144
+
+
+@pytest.mark.parametrize("content", ["", "not json", '{"no_such_key": 1}'])
+def test_a_zenoh_file_that_is_none_is_one_clear_line(tmp_path: Path, content: str) -> None:
+    file = tmp_path / "zenoh.json5"
+    file.write_text(content)
+    with pytest.raises(SettingsError) as raised:
+        configuration(BusSettings(file=str(file)))
+    assert str(file) in str(raised.value) and "\n" not in str(raised.value)
+
+
+@pytest.mark.parametrize("name", ["a/*", "", "/a", "@v0", "a//b", "a#"])
+def test_names_that_cannot_be_part_of_a_key_are_refused(name: str) -> None:
+    for settings in (BusSettings(base=name), BusSettings(entity=name)):
+        with pytest.raises(SettingsError, match="cannot be part of a key"):
+            configuration(settings)
+
+
+def test_the_bus_of_a_replay_has_the_same_face() -> None:
+    with MemoryBus() as bus:
+        bus.put(HEADING, b"a")
+        assert bus.drain(3.0) == [(HEADING, b"a", 3.0)] and bus.drain(4.0) == []
+        bus.publish(RUDDER, b"b")
+        assert bus.sent == [(RUDDER, b"b")] and bus.state.connected
+
+
+def test_an_exception_with_an_open_bus_ends_the_process() -> None:
+    """C4: no Python callback, so no hang (zenoh-python 434)."""
+    script = (
+        f"{IMPORTS}with ZenohBus(BusSettings(listen='tcp/127.0.0.1:0')) as bus:\n"
+        "    bus.drain(0.0)\n    raise ValueError\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, timeout=20)
+    assert done.returncode == 1
