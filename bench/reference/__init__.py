@@ -1,11 +1,12 @@
 """The reference sea: a 6-DOF witness that shares no physics with `twin/` and writes every effect in another form.
 
-    recording, = simulate([Case("kvlcc2", "mixed", hidden=(("Wind", 1.0),), seed=3)])
-    recording.columns["heading_true_north_deg"], recording.truth["u"], recording.hidden["Wind"]
+recording, = simulate([Case("kvlcc2", "mixed", hidden=(("Wind", 1.0),), seed=3)])
+recording.columns["heading_true_north_deg"], recording.truth["u"], recording.hidden["Wind"]
 """
+
 from .hulls import HULLS, Hull
 from .sea import Sea
 from .voyage import Case, Recording, simulate
 from .weather import WEATHERS, Weather
 
-__all__ = ["Case", "HULLS", "Hull", "Recording", "Sea", "WEATHERS", "Weather", "simulate"]
+__all__ = ["HULLS", "WEATHERS", "Case", "Hull", "Recording", "Sea", "Weather", "simulate"]

@@ -1,4 +1,5 @@
 """python -m bench.reference list | run | check"""
+
 import argparse
 import json
 from pathlib import Path
@@ -12,8 +13,14 @@ from .weather import WEATHERS
 
 
 def show():
-    for title, names in (("hulls", HULLS), ("manoeuvres", MANOEUVRES), ("weathers", WEATHERS), ("hidden effects of the catalogue", CATALOGUE),
-                         ("hidden effects outside it", OUTSIDE), ("decoys", DECOYS)):
+    for title, names in (
+        ("hulls", HULLS),
+        ("manoeuvres", MANOEUVRES),
+        ("weathers", WEATHERS),
+        ("hidden effects of the catalogue", CATALOGUE),
+        ("hidden effects outside it", OUTSIDE),
+        ("decoys", DECOYS),
+    ):
         print(f"{title}: {', '.join(names)}")
     return 0
 
@@ -24,8 +31,12 @@ def effect(text):
 
 
 def run(args):
-    cases = [Case(args.hull, args.manoeuvre, args.weather, tuple(args.hide), tuple(args.decoy), seed, args.duration)
-             for seed in range(args.seed, args.seed + args.count)]
+    cases = [
+        Case(
+            args.hull, args.manoeuvre, args.weather, tuple(args.hide), tuple(args.decoy), seed, args.duration
+        )
+        for seed in range(args.seed, args.seed + args.count)
+    ]
     folder = Path(args.output)
     folder.mkdir(parents=True, exist_ok=True)
     for recording in simulate(cases):
@@ -41,8 +52,11 @@ def main():
     verbs = parser.add_subparsers(dest="verb", required=True)
     verbs.add_parser("list", help="what can be sailed and hidden")
     verbs.add_parser("check", help="our KVLCC2 beside other people's")
-    sail = verbs.add_parser("run", help="sail voyages and write them as CSV, the truth beside them",
-                            epilog="example: python -m bench.reference run --hull usv --hide Wind:0.5 --count 3 -o voyages")
+    sail = verbs.add_parser(
+        "run",
+        help="sail voyages and write them as CSV, the truth beside them",
+        epilog="example: python -m bench.reference run --hull usv --hide Wind:0.5 --count 3 -o voyages",
+    )
     sail.add_argument("--hull", default="kvlcc2")
     sail.add_argument("--manoeuvre", default="mixed")
     sail.add_argument("--weather", default="calm")

@@ -1,4 +1,5 @@
 """The helmsman of every ship of a fleet: follows the legs, orders rudder and propeller rate."""
+
 import numpy as np
 
 from .fleet import limit
@@ -18,10 +19,13 @@ class Autopilot:
 
     def __init__(self, plans, h, n_start, heading):
         count, self.h, self.n_start = max(map(len, plans)), h, n_start
-        get = lambda f, last: np.array([[f(*p) for p in plan] + [last] * (count - len(plan)) for plan in plans], float)
-        self.start = get(lambda leg, t: t, np.inf)
-        self.mode, self.a = get(lambda leg, t: leg.mode, 0), np.radians(get(lambda leg, t: leg.a, 0))
-        self.b, self.rate = np.radians(get(lambda leg, t: leg.b, 0)), get(lambda leg, t: leg.rate, 1)
+        table = np.full((5, len(plans), count), np.inf)
+        for i, plan in enumerate(plans):
+            table[:, i, : len(plan)] = np.array(
+                [(start, leg.mode, leg.a, leg.b, leg.rate) for leg, start in plan]
+            ).T
+        self.start, self.mode, self.a, self.b, self.rate = table
+        self.a, self.b = np.radians(self.a), np.radians(self.b)
         self.rows, self.index = np.arange(len(plans)), np.full(len(plans), -1)
         self.course, self.base = heading.copy(), heading.copy()
         self.side, self.integral = np.ones(len(plans)), np.zeros(len(plans))
@@ -31,7 +35,9 @@ class Autopilot:
         """Take up the next leg where it is due."""
         i = self.index + new
         mode, a = self.mode[self.rows, i], self.a[self.rows, i]
-        self.course = np.where(new, np.where(self.held, self.course, psi) + np.where(mode == COURSE, a, 0), self.course)
+        self.course = np.where(
+            new, np.where(self.held, self.course, psi) + np.where(mode == COURSE, a, 0), self.course
+        )
         self.base, self.side = np.where(new, psi, self.base), np.where(new, 1.0, self.side)
         self.base = np.where(new & self.held, self.course - np.where(mode == COURSE, a, 0), self.base)
         self.integral, self.held = np.where(new, 0.0, self.integral), np.where(new, mode == COURSE, self.held)

@@ -1,4 +1,5 @@
 """Random numbers of a fleet: each ship draws from her own seed, tick by tick, whatever ships sail beside her."""
+
 import numpy as np
 
 CHUNK = 512
@@ -25,7 +26,9 @@ class Wander:
         self.keep = np.exp(-dt / np.asarray(times, float))
         self.kick = np.sqrt(1 - self.keep**2)
         self.chance = Chance(seeds, 1, len(self.keep))
-        self.value = np.stack([np.random.default_rng([seed, 2]).standard_normal(len(self.keep)) for seed in seeds], 1)
+        self.value = np.stack(
+            [np.random.default_rng([seed, 2]).standard_normal(len(self.keep)) for seed in seeds], 1
+        )
 
     def step(self, tick):
         self.value = self.keep * self.value + self.kick * self.chance.at(tick)

@@ -4,13 +4,14 @@ The equations are those of Yasukawa & Yoshimura (2015); `shipmmg` 0.0.11 (MIT, t
 the same paper, run once for the 7 m model with our particulars and propeller rate; it keeps a wake law of its own. Tank tests: SIMMAN 2008
 free runs of MARIN (ship scale) and HSVA (7 m model). Limits: IMO resolution MSC.137(76), for L/U = 40 s.
 """
+
 import os
 from pathlib import Path
 
 import numpy as np
 
 from . import figures
-from .manoeuvres import COURSE, RUDDER, ZIGZAG, Leg
+from .manoeuvres import RUDDER, ZIGZAG, Leg
 from .sea import hull_of
 from .voyage import Case, simulate
 from .weather import Weather
@@ -18,13 +19,22 @@ from .weather import Weather
 # rudder: (advance / L, tactical diameter / L); angle: (1st, 2nd overshoot [deg]); first rudder to port has a minus sign
 SHIPMMG_TURN = {35: (3.06, 2.99), -35: (2.92, 2.73)}
 SHIPMMG_ZIGZAG = {10: (4.6, 13.4), -10: (6.5, 9.3), 20: (11.1, 15.1), -20: (14.8, 12.0)}
-MARIN_ZIGZAG = {10: (8.2,), -10: (9.5,), 20: (13.7, 14.9), -20: (15.1, 13.3)}      # read from the measured series
-IMO = {"advance / L": 4.5, "tactical diameter / L": 5.0, "10/10 1st": 20.0, "10/10 2nd": 40.0, "20/20 1st": 25.0}
+MARIN_ZIGZAG = {10: (8.2,), -10: (9.5,), 20: (13.7, 14.9), -20: (15.1, 13.3)}  # read from the measured series
+IMO = {
+    "advance / L": 4.5,
+    "tactical diameter / L": 5.0,
+    "10/10 1st": 20.0,
+    "10/10 2nd": 40.0,
+    "20/20 1st": 25.0,
+}
 
 
 def sail(hull, plans, duration_s):
     """Calm, airless voyages due north with perfect instruments, one for each plan of legs."""
-    cases = [Case(hull, tuple(plan), Weather(), heading_deg=0.0, duration_s=duration_s, sensors="perfect") for plan in plans]
+    cases = [
+        Case(hull, tuple(plan), Weather(), heading_deg=0.0, duration_s=duration_s, sensors="perfect")
+        for plan in plans
+    ]
     return simulate(cases)
 
 
@@ -37,7 +47,11 @@ def measure_turn(recording):
 def measure_zigzag(recording, angle, at=None):
     """Overshoots [deg] over the execute heading `at`, and the times [s] of the reversals."""
     true = recording.truth
-    time, psi, rudder = recording.columns["time_s"], np.degrees(true["psi"]), np.degrees(true["rudder_feedback"])
+    time, psi, rudder = (
+        recording.columns["time_s"],
+        np.degrees(true["psi"]),
+        np.degrees(true["rudder_feedback"]),
+    )
     over, times = figures.overshoots(time, psi, rudder, angle)
     return [o + abs(angle) - abs(at or angle) for o in over], times
 
@@ -59,11 +73,16 @@ def line(what, ours, theirs, whose):
 def compare_standard():
     """Lines that set ours beside theirs."""
     out = [f"  {'':<34}{'ours':>8}{'theirs':>10}{'off by':>11}"]
-    for hull, turns, zigzags, whose in (("kvlcc2_model", SHIPMMG_TURN, SHIPMMG_ZIGZAG, "shipmmg"), ("kvlcc2", {}, MARIN_ZIGZAG, "MARIN, measured")):
+    for hull, turns, zigzags, whose in (
+        ("kvlcc2_model", SHIPMMG_TURN, SHIPMMG_ZIGZAG, "shipmmg"),
+        ("kvlcc2", {}, MARIN_ZIGZAG, "MARIN, measured"),
+    ):
         turned, zigzagged = standard(hull)
         out.append(hull)
         for angle, theirs in turns.items():
-            for name, a, b in zip(("advance / L", "tactical diameter / L"), turned[angle], theirs, strict=True):
+            for name, a, b in zip(
+                ("advance / L", "tactical diameter / L"), turned[angle], theirs, strict=True
+            ):
                 out.append(line(f"{name}, rudder {angle:+d} deg", a, b, whose))
         for angle, theirs in zigzags.items():
             for number, a, b in zip(("1st", "2nd"), zigzagged[angle], theirs, strict=False):
@@ -74,10 +93,17 @@ def compare_standard():
 
 def limits(turned, zigzagged):
     """The worst of both sides against the limits of IMO."""
-    worst = {"advance / L": max(t[0] for t in turned.values()), "tactical diameter / L": max(t[1] for t in turned.values()),
-             "10/10 1st": max(zigzagged[a][0] for a in (10, -10)), "10/10 2nd": max(zigzagged[a][1] for a in (10, -10)),
-             "20/20 1st": max(zigzagged[a][0] for a in (20, -20))}
-    return [f"  {name:<34}{value:8.2f}{IMO[name]:10.2f}   {'inside' if value <= IMO[name] else 'OUTSIDE'} the limit of IMO" for name, value in worst.items()]
+    worst = {
+        "advance / L": max(t[0] for t in turned.values()),
+        "tactical diameter / L": max(t[1] for t in turned.values()),
+        "10/10 1st": max(zigzagged[a][0] for a in (10, -10)),
+        "10/10 2nd": max(zigzagged[a][1] for a in (10, -10)),
+        "20/20 1st": max(zigzagged[a][0] for a in (20, -20)),
+    }
+    return [
+        f"  {name:<34}{value:8.2f}{IMO[name]:10.2f}   {'inside' if value <= IMO[name] else 'OUTSIDE'} the limit of IMO"
+        for name, value in worst.items()
+    ]
 
 
 def read_run(path):
@@ -90,28 +116,42 @@ def read_run(path):
             continue
     width = max(map(len, rows))
     data, words = np.array([r for r in rows if len(r) == width]), path.stem.split("_")
-    if width == 12:                                     # HSVA, 20 Hz: psi, rudder in columns 3 and 8; both files count port positive
+    if width == 12:  # HSVA, 20 Hz: psi, rudder in columns 3 and 8; both files count port positive
         return data[:, 0], data[:, 3], -data[:, 8], float(words[4]), float(words[5]), "kvlcc2_model"
-    time = 0.1355 * np.arange(len(data))                # MARIN: time stamps are rounded
+    time = 0.1355 * np.arange(len(data))  # MARIN: time stamps are rounded
     return time, data[:, 4], -data[:, 9], abs(float(words[4])), abs(float(words[4])), "kvlcc2"
 
 
 def compare_runs(folder):
     """Measured zigzags beside ours: first overshoots and mean time between reversals."""
-    out = [f"  {'run':<36}{'overshoots measured':<24}{'ours':<24}half period [s] measured, ours"]
-    for path in sorted(Path(folder).glob("*/*.dat")):
-        time, psi, rudder, angle, at, hull = read_run(path)
-        side = float(np.sign(rudder[np.argmax(np.abs(rudder) > 0.5 * angle)]))
-        theirs, their_times = figures.overshoots(time, psi, rudder, angle)
-        theirs = [o + angle - at for o in theirs]
-        ship = hull_of(Case(hull))
-        voyage = sail(hull, [[Leg(COURSE, 0.01), Leg(ZIGZAG, 999, side * angle, at)]], time[-1])[0]
-        ours, our_times = measure_zigzag(voyage, angle, at)
-        count = min(len(theirs), len(ours), 4)
-        say = lambda values, n=count: " ".join(f"{v:.1f}" for v in values[:n])
-        out.append(f"  {path.stem:<36}{say(theirs):<24}{say(ours):<24}{half_period(their_times):.1f} {half_period(our_times):.1f}"
-                   f"  (L/U {ship.L / ship.U0:.1f})")
+    out = [f"  {'run':<30}{'overshoots measured':<24}{'ours':<24}half period [s] measured, ours"]
+    runs = [(path.stem, *read_run(path)) for path in sorted(Path(folder).glob("*/*.dat"))]
+    for hull in sorted({run[-1] for run in runs}):
+        same = [run for run in runs if run[-1] == hull]
+        plans = [
+            [Leg(ZIGZAG, 999, first_side(rudder, angle) * angle, at)]
+            for _, _, _, rudder, angle, at, _ in same
+        ]
+        voyages = sail(hull, plans, max(run[1][-1] for run in same))
+        out += [run_line(voyage, *run) for voyage, run in zip(voyages, same, strict=True)]
     return out
+
+
+def first_side(rudder, angle):
+    """+1 when the first rudder goes to starboard."""
+    return float(np.sign(rudder[np.argmax(np.abs(rudder) > 0.5 * angle)]))
+
+
+def run_line(voyage, name, time, psi, rudder, angle, at, hull):
+    """One measured zigzag beside ours."""
+    theirs, their_times = figures.overshoots(time, psi, rudder, angle)
+    ours, our_times = measure_zigzag(voyage, angle, at)
+    count = min(len(theirs), len(ours), 4)
+    cells = [
+        " ".join(f"{v:.1f}" for v in values[:count]) for values in ([o + angle - at for o in theirs], ours)
+    ]
+    periods = [half_period(times[: count + 2]) for times in (their_times, our_times)]
+    return f"  {name:<30}{cells[0]:<24}{cells[1]:<24}{periods[0]:.1f} {periods[1]:.1f}"
 
 
 def half_period(times):
@@ -127,5 +167,7 @@ def main():
         print("SIMMAN 2008 free runs, measured")
         print("\n".join(compare_runs(runs)))
     else:
-        print("Measured SIMMAN 2008 runs: skipped. Set SHIPTWIN_DATA to the folder that holds kvlcc2_simman/.")
+        print(
+            "Measured SIMMAN 2008 runs: skipped. Set SHIPTWIN_DATA to the folder that holds kvlcc2_simman/."
+        )
     return 0

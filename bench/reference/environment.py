@@ -1,29 +1,47 @@
 """Air, current, waves, bottom and bank around each ship of a fleet, tick by tick."""
+
 import numpy as np
 
 from . import flaws, waves, wind
+from .chance import Wander
 
-GUST_TIME, VEER_TIME, BANK_TIME, GNSS_TIME = 25.0, 60.0, 6.0, 120.0    # [s]; the bank's in L/U0
+ANSWER_TICKS = 4          # the answer to waves follows the heading every fourth tick, the phase every tick
+GUST_TIME, VEER_TIME, BANK_TIME, GNSS_TIME = 25.0, 60.0, 6.0, 120.0  # [s]; the bank's in L/U0
 
 
 class Environment:
     """Holds what the motion and the sensors need at this tick: current, depth, bank, wind, wave loads."""
 
     def __init__(self, hulls, h, weathers, f, seeds, dt):
-        from .chance import Wander
-        g = lambda field: np.array([getattr(w, field) for w in weathers], float)
+        def g(field):
+            return np.array([getattr(w, field) for w in weathers], float)
+
         self.h, self.f, self.dt, unit = h, f, dt, h.L / h.U0
-        self.wind_mean, self.wind_from0, self.gust = g("wind_mps"), np.radians(g("wind_from_deg")), g("gust_share")
+        self.wind_mean, self.wind_from0, self.gust = (
+            g("wind_mps"),
+            np.radians(g("wind_from_deg")),
+            g("gust_share"),
+        )
         to = np.radians(g("current_to_deg"))
         self.current_mean = np.stack([g("current_mps") * np.cos(to), g("current_mps") * np.sin(to)])
         self.spread, self.depth0, self.swing = g("current_spread_mps"), g("depth_m"), g("depth_swing")
         self.bank0 = g("bank_m")
         one, slow = np.ones(len(hulls)), g("current_time_s")
-        small = np.where(h.L < 50, 0.3, 1.0)                            # gusts over a boat's track are shorter
-        times = [GUST_TIME * small, VEER_TIME * small, slow, slow, BANK_TIME * unit, GNSS_TIME * one, GNSS_TIME * one]
+        small = np.where(h.L < 50, 0.3, 1.0)  # gusts over a boat's track are shorter
+        times = [
+            GUST_TIME * small,
+            VEER_TIME * small,
+            slow,
+            slow,
+            BANK_TIME * unit,
+            GNSS_TIME * one,
+            GNSS_TIME * one,
+        ]
         self.wander = Wander(seeds, times, dt)
         self.tables = np.stack([wind.table(x) for x in hulls])
-        self.sea = waves.stack_seas([waves.components(w, np.random.default_rng([s, 4])) for w, s in zip(weathers, seeds)])
+        self.sea = waves.stack_seas(
+            [waves.components(w, np.random.default_rng([s, 4])) for w, s in zip(weathers, seeds, strict=True)]
+        )
         self.oscillator, self.has_waves = waves.oscillator(h), bool(self.sea.a.any())
         self.current, self.has_tide, self.has_squall = None, bool(f.tide_mps.any()), bool(f.squall_mps.any())
         self.wave_force = self.drift = self.heave = self.pitch = np.zeros(len(hulls))
@@ -37,7 +55,7 @@ class Environment:
         path = (north + 0.7 * east) / (8 * self.h.L)
         self.depth = self.depth0 * (1 + self.swing * np.sin(2 * np.pi * path))
         self.bank = self.bank0 * np.exp(0.45 * bank)
-        self._waves(t, north, east, psi)
+        self._waves(tick, t, north, east, psi)
 
     def _stream(self, t, c_n, c_e):
         """Mean current, eddies and tide; and their rate of change."""
@@ -49,11 +67,13 @@ class Environment:
             self.current = self.current + f.tide_mps * np.sin(turn + 0.5) * np.stack([np.cos(to), np.sin(to)])
         self.current_rate = np.zeros_like(self.current) if old is None else (self.current - old) / self.dt
 
-    def _waves(self, t, north, east, psi):
+    def _waves(self, tick, t, north, east, psi):
         zero = np.zeros_like(north)
         self.wave_force, self.drift, self.heave, self.pitch = (zero,) * 4, (zero,) * 3, zero, zero
         if self.has_waves:
-            (X, Y, N, K, self.heave, self.pitch), drift = waves.loads(self.h, self.sea, t, north, east, psi)
+            if tick % ANSWER_TICKS == 0:
+                self.answer = waves.transfer(self.h, self.sea, psi)
+            (X, Y, N, K, self.heave, self.pitch), drift = waves.loads(self.sea, self.answer, t, north, east)
             there = 1 - self.f.waveless
             self.wave_force = tuple(there * c for c in (X, Y, N, K))
             self.drift = tuple(there * c for c in drift)
@@ -73,6 +93,8 @@ class Environment:
         if self.has_squall:
             gust = flaws.squall(self.f, self.t)
             ahead, aside = gust * np.cos(self.f.squall_from), gust * np.sin(self.f.squall_from)
-            blown = wind.force(self.h, self.tables, ua + ahead * cos + aside * sin, va + aside * cos - ahead * sin)
-            out["hidden"] = [a - b for a, b in zip(blown, out["wind"])]
+            blown = wind.force(
+                self.h, self.tables, ua + ahead * cos + aside * sin, va + aside * cos - ahead * sin
+            )
+            out["hidden"] = [a - b for a, b in zip(blown, out["wind"], strict=True)]
         return out

@@ -1,4 +1,5 @@
 """The figures by which manoeuvring trials are judged: advance, tactical diameter, overshoots, periods."""
+
 import numpy as np
 
 
@@ -28,6 +29,6 @@ def overshoots(time, psi_deg, rudder_deg, angle):
     side = np.sign(np.where(np.abs(rudder_deg) < 0.3 * abs(angle), 0, rudder_deg))
     held = np.nonzero(side)[0]
     turns = held[1:][side[held[1:]] != side[held[:-1]]]
-    ends = list(turns[1:]) + [len(time)]
-    peaks = [float(np.abs(psi_deg[a:b]).max() - abs(angle)) for a, b in zip(turns, ends)]
+    ends = [*list(turns[1:]), len(time)]
+    peaks = [float(np.abs(psi_deg[a:b]).max() - abs(angle)) for a, b in zip(turns, ends, strict=True)]
     return peaks[:-1], [float(t) for t in np.asarray(time)[turns]]

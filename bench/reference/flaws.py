@@ -2,21 +2,71 @@
 
 `f` holds one array (B,) for each number that hidden.py draws; a ship without the effect has zero there.
 """
+
 import numpy as np
 
-FIELDS = """fouling prop_wear rudder_wear rudder_offset crossflow tow_X tow_Y tow_N tow_period ext_north ext_east ext_N ext_period
-walk heel_N heel_Y lag_time lag_rate heading_bias heading_wave log_bias log_scale log_angle antenna_x antenna_y gnss_delay gyro_bias
-tide_mps tide_period tide_to ice ice_length ice_phase passing_Y passing_N passing_every passing_width slosh slosh_w slosh_x
-backlash squall_mps squall_from squall_every squall_width bank_Y bank_N windless waveless""".split()
+FIELDS = [
+    "fouling",
+    "prop_wear",
+    "rudder_wear",
+    "rudder_offset",
+    "crossflow",
+    "tow_X",
+    "tow_Y",
+    "tow_N",
+    "tow_period",
+    "ext_north",
+    "ext_east",
+    "ext_N",
+    "ext_period",
+    "walk",
+    "heel_N",
+    "heel_Y",
+    "lag_time",
+    "lag_rate",
+    "heading_bias",
+    "heading_wave",
+    "log_bias",
+    "log_scale",
+    "log_angle",
+    "antenna_x",
+    "antenna_y",
+    "gnss_delay",
+    "gyro_bias",
+    "tide_mps",
+    "tide_period",
+    "tide_to",
+    "ice",
+    "ice_length",
+    "ice_phase",
+    "passing_Y",
+    "passing_N",
+    "passing_every",
+    "passing_width",
+    "slosh",
+    "slosh_w",
+    "slosh_x",
+    "backlash",
+    "squall_mps",
+    "squall_from",
+    "squall_every",
+    "squall_width",
+    "bank_Y",
+    "bank_N",
+    "windless",
+    "waveless",
+]
 
-STATIONS = np.linspace(-0.45, 0.45, 10)                    # strips of L/10
-STRIP_CD = np.array([1.6, 1.3, 1.0, 0.85, 0.8, 0.8, 0.8, 0.85, 0.95, 1.1])   # stern heavier than bow (Hoerner-like)
+STATIONS = np.linspace(-0.45, 0.45, 10)  # strips of L/10
+STRIP_CD = np.array(
+    [1.6, 1.3, 1.0, 0.85, 0.8, 0.8, 0.8, 0.85, 0.95, 1.1]
+)  # stern heavier than bow (Hoerner-like)
 
 
 def crossflow(f, h, v, r):
     """Strip theory with a drag coefficient for each section, heavier aft: Y, N."""
     q, Y, N = -0.5 * h.rho * h.d * h.L / 10 * f.crossflow, 0.0, 0.0
-    for x, cd in zip(STATIONS, STRIP_CD):
+    for x, cd in zip(STATIONS, STRIP_CD, strict=True):
         local = v + x * h.L * r
         y = q * cd * local * np.abs(local)
         Y, N = Y + y, N + x * h.L * y
@@ -33,7 +83,9 @@ def worn_thrust(f, h, thrust, n, u_P):
     """Worn blades lose 60 % of their loss evenly, the rest the faster they advance: lost thrust [N] (>= 0 ahead)."""
     at_service = 0.5 * h.rho * h.L * h.d * h.U0**2 * h.R0 / (1 - h.t_P)
     advance = u_P * n / (h.U0 * (1 - h.w_P0) * h.n0)
-    return f.prop_wear * np.where(n > 0, 0.6 * thrust + 0.4 * at_service * np.clip(advance, 0, 1.5), 0.6 * thrust)
+    return f.prop_wear * np.where(
+        n > 0, 0.6 * thrust + 0.4 * at_service * np.clip(advance, 0, 1.5), 0.6 * thrust
+    )
 
 
 def worn_rudder(f, h, delta):
@@ -48,7 +100,7 @@ def blade_angle(f, h, feedback):
 
 def propeller_walk(f, h, thrust, n, u_P, u):
     """The blades push the stern sideways, most when they back and when she is slow: Y, N."""
-    load = np.abs(thrust) * (1 + 0.5 * np.exp(-(u / (0.3 * h.U0)) ** 2)) * np.where(n >= 0, 1.0, -2.0)
+    load = np.abs(thrust) * (1 + 0.5 * np.exp(-((u / (0.3 * h.U0)) ** 2))) * np.where(n >= 0, 1.0, -2.0)
     Y = f.walk * load
     return Y, -0.49 * h.L * Y
 
@@ -70,7 +122,11 @@ def external(f, t, psi):
     """A pull from a fixed bearing, wavering by 15 %: X, Y, N."""
     waver = 1 + 0.15 * np.sin(2 * np.pi * t / f.ext_period + 1.0)
     c, s = np.cos(psi), np.sin(psi)
-    return (f.ext_north * c + f.ext_east * s) * waver, (f.ext_east * c - f.ext_north * s) * waver, f.ext_N * waver
+    return (
+        (f.ext_north * c + f.ext_east * s) * waver,
+        (f.ext_east * c - f.ext_north * s) * waver,
+        f.ext_N * waver,
+    )
 
 
 def bank(f, h, u, clearance):
@@ -85,7 +141,9 @@ def bank(f, h, u, clearance):
 def ice(f, h, x, y, u):
     """Brash fields: extra drag where she happens to be: X."""
     length = f.ice_length
-    field = np.sin(x / length + f.ice_phase) * np.sin(y / length + 2 * f.ice_phase) + 0.4 * np.sin((x - y) / (0.4 * length))
+    field = np.sin(x / length + f.ice_phase) * np.sin(y / length + 2 * f.ice_phase) + 0.4 * np.sin(
+        (x - y) / (0.4 * length)
+    )
     cover = 1 / (1 + np.exp(-6 * (field - 0.2)))
     return -f.ice * 0.5 * h.rho * h.L * h.d * h.R0 * h.U0**2 * cover * np.tanh(u / (0.2 * h.U0))
 
@@ -107,13 +165,17 @@ def slosh(f, h, lag, speed, sway_acceleration):
 def squall(f, t):
     """Wind speed [m/s] of a squall that the anemometer, in the lee of the house, does not feel."""
     x = ((t % f.squall_every) - 0.6 * f.squall_every) / f.squall_width
-    return f.squall_mps * np.exp(-x**4)
+    return f.squall_mps * np.exp(-(x**4))
 
 
 SHALLOW_T_H = np.array([0.0, 0.2, 0.4, 0.55, 0.67, 0.77, 0.85, 0.95])
-SHALLOW = np.array([[1.0, 1.02, 1.08, 1.17, 1.32, 1.60, 2.1, 3.0],        # resistance
-                    [1.0, 1.03, 1.16, 1.45, 1.95, 2.75, 4.0, 7.0],        # sway
-                    [1.0, 1.01, 1.07, 1.22, 1.48, 1.85, 2.4, 3.5]])       # yaw
+SHALLOW = np.array(
+    [
+        [1.0, 1.02, 1.08, 1.17, 1.32, 1.60, 2.1, 3.0],  # resistance
+        [1.0, 1.03, 1.16, 1.45, 1.95, 2.75, 4.0, 7.0],  # sway
+        [1.0, 1.01, 1.07, 1.22, 1.48, 1.85, 2.4, 3.5],
+    ]
+)  # yaw
 
 
 def shallow(draught_over_depth):

@@ -1,4 +1,5 @@
 """A fleet: the numbers of many hulls side by side, every number an array of shape (B,)."""
+
 from dataclasses import fields
 from types import SimpleNamespace
 
@@ -18,7 +19,7 @@ def stack(hulls) -> SimpleNamespace:
         if isinstance(values[0], tuple):
             longest = max(map(len, values))
             padded = [v + (0.0,) * (longest - len(v)) for v in values]
-            setattr(h, f.name, tuple(np.array(c, float) for c in zip(*padded)))
+            setattr(h, f.name, tuple(np.array(c, float) for c in zip(*padded, strict=True)))
         elif not isinstance(values[0], str):
             setattr(h, f.name, np.array(values, float))
     return _with_inertia(h)
@@ -27,9 +28,9 @@ def stack(hulls) -> SimpleNamespace:
 def _with_inertia(h):
     """Masses [kg], inertias [kg m2] about midship, and the inverse of the sway-yaw-roll matrix.
 
-        [ m + my        m x_G + my a_y    -my l_y ] [v']   [Y]
-        [ m x_G + my a_y   I_z + J_z          0   ] [r'] = [N]
-        [ -my l_y             0            I_x+J_x] [p']   [K]        (Son & Nomoto 1981, Yasukawa & Yoshimura 2014)
+    [ m + my        m x_G + my a_y    -my l_y ] [v']   [Y]
+    [ m x_G + my a_y   I_z + J_z          0   ] [r'] = [N]
+    [ -my l_y             0            I_x+J_x] [p']   [K]        (Son & Nomoto 1981, Yasukawa & Yoshimura 2014)
     """
     mass, inertia = 0.5 * h.rho * h.L**2 * h.d, 0.5 * h.rho * h.L**4 * h.d
     h.M, h.Mx, h.My = h.m * mass, h.mx * mass, h.my * mass
@@ -51,6 +52,7 @@ def _with_inertia(h):
 def propeller_rate_service(h):
     """Propeller rate [1/s] that balances the calm resistance at U0 (bisection)."""
     from .mmg import open_water
+
     need = 0.5 * h.rho * h.L * h.d * h.U0**2 * h.R0 / (1 - h.t_P)
     low, high = np.zeros_like(need), 5 * h.U0 / h.D_P
     for _ in range(60):

@@ -1,4 +1,5 @@
 """Steering gear and engine: what lies between an order and the blade."""
+
 import numpy as np
 
 from .fleet import limit

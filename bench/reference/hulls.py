@@ -95,7 +95,7 @@ kvlcc2 = Hull(
 def froude(hull: Hull, name: str, L: float, rho: float, **changes) -> Hull:
     """The same ship at another length: areas with s^2, times with sqrt(s), rates with 1/sqrt(s) (HK)."""
     s = L / hull.L
-    lengths = {f: getattr(hull, f) * s for f in ("L", "B", "d", "x_G", "D_P", "GM", "z_H", "z_R", "l_y", "z_W", "scale")}
+    lengths = {f: getattr(hull, f) * s for f in ["L", "B", "d", "x_G", "D_P", "GM", "z_H", "z_R", "l_y", "z_W", "scale"]}
     areas = {f: getattr(hull, f) * s * s for f in ("A_R", "A_F", "A_L")}
     times = {f: getattr(hull, f) * sqrt(s) for f in ("U0", "rudder_time", "engine_time")}
     values = {**lengths, **areas, **times, "rudder_rate": hull.rudder_rate / sqrt(s), "rho": rho, **changes}
@@ -108,7 +108,12 @@ kvlcc2_model = froude(kvlcc2, "kvlcc2_model", 7.0, 1000.0, w_P0=0.40, engine_tim
 
 
 _L_d = 175.0 / 8.5          # SN81 normalises by L^2, we by L d
-_sn = lambda *c: tuple(v * _L_d for v in c)
+
+
+def _sn(*numbers):
+    """SN81's force coefficients in our normalisation."""
+    return tuple(n * _L_d for n in numbers)
+
 
 container = Hull(
     "container", L=175.0, B=25.4, d=8.5, m=0.00792 * _L_d, mx=0.000238 * _L_d, my=0.007049 * _L_d, Jz=0.000419 * _L_d,  # SN81

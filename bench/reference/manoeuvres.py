@@ -1,4 +1,5 @@
 """What the helmsman does: manoeuvres as tables of legs, lengths in ship lengths travelled, so that they suit every hull."""
+
 from dataclasses import dataclass
 
 COURSE, ZIGZAG, RUDDER = 0, 1, 2
@@ -7,11 +8,12 @@ COURSE, ZIGZAG, RUDDER = 0, 1, 2
 @dataclass(frozen=True)
 class Leg:
     """`mode` COURSE: turn by `a` degrees and hold; ZIGZAG: rudder +-a against heading +-b; RUDDER: hold rudder `a`."""
+
     mode: int
-    lengths: float               # how long, in L/U0 of time
+    lengths: float  # how long, in L/U0 of time
     a: float = 0.0
     b: float = 0.0
-    rate: float = 1.0            # propeller rate / initial rate; below zero: astern until she stops
+    rate: float = 1.0  # propeller rate / initial rate; below zero: astern until she stops
 
 
 def zigzag(angle):
@@ -21,16 +23,35 @@ def zigzag(angle):
 MANOEUVRES = {
     "zigzag_10": zigzag(10),
     "zigzag_20": zigzag(20),
-    "turning_circle": [Leg(COURSE, 3), Leg(RUDDER, 25, 20), Leg(COURSE, 6), Leg(RUDDER, 25, -20), Leg(COURSE, 6)],
-    "course_changes": [Leg(COURSE, 4), Leg(COURSE, 6, 20), Leg(COURSE, 6, -35), Leg(COURSE, 7, 45), Leg(COURSE, 6, -30),
-                       Leg(COURSE, 7, -60), Leg(COURSE, 8, 75)],
-    "speed_changes": [Leg(COURSE, 5), Leg(COURSE, 7, 0, rate=0.6), Leg(COURSE, 7, 15, rate=0.85), Leg(COURSE, 8, -15, rate=0.45),
-                      Leg(COURSE, 8, 10, rate=1.0), Leg(COURSE, 6, -10, rate=0.7)],
+    "turning_circle": [
+        Leg(COURSE, 3),
+        Leg(RUDDER, 25, 20),
+        Leg(COURSE, 6),
+        Leg(RUDDER, 25, -20),
+        Leg(COURSE, 6),
+    ],
+    "course_changes": [
+        Leg(COURSE, 4),
+        Leg(COURSE, 6, 20),
+        Leg(COURSE, 6, -35),
+        Leg(COURSE, 7, 45),
+        Leg(COURSE, 6, -30),
+        Leg(COURSE, 7, -60),
+        Leg(COURSE, 8, 75),
+    ],
+    "speed_changes": [
+        Leg(COURSE, 5),
+        Leg(COURSE, 7, 0, rate=0.6),
+        Leg(COURSE, 7, 15, rate=0.85),
+        Leg(COURSE, 8, -15, rate=0.45),
+        Leg(COURSE, 8, 10, rate=1.0),
+        Leg(COURSE, 6, -10, rate=0.7),
+    ],
     "crash_stop": [Leg(COURSE, 4), Leg(COURSE, 14, 0, rate=-0.6), Leg(COURSE, 20, 0, rate=0.8)],
     "reciprocal_runs": [Leg(COURSE, 14), Leg(COURSE, 20, 180)],
     "square": [Leg(COURSE, 11), Leg(COURSE, 11, 90), Leg(COURSE, 11, 90), Leg(COURSE, 11, 90)],
     "straight": [Leg(COURSE, 45)],
-    "mixed": None,               # drawn from the seed: course changes, zigzags, turns, speeds
+    "mixed": None,  # drawn from the seed: course changes, zigzags, turns, speeds
 }
 
 

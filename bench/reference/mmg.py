@@ -2,11 +2,12 @@
 
 Everything takes a fleet `h` (see fleet.stack) and arrays (B,); forces in N and N m, body axes about midship.
 """
+
 import numpy as np
 
 from .fleet import limit
 
-R_CLIP = 1.2        # r' beyond which the polynomial has never been measured (pivoting at rest)
+R_CLIP = 1.2  # r' beyond which the polynomial has never been measured (pivoting at rest)
 
 
 def hull(h, u, v, r, p, phi, shallow=(1.0, 1.0, 1.0)):
@@ -20,9 +21,25 @@ def hull(h, u, v, r, p, phi, shallow=(1.0, 1.0, 1.0)):
     a, b, c = limit(u / (0.05 * h.U0), -1, 1), v / U, limit(r * h.L / U, -R_CLIP, R_CLIP)
     q = 0.5 * h.rho * h.L * h.d * U * U
     bb, cc, ff = b * b, c * c, phi * phi
-    X = q * (-h.R0 * shallow[0] * u / U + h.X[0] * bb + h.X[1] * b * c * a + h.X[2] * cc + h.X[3] * bb * bb + h.heel_X[0] * ff)
-    Y = q * shallow[1] * (b * (h.Y[0] + h.Y[2] * bb + h.Y[4] * cc) + a * c * (h.Y[1] + h.Y[3] * bb + h.Y[5] * cc))
-    N = q * h.L * shallow[2] * (a * b * (h.N[0] + h.N[2] * bb + h.N[4] * cc) + c * (h.N[1] + h.N[3] * bb + h.N[5] * cc))
+    X = q * (
+        -h.R0 * shallow[0] * u / U
+        + h.X[0] * bb
+        + h.X[1] * b * c * a
+        + h.X[2] * cc
+        + h.X[3] * bb * bb
+        + h.heel_X[0] * ff
+    )
+    Y = (
+        q
+        * shallow[1]
+        * (b * (h.Y[0] + h.Y[2] * bb + h.Y[4] * cc) + a * c * (h.Y[1] + h.Y[3] * bb + h.Y[5] * cc))
+    )
+    N = (
+        q
+        * h.L
+        * shallow[2]
+        * (a * b * (h.N[0] + h.N[2] * bb + h.N[4] * cc) + c * (h.N[1] + h.N[3] * bb + h.N[5] * cc))
+    )
     N -= 0.02 * 0.5 * h.rho * h.d * h.L**4 * np.abs(r) * (r - c * U / h.L)
     if not h.heels:
         return X, Y, N, -h.z_H * Y
@@ -36,8 +53,13 @@ def _heel(h, b, c, p, phi):
     y, n, k = h.heel_Y, h.heel_N, h.heel_K
     Y = phi * (y[0] + y[1] * bb + y[3] * cc) + ff * (y[2] * b + y[4] * c)
     N = n[0] * p + phi * (n[1] + n[2] * bb + n[4] * cc) + ff * (n[3] * b + n[5] * c)
-    K = (b * (k[0] + k[4] * bb + k[7] * cc) + c * (k[1] + k[5] * cc + k[6] * bb) + k[2] * p
-         + phi * (k[3] + k[8] * bb + k[10] * cc) + ff * (k[9] * b + k[11] * c))
+    K = (
+        b * (k[0] + k[4] * bb + k[7] * cc)
+        + c * (k[1] + k[5] * cc + k[6] * bb)
+        + k[2] * p
+        + phi * (k[3] + k[8] * bb + k[10] * cc)
+        + ff * (k[9] * b + k[11] * c)
+    )
     return Y, N, K
 
 

@@ -5,6 +5,7 @@ speed; pitch and its rate; slosh and its speed. Surge, sway, yaw and roll are co
 oscillators driven by the waves. In an even current the through-water equations hold as they stand; a changing current
 adds the inertia -m dc/dt.
 """
+
 import numpy as np
 
 from . import flaws, mmg
@@ -24,14 +25,17 @@ class Tally:
 
     def add(self, origin, X=0.0, Y=0.0, N=0.0, K=0.0):
         new = (X, Y, N, K)
-        self.total = [a if isinstance(b, float) else a + b for a, b in zip(self.total, new)]
+        self.total = [a if isinstance(b, float) else a + b for a, b in zip(self.total, new, strict=True)]
         old = self.by.get(origin)
-        self.by[origin] = new[:3] if old is None else tuple(a + b for a, b in zip(old, new))
+        self.by[origin] = new[:3] if old is None else tuple(a + b for a, b in zip(old, new[:3], strict=True))
 
     def remember(self, effect, X=0.0, Y=0.0, N=0.0):
         """Note the size of a hidden effect (its sum is already among the forces)."""
         old = self.squares.get(effect, (0.0, 0.0, 0.0, 0))
-        self.squares[effect] = tuple(a + np.square(b) for a, b in zip(old, (X, Y, N))) + (old[3] + 1,)
+        self.squares[effect] = (
+            *tuple(a + np.square(b) for a, b in zip(old[:3], (X, Y, N), strict=True)),
+            old[3] + 1,
+        )
 
     def typical(self, effect, k):
         """Root mean square X, Y, N of an effect on ship `k`."""
@@ -66,7 +70,10 @@ def steering(tally, f, on, h, u, v, r, u_P, thrust, blade, feedback):
         tally.hidden("RudderWear", *(lost * c for c in force))
     if on.rudder_offset or on.backlash:
         straight = mmg.rudder(h, u, v, r, u_P, thrust, feedback)
-        tally.remember("RudderOffset" if on.rudder_offset else "RudderBacklash", *(a - b for a, b in zip(force[:3], straight)))
+        tally.remember(
+            "RudderOffset" if on.rudder_offset else "RudderBacklash",
+            *(a - b for a, b in zip(force[:3], straight[:3], strict=True)),
+        )
 
 
 def water(tally, f, on, h, s, env):
@@ -75,7 +82,12 @@ def water(tally, f, on, h, s, env):
     force = mmg.hull(h, u, v, r, s[P], phi)
     tally.add("hull", *force)
     if on.shallow:
-        extra = [a - b for a, b in zip(mmg.hull(h, u, v, r, s[P], phi, flaws.shallow(h.d / env.depth)), force)]
+        extra = [
+            a - b
+            for a, b in zip(
+                mmg.hull(h, u, v, r, s[P], phi, flaws.shallow(h.d / env.depth)), force, strict=True
+            )
+        ]
         tally.hidden("ShallowWater", *extra)
     if on.crossflow:
         tally.hidden("CrossFlowDrag", 0.0, *flaws.crossflow(f, h, v, r))

@@ -1,4 +1,5 @@
 """The sea itself: a fleet of ships, each with her helmsman, weather, flaws and instruments, stepped tick by tick."""
+
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,8 +15,31 @@ from .sensors import COLUMNS, Instruments, compass_error
 from .weather import WEATHERS, Weather, rotated
 
 ORIGINS = ("hull", "propeller", "rudder", "wind", "waves", "hidden", "known")
-TRUE = """north east psi u v r u_r v_r phi p heave pitch rudder rudder_feedback rudder_order rudder_recorded n
-wind_speed wind_from current_north current_east depth bank""".split()
+TRUE = [
+    "north",
+    "east",
+    "psi",
+    "u",
+    "v",
+    "r",
+    "u_r",
+    "v_r",
+    "phi",
+    "p",
+    "heave",
+    "pitch",
+    "rudder",
+    "rudder_feedback",
+    "rudder_order",
+    "rudder_recorded",
+    "n",
+    "wind_speed",
+    "wind_from",
+    "current_north",
+    "current_east",
+    "depth",
+    "bank",
+]
 LAG_TICKS = 512
 
 
@@ -49,7 +73,7 @@ class Sea:
 
     def __init__(self, cases, tick_s=0.1):
         self.single = not isinstance(cases, (list, tuple))
-        self.cases = [cases, cases] if self.single else list(cases)      # numpy sums one ship otherwise than many
+        self.cases = [cases, cases] if self.single else list(cases)  # numpy sums one ship otherwise than many
         self.dt, self.tick, self.ahead = tick_s, 0, 0.0
         self._build()
         self._tick()
@@ -58,23 +82,33 @@ class Sea:
         cases, seeds = self.cases, [c.seed for c in self.cases]
         calm = [hull_of(c) for c in cases]
         self.heading = np.array([first_heading(c) for c in cases])
-        turned = [rotated(weather_of(c), float(np.degrees(p))) for c, p in zip(cases, self.heading)]
-        real = [prepare(x, w, c.hidden, c.decoys, c.seed) for x, w, c in zip(calm, turned, cases)]
-        self.hulls, self.weathers, numbers, self.hidden = (list(z) for z in zip(*real))
+        turned = [
+            rotated(weather_of(c), float(np.degrees(p))) for c, p in zip(cases, self.heading, strict=True)
+        ]
+        real = [
+            prepare(x, w, c.hidden, c.decoys, c.seed) for x, w, c in zip(calm, turned, cases, strict=True)
+        ]
+        self.hulls, self.weathers, numbers, self.hidden = (list(z) for z in zip(*real, strict=True))
         self.h, self.f = stack(self.hulls), stack_flaws(numbers)
         self.on = SimpleNamespace(**{n: bool(getattr(self.f, n).any()) for n in flaws.FIELDS})
         self.on.ext_north = self.on.ext_north or self.on.ext_east
         self.on.shallow = any(np.isfinite(w.depth_m) for w in self.weathers)
-        has = lambda name: np.array([name in c.decoys for c in cases], float)
-        self.known_wind, self.known_waves = has("wind"), has("waves")
+        self.known_wind, self.known_waves = (
+            np.array([n in c.decoys for c in cases], float) for n in ("wind", "waves")
+        )
         self.env = Environment(self.hulls, self.h, self.weathers, self.f, seeds, self.dt)
         self.substeps = max(1, round(self.dt / (0.05 if min(x.L for x in self.hulls) < 20 else 0.1)))
         share = np.array([c.speed_fraction for c in cases])
         n_start = stack(calm).n0 * share
-        plans = [legs(c.manoeuvre, x, c.duration_s or 24 * 3600, np.random.default_rng([c.seed, 9])) for c, x in zip(cases, calm)]
+        plans = [
+            legs(c.manoeuvre, x, c.duration_s or 24 * 3600, np.random.default_rng([c.seed, 9]))
+            for c, x in zip(cases, calm, strict=True)
+        ]
         self.pilot = Autopilot(plans, self.h, n_start, self.heading)
         perfect = [c.sensors == "perfect" for c in cases]
-        self.instruments = Instruments(self.h, self.f, np.array([x.d for x in calm]), self.weathers, seeds, self.dt, perfect)
+        self.instruments = Instruments(
+            self.h, self.f, np.array([x.d for x in calm]), self.weathers, seeds, self.dt, perfect
+        )
         self._rest(share, n_start)
 
     def _rest(self, share, n_start):
@@ -111,26 +145,56 @@ class Sea:
 
     def _slope(self, t):
         sway = 0.0 if self.old is None else self.old[motion.V] + self.s[motion.U] * self.s[motion.R]
-        return motion.rate(self.tally, self.f, self.on, self.h, self.s, sway, self.env, t, self.n, self.blade, self.gear)
+        return motion.rate(
+            self.tally, self.f, self.on, self.h, self.s, sway, self.env, t, self.n, self.blade, self.gear
+        )
 
     def _forces(self):
         """Force by origin, (7, 3, B); and the running size of what weather does."""
         zero, by = np.zeros(len(self.cases)), self.tally.by
-        known = [self.known_wind * a + self.known_waves * b for a, b in zip(by["wind"], self.env.drift)]
+        known = [
+            self.known_wind * a + self.known_waves * b
+            for a, b in zip(by["wind"], self.env.drift, strict=True)
+        ]
         self.tally.remember("Wind", *by["wind"])
         self.tally.remember("WaveDrift", *self.env.drift)
         if self.env.has_squall:
             self.tally.remember("Squall", *by["hidden"])
-        return np.array([[zero + c for c in (known if o == "known" else by.get(o, (0.0, 0.0, 0.0)))] for o in ORIGINS])
+        return np.array(
+            [[zero + c for c in (known if o == "known" else by.get(o, (0.0, 0.0, 0.0)))] for o in ORIGINS]
+        )
 
     def _true(self):
         s, env = self.s, self.env
         cos, sin = np.cos(s[motion.PSI]), np.sin(s[motion.PSI])
         north, east = env.current
         recorded = np.where(self.f.lag_time > 0, self.order, self.gear)
-        values = (s[0], s[1], s[2], s[3] + north * cos + east * sin, s[4] + east * cos - north * sin, s[5], s[3], s[4], s[6], s[7],
-                  s[8], s[10], self.blade, self.gear, self.order, recorded, self.n, env.wind_speed, env.wind_from, north, east, env.depth, env.bank)
-        return dict(zip(TRUE, values))
+        values = (
+            s[0],
+            s[1],
+            s[2],
+            s[3] + north * cos + east * sin,
+            s[4] + east * cos - north * sin,
+            s[5],
+            s[3],
+            s[4],
+            s[6],
+            s[7],
+            s[8],
+            s[10],
+            self.blade,
+            self.gear,
+            self.order,
+            recorded,
+            self.n,
+            env.wind_speed,
+            env.wind_from,
+            north,
+            east,
+            env.depth,
+            env.bank,
+        )
+        return dict(zip(TRUE, values, strict=True))
 
     def step(self):
         """One tick onward: Adams-Bashforth of second order, in substeps that a small boat's heave needs."""

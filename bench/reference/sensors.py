@@ -3,14 +3,36 @@
 Body velocities over ground come from a satellite and inertial unit with an attitude of its own, so that a wrong
 compass does not turn them.
 """
+
 import numpy as np
 
 from .chance import Chance
 
-COLUMNS = """time_s north_m east_m heading_true_north_deg surge_velocity_mps sway_velocity_mps surge_velocity_through_water_mps
-sway_velocity_through_water_mps yaw_rate_degps rudder_angle_deg propeller_rate_rpm true_wind_speed_mps true_wind_direction_deg
-apparent_wind_speed_mps apparent_wind_angle_deg water_depth_m wave_height_significant_m wave_period_peak_s wave_direction_deg
-draught_mean_m bank_distance_port_m bank_distance_starboard_m roll_deg""".split()
+COLUMNS = [
+    "time_s",
+    "north_m",
+    "east_m",
+    "heading_true_north_deg",
+    "surge_velocity_mps",
+    "sway_velocity_mps",
+    "surge_velocity_through_water_mps",
+    "sway_velocity_through_water_mps",
+    "yaw_rate_degps",
+    "rudder_angle_deg",
+    "propeller_rate_rpm",
+    "true_wind_speed_mps",
+    "true_wind_direction_deg",
+    "apparent_wind_speed_mps",
+    "apparent_wind_angle_deg",
+    "water_depth_m",
+    "wave_height_significant_m",
+    "wave_period_peak_s",
+    "wave_direction_deg",
+    "draught_mean_m",
+    "bank_distance_port_m",
+    "bank_distance_starboard_m",
+    "roll_deg",
+]
 
 # instrument: seconds between samples, seconds late, share of samples lost, its columns
 INSTRUMENTS = {
@@ -19,14 +41,27 @@ INSTRUMENTS = {
     "log": (0.5, 0.2, 0.005, "surge_velocity_through_water_mps sway_velocity_through_water_mps"),
     "rudder": (0.1, 0.0, 0.0, "rudder_angle_deg"),
     "engine": (0.5, 0.0, 0.0, "propeller_rate_rpm"),
-    "anemometer": (1.0, 0.0, 0.002, "true_wind_speed_mps true_wind_direction_deg apparent_wind_speed_mps apparent_wind_angle_deg"),
+    "anemometer": (
+        1.0,
+        0.0,
+        0.002,
+        "true_wind_speed_mps true_wind_direction_deg apparent_wind_speed_mps apparent_wind_angle_deg",
+    ),
     "sounder": (1.0, 0.0, 0.01, "water_depth_m"),
     "shore": (1.0, 0.0, 0.0, "bank_distance_port_m bank_distance_starboard_m"),
-    "bridge": (60.0, 0.0, 0.0, "wave_height_significant_m wave_period_peak_s wave_direction_deg draught_mean_m"),
+    "bridge": (
+        60.0,
+        0.0,
+        0.0,
+        "wave_height_significant_m wave_period_peak_s wave_direction_deg draught_mean_m",
+    ),
 }
 DELAYED = ("north", "east", "psi", "u", "v", "r", "u_r", "v_r")
-MEMORY = 1024          # ticks that a late instrument may look back
-DEEP, OPEN = 12.0, 20.0   # reported depth / draught and bank distance / beam where there is neither bottom nor bank
+MEMORY = 1024  # ticks that a late instrument may look back
+DEEP, OPEN = (
+    12.0,
+    20.0,
+)  # reported depth / draught and bank distance / beam where there is neither bottom nor bank
 
 
 class Instruments:
@@ -40,16 +75,22 @@ class Instruments:
         self.rows, self.any_perfect = np.arange(len(seeds)), bool(self.perfect.any())
         self.nothing = np.full(len(seeds), np.nan)
         eye = np.stack([np.random.default_rng([s, 6]).standard_normal(2) for s in seeds], 1) * self.noisy
-        get = lambda name: np.array([getattr(w, name) for w in weathers], float)
-        self.height, self.period = get("wave_height_m") * (1 + 0.1 * eye[0]), get("wave_period_s")
-        self.wave_from = get("wave_from_deg") + 10 * eye[1]
+        reported = np.array([(w.wave_height_m, w.wave_period_s, w.wave_from_deg) for w in weathers], float).T
+        self.height, self.period, self.wave_from = (
+            reported[0] * (1 + 0.1 * eye[0]),
+            reported[1],
+            reported[2] + 10 * eye[1],
+        )
 
     def _late(self, tick, seconds):
         """The delayed rows as they were `seconds` (B,) ago, between ticks by straight lines."""
         back = np.minimum(np.asarray(seconds) / self.dt + np.zeros(len(self.rows)), min(tick, MEMORY - 2))
         whole = back.astype(int)
         part = back - whole
-        near, far = self.ring[(tick - whole) % MEMORY, :, self.rows], self.ring[(tick - whole - (part > 0)) % MEMORY, :, self.rows]
+        near, far = (
+            self.ring[(tick - whole) % MEMORY, :, self.rows],
+            self.ring[(tick - whole - (part > 0)) % MEMORY, :, self.rows],
+        )
         return ((1 - part[:, None]) * near + part[:, None] * far).T
 
     def read(self, tick, t, true, env):
@@ -62,7 +103,9 @@ class Instruments:
             due = tick % max(1, round(period / self.dt)) == 0
             if due or self.any_perfect:
                 getattr(self, "_" + name)(tick, true, env, out, e)
-                self._blank(out, columns, due, np.abs(self.lost.at(tick)[i]) < 1.2533 * share)   # a normal number that small: `share`
+                self._blank(
+                    out, columns, due, np.abs(self.lost.at(tick)[i]) < 1.2533 * share
+                )  # a normal number that small: `share`
         return out
 
     def _blank(self, out, columns, due, lost):
@@ -78,8 +121,12 @@ class Instruments:
         cos, sin = np.cos(psi), np.sin(psi)
         position, speed = self.h.noise[0], self.h.noise[1]
         wander = 0.3 * position * self.noisy
-        out["north_m"] = north + cos * f.antenna_x - sin * f.antenna_y + position * e[0] + wander * env.gnss_north
-        out["east_m"] = east + sin * f.antenna_x + cos * f.antenna_y + position * e[1] + wander * env.gnss_east
+        out["north_m"] = (
+            north + cos * f.antenna_x - sin * f.antenna_y + position * e[0] + wander * env.gnss_north
+        )
+        out["east_m"] = (
+            east + sin * f.antenna_x + cos * f.antenna_y + position * e[1] + wander * env.gnss_east
+        )
         out["surge_velocity_mps"] = u - r * f.antenna_y + speed * e[2]
         out["sway_velocity_mps"] = v + r * f.antenna_x + speed * e[3]
 

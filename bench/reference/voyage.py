@@ -1,4 +1,5 @@
 """Voyages: cases in, recordings out."""
+
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,9 +17,10 @@ class Case:
 
     `weather` is relative to the first heading, which the seed draws unless `heading_deg` fixes it; `sensors` is "ship" or "perfect".
     """
-    hull: object = "kvlcc2"            # a name of hulls.HULLS or a Hull
-    manoeuvre: object = "mixed"        # a name of manoeuvres.MANOEUVRES or a tuple of Legs
-    weather: object = "calm"           # a name of weather.WEATHERS or a Weather
+
+    hull: object = "kvlcc2"  # a name of hulls.HULLS or a Hull
+    manoeuvre: object = "mixed"  # a name of manoeuvres.MANOEUVRES or a tuple of Legs
+    weather: object = "calm"  # a name of weather.WEATHERS or a Weather
     hidden: tuple = ()
     decoys: tuple = ()
     seed: int = 0
@@ -31,6 +33,7 @@ class Case:
 @dataclass
 class Recording:
     """What was measured (`columns`), what was true (`truth`), what was hidden, and the forces that count as known."""
+
     case: Case
     columns: dict = field(repr=False)
     truth: dict = field(repr=False)
@@ -54,31 +57,40 @@ def simulate(cases, tick_s=0.1, batch=64) -> list[Recording]:
         sizes.setdefault((hull_of(case).L < 20, case.duration_s), []).append(i)
     for members in sizes.values():
         for k in range(0, len(members), batch):
-            chosen = members[k:k + batch]
-            out.update(zip(chosen, _sail([cases[i] for i in chosen], tick_s)))
+            chosen = members[k : k + batch]
+            out.update(zip(chosen, _sail([cases[i] for i in chosen], tick_s), strict=True))
     return [out[i] for i in range(len(cases))]
 
 
 def _sail(cases, tick_s):
     ships = cases if len(cases) > 1 else cases * 2
-    sea, count = Sea(ships, tick_s), [int(round(c.duration_s / tick_s)) + 1 for c in ships]
+    sea, count = Sea(ships, tick_s), [round(c.duration_s / tick_s) + 1 for c in ships]
     rows = max(count)
     measured = np.empty((rows, len(COLUMNS), len(ships)))
-    true, forces = np.empty((rows, len(TRUE), len(ships))), np.empty((rows, len(ORIGINS), 3, len(ships)), np.float32)
+    true, forces = (
+        np.empty((rows, len(TRUE), len(ships))),
+        np.empty((rows, len(ORIGINS), 3, len(ships)), np.float32),
+    )
     for i in range(rows):
         if i:
             sea.step()
         measured[i] = [sea.row[name] for name in COLUMNS]
         true[i], forces[i] = list(sea.true.values()), sea.forces
-    return [_recording(sea, k, cases[k], *(a[:count[k], ..., k].copy() for a in (measured, true, forces))) for k in range(len(cases))]
+    return [
+        _recording(sea, k, cases[k], *(a[: count[k], ..., k].copy() for a in (measured, true, forces)))
+        for k in range(len(cases))
+    ]
 
 
 def _recording(sea, k, case, measured, true, forces):
-    columns = dict(zip(COLUMNS, np.ascontiguousarray(measured.T)))
-    truth = dict(zip(TRUE, np.ascontiguousarray(true.T)))
-    truth["forces"] = {origin: dict(zip(AXES, np.ascontiguousarray(forces[:, i].T))) for i, origin in enumerate(ORIGINS)}
+    columns = dict(zip(COLUMNS, np.ascontiguousarray(measured.T), strict=True))
+    truth = dict(zip(TRUE, np.ascontiguousarray(true.T), strict=True))
+    truth["forces"] = {
+        origin: dict(zip(AXES, np.ascontiguousarray(forces[:, i].T), strict=True))
+        for i, origin in enumerate(ORIGINS)
+    }
     hidden = {name: dict(facts) for name, facts in sea.hidden[k].items()}
     for name in hidden:
         if name in sea.tally.squares:
-            hidden[name]["typical_force"] = dict(zip(AXES, sea.tally.typical(name, k)))
+            hidden[name]["typical_force"] = dict(zip(AXES, sea.tally.typical(name, k), strict=True))
     return Recording(case, columns, truth, hidden, truth["forces"]["known"])

@@ -1,9 +1,11 @@
 """A short-crested JONSWAP sea, its first-order loads on a box of the ship's size, and its slow drift.
 
-Components a_i cos(w_i t - k_i (x cos m_i + y sin m_i) + e_i), m_i the direction of travel. First order: the Froude-Krylov
-pressure integrated over a box L x B x d (Journee & Massie 2001, ch. 6), enlarged by the added mass. Second order: Newman (1974), F = |sum a_i sqrt(D_i)
-exp(i p_i)|^2, whose D_i are those of a wall that reflects the share R^2 = 1 - exp(-k d) twice over.
+Components a_i cos(w_i t - k_i (x cos m_i + y sin m_i) + e_i), m_i the direction of travel. First order: the
+Froude-Krylov pressure integrated over a box L x B x d (Journee & Massie 2001, ch. 6), enlarged by the added
+mass. Second order: Newman (1974), F = |sum a_i sqrt(D_i) exp(i p_i)|^2, D_i those of a wall that reflects what
+does not pass under the keel, R = 1 - exp(-k d).
 """
+
 from types import SimpleNamespace
 
 import numpy as np
@@ -35,7 +37,8 @@ def components(weather, rng):
 
 def stack_seas(seas):
     """Components of B ships as arrays (42, B)."""
-    return SimpleNamespace(**dict(zip(("a", "w", "k", "to", "e"), (np.stack(c, 1) for c in zip(*seas)))))
+    a, w, k, to, e = (np.stack(c, 1) for c in zip(*seas, strict=True))
+    return SimpleNamespace(a=a, w=w, k=k, to=to, e=e, cos_to=np.cos(to), sin_to=np.sin(to))
 
 
 def _sinc(q):
@@ -48,34 +51,39 @@ def _arm(q):
     return (np.sin(q) - q * np.cos(q)) / (q * q)
 
 
-def loads(h, sea, t, x, y, psi):
-    """First-order X, Y, N, K, heave force Z, pitch moment M; and drift X, Y, N; each (B,)."""
+def transfer(h, sea, psi):
+    """What depends on the heading only: loads per amplitude, (42, B) each, and the roots of the drift coefficients."""
     chi = sea.to - psi
     cos, sin = np.cos(chi), np.sin(chi)
-    phase = sea.w * t - sea.k * (x * np.cos(sea.to) + y * np.sin(sea.to)) + sea.e
-    c, s = sea.a * np.cos(phase), sea.a * np.sin(phase)
     ql, qb = 0.5 * sea.k * h.L * cos, 0.5 * sea.k * h.B * sin
     deep = np.exp(-0.5 * sea.k * h.d)
-    length, arm = _sinc(ql) * _sinc(qb) * deep, _arm(ql) * _sinc(qb) * deep
-    push = G * sea.k
-    X = -h.M * (push * cos * length * s).sum(0)
-    Y = -(h.M + h.My) * (push * sin * length * s).sum(0)
-    N = (h.M + h.My) * 0.5 * h.L * (push * sin * arm * c).sum(0)
-    K = -h.GZ * (sea.k * sin * length * s).sum(0)
-    plane = h.rho * G * h.L * h.B * 0.85
-    Z, M = plane * (length * c).sum(0), plane * 0.5 * h.L * (arm * s).sum(0)
-    return (X, Y, N, K, Z, M), _drift(h, sea, c, s, cos, sin, deep)
+    even = _sinc(ql) * _sinc(qb) * deep
+    odd = _arm(ql) * _sinc(qb) * deep
+    push, plane = G * sea.k, h.rho * G * h.L * h.B * 0.85
+    X, Y, N = -h.M * push * cos * even, -(h.M + h.My) * push * sin * even, (h.M + h.My) * 0.5 * h.L * push * sin * odd
+    K, Z, M = -h.GZ * sea.k * sin * even, plane * even, plane * 0.5 * h.L * odd
+    return (X, Y, N, K, Z, M), _drift_roots(h, cos, sin, deep)
 
 
-def _drift(h, sea, c, s, cos, sin, deep):
-    """Slow drift: what is reflected pushes; the bow quarter feels it further forward (moment of a box, 1/8 L)."""
+def _drift_roots(h, cos, sin, deep):
+    """Roots of the drift coefficients, pushing and pulling: the bow quarter feels it further forward (1/8 L)."""
     reflect = (1 - deep**2) ** 2 * 0.5 * h.rho * G
     ahead, aside = reflect * h.B * 0.35 * cos * np.abs(cos), reflect * h.L * sin * np.abs(sin)
-    out = []
-    for D in (ahead, aside, -0.125 * h.L * reflect * h.L * sin * cos):
-        plus, minus = np.sqrt(np.maximum(D, 0)), np.sqrt(np.maximum(-D, 0))
-        out.append((c * plus).sum(0) ** 2 + (s * plus).sum(0) ** 2 - (c * minus).sum(0) ** 2 - (s * minus).sum(0) ** 2)
-    return tuple(out)
+    turning = -0.125 * h.L * reflect * h.L * sin * cos
+    return [(np.sqrt(np.maximum(D, 0)), np.sqrt(np.maximum(-D, 0))) for D in (ahead, aside, turning)]
+
+
+def loads(sea, answer, t, x, y):
+    """First-order X, Y, N, K, heave force Z, pitch moment M; and drift X, Y, N; each (B,)."""
+    phase = sea.w * t - sea.k * (x * sea.cos_to + y * sea.sin_to) + sea.e
+    c, s = sea.a * np.cos(phase), sea.a * np.sin(phase)
+    (X, Y, N, K, Z, M), roots = answer
+    first = [(X * s).sum(0), (Y * s).sum(0), (N * c).sum(0), (K * s).sum(0), (Z * c).sum(0), (M * s).sum(0)]
+    drift = []
+    for plus, minus in roots:
+        gain = (c * plus).sum(0) ** 2 + (s * plus).sum(0) ** 2
+        drift.append(gain - (c * minus).sum(0) ** 2 - (s * minus).sum(0) ** 2)
+    return first, tuple(drift)
 
 
 def oscillator(h):

@@ -1,4 +1,5 @@
 """The weather of a voyage, its presets, and its slow and gusty wandering."""
+
 from dataclasses import dataclass, replace
 from math import inf
 
@@ -6,19 +7,20 @@ from math import inf
 @dataclass(frozen=True)
 class Weather:
     """Means over the voyage; directions in degrees from north (`from` where it comes from, `to` where it goes)."""
+
     wind_mps: float = 0.0
     wind_from_deg: float = 0.0
-    gust_share: float = 0.12           # standard deviation of gusts / mean wind
-    wave_height_m: float = 0.0         # significant
-    wave_period_s: float = 8.0         # of the spectral peak
+    gust_share: float = 0.12  # standard deviation of gusts / mean wind
+    wave_height_m: float = 0.0  # significant
+    wave_period_s: float = 8.0  # of the spectral peak
     wave_from_deg: float = 0.0
     current_mps: float = 0.0
     current_to_deg: float = 0.0
-    current_spread_mps: float = 0.0    # standard deviation of each component about the mean
-    current_time_s: float = 600.0      # its correlation time
+    current_spread_mps: float = 0.0  # standard deviation of each component about the mean
+    current_time_s: float = 600.0  # its correlation time
     depth_m: float = inf
-    depth_swing: float = 0.0           # share of depth by which the bottom rises and falls along the track
-    bank_m: float = inf                # mean clearance hull to bank; > 0 starboard, < 0 port
+    depth_swing: float = 0.0  # share of depth by which the bottom rises and falls along the track
+    bank_m: float = inf  # mean clearance hull to bank; > 0 starboard, < 0 port
 
 
 CALM = Weather(wind_mps=0.5)
@@ -35,17 +37,16 @@ WEATHERS = {
 
 def strong_wind(hull, strength, from_deg) -> dict:
     """15 m/s on a ship, 6 m/s on a boat, at strength 1."""
-    return dict(wind_mps=(15.0 if hull.L > 50 else 6.0) * strength, wind_from_deg=from_deg)
+    return {"wind_mps": (15.0 if hull.L > 50 else 6.0) * strength, "wind_from_deg": from_deg}
 
 
 def strong_waves(hull, strength, from_deg) -> dict:
     """3.5 m and 9.5 s on a ship of 175 m or more, less on a boat: Hs/L no more than 0.04; Tp = 5.1 sqrt(Hs), a sea half grown."""
     height = min(3.5, 0.04 * hull.L) * strength**0.5
-    return dict(wave_height_m=height, wave_period_s=max(1.2, 5.1 * height**0.5), wave_from_deg=from_deg)
+    return {"wave_height_m": height, "wave_period_s": max(1.2, 5.1 * height**0.5), "wave_from_deg": from_deg}
 
 
 def rotated(weather: Weather, by_deg: float) -> Weather:
     """The same weather for a ship whose first heading is `by_deg` instead of north."""
-    turn = lambda deg: (deg + by_deg) % 360
-    return replace(weather, wind_from_deg=turn(weather.wind_from_deg), wave_from_deg=turn(weather.wave_from_deg),
-                   current_to_deg=turn(weather.current_to_deg))
+    bearings = ("wind_from_deg", "wave_from_deg", "current_to_deg")
+    return replace(weather, **{name: (getattr(weather, name) + by_deg) % 360 for name in bearings})

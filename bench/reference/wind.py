@@ -34,7 +34,7 @@ def table(hull):
     """C_X, C_Y, C_N of one hull at 0, 10 ... 180 degrees, shape (3, 19)."""
     a_ss, s, c, masts = hull.house
     shape = [1, 2 * hull.A_L / hull.L**2, 2 * hull.A_F / hull.B**2, hull.L / hull.B, s, c]
-    return np.stack([-(A @ np.array(shape + [masts])), B @ np.array(shape + [a_ss]), C @ np.array(shape)])
+    return np.stack([-(A @ np.array([*shape, masts])), B @ np.array([*shape, a_ss]), C @ np.array(shape)])
 
 
 def force(h, tables, u_air, v_air):
