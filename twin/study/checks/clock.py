@@ -43,9 +43,10 @@ def time_gaps(view: View) -> Check:
     name, t = "time_gaps", view.voyage.time_s
     steps = np.diff(t)
     usual = float(np.median(steps[steps > 0.0]))
-    gaps = np.flatnonzero(steps > max(GAP_STEPS * usual, min(GAP_S, 20.0 * usual)))
+    limit = max(GAP_STEPS * usual, min(GAP_S, 20.0 * usual))
+    gaps = np.flatnonzero(steps > limit)
     if not gaps.size:
-        return good(name, "no gaps.")
+        return good(name, f"no step is longer than {limit:.3g} s.")
     worst = int(gaps[np.argmax(steps[gaps])])
     return doubtful(
         name,

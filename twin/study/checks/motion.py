@@ -46,6 +46,7 @@ GEOMETRY = (
     Mistake("surge and sway are swapped", lambda a: turned(1j * a.velocity.conj(), a.psi), "swap their columns"),
     Mistake("surge is positive astern", lambda a: turned(-a.velocity.conj(), a.psi), "sign = -1 for surge"),
     Mistake("surge and sway have the other sign", lambda a: turned(-a.velocity, a.psi), "sign = -1 for both"),
+    Mistake("sway is positive to port", lambda a: turned(a.velocity.conj(), a.psi), "sign = -1 for sway"),
     Mistake("the heading is in radians", lambda a: turned(a.velocity, a.psi * DEG_PER_RAD), 'unit = "rad" for it'),
     Mistake(
         "the heading counts anticlockwise from east", lambda a: turned(a.velocity, np.pi / 2 - a.psi),
@@ -74,7 +75,7 @@ def velocity_frame(view: View) -> Check:
     name = "velocity_frame"
     if view.derived("north_m", "surge_velocity_mps"):
         return course_against_heading(name, view)
-    first, last = view.windows(np.clip(view.voyage.duration_s / 20.0, 5.0 * view.step_s, 60.0))
+    first, last = view.windows(np.clip(view.voyage.duration_s / 20.0, 5.0 * view.step_s, max(60.0, 50.0 * view.step_s)))
     moved = view.place[last] - view.place[first]
     noise = position_noise(view.place)
     way = rms(moved)

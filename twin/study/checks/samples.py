@@ -108,10 +108,17 @@ def standing(view: View, name: str, other: np.ndarray | None, far: float, text: 
     with np.errstate(invalid="ignore"):
         starts = np.flatnonzero(np.r_[True, np.abs(np.diff(x)) > 1e-9 * np.nanmax(np.abs(x))])
     ends = np.r_[starts[1:], x.size] - 1
-    moved = np.where((ends - starts >= 10) & np.isfinite(x[starts]), np.abs(other[ends] - other[starts]), 0.0)
-    i = int(np.nanargmax(moved))
+    long = (ends - starts >= 10) & np.isfinite(x[starts])
+    moved = [spread(other[a : b + 1]) if ok else 0.0 for a, b, ok in zip(starts, ends, long, strict=True)]
+    i = int(np.argmax(moved))
     if not moved[i] > far:
         return ""
     t = view.even.time_s
     said = text.format(moved[i] * unit)
     return f"{name} stays {x[starts[i]]:.6g} from {t[starts[i]]:.4g} to {t[ends[i]]:.4g} s while {said}"
+
+
+def spread(x: np.ndarray) -> float:
+    """Between the largest and the smallest sample that are there."""
+    x = x[np.isfinite(x)]
+    return float(np.ptp(x)) if x.size else 0.0

@@ -8,6 +8,7 @@ from twin.study.checks.view import View
 G = 9.81  # [m/s2]
 FASTEST_FROUDE = 0.7  # U / sqrt(g L); a displacement hull stays below 0.5
 TIGHTEST_TURN = 2.0  # r L / U; the tightest turning circles of ships reach 1
+WAVE_S = 3.0  # yawing in waves is shorter than this on a boat
 SHORT_S = 480.0
 SHORT_LENGTHS = 10.0  # ship lengths sailed
 STEADY_RUDDER_DEG = 1.0
@@ -34,13 +35,13 @@ def ship_size(view: View) -> Check:
 
 
 def tightest(view: View, length: float) -> float:
-    """The 99 % quantile of |r| L / U, means over a ship length's time, under way."""
+    """The 99 % quantile of |r| L / U, means over a quarter of a ship length's time (3 s at least), under way."""
     if not view.speed > 0.02:
         return 0.0
-    first, last = view.windows(length / view.speed)
+    first, last = view.windows(max(0.25 * length / view.speed, WAVE_S))
     turned = np.abs(view.summed(view.si("yaw_rate_degps"), first, last))
     sailed = view.summed(np.abs(view.velocity), first, last)
-    ratio = turned * length / np.maximum(sailed, 0.3 * length)
+    ratio = turned * length / np.maximum(sailed, 0.25 * np.nanmedian(sailed))
     return float(np.nanquantile(ratio, 0.99)) if np.isfinite(ratio).any() else 0.0
 
 
