@@ -155,40 +155,51 @@ def _bundled(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
 
 def from_table(table: Mapping[str, Any], where: str = "") -> Ship:
     """A ship from the content of its file; `where` begins every complaint."""
-    from .effects import find
-
     if not table.get("name"):
         raise SettingsError(f"{where}no `name`: this is not a ship file. `twin init` makes one from a ship's particulars.")
     if table.get("schema_version", SCHEMA_VERSION) != SCHEMA_VERSION:
         raise SettingsError(f"{where}schema_version {table['schema_version']}: this twin reads {SCHEMA_VERSION}. Update the twin.")
-    particulars = _numbers(table.get("particulars", {}), PARTICULARS, f"{where}particulars.")
+    particulars = _numbers(_section(table, "particulars", where), PARTICULARS, f"{where}particulars.")
     for f in PARTICULARS:
         if f.default is None and f.name not in particulars and f.name not in ("A_F", "A_L"):
             raise SettingsError(f"{where}particulars.{f.name} ({f.metadata['doc']}, {f.metadata['unit']}) is missing. Add it.")
-    ship = Ship(
-        str(table["name"]),
-        **particulars,
-        derivatives=Derivatives(**_numbers(table.get("derivatives", {}), DERIVATIVES, f"{where}derivatives.")),
-        notes={k: v for k, v in table.items() if k not in ("effects",)},
-    )
-    effects = []
-    for name, values in table.get("effects", {}).items():
-        try:
-            effect = find(name)
-        except SettingsError as error:
-            raise SettingsError(f"{where}effects.{name}: {error}") from None
-        known = {p.name: p for p in effect.params()}
-        numbers = {}
-        for key, value in values.items():
-            if key not in known:
-                if key in ("source", "learned"):
-                    continue
-                raise SettingsError(f"{where}effects.{name}.{key}: no such parameter.{did_you_mean(key, known)}")
-            numbers[key] = _value(value, f"{where}effects.{name}.{key}")
-        made = effect.plausible(ship).but(**numbers)
-        made.check(ship, where)
-        effects.append(made)
-    return replace(ship, effects=tuple(effects), notes=dict(ship.notes) | {"effects": table.get("effects", {})})
+    derivatives = Derivatives(**_numbers(_section(table, "derivatives", where), DERIVATIVES, f"{where}derivatives."))
+    ship = Ship(str(table["name"]), **particulars, derivatives=derivatives, notes=dict(table))
+    effects = _section(table, "effects", where)
+    return replace(ship, effects=tuple(_effect(name, _section(effects, name, f"{where}effects."), ship, where) for name in effects))
+
+
+def _section(table: Mapping[str, Any], name: str, where: str) -> Mapping[str, Any]:
+    found = table.get(name, {})
+    if not isinstance(found, Mapping):
+        raise SettingsError(f"{where}{name} = {found!r}: a section of numbers is needed, under a line [{name}].")
+    return found
+
+
+def _effect(name: str, values: Mapping[str, Any], ship: Ship, where: str) -> Effect:
+    """One effect of a ship file, checked; a parameter that is not given has its plausible value."""
+    from .effects import find
+
+    try:
+        effect = find(name)
+    except SettingsError as error:
+        raise SettingsError(f"{where}effects.{name}: {error}") from None
+    known, numbers = {p.name: p for p in effect.params()}, {}
+    for key, entry in values.items():
+        if key not in known and key not in ("source", "learned"):
+            raise SettingsError(f"{where}effects.{name}.{key}: no such parameter.{did_you_mean(key, known)}")
+        if key in known:
+            numbers[key] = _value(entry, f"{where}effects.{name}.{key}")
+            _same_unit(entry, known[key].unit, f"{where}effects.{name}.{key}")
+    made = effect.plausible(ship).but(**numbers)
+    made.check(ship, where)
+    return made
+
+
+def _same_unit(entry: Any, unit: str, where: str) -> None:
+    given = entry.get("unit", unit) if isinstance(entry, Mapping) else unit
+    if given != unit:
+        raise SettingsError(f"{where}: unit {given!r}, but {unit!r} is expected. Convert the value.")
 
 
 def _value(entry: Any, where: str) -> float:
@@ -209,9 +220,7 @@ def _numbers(table: Mapping[str, Any], known: tuple[Any, ...], where: str) -> di
             raise SettingsError(
                 f"{where}{key} = {value:g} {meta['unit']} lies outside [{meta['lo']:g}, {meta['hi']:g}] ({meta['doc']}). Check its unit."
             )
-        unit = entry.get("unit") if isinstance(entry, Mapping) else None
-        if unit is not None and unit != meta["unit"]:
-            raise SettingsError(f"{where}{key}: unit {unit!r}, but {meta['unit']!r} is expected. Convert the value.")
+        _same_unit(entry, meta["unit"], where + key)
         out[key] = value
     return out
 

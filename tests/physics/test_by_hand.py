@@ -1,0 +1,152 @@
+"""One number for each effect, worked by hand from its source, with every component different from zero."""
+
+from math import radians, sqrt
+
+import pytest
+
+from twin.physics.effects import find
+from twin.physics.state import Situation
+
+
+def force(name, ship, s, **values):
+    return tuple(find(name)(**values).force(s, ship))
+
+
+def test_wind_on_the_starboard_quarter_by_hand(ship):
+    # 10 m/s to east, heading 30 deg: air past the ship 3 - 10 cos 60 = -2, 1 - 10 sin 60 = -7.660254; |.| = 7.917040
+    s = Situation(psi=radians(30), u=3.0, v=1.0, wind_speed=10.0, wind_to=radians(90))
+    X, Y, N = force("Wind", ship, s, c_x=0.7, c_y=0.9, c_n=0.1, c_m=0.01)
+    assert X == pytest.approx(0.5 * 1.225 * 200 * 0.7 * 7.917040 * 2.0, rel=1e-6)  # 1357.8 N ahead
+    assert Y == pytest.approx(0.5 * 1.225 * 1000 * 0.9 * 7.917040 * 7.660254, rel=1e-6)  # 33 431 N to starboard
+    assert N == pytest.approx(0.5 * 1.225 * 1000 * 100 * (2 * 0.1 * -2.0 + 0.01 * 7.917040) * 7.660254, rel=1e-6)
+    assert X > 0 and Y > 0
+
+
+def test_waves_on_the_starboard_bow_by_hand(ship):
+    # waves from 45 deg to starboard of the bow: chi = 225 deg; k = (2 pi/8)^2/9.80665 = 0.0628994, 1 - exp(-2 k 5) = 0.466875
+    s = Situation(psi=0.0, H_s=2.0, T_p=8.0, wave_to=radians(225))
+    X, Y, N = force("WaveDrift", ship, s, c_x=1.0, c_y=0.8, c_n=0.05)
+    q = 1000 * 9.80665 * 4.0 / 16 * 0.466875  # 1144.6 N/m
+    assert X == pytest.approx(-q * 20 * sqrt(0.2) * sqrt(0.5), rel=3e-5)  # slows her
+    assert Y == pytest.approx(-q * 100 * 0.8 * 0.5, rel=3e-5)  # pushes her to port
+    assert N == pytest.approx(q * 100**2 * 0.05 * 1.0, rel=3e-5)
+
+
+def test_cross_flow_on_a_ship_that_drifts_and_turns_by_hand(ship):
+    # v = 1, r = 0.01: strips at -45, -35 ... 45 m see 0.55, 0.65 ... 1.45 m/s; squares sum to 10.825, times x to 1650
+    Y, N = force("CrossFlowDrag", ship, Situation(v_r=1.0, r=0.01), c_d=0.4)[1:]
+    assert Y == pytest.approx(-0.5 * 1000 * 5 * 10 * 0.4 * 10.825)
+    assert N == pytest.approx(-0.5 * 1000 * 5 * 10 * 0.4 * 165.0)
+
+
+def test_fouling_by_hand(ship):
+    # X_uu = -0.02 x 1/2 1000 100 5 = -5000, X_u = -0.0005 x 250 000 x sqrt(9.80665 x 100) = -3914.45; at 4 m/s
+    assert force("HullFouling", ship, Situation(u_r=4.0), extra=0.3)[0] == pytest.approx(-0.3 * (3914.45 + 5000 * 4) * 4, rel=1e-6)
+
+
+def test_rudder_and_what_wear_and_offset_do_to_it_by_hand(ship):
+    # u_a = 0.75 x 4 = 3; T = 1000 x 4^4 x 0.4 x 2^2 - 1000 x 4^3 x 0.4 x 2 x 3 = 409 600 - 153 600 = 256 000 N
+    # q = 9 + 0.5 x 8 x 256 000/(pi 1000 16) = 9 + 20.3718 = 29.3718; across = sqrt(q) (0.4 x -0.4 - 0.3 x 100 x 0.01) = -2.49300
+    # F = 1/2 1000 10 2.5 (q sin 20 deg - 2.49300 cos 20 deg) = 12 500 (10.04575 - 2.34266) = 96 288.6 N
+    s = Situation(u_r=4.0, v_r=-0.4, r=0.01, n=2.0, delta=radians(20))
+    F = 96288.6
+    rudder = (-0.7 * F * 0.342020, -1.2 * F * 0.939693, -(-0.5 + 0.2 * -0.4) * 100 * F * 0.939693)
+    worn = force("RudderWear", ship, s, loss=0.25)
+    assert worn == pytest.approx([-0.25 * f for f in rudder], rel=1e-4)
+    # 1 deg more: F = 12 500 (29.3718 sin 21 deg - 2.49300 cos 21 deg) = 12 500 (10.52590 - 2.32742) = 102 481.0 N
+    G = 102481.0
+    offset = force("RudderOffset", ship, s, offset=radians(1))
+    assert offset[0] == pytest.approx(-0.7 * (G * 0.358368 - F * 0.342020), rel=2e-3)
+    assert offset[1] == pytest.approx(-1.2 * (G * 0.933580 - F * 0.939693), rel=2e-3)
+    assert offset[2] == pytest.approx(58.0 * (G * 0.933580 - F * 0.939693), rel=2e-3)
+    assert offset[1] < 0 < offset[2]  # to starboard: stern to port, bow to starboard
+
+
+def test_a_worn_propeller_by_hand(ship):
+    # thrust 256 000 N as above, less 10 %: -0.8 x 25 600 N of drive; q = 9 + 18.33462 = 27.33462, sqrt 5.228252
+    s = Situation(u_r=4.0, v_r=-0.4, r=0.01, n=2.0, delta=radians(20))
+    X, Y, N = force("PropellerWear", ship, s, loss=0.1)
+    F, G = 96288.6, 12500 * (27.33462 * 0.342020 - 5.228252 * 0.46 * 0.939693)
+    assert X == pytest.approx(-0.8 * 25600 - 0.7 * 0.342020 * (G - F), rel=1e-4)
+    assert Y == pytest.approx(-1.2 * 0.939693 * (G - F), rel=1e-3)
+    assert N == pytest.approx(58.0 * 0.939693 * (G - F), rel=1e-3)
+
+
+def test_deeper_and_heavier_by_hand(ship):
+    loaded = find("Loading")(mass=0.1, draught=0.2, x_G=2.0).alter(ship)
+    assert (loaded.m, loaded.T, loaded.x_G) == (pytest.approx(7.7e6), pytest.approx(6.0), pytest.approx(1.0))
+    assert loaded.I_z == pytest.approx(1.1 * 4.4e9 + 7.7e6 * (1.0**2 - 1.0**2))
+    assert loaded.c.Y_vdot == pytest.approx(1.2**2 * ship.c.Y_vdot)  # a slender body's added mass goes with T^2
+    assert loaded.c.X_udot == pytest.approx(1.1 * ship.c.X_udot)
+    assert loaded.c.Y_vv == pytest.approx(1.2 * ship.c.Y_vv)
+    assert loaded.c.X_uu == pytest.approx((1.7 * 6 + 0.7 * 20) / (1.7 * 5 + 0.7 * 20) * ship.c.X_uu)
+    assert (loaded.A_F, loaded.A_L) == (pytest.approx(200 - 20 * 1.0), pytest.approx(1000 - 100 * 1.0))
+
+
+def test_a_bank_to_starboard_by_hand(ship):
+    # e = 20/(20 + 2 x 30) - 20/(20 + 2 x 90) = 0.25 - 0.1 = 0.15; 1/2 1000 100 5 x 4^2 = 4 MN
+    Y, N = force("Bank", ship, Situation(u_r=4.0, bank_port=90.0, bank_starboard=30.0), suction=0.03, bow_out=0.008)[1:]
+    assert (Y, N) == (pytest.approx(4e6 * 0.03 * 0.15), pytest.approx(-4e8 * 0.008 * 0.15))
+
+
+def test_tow_and_shore_line_by_hand(ship):
+    assert force("TowForce", ship, Situation(), ahead=-1e4, starboard=2e3, turning=3e5) == (-1e4, 2e3, 3e5)
+    # heading 30 deg; 1000 N to north and 500 N to east; lever 10 m ahead: moments 10 000 and 5000 N m
+    X, Y, N = force("ExternalForce", ship, Situation(psi=radians(30)), north=1e3, east=5e2, turn_north=1e4, turn_east=5e3)
+    assert (X, Y) == (pytest.approx(1000 * 0.866025 + 250, rel=1e-6), pytest.approx(-500 + 500 * 0.866025, rel=1e-5))
+    assert pytest.approx(10.0 * Y) == N
+
+
+def test_propeller_walk_by_hand(ship):
+    X, Y, N = force("PropellerWalk", ship, Situation(n=-2.0), c_y=0.01, c_n=-0.005)  # going astern
+    assert (X, Y, N) == (0.0, pytest.approx(-1000 * 256 * 4 * 0.01), pytest.approx(1000 * 256 * 4 * 100 * 0.005))
+
+
+def test_heel_by_hand(ship):
+    s = Situation(u_r=4.0, v_r=-3.0, r=0.02, phi=0.1)  # U^2 = 25, (L r)^2 = 4; 1/2 1000 100 5 x 0.1 = 25 000
+    Y, N = force("RollCoupling", ship, s, c_y=0.02, c_n=-0.01, c_yr=0.2, c_nr=-0.1)[1:]
+    assert (Y, N) == (pytest.approx(25e3 * (0.5 + 0.8)), pytest.approx(-25e5 * (0.25 + 0.4)))
+
+
+def test_current_and_tide_by_hand(ship):
+    s = Situation(psi=radians(30), t=900.0)
+    water = find("Current")(north=1.0, east=0.5).water(s, ship)
+    assert (water.u, water.v) == (pytest.approx(0.866025 + 0.25), pytest.approx(-0.5 + 0.433013, rel=1e-5))
+    tide = find("VaryingCurrent").absent(ship).but(north=0.1, north_c1=0.2, north_s1=0.3, east_c2=0.4, east_s3=0.5)
+    assert tide.toward(900.0) == (pytest.approx(0.1 + 0.3), pytest.approx(-0.4 - 0.5))  # a quarter of an hour's wave
+    again = tide.water(s, ship)
+    assert again.u == pytest.approx(0.4 * 0.866025 - 0.9 * 0.5, rel=1e-5)
+
+
+def test_shallow_water_by_hand(ship):
+    # T/h = 5/7.5 = 2/3: g = (4/9)/(1/3) = 4/3
+    water = find("ShallowWater")(surge=0.09, sway=0.75, yaw=0.3).water(Situation(depth=7.5), ship)
+    assert water == (0.0, 0.0, pytest.approx(0.12), pytest.approx(1.0), pytest.approx(0.4))
+    aground = find("ShallowWater")(surge=0.09, sway=0.75, yaw=0.3).water(Situation(depth=1.0), ship)
+    assert aground.k_v == pytest.approx(0.75 * (1 / 1.05) ** 2 / (1 - 1 / 1.05))
+
+
+def test_steering_gear_by_hand():
+    gear = find("SteeringLag")(delay=1.5, travel_time=26.0)  # 2.5 deg/s
+    assert gear.dead_time() == 1.5
+    assert gear.step(0.0, radians(35), 2.0) == pytest.approx(radians(5))
+    assert gear.step(0.0, radians(-1), 2.0) == pytest.approx(radians(-1))
+
+
+def test_instruments_by_hand(ship):
+    s = Situation(x=10.0, y=20.0, psi=radians(30), u=4.0, v=-0.5, r=0.02, u_r=3.9, v_r=-0.4, wind_to=1.0, u_dot=0.1, v_dot=-0.05)
+    compass = find("HeadingBias")(bias=0.02, turned=0.03).read(s, ship)
+    assert (compass.psi, compass.wind_to) == (pytest.approx(radians(30) + 0.02), pytest.approx(1.02))
+    assert (compass.u, compass.v) == (pytest.approx(4 - 0.5 * 0.03, abs=2e-3), pytest.approx(-0.5 - 4 * 0.03, abs=1e-3))
+    assert find("SpeedLogBias")(bias=0.2).read(s, ship).u_r == pytest.approx(4.1)
+    log = find("SpeedLogScale")(scale=0.05).read(s, ship)
+    assert (log.u_r, log.v_r) == (pytest.approx(4.095), pytest.approx(-0.42))
+    askew = find("SpeedLogMisalignment")(angle=radians(3)).read(s, ship)
+    assert (askew.u_r, askew.v_r) == (pytest.approx(3.87373, rel=1e-4), pytest.approx(-0.60356, rel=1e-4))
+    mast = find("AntennaOffset")(ahead=20.0, starboard=4.0).read(s, ship)
+    assert (mast.x, mast.y) == (pytest.approx(10 + 17.32051 - 2), pytest.approx(20 + 10 + 3.46410))
+    assert (mast.u, mast.v) == (pytest.approx(4 - 0.08), pytest.approx(-0.5 + 0.4))
+    late = find("SensorDelay")(delay=0.5, turned=0.5).read(s, ship)
+    assert (late.x, late.y) == (pytest.approx(10 - 0.5 * (3.464102 + 0.25)), pytest.approx(20 - 0.5 * (2 - 0.433013)))
+    assert (late.u, late.v) == (pytest.approx(4 - 0.05 - 0.005), pytest.approx(-0.5 + 0.025 - 0.04))
+    assert find("GyroBias")(bias=0.001).read(s, ship).r == pytest.approx(0.021)
