@@ -15,14 +15,14 @@ from twin.errors import SettingsError
 from twin.physics.model import Model
 
 from .comparison import Matrix
-from .operating import OperatingSet, of_ship
+from .operating import Confined, OperatingSet, of_ship
 from .plant import Disturbance, Plant, plant_of, usual_disturbance
-from .theorem import VERSION, Certificate, assess, best_gain, flow_of, gains_that_do, lipschitz, self_regressor
+from .theorem import VERSION, Certificate, assess, best_gain, flow_of, gains_that_do, lipschitz, self_regressor, usual_gain
 from .tube import Tube
 
 __all__ = [
-    "Certificate", "Disturbance", "OperatingSet", "Plant", "Tube", "best_gain", "certify", "flow_of", "gains_that_do", "kept", "lipschitz",
-    "of_ship", "plant_of", "self_regressor", "usual_disturbance",
+    "Certificate", "Confined", "Disturbance", "OperatingSet", "Plant", "Tube", "best_gain", "certify", "flow_of", "gains_that_do", "kept", "lipschitz",
+    "of_ship", "plant_of", "self_regressor", "usual_disturbance", "usual_gain",
 ]  # fmt: skip
 
 

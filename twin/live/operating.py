@@ -11,8 +11,9 @@ from typing import Any
 
 from twin.errors import SettingsError
 from twin.physics import core
+from twin.physics.maths import clip
 from twin.physics.model import Model
-from twin.physics.state import Situation
+from twin.physics.state import Rates, Situation
 
 NU = ("u", "v", "r")
 WORDS = {
@@ -29,8 +30,9 @@ class OperatingSet:
     ranges: Mapping[str, tuple[float, float]]
 
     def clip(self, nu: tuple[float, float, float]) -> tuple[float, float, float]:
-        """The motion inside the set that is nearest: where the observer evaluates the physics."""
-        return tuple(min(max(x, self.ranges[name][0]), self.ranges[name][1]) for name, x in zip(NU, nu, strict=True))  # type: ignore[return-value]
+        """The motion inside the set that is nearest (floats or arrays)."""
+        (u, v, r), at = nu, self.ranges
+        return clip(u, *at["u"]), clip(v, *at["v"]), clip(r, *at["r"])
 
     def outside(self, s: Situation, within: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> str | None:
         """The first thing that lies outside, in words; None when all is inside. `within` widens the motion by its bound."""
@@ -46,9 +48,24 @@ class OperatingSet:
                 return f"{WORDS[name]} {value:.3g}{how} outside [{lo:.3g}, {hi:.3g}]"
         return None
 
-    def widened(self, by: tuple[float, float, float]) -> dict[str, tuple[float, float]]:
-        """The ranges with room for the motion of one sample."""
-        return dict(self.ranges) | {n: (self.ranges[n][0] - d, self.ranges[n][1] + d) for n, d in zip(NU, by, strict=True)}
+
+@dataclass(frozen=True)
+class Confined(Model):
+    """The same physics with the motion clipped to the operating set wherever it is evaluated: what the observer integrates.
+
+    Inside the set nothing changes; outside, forces are those of the nearest motion inside, so that their slopes stay bounded.
+    """
+
+    operating: OperatingSet | None = None
+
+    @classmethod
+    def to(cls, model: Model, operating: OperatingSet) -> "Confined":
+        return cls(model.ship, model.effects, model.residual, operating)
+
+    def nu_dot(self, s: Situation) -> Rates:
+        assert self.operating is not None
+        s.u, s.v, s.r = self.operating.clip((s.u, s.v, s.r))
+        return super().nu_dot(s)
 
 
 def of_ship(model: Model, **ranges: tuple[float, float]) -> OperatingSet:

@@ -5,7 +5,7 @@
 """
 
 import json
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from math import exp, log, sqrt
 from typing import Any
 
@@ -100,17 +100,16 @@ class Flow:
 
 
 def flow_of(plant: Plant, extra: Matrix | None = None) -> Flow:
-    """|dPhi/dnu| <= exp(h A) with the heading as a fourth state; the diagonal from below by variation of constants."""
+    """|dPhi/dnu| <= exp(h A^M) with the heading as a fourth state; the diagonal from below by variation of constants."""
     h, more = plant.h, extra or c3.scaled(0.0, c3.IDENTITY)
-    size = plant.growth()
-    rows = [tuple(h * ((plant.hi[i][i] if i == j else size[i][j]) + more[i][j]) for j in AXES) + (h * plant.heading[i],) for i in AXES]
+    growth = c3.plus(plant.growth(), more)
+    rows = [(*(h * growth[i][j] for j in AXES), h * plant.heading[i]) for i in AXES]
     w = c3.exponential((*rows, (0.0, 0.0, h, 0.0)))
-    floor = [exp(h * (plant.lo[i][i] - more[i][i])) - (w[i][i] - exp(rows[i][i])) for i in AXES]
-    grow = tuple(tuple(max(x, 0.0) for x in row) for row in rows)
-    stirred = c3.exponential((*grow, (0.0, 0.0, h, 0.0)))
+    fall = [exp(h * (min(plant.lo[i][i], 0.0) - more[i][i])) for i in AXES]
     return Flow(
-        least=tuple(floor), most=tuple(w[i][i] for i in AXES), across=c3.matrix(lambda i, j: w[i][j] if i != j else 0.0),  # type: ignore[arg-type]
-        turned=tuple(w[i][3] for i in AXES), stirred=c3.matrix(lambda i, j: h * stirred[i][j]),  # type: ignore[arg-type]
+        least=tuple(f - (w[i][i] - exp(rows[i][i])) for i, f in enumerate(fall)), most=tuple(w[i][i] for i in AXES),  # type: ignore[arg-type]
+        across=c3.matrix(lambda i, j: w[i][j] if i != j else 0.0), turned=tuple(w[i][3] for i in AXES),  # type: ignore[arg-type]
+        stirred=c3.matrix(lambda i, j: h * w[i][j]),
     )  # fmt: skip
 
 
@@ -133,8 +132,8 @@ def recursion(flow: Flow, h: float, K: Row, m: int) -> Recursion:
     """The matrices of |e+| <= now |e| + past max(|e|, |e-|, ...), all without a negative entry."""
     pull = c3.diagonal(tuple(h * k for k in K))  # type: ignore[arg-type]
 
-    def held(i: int, k: float) -> float:  # clip() may switch the physics' own pull off, so both ends reach to "no change"
-        return max(abs(1.0 - h * k + min(flow.least[i] - 1.0, 0.0)), abs(1.0 - h * k + max(flow.most[i] - 1.0, 0.0)))
+    def held(i: int, k: float) -> float:
+        return max(abs(flow.least[i] - h * k), abs(flow.most[i] - h * k))
 
     return Recursion(
         now=c3.plus(flow.across, c3.diagonal(tuple(held(i, K[i]) for i in AXES))),  # type: ignore[arg-type]
@@ -168,7 +167,7 @@ def assess(
     end, worst, ratio = c3.settled(step.G), c3.radius(step.G), _ratio(plant, K, extra)
     blank = c3.matrix(lambda i, j: NEVER)
     return Certificate(
-        ok=end is not None, reason=_reason(flow, h, K, m, ratio, worst), K=K, delay_samples=m, noise=noise, disturbance=d,
+        ok=end is not None, reason=_reason(plant, flow, K, m, ratio, worst), K=K, delay_samples=m, noise=noise, disturbance=d,
         margin=1.0 - ratio, rate=-log(worst) / h if worst < NEVER else -NEVER, G=step.G, now=step.now, past=step.past, coast=step.coast,
         bound=c3.apply(end, c3.add(c3.apply(inner, d.calm), rest)) if end else (NEVER, NEVER, NEVER),
         gains_disturbance=c3.product(end, inner) if end else blank,
@@ -196,8 +195,17 @@ def gains_that_do(flow: Flow, h: float, m: int) -> tuple[float, float] | None:
     return _edge(holds, good[0], good[0] / 1.2), _edge(holds, good[-1], good[-1] * 1.2)
 
 
+def usual_gain(plant: Plant, m: int, extra: Matrix | None = None) -> Row | None:
+    """A K to begin with: four times the least, or the middle of what the period and the delay allow if that is less."""
+    limits = gains_that_do(flow_of(plant, extra), plant.h, m)
+    if limits is None:
+        return None
+    k = min(4.0 * limits[0], sqrt(limits[0] * limits[1]))
+    return k, k, k
+
+
 def best_gain(plant: Plant, m: int, noise: Row, d: Disturbance, H_s: float = 0.0, extra: Matrix | None = None) -> Row | None:
-    """The K with the smallest ultimate bound, each axis in units of its operating range; None when no K is certified."""
+    """The K with the smallest bound against hostile noise and disturbance, each axis in units of its range; None when none is certified."""
     flow = flow_of(plant, extra)
     limits = gains_that_do(flow, plant.h, m)
     if limits is None:
@@ -244,7 +252,8 @@ def output_bound(row_norm: float, features: float, saturation: float) -> float:
     return min(row_norm * features, saturation)
 
 
-def _reason(flow: Flow, h: float, K: Row, m: int, ratio: float, worst: float) -> str:
+def _reason(plant: Plant, flow: Flow, K: Row, m: int, ratio: float, worst: float) -> str:
+    h = plant.h
     told = ", ".join(f"{k:.3g}" for k in K)
     if worst < 1.0:
         return f"K = ({told}) 1/s holds: old errors fade by {-log(worst) / h:.3g} 1/s; {100 * ratio:.0f} % of this K is the least."
@@ -252,11 +261,24 @@ def _reason(flow: Flow, h: float, K: Row, m: int, ratio: float, worst: float) ->
         return "the slopes of the physics have no bound over the operating set. Narrow the set (speed, depth, distance to the banks)."
     limits = gains_that_do(flow, h, m)
     if limits is None:
-        return f"no K holds at a period of {h:g} s with measurements {m} samples old. Run the loop faster or narrow the operating set."
+        return (
+            f"no K holds at a period of {h:g} s with measurements {m} samples old. "
+            f"Run the loop every {_period_that_does(plant, m):.2g} s or faster, or narrow the operating set."
+        )
     do = f"K from {limits[0]:.3g} to {limits[1]:.3g} 1/s would do (the same on every axis)."
     if max(K) < limits[0] or ratio >= 1.0:
         return f"K = ({told}) 1/s is too small: errors could grow faster than it pulls them back. {do}"
     return f"K = ({told}) 1/s is outside what a period of {h:g} s and measurements {m} samples old allow. {do}"
+
+
+def _period_that_does(plant: Plant, m: int) -> float:
+    """A shorter period at which some K holds [s]."""
+    h = plant.h
+    for _ in range(40):
+        h *= 0.85
+        if gains_that_do(flow_of(replace(plant, h=h)), h, m):
+            break
+    return h
 
 
 def _edge(holds: Any, good: float, bad: float) -> float:

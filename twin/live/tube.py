@@ -8,7 +8,10 @@ from collections import deque
 
 from twin.physics.state import Situation
 
+from .comparison import add, apply
 from .theorem import Certificate
+
+NOTHING = 1e9  # a bound so wide that it says nothing: hours without a measurement, or no certificate
 
 Three = tuple[float, float, float]
 
@@ -26,27 +29,36 @@ class Tube:
         """Begin anew, after the observer was set to a measurement."""
         self.beta: Three = self.certificate.noise if start is None else start
         self._past = tuple(deque((b,), maxlen=self._window) for b in self.beta)
-        self._seas: deque[float] = deque((0.0,), maxlen=self._window)
+        self._seas: deque[float] = deque(maxlen=self._window)
+        self._sea = -1.0  # the highest in the window, for which the rows below were made
 
     def step(self, received: tuple[bool, bool, bool], H_s: float = 0.0) -> Three:
         """The bound one sample on; `received` says which of u, v, r was measured and accepted this tick."""
-        c, (bu, bv, br), past = self.certificate, self.beta, self._past
-        self._seas.append(H_s)
-        dX, dY, dN = c.disturbance.at(max(self._seas))
+        seas, past, (bu, bv, br) = self._seas, self._past, self.beta
+        seas.append(H_s)
+        if self._sea != (high := max(seas)):
+            self._sea = high
+            self._with, self._without = self._rows(high)
         wu, wv, wr = max(past[0]), max(past[1]), max(past[2])
         after = []
-        for i in (0, 1, 2):
-            if received[i]:
-                a, p, q = c.now[i], c.past[i], c.push[i]
-                b = a[0] * bu + a[1] * bv + a[2] * br + p[0] * wu + p[1] * wv + p[2] * wr + c.rest[i]
-            else:
-                a, q = c.coast[i], c.push_coast[i]
-                b = a[0] * bu + a[1] * bv + a[2] * br + c.rest_coast[i]
-            after.append(b + q[0] * dX + q[1] * dY + q[2] * dN)
-        self.beta = beta = (after[0], after[1], after[2])
-        for row, b in zip(past, beta, strict=True):
-            row.append(b)
-        return beta
+        for got, measured, missed in zip(received, self._with, self._without):  # noqa: B905 (a tick, not a check)
+            a0, a1, a2, p0, p1, p2, g = measured if got else missed
+            after.append(min(a0 * bu + a1 * bv + a2 * br + p0 * wu + p1 * wv + p2 * wr + g, NOTHING))
+        self.beta = bu, bv, br = after[0], after[1], after[2]
+        past[0].append(bu)
+        past[1].append(bv)
+        past[2].append(br)
+        return self.beta
+
+    def _rows(self, H_s: float) -> tuple[tuple[tuple[float, ...], ...], ...]:
+        """For each axis (now, past, g) with a measurement and (coast, 0, g) without, in this sea."""
+        c = self.certificate
+        d = c.disturbance.at(H_s)
+        seen, unseen = add(apply(c.push, d), c.rest), add(apply(c.push_coast, d), c.rest_coast)
+        return (
+            tuple((*c.now[i], *c.past[i], seen[i]) for i in (0, 1, 2)),
+            tuple((*c.coast[i], 0.0, 0.0, 0.0, unseen[i]) for i in (0, 1, 2)),
+        )
 
     def inside(self, s: Situation) -> bool:
         """True when the ship is surely in the operating set: the estimate, widened by its bound, and every measured input."""

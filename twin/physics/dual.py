@@ -9,10 +9,8 @@ Source: Griewank & Walther (2008) Evaluating Derivatives, ch. 3; Moore, Kearfott
 
 from typing import Any
 
-import numpy as np
-
 from . import maths
-from .interval import Interval, Unsure
+from .interval import Interval, Unsure, hull
 
 
 class Dual:
@@ -195,5 +193,5 @@ def _sign(x: Any) -> Any:
     """The slope of |x|; of a box that only touches zero, that of its inside."""
     if not isinstance(x, Interval):
         return maths.where(x >= 0.0, 1.0, -1.0)
-    left, right = np.where(x.lo >= 0.0, 1.0, -1.0), np.where(x.hi <= 0.0, -1.0, 1.0)
-    return Interval(np.minimum(left, right), np.maximum(left, right))
+    left, right = maths.where(x.lo >= 0.0, 1.0, -1.0), maths.where(x.hi <= 0.0, -1.0, 1.0)
+    return hull(left, right)

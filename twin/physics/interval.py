@@ -1,19 +1,22 @@
 """An interval [lo, hi] that goes through the physics like a number and comes out enclosing every value it can take.
 
 Every operation widens its result by more than its rounding error, so the enclosure is a proof, not an estimate; lo and hi may be
-arrays (many boxes at once). Three forms that physics uses are recognised, because taking their parts apart loses too much:
+arrays (many boxes at once; then the functions are those of the arrays' library). Three forms that physics uses are recognised, because taking their parts apart loses too much:
 x*x (never negative), min and max written with `where`, and x + sqrt(x*x + c) (`maths.positive`, increasing in x).
 Source: Moore, Kearfott & Cloud (2009) Introduction to Interval Analysis, ch. 2 and 5.
 """
 
+import math
 from collections.abc import Callable
 from functools import wraps
+from math import pi
 from typing import Any
 
-import numpy as np
+from . import maths
 
+INFINITY = float("inf")
 ULP = 2.0**-52  # twice the rounding error of + - * / sqrt
-LIBRARY = 1e-15  # numpy's sin, cos, exp, tanh, arctan2, power are good to 4 ulp
+LIBRARY = 1e-15  # sin, cos, exp, tanh, atan2, power of the C library and of numpy are good to 4 ulp
 TINY = 5e-324
 
 
@@ -43,7 +46,7 @@ class Interval:
     @property
     def magnitude(self) -> Any:
         """The greatest absolute value inside."""
-        return np.maximum(np.abs(self.lo), np.abs(self.hi))
+        return _most(abs(self.lo), abs(self.hi))
 
     def __neg__(self) -> "Interval":
         return Interval(-self.hi, -self.lo)
@@ -82,10 +85,10 @@ class Interval:
     @_ours
     def __truediv__(self, other: Any) -> "Interval":
         o = of(other)
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            a, b = _extremes(self.lo / o.lo, self.lo / o.hi, self.hi / o.lo, self.hi / o.hi)
         through_zero = (o.lo <= 0.0) & (o.hi >= 0.0)
-        return _out(np.where(through_zero, -np.inf, a), np.where(through_zero, np.inf, b))
+        lo, hi = maths.where(through_zero, 1.0, o.lo), maths.where(through_zero, 1.0, o.hi)
+        a, b = _extremes(self.lo / lo, self.lo / hi, self.hi / lo, self.hi / hi)
+        return _out(maths.where(through_zero, -INFINITY, a), maths.where(through_zero, INFINITY, b))
 
     @_ours
     def __rtruediv__(self, other: Any) -> "Interval":
@@ -97,15 +100,17 @@ class Interval:
             return self * self
         if p == int(p) and p < 0:
             return 1.0 / self**-p
-        a, b = np.power(self.lo, p), np.power(self.hi, p)
+        a, b = self.lo**p, self.hi**p
         if p == int(p) and p % 2 == 0:
-            smallest = np.where((self.lo <= 0.0) & (self.hi >= 0.0), 0.0, np.minimum(a, b))
-            return _out(smallest, np.maximum(a, b), LIBRARY)
-        return _out(np.minimum(a, b), np.maximum(a, b), LIBRARY)
+            return _out(maths.where(self._holds_zero(), 0.0, _least(a, b)), _most(a, b), LIBRARY)
+        return _out(_least(a, b), _most(a, b), LIBRARY)
 
     def __abs__(self) -> "Interval":
-        a, b = np.abs(self.lo), np.abs(self.hi)
-        return Interval(np.where((self.lo <= 0.0) & (self.hi >= 0.0), 0.0, np.minimum(a, b)), np.maximum(a, b))
+        a, b = abs(self.lo), abs(self.hi)
+        return Interval(maths.where(self._holds_zero(), 0.0, _least(a, b)), _most(a, b))
+
+    def _holds_zero(self) -> Any:
+        return (self.lo <= 0.0) & (self.hi >= 0.0)
 
     @_ours
     def __lt__(self, other: Any) -> "Unsure":
@@ -130,7 +135,7 @@ class Interval:
     def _squared(self) -> "Interval":
         a = abs(self)
         square = _out(a.lo * a.lo, a.hi * a.hi)
-        square.lo, square.square_of = np.maximum(square.lo, 0.0), (self, 0.0)
+        square.lo, square.square_of = _most(square.lo, 0.0), (self, 0.0)
         return square
 
 
@@ -166,7 +171,7 @@ def hull(*parts: Any) -> Interval:
     parts = tuple(map(of, parts))
     lo, hi = parts[0].lo, parts[0].hi
     for p in parts[1:]:
-        lo, hi = np.minimum(lo, p.lo), np.maximum(hi, p.hi)
+        lo, hi = _least(lo, p.lo), _most(hi, p.hi)
     return Interval(lo, hi)
 
 
@@ -177,69 +182,83 @@ def where(condition: Unsure, yes: Any, no: Any) -> Any:
             return side.where(condition, yes, no)
     a, b = of(yes), of(no)
     if yes is condition.less and no is condition.more:
-        return Interval(np.minimum(a.lo, b.lo), np.minimum(a.hi, b.hi))
+        return Interval(_least(a.lo, b.lo), _least(a.hi, b.hi))
     if yes is condition.more and no is condition.less:
-        return Interval(np.maximum(a.lo, b.lo), np.maximum(a.hi, b.hi))
+        return Interval(_most(a.lo, b.lo), _most(a.hi, b.hi))
     both = hull(a, b)
     return Interval(
-        np.where(condition.yes, a.lo, np.where(condition.no, b.lo, both.lo)),
-        np.where(condition.yes, a.hi, np.where(condition.no, b.hi, both.hi)),
+        maths.where(condition.yes, a.lo, maths.where(condition.no, b.lo, both.lo)),
+        maths.where(condition.yes, a.hi, maths.where(condition.no, b.hi, both.hi)),
     )
 
 
 def sqrt(x: Interval) -> Interval:
-    root = _out(np.sqrt(np.maximum(x.lo, 0.0)), np.sqrt(np.maximum(x.hi, 0.0)))
-    root.lo = np.maximum(root.lo, 0.0)
+    root = _out(maths.sqrt(_most(x.lo, 0.0)), maths.sqrt(_most(x.hi, 0.0)))
+    root.lo = _most(root.lo, 0.0)
     root.root_of = x.square_of
     return root
 
 
 def exp(x: Interval) -> Interval:
-    return _increasing(np.exp, x)
+    return _out(maths.exp(x.lo), maths.exp(x.hi), LIBRARY)
 
 
 def tanh(x: Interval) -> Interval:
-    return _increasing(np.tanh, x)
+    return _out(maths.tanh(x.lo), maths.tanh(x.hi), LIBRARY)
 
 
 def cos(x: Interval) -> Interval:
     """Extremes at the ends, and at every multiple of pi inside."""
     x = _out(x.lo, x.hi, LIBRARY)  # so that a multiple of pi at the very end is not missed by rounding
-    a, b = np.cos(x.lo), np.cos(x.hi)
-    top = np.floor(x.hi / (2.0 * np.pi)) >= np.ceil(x.lo / (2.0 * np.pi))
-    bottom = np.floor((x.hi - np.pi) / (2.0 * np.pi)) >= np.ceil((x.lo - np.pi) / (2.0 * np.pi))
-    wide = _out(np.where(bottom, -1.0, np.minimum(a, b)), np.where(top, 1.0, np.maximum(a, b)), LIBRARY)
-    return Interval(np.maximum(wide.lo, -1.0), np.minimum(wide.hi, 1.0))
+    a, b = maths.cos(x.lo), maths.cos(x.hi)
+    top, bottom = _multiple_inside(x.lo, x.hi), _multiple_inside(x.lo - pi, x.hi - pi)
+    wide = _out(maths.where(bottom, -1.0, _least(a, b)), maths.where(top, 1.0, _most(a, b)), LIBRARY)
+    return Interval(_most(wide.lo, -1.0), _least(wide.hi, 1.0))
 
 
 def sin(x: Interval) -> Interval:
-    return cos(x - 0.5 * np.pi)
+    return cos(x - 0.5 * pi)
 
 
 def atan2(y: Any, x: Any) -> Interval:
     """Extremes at the corners; the whole circle when the box touches the origin or the cut behind it."""
     y, x = of(y), of(x)
-    corners = [np.arctan2(b, a) for a in (x.lo, x.hi) for b in (y.lo, y.hi)]
-    cut = (x.lo <= 0.0) & (y.lo <= 0.0) & (y.hi >= 0.0)
-    lo, hi = _extremes(*corners)
-    return _out(np.where(cut, -np.pi, lo), np.where(cut, np.pi, hi), LIBRARY)
+    lo, hi = _extremes(*(maths.atan2(b, a) for a in (x.lo, x.hi) for b in (y.lo, y.hi)))
+    cut = (x.lo <= 0.0) & y._holds_zero()
+    return _out(maths.where(cut, -pi, lo), maths.where(cut, pi, hi), LIBRARY)
 
 
-def _increasing(f: Any, x: Interval) -> Interval:
-    return _out(f(x.lo), f(x.hi), LIBRARY)
+def _multiple_inside(lo: Any, hi: Any) -> Any:
+    """True where a whole multiple of 2 pi lies between."""
+    library = maths._library(lo, hi)
+    return library.floor(hi / (2.0 * pi)) >= library.ceil(lo / (2.0 * pi))
 
 
 def _with_its_root(x: Interval, c: float) -> Interval:
     """x + sqrt(x^2 + c), which increases with x and is never negative; its error is that of x, not of the small result."""
-    lo, hi = (z + np.sqrt(z * z + c) for z in (x.lo, x.hi))
-    return Interval(np.maximum(lo - 4.0 * ULP * (np.abs(x.lo) + c), 0.0), hi + 4.0 * ULP * (np.abs(x.hi) + c))
+    lo, hi = (z + maths.sqrt(z * z + c) for z in (x.lo, x.hi))
+    return Interval(_most(lo - 4.0 * ULP * (abs(x.lo) + c), 0.0), hi + 4.0 * ULP * (abs(x.hi) + c))
 
 
-def _extremes(a: Any, b: Any, c: Any, d: Any) -> tuple[Any, Any]:
-    """Least and greatest; fmin and fmax pass over the NaN that 0 * inf leaves."""
-    return np.fmin(np.fmin(a, b), np.fmin(c, d)), np.fmax(np.fmax(a, b), np.fmax(c, d))
+def _least(a: Any, b: Any) -> Any:
+    library = maths._library(a, b)
+    return min(a, b) if library is math else library.fmin(a, b)
+
+
+def _most(a: Any, b: Any) -> Any:
+    library = maths._library(a, b)
+    return max(a, b) if library is math else library.fmax(a, b)
+
+
+def _extremes(*corners: Any) -> tuple[Any, Any]:
+    """Least and greatest of the corners; the NaN that 0 * inf leaves is passed over."""
+    if maths._library(*corners) is math:
+        real = [x for x in corners if x == x]
+        return min(real), max(real)
+    a, b, c, d = corners
+    return _least(_least(a, b), _least(c, d)), _most(_most(a, b), _most(c, d))
 
 
 def _out(lo: Any, hi: Any, relative: float = ULP) -> Interval:
     """Rounded outward by a relative error."""
-    return Interval(lo - (np.abs(lo) * relative + TINY), hi + (np.abs(hi) * relative + TINY))
+    return Interval(lo - (abs(lo) * relative + TINY), hi + (abs(hi) * relative + TINY))

@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from . import core
-from .dual import Dual
-from .effect import Effect
-from .interval import Interval, of
-from .model import CORE, Model
-from .state import Situation
+from twin.physics import core
+from twin.physics.dual import Dual
+from twin.physics.effect import Effect
+from twin.physics.interval import Interval, of
+from twin.physics.model import CORE, Model
+from twin.physics.state import Situation
 
 Ranges = Mapping[str, tuple[float, float]]
 NU, STATES = ("u", "v", "r"), ("u", "v", "r", "psi")
@@ -73,20 +73,6 @@ def sampled(model: Model, ranges: Ranges, count: int = 20000, seed: int = 0) -> 
     parts = [np.broadcast_to(p, count) for p in _flat(contribution(model, s, names))]
     lo, hi = [float(p.min()) for p in parts], [float(p.max()) for p in parts]
     return Slopes.of(lo, hi, count)
-
-
-def way_out(model: Model, ranges: Ranges, room: tuple[float, ...], h: float) -> tuple[float, float, float]:
-    """How far (u, v, r) can get out of the set within h seconds: the outward rate near each end, with room around the others."""
-    wide = dict(ranges) | {n: (ranges[n][0] - d, ranges[n][1] + d) for n, d in zip(NU, room, strict=True)}
-    coarse = {name: (p + 1) // 2 for name, p in PIECES.items()}
-    most = slopes(model, wide, coarse).most
-    out = []
-    for i, name in enumerate(NU):
-        (lo, hi), reach = ranges[name], h * most[i]
-        top = slopes(model, wide | {name: (max(hi - reach, lo), hi + room[i])}, coarse).rate[i][1]
-        bottom = slopes(model, wide | {name: (lo - room[i], min(lo + reach, hi))}, coarse).rate[i][0]
-        out.append(h * max(top, -bottom, 0.0))
-    return tuple(out)  # type: ignore[return-value]
 
 
 def step_error(model: Model, ranges: Ranges, h: float, count: int = 2048, seed: int = 0) -> tuple[float, float, float]:

@@ -1,0 +1,239 @@
+"""Ten thousand ships try to break the stabilizer's certificate: `twin-bench stability`.
+
+Truth is the ship's own equations with a bounded force added, integrated twice as finely; the observer sees late, noisy, missing
+measurements and a hostile network. Disturbance, noise and network are chosen against it (along its error, held in one corner,
+square waves, white), all within their bounds. A run that leaves the operating set is judged until it leaves, and counted.
+"""
+
+import argparse
+import json
+import sys
+import time
+from collections import deque
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.errors import ThresholdError
+from twin.live import certificate as cert
+from twin.live import comparison as c3
+from twin.live.certificate import Certificate, Confined
+from twin.physics import core
+from twin.physics.effects import find
+from twin.physics.model import Model
+from twin.physics.ship import load
+from twin.physics.state import Force, Situation
+
+NOISE = {"kvlcc2": (0.15, 0.15, 0.0005), "container": (0.15, 0.15, 0.0006), "usv": (0.06, 0.06, 0.008)}  # three sigma of usual sensors
+HEADING_NOISE = 0.005  # rad
+
+
+class Case(NamedTuple):
+    """One line of the table: which ship, how often, how late, in what sea, how many runs."""
+
+    ship: str
+    rate_hz: float
+    delay: int
+    runs: int
+    H_s: float = 0.0
+    dropouts: bool = False
+    K: float | None = None  # 1/s; None: `usual_gain`
+
+
+CASES = (
+    Case("kvlcc2", 10.0, 1, 3000),
+    Case("kvlcc2", 10.0, 1, 1000, H_s=2.0),
+    Case("kvlcc2", 10.0, 1, 1500, dropouts=True),
+    Case("kvlcc2", 10.0, 10, 500),
+    Case("kvlcc2", 50.0, 1, 500),
+    Case("container", 10.0, 1, 1500),
+    Case("container", 10.0, 1, 500, dropouts=True),
+    Case("usv", 50.0, 1, 1000),
+    Case("usv", 50.0, 1, 500, dropouts=True),
+)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What became of the runs of a case; ratios are error over bound, by axis (surge, sway, yaw)."""
+
+    runs: int
+    left: int
+    samples: int
+    violations: int
+    of_tube: tuple[float, ...]
+    of_bound: tuple[float, ...]
+    error: tuple[float, ...]
+    seconds: float
+
+
+def certified(case: Case) -> tuple[Model, Certificate]:
+    """The model of a case, with wind, and its certificate."""
+    model = Model.of(load(case.ship))
+    model = model if model.effects else model.but(find("Wind").plausible(model.ship))
+    h = 1.0 / case.rate_hz
+    plant = cert.plant_of(model, cert.of_ship(model), h)
+    K = (case.K,) * 3 if case.K else cert.usual_gain(plant, case.delay)
+    K = K or (1.0 / model.ship.scale("time"),) * 3  # none holds: the certificate says so
+    return model, cert.certify(model, K, h, case.delay, NOISE[case.ship], heading_noise=HEADING_NOISE)
+
+
+class Fleet:
+    """Many ships of one kind at once, each with an observer and an adversary of her own."""
+
+    def __init__(self, model: Model, c: Certificate, runs: int, seed: int, H_s: float = 0.0, dropouts: bool = False) -> None:
+        self.c, self.runs, self.rng, self.h = c, runs, np.random.default_rng(seed), c.h
+        self.H_s, self.dropouts = H_s, dropouts
+        self.time = model.ship.scale("time")  # L/U_0 [s]
+        self.limit = np.array(c.disturbance.at(H_s))[:, None]
+        self.noise = np.array(c.noise)[:, None]
+        self.inverse = np.array([core.accelerations(*row, model.c) for row in c3.IDENTITY]).T  # M^-1
+        self.true = replace(model, residual=lambda s: Force(*self.push))
+        self.twin = Confined.to(replace(model, residual=lambda s: Force(*self.learned)), c.operating)
+        self._start()
+
+    def _start(self) -> None:
+        n, rng, ranges = self.runs, self.rng, self.c.operating.ranges
+        nu = np.array([rng.uniform(*_inner(ranges[a], s), n) for a, s in (("u", 0.5), ("v", 0.2), ("r", 0.2))])
+        zero = np.zeros(n)
+        self.truth = (zero, zero, rng.uniform(-np.pi, np.pi, n), *nu)
+        self.estimate = nu + self.noise * rng.uniform(-1, 1, (3, n))
+        self.past = deque([(nu, self.estimate)], maxlen=self.c.delay_samples + 1)
+        self.tube = np.repeat(np.array(self.c.noise)[:, None], n, axis=1)
+        self.window = deque([self.tube], maxlen=2 * self.c.delay_samples + 1)
+        self.alive = np.ones(n, bool)
+        self.policy = rng.integers(0, 4, n)
+        self.corner = rng.choice([-1.0, 1.0], (3, n))
+        self.period = self.time * rng.uniform(0.05, 2.0, n)
+        self.share = rng.random(n)  # of the disturbance that is the ship's; the rest is the hostile network's
+        self.gentle = rng.uniform(0.1, 1.0, n)
+        self.silent = np.zeros((3, n))  # samples for which a row stays silent
+        self._helm()
+
+    def _helm(self) -> None:
+        """New orders and new weather for some of the ships, within the operating set."""
+        n, rng, ranges = self.runs, self.rng, self.c.operating.ranges
+        ahead = ranges["n"][1] / 1.25
+        fresh = {
+            "delta": self.gentle * rng.uniform(*ranges["delta"], n),
+            "n": ahead * np.minimum(rng.uniform(0.5, 1.2, n), 1.25),
+            "wind_speed": self.gentle * rng.uniform(*ranges["wind_speed"], n),
+            "wind_to": rng.uniform(-np.pi, np.pi, n),
+        }
+        change = rng.random(n) < (1.0 if not hasattr(self, "inputs") else self.h / (0.5 * self.time))
+        self.inputs = {k: np.where(change, x, getattr(self, "inputs", fresh)[k]) for k, x in fresh.items()}
+
+    def _against(self, k: int) -> np.ndarray:
+        """(3, runs) the direction in which the adversary drives the error."""
+        error = np.sign(self.estimate - np.array(self.truth[3:]))
+        square = self.corner * np.sign(np.sin(2 * np.pi * k * self.h / self.period))
+        white = self.rng.uniform(-1, 1, (3, self.runs))
+        return np.choose(self.policy, [error, self.corner, square, white])
+
+    def _received(self) -> np.ndarray:
+        """(3, runs) which rows were measured: all, or one in ten lost and now and then all of an axis for a while."""
+        if not self.dropouts:
+            return np.ones((3, self.runs), bool)
+        burst = self.rng.random((3, self.runs)) < self.h / (2.0 * self.time)
+        length = self.time * self.rng.uniform(0.02, 0.3, (3, self.runs)) / self.h
+        self.silent = np.where(burst, length, self.silent - 1.0)
+        return (self.rng.random((3, self.runs)) > 0.1) & (self.silent <= 0.0)
+
+    def step(self, k: int) -> np.ndarray:
+        """One tick of all ships; (3, runs) the error after it."""
+        self._helm()
+        side = self._against(k)
+        force = np.sign(self.inverse.T @ (side / np.array(self.c.bound)[:, None])) * self.limit
+        self.push, self.learned = -self.share * force, (1.0 - self.share) * force
+        nu = np.array(self.truth[3:])
+        age = min(len(self.past) - 1, self.c.delay_samples)
+        was, thought = self.past[-1 - (age if k % 3 else self.rng.integers(0, age + 1))]
+        innovation = np.where(self._got(), was + self.noise * side - thought, 0.0)
+        heading = self.truth[2] + HEADING_NOISE * side[2]
+        s = Situation(**self.inputs)
+        inside = np.array(self.c.operating.clip(tuple(self.estimate)))
+        moved = self.twin.step((0.0 * heading, 0.0 * heading, heading, *inside), s, self.h)
+        self.estimate = self.estimate + (np.array(moved[3:]) - inside) + self.h * np.array(self.c.K)[:, None] * innovation
+        for _ in range(2):
+            self.truth = self.true.step(self.truth, Situation(**self.inputs), 0.5 * self.h)
+        nu = np.array(self.truth[3:])
+        self.past.append((nu, self.estimate))
+        low, high = np.array([self.c.operating.ranges[a] for a in ("u", "v", "r")]).T
+        self.alive = self.alive & np.all((nu >= low[:, None]) & (nu <= high[:, None]), axis=0)
+        self._grow()
+        return self.estimate - nu
+
+    def _got(self) -> np.ndarray:
+        self.received = self._received()
+        return self.received
+
+    def _grow(self) -> None:
+        """The same bound as `Tube`, for all runs at once."""
+        c, d = self.c, self.limit[:, 0]
+        widest = np.max(self.window, axis=0)
+        seen = np.array(c.now) @ self.tube + np.array(c.past) @ widest + (np.array(c.push) @ d + c.rest)[:, None]
+        missed = np.array(c.coast) @ self.tube + (np.array(c.push_coast) @ d + c.rest_coast)[:, None]
+        self.tube = np.where(self.received, seen, missed)
+        self.window.append(self.tube)
+
+
+def trial(model: Model, c: Certificate, runs: int, seed: int, H_s: float = 0.0, dropouts: bool = False, seconds: float | None = None) -> Outcome:
+    """Let a fleet sail until old errors have faded five times over, at least two ship lengths (at most 1500 samples)."""
+    begin = time.perf_counter()
+    fleet = Fleet(model, c, runs, seed, H_s, dropouts)
+    steps = min(int((seconds or max(5.0 / c.rate, 2.0 * fleet.time)) / c.h), 1500)
+    bound = np.array(c.bound_in(H_s))[:, None]
+    of_tube = of_bound = error = np.zeros(3)
+    violations = samples = 0
+    for k in range(steps):
+        e = np.abs(fleet.step(k))
+        inside = fleet.alive
+        if not inside.any():
+            break
+        samples += int(inside.sum())
+        violations += int(np.any(e > fleet.tube * (1.0 + 1e-9), axis=0)[inside].sum())
+        of_tube = np.maximum(of_tube, (e / fleet.tube)[:, inside].max(axis=1))
+        of_bound = np.maximum(of_bound, (e / bound)[:, inside].max(axis=1))
+        error = np.maximum(error, e[:, inside].max(axis=1))
+    took = time.perf_counter() - begin
+    return Outcome(runs, int((~fleet.alive).sum()), samples, violations, *map(tuple, map(np.ndarray.tolist, (of_tube, of_bound, error))), took)
+
+
+def _inner(span: tuple[float, float], share: float) -> tuple[float, float]:
+    middle, half = 0.5 * (span[0] + span[1]), 0.5 * (span[1] - span[0])
+    return middle - share * half, middle + share * half
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--runs", type=int, default=sum(c.runs for c in CASES), help="runs in all (default: %(default)s)")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--json", metavar="FILE", help="the numbers as JSON (- = standard output)")
+    parser.add_argument("--results", metavar="FILE", help="write the tables as Markdown")
+
+
+def run(args: argparse.Namespace) -> int:
+    """All cases; ThresholdError when a bound was broken inside the operating set."""
+    from bench.stability_report import tables
+
+    share = args.runs / sum(c.runs for c in CASES)
+    rows = []
+    for i, case in enumerate(CASES):
+        begin = time.perf_counter()
+        model, c = certified(case)
+        made = time.perf_counter() - begin
+        outcome = trial(model, c, max(1, round(case.runs * share)), args.seed + i, case.H_s, case.dropouts)
+        rows.append((case, c, outcome, made))
+        print(f"{case.ship} {case.rate_hz:g} Hz: {outcome.violations} violations in {outcome.runs} runs", file=sys.stderr)
+    text = tables(rows, args)
+    print(text)
+    if args.results:
+        Path(args.results).write_text(text, encoding="utf-8")
+    if args.json:
+        told = json.dumps({"schema_version": 1, "cases": [{**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o, _ in rows]})
+        print(told) if args.json == "-" else Path(args.json).write_text(told, encoding="utf-8")
+    broken = sum(o.violations for _, _, o, _ in rows)
+    if broken:
+        raise ThresholdError(f"the bound was broken in {broken} samples inside the operating set. The certificate is wrong: do not use it.")
+    return 0
