@@ -2,6 +2,8 @@
 
 import io
 import os
+import subprocess
+import sys
 from pathlib import Path
 from time import monotonic, sleep
 
@@ -235,3 +237,14 @@ def test_file_names_count_up_even_when_the_clock_runs_back(tmp_path: Path) -> No
         until(lambda: recorder.state.written == 1)
         assert os.path.basename(recorder.state.path).startswith("twin-000042-")
     assert (tmp_path / "twin-000041-20990101T000000Z.unreadable").read_bytes() == b"precious"
+
+
+def test_the_bus_and_the_log_load_nothing_heavy() -> None:
+    """Memory on board: numpy 16 MB, keelson 4, mcap's writer 8; none of them is needed to speak, listen or log."""
+    script = (
+        "import sys\nfrom twin.live import bus, clock, decode, record, zenoh_bus\n"
+        "heavy = ('numpy', 'keelson', 'mcap', 'yaml', 'lz4', 'importlib.metadata')\n"
+        "print([name for name in heavy if name in sys.modules])"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"

@@ -51,23 +51,23 @@ class Decoder:
     def decode(self, key: str, envelope: bytes, received_s: float) -> list[Result]:
         """What one message from the bus holds; the twin's own voice gives nothing."""
         topic, source = self._topic(key)
-        if source and is_own(source):
-            return []
         if topic is None:
+            if is_own(source):
+                return []
             return [Rejected("", Quality.UNKNOWN_KEY, f"key {key[:120]!r}", received_s, source)]
         if len(envelope) > MAX_BYTES:
             why = f"{len(envelope)} bytes, at most {MAX_BYTES} expected"
             return _reject(topic, Quality.GARBAGE, why, received_s, source)
         try:
-            payload = messages.unwrap(envelope)[1]
-        except (DecodeError, OverflowError) as error:
+            payload = messages.Envelope.FromString(envelope).payload
+        except DecodeError as error:
             return _reject(topic, Quality.GARBAGE, f"no envelope: {error}", received_s, source)
         return self._payload(topic, source, payload, received_s)
 
     def decode_stripped(self, key: str, payload: bytes, received_s: float) -> list[Result]:
         """The same for a logged message, which has no envelope."""
         topic, source = self._topic(key)
-        if topic is None or is_own(source):
+        if topic is None:
             return []
         return self._payload(topic, source, payload, received_s)
 
@@ -75,7 +75,8 @@ class Decoder:
         known = self._keys.get(key)
         if known is None:
             place = address(key)
-            known = (BY_SUBJECT.get(place.subject), place.source) if place else (None, "")
+            source = place.source if place else ""
+            known = (BY_SUBJECT.get(place.subject) if place and not is_own(source) else None, source)
             if len(self._keys) < MAX_KEYS:
                 self._keys[key] = known
         return known
@@ -86,6 +87,8 @@ class Decoder:
             time_s, values = decoded(topic, payload)
         except Refuse as refusal:
             return _reject(topic, refusal.quality, str(refusal), received_s, source)
+        if len(values) == 1:
+            return [Reading(topic.channels[0], values[0], time_s, received_s, source)]
         return [
             Reading(channel, value, time_s, received_s, source)
             for channel, value in zip(topic.channels, values, strict=True)
@@ -177,10 +180,11 @@ def _parse(message_class: Any, payload: bytes) -> Any:
 
 def _stamp(message: Any) -> float:
     """The source's time stamp, or a refusal: no stamp, one from before 2000, one from after 2100."""
-    if not message.HasField("timestamp"):
-        raise Refuse(Quality.NO_TIMESTAMP, "no time stamp")
-    seconds, nanos = message.timestamp.seconds, message.timestamp.nanos
+    timestamp = message.timestamp
+    seconds, nanos = timestamp.seconds, timestamp.nanos
     if seconds < EARLIEST_S:
+        if not message.HasField("timestamp"):
+            raise Refuse(Quality.NO_TIMESTAMP, "no time stamp")
         raise Refuse(Quality.NO_TIMESTAMP, f"stamped {seconds} s after 1970, before the year 2000")
     if seconds > LATEST_S or not 0 <= nanos < 1_000_000_000:
         raise Refuse(Quality.GARBAGE, f"stamped {seconds} s and {nanos} ns after 1970")
