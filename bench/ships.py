@@ -95,10 +95,10 @@ def ship(key: str) -> Ship:
     """One bundled ship."""
     h, source = HULLS[key], SOURCE[key]
     m = h.m * 0.5 * h.rho * h.L**2 * h.d
-    values = dict(
-        L_pp=h.L, B=h.B, T=h.d, m=m, C_b=m / (h.rho * h.L * h.B * h.d), x_G=h.x_G, I_z=m * ((h.k_zz * h.L) ** 2 + h.x_G**2),
-        rho=h.rho, U_0=h.U0, D_P=h.D_P, A_R=h.A_R, A_F=h.A_F, A_L=h.A_L,
-    )  # fmt: skip
+    values = {
+        "L_pp": h.L, "B": h.B, "T": h.d, "m": m, "C_b": m / (h.rho * h.L * h.B * h.d), "x_G": h.x_G, "I_z": m * ((h.k_zz * h.L) ** 2 + h.x_G**2),
+        "rho": h.rho, "U_0": h.U0, "D_P": h.D_P, "A_R": h.A_R, "A_F": h.A_F, "A_L": h.A_L,
+    }  # fmt: skip
     values = {k: float(f"{v:.6g}") for k, v in values.items()}
     notes = {
         "C_b": "m/(rho L B T)", "I_z": f"m ((k_zz L)^2 + x_G^2), k_zz = {h.k_zz:.3g}", "rho": "fresh water of a tank" if h.rho < 1010 else "sea water",

@@ -21,10 +21,10 @@ def ship() -> Ship:
 @pytest.fixture
 def moment() -> dict[str, float]:
     """Everything is going on at once, and nothing is zero."""
-    return dict(
-        x=120.0, y=-40.0, psi=0.6, u=4.2, v=-0.5, r=0.012, u_r=4.0, v_r=-0.4, delta=0.2, n=2.2, t=700.0, wind_speed=9.0, wind_to=2.0,
-        depth=9.0, H_s=2.0, T_p=8.0, wave_to=1.5, draught=5.0, bank_port=60.0, bank_starboard=25.0, phi=0.05, u_dot=0.01, v_dot=-0.02,
-    )  # fmt: skip
+    return {
+        "x": 120.0, "y": -40.0, "psi": 0.6, "u": 4.2, "v": -0.5, "r": 0.012, "u_r": 4.0, "v_r": -0.4, "delta": 0.2, "n": 2.2, "t": 700.0, "wind_speed": 9.0, "wind_to": 2.0,
+        "depth": 9.0, "H_s": 2.0, "T_p": 8.0, "wave_to": 1.5, "draught": 5.0, "bank_port": 60.0, "bank_starboard": 25.0, "phi": 0.05, "u_dot": 0.01, "v_dot": -0.02,
+    }  # fmt: skip
 
 
 @pytest.fixture

@@ -47,7 +47,7 @@ def hypot(x: Any, y: Any, floor: float = 1e-9) -> Any:
 
 def atan2(y: Any, x: Any) -> Any:
     library = _library(y, x)
-    return getattr(library, "atan2", None)(y, x) if hasattr(library, "atan2") else library.arctan2(y, x)
+    return library.atan2(y, x) if hasattr(library, "atan2") else library.arctan2(y, x)
 
 
 def where(condition: Any, yes: Any, no: Any) -> Any:

@@ -4,6 +4,7 @@ import argparse
 import json
 import sys
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from math import radians
 from pathlib import Path
 from typing import Any
@@ -74,18 +75,22 @@ def first_model(name: str, given: Given) -> tuple[Ship, list[str]]:
     p = _particulars(given)
     h = reg.Hull(*(p[k][0] for k in ("L_pp", "B", "T", "C_b", "U_0", "x_G", "rho")))
     d = _derivatives(reg.nearest(h), p, given)
-    known = {key: value for key, (value, _) in p.items()}
-    notes = {
+    notes: dict[str, Any] = {
         "particulars": {k: {"value": v, "source": s} for k, (v, s) in p.items()},
         "derivatives": {k: {"value": v, "source": s} for k, (v, s) in d.items()},
     }
     used = {part for _, source in (*p.values(), *d.values()) for part in source.split("; ")}
     notes["sources"] = {key: text for key, text in reg.SOURCES.items() if key in used}
-    ship = Ship(name.strip(), **known, derivatives=Derivatives(**{k: v for k, (v, _) in d.items()}), notes=notes)
+    ship = replace(_ship(name.strip(), p, d), notes=notes)
     _in_ranges(ship)
     rough = [k for k, (_, s) in p.items() if s == "ROUGH"]
     guessed = [f"{', '.join(rough)}: guessed by size only; give them if you can"] if rough else []
     return ship, reg.outside(h) + guessed
+
+
+def _ship(name: str, particulars: Numbers, derivatives: Numbers) -> Ship:
+    ship = Ship(name, **{k: v for k, (v, _) in particulars.items()})  # type: ignore[arg-type]
+    return replace(ship, derivatives=Derivatives(**{k: v for k, (v, _) in derivatives.items()}))
 
 
 def _check(given: Given) -> None:
@@ -161,9 +166,7 @@ def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
         return usual
 
     def turns(diameter: float, pitch: float) -> float:
-        values = {k: v for k, (v, _) in p.items()} | {"D_P": diameter}
-        derivatives = {k: v for k, (v, _) in (d | reg.propulsion(h, pitch)).items()}
-        return 60.0 * shaft_speed(Model(Ship("", **values, derivatives=Derivatives(**derivatives))), h.U)
+        return 60.0 * shaft_speed(Model(_ship("", p | {"D_P": (diameter, "")}, d | reg.propulsion(h, pitch))), h.U)
 
     D = p["D_P"][0]
     if given["propeller-diameter-m"] is None and not turns(D, 1.4) < rpm < turns(D, 0.5):

@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
+from twin.physics.particulars import Ship
 from twin.physics.state import Situation
 
 
@@ -19,7 +20,7 @@ class AntennaOffset(SensorFault):
     ahead: float = param(0.1, unit="m", lo=-0.6, hi=0.6, sd=0.1, of="length", doc="antenna ahead of where the settings put it")
     starboard: float = param(0.0, unit="m", lo=-0.1, hi=0.1, sd=0.015, of="length", doc="antenna to starboard of where the settings put it")
 
-    def read(self, s: Situation, ship: object) -> Situation:
+    def read(self, s: Situation, ship: Ship) -> Situation:
         c, si = cos(s.psi), sin(s.psi)
         return replace(
             s,

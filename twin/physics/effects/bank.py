@@ -6,6 +6,7 @@
 """
 
 from twin.physics.effect import Force, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -19,7 +20,7 @@ class Bank(Force):
     suction: float = param(0.03, unit="-", lo=0.0, hi=0.5, sd=0.05, doc="side force toward the nearer bank")
     bow_out: float = param(0.008, unit="-", lo=0.0, hi=0.15, sd=0.015, doc="moment that turns the bow from the nearer bank")
 
-    def force(self, s: Situation, ship: "object") -> ForceVector:
+    def force(self, s: Situation, ship: Ship) -> ForceVector:
         e = ship.B / (ship.B + 2.0 * s.bank_starboard) - ship.B / (ship.B + 2.0 * s.bank_port)
         f = 0.5 * ship.rho * ship.L_pp * ship.T * s.u_r * e
         return ForceVector(Y=f * s.u_r * self.suction, N=-f * abs(s.u_r) * ship.L_pp * self.bow_out)

@@ -5,6 +5,7 @@
 """
 
 from twin.physics.effect import Force, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -18,7 +19,7 @@ class CrossFlowDrag(Force):
 
     c_d: float = param(0.4, unit="-", lo=0.0, hi=2.0, sd=0.4, doc="drag coefficient beyond that of the hull's derivatives")
 
-    def force(self, s: Situation, ship: "object") -> ForceVector:
+    def force(self, s: Situation, ship: Ship) -> ForceVector:
         L, Y, N = ship.L_pp, 0.0, 0.0
         for xi in STRIPS:
             cross = s.v_r + xi * L * s.r

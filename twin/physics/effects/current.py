@@ -5,6 +5,7 @@
 
 from twin.physics.effect import Flow, param
 from twin.physics.maths import cos, sin
+from twin.physics.particulars import Ship
 from twin.physics.state import Situation, Water
 
 
@@ -16,6 +17,6 @@ class Current(Flow):
     north: float = param(0.0, unit="m/s", lo=-0.6, hi=0.6, sd=0.08, of="speed", doc="current toward north")
     east: float = param(0.0, unit="m/s", lo=-0.6, hi=0.6, sd=0.08, of="speed", doc="current toward east")
 
-    def water(self, s: Situation, ship: object) -> Water:
+    def water(self, s: Situation, ship: Ship) -> Water:
         c, si = cos(s.psi), sin(s.psi)
         return Water(u=self.north * c + self.east * si, v=self.east * c - self.north * si)

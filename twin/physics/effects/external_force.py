@@ -6,6 +6,7 @@
 
 from twin.physics.effect import Force, param
 from twin.physics.maths import cos, sin
+from twin.physics.particulars import Ship
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -20,7 +21,7 @@ class ExternalForce(Force):
     turn_north: float = param(0.0, unit="N m", lo=-3.0, hi=3.0, sd=0.1, of="moment", doc="north force times its lever ahead of midship")
     turn_east: float = param(0.0, unit="N m", lo=-3.0, hi=3.0, sd=0.1, of="moment", doc="east force times its lever ahead of midship")
 
-    def force(self, s: Situation, ship: object) -> ForceVector:
+    def force(self, s: Situation, ship: Ship) -> ForceVector:
         c, si = cos(s.psi), sin(s.psi)
         return ForceVector(
             X=self.north * c + self.east * si,

@@ -6,6 +6,7 @@
 from dataclasses import replace
 
 from twin.physics.effect import SensorFault, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Situation
 
 
@@ -16,5 +17,5 @@ class GyroBias(SensorFault):
 
     bias: float = param(0.0005, unit="rad/s", lo=-0.02, hi=0.02, sd=0.0007, doc="shown yaw rate less the true one")
 
-    def read(self, s: Situation, ship: object) -> Situation:
+    def read(self, s: Situation, ship: Ship) -> Situation:
         return replace(s, r=s.r + self.bias)

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
+from twin.physics.particulars import Ship
 from twin.physics.state import Situation
 
 
@@ -21,7 +22,7 @@ class HeadingBias(SensorFault):
     bias: float = param(0.02, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="shown heading less the true one")
     turned: float = param(0.0, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="the same for the velocity over ground: bias, or 0 (see above)")
 
-    def read(self, s: Situation, ship: object) -> Situation:
+    def read(self, s: Situation, ship: Ship) -> Situation:
         c, si = cos(self.turned), sin(self.turned)
         return replace(
             s,

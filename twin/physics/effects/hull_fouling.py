@@ -4,6 +4,7 @@
 """
 
 from twin.physics.effect import Force, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -15,5 +16,5 @@ class HullFouling(Force):
 
     extra: float = param(0.3, unit="-", lo=0.0, hi=2.0, sd=0.25, doc="added resistance over calm-water resistance")
 
-    def force(self, s: Situation, ship: "object") -> ForceVector:
+    def force(self, s: Situation, ship: Ship) -> ForceVector:
         return ForceVector(X=self.extra * (ship.c.X_u + ship.c.X_uu * abs(s.u_r)) * s.u_r)

@@ -8,6 +8,7 @@ m, the resistance with the wetted surface 1.7 L T + C_b L B. Derivatives are sto
 from dataclasses import replace
 
 from twin.physics.effect import Force, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Number
 
 SLENDER = ("Y_vdot", "Y_rdot", "N_vdot", "N_rdot", "Y_uv", "Y_ur", "N_uv", "N_ur")  # prime value grows with T
@@ -22,7 +23,7 @@ class Loading(Force):
     draught: float = param(0.15, unit="-", lo=-0.7, hi=0.6, sd=0.12, doc="draught beyond the model's, as a fraction of it")
     x_G: float = param(0.0, unit="m", lo=-0.06, hi=0.06, sd=0.01, of="length", doc="shift of the centre of gravity, ahead positive")
 
-    def alter(self, ship: "object") -> "object":
+    def alter(self, ship: Ship) -> Ship:
         m, k, x_G = ship.m * (1.0 + self.mass), 1.0 + self.draught, ship.x_G + self.x_G
         d = ship.derivatives
         primes: dict[str, Number] = {name: getattr(d, name) * k for name in SLENDER}

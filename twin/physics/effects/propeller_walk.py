@@ -4,6 +4,7 @@
 """
 
 from twin.physics.effect import Force, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -16,6 +17,6 @@ class PropellerWalk(Force):
     c_y: float = param(0.01, unit="-", lo=-0.1, hi=0.1, sd=0.01, doc="side force, positive to starboard when going ahead")
     c_n: float = param(-0.005, unit="-", lo=-0.05, hi=0.05, sd=0.005, doc="yaw moment, positive to starboard when going ahead")
 
-    def force(self, s: Situation, ship: "object") -> ForceVector:
+    def force(self, s: Situation, ship: Ship) -> ForceVector:
         f = ship.rho * ship.D_P**4 * s.n * abs(s.n)
         return ForceVector(Y=f * self.c_y, N=f * ship.L_pp * self.c_n)

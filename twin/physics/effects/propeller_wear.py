@@ -5,6 +5,7 @@
 
 from twin.physics import core
 from twin.physics.effect import Force, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -16,7 +17,7 @@ class PropellerWear(Force):
 
     loss: float = param(0.1, unit="-", lo=0.0, hi=0.7, sd=0.1, doc="share of the thrust that is lost")
 
-    def force(self, s: Situation, ship: "object") -> ForceVector:
+    def force(self, s: Situation, ship: Ship) -> ForceVector:
         c = ship.c
         thrust = core.thrust(s.u_r, s.n, c)
         new = core.rudder(s.u_r, s.v_r, s.r, s.delta, thrust, c)

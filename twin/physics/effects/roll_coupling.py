@@ -6,6 +6,7 @@
 """
 
 from twin.physics.effect import Force, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -21,7 +22,7 @@ class RollCoupling(Force):
     c_yr: float = param(0.2, unit="1/rad", lo=-2.0, hi=2.0, sd=0.2, doc="side force of heel, per (L r/U)^2")
     c_nr: float = param(-0.08, unit="1/rad", lo=-1.0, hi=1.0, sd=0.08, doc="yaw moment of heel, per (L r/U)^2")
 
-    def force(self, s: Situation, ship: "object") -> ForceVector:
+    def force(self, s: Situation, ship: Ship) -> ForceVector:
         L, UU = ship.L_pp, s.u_r * s.u_r + s.v_r * s.v_r
         turn = L * L * s.r * s.r
         f = 0.5 * ship.rho * L * ship.T * s.phi

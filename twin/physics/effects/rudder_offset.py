@@ -5,6 +5,7 @@
 
 from twin.physics import core
 from twin.physics.effect import Force, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -16,7 +17,7 @@ class RudderOffset(Force):
 
     offset: float = param(0.02, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="true rudder angle less the indicated one, positive to starboard")
 
-    def force(self, s: Situation, ship: "object") -> ForceVector:
+    def force(self, s: Situation, ship: Ship) -> ForceVector:
         c = ship.c
         thrust = core.thrust(s.u_r, s.n, c)
         told = core.rudder(s.u_r, s.v_r, s.r, s.delta, thrust, c)

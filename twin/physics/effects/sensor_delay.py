@@ -11,6 +11,7 @@ from dataclasses import replace
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
+from twin.physics.particulars import Ship
 from twin.physics.state import Situation
 
 
@@ -22,7 +23,7 @@ class SensorDelay(SensorFault):
     delay: float = param(0.6, unit="s", lo=0.0, hi=6.0, sd=0.6, doc="age of position and velocity over ground")
     turned: float = param(0.0, unit="s", lo=0.0, hi=6.0, sd=0.6, doc="the same for the turning of the velocity: delay, or 0 (see above)")
 
-    def read(self, s: Situation, ship: object) -> Situation:
+    def read(self, s: Situation, ship: Ship) -> Situation:
         c, si, d, turned = cos(s.psi), sin(s.psi), self.delay, self.turned * s.r
         return replace(
             s,

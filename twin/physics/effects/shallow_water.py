@@ -7,6 +7,7 @@ With sway = 0.75 the lift of the hull grows x1.4, x2.0 and x4.2 at h/T = 2, 1.5 
 
 from twin.physics.effect import Flow, param
 from twin.physics.maths import maximum
+from twin.physics.particulars import Ship
 from twin.physics.state import Situation, Water
 
 
@@ -20,7 +21,7 @@ class ShallowWater(Flow):
     sway: float = param(0.75, unit="-", lo=0.0, hi=2.0, sd=0.6, doc="how fast the stream across the hull grows with g(T/h)")
     yaw: float = param(0.25, unit="-", lo=0.0, hi=1.5, sd=0.3, doc="how fast the stream of turning grows with g(T/h)")
 
-    def water(self, s: Situation, ship: "object") -> Water:
+    def water(self, s: Situation, ship: Ship) -> Water:
         F = ship.T / maximum(s.depth, 1.05 * ship.T)
         g = F * F / (1.0 - F)
         return Water(k_u=self.surge * g, k_v=self.sway * g, k_r=self.yaw * g)

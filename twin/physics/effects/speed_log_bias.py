@@ -6,6 +6,7 @@
 from dataclasses import replace
 
 from twin.physics.effect import SensorFault, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Situation
 
 
@@ -17,5 +18,5 @@ class SpeedLogBias(SensorFault):
 
     bias: float = param(0.04, unit="m/s", lo=-0.4, hi=0.4, sd=0.04, of="speed", doc="shown speed through water less the true one")
 
-    def read(self, s: Situation, ship: object) -> Situation:
+    def read(self, s: Situation, ship: Ship) -> Situation:
         return replace(s, u_r=s.u_r + self.bias)

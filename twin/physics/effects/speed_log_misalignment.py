@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
+from twin.physics.particulars import Ship
 from twin.physics.state import Situation
 
 
@@ -18,6 +19,6 @@ class SpeedLogMisalignment(SensorFault):
 
     angle: float = param(0.03, unit="rad", lo=-0.3, hi=0.3, sd=0.03, doc="how far the log's axis ahead points to starboard of the ship's")
 
-    def read(self, s: Situation, ship: object) -> Situation:
+    def read(self, s: Situation, ship: Ship) -> Situation:
         c, si = cos(self.angle), sin(self.angle)
         return replace(s, u_r=s.u_r * c + s.v_r * si, v_r=s.v_r * c - s.u_r * si)

@@ -6,6 +6,7 @@
 from dataclasses import replace
 
 from twin.physics.effect import SensorFault, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Situation
 
 
@@ -17,5 +18,5 @@ class SpeedLogScale(SensorFault):
 
     scale: float = param(0.04, unit="-", lo=-0.4, hi=0.4, sd=0.04, doc="shown speed over the true one, less 1")
 
-    def read(self, s: Situation, ship: object) -> Situation:
+    def read(self, s: Situation, ship: Ship) -> Situation:
         return replace(s, u_r=s.u_r * (1.0 + self.scale), v_r=s.v_r * (1.0 + self.scale))

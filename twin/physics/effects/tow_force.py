@@ -4,6 +4,7 @@
 """
 
 from twin.physics.effect import Force, param
+from twin.physics.particulars import Ship
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -17,5 +18,5 @@ class TowForce(Force):
     starboard: float = param(0.3, unit="N", lo=-8.0, hi=8.0, sd=0.5, of="force", doc="force to starboard")
     turning: float = param(0.1, unit="N m", lo=-3.0, hi=3.0, sd=0.15, of="moment", doc="moment turning to starboard")
 
-    def force(self, s: Situation, ship: object) -> ForceVector:
+    def force(self, s: Situation, ship: Ship) -> ForceVector:
         return ForceVector(self.ahead, self.starboard, self.turning)

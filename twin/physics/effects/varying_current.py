@@ -1,3 +1,4 @@
+
 """A current that changes slowly: a mean and three harmonics of one hour, toward north and toward east.
 
     V(t) = V_0 + sum_k (a_k cos(w_k t) + b_k sin(w_k t)),   w_k = 2 pi k / 3600 s,  k = 1, 2, 3
@@ -9,6 +10,7 @@ from math import pi
 
 from twin.physics.effect import Flow, param
 from twin.physics.maths import cos, sin
+from twin.physics.particulars import Ship
 from twin.physics.state import Number, Situation, Water
 
 HOUR = 3600.0  # s
@@ -50,7 +52,7 @@ class VaryingCurrent(Flow):
             self.east + self.east_c1 * c + self.east_s1 * s + self.east_c2 * c2 + self.east_s2 * s2 + self.east_c3 * c3 + self.east_s3 * s3,
         )
 
-    def water(self, s: Situation, ship: object) -> Water:
+    def water(self, s: Situation, ship: Ship) -> Water:
         north, east = self.toward(s.t)
         c, si = cos(s.psi), sin(s.psi)
         return Water(u=north * c + east * si, v=east * c - north * si)

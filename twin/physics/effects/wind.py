@@ -8,6 +8,7 @@
 
 from twin.physics.effect import Force, param
 from twin.physics.maths import cos, hypot, sin
+from twin.physics.particulars import Ship
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -26,7 +27,7 @@ class Wind(Force):
     c_n: float = param(0.08, unit="-", lo=-0.3, hi=0.4, sd=0.1, doc="yaw moment that bow and stern quartering winds add (sin 2 gamma)")
     c_m: float = param(0.0, unit="-", lo=-0.3, hi=0.3, sd=0.05, doc="yaw moment of beam wind: c_y times the lever of the lateral area's centre, in L")
 
-    def force(self, s: Situation, ship: "object") -> ForceVector:
+    def force(self, s: Situation, ship: Ship) -> ForceVector:
         u_rw = s.u - s.wind_speed * cos(s.wind_to - s.psi)  # the ship through the air, body axes [m/s]
         v_rw = s.v - s.wind_speed * sin(s.wind_to - s.psi)
         V_rw = hypot(u_rw, v_rw)

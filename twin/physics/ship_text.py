@@ -1,0 +1,101 @@
+"""A ship as text: the TOML that a person can read, with its sources, and that `load` reads back the same."""
+
+import json
+import os
+import re
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from twin.errors import SettingsError
+
+from .particulars import DERIVATIVES, PARTICULARS, Ship
+
+SCHEMA_VERSION = 1
+SECTIONS = ("schema_version", "name", "particulars", "derivatives", "effects")
+
+
+def to_table(ship: Ship) -> dict[str, Any]:
+    """What the ship's file holds; sources and standard errors are kept for the numbers that did not change."""
+    notes = ship.notes
+
+    def entry(section: str, meta: Mapping[str, Any], name: str, value: float) -> dict[str, Any]:
+        old = notes.get(section, {}).get(name, {})
+        old = old if isinstance(old, Mapping) else {"value": old}
+        kept = dict(old) if old.get("value") == value else {k: v for k, v in old.items() if k != "source"}
+        return {"value": float(value), "unit": meta["unit"]} | {k: v for k, v in kept.items() if k not in ("value", "unit")}
+
+    table: dict[str, Any] = {"schema_version": SCHEMA_VERSION, "name": ship.name}
+    table["particulars"] = {
+        f.name: entry("particulars", f.metadata, f.name, getattr(ship, f.name))
+        for f in PARTICULARS
+        if getattr(ship, f.name) is not None
+    }
+    table["derivatives"] = {f.name: entry("derivatives", f.metadata, f.name, getattr(ship.derivatives, f.name)) for f in DERIVATIVES}
+    table["effects"] = {
+        type(e).__name__: {
+            p.name: {"value": float(getattr(e, p.name)), "unit": p.unit}
+            | {k: v for k, v in _noted(notes, type(e).__name__, p.name).items() if k not in ("value", "unit")}
+            for p in e.params()
+        }
+        for e in ship.effects
+    }
+    return table | {k: v for k, v in notes.items() if k not in SECTIONS}
+
+
+def _noted(notes: Mapping[str, Any], effect: str, name: str) -> Mapping[str, Any]:
+    entry = notes.get("effects", {}).get(effect, {}).get(name, {})
+    return entry if isinstance(entry, Mapping) else {}
+
+
+def text(table: Mapping[str, Any]) -> str:
+    """A ship's table as TOML, one line for each number with its meaning behind it; what else was noted follows."""
+    meaning = {"particulars": PARTICULARS, "derivatives": DERIVATIVES}
+    docs = {f"{section}.{f.name}": f.metadata["doc"] for section, known in meaning.items() for f in known}
+    rest = {k: v for k, v in table.items() if k not in SECTIONS}
+    lists = {k: v for k, v in rest.items() if isinstance(v, list) and v and all(isinstance(item, Mapping) for item in v)}
+    tables = {k: v for k, v in rest.items() if isinstance(v, Mapping)}
+    plain = {k: v for k, v in rest.items() if k not in lists and k not in tables}
+    lines = [f"{_key(k)} = {_inline(v)}" for k, v in ({k: table[k] for k in ("schema_version", "name")} | plain).items()]
+    sections = {key: table[key] for key in ("particulars", "derivatives")}
+    sections |= {f"effects.{name}": numbers for name, numbers in table["effects"].items()}
+    for section, entries in (sections | {_key(k): v for k, v in tables.items()}).items():
+        lines += ["", f"[{section}]"]
+        for name, entry in entries.items():
+            doc = docs.get(f"{section}.{name}")
+            lines.append(f"{_key(name)} = {_inline(entry)}" + (f"  # {doc}" if doc else ""))
+    for name, items in lists.items():
+        for item in items:
+            lines += ["", f"[[{_key(name)}]]", *(f"{_key(k)} = {_inline(v)}" for k, v in item.items())]
+    return "\n".join(lines) + "\n"
+
+
+def _key(name: str) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", name) else json.dumps(name, ensure_ascii=False)
+
+
+def _inline(value: Any) -> str:
+    """One value in TOML."""
+    if isinstance(value, Mapping):
+        return "{ " + ", ".join(f"{_key(k)} = {_inline(v)}" for k, v in value.items()) + " }" if value else "{}"
+    if isinstance(value, str):
+        return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
+    if isinstance(value, (list, tuple)):
+        return "[" + ", ".join(_inline(v) for v in value) + "]"
+    if hasattr(value, "isoformat"):
+        return value.isoformat()
+    value = value.item() if hasattr(value, "item") else value
+    return str(value).lower() if isinstance(value, bool) else repr(value)
+
+
+def save(ship: Ship, path: str | os.PathLike[str]) -> None:
+    """Write the ship file aside and rename it into place, so that no half file is ever seen."""
+    path, content = Path(path), text(to_table(ship))
+    try:
+        with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=f".{path.name}.", delete=False, encoding="utf-8") as file:
+            file.write(content)
+        os.chmod(file.name, 0o644)
+        os.replace(file.name, path)
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot be written ({error.strerror}). Choose another place with -o.") from None
