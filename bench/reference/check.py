@@ -61,7 +61,7 @@ def standard(hull):
     turns, zigzags = (35, -35), (10, -10, 20, -20)
     plans = [[Leg(RUDDER, 99, a)] for a in turns] + [[Leg(ZIGZAG, 99, a, abs(a))] for a in zigzags]
     ship = hull_of(Case(hull))
-    voyages = sail(hull, plans, 22 * ship.L / ship.U0)
+    voyages = sail(hull, plans, 15 * ship.L / ship.U0)
     turned = {a: measure_turn(v) for a, v in zip(turns, voyages, strict=False)}
     return turned, {a: measure_zigzag(v, a)[0][:2] for a, v in zip(zigzags, voyages[2:], strict=True)}
 

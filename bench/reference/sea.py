@@ -97,7 +97,8 @@ class Sea:
             np.array([n in c.decoys for c in cases], float) for n in ("wind", "waves")
         )
         self.env = Environment(self.hulls, self.h, self.weathers, self.f, seeds, self.dt)
-        self.substeps = max(1, round(self.dt / (0.05 if min(x.L for x in self.hulls) < 20 else 0.1)))
+        shortest = min(x.L for x in self.hulls)
+        self.substeps = max(1, round(self.dt / (0.05 if shortest < 20 else 0.25)))
         share = np.array([c.speed_fraction for c in cases])
         n_start = stack(calm).n0 * share
         plans = [

@@ -1,0 +1,111 @@
+"""The reference sea as a witness: independent, repeatable, and the same for one ship or many."""
+
+import ast
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bench.reference
+from bench.reference import HULLS, Case, Sea, Weather, simulate
+from bench.reference.manoeuvres import MANOEUVRES, RUDDER, ZIGZAG, Leg
+from bench.reference.sensors import COLUMNS
+
+FOLDER = Path(bench.reference.__file__).parent
+STILL = Weather()
+
+
+def test_the_witness_imports_nothing_but_numpy_and_the_standard_library():
+    allowed = {"numpy", "dataclasses", "math", "types", "argparse", "json", "pathlib", "os"}
+    for path in FOLDER.glob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            names = [a.name for a in node.names] if isinstance(node, ast.Import) else []
+            names += [node.module] if isinstance(node, ast.ImportFrom) and node.level == 0 else []
+            assert {n.split(".")[0] for n in names} <= allowed, path.name
+
+
+def rough(seed, **more):
+    hidden = (("Current", 1.0), ("SteeringLag", 0.5), ("SensorDelay", 1.0))
+    return Case("usv", "mixed", "TS-02", hidden, seed=seed, duration_s=20.0, **more)
+
+
+def test_a_ship_sails_the_same_voyage_alone_and_in_company():
+    alone = simulate([rough(3)])[0]
+    others = [rough(1), Case("usv", "turning_circle", hidden=(("Wind", 1.0), ("Loading", 1.0)), duration_s=20.0), rough(3)]
+    company = simulate(others)[2]
+    for name in COLUMNS:
+        assert alone.columns[name].tobytes() == company.columns[name].tobytes(), name
+    assert alone.hidden == company.hidden
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_seed_does_not(tmp_path):
+    for name, seed in (("a", 5), ("b", 5), ("c", 6)):
+        simulate([rough(seed)])[0].write_csv(tmp_path / name)
+    assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes() != (tmp_path / "c").read_bytes()
+
+
+def test_a_stepped_sea_reads_what_a_recording_holds():
+    recording, sea = simulate([rough(2)])[0], Sea(rough(2))
+    for i in (0, 1, 57):
+        sea.advance((i - sea.tick) * 0.1)
+        for name, value in sea.readings().items():
+            assert value == pytest.approx(recording.columns[name][i], nan_ok=True, abs=0), name
+
+
+def test_a_live_sea_sails_at_fifty_hertz_without_an_end():
+    sea = Sea(Case("kvlcc2", "mixed", duration_s=None), tick_s=0.02)
+    for _ in range(30):
+        sea.advance(0.02)
+    assert sea.readings()["time_s"] == pytest.approx(0.6)
+    assert np.isfinite(sea.readings()["heading_true_north_deg"])
+
+
+@pytest.mark.parametrize("hull", ["container", "usv"])
+def test_a_mirrored_manoeuvre_of_a_symmetric_hull_is_mirrored(hull):
+    time = 10 * HULLS[hull].L / HULLS[hull].U0
+    pair = [Case(hull, (Leg(ZIGZAG, 99, a, 10),), STILL, heading_deg=0, duration_s=time, sensors="perfect") for a in (10, -10)]
+    port, starboard = (v.truth for v in simulate(pair, tick_s=0.25 if hull == "container" else 0.1))
+    for name, sign in (("north", 1), ("u", 1), ("east", -1), ("psi", -1), ("v", -1), ("r", -1), ("phi", -1)):
+        assert port[name] == pytest.approx(sign * starboard[name], abs=1e-9 * HULLS[hull].L)
+
+
+def test_a_model_at_froude_scale_sails_the_same_voyage_in_lengths():
+    """Only water density and the thicker wake of the small model may differ, so those are set equal."""
+    big, small = HULLS["kvlcc2"], replace(HULLS["kvlcc2_model"], rho=1025.0, w_P0=0.35, engine_time=12 * (7 / 320) ** 0.5)
+    ends = []
+    for hull, tick in ((big, 0.5), (small, 0.5 * (7 / 320) ** 0.5)):
+        case = Case(hull, (Leg(RUDDER, 99, 20),), STILL, heading_deg=0, duration_s=250 * tick / 0.5, sensors="perfect")
+        true = simulate([case], tick_s=tick)[0].truth
+        ends.append([true["north"][-1] / hull.L, true["east"][-1] / hull.L, true["psi"][-1]])
+    assert ends[0] == pytest.approx(ends[1], rel=0.01)
+
+
+@pytest.mark.parametrize("hull", HULLS)
+def test_every_manoeuvre_is_sailed_by_every_hull(hull):
+    time = (32 if hull == "usv" else 16) * HULLS[hull].L / HULLS[hull].U0
+    tick = 0.5 if HULLS[hull].L > 100 else 0.1
+    for voyage in simulate([Case(hull, name, seed=4, duration_s=time) for name in MANOEUVRES], tick_s=tick):
+        true = voyage.truth
+        assert all(np.isfinite(true[name]).all() for name in true if name not in ("forces", "depth", "bank"))
+        assert np.abs(true["u"]).max() < 1.2 * HULLS[hull].U0 and np.degrees(np.abs(true["phi"])).max() < 15
+        assert np.nanmax(np.abs(voyage.columns["rudder_angle_deg"])) < 36
+        assert voyage.case.manoeuvre == "straight" or np.ptp(true["n"]) + np.ptp(true["psi"]) > 0.1
+
+
+def test_a_crash_stop_stops_her_within_fifteen_lengths():
+    hull = HULLS["kvlcc2"]
+    case = Case("kvlcc2", "crash_stop", STILL, heading_deg=0, duration_s=18 * hull.L / hull.U0)
+    true = simulate([case], tick_s=0.5)[0].truth
+    assert true["u"].min() < 0.05 * hull.U0
+    assert 2 < (true["north"][np.argmin(true["u"])] / hull.L - 4) < 15
+
+
+@pytest.mark.parametrize(
+    ("case", "word"),
+    [(Case("kvlcc3"), "kvlcc2"), (Case(manoeuvre="zig"), "zigzag_10"), (Case(weather="storm"), "calm"),
+     (Case(hidden=(("Winds", 1.0),)), "Wind"), (Case(decoys=("fog",)), "wind_no_force")],
+)
+def test_a_wrong_name_is_answered_with_the_right_ones(case, word):
+    with pytest.raises(ValueError, match=word):
+        simulate([case])
