@@ -12,8 +12,9 @@ from mcap.reader import NonSeekingReader, make_reader
 
 from twin.errors import DataError, TwinError
 from twin.live import messages
+from twin.live.mcap_index import MAGIC
 from twin.live.mcap_read import McapReader
-from twin.live.mcap_write import CHUNK_BYTES, MAGIC, McapWriter
+from twin.live.mcap_write import CHUNK_BYTES, McapWriter
 from twin.live.record import LogFile, LogState, Recorder, read
 
 SCALAR = "keelson.TimestampedFloat"
@@ -240,7 +241,7 @@ def test_file_names_count_up_even_when_the_clock_runs_back(tmp_path: Path) -> No
 
 
 def test_the_bus_and_the_log_load_nothing_heavy() -> None:
-    """Memory on board: numpy 16 MB, keelson 4, mcap's writer 8; none of them is needed to speak, listen or log."""
+    """Memory on board: numpy 16 MB, keelson 4, mcap's writer 8: none is needed to speak or to log."""
     script = (
         "import sys\nfrom twin.live import bus, clock, decode, record, zenoh_bus\n"
         "heavy = ('numpy', 'keelson', 'mcap', 'yaml', 'lz4', 'importlib.metadata')\n"

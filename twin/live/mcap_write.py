@@ -8,101 +8,28 @@ https://mcap.dev/spec. The tests read every file back with the `mcap` package.
 
 from collections.abc import Callable
 from struct import Struct, pack
-from typing import NamedTuple
 from zlib import crc32
 
-MAGIC = b"\x89MCAP0\r\n"
+from twin.live.mcap_index import (
+    CHANNEL,
+    CHUNK,
+    HEADER,
+    MAGIC,
+    MESSAGE,
+    METADATA,
+    SCHEMA,
+    ChunkInfo,
+    Summary,
+    message_indexes,
+    record,
+    text,
+    text_map,
+)
+
 LIBRARY = "shiptwin"
-HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = range(1, 9)
-ATTACHMENT, ATTACHMENT_INDEX, STATISTICS, METADATA, METADATA_INDEX, SUMMARY_OFFSET, DATA_END = range(9, 16)
-HEAD = Struct("<BQ")  # opcode, length
 MESSAGE_HEAD = Struct("<BQHIQQ")  # opcode, length, channel, sequence, log time, publish time
 CHUNK_BYTES = 256 * 1024
 Compress = Callable[[bytes], bytes]
-
-
-def record(opcode: int, *parts: bytes) -> bytes:
-    content = b"".join(parts)
-    return HEAD.pack(opcode, len(content)) + content
-
-
-def text(value: str) -> bytes:
-    data = value.encode()
-    return pack("<I", len(data)) + data
-
-
-def text_map(values: dict[str, str]) -> bytes:
-    data = b"".join(text(k) + text(v) for k, v in values.items())
-    return pack("<I", len(data)) + data
-
-
-def number_map(values: dict[int, int]) -> bytes:
-    data = b"".join(pack("<HQ", k, v) for k, v in values.items())
-    return pack("<I", len(data)) + data
-
-
-class ChunkInfo(NamedTuple):
-    """What the index at the end says of one chunk."""
-
-    start_ns: int
-    end_ns: int
-    offset: int
-    length: int
-    index_offsets: dict[int, int]
-    index_length: int
-    compressed: int
-    uncompressed: int
-
-
-class Summary:
-    """What a finished file says at its end; built while writing, or when a crashed file is repaired."""
-
-    def __init__(self) -> None:
-        self.schemas: dict[int, bytes] = {}  # id -> whole record
-        self.channels: dict[int, bytes] = {}
-        self.chunks: list[ChunkInfo] = []
-        self.counts: dict[int, int] = {}
-        self.metadata: list[tuple[int, int, str]] = []  # offset, length, name
-
-    def tail(self, offset: int) -> bytes:
-        """DataEnd, summary, footer and magic, for a data section that ends at `offset`."""
-        end = record(DATA_END, pack("<I", 0))
-        start = offset + len(end)
-        body, offsets = b"", b""
-        for opcode, group in self._groups():
-            if group:
-                offsets += record(SUMMARY_OFFSET, pack("<BQQ", opcode, start + len(body), len(group)))
-                body += group
-        summary_start = start if body else 0
-        footer = HEAD.pack(FOOTER, 20) + pack("<QQ", summary_start, start + len(body))
-        checksum = crc32(footer, crc32(body + offsets))
-        return end + body + offsets + footer + pack("<I", checksum) + MAGIC
-
-    def _groups(self) -> list[tuple[int, bytes]]:
-        return [
-            (SCHEMA, b"".join(self.schemas.values())),
-            (CHANNEL, b"".join(self.channels.values())),
-            (STATISTICS, self._statistics()),
-            (CHUNK_INDEX, b"".join(_chunk_index(chunk) for chunk in self.chunks)),
-            (METADATA_INDEX, b"".join(_metadata_index(*entry) for entry in self.metadata)),
-        ]
-
-    def _statistics(self) -> bytes:
-        first = min((chunk.start_ns for chunk in self.chunks), default=0)
-        last = max((chunk.end_ns for chunk in self.chunks), default=0)
-        sizes = (len(self.schemas), len(self.channels), 0, len(self.metadata), len(self.chunks))
-        total = sum(self.counts.values())
-        return record(STATISTICS, pack("<QHIIIIQQ", total, *sizes, first, last), number_map(self.counts))
-
-
-def message_indexes(entries: dict[int, list[tuple[int, int]]], offset: int) -> tuple[bytes, dict[int, int]]:
-    """The index records behind a chunk, {channel: [(log time, place in chunk)]}, and where each starts."""
-    data, offsets = b"", {}
-    for channel, rows in entries.items():
-        offsets[channel] = offset + len(data)
-        body = b"".join(pack("<QQ", *row) for row in rows)
-        data += record(MESSAGE_INDEX, pack("<HI", channel, len(body)), body)
-    return data, offsets
 
 
 class OpenChunk:
@@ -235,21 +162,6 @@ class McapWriter:
 
 def _schema(schema_id: int, name: str, data: bytes) -> bytes:
     return record(SCHEMA, pack("<H", schema_id), text(name), text("protobuf"), pack("<I", len(data)), data)
-
-
-def _chunk_index(chunk: ChunkInfo) -> bytes:
-    return record(
-        CHUNK_INDEX,
-        pack("<QQQQ", chunk.start_ns, chunk.end_ns, chunk.offset, chunk.length),
-        number_map(chunk.index_offsets),
-        pack("<Q", chunk.index_length),
-        text("zstd"),
-        pack("<QQ", chunk.compressed, chunk.uncompressed),
-    )
-
-
-def _metadata_index(offset: int, length: int, name: str) -> bytes:
-    return record(METADATA_INDEX, pack("<QQ", offset, length), text(name))
 
 
 def zstd() -> Compress:

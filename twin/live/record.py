@@ -1,4 +1,4 @@
-"""The log: a thread that writes MCAP files and never holds up the loop, and files written in one go.
+"""The log: a thread that writes MCAP files and never holds up the loop.
 
 `Recorder.write` only puts a message in a queue. The thread writes a chunk each `PERIOD_S` and calls
 fdatasync, so a kill or a power cut loses at most half a second. When the disk is full, read-only or gone, the
@@ -9,21 +9,18 @@ itself.
 import os
 import time
 from collections import deque
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 from threading import Event, Thread
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
-from twin.errors import TwinError
-from twin.live.mcap_read import McapReader, Message
-from twin.live.mcap_write import McapWriter, zstd
-from twin.live.messages import schema_bytes
+from twin.live.logfile import LogFile, read, read_rows
+from twin.live.mcap_write import zstd
 from twin.live.recover import recover_folder
 from twin.live.segment import Segment
 
-if TYPE_CHECKING:
-    import numpy as np
+__all__ = ["LogFile", "LogState", "Recorder", "read", "read_rows"]
 
 PERIOD_S = 0.25  # between two writes: half of what may be lost
 RETRY_S = 1.0  # between two tries on a disk that fails
@@ -169,72 +166,3 @@ class Recorder:
             f"log stopped: {self.folder}: {why}. Free or remount the disk: the log resumes by itself, "
             "the twin goes on without it"
         )
-
-
-class LogFile:
-    """A log written in one go: aside first, renamed when whole, gone when something fails.
-
-    The same messages give the same bytes: no clock, no random number and no version is in it.
-    """
-
-    def __init__(self, path: str | Path):
-        self.path = Path(path)
-        self._aside = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
-
-    def __enter__(self) -> "LogFile":
-        try:
-            self._stream = open(self._aside, "wb")
-        except OSError as failure:
-            raise self._error(failure) from None
-        self._writer = McapWriter(self._stream.write)
-        self._writer.start()
-        return self
-
-    def add(
-        self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int | None = None
-    ) -> None:
-        """One message without its envelope; times are nanoseconds since 1970."""
-        channel = self._writer.channel(topic, type_name, schema_bytes)
-        try:
-            self._writer.add(channel, payload, log_ns, log_ns if publish_ns is None else publish_ns)
-        except OSError as failure:
-            raise self._error(failure) from None
-
-    def describe(self, name: str, values: dict[str, str]) -> None:
-        """A named table of words about the file (MCAP metadata)."""
-        try:
-            self._writer.metadata(name, values)
-        except OSError as failure:
-            raise self._error(failure) from None
-
-    def __exit__(self, kind: Any, *_: object) -> None:
-        try:
-            if kind is None:
-                self._writer.finish()
-                self._stream.flush()
-                os.fsync(self._stream.fileno())
-                os.replace(self._aside, self.path)
-        except OSError as failure:
-            raise self._error(failure) from None
-        finally:
-            self._stream.close()
-            with suppress(OSError):
-                self._aside.unlink()
-
-    def _error(self, failure: OSError) -> TwinError:
-        return TwinError(f"{self.path}: cannot be written ({failure.strerror}). Nothing was left behind.")
-
-
-def read(path: str | Path, notes: list[str] | None = None) -> Iterator[Message]:
-    """The messages of a log in file order; what is damaged is left out and said in `notes`."""
-    reader = McapReader(path)
-    yield from reader.messages()
-    if notes is not None:
-        notes += reader.problems
-
-
-def read_rows(path: str | Path, notes: list[str] | None = None) -> "tuple[np.ndarray, dict[str, np.ndarray]]":
-    """(time_s (N,), {channel: (N,)}) of a log, NaN where nothing was measured; see `rows.read_rows`."""
-    from twin.live.rows import read_rows as rows
-
-    return rows(path, notes)

@@ -11,8 +11,7 @@ from struct import error, unpack_from
 from typing import IO, NamedTuple
 
 from twin.errors import DataError
-from twin.live.mcap_read import Broken, ends_well, open_log, records, string, unpacked
-from twin.live.mcap_write import (
+from twin.live.mcap_index import (
     CHANNEL,
     CHUNK,
     DATA_END,
@@ -24,6 +23,7 @@ from twin.live.mcap_write import (
     Summary,
     message_indexes,
 )
+from twin.live.mcap_parse import Broken, ends_well, open_log, records, string, unpacked
 
 
 class Scan(NamedTuple):
