@@ -1,0 +1,130 @@
+"""From settings to a loop: the ship, her residual, her certificate, and what had to be left out, in words."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+from twin.errors import SettingsError
+from twin.live import residual as residuals
+from twin.live.adapt import Adaptation
+from twin.live.certificate import Certificate, Tube, kept
+from twin.live.config import Settings
+from twin.live.estimate import gain_for
+from twin.live.guard import Guard
+from twin.live.learned import LearnedForce
+from twin.live.loop import Ears, Loop
+from twin.live.outbox import Outbox
+from twin.live.predict import Predictor
+from twin.live.residual import Residual, ResidualError, WrongShip
+from twin.live.sensors import Sensors
+from twin.live.stabilizer import Stabilizer
+from twin.physics.model import Model
+from twin.physics.ship import Ship
+from twin.physics.ship import load as load_ship
+
+CERTIFY = "from twin.live.build import certify_aside; certify_aside({!r}, {!r}, {!r}, {!r}, {!r})"
+CERTIFY_S = 20.0  # the longest the start waits for a certificate
+
+
+def loop_of(settings: Settings, ears: Ears, voice: Outbox, ship: Ship | None = None, certify: bool = True) -> Loop:
+    """The loop these settings describe; SettingsError when they cannot be used. `certify` False: no certificate is worked out."""
+    ship = ship or load_ship(settings["ship.file"])
+    notes: list[str] = []
+    residual, why_not = residual_of(settings, ship)
+    learned = LearnedForce(ship, residual, why_not, settings["adaptation.on"])
+    if learned.adaptation is not None and (path := learned_file(settings)):
+        learned.adaptation.restore(path, mark_of(learned))
+        notes += learned.adaptation.notes
+    rate = settings["loop.rate_hz"]
+    loop = Loop(
+        ship, ears, voice, learned, rate, settings["observer.gain"],
+        stabilizer=stabilizer_of(settings, ship) if certify else None,
+        predictor=Predictor(ship, tuple(settings["prediction.horizons_s"]), settings["prediction.refresh_s"], rate),
+        sensors=Sensors(ship, settings.sources, settings["sensors.max_delay_s"]),
+        guard=Guard(ship, learned, settings["guard.reckoning_s"]),
+    )  # fmt: skip
+    if certify and (said := loop.stabilizer.why_not):
+        notes.append(f"certificate: {said}")
+    loop.notes = notes
+    return loop
+
+
+def residual_of(settings: Settings, ship: Ship) -> tuple[Residual | None, str]:
+    """The residual, or None and why there is none. One made for another ship is passed over only if nobody asked for it."""
+    asked = settings["residual.file"]
+    if asked == "none":
+        return None, "the settings want none"
+    path = Path(asked) if asked else residuals.bundled(ship)
+    try:
+        if path is None:
+            raise ResidualError(f"no residual comes with the ship {ship.name!r}. `twin train` makes one")
+        return residuals.load(path, ship), ""
+    except ResidualError as error:
+        if settings["residual.required"] or (asked and isinstance(error, WrongShip)):
+            raise
+        return None, str(error)
+
+
+def mark_of(learned: LearnedForce) -> str:
+    """What adapted numbers belong to: this ship's model on this network."""
+    assert learned.residual is not None
+    return f"{residuals.ship_hash(learned.residual.ship)} {learned.residual.manifest.sha256[:16]}"
+
+
+def learned_file(settings: Settings) -> Path | None:
+    folder = settings["state.folder"]
+    return Path(folder) / "adaptation.json" if folder else None
+
+
+def keep(adaptation: Adaptation, learned: LearnedForce) -> str:
+    """What is to be kept of the adapted numbers."""
+    return adaptation.saved(mark_of(learned))
+
+
+def stabilizer_of(settings: Settings, ship: Ship) -> Stabilizer:
+    """The certificate from its file; when there is none it is worked out by another process (it needs numpy, the loop does not)."""
+    h, K = 1.0 / settings["loop.rate_hz"], settings["observer.gain"] or gain_for(ship)
+    oldest_s = settings["observer.oldest_s"] or min(max(0.03 * ship.L_pp / ship.U_0, 2.0 * h), 1.2)
+    delay = max(round(oldest_s / h), 1)
+    path = certificate_file(settings)
+    try:
+        certificate = _on_file(path, ship, K, h, delay)
+        if certificate is None:
+            command = CERTIFY.format(settings["ship.file"], str(path), K, h, delay)
+            done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, timeout=CERTIFY_S, check=False)
+            certificate = _on_file(path, ship, K, h, delay)
+            if certificate is None:
+                said = done.stderr.strip().splitlines()[-1:] or ["no reason given"]
+                return Stabilizer(None, f"not worked out ({said[0]})")
+    except (OSError, subprocess.TimeoutExpired, SettingsError) as error:
+        return Stabilizer(None, f"not worked out ({error})")
+    return Stabilizer(Tube(certificate), "" if certificate.ok else certificate.reason)
+
+
+def certificate_file(settings: Settings) -> Path:
+    """As the settings say, else in the state folder, else in the folder for temporary files of this user."""
+    if settings["observer.certificate"]:
+        return Path(settings["observer.certificate"])
+    if settings["state.folder"]:
+        return Path(settings["state.folder"]) / "certificate.json"
+    return Path.home() / ".cache" / "shiptwin" / f"{Path(settings['ship.file']).stem}.certificate.json"
+
+
+def certify_aside(ship_file: str, path: str, K: float, h: float, delay: int) -> None:
+    """Work the certificate out and put it on file: what the other process does."""
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    kept(path, Model.of(load_ship(ship_file)), (K, K, K), h, delay_samples=delay)
+
+
+def _on_file(path: Path, ship: Ship, K: float, h: float, delay: int) -> Certificate | None:
+    """The certificate on file if it is of this ship and these numbers."""
+    from twin.live.certificate import _mark
+
+    try:
+        found = Certificate.from_json(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+    wanted = _mark(Model.of(ship), (K, K, K), h, {"delay_samples": delay})
+    return found if found.fingerprint == wanted else None
+
+

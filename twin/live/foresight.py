@@ -1,0 +1,99 @@
+"""How far ahead the twin sees, on a voyage that is over: from its own estimate, open loop, under the recorded helm, engine and weather.
+
+Every `every_s` a ship is set off where the estimate was, with the current and the learned force as they were known then, and
+carried ahead; after each horizon she is compared with what was measured. Never a smoothed fit.
+"""
+
+from dataclasses import replace
+from math import ceil, degrees, hypot
+from typing import NamedTuple
+
+from twin.live.derive import turn
+from twin.live.dynamics import INPUTS, Known
+from twin.live.loop import Loop
+from twin.live.predict import STEP, LearnedAt, carried
+from twin.physics.state import Situation
+
+
+class Sight(NamedTuple):
+    """Mean absolute errors after one horizon, over `windows` starts."""
+
+    horizon_s: float
+    windows: int
+    position_m: float
+    heading_deg: float
+
+
+class Start(NamedTuple):
+    time_s: float
+    situation: Situation
+    physics: Known
+    learned: LearnedAt
+
+
+class Foresight:
+    """`look` after each tick, `judged` at the end."""
+
+    def __init__(self, loop: Loop, horizons_s: tuple[float, ...] = (10.0, 60.0, 120.0), every_s: float = 30.0):
+        self.loop, self.horizons_s, self.every_s = loop, horizons_s, every_s
+        self.step_s = min(STEP * loop.ship.L_pp / loop.ship.U_0, 1.0)
+        self._starts: list[Start] = []
+        self._course: list[tuple[float, dict[str, float]]] = []  # what was measured, each step_s
+        self._next_start: float | None = None
+        self._next_step = -1e18
+
+    def look(self, now_s: float) -> None:
+        """Remember what was measured, and now and then a start."""
+        seen = self.loop.last
+        if seen is None or now_s < self._next_step - 1e-6 or not seen.estimate.ready:
+            return
+        self._next_step = now_s + self.step_s
+        self._course.append((now_s, dict(seen.measured.si)))
+        if self._next_start is None:
+            self._next_start = now_s + self.every_s
+        elif now_s >= self._next_start:
+            self._next_start = now_s + self.every_s
+            start = Start(now_s, replace(seen.situation), self.loop.dynamics.now, self.loop.learned_at())
+            self._starts.append(start)
+
+    def judged(self) -> list[Sight]:
+        """The errors at each horizon that the voyage is long enough for."""
+        errors: dict[float, list[tuple[float, float]]] = {h: [] for h in self.horizons_s}
+        for start in self._starts:
+            for horizon_s, error in self._sail(start).items():
+                errors[horizon_s].append(error)
+        return [
+            Sight(h, len(found), sum(p for p, _ in found) / len(found), sum(q for _, q in found) / len(found))
+            for h, found in errors.items()
+            if found
+        ]
+
+    def _sail(self, start: Start) -> dict[float, tuple[float, float]]:
+        """(position error [m], heading error [deg]) after each horizon."""
+        s, found = replace(start.situation), {}
+        course = [(t, si) for t, si in self._course if start.time_s <= t <= start.time_s + self.horizons_s[-1] + 2.0 * self.step_s]
+        left = list(self.horizons_s)
+        for (t, si), (t_next, si_next) in zip(course, course[1:], strict=False):
+            for name in INPUTS:
+                if name in si:
+                    setattr(s, name, si[name])
+            if t_next - t > 5.0:
+                break
+            while left and start.time_s + left[0] <= t_next + 1e-6:
+                there = carried(s, start.physics, start.learned(s, start.physics.force(s)), start.time_s + left[0] - t)
+                if error := _error(there, si, si_next, (start.time_s + left[0] - t) / (t_next - t)):
+                    found[left[0]] = error
+                left.pop(0)
+            steps = ceil((t_next - t) / self.step_s)
+            for _ in range(steps):
+                s = carried(s, start.physics, start.learned(s, start.physics.force(s)), (t_next - t) / steps)
+        return found
+
+
+def _error(s: Situation, before: dict[str, float], after: dict[str, float], share: float) -> tuple[float, float] | None:
+    """Against what was measured, on the line between two moments; None where it was not."""
+    if not all(name in si for name in ("x", "y", "psi") for si in (before, after)):
+        return None
+    x, y = (before[name] + share * (after[name] - before[name]) for name in ("x", "y"))
+    psi = before["psi"] + share * turn(after["psi"] - before["psi"])
+    return hypot(s.x - x, s.y - y), abs(degrees(turn(s.psi - psi)))

@@ -1,0 +1,94 @@
+"""`twin health`: is the twin on this computer alive and well? Listens for a moment to what it says."""
+
+import argparse
+import json
+import os
+import sys
+import time
+from typing import Any
+
+from google.protobuf.message import DecodeError
+
+from twin.errors import TwinError
+from twin.live import config, messages
+from twin.live.config import Settings
+from twin.live.guard import HYBRID, PHYSICS
+from twin.live.topics import OWN_SOURCE, key
+
+SCHEMA_VERSION = 1
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--config", metavar="TWIN.toml", help="the settings the twin runs with (default: its defaults)")
+    parser.add_argument("--timeout", type=float, default=3.0, metavar="S", help="how long to listen at most (default: 3)")
+    parser.add_argument("--json", metavar="FILE", help="write the answer as JSON, - for standard output")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Ends the process itself (an open Zenoh session may hold up its end)."""
+    code = 1
+    try:
+        tick = hear(config.load(args.config), args.timeout)
+        code, said = judged(tick)
+        _tell(said, tick, code, args.json)
+    except TwinError as error:
+        print(f"{type(error).__name__}: {error}", file=sys.stderr)
+        code = error.exit_code
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
+
+
+def hear(settings: Settings, timeout_s: float) -> Any:
+    """The newest tick that comes within the time, None when none does."""
+    import zenoh
+
+    from twin.live.zenoh_config import BusSettings, configuration
+
+    router = settings["bus.router"]
+    listen = settings["bus.listen"]
+    where = BusSettings(
+        settings["bus.base"], settings["bus.entity"], "", () if router or not listen else (listen,), router, settings["bus.file"]
+    )
+    try:
+        session = zenoh.open(configuration(where))
+    except zenoh.ZError:
+        return None
+    ring = zenoh.handlers.RingChannel(1)
+    topic = key(settings["bus.base"], settings["bus.entity"], "twin_tick", OWN_SOURCE)
+    ears = session.declare_subscriber(topic, ring)
+    until = time.monotonic() + timeout_s
+    while time.monotonic() < until:
+        sample = ears.try_recv()
+        if sample is not None:
+            try:
+                return messages.Tick.FromString(messages.unwrap(sample.payload.to_bytes())[1])
+            except DecodeError:
+                continue
+        time.sleep(0.02)
+    return None
+
+
+def judged(tick: Any) -> tuple[int, str]:
+    """(exit code, one line): 0 when the twin runs on measurements, 1 when it does not or is not heard."""
+    if tick is None:
+        return 1, "not heard: is it running, and does it use these settings? See: systemctl status shiptwin"
+    reasons = "; ".join(tick.reasons) or "all well"
+    said = f"{tick.mode}, {tick.rate_hz:g} Hz, {tick.overruns} periods skipped, {tick.rejected} samples refused: {reasons}"
+    return (0 if tick.mode in (HYBRID, PHYSICS) else 1), said
+
+
+def _tell(said: str, tick: Any, code: int, path: str | None) -> None:
+    if path is None:
+        print(said)
+        return
+    table = {"schema_version": SCHEMA_VERSION, "healthy": code == 0, "mode": tick.mode if tick else "", "text": said}
+    if tick:
+        table |= {"reasons": list(tick.reasons), "overruns": tick.overruns, "rejected": tick.rejected, "rate_hz": tick.rate_hz}
+    text = json.dumps(table, indent=2)
+    if path == "-":
+        print(text)
+    else:
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(text + "\n")

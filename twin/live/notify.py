@@ -1,0 +1,40 @@
+"""What systemd is told: ready, alive after a good step, and how it goes in words. Without systemd nothing happens."""
+
+import os
+import socket
+
+
+class Notifier:
+    """The socket named by NOTIFY_SOCKET, if there is one."""
+
+    def __init__(self, address: str | None = None):
+        address = os.environ.get("NOTIFY_SOCKET", "") if address is None else address
+        self._address = "\0" + address[1:] if address.startswith("@") else address
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC) if address else None
+        if self._socket is not None:
+            self._socket.setblocking(False)
+
+    def ready(self, status: str) -> None:
+        self._send(f"READY=1\nSTATUS={_line(status)}")
+
+    def alive(self) -> None:
+        """After a good step, and only then: this is what the watchdog waits for."""
+        self._send("WATCHDOG=1")
+
+    def status(self, status: str) -> None:
+        self._send(f"STATUS={_line(status)}")
+
+    def stopping(self) -> None:
+        self._send("STOPPING=1")
+
+    def _send(self, text: str) -> None:
+        if self._socket is None:
+            return
+        try:
+            self._socket.sendto(text.encode(), self._address)
+        except OSError:
+            pass  # a busy or missing service manager must not stop the loop
+
+
+def _line(text: str) -> str:
+    return " ".join(text.split())[:400]

@@ -1,0 +1,121 @@
+"""A log as the loop met it: the instants of its ticks, and what came in before each.
+
+A log of the twin itself holds each sample in front of the tick that used it, so file order alone gives back every batch. An
+imported voyage (rows) or a foreign log of Keelson scalars has no ticks: there the ticks stand on a grid.
+"""
+
+from collections.abc import Iterator
+from itertools import chain
+from pathlib import Path
+from typing import NamedTuple
+
+from google.protobuf.message import DecodeError
+
+from twin.errors import DataError
+from twin.live import messages
+from twin.live.decode import Decoder, Result, from_row
+from twin.live.mcap_read import McapReader, Message
+from twin.live.topics import BY_SUBJECT, address, is_own
+
+TICK, ROW = "shiptwin.Tick", "shiptwin.Row"
+PEEK = 5000  # messages within which a log of the twin shows its first tick
+MAX_GAP_S = 60.0  # a longer hole in a foreign log is jumped over
+
+
+class Batch(NamedTuple):
+    """One tick: its time, what came in before it, decoded and raw."""
+
+    time_s: float
+    wall_s: float
+    results: list[Result]
+    raw: list[Message]
+
+
+class PlayedLog:
+    """A log opened for one pass; `notes` says what was damaged."""
+
+    def __init__(self, path: str | Path, rate_hz: float):
+        self._reader = McapReader(path)
+        self.path, self.period_s = Path(path), 1.0 / rate_hz
+        self.decoder = Decoder()
+        self.kind = ""
+
+    @property
+    def notes(self) -> list[str]:
+        return self._reader.problems
+
+    def batches(self) -> Iterator[Batch]:
+        """The ticks in order; DataError when there is nothing the twin can use."""
+        source = self._reader.messages()
+        first = [message for message, _ in zip(source, range(PEEK), strict=False)]
+        types = {message.type_name for message in first}
+        whole = chain(first, source)
+        if TICK in types:
+            self.kind = "a log of the twin"
+            return self._as_ticked(whole)
+        if ROW in types:
+            self.kind = "an imported voyage"
+            return self._on_grid(self._rows(whole))
+        if any(_topic_type(message.topic) for message in first):
+            self.kind = "a log of Keelson scalars"
+            return self._on_grid(self._scalars(whole))
+        raise DataError(f"{self.path}: no measurements in it: no {TICK}, no {ROW}, no Keelson subject the twin knows.")
+
+    def _as_ticked(self, source: Iterator[Message]) -> Iterator[Batch]:
+        raw: list[Message] = []
+        for message in source:
+            if message.type_name != TICK:
+                if _topic_type(message.topic):
+                    raw.append(message)
+                continue
+            try:
+                tick = messages.Tick.FromString(message.data)
+            except DecodeError:
+                continue
+            results = [r for m in raw for r in self.decoder.decode_stripped(m.topic, m.data, tick.time_s)]
+            yield Batch(tick.time_s, tick.wall_s, results, raw)
+            raw = []
+
+    def _on_grid(self, source: Iterator[tuple[float, list[Result], Message]]) -> Iterator[Batch]:
+        """Ticks each period from the first sample to the last; a tick has what was measured up to its time."""
+        results: list[Result] = []
+        raw: list[Message] = []
+        tick_s: float | None = None
+        for time_s, found, message in source:
+            if tick_s is None or time_s - tick_s > MAX_GAP_S:
+                tick_s = time_s
+            while time_s > tick_s + 1e-6:
+                yield Batch(tick_s, tick_s, _received(results, tick_s), raw)
+                results, raw = [], []
+                tick_s += self.period_s
+            results += found
+            raw.append(message)
+        if tick_s is not None:
+            yield Batch(tick_s, tick_s, _received(results, tick_s), raw)
+
+    def _rows(self, source: Iterator[Message]) -> Iterator[tuple[float, list[Result], Message]]:
+        for message in source:
+            if message.type_name == ROW:
+                try:
+                    row = messages.Row.FromString(message.data)
+                except DecodeError:
+                    continue
+                yield row.time_s, from_row(row, row.time_s, row.time_s, "voyage"), message
+
+    def _scalars(self, source: Iterator[Message]) -> Iterator[tuple[float, list[Result], Message]]:
+        for message in source:
+            if _topic_type(message.topic):
+                time_s = message.log_ns * 1e-9
+                yield time_s, self.decoder.decode_stripped(message.topic, message.data, time_s), message
+
+
+def _topic_type(topic: str) -> str:
+    """The message type of a logged input of the twin, "" for anything else."""
+    place = address(topic)
+    known = BY_SUBJECT.get(place.subject) if place else None
+    return known.type_name if known and place and not is_own(place.source) else ""
+
+
+def _received(results: list[Result], time_s: float) -> list[Result]:
+    """The tick is when they were received."""
+    return [r._replace(received_s=time_s) for r in results]

@@ -1,0 +1,115 @@
+"""Keeping time on a shared computer: scheduler, processor, memory, garbage. What is not allowed is said, and the twin goes on.
+
+Clean pages of libraries that the start needed and the loop does not are given back first, and only then is memory locked, with
+MCL_ONFAULT: a plain mlockall would fetch every page of every library (80 MB and not 46).
+"""
+
+import ctypes
+import gc
+import os
+import re
+import sys
+
+MCL_CURRENT, MCL_FUTURE, MCL_ONFAULT = 1, 2, 4
+MADV_DONTNEED = 4
+_MAPPING = re.compile(r"([0-9a-f]+)-([0-9a-f]+) (\S{4}) \S+ \S+ (\d+)\s*(.*)")
+
+
+def settle(priority: int = 0, cpu: int = -1, lock_memory: bool = True, drop: bool = True) -> list[str]:
+    """Make this process a real-time one as far as it is allowed; the sentences say what was refused, and what to do."""
+    said = []
+    gc.collect()
+    gc.freeze()
+    gc.disable()
+    if cpu >= 0:
+        said += _affinity(cpu)
+    if drop:
+        drop_pages()
+    if lock_memory:
+        said += _lock()
+    if priority > 0:
+        said += _fifo(priority)
+    return said
+
+
+def drop_pages() -> int:
+    """Give back clean, file-backed pages (read-only mappings of libraries); returns the bytes of the mappings given back.
+
+    They come back by themselves when they are needed. Writable and once-writable (relocated) mappings are left alone.
+    """
+    libc = _libc()
+    if libc is None:
+        return 0
+    dropped = 0
+    try:
+        with open("/proc/self/maps", encoding="utf-8", errors="replace") as maps:
+            lines = maps.readlines()
+    except OSError:
+        return 0
+    libc.madvise.argtypes = (ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int)
+    for line in lines:
+        found = _MAPPING.match(line)
+        if found is None or found[4] == "0" or "w" in found[3] or not found[5].startswith("/"):
+            continue
+        if found[3].startswith("r--") and _relocated(found[5], lines, line):
+            continue
+        start, end = int(found[1], 16), int(found[2], 16)
+        if libc.madvise(start, end - start, MADV_DONTNEED) == 0:
+            dropped += end - start
+    return dropped
+
+
+def _relocated(path: str, lines: list[str], line: str) -> bool:
+    """Whether a read-only mapping is the part of a library that the loader wrote to (RELRO): it lies right before a writable one."""
+    at = lines.index(line)
+    if at + 1 >= len(lines):
+        return False
+    following = _MAPPING.match(lines[at + 1])
+    mine = _MAPPING.match(line)
+    return bool(following and mine and following[1] == mine[2] and "w" in following[3] and following[5] in (path, ""))
+
+
+def _affinity(cpu: int) -> list[str]:
+    try:
+        os.sched_setaffinity(0, {cpu})
+    except (OSError, AttributeError) as error:
+        return [f"loop.cpu = {cpu} could not be set ({error}); any processor is used"]
+    return []
+
+
+def _fifo(priority: int) -> list[str]:
+    if not hasattr(os, "sched_setscheduler"):
+        return ["no real-time scheduling on this system"]
+    try:
+        if os.sched_getscheduler(0) == os.SCHED_FIFO:
+            return []
+        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
+    except OSError as error:
+        return [f"no real-time priority ({error.strerror}): under load ticks may come late. Allow it with LimitRTPRIO, or CAP_SYS_NICE"]
+    return []
+
+
+def _lock() -> list[str]:
+    libc = _libc()
+    if libc is None or libc.mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0:
+        return []
+    return [f"memory is not locked ({os.strerror(ctypes.get_errno())}): a swap could delay a tick. Allow it with LimitMEMLOCK"]
+
+
+def _libc() -> ctypes.CDLL | None:
+    return ctypes.CDLL(None, use_errno=True) if sys.platform == "linux" else None
+
+
+def memory_mb() -> dict[str, float]:
+    """Resident memory of this process [MB]: now, its peak, its anonymous and its file-backed part."""
+    names = {"VmRSS": "rss", "VmHWM": "peak", "RssAnon": "anonymous", "RssFile": "file"}
+    found = {}
+    try:
+        with open("/proc/self/status", encoding="ascii") as status:
+            for line in status:
+                key, _, rest = line.partition(":")
+                if key in names:
+                    found[names[key]] = int(rest.split()[0]) / 1024.0
+    except OSError:
+        pass
+    return found

@@ -1,0 +1,138 @@
+"""`twin replay`: a recorded voyage through the same objects, under the log's own clock. Twice gives the same bytes."""
+
+import argparse
+import json
+import sys
+from collections import Counter
+from contextlib import ExitStack
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from twin.errors import DataError, SettingsError
+from twin.live import build, config
+from twin.live.clock import ReplayClock
+from twin.live.config import Settings
+from twin.live.foresight import Foresight, Sight
+from twin.live.inbox import Played
+from twin.live.loop import Loop
+from twin.live.outbox import Outbox
+from twin.live.played import Batch, PlayedLog
+from twin.live.publish import Publisher
+from twin.live.record import LogFile
+
+SCHEMA_VERSION = 1
+PROGRESS = 20_000  # ticks between two words on standard error
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("log", metavar="LOG.mcap", help="a log of the twin, an imported voyage, or a log of Keelson scalars")
+    parser.add_argument("-o", "--output", metavar="OUT.mcap", help="write what the twin said, and what it heard, to a new log")
+    parser.add_argument("--config", metavar="TWIN.toml", help="settings (default: as `twin run` without any)")
+    parser.add_argument("--ship", metavar="SHIP.toml", help="ship file or name of a bundled ship, instead of the settings' own")
+    parser.add_argument("--realtime", action="store_true", help="as fast as the voyage was, not as fast as possible")
+    parser.add_argument("--json", metavar="FILE", help="write the summary as JSON, - for standard output")
+
+
+def run(args: argparse.Namespace) -> int:
+    settings = config.load(args.config)
+    if args.ship:
+        settings = settings.but("ship.file", args.ship)
+    if args.output and Path(args.output).resolve() == Path(args.log).resolve():
+        raise SettingsError(f"-o {args.output}: is the log itself. Give another name.")
+    summary = replay(args.log, settings, args.output, args.realtime)
+    if args.json:
+        _write_json(summary, args.json)
+    if args.json != "-":
+        print("\n".join(told(summary, args)))
+    return 0
+
+
+class Summary(NamedTuple):
+    """What a replay found."""
+
+    log: str
+    kind: str
+    ship: str
+    ticks: int
+    duration_s: float
+    modes: dict[str, int]
+    reasons: dict[str, int]
+    rejected: int
+    withheld: int  # numbers that were not finite, and so were not said
+    foresight: list[Sight]
+    notes: list[str]
+
+
+def replay(log: str | Path, settings: Settings, output: str | Path | None = None, realtime: bool = False) -> Summary:
+    """The voyage through a new loop; `output` is written whole or not at all."""
+    played = PlayedLog(log, settings["loop.rate_hz"])
+    batches = played.batches()
+    with ExitStack() as stack:
+        file = stack.enter_context(LogFile(output)) if output else None
+        ears = Played([])
+        voice = Outbox(Publisher(), settings["bus.base"], settings["bus.entity"], None, file.add if file else None)
+        loop = build.loop_of(settings, ears, voice)
+        return _sailed(loop, ears, played, batches, file, realtime)
+
+
+def _sailed(loop: Loop, ears: Played, played: PlayedLog, batches: Any, file: LogFile | None, realtime: bool) -> Summary:
+    modes: Counter[str] = Counter()
+    reasons: Counter[str] = Counter()
+    foresight = Foresight(loop)
+    waiting: list[Batch] = []
+    clock = ReplayClock(_instants(batches, waiting), 1.0 if realtime else 0.0)
+    first_s = last_s = None
+    while (instant := clock.wait()) is not None:
+        batch = waiting.pop()
+        for message in batch.raw if file else ():
+            file.add(message.topic, message.type_name, message.data, round(batch.wall_s * 1e9))  # type: ignore[union-attr]
+        ears.next = batch.results
+        ears.datum = played.decoder.datum
+        tick = loop.tick(instant)
+        foresight.look(instant.time_s)
+        modes[tick.mode] += 1
+        reasons.update(_without_numbers(reason) for reason in tick.reasons)
+        first_s, last_s = instant.time_s if first_s is None else first_s, instant.time_s
+        if instant.number % PROGRESS == PROGRESS - 1:
+            print(f"{played.path.name}: {instant.time_s - first_s:.0f} s of the voyage", file=sys.stderr)
+    if first_s is None or last_s is None:
+        raise DataError(f"{played.path}: not one tick could be made of it.")
+    return Summary(
+        str(played.path), played.kind, loop.ship.name, sum(modes.values()), last_s - first_s, dict(modes), dict(reasons.most_common(12)),
+        loop.sensors.rejected, loop.publisher.withheld, foresight.judged(), [*played.notes, *loop.notes],
+    )  # fmt: skip
+
+
+def _instants(batches: Any, waiting: list[Batch]) -> Any:
+    """The batches' times for the clock; each batch waits to be taken."""
+    for batch in batches:
+        waiting.append(batch)
+        yield batch.time_s, max(batch.wall_s, 0.0)
+
+
+def _without_numbers(reason: str) -> str:
+    return reason.partition(", for ")[0].partition(" = ")[0]
+
+
+def told(s: Summary, args: argparse.Namespace) -> list[str]:
+    """The summary for people, with the next command."""
+    lines = [f"{s.log}: {s.kind}, {s.duration_s:.0f} s, {s.ticks} ticks with {s.ship}; {s.rejected} samples refused"]
+    lines.append("modes: " + ", ".join(f"{mode} {100 * n / s.ticks:.0f} %" for mode, n in s.modes.items()))
+    lines += [f"  {n:6d} ticks: {reason}" for reason, n in s.reasons.items()]
+    if s.foresight:
+        lines.append("ahead, open loop from the estimate, recorded helm, engine and weather (mean absolute error):")
+        lines += [f"  {f.horizon_s:4.0f} s: position {f.position_m:7.2f} m, heading {f.heading_deg:6.2f} deg ({f.windows} starts)" for f in s.foresight]
+    lines += [f"note: {note}" for note in s.notes]
+    ship = f" --ship {args.ship}" if args.ship else " --ship kvlcc2"
+    return [*lines, f"next: twin compare {args.output or args.log}{ship}"]
+
+
+def _write_json(summary: Summary, path: str) -> None:
+    table = {"schema_version": SCHEMA_VERSION, **summary._asdict(), "foresight": [f._asdict() for f in summary.foresight]}
+    text = json.dumps(table, indent=2)
+    if path == "-":
+        print(text)
+        return
+    aside = Path(path).with_name(f".{Path(path).name}.part")
+    aside.write_text(text + "\n", encoding="utf-8")
+    aside.replace(path)

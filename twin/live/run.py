@@ -1,0 +1,185 @@
+"""`twin run`: the service. Opens bus and log, ticks on time until it is told to stop, and always ends the process itself.
+
+An interpreter that ends with an open Zenoh session may hang for ever; so the outermost thing here is os._exit.
+"""
+
+import argparse
+import os
+import signal
+import sys
+import traceback
+from collections.abc import Callable
+from time import perf_counter_ns
+from typing import Any
+
+from twin.errors import TwinError
+from twin.live import build, config, realtime
+from twin.live.bus import Bus
+from twin.live.clock import Clock, MonotonicClock
+from twin.live.config import Settings
+from twin.live.inbox import Inbox
+from twin.live.keep import Keeper
+from twin.live.loop import Loop
+from twin.live.notify import Notifier
+from twin.live.outbox import Outbox
+from twin.live.publish import Publisher
+from twin.live.record import Recorder
+from twin.live.zenoh_config import BusSettings
+
+WATCHDOG_S = 0.25  # how often the service manager hears that a step was good
+STATUS_S = 1.0
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--config", metavar="TWIN.toml", help="settings (default: bundled KVLCC2, listening on this computer only)")
+    parser.add_argument("--ship", metavar="SHIP.toml", help="ship file or name of a bundled ship, instead of the settings' own")
+    parser.add_argument("--duration", type=float, metavar="S", help="stop by itself after so many seconds")
+    parser.add_argument("--example-config", action="store_true", help="print a settings file with every key, and stop")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Never returns when it served: ends the process with the exit code."""
+    if args.example_config:
+        print(config.example())
+        return 0
+    code = 1
+    try:
+        settings = config.load(args.config)
+        if args.ship:
+            settings = settings.but("ship.file", args.ship)
+        code = serve(settings, duration_s=args.duration)
+    except TwinError as error:
+        print(f"{type(error).__name__}: {error}", file=sys.stderr)
+        code = error.exit_code
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)
+
+
+class Stop:
+    """SIGTERM and SIGINT end the loop after the tick under way; `code` is what the process then returns."""
+
+    def __init__(self) -> None:
+        self.asked = False
+        self.code = 0
+        signal.signal(signal.SIGTERM, self._asked)
+        signal.signal(signal.SIGINT, self._asked)
+
+    def _asked(self, number: int, frame: Any) -> None:
+        self.asked = True
+        self.code = 130 if number == signal.SIGINT else 0
+
+
+def serve(settings: Settings, duration_s: float | None = None, on_tick: Callable[[Any], None] | None = None) -> int:
+    """Serve until told to stop; `on_tick` sees each tick (a test, a view)."""
+    stop = Stop()
+    os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
+    recorder = recorder_of(settings)
+    with bus_of(settings) as bus:
+        log = recorder.write if recorder else None
+        loop = build.loop_of(settings, Inbox(bus, log), _voice(settings, bus, log))
+        if recorder:
+            recorder.start()
+            loop.notes += recorder.repaired
+        loop.notes += realtime.settle(
+            settings["loop.priority"], settings["loop.cpu"], settings["loop.lock_memory"], settings["loop.drop_pages"]
+        )
+        try:
+            Service(loop, bus, recorder, settings, MonotonicClock(loop.rate_hz)).run(stop, duration_s, on_tick)
+        finally:
+            if recorder:
+                recorder.close(1.0)
+    return stop.code
+
+
+class Service:
+    """A loop with its clock, and those who want to hear of it."""
+
+    def __init__(self, loop: Loop, bus: Bus, recorder: Recorder | None, settings: Settings, clock: Clock):
+        self.loop, self.bus, self.recorder, self.clock = loop, bus, recorder, clock
+        self.notifier = Notifier()
+        path = build.learned_file(settings)
+        self.keeper = Keeper(path) if path and loop.learned.adaptation else None
+        self.save_s = settings["adaptation.save_s"]
+        self._alarms: list[str] = []
+        self._dropped = 0
+        self._next_save = self._next_watchdog = self._next_status = 0.0
+        loop.watched, loop.dropped = lambda: self._alarms, lambda: self._dropped
+
+    def run(self, stop: Stop, duration_s: float | None, on_tick: Callable[[Any], None] | None) -> None:
+        """Tick until stopped."""
+        print(self._greeting(), file=sys.stderr, flush=True)
+        self.notifier.ready("started")
+        end_s = None
+        try:
+            while not stop.asked and (instant := self.clock.wait()) is not None:
+                began_ns = perf_counter_ns()
+                tick = self.loop.tick(instant)
+                self._after(tick, instant.time_s, (perf_counter_ns() - began_ns) / 1e3)
+                if on_tick is not None:
+                    on_tick(tick)
+                end_s = end_s or (instant.time_s + duration_s if duration_s else float("inf"))
+                if instant.time_s >= end_s:
+                    break
+        finally:
+            self.notifier.stopping()
+            if self.keeper:
+                self._save()
+                self.keeper.close(0.5)
+
+    def _after(self, tick: Any, now_s: float, step_us: float) -> None:
+        """Slack of this tick for the next one's record, and word to the watchdog."""
+        slack_s = self.clock.slack_s()
+        if slack_s is not None:
+            self.loop.pace = self.loop.pace._replace(slack_us=1e6 * slack_s, step_us=step_us)
+        if now_s >= self._next_watchdog:
+            self.notifier.alive()
+            self._next_watchdog = now_s + WATCHDOG_S
+        if now_s >= self._next_status:
+            self._look_round(tick)
+            self._next_status = now_s + STATUS_S
+        if self.keeper and now_s >= self._next_save:
+            self._save()
+            self._next_save = now_s + self.save_s
+
+    def _look_round(self, tick: Any) -> None:
+        """Alarms of bus, log and keeper go into the next ticks' reasons."""
+        alarms = [self.bus.state.alarm]
+        if self.recorder:
+            state = self.recorder.state
+            self._dropped = state.dropped + state.lost
+            alarms.append(state.alarm)
+        if self.keeper:
+            alarms.append(self.keeper.failed)
+        self._alarms = [alarm for alarm in alarms if alarm]
+        self.notifier.status("; ".join([tick.mode, *tick.reasons]))
+
+    def _save(self) -> None:
+        adaptation = self.loop.learned.adaptation
+        if self.keeper and adaptation:
+            self.keeper.put(build.keep(adaptation, self.loop.learned))
+
+    def _greeting(self) -> str:
+        learned = "hybrid" if self.loop.learned.residual else f"physics only ({self.loop.learned.why_not})"
+        return f"{self.loop.ship.name}: {self.loop.rate_hz:g} Hz, {learned}. " + " ".join(f"[{note}]" for note in self.loop.notes)
+
+
+def bus_of(settings: Settings) -> Bus:
+    from twin.live.zenoh_bus import ZenohBus
+
+    names = ("base", "entity", "listen", "connect", "router", "file")
+    values = {name: settings[f"bus.{name}"] for name in names}
+    return ZenohBus(BusSettings(**values | {"connect": tuple(values["connect"])}))
+
+
+def recorder_of(settings: Settings) -> Recorder | None:
+    if not settings["log.folder"]:
+        return None
+    return Recorder(settings["log.folder"], max_bytes=int(settings["log.segment_mb"] * 1e6), max_seconds=settings["log.segment_s"])
+
+
+def _voice(settings: Settings, bus: Bus, log: Any) -> Outbox:
+    return Outbox(Publisher(), settings["bus.base"], settings["bus.entity"], bus, log)
