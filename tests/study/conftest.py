@@ -6,7 +6,13 @@ import pytest
 STEP_S = 0.1
 
 
-def sail(duration_s: float = 900.0, length_m: float = 100.0, speed_mps: float = 7.0, noise: float = 1.0, seed: int = 0):
+def sail(
+    duration_s: float = 900.0,
+    length_m: float = 100.0,
+    speed_mps: float = 7.0,
+    noise: float = 1.0,
+    seed: int = 0,
+):
     """{column: (N,)} with `time_s`: zigzags of 20 deg by Nomoto's equation, wind, a log in a current, honest noise."""
     t = np.arange(0.0, duration_s, STEP_S)
     rng = np.random.default_rng(seed)

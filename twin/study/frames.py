@@ -1,6 +1,6 @@
 """Positions and velocities of a file brought to the chart and to the ship's own axes; what is missing is derived.
 
-    north' = u cos psi - v sin psi        east' = u sin psi + v cos psi
+north' = u cos psi - v sin psi        east' = u sin psi + v cos psi
 """
 
 import numpy as np
@@ -22,7 +22,9 @@ def chart(
         return nothing, nothing.copy(), {}
     first = places[good.index(True)]
     at = datum(*first)
-    points = [(to_chart(at, *p) if ok else None) or (np.nan, np.nan) for p, ok in zip(places, good, strict=True)]
+    points = [
+        (to_chart(at, *p) if ok else None) or (np.nan, np.nan) for p, ok in zip(places, good, strict=True)
+    ]
     north, east = np.array(points).T
     return north, east, {"latitude_deg": first[0], "longitude_deg": first[1]}
 

@@ -4,12 +4,11 @@ import difflib
 from pathlib import Path
 
 from twin.errors import DataError
-from twin.live.channels import BY_NAME
-from twin.study.mapping import PLACES, Column, Layout, Map, TimeColumn
-from twin.study.table import Sheet, open_text
+from twin.study.mapping import NAMES, Column, Layout, Map, TimeColumn, nearest
+from twin.study.sheet import Sheet, open_text
 
 TIMES = ("time_s", "time_utc")
-ALLOWED = (*BY_NAME, *PLACES, *TIMES)
+ALLOWED = (*NAMES, *TIMES)
 MISSPELT = 0.85  # a name this much alike is a slip of the pen, not another quantity
 
 
@@ -24,7 +23,7 @@ def own_names(path: Path) -> tuple[Map, tuple[str, ...]]:
             "Rename it, or say in a map which column is the time (--map)."
         )
     time = TimeColumn(times[0], "iso" if times[0] == "time_utc" else "s")
-    return Map(time=time, columns={n: Column(n) for n in names if n in BY_NAME or n in PLACES}), unused
+    return Map(time=time, columns={n: Column(n) for n in names if n in NAMES}), unused
 
 
 def column_names(path: Path) -> list[str]:
@@ -41,12 +40,12 @@ def column_names(path: Path) -> list[str]:
 
 def unknown(path: Path, name: str) -> str:
     """What to say of a column that the contract does not know; DataError when it is nearly one that it knows."""
-    near = difflib.get_close_matches(name, ALLOWED, n=1, cutoff=0.5)
-    if near and difflib.SequenceMatcher(None, name, near[0]).ratio() >= MISSPELT:
+    near = nearest(name, ALLOWED)
+    if near and difflib.SequenceMatcher(None, name, near).ratio() >= MISSPELT:
         raise DataError(
-            f"{path}: no column is called {name!r}. Did you mean {near[0]!r}? Rename it, or map it (--map)."
+            f"{path}: no column is called {name!r}. Did you mean {near!r}? Rename it, or use a map (--map)."
         )
-    return f"{name!r} is not used" + (f" (did you mean {near[0]!r}?)" if near else "")
+    return f"{name!r} is not used" + (f" (did you mean {near!r}?)" if near else "")
 
 
 def is_number(text: str) -> bool:

@@ -11,17 +11,15 @@ from typing import Any, NamedTuple
 from twin.errors import DataError, SettingsError, TwinError, did_you_mean
 from twin.physics.ship import load
 from twin.study.checks import CHECKS, Check, run_checks
-from twin.study.mapping import read_map
+from twin.study.map_file import read_map
 from twin.study.read import read_voyage
 from twin.study.voyage import Voyage
 from twin.study.write import write_voyage
 
 SCHEMA_VERSION = 1
-EPILOG = """example:
-  twin import zigzag.dat --map docs/maps/kvlcc2_hsva.toml --ship kvlcc2_model -o zigzag.mcap
-
-Exit code 4: the data cannot be used, or a check proves a sign, unit or frame wrong. The message says what to write in
-the map; --accept CHECK imports the file as it is. The format of a map: docs/import.md.
+EPILOG = """
+Exit code 4: the data cannot be used, or a check proves a sign, unit or frame wrong. The message says what to
+write in the map; --accept CHECK imports the file as it is. The format of a map: docs/import.md.
 """
 
 
@@ -45,14 +43,20 @@ class Imported(NamedTuple):
             "step_s": v.step_s,
             "columns": [name for name in v.columns if v.has(name)],
             "absent": list(v.absent()),
-            **{key: v.meta[key] for key in ("source", "map", "ship", "datum", "start_time_utc") if key in v.meta},
+            **{
+                key: v.meta[key]
+                for key in ("source", "map", "ship", "datum", "start_time_utc")
+                if key in v.meta
+            },
             "derived": dict(v.meta.get("derived", {})),
             "notes": list(v.meta.get("notes", ())),
             "data_checks": [c.as_json() for c in self.checks],
         }
 
 
-def import_voyage(path: str | Path, map_path: str | Path | None = None, ship_path: str | Path | None = None) -> Imported:
+def import_voyage(
+    path: str | Path, map_path: str | Path | None = None, ship_path: str | Path | None = None
+) -> Imported:
     """Reads a file, through a map if it has its own columns, and checks it, against a ship if one is given."""
     ship = load(ship_path) if ship_path else None
     voyage = read_voyage(path, read_map(Path(map_path)) if map_path else None)
@@ -62,12 +66,13 @@ def import_voyage(path: str | Path, map_path: str | Path | None = None, ship_pat
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = EPILOG
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
+    parser.epilog = (parser.epilog or "") + EPILOG
     parser.add_argument("file", metavar="FILE", help="measurements: CSV, text columns, or an MCAP log")
     parser.add_argument("--map", metavar="MAP.toml", help="the file's own columns, units, signs and clock")
     parser.add_argument("--ship", metavar="SHIP.toml", help="her particulars let the checks say more")
-    parser.add_argument("--accept", metavar="CHECK", action="append", default=[], help="import although CHECK refuses")
+    parser.add_argument(
+        "--accept", metavar="CHECK", action="append", default=[], help="import although CHECK refuses"
+    )
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
     parser.add_argument("-o", "--output", metavar="VOYAGE.mcap", required=True, help="the checked voyage")
 
@@ -135,4 +140,6 @@ def write_json(result: dict[str, Any], path: str) -> None:
         os.replace(aside, path)
     except OSError as error:
         aside.unlink(missing_ok=True)
-        raise TwinError(f"{path}: cannot be written ({error.strerror}). Choose another place with --json.") from None
+        raise TwinError(
+            f"{path}: cannot be written ({error.strerror}). Choose another place with --json."
+        ) from None

@@ -1,18 +1,16 @@
 """A map: how to read a file that has its own columns, units, signs and clock. Format: docs/import.md."""
 
-import tomllib
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
-from pathlib import Path
-from typing import Any
+import difflib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 
-from twin.errors import SettingsError, did_you_mean
 from twin.live.channels import BY_NAME
-from twin.study.units import UNITS, factor
 
 FRAMED = ("surge_velocity_mps", "sway_velocity_mps")
 PLACES = ("latitude_deg", "longitude_deg")
+NAMES = (*BY_NAME, *PLACES)
 FRAMES = ("body", "earth", "course")
+SEPARATORS = {"tab": "\t", "whitespace": " ", ",": ",", ";": ";", "\t": "\t", " ": " ", "|": "|"}
 Key = str | int  # a column by its name, or by its number from 1
 
 
@@ -51,7 +49,9 @@ class Column:
     unit: str | None = None
     sign: int = 1
     offset: float = 0.0
-    frame: str = "body"  # velocities: body; earth (north, east); course (speed over ground, course over ground)
+    frame: str = (
+        "body"  # velocities: body; earth (north, east); course (speed over ground, course over ground)
+    )
     direction: str = "from"  # wind and waves: where they come from, or go "to"
     despike: bool = False
 
@@ -69,103 +69,13 @@ class Map:
     description: str = ""
 
 
-def read_map(path: Path) -> Map:
-    """The map in a TOML file; SettingsError says which entry is wrong and what it may be."""
-    try:
-        data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except OSError as error:
-        raise SettingsError(f"{path}: cannot be read: {error.strerror}.") from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise SettingsError(f"{path}: is not valid TOML: {error}.") from None
-    return parse_map(data, str(path))
-
-
-def parse_map(data: Mapping[str, Any], where: str) -> Map:
-    """A map from its TOML table; `where` names it in messages."""
-    known(data, ("description", "file", "time", "columns", "constant", "scale"), where)
-    scale = known(data.get("scale", {}), ("froude",), f"{where}: [scale]").get("froude", 1.0)
-    columns = {name: column(name, entry, where) for name, entry in data.get("columns", {}).items()}
-    constant = {n: number(x, f"{where}: [constant] {n}") for n, x in data.get("constant", {}).items()}
-    for name in constant:
-        channel_name(name, where)
-    frames_agree(columns, where)
-    if not number(scale, f"{where}: [scale] froude") > 0.0:
-        raise SettingsError(f"{where}: [scale] froude = {scale} must be positive (ship length / model length).")
-    return Map(
-        name=Path(where).stem,
-        layout=build(Layout, data.get("file", {}), f"{where}: [file]"),
-        time=time_column(data["time"], where) if "time" in data else None,
-        columns=columns,
-        constant=constant,
-        froude_scale=float(scale),
-        description=str(data.get("description", "")),
-    )
-
-
-def column(name: str, entry: Any, where: str) -> Column:
-    """One entry: `"NAME"`, `3`, or a table."""
-    channel_name(name, where)
-    table = entry if isinstance(entry, Mapping) else {"column": entry}
-    out: Column = build(Column, table, f"{where}: [columns] {name}")
-    one_of(out.frame, FRAMES, f"{where}: {name}: frame")
-    one_of(out.direction, ("from", "to"), f"{where}: {name}: direction")
-    one_of(out.sign, (1, -1), f"{where}: {name}: sign")
-    if out.frame != "body" and name not in FRAMED:
-        raise SettingsError(f"{where}: {name}: frame is for {' and '.join(FRAMED)} only. Remove it.")
-    if out.unit is not None and not (name in PLACES and out.unit == "ddmm"):
-        factor(target(name, out), out.unit, where)
-    return out
-
-
 def target(name: str, entry: Column) -> str:
     """The name whose unit the cell must reach: a course over ground is an angle, whatever column it fills."""
     return "course_deg" if entry.frame == "course" and name == FRAMED[1] else name
 
 
-def frames_agree(columns: Mapping[str, Column], where: str) -> None:
-    """Surge and sway must be measured in the same frame, and both be there unless that frame is the ship."""
-    frames = [columns[name].frame for name in FRAMED if name in columns]
-    if len(set(frames)) > 1 or (len(frames) == 1 and frames[0] != "body"):
-        raise SettingsError(f"{where}: {' and '.join(FRAMED)} need the same frame, both of them: {frames}.")
-
-
-def time_column(entry: Any, where: str) -> TimeColumn:
-    out: TimeColumn = build(TimeColumn, entry, f"{where}: [time]")
-    one_of(out.unit, (*UNITS["s"], "iso"), f"{where}: [time] unit")
-    if isinstance(out.rebuild, float) and not out.rebuild > 0.0:
-        raise SettingsError(f"{where}: [time] rebuild = {out.rebuild:g} must be true, false or a step in seconds.")
-    return out
-
-
-def build(kind: Any, table: Any, where: str) -> Any:
-    """A dataclass from a TOML table, refusing unknown and missing keys by name."""
-    names = [f.name for f in fields(kind)]
-    table = known(table, names, where)
-    if "column" in names and kind is Column and "column" not in table:
-        raise SettingsError(f"{where}: needs column = NAME or NUMBER (from 1).")
-    return kind(**{k: tuple(v) if isinstance(v, list) else v for k, v in table.items()})
-
-
-def known(table: Any, names: Any, where: str) -> Mapping[str, Any]:
-    if not isinstance(table, Mapping):
-        raise SettingsError(f"{where}: is {table!r}; it must be a table.")
-    for name in table:
-        if name not in names:
-            raise SettingsError(f"{where}: nothing is called {name!r} here.{did_you_mean(name, names)}")
-    return table
-
-
-def one_of(value: Any, allowed: tuple[Any, ...], where: str) -> None:
-    if value not in allowed:
-        raise SettingsError(f"{where} = {value!r} is not possible. Known: {', '.join(map(str, allowed))}.")
-
-
-def number(value: Any, where: str) -> float:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        raise SettingsError(f"{where} = {value!r} must be a number.")
-    return float(value)
-
-
-def channel_name(name: str, where: str) -> None:
-    if name not in BY_NAME and name not in PLACES:
-        raise SettingsError(f"{where}: no channel is called {name!r}.{did_you_mean(name, (*BY_NAME, *PLACES))}")
+def nearest(name: str, known: Iterable[str]) -> str:
+    """The known name that is written most alike, or that holds this one as a word; '' when none does."""
+    known = list(known)
+    close = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    return next(iter(close), "") or next((k for k in known if name.lower() in k.split("_")), "")

@@ -49,7 +49,7 @@ def turned(columns: Columns, by: Map) -> Columns:
 
 def derive(time_s: np.ndarray, columns: Columns) -> tuple[Columns, dict[str, str]]:
     """Position from velocity, velocity from position, yaw rate from heading: what is absent, with how it was made."""
-    columns, how = dict(columns), {}
+    columns, how = dict(columns), dict[str, str]()
     psi = np.radians(continuous(columns["heading_true_north_deg"], 360.0))
     if not present(columns, *CHART):
         north, east = earth_from_body(columns[FRAMED[0]], columns[FRAMED[1]], psi)

@@ -91,7 +91,9 @@ def rebuilt(path: Path, time_s: np.ndarray, step: bool | float) -> tuple[np.ndar
         step = float(step)
         start = float(np.mean(time_s - step * k))
     off = np.abs(time_s - start - step * k)
-    worst, allowed = int(np.argmax(off)), 1.5 * np.diff(time_s).max(initial=0.0) + step
+    steps = np.diff(time_s)
+    rounding = float(np.quantile(steps[steps > 0.0], 0.95)) if np.any(steps > 0.0) else 0.0
+    worst, allowed = int(np.argmax(off)), rounding + step
     if off[worst] > allowed:
         raise DataError(
             f"{path}: row {worst + 1}: the stamp {time_s[worst]:g} s lies {off[worst]:.3g} s from an even step of "

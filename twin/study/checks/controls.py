@@ -8,7 +8,7 @@ Nomoto's first order, its gains as they grow with speed, and Norrbin's cubic dam
 import numpy as np
 
 from twin.study.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.study.checks.view import View, fit, rms
+from twin.study.checks.view import View, fit
 
 RUDDER_SHARE = 0.15  # the rudder must explain this share of the changes of yaw rate to be asked for its sign
 HELD_RUDDER_DEG, HELD_TURN_DEG = 5.0, 30.0
@@ -29,7 +29,9 @@ def rudder_sign(view: View) -> Check:
     name = "rudder_sign"
     same, against = held_turns(view)
     if same + against and min(same, against) == 0:
-        return sign_seen(name, f"with the rudder held over the ship turns {same + against} times", same > 0, True)
+        return sign_seen(
+            name, f"with the rudder held over the ship turns {same + against} times", same > 0, True
+        )
     share, b = best_gain(view)
     if share < RUDDER_SHARE:
         text = f"the rudder explains {100 * share:.0f} % of the changes of yaw rate; a zigzag or a turn would show it."
@@ -73,7 +75,11 @@ def rudder_gain(view: View, rudder: np.ndarray, r: np.ndarray, seconds: float) -
     first, last = view.windows(seconds)
     change, speed = r[last] - r[first], np.abs(view.velocity)
     held = view.summed(rudder * speed**2, first, last)
-    damping = [view.summed(speed * r, first, last), view.summed(np.abs(r) * r, first, last), np.ones(first.size)]
+    damping = [
+        view.summed(speed * r, first, last),
+        view.summed(np.abs(r) * r, first, last),
+        np.ones(first.size),
+    ]
     both = np.isfinite(change) & np.isfinite(held) & np.isfinite(damping[0])
     if np.count_nonzero(both) < 10:
         return 0.0, 0.0
@@ -95,7 +101,9 @@ def rudder_unit(view: View) -> Check:
     if most >= LEAST_RUDDER_DEG:
         return good(name, f"the rudder reaches {most:.1f} deg.")
     if swung < 20.0:
-        return cannot_tell(name, f"the rudder stays within {most:.2g} deg, and the heading within {swung:.0f} deg.")
+        return cannot_tell(
+            name, f"the rudder stays within {most:.2g} deg, and the heading within {swung:.0f} deg."
+        )
     return wrong(
         name,
         f"the rudder stays within {most:.2g} 'deg' while the heading swings {swung:.0f} deg: it is believed to be in "
@@ -119,7 +127,10 @@ def propeller_rate(view: View) -> Check:
             f"the ship makes {way:.2f} m/s with {60 * rate:.3g} turns a minute, {way / rate:.1f} m a turn: no propeller does; "
             'the column is believed to be in 1/s. In the map: unit = "1/s" for it (with --ship this is computed).',
         )
-    return good(name, f"{60 * rate:.3g} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked closer.")
+    return good(
+        name,
+        f"{60 * rate:.3g} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked closer.",
+    )
 
 
 def advance(name: str, way: float, rate: float, diameter: float) -> Check:
@@ -130,5 +141,10 @@ def advance(name: str, way: float, rate: float, diameter: float) -> Check:
         return good(name, f"{saw}, as a ship under way has it.")
     for factor, said, other in ADVANCE_MISTAKES:
         if 0.25 <= j * factor <= 1.4:
-            return wrong(name, f"{saw}; {j * factor:.2g} if {said}: that is believed, unless the file is of {other} ship.")
-    return doubtful(name, f"{saw}, expected {low:g} to {high:g}: another ship's file, a wrong unit, or a wrong diameter?")
+            return wrong(
+                name,
+                f"{saw}; {j * factor:.2g} if {said}: that is believed, unless the file is of {other} ship.",
+            )
+    return doubtful(
+        name, f"{saw}, expected {low:g} to {high:g}: another ship's file, a wrong unit, or a wrong diameter?"
+    )

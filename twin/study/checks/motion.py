@@ -64,7 +64,11 @@ SCALES = (
     (1.0 / 3.6, "the speeds are in km/h", 'unit = "km/h" for surge and sway'),
     (0.3048, "the speeds are in ft/s", 'unit = "ft/s" for surge and sway'),
     (1.0 / 0.3048, "the positions are in feet", 'unit = "ft" for them'),
-    (1e-3, "the time is in milliseconds, or the positions in km", '[time] unit = "ms", or unit = "km" for positions'),
+    (
+        1e-3,
+        "the time is in milliseconds, or the positions in km",
+        '[time] unit = "ms", or unit = "km" for positions',
+    ),
     (60.0, "the time is in minutes", '[time] unit = "min"'),
     (3600.0, "the time is in hours", '[time] unit = "h"'),
 )
@@ -75,12 +79,16 @@ def velocity_frame(view: View) -> Check:
     name = "velocity_frame"
     if view.derived("north_m", "surge_velocity_mps"):
         return course_against_heading(name, view)
-    first, last = view.windows(np.clip(view.voyage.duration_s / 20.0, 5.0 * view.step_s, max(60.0, 50.0 * view.step_s)))
+    first, last = view.windows(
+        np.clip(view.voyage.duration_s / 20.0, 5.0 * view.step_s, max(60.0, 50.0 * view.step_s))
+    )
     moved = view.place[last] - view.place[first]
     noise = position_noise(view.place)
     way = rms(moved)
     if not np.isfinite(moved).any() or way < 5.0 * noise + 1e-9:
-        return cannot_tell(name, f"the ship moves {way:.2g} m in a window, the position's noise is {noise:.2g} m.")
+        return cannot_tell(
+            name, f"the ship moves {way:.2g} m in a window, the position's noise is {noise:.2g} m."
+        )
     allowed = AGREES + 2.0 * noise / way
     off = miss(view, AS_THEY_ARE, 1.0, moved, first, last)
     if off <= allowed:
@@ -90,7 +98,9 @@ def velocity_frame(view: View) -> Check:
     return named(name, view, moved, first, last, off, allowed)
 
 
-def miss(view: View, m: Mistake, scale: float, moved: np.ndarray, first: np.ndarray, last: np.ndarray) -> float:
+def miss(
+    view: View, m: Mistake, scale: float, moved: np.ndarray, first: np.ndarray, last: np.ndarray
+) -> float:
     """Share of the distance by which the position differs from the summed velocities."""
     summed = scale * view.summed(m.flow(view), first, last)
     both = np.isfinite(summed) & np.isfinite(moved)
@@ -134,7 +144,13 @@ def named(
 
 
 def turned_or_drifting(
-    name: str, saw: str, moved: np.ndarray, summed: np.ndarray, seconds: np.ndarray, off: float, allowed: float
+    name: str,
+    saw: str,
+    moved: np.ndarray,
+    summed: np.ndarray,
+    seconds: np.ndarray,
+    off: float,
+    allowed: float,
 ) -> Check:
     """A constant turn of the heading, a constant factor, or a constant stream between ship and ground."""
     (a, b), _, left = fit([summed, 1j * summed], moved)
@@ -142,7 +158,10 @@ def turned_or_drifting(
     (p, q), _, streaming = fit([seconds + 0j, 1j * seconds], moved - summed)
     if np.sqrt(left) < EXPLAINS * off + allowed / 2.0:
         do = f"If the heading is magnetic or grid, offset = {angle:.1f} for it; speeds off by a factor {size:.3g}."
-        return wrong(name, f"{saw}; the heading is {angle:.1f} deg off and the speeds {size:.3g} of the true ones. {do}")
+        return wrong(
+            name,
+            f"{saw}; the heading is {angle:.1f} deg off and the speeds {size:.3g} of the true ones. {do}",
+        )
     if np.sqrt(streaming) < EXPLAINS:
         return wrong(
             name,
@@ -167,7 +186,10 @@ def sway_sign(
     x, error, _ = fit([ahead, aside, swing[last] - swing[first]], moved)
     saw = f"position and velocities agree to {100 * off:.1f} % of the distance"
     if error[1] < 0.1 and -1.4 < x[1] < -0.6:
-        return wrong(name, f"{saw}, but better with sway positive to port ({x[1]:.2f}). In the map: sign = -1 for sway.")
+        return wrong(
+            name,
+            f"{saw}, but better with sway positive to port ({x[1]:.2f}). In the map: sign = -1 for sway.",
+        )
     return good(name, f"{saw}.")
 
 
@@ -182,7 +204,10 @@ def course_against_heading(name: str, view: View) -> Check:
     drift, earth = rms(np.angle(w)), rms(np.angle(w * np.exp(-1j * psi)))
     saw = f"drift angle {np.degrees(drift):.0f} deg rms"
     if view.speed > 40.0:
-        return wrong(name, f"the ship makes {view.speed:.3g} m/s: is the time in minutes or hours, the position in feet?")
+        return wrong(
+            name,
+            f"the ship makes {view.speed:.3g} m/s: is the time in minutes or hours, the position in feet?",
+        )
     if drift > np.radians(8.0) and earth < 0.5 * drift and not view.derived("surge_velocity_mps"):
         return wrong(
             name,
@@ -192,7 +217,8 @@ def course_against_heading(name: str, view: View) -> Check:
     mean = float(np.degrees(np.angle(np.mean(w / np.abs(w)))))
     if abs(mean) > 45.0:
         return doubtful(
-            name, f"the ship moves {mean:.0f} deg off her heading on average: are heading, north and east right?"
+            name,
+            f"the ship moves {mean:.0f} deg off her heading on average: are heading, north and east right?",
         )
     return good(name, f"{saw}; position and velocities are not independent, so no more can be said.")
 
@@ -233,10 +259,16 @@ def yaw_rate(view: View) -> Check:
     saw = f"the heading turns {k:.3g} times the summed yaw rate"
     if left > 0.5 or error > 0.3 * abs(k):
         if rms(summed) < 3.0 * rms(swung) and turn < 2.0:
-            return cannot_tell(name, f"the heading changes by {turn:.2g} deg in a window, too little beside the noise.")
-        return doubtful(name, f"heading and yaw rate do not tell of the same turning ({100 * left:.0f} % of it is left).")
+            return cannot_tell(
+                name, f"the heading changes by {turn:.2g} deg in a window, too little beside the noise."
+            )
+        return doubtful(
+            name, f"heading and yaw rate do not tell of the same turning ({100 * left:.0f} % of it is left)."
+        )
     if 0.75 < k < 1.33:
         return good(name, f"{saw} (1 expected).")
     if abs(np.log(abs(k / ratio))) < 0.25:
         return wrong(name, f"{saw}: {said}, that is believed. In the map: {fix}.")
-    return doubtful(name, f"{saw}, and no known unit explains it. Look at the units of yaw rate, heading and time.")
+    return doubtful(
+        name, f"{saw}, and no known unit explains it. Look at the units of yaw rate, heading and time."
+    )

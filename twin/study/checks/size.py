@@ -30,7 +30,9 @@ def ship_size(view: View) -> Check:
     if turning > TIGHTEST_TURN:
         return doubtful(name, f"{saw}: no ship turns within {1 / turning:.2f} lengths. {other}")
     if draught and not 0.4 < draught / float(view.ship.T) < 2.0:
-        return doubtful(name, f"draught {draught:.3g} m, but {view.ship.name} has {float(view.ship.T):.3g} m. {other}")
+        return doubtful(
+            name, f"draught {draught:.3g} m, but {view.ship.name} has {float(view.ship.T):.3g} m. {other}"
+        )
     return good(name, f"{saw}: possible for {view.ship.name}.")
 
 
@@ -50,7 +52,11 @@ def duration(view: View) -> Check:
     name, seconds = "duration", view.voyage.duration_s
     sailed = float(np.nansum(np.abs(view.velocity)) * view.step_s)
     rudder = float(np.nanstd(view.voyage["rudder_angle_deg"]))
-    calm = " The rudder hardly moves: nothing about turning can be learned from it." if rudder < STEADY_RUDDER_DEG else ""
+    calm = (
+        " The rudder hardly moves: nothing about turning can be learned from it."
+        if rudder < STEADY_RUDDER_DEG
+        else ""
+    )
     if view.ship is not None:
         lengths = sailed / float(view.ship.L_pp)
         saw = f"{seconds:.4g} s, {lengths:.0f} ship lengths"

@@ -1,6 +1,6 @@
 """True wind, apparent wind and the ship's own motion make a triangle. Directions say where the wind comes from.
 
-    A e^{i alpha} = T e^{i (theta - psi)} + (u + i v)
+A e^{i alpha} = T e^{i (theta - psi)} + (u + i v)
 """
 
 from collections.abc import Callable
@@ -11,7 +11,9 @@ from twin.study.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.study.checks.view import View, fit, rms
 from twin.study.units import DEG_PER_RAD, KNOT_MPS
 
-AGREES = 0.35  # share of the wind by which the triangle may stay open (gusts, mast height, flow around the ship)
+AGREES = (
+    0.35  # share of the wind by which the triangle may stay open (gusts, mast height, flow around the ship)
+)
 EXPLAINS = 0.5
 Pair = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
@@ -89,7 +91,9 @@ def triangle(name: str, view: View) -> Check:
         return wrong(name, f"{saw}, by {100 * left:.0f} % if {text}: that is believed. In the map: {fix}.")
     if off <= AGREES:
         return good(name, f"{saw}.")
-    return doubtful(name, f"{saw}, and no mistake that is known explains it. Look at units, signs and the anemometer.")
+    return doubtful(
+        name, f"{saw}, and no mistake that is known explains it. Look at units, signs and the anemometer."
+    )
 
 
 def relative_taken_as_true(t: np.ndarray, h: np.ndarray, a: np.ndarray, b: np.ndarray, view: View) -> bool:
@@ -105,9 +109,13 @@ def alone(name: str, view: View, true: bool) -> Check:
     raw = view.voyage[column]
     raw = raw[np.isfinite(raw)]
     if raw.max() <= 2.0 * np.pi and np.std(raw) > 1.0:
-        return wrong(name, f'{column} stays within 0 and {raw.max():.2f}: radians. In the map: unit = "rad" for it.')
+        return wrong(
+            name, f'{column} stays within 0 and {raw.max():.2f}: radians. In the map: unit = "rad" for it.'
+        )
     if not true:
-        return good(name, "only the apparent wind was recorded; the true wind follows from it and the ship's motion.")
+        return good(
+            name, "only the apparent wind was recorded; the true wind follows from it and the ship's motion."
+        )
     if np.degrees(np.nanstd(view.psi)) < 15.0:
         return cannot_tell(name, "only the true wind was recorded, and the ship hardly turns.")
     followed = follows_heading(view.si(column), view.psi)
@@ -117,10 +125,15 @@ def alone(name: str, view: View, true: bool) -> Check:
             f"the wind direction turns {followed:.2f} times as the heading does: it is counted from the bow. In the map "
             "call it apparent_wind_angle_deg (and its speed apparent_wind_speed_mps), or add the heading.",
         )
-    return good(name, f"the wind direction does not turn with the heading ({followed:.2f}); from or to cannot be told.")
+    return good(
+        name,
+        f"the wind direction does not turn with the heading ({followed:.2f}); from or to cannot be told.",
+    )
 
 
 def follows_heading(direction: np.ndarray, psi: np.ndarray) -> float:
     """d(direction)/d(psi); 0 for a true direction, -1 for one counted from the bow."""
-    (k, _), (error, _), left = fit([psi - np.nanmean(psi), np.ones(psi.size)], direction - np.nanmean(direction))
+    (k, _), (error, _), left = fit(
+        [psi - np.nanmean(psi), np.ones(psi.size)], direction - np.nanmean(direction)
+    )
     return float(k) if left < 0.5 and error < 0.3 else 0.0

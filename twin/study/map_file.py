@@ -1,0 +1,150 @@
+"""Reading a map from its TOML file; what is wrong in it is a SettingsError that says where. Format: docs/import.md."""
+
+import tomllib
+from collections.abc import Mapping
+from dataclasses import fields
+from pathlib import Path
+from typing import Any
+
+from twin.errors import SettingsError, did_you_mean
+from twin.study.mapping import (
+    FRAMED,
+    FRAMES,
+    NAMES,
+    PLACES,
+    SEPARATORS,
+    Column,
+    Layout,
+    Map,
+    TimeColumn,
+    nearest,
+    target,
+)
+from twin.study.units import UNITS, factor
+
+WORDS: dict[type, str] = {
+    int: "a whole number",
+    float: "a number",
+    str: "text",
+    bool: "true or false",
+    list: "a list",
+}
+KINDS: dict[str, tuple[type, ...]] = {
+    "skip_lines": (int,), "header": (bool,), "skip_after_header": (int,), "separator": (str,), "decimal": (str,),
+    "encoding": (str,), "missing": (list,), "column": (str, int, list), "unit": (str,), "format": (str,),
+    "rebuild": (bool, int, float), "sign": (int,), "offset": (int, float), "frame": (str,), "direction": (str,),
+    "despike": (bool,),
+}  # fmt: skip
+
+
+def read_map(path: Path) -> Map:
+    """The map in a TOML file; SettingsError says which entry is wrong and what it may be."""
+    try:
+        data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot be read: {error.strerror}.") from None
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise SettingsError(f"{path}: is not valid TOML: {error}.") from None
+    return parse_map(data, str(path))
+
+
+def parse_map(data: Mapping[str, Any], where: str) -> Map:
+    """A map from its TOML table; `where` names it in messages."""
+    known(data, ("description", "file", "time", "columns", "constant", "scale"), where)
+    scale = known(data.get("scale", {}), ("froude",), f"{where}: [scale]").get("froude", 1.0)
+    columns = {name: column(name, entry, where) for name, entry in data.get("columns", {}).items()}
+    constant = {n: number(x, f"{where}: [constant] {n}") for n, x in data.get("constant", {}).items()}
+    for name in constant:
+        channel_name(name, where)
+    frames_agree(columns, where)
+    layout: Layout = build(Layout, data.get("file", {}), f"{where}: [file]")
+    one_of(layout.separator, (None, *SEPARATORS), f"{where}: [file] separator")
+    one_of(layout.decimal, (None, ".", ","), f"{where}: [file] decimal")
+    if not number(scale, f"{where}: [scale] froude") > 0.0:
+        raise SettingsError(
+            f"{where}: [scale] froude = {scale} must be positive (ship length / model length)."
+        )
+    return Map(
+        name=Path(where).stem,
+        layout=layout,
+        time=time_column(data["time"], where) if "time" in data else None,
+        columns=columns,
+        constant=constant,
+        froude_scale=float(scale),
+        description=str(data.get("description", "")),
+    )
+
+
+def column(name: str, entry: Any, where: str) -> Column:
+    """One entry: `"NAME"`, `3`, or a table."""
+    channel_name(name, where)
+    table = entry if isinstance(entry, Mapping) else {"column": entry}
+    out: Column = build(Column, table, f"{where}: [columns] {name}")
+    one_of(out.frame, FRAMES, f"{where}: {name}: frame")
+    one_of(out.direction, ("from", "to"), f"{where}: {name}: direction")
+    one_of(out.sign, (1, -1), f"{where}: {name}: sign")
+    if out.frame != "body" and name not in FRAMED:
+        raise SettingsError(f"{where}: {name}: frame is for {' and '.join(FRAMED)} only. Remove it.")
+    if out.unit is not None and not (name in PLACES and out.unit == "ddmm"):
+        factor(target(name, out), out.unit, where)
+    return out
+
+
+def frames_agree(columns: Mapping[str, Column], where: str) -> None:
+    """Surge and sway must be measured in the same frame, and both be there unless that frame is the ship."""
+    frames = [columns[name].frame for name in FRAMED if name in columns]
+    if len(set(frames)) > 1 or (len(frames) == 1 and frames[0] != "body"):
+        raise SettingsError(f"{where}: {' and '.join(FRAMED)} need the same frame, both of them: {frames}.")
+
+
+def time_column(entry: Any, where: str) -> TimeColumn:
+    out: TimeColumn = build(TimeColumn, entry, f"{where}: [time]")
+    one_of(out.unit, (*UNITS["s"], "iso"), f"{where}: [time] unit")
+    if not isinstance(out.rebuild, bool) and not out.rebuild > 0.0:
+        raise SettingsError(
+            f"{where}: [time] rebuild = {out.rebuild:g} must be true, false or a step in seconds."
+        )
+    return out
+
+
+def build(kind: Any, table: Any, where: str) -> Any:
+    """A dataclass from a TOML table, refusing unknown and missing keys by name."""
+    names = [f.name for f in fields(kind)]
+    table = known(table, names, where)
+    if "column" in names and kind is Column and "column" not in table:
+        raise SettingsError(f"{where}: needs column = NAME or NUMBER (from 1).")
+    for key, value in table.items():
+        right_kind(value, KINDS[key], f"{where} {key}")
+    return kind(**{k: tuple(map(str, v)) if isinstance(v, list) else v for k, v in table.items()})
+
+
+def known(table: Any, names: Any, where: str) -> Mapping[str, Any]:
+    if not isinstance(table, Mapping):
+        raise SettingsError(f"{where}: is {table!r}; it must be a table.")
+    for name in table:
+        if name not in names:
+            raise SettingsError(f"{where}: nothing is called {name!r} here.{did_you_mean(name, names)}")
+    return table
+
+
+def one_of(value: Any, allowed: tuple[Any, ...], where: str) -> None:
+    if value not in allowed:
+        raise SettingsError(f"{where} = {value!r} is not possible. Known: {', '.join(map(str, allowed))}.")
+
+
+def right_kind(value: Any, kinds: tuple[type, ...], where: str) -> None:
+    if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
+        raise SettingsError(f"{where} = {value!r} must be {' or '.join(WORDS[kind] for kind in kinds)}.")
+
+
+def number(value: Any, where: str) -> float:
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        raise SettingsError(f"{where} = {value!r} must be a number.")
+    return float(value)
+
+
+def channel_name(name: str, where: str) -> None:
+    if name not in NAMES:
+        near = nearest(name, NAMES)
+        hint = f" Did you mean {near!r}?" if near else ""
+        raise SettingsError(f"{where}: no channel is called {name!r}.{hint} docs/import.md lists them.")
