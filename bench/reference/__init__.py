@@ -1,4 +1,4 @@
-"""The reference sea: a 6-DOF witness that shares no physics with `twin/` and writes every effect in another form.
+"""The reference sea: a 6-DOF witness that shares no physics with `twin/`, every effect in another form.
 
 recording, = simulate([Case("kvlcc2", "mixed", hidden=(("Wind", 1.0),), seed=3)])
 recording.columns["heading_true_north_deg"], recording.truth["u"], recording.hidden["Wind"]

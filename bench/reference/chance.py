@@ -1,4 +1,4 @@
-"""Random numbers of a fleet: each ship draws from her own seed, tick by tick, whatever ships sail beside her."""
+"""Random numbers of a fleet: each ship draws from her own seed, whatever ships sail beside her."""
 
 import numpy as np
 
@@ -6,7 +6,7 @@ CHUNK = 512
 
 
 class Chance:
-    """White normal numbers (B, k) for tick 0, 1, 2 ...; drawn in chunks of 512 ticks from each ship's own generator."""
+    """White normal numbers (k, B) for tick 0, 1, 2 ..., 512 ticks at a time from each ship's generator."""
 
     def __init__(self, seeds, stream, k):
         self.k, self.generators = k, [np.random.default_rng([seed, stream]) for seed in seeds]

@@ -1,7 +1,8 @@
 """Our KVLCC2 beside other people's: an independent program, tank tests, and the limits that seafarers accept.
 
-The equations are those of Yasukawa & Yoshimura (2015); `shipmmg` 0.0.11 (MIT, the ShipMMG group) is somebody else's program of
-the same paper, run once for the 7 m model with our particulars and propeller rate; it keeps a wake law of its own. Tank tests: SIMMAN 2008
+The equations are those of Yasukawa & Yoshimura (2015), whose own tables of results we could not get hold
+of. `shipmmg` 0.0.11 (MIT, the ShipMMG group) is somebody else's program of the same paper, run once for the
+7 m model with our particulars and propeller rate; it keeps a wake law of its own. Tank tests: SIMMAN 2008
 free runs of MARIN (ship scale) and HSVA (7 m model). Limits: IMO resolution MSC.137(76), for L/U = 40 s.
 """
 
@@ -16,7 +17,7 @@ from .sea import hull_of
 from .voyage import Case, simulate
 from .weather import Weather
 
-# rudder: (advance / L, tactical diameter / L); angle: (1st, 2nd overshoot [deg]); first rudder to port has a minus sign
+# rudder: (advance / L, tactical diameter / L); angle: (1st, 2nd overshoot [deg]); minus: rudder first to port
 SHIPMMG_TURN = {35: (3.06, 2.99), -35: (2.92, 2.73)}
 SHIPMMG_ZIGZAG = {10: (4.6, 13.4), -10: (6.5, 9.3), 20: (11.1, 15.1), -20: (14.8, 12.0)}
 MARIN_ZIGZAG = {10: (8.2,), -10: (9.5,), 20: (13.7, 14.9), -20: (15.1, 13.3)}  # read from the measured series
@@ -100,14 +101,12 @@ def limits(turned, zigzagged):
         "10/10 2nd": max(zigzagged[a][1] for a in (10, -10)),
         "20/20 1st": max(zigzagged[a][0] for a in (20, -20)),
     }
-    return [
-        f"  {name:<34}{value:8.2f}{IMO[name]:10.2f}   {'inside' if value <= IMO[name] else 'OUTSIDE'} the limit of IMO"
-        for name, value in worst.items()
-    ]
+    verdict = {name: "inside" if value <= IMO[name] else "OUTSIDE" for name, value in worst.items()}
+    return [f"  {n:<34}{v:8.2f}{IMO[n]:10.2f}   {verdict[n]} the limit of IMO" for n, v in worst.items()]
 
 
 def read_run(path):
-    """Time [s], heading [deg], rudder [deg, starboard positive], rudder angle, execute heading and hull of one SIMMAN file."""
+    """Time [s], heading, rudder [deg, starboard positive], rudder angle, execute heading, hull of a file."""
     rows = []
     for text in path.read_text(errors="replace").splitlines():
         try:

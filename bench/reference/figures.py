@@ -16,14 +16,14 @@ def turn(north, east, psi_deg, L):
     """Advance and tactical diameter in ship lengths of a turn that starts northward at the origin."""
     turned = np.abs(psi_deg)
     i, j = crossing(turned, 90), crossing(turned, 180)
-    at = lambda values, k: float(np.interp(k, np.arange(len(values)), values))
-    return at(north, i) / L, abs(at(east, j)) / L
+    ticks = np.arange(len(turned))
+    return float(np.interp(i, ticks, north)) / L, abs(float(np.interp(j, ticks, east))) / L
 
 
 def overshoots(time, psi_deg, rudder_deg, angle):
-    """Overshoot angles [deg] and the times [s] of the reversals, from a zigzag whose rudder is held at +-`angle`.
+    """Overshoots [deg] and the times [s] of the reversals, from a zigzag whose rudder is held at +-`angle`.
 
-    A reversal is where the rudder crosses zero on its way over; the overshoot is the largest heading reached until
+    A reversal is where the rudder crosses zero on its way over; the overshoot is the largest heading until
     the next reversal, less the heading at which the rudder was ordered over, taken as `angle`.
     """
     side = np.sign(np.where(np.abs(rudder_deg) < 0.3 * abs(angle), 0, rudder_deg))

@@ -80,7 +80,7 @@ def fouling(f, h, u, v):
 
 
 def worn_thrust(f, h, thrust, n, u_P):
-    """Worn blades lose 60 % of their loss evenly, the rest the faster they advance: lost thrust [N] (>= 0 ahead)."""
+    """Lost thrust [N] of worn blades: 60 % of the loss evenly, the rest the more the faster they advance."""
     at_service = 0.5 * h.rho * h.L * h.d * h.U0**2 * h.R0 / (1 - h.t_P)
     advance = u_P * n / (h.U0 * (1 - h.w_P0) * h.n0)
     return f.prop_wear * np.where(
@@ -156,7 +156,7 @@ def passing(f, h, t):
 
 
 def slosh(f, h, lag, speed, sway_acceleration):
-    """Water in a half-full tank, a weakly damped mass on a spring: its acceleration, and Y, N, K on the ship."""
+    """Water in a slack tank, a hardly damped mass on a spring: its acceleration, and Y, N, K on the ship."""
     push = f.slosh_w**2 * lag + 0.04 * f.slosh_w * speed
     Y = f.slosh * h.M * push
     return -push - sway_acceleration, Y, f.slosh_x * h.L * Y, 0.3 * h.d * Y
@@ -180,5 +180,5 @@ SHALLOW = np.array(
 
 def shallow(draught_over_depth):
     """Multipliers of resistance, sway and yaw derivatives by draught / depth: an estimate of ours, of the
-    order that tank tests with full tankers report (resistance x2, sway x4, yaw x2.5 at a depth of 1.2 draughts)."""
+    order that tank tests with full tankers report (resistance x2, sway x4, yaw x2.4 at 1.18 draughts)."""
     return [np.interp(draught_over_depth, SHALLOW_T_H, row) for row in SHALLOW]

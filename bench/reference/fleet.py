@@ -12,7 +12,7 @@ def limit(x, low, high):
 
 
 def stack(hulls) -> SimpleNamespace:
-    """Every numeric field as (B,), every tuple as a tuple of (B,); and the SI inertias that the motion needs."""
+    """Every number as (B,), every tuple as a tuple of (B,); and the SI inertias that the motion needs."""
     h = SimpleNamespace()
     for f in fields(hulls[0]):
         values = [getattr(x, f.name) for x in hulls]
@@ -30,7 +30,7 @@ def _with_inertia(h):
 
     [ m + my        m x_G + my a_y    -my l_y ] [v']   [Y]
     [ m x_G + my a_y   I_z + J_z          0   ] [r'] = [N]
-    [ -my l_y             0            I_x+J_x] [p']   [K]        (Son & Nomoto 1981, Yasukawa & Yoshimura 2014)
+    [ -my l_y             0            I_x+J_x] [p']   [K]      (Son & Nomoto 1981)
     """
     mass, inertia = 0.5 * h.rho * h.L**2 * h.d, 0.5 * h.rho * h.L**4 * h.d
     h.M, h.Mx, h.My = h.m * mass, h.mx * mass, h.my * mass

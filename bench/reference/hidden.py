@@ -1,7 +1,7 @@
-"""The table of effects that can be hidden in the truth: size at strength 1, and what a study may compare with.
+"""The effects that can be hidden in the truth: size at strength 1, and what a study may compare with.
 
-Each entry takes (hull, rng, strength) and returns a Plan: numbers for flaws.py, changes of hull and weather, and the truth.
-Environment effects change the weather; a voyage that does not hide them is calm.
+Each entry takes (hull, rng, strength) and returns a Plan: numbers for flaws.py, changes of hull and
+weather, truth. Environment effects change the weather; a voyage that does not hide them is calm.
 """
 
 from dataclasses import dataclass, field, replace
@@ -69,7 +69,7 @@ def rudder_offset(hull, rng, s):
 
 
 def loading(hull, rng, s):
-    """Deeper by 12 % mass, the extra cargo aft: draught, centre of gravity, inertia, and derivatives with the trim."""
+    """12 % more mass, most of it aft, which nobody told the bridge: draught, centre, inertia, trim."""
     k, x_G = 1 + 0.12 * s, hull.x_G - 0.012 * s * hull.L
     d = hull.d * (1 + 0.11 * s)
     Y, N = list(hull.Y), list(hull.N)
@@ -280,7 +280,7 @@ def decoy(strong, **numbers):
     return lambda hull, rng: Plan(numbers, weather=strong(hull, 1.0, float(rng.uniform(0, 360))))
 
 
-# Strong weather that is measured but not hidden: it acts and is given as known forces, or (…_no_force) it only shows.
+# Strong weather, measured but not hidden: it acts and its force is given, or (_no_force) it only shows.
 DECOYS = {
     "wind": decoy(strong_wind),
     "waves": decoy(strong_waves),
@@ -290,7 +290,7 @@ DECOYS = {
 
 
 def prepare(hull, weather, hidden, decoys, seed):
-    """The hull and weather as they really are, the numbers of the flaws, and the truth of each hidden effect."""
+    """Hull and weather as they really are, the numbers of the flaws, and the truth of each hidden effect."""
     numbers, truth = {}, {}
     plans = [
         (n, _known(n, EFFECTS)(hull, np.random.default_rng([seed, 7, _key(n)]), s), s) for n, s in hidden
@@ -315,7 +315,7 @@ def _key(name):
 
 
 def stack_flaws(all_numbers):
-    """One array (B,) for each field of flaws.FIELDS; zero (or one, for lengths of time and space) where absent."""
+    """One array (B,) for each of flaws.FIELDS; zero (one, for lengths of time and space) where absent."""
     ones = ("period", "every", "width", "length", "lag_rate")
     defaults = {field: float(field.endswith(ones)) for field in flaws.FIELDS}
     return SimpleNamespace(

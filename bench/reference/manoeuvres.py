@@ -1,4 +1,4 @@
-"""What the helmsman does: manoeuvres as tables of legs, lengths in ship lengths travelled, so that they suit every hull."""
+"""What the helmsman does: tables of legs, as long as ship lengths take, so that they suit every hull."""
 
 from dataclasses import dataclass
 
@@ -7,7 +7,7 @@ COURSE, ZIGZAG, RUDDER = 0, 1, 2
 
 @dataclass(frozen=True)
 class Leg:
-    """`mode` COURSE: turn by `a` degrees and hold; ZIGZAG: rudder +-a against heading +-b; RUDDER: hold rudder `a`."""
+    """COURSE: turn by `a` degrees, hold; ZIGZAG: rudder +-a against heading +-b; RUDDER: hold rudder `a`."""
 
     mode: int
     lengths: float  # how long, in L/U0 of time
@@ -47,7 +47,7 @@ MANOEUVRES = {
         Leg(COURSE, 8, 10, rate=1.0),
         Leg(COURSE, 6, -10, rate=0.7),
     ],
-    "crash_stop": [Leg(COURSE, 4), Leg(COURSE, 14, 0, rate=-0.6), Leg(COURSE, 20, 0, rate=0.8)],
+    "crash_stop": [Leg(COURSE, 4), Leg(COURSE, 22, 0, rate=-0.75), Leg(COURSE, 16, 0, rate=0.8)],
     "reciprocal_runs": [Leg(COURSE, 14), Leg(COURSE, 20, 180)],
     "square": [Leg(COURSE, 11), Leg(COURSE, 11, 90), Leg(COURSE, 11, 90), Leg(COURSE, 11, 90)],
     "straight": [Leg(COURSE, 45)],
@@ -71,7 +71,10 @@ def mixed_leg(rng):
 
 
 def legs(name, hull, duration_s, rng):
-    """Pairs (leg, start [s]) of a voyage, by name or from a sequence of Legs; repeated (or drawn) until they last; a boat's legs are twice as many lengths."""
+    """Pairs (leg, start [s]) of a voyage, by name or from Legs, repeated or drawn until they last.
+
+    A boat's legs are twice as many lengths.
+    """
     if isinstance(name, str) and name not in MANOEUVRES:
         raise ValueError(f"unknown manoeuvre {name!r}. Known: {', '.join(MANOEUVRES)}.")
     plan = MANOEUVRES[name] if isinstance(name, str) else name

@@ -13,7 +13,7 @@ R_CLIP = 1.2  # r' beyond which the polynomial has never been measured (pivoting
 def hull(h, u, v, r, p, phi, shallow=(1.0, 1.0, 1.0)):
     """Force of the water on the bare hull: X, Y, N, K.
 
-    MMG polynomials in v' and r' (Yasukawa & Yoshimura 2015, eq. 9-11) plus heel terms (Son & Nomoto 1981).
+    MMG polynomials in v' and r' (Yasukawa & Yoshimura 2015) plus heel terms (Son & Nomoto 1981).
     Odd derivatives change sign when she goes astern; below walking pace a cross-flow yaw drag takes over.
     `shallow` multiplies resistance, sway and yaw derivatives.
     """
@@ -48,7 +48,7 @@ def hull(h, u, v, r, p, phi, shallow=(1.0, 1.0, 1.0)):
 
 
 def _heel(h, b, c, p, phi):
-    """Heel-dependent part of Y', N' and the whole of K' (Son & Nomoto 1981); zero for hulls without such tests."""
+    """Heel-dependent part of Y', N' and the whole of K' (Son & Nomoto 1981); zero for hulls not so tested."""
     bb, cc, ff = b * b, c * c, phi * phi
     y, n, k = h.heel_Y, h.heel_N, h.heel_K
     Y = phi * (y[0] + y[1] * bb + y[3] * cc) + ff * (y[2] * b + y[4] * c)
@@ -76,7 +76,7 @@ def open_water(h, n, u_P):
 
 
 def inflow(h, u, v, r):
-    """Axial speed at the propeller [m/s]: the wake thins with drift (Yasukawa & Yoshimura 2015, eq. 16-18)."""
+    """Axial speed at the propeller [m/s]: the wake thins with drift (Yasukawa & Yoshimura 2015)."""
     U = np.sqrt(u * u + v * v + (0.02 * h.U0) ** 2)
     b = -v / U - h.x_P * limit(r * h.L / U, -R_CLIP, R_CLIP)
     gain = 1 + (1 - np.exp(-h.C1 * np.abs(b))) * (np.where(b > 0, h.C2[0], h.C2[1]) - 1) + h.C_quad * b * b
@@ -84,10 +84,11 @@ def inflow(h, u, v, r):
 
 
 def rudder(h, u, v, r, u_P, thrust, delta, gain=1.0, gamma_gain=1.0):
-    """Rudder in the slipstream: X, Y, N, K (Yasukawa & Yoshimura 2015, eq. 20-31).
+    """Rudder in the slipstream: X, Y, N, K (Yasukawa & Yoshimura 2015).
 
-    The slipstream speed comes from momentum, sqrt(u_P^2 + 8 T / (pi rho D^2)), which is u_P sqrt(1 + 8 K_T / (pi J^2))
-    without its division by J, so that it also holds with the propeller stopped or astern.
+    The slipstream speed comes from momentum, sqrt(u_P^2 + 8 T / (pi rho D^2)): the u_P sqrt(1 + 8 K_T / (pi
+    J^2)) of the paper without its division by J, so that it also holds with the propeller stopped or
+    astern.
     """
     U = np.sqrt(u * u + v * v + (0.02 * h.U0) ** 2)
     sin, cos = np.sin(delta), np.cos(delta)

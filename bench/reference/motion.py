@@ -1,9 +1,9 @@
 """The equations of motion in six degrees of freedom: state, forces, rate of change.
 
-Rows of the state (14, B): north, east, heading; surge, sway, yaw rate *through the water*; roll and its rate; heave and its
-speed; pitch and its rate; slosh and its speed. Surge, sway, yaw and roll are coupled (MMG with roll); heave and pitch are
-oscillators driven by the waves. In an even current the through-water equations hold as they stand; a changing current
-adds the inertia -m dc/dt.
+Rows of the state (14, B): north, east, heading; surge, sway, yaw rate *through the water*; roll and its
+rate; heave and its speed; pitch and its rate; slosh and its speed. Surge, sway, yaw and roll are coupled
+(MMG with roll); heave and pitch are oscillators driven by the waves. In an even current the through-water
+equations hold as they stand; a changing current adds the inertia -m dc/dt.
 """
 
 import numpy as np

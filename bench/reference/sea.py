@@ -1,4 +1,4 @@
-"""The sea itself: a fleet of ships, each with her helmsman, weather, flaws and instruments, stepped tick by tick."""
+"""The sea itself: ships, each with her helmsman, weather, flaws and instruments, stepped tick by tick."""
 
 from types import SimpleNamespace
 

@@ -1,7 +1,7 @@
-"""What the ship's instruments report: noise, own rates, latency, dropouts, and the faults that can be hidden in them.
+"""What the ship's instruments report: noise, own rates, latency, dropouts, and the faults hidden in them.
 
-Body velocities over ground come from a satellite and inertial unit with an attitude of its own, so that a wrong
-compass does not turn them.
+Body velocities over ground come from a satellite and inertial unit with an attitude of its own, so that a
+wrong compass does not turn them.
 """
 
 import numpy as np
@@ -65,7 +65,7 @@ DEEP, OPEN = (
 
 
 class Instruments:
-    """Turns the true state of each tick into a row of measured columns (B,), NaN where an instrument has no sample."""
+    """Turns the truth of each tick into measured columns (B,), NaN where an instrument has no sample."""
 
     def __init__(self, h, f, draught, weathers, seeds, dt, perfect):
         self.h, self.f, self.dt, self.draught = h, f, dt, draught

@@ -13,9 +13,10 @@ AXES = ("X_N", "Y_N", "N_Nm")
 
 @dataclass(frozen=True)
 class Case:
-    """One voyage to sail. `hidden`: pairs (effect, strength); `decoys`: strong weather that is no riddle (see hidden.py).
+    """One voyage to sail. `hidden`: pairs (effect, strength); `decoys`: strong weather that is no riddle.
 
-    `weather` is relative to the first heading, which the seed draws unless `heading_deg` fixes it; `sensors` is "ship" or "perfect".
+    `weather` is relative to the first heading, which the seed draws unless `heading_deg` fixes it.
+    `sensors` is "ship" or "perfect". A `Sea` takes `duration_s=None` for a voyage without an end.
     """
 
     hull: object = "kvlcc2"  # a name of hulls.HULLS or a Hull
@@ -32,7 +33,7 @@ class Case:
 
 @dataclass
 class Recording:
-    """What was measured (`columns`), what was true (`truth`), what was hidden, and the forces that count as known."""
+    """What was measured (`columns`), what was true (`truth`), what was hidden, and forces given as known."""
 
     case: Case
     columns: dict = field(repr=False)

@@ -2,8 +2,8 @@
 
 Components a_i cos(w_i t - k_i (x cos m_i + y sin m_i) + e_i), m_i the direction of travel. First order: the
 Froude-Krylov pressure integrated over a box L x B x d (Journee & Massie 2001, ch. 6), enlarged by the added
-mass. Second order: Newman (1974), F = |sum a_i sqrt(D_i) exp(i p_i)|^2, D_i those of a wall that reflects what
-does not pass under the keel, R = 1 - exp(-k d).
+mass. Second order: Newman (1974), F = |sum a_i sqrt(D_i) exp(i p_i)|^2, D_i those of a wall that reflects
+what does not pass under the keel, R = 1 - exp(-k d).
 """
 
 from types import SimpleNamespace
@@ -14,8 +14,8 @@ G = 9.81
 N_FREQUENCY, SPREAD = 14, np.radians([-25.0, 0.0, 25.0])
 
 
-def jonswap(f, height, peak, gamma=3.3):
-    """Spectrum [m2 s] at frequency f [Hz], scaled afterwards to the wanted height (Hasselmann et al. 1973)."""
+def jonswap(f, peak, gamma=3.3):
+    """Shape of the spectrum at frequency f [Hz], scaled to its height afterwards (Hasselmann et al. 1973)."""
     fp = 1 / peak
     sigma = np.where(f <= fp, 0.07, 0.09)
     shape = f**-5.0 * np.exp(-1.25 * (fp / f) ** 4) * gamma ** np.exp(-0.5 * ((f - fp) / (sigma * fp)) ** 2)
@@ -23,10 +23,10 @@ def jonswap(f, height, peak, gamma=3.3):
 
 
 def components(weather, rng):
-    """Amplitude, angular frequency, wave number, direction of travel and phase of each component, shape (42,) each."""
+    """Amplitude, angular frequency, wave number, direction of travel, phase: arrays (42,)."""
     edges = np.geomspace(0.65, 2.2, N_FREQUENCY + 1) / weather.wave_period_s
     f = edges[:-1] + rng.uniform(0.2, 0.8, N_FREQUENCY) * np.diff(edges)
-    energy = jonswap(f, weather.wave_height_m, weather.wave_period_s) * np.diff(edges)
+    energy = jonswap(f, weather.wave_period_s) * np.diff(edges)
     energy *= weather.wave_height_m**2 / 16 / energy.sum()
     share = np.array([0.25, 0.5, 0.25])
     a = np.sqrt(2 * np.outer(energy, share)).ravel()
@@ -52,7 +52,7 @@ def _arm(q):
 
 
 def transfer(h, sea, psi):
-    """What depends on the heading only: loads per amplitude, (42, B) each, and the roots of the drift coefficients."""
+    """What hangs on heading only: loads per amplitude (42, B), and the roots of the drift coefficients."""
     chi = sea.to - psi
     cos, sin = np.cos(chi), np.sin(chi)
     ql, qb = 0.5 * sea.k * h.L * cos, 0.5 * sea.k * h.B * sin
@@ -60,13 +60,14 @@ def transfer(h, sea, psi):
     even = _sinc(ql) * _sinc(qb) * deep
     odd = _arm(ql) * _sinc(qb) * deep
     push, plane = G * sea.k, h.rho * G * h.L * h.B * 0.85
-    X, Y, N = -h.M * push * cos * even, -(h.M + h.My) * push * sin * even, (h.M + h.My) * 0.5 * h.L * push * sin * odd
+    aside = (h.M + h.My) * push * sin
+    X, Y, N = -h.M * push * cos * even, -aside * even, 0.5 * h.L * aside * odd
     K, Z, M = -h.GZ * sea.k * sin * even, plane * even, plane * 0.5 * h.L * odd
     return (X, Y, N, K, Z, M), _drift_roots(h, cos, sin, deep)
 
 
 def _drift_roots(h, cos, sin, deep):
-    """Roots of the drift coefficients, pushing and pulling: the bow quarter feels it further forward (1/8 L)."""
+    """Roots of the drift coefficients, pushing and pulling; a quartering sea bears off centre (1/8 L)."""
     reflect = (1 - deep**2) ** 2 * 0.5 * h.rho * G
     ahead, aside = reflect * h.B * 0.35 * cos * np.abs(cos), reflect * h.L * sin * np.abs(sin)
     turning = -0.125 * h.L * reflect * h.L * sin * cos

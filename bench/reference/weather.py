@@ -6,7 +6,7 @@ from math import inf
 
 @dataclass(frozen=True)
 class Weather:
-    """Means over the voyage; directions in degrees from north (`from` where it comes from, `to` where it goes)."""
+    """Means over the voyage; degrees from north (`from`: where it comes from, `to`: where it goes)."""
 
     wind_mps: float = 0.0
     wind_from_deg: float = 0.0
@@ -25,8 +25,8 @@ class Weather:
 
 CALM = Weather(wind_mps=0.5)
 
-# The paper's scenarios (Table 2: wind speed and direction relative to the first heading); sea states 0-1, 3 and 4 as
-# Hs 0.05, 0.88, 1.88 m, current 0.1, 0.4, 0.8 m/s. Peak periods: Hs/(g Tp^2) of a sea that has not fully grown.
+# The scenarios of Vychuzhanin & Vychuzhanin (2026), Table 2: wind speed, and direction relative to the first
+# heading; sea states 0-1, 3 and 4 as Hs 0.05, 0.88, 1.88 m, current 0.1, 0.4, 0.8 m/s, peak periods: ours.
 WEATHERS = {
     "calm": CALM,
     "TS-01": Weather(2.0, 0.0, 0.12, 0.05, 3.0, 0.0, 0.1, 0.0, 0.02),
@@ -41,7 +41,7 @@ def strong_wind(hull, strength, from_deg) -> dict:
 
 
 def strong_waves(hull, strength, from_deg) -> dict:
-    """3.5 m and 9.5 s on a ship of 175 m or more, less on a boat: Hs/L no more than 0.04; Tp = 5.1 sqrt(Hs), a sea half grown."""
+    """3.5 m and 9.5 s on a ship, Hs/L no more than 0.04 on a boat; Tp = 5.1 sqrt(Hs), a sea half grown."""
     height = min(3.5, 0.04 * hull.L) * strength**0.5
     return {"wave_height_m": height, "wave_period_s": max(1.2, 5.1 * height**0.5), "wave_from_deg": from_deg}
 

@@ -60,18 +60,22 @@ def test_apparent_wind_is_true_wind_and_her_own(turning):
     ahead = c["true_wind_speed_mps"] * np.cos(came) + c["surge_velocity_mps"]
     aside = c["true_wind_speed_mps"] * np.sin(came) + c["sway_velocity_mps"]
     assert c["apparent_wind_speed_mps"] == pytest.approx(np.hypot(ahead, aside), abs=1e-6)
-    assert np.cos(np.radians(c["apparent_wind_angle_deg"])) == pytest.approx(ahead / np.hypot(ahead, aside), abs=1e-6)
-    assert c["apparent_wind_angle_deg"][0] > 0                      # from starboard, positive
+    assert np.cos(np.radians(c["apparent_wind_angle_deg"])) == pytest.approx(
+        ahead / np.hypot(ahead, aside), abs=1e-6
+    )
+    assert c["apparent_wind_angle_deg"][0] > 0  # from starboard, positive
 
 
 @pytest.mark.parametrize("hull", HULLS)
 def test_wind_on_the_starboard_beam_pushes_to_port_and_head_wind_slows(hull):
     weathers = [Weather(10.0, deg, 0.0) for deg in (90.0, 0.0, 180.0)]
-    beam, head, astern = simulate([Case(hull, "straight", w, heading_deg=0, duration_s=1.0) for w in weathers])
+    beam, head, astern = simulate(
+        [Case(hull, "straight", w, heading_deg=0, duration_s=1.0) for w in weathers]
+    )
     assert beam.truth["forces"]["wind"]["Y_N"][0] < 0 and beam.truth["v"][-1] < 0
     assert head.truth["forces"]["wind"]["X_N"][0] < 0 < astern.truth["forces"]["wind"]["X_N"][0]
     cx, cy, _ = table(HULLS[hull])
-    assert 0.3 < -cx[0] < 1.4 and 0.5 < cy[9] < 1.3                 # the range of Isherwood's ships
+    assert 0.3 < -cx[0] < 1.4 and 0.5 < cy[9] < 1.3  # the range of Isherwood's ships
 
 
 def test_waves_from_starboard_drift_her_to_port():

@@ -47,7 +47,9 @@ def test_overshoots_and_turns_are_read_from_series_made_by_hand():
     assert (advance, diameter) == pytest.approx((1.0, 2.0), rel=1e-3)
 
 
-@pytest.mark.skipif("SHIPTWIN_DATA" not in os.environ, reason="SHIPTWIN_DATA does not name the folder of kvlcc2_simman/")
+@pytest.mark.skipif(
+    "SHIPTWIN_DATA" not in os.environ, reason="SHIPTWIN_DATA does not name the folder of kvlcc2_simman/"
+)
 def test_measured_zigzags_are_read_with_rudder_to_starboard_positive():
     path = Path(os.environ["SHIPTWIN_DATA"]) / "kvlcc2_simman" / "hsva" / "HSVA_CPMC_KVLCC2_Z_20_10_S.dat"
     time, psi, rudder, angle, at, hull = check.read_run(path)

@@ -9,9 +9,14 @@ from bench.reference.hidden import CATALOGUE, DECOYS, EFFECTS, OUTSIDE
 HULL = HULLS["usv"]
 POSITION, SPEED, HEADING, RATE, LOG = HULL.noise
 NOISE = {
-    "north_m": POSITION, "east_m": POSITION, "surge_velocity_mps": SPEED, "sway_velocity_mps": SPEED,
-    "heading_true_north_deg": HEADING, "yaw_rate_degps": RATE,
-    "surge_velocity_through_water_mps": LOG, "sway_velocity_through_water_mps": LOG,
+    "north_m": POSITION,
+    "east_m": POSITION,
+    "surge_velocity_mps": SPEED,
+    "sway_velocity_mps": SPEED,
+    "heading_true_north_deg": HEADING,
+    "yaw_rate_degps": RATE,
+    "surge_velocity_through_water_mps": LOG,
+    "sway_velocity_through_water_mps": LOG,
 }
 
 
@@ -53,7 +58,9 @@ def test_nothing_hidden_means_nothing_hidden(voyages):
     assert wind < 0.05 * np.abs(reference.truth["forces"]["hull"]["X_N"]).max()
 
 
-@pytest.mark.parametrize("effect", ["Wind", "WaveDrift", "HullFouling", "TowForce", "RudderWear", "PropellerWear", "Bank"])
+@pytest.mark.parametrize(
+    "effect", ["Wind", "WaveDrift", "HullFouling", "TowForce", "RudderWear", "PropellerWear", "Bank"]
+)
 def test_a_hidden_force_has_its_size_on_record(effect, voyages):
     size = voyages[1][effect].hidden[effect]["typical_force"]
     assert set(size) == {"X_N", "Y_N", "N_Nm"} and max(size.values()) > 0
@@ -61,16 +68,27 @@ def test_a_hidden_force_has_its_size_on_record(effect, voyages):
 
 def test_sensor_faults_leave_the_ship_alone(voyages):
     reference, others = voyages
-    for effect in ("SpeedLogBias", "SpeedLogScale", "SpeedLogMisalignment", "AntennaOffset", "SensorDelay", "GyroBias"):
+    for effect in (
+        "SpeedLogBias",
+        "SpeedLogScale",
+        "SpeedLogMisalignment",
+        "AntennaOffset",
+        "SensorDelay",
+        "GyroBias",
+    ):
         assert others[effect].truth["north"].tobytes() == reference.truth["north"].tobytes(), effect
 
 
 def test_sensor_faults_are_as_large_as_the_truth_says(voyages):
     reference, others = voyages
     shift = {name: others[name].columns for name in others}
+
     def mean(effect, column):
         return np.nanmean(shift[effect][column] - reference.columns[column])
-    assert mean("GyroBias", "yaw_rate_degps") == pytest.approx(others["GyroBias"].hidden["GyroBias"]["bias_degps"])
+
+    assert mean("GyroBias", "yaw_rate_degps") == pytest.approx(
+        others["GyroBias"].hidden["GyroBias"]["bias_degps"]
+    )
     bias = others["SpeedLogBias"].hidden["SpeedLogBias"]["surge_bias_mps"]
     assert mean("SpeedLogBias", "surge_velocity_through_water_mps") == pytest.approx(bias, rel=0.1)
     scale = others["SpeedLogScale"].hidden["SpeedLogScale"]["scale_share"]
@@ -104,7 +122,10 @@ def test_a_current_is_where_the_truth_says(voyages):
 
 def test_decoys_are_seen_and_either_known_or_powerless(voyages):
     others = voyages[1]
-    for name, column, least in (("wind", "true_wind_speed_mps", 4.0), ("waves", "wave_height_significant_m", 0.05)):
+    for name, column, least in (
+        ("wind", "true_wind_speed_mps", 4.0),
+        ("waves", "wave_height_significant_m", 0.05),
+    ):
         acting, powerless = others[name], others[f"{name}_no_force"]
         assert np.nanmean(acting.columns[column]) > least and np.nanmean(powerless.columns[column]) > least
         assert np.abs(acting.known_forces["Y_N"]).max() > 0 and acting.hidden == {}
@@ -115,7 +136,9 @@ def test_decoys_are_seen_and_either_known_or_powerless(voyages):
 
 
 def test_strength_scales_an_effect():
-    cases = [Case("usv", "straight", hidden=(("RudderOffset", s),), seed=2, duration_s=5.0) for s in (0.5, 1.0)]
+    cases = [
+        Case("usv", "straight", hidden=(("RudderOffset", s),), seed=2, duration_s=5.0) for s in (0.5, 1.0)
+    ]
     half, whole = (v.hidden["RudderOffset"]["offset_deg"] for v in simulate(cases))
     assert whole == pytest.approx(2 * half) and abs(whole) == pytest.approx(1.94)
 

@@ -32,7 +32,11 @@ def rough(seed, **more):
 
 def test_a_ship_sails_the_same_voyage_alone_and_in_company():
     alone = simulate([rough(3)])[0]
-    others = [rough(1), Case("usv", "turning_circle", hidden=(("Wind", 1.0), ("Loading", 1.0)), duration_s=20.0), rough(3)]
+    others = [
+        rough(1),
+        Case("usv", "turning_circle", hidden=(("Wind", 1.0), ("Loading", 1.0)), duration_s=20.0),
+        rough(3),
+    ]
     company = simulate(others)[2]
     for name in COLUMNS:
         assert alone.columns[name].tobytes() == company.columns[name].tobytes(), name
@@ -64,7 +68,10 @@ def test_a_live_sea_sails_at_fifty_hertz_without_an_end():
 @pytest.mark.parametrize("hull", ["container", "usv"])
 def test_a_mirrored_manoeuvre_of_a_symmetric_hull_is_mirrored(hull):
     time = 10 * HULLS[hull].L / HULLS[hull].U0
-    pair = [Case(hull, (Leg(ZIGZAG, 99, a, 10),), STILL, heading_deg=0, duration_s=time, sensors="perfect") for a in (10, -10)]
+    pair = [
+        Case(hull, (Leg(ZIGZAG, 99, a, 10),), STILL, heading_deg=0, duration_s=time, sensors="perfect")
+        for a in (10, -10)
+    ]
     port, starboard = (v.truth for v in simulate(pair, tick_s=0.25 if hull == "container" else 0.1))
     for name, sign in (("north", 1), ("u", 1), ("east", -1), ("psi", -1), ("v", -1), ("r", -1), ("phi", -1)):
         assert port[name] == pytest.approx(sign * starboard[name], abs=1e-9 * HULLS[hull].L)
@@ -72,10 +79,15 @@ def test_a_mirrored_manoeuvre_of_a_symmetric_hull_is_mirrored(hull):
 
 def test_a_model_at_froude_scale_sails_the_same_voyage_in_lengths():
     """Only water density and the thicker wake of the small model may differ, so those are set equal."""
-    big, small = HULLS["kvlcc2"], replace(HULLS["kvlcc2_model"], rho=1025.0, w_P0=0.35, engine_time=12 * (7 / 320) ** 0.5)
+    big, small = (
+        HULLS["kvlcc2"],
+        replace(HULLS["kvlcc2_model"], rho=1025.0, w_P0=0.35, engine_time=12 * (7 / 320) ** 0.5),
+    )
     ends = []
     for hull, tick in ((big, 0.5), (small, 0.5 * (7 / 320) ** 0.5)):
-        case = Case(hull, (Leg(RUDDER, 99, 20),), STILL, heading_deg=0, duration_s=250 * tick / 0.5, sensors="perfect")
+        case = Case(
+            hull, (Leg(RUDDER, 99, 20),), STILL, heading_deg=0, duration_s=250 * tick / 0.5, sensors="perfect"
+        )
         true = simulate([case], tick_s=tick)[0].truth
         ends.append([true["north"][-1] / hull.L, true["east"][-1] / hull.L, true["psi"][-1]])
     assert ends[0] == pytest.approx(ends[1], rel=0.01)
@@ -83,28 +95,35 @@ def test_a_model_at_froude_scale_sails_the_same_voyage_in_lengths():
 
 @pytest.mark.parametrize("hull", HULLS)
 def test_every_manoeuvre_is_sailed_by_every_hull(hull):
-    time = (32 if hull == "usv" else 16) * HULLS[hull].L / HULLS[hull].U0
+    time = (26 if hull == "usv" else 12) * HULLS[hull].L / HULLS[hull].U0
     tick = 0.5 if HULLS[hull].L > 100 else 0.1
     for voyage in simulate([Case(hull, name, seed=4, duration_s=time) for name in MANOEUVRES], tick_s=tick):
         true = voyage.truth
         assert all(np.isfinite(true[name]).all() for name in true if name not in ("forces", "depth", "bank"))
         assert np.abs(true["u"]).max() < 1.2 * HULLS[hull].U0 and np.degrees(np.abs(true["phi"])).max() < 15
         assert np.nanmax(np.abs(voyage.columns["rudder_angle_deg"])) < 36
-        assert voyage.case.manoeuvre == "straight" or np.ptp(true["n"]) + np.ptp(true["psi"]) > 0.1
+        steady = voyage.case.manoeuvre in ("straight", "reciprocal_runs")  # which begin straight
+        assert steady or np.ptp(true["n"]) + np.ptp(true["psi"]) > 0.1
 
 
 def test_a_crash_stop_stops_her_within_fifteen_lengths():
-    hull = HULLS["kvlcc2"]
-    case = Case("kvlcc2", "crash_stop", STILL, heading_deg=0, duration_s=18 * hull.L / hull.U0)
+    """The limit of IMO MSC.137(76)."""
+    hull = HULLS["container"]
+    case = Case("container", "crash_stop", STILL, heading_deg=0, duration_s=17 * hull.L / hull.U0)
     true = simulate([case], tick_s=0.5)[0].truth
-    assert true["u"].min() < 0.05 * hull.U0
-    assert 2 < (true["north"][np.argmin(true["u"])] / hull.L - 4) < 15
+    stopped = np.argmax(true["u"] < 0.03 * hull.U0)
+    assert stopped and 3 < true["north"][stopped] / hull.L - 4 < 15
 
 
 @pytest.mark.parametrize(
     ("case", "word"),
-    [(Case("kvlcc3"), "kvlcc2"), (Case(manoeuvre="zig"), "zigzag_10"), (Case(weather="storm"), "calm"),
-     (Case(hidden=(("Winds", 1.0),)), "Wind"), (Case(decoys=("fog",)), "wind_no_force")],
+    [
+        (Case("kvlcc3"), "kvlcc2"),
+        (Case(manoeuvre="zig"), "zigzag_10"),
+        (Case(weather="storm"), "calm"),
+        (Case(hidden=(("Winds", 1.0),)), "Wind"),
+        (Case(decoys=("fog",)), "wind_no_force"),
+    ],
 )
 def test_a_wrong_name_is_answered_with_the_right_ones(case, word):
     with pytest.raises(ValueError, match=word):
