@@ -5,55 +5,100 @@ not promised: docs/stability.md. Plain floats; only the sure bounds of the slope
 """
 
 import hashlib
+import json
 import os
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from twin.errors import SettingsError
 from twin.physics.model import Model
 
-from .comparison import Matrix
+from . import comparison as c3
+from .comparison import Matrix, Row
 from .operating import Confined, OperatingSet, of_ship
-from .plant import Disturbance, Plant, plant_of, usual_disturbance
-from .theorem import VERSION, Certificate, assess, best_gain, flow_of, gains_that_do, lipschitz, self_regressor, usual_gain
+from .plant import Disturbance, Plant, lipschitz, output_bound, plant_of, self_regressor, usual_disturbance
+from .theorem import Promise, Recursion, assess, best_gain, gains_that_do, usual_gain
 from .tube import Tube
 
 __all__ = [
-    "Certificate", "Confined", "Disturbance", "OperatingSet", "Plant", "Tube", "best_gain", "certify", "flow_of", "gains_that_do", "kept", "lipschitz",
-    "of_ship", "plant_of", "self_regressor", "usual_disturbance", "usual_gain",
+    "Certificate", "Confined", "Disturbance", "OperatingSet", "Plant", "Tube", "assess", "best_gain", "certify", "gains_that_do",
+    "kept", "lipschitz", "of_ship", "output_bound", "plant_of", "self_regressor", "usual_disturbance", "usual_gain",
 ]  # fmt: skip
+
+VERSION = 2
+
+
+@dataclass(frozen=True)
+class Certificate(Promise):
+    """The promise made to one ship, with what it rests on: gain [1/s], period, delay, noise, disturbance and operating set."""
+
+    K: Row
+    delay_samples: int
+    noise: Row
+    disturbance: Disturbance
+    plant: Plant
+    ship: str = ""
+    fingerprint: str = ""
+
+    @property
+    def h(self) -> float:
+        return self.plant.h
+
+    @property
+    def operating(self) -> OperatingSet:
+        return self.plant.operating
+
+    def bound_in(self, H_s: float) -> Row:
+        """The ultimate bound in a sea of that height [m/s, m/s, rad/s]."""
+        more: Row = tuple(H_s * x for x in self.disturbance.per_metre)  # type: ignore[assignment]
+        return c3.add(self.bound, c3.apply(self.gains_disturbance, more))
+
+    def to_json(self) -> str:
+        return json.dumps({"version": VERSION, **asdict(self)}, indent=1)
+
+    @classmethod
+    def from_json(cls, text: str) -> "Certificate":
+        """The certificate that to_json wrote; ValueError, KeyError or TypeError when it is none of this version."""
+        table = _tuples(json.loads(text))
+        if table.pop("version") != VERSION:
+            raise ValueError("certificate of another version")
+        plant = table.pop("plant")
+        ranges = plant.pop("operating")["ranges"]
+        return cls(**table | {
+            "plant": Plant(**plant, operating=OperatingSet(ranges)), "disturbance": Disturbance(**table["disturbance"]),
+            "step": Recursion(**table["step"]),
+        })  # fmt: skip
 
 
 def certify(
     model: Model,
-    K: Sequence[float],
+    K: float | Sequence[float],
     h: float,
     delay_samples: int = 1,
     noise: Sequence[float] = (0.15, 0.15, 0.0005),
     disturbance: Sequence[float] | Disturbance | None = None,
     operating_set: OperatingSet | None = None,
     heading_noise: float = 0.0,
-    aligned: bool = True,
     extra_growth: Matrix | None = None,
 ) -> Certificate:
-    """Work out the certificate of an observer with gain K [1/s] and period h [s]; takes about half a second.
+    """Work out the certificate of an observer with gain K [1/s] and period h [s] (its longest); takes about half a second.
 
     noise: bounds of |y - nu| [m/s, m/s, rad/s]; heading_noise [rad]; disturbance: see Disturbance (default: `usual_disturbance`).
-    delay_samples: the greatest age of a used measurement, in samples, a value held between sensor updates included.
-    aligned: it is compared with the estimate of its own time; if with the present one, the ship's way in between counts as noise.
+    delay_samples: the greatest age of a used measurement, in samples, a value held until the sensor's next one included.
     extra_growth: `self_regressor(...)` when the network is fed with the estimate instead of measurements.
     """
+    K = (K, K, K) if isinstance(K, (int, float)) else tuple(K)
     _check(K, h, delay_samples, noise)
-    operating_set = operating_set or of_ship(model)
     d = disturbance if isinstance(disturbance, Disturbance) else Disturbance(tuple(disturbance)) if disturbance else usual_disturbance(model)  # type: ignore[arg-type]
-    plant = plant_of(model, operating_set, h)
-    made = assess(plant, tuple(K), delay_samples, tuple(noise), d, heading_noise, aligned, extra_growth)  # type: ignore[arg-type]
-    return replace(made, ship=model.ship.name)
+    plant, noise = plant_of(model, operating_set or of_ship(model), h), tuple(noise)
+    promise = assess(plant, K, delay_samples, noise, d, heading_noise, extra_growth)  # type: ignore[arg-type]
+    parts = {name: getattr(promise, name) for name in Promise.__dataclass_fields__}
+    return Certificate(**parts, K=K, delay_samples=delay_samples, noise=noise, disturbance=d, plant=plant, ship=model.ship.name)  # type: ignore[arg-type]
 
 
-def kept(path: str | os.PathLike[str], model: Model, K: Sequence[float], h: float, **settings: Any) -> Certificate:
+def kept(path: str | os.PathLike[str], model: Model, K: float | Sequence[float], h: float, **settings: Any) -> Certificate:
     """The certificate from its file if it is of this ship, K and settings; else worked out and, where possible, written there."""
     mark = _mark(model, K, h, settings)
     try:
@@ -86,3 +131,8 @@ def _check(K: Sequence[float], h: float, delay_samples: int, noise: Sequence[flo
             f"stabilizer: K = {tuple(K)}, period {h} s, delay {delay_samples}, noise {tuple(noise)}: three positive gains, a positive "
             "period, and no negative number are needed. Correct the configuration."
         )
+
+
+def _tuples(x: Any) -> Any:
+    """JSON lists as the tuples they were."""
+    return tuple(map(_tuples, x)) if isinstance(x, list) else {k: _tuples(v) for k, v in x.items()} if isinstance(x, dict) else x

@@ -5,7 +5,6 @@ Source: Berman & Plemmons (1994) Nonnegative Matrices in the Mathematical Scienc
 """
 
 from collections.abc import Callable
-from math import exp
 
 Row = tuple[float, float, float]
 Matrix = tuple[Row, Row, Row]
@@ -75,15 +74,3 @@ def radius(a: Matrix) -> float:
 def settled(g: Matrix) -> Matrix | None:
     """(I - G)^-1 when G is a contraction (its inverse then has no negative entry), else None."""
     return inverse(plus(IDENTITY, scaled(-1.0, g))) if contracts(g) else None
-
-
-def exponential(a: "tuple[tuple[float, ...], ...]") -> "tuple[tuple[float, ...], ...]":
-    """exp(a) for a square matrix of any size whose entries off the diagonal are not negative (a sum without cancellation)."""
-    axes = range(len(a))
-    shift = max(0.0, *(-a[i][i] for i in axes))
-    a = tuple(tuple(a[i][j] + (shift if i == j else 0.0) for j in axes) for i in axes)
-    term = total = [[float(i == j) for j in axes] for i in axes]
-    for k in range(1, 40):
-        term = [[sum(row[n] * a[n][j] for n in axes) / k for j in axes] for row in term]
-        total = [[x + y for x, y in zip(*rows, strict=True)] for rows in zip(total, term, strict=True)]
-    return tuple(tuple(x * exp(-shift) for x in row) for row in total)

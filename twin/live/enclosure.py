@@ -75,21 +75,6 @@ def sampled(model: Model, ranges: Ranges, count: int = 20000, seed: int = 0) -> 
     return Slopes.of(lo, hi, count)
 
 
-def step_error(model: Model, ranges: Ranges, h: float, count: int = 2048, seed: int = 0) -> tuple[float, float, float]:
-    """Ten times the greatest error of one Runge-Kutta step found at points and corners of the set, per second of it [m/s2, rad/s2].
-
-    Measured, not proved: what can be proved from the slopes alone is a thousand times wider than what the fourth order leaves.
-    """
-    at = _points(ranges, count, seed)
-    start = (0.0, 0.0, at.pop("psi"), at.pop("u"), at.pop("v"), at.pop("r"))
-    s = Situation(**at)
-    fine = start
-    for _ in range(8):
-        fine = model.step(fine, s, h / 8.0)
-    coarse = model.step(start, s, h)
-    return tuple(10.0 / h * float(np.max(np.abs(a - b))) for a, b in zip(coarse[3:], fine[3:], strict=True))  # type: ignore[return-value]
-
-
 def _points(ranges: Ranges, count: int, seed: int) -> dict[str, np.ndarray]:
     """Random points of the set; half of each coordinate lies on its ends."""
     rng = np.random.default_rng(seed)

@@ -12,10 +12,10 @@ from .operating import OperatingSet
 
 @dataclass(frozen=True)
 class Plant:
-    """What the theorem needs to know of a ship over her operating set; SI units, plain numbers, kept as JSON.
+    """Sure bounds over the operating set; SI units, plain numbers, kept as JSON.
 
-    lo, hi: slopes of nu_dot with (u, v, r); heading: greatest slope with psi; most: greatest |nu_dot|; inertia: |M^-1|;
-    step_error: error of one integrator step [per second of it].
+    lo, hi: slopes of nu_dot with (u, v, r) [1/s, and m, 1/m where units differ]; heading: greatest slope with psi;
+    most: greatest |nu_dot|; inertia: |M^-1|; h: sample period [s].
     """
 
     lo: Matrix
@@ -23,13 +23,17 @@ class Plant:
     heading: Row
     most: Row
     inertia: Matrix
-    step_error: Row
     h: float
     operating: OperatingSet
 
+    def magnitude(self) -> Matrix:
+        """|A|: the greatest slope either way."""
+        return c3.matrix(lambda i, j: max(-self.lo[i][j], self.hi[i][j]))
+
     def growth(self) -> Matrix:
         """A^M: what can make an error grow; on the diagonal only a slope above zero, because clip() may switch damping off."""
-        return c3.matrix(lambda i, j: max(self.hi[i][i], 0.0) if i == j else max(-self.lo[i][j], self.hi[i][j]))
+        size = self.magnitude()
+        return c3.matrix(lambda i, j: max(self.hi[i][i], 0.0) if i == j else size[i][j])
 
 
 @dataclass(frozen=True)
@@ -44,15 +48,15 @@ class Disturbance:
 
 
 def plant_of(model: Model, operating: OperatingSet, h: float) -> Plant:
-    """Sure bounds over the operating set; takes a quarter of a second for a ship with wind."""
-    from .enclosure import slopes, step_error
+    """Sure bounds of the known physics (the learned force is an input, not a slope); a quarter of a second for a ship with wind."""
+    from .enclosure import slopes
 
     steep = slopes(model, operating.ranges)
     unit = [core.accelerations(*row, model.c) for row in c3.IDENTITY]
     return Plant(
         lo=c3.matrix(lambda i, j: steep.lo[i][j]), hi=c3.matrix(lambda i, j: steep.hi[i][j]), most=steep.most,  # type: ignore[arg-type]
         heading=tuple(max(-steep.lo[i][3], steep.hi[i][3]) for i in AXES), inertia=c3.matrix(lambda i, j: abs(unit[j][i])),  # type: ignore[arg-type]
-        step_error=step_error(model, operating.ranges, h), h=h, operating=operating,
+        h=h, operating=operating,
     )  # fmt: skip
 
 
@@ -66,3 +70,24 @@ def usual_disturbance(model: Model) -> Disturbance:
     force, moment = ship.scale("force"), ship.scale("moment")
     wave = ship.rho * core.GRAVITY * ship.T
     return Disturbance((force, 3.0 * force, moment), (0.5 * wave * ship.B, 0.75 * wave * ship.L_pp, 0.22 * wave * ship.L_pp**2))
+
+
+def self_regressor(plant: Plant, weights: Row, slope: float, per_state: Row) -> Matrix:
+    """What a network fed with its own estimate (coasting) adds to the growth of errors: |M^-1| |W| Lip(phi) |d zeta/d nu|.
+
+    weights: norm of each row of W [N, N, N m]; slope: `lipschitz(...)` of the trunk; per_state: |d zeta/d nu_j|.
+    """
+    return c3.product(plant.inertia, c3.matrix(lambda i, j: weights[i] * slope * per_state[j]))
+
+
+def lipschitz(spectral_norms: list[float], steepest: float = 1.0998) -> float:
+    """Lipschitz bound of a trunk from its layers' spectral norms and the steepest slope of its activation (swish: 1.0998)."""
+    total = 1.0
+    for norm in spectral_norms:
+        total *= norm * steepest
+    return total
+
+
+def output_bound(row_norm: float, features: float, saturation: float) -> float:
+    """|w phi| <= min(||w|| ||phi||, saturation): what one row of the learned force can reach [N or N m], whatever adapts w."""
+    return min(row_norm * features, saturation)

@@ -1,194 +1,125 @@
 """The stabilizer's theorem in numbers: from the ship's slopes and a gain K to what is promised (docs/stability.md has the proof).
 
-    nu_hat+ = nu_hat + [step of the physics from clip(nu_hat)] + h M^-1 f_learned + h K (y - nu_hat), the last m samples old
-    |e+| <= now |e| + past max(|e|, |e-|, ...) + push d + rest,     G = now + past,     b = (I - G)^-1 (push d + rest)
+    nu-  = nu+ + h (nu_dot(clip(nu+)) + M^-1 f_learned)              E = error of nu-, one sample on
+    nu+  = nu- + h K (y - nu-),  compared at the time of y            p = error of nu+, which is published
+    E <= V p + d,    p <= keep E + again max(E) + drift max(p) + c,   max over the last 2m+1 samples
+    G = (keep + again) V + drift,   b = (I - G)^-1 g   when the greatest eigenvalue of G is under one
 """
 
-import json
-from dataclasses import asdict, dataclass, replace
-from math import exp, log, sqrt
+from dataclasses import dataclass, replace
+from math import log, sqrt
 from typing import Any
 
 from . import comparison as c3
 from .comparison import AXES, Matrix, Row
-from .operating import NU, OperatingSet
+from .operating import NU
 from .plant import Disturbance, Plant
 
-VERSION = 1
-AXIS = ("surge", "sway", "yaw")
 NEVER = float("inf")
+NOWHERE: Row = (NEVER, NEVER, NEVER)
 
 
 @dataclass(frozen=True)
-class Certificate:
-    """What is promised of one ship with one K, one sample period and one delay; `ok` is False when nothing is, `reason` says why.
+class Recursion:
+    """How error bounds go on by one sample; rows are axes, nothing is negative. m is the greatest age of a measurement in samples."""
 
-    margin: 1 - the fraction of K at which the promise ends; rate: guaranteed decay of an old error [1/s];
-    gains_disturbance [m/s, m/s, rad/s per N, N, N m], gains_noise: b = gains_disturbance d + gains_noise n + rest;
-    now, past, coast: an error's bound one sample on with a measurement (now, and the window of past ones) and without.
+    V: Matrix  # one step of the physics on a difference of two motions: |I + h A|
+    keep: Row  # |1 - h K|
+    again: Row  # m (h K)^2: a pull seen again in late measurements
+    drift: Matrix  # m h K h |A|: the ship's way while a measurement was under way
+    pull: Row  # h K
+    m: int
+
+    @property
+    def G(self) -> Matrix:
+        return c3.plus(self.now, self.past)
+
+    @property
+    def now(self) -> Matrix:
+        return c3.matrix(lambda i, j: self.keep[i] * self.V[i][j])
+
+    @property
+    def past(self) -> Matrix:
+        return c3.matrix(lambda i, j: self.again[i] * self.V[i][j] + self.drift[i][j])
+
+    def share(self) -> Matrix:
+        """How much of a push d during one sample reaches p."""
+        return c3.diagonal(tuple(self.keep[i] + self.again[i] + self.m * self.pull[i] for i in AXES))  # type: ignore[arg-type]
+
+    def heard(self) -> Matrix:
+        """How much of the noise reaches p."""
+        return c3.diagonal(tuple(self.pull[i] * (1.0 + self.m * self.pull[i]) for i in AXES))  # type: ignore[arg-type]
+
+
+def recursion(plant: Plant, K: Row, m: int, extra: Matrix | None = None) -> Recursion:
+    """The matrices of one sample for one gain; `extra`: see self_regressor."""
+    h, more = plant.h, extra or c3.scaled(0.0, c3.IDENTITY)
+    size, growth = c3.plus(plant.magnitude(), more), c3.plus(plant.growth(), more)
+    pull: Row = tuple(h * k for k in K)  # type: ignore[assignment]
+
+    def step(i: int, j: int) -> float:  # clip() may switch damping off, so the diagonal reaches from 1 - h |lo| to 1 + h hi
+        return h * size[i][j] if i != j else max(1.0 + h * growth[i][i], h * size[i][i] - 1.0)
+
+    return Recursion(
+        V=c3.matrix(step), keep=tuple(abs(1.0 - p) for p in pull), again=tuple(m * p * p for p in pull),  # type: ignore[arg-type]
+        drift=c3.matrix(lambda i, j: m * pull[i] * h * size[i][j]), pull=pull, m=m,
+    )  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Promise:
+    """What holds for one gain; `ok` is False when nothing does, and `reason` says why.
+
+    margin: 1 - the share of K at which K - A^M ceases to be an M-matrix; rate: guaranteed decay of an old error [1/s];
+    bound = gains_disturbance d + gains_noise n + what the sampling itself costs [m/s, m/s, rad/s].
+    push: what a force [N, N, N m] does in one sample; calm: what heading error and sampling do.
     """
 
     ok: bool
     reason: str
-    K: Row
-    delay_samples: int
-    noise: Row
-    disturbance: Disturbance
     margin: float
     rate: float
     bound: Row
     gains_disturbance: Matrix
     gains_noise: Matrix
     G: Matrix
-    now: Matrix
-    past: Matrix
-    coast: Matrix
     push: Matrix
-    push_coast: Matrix
-    rest: Row
-    rest_coast: Row
-    plant: Plant
-    ship: str = ""
-    fingerprint: str = ""
-
-    @property
-    def h(self) -> float:
-        return self.plant.h
-
-    @property
-    def operating(self) -> OperatingSet:
-        return self.plant.operating
-
-    def bound_in(self, H_s: float) -> Row:
-        """The ultimate bound in a sea of that height [m/s, m/s, rad/s]."""
-        more = tuple(H_s * x for x in self.disturbance.per_metre)
-        return c3.add(self.bound, c3.apply(self.gains_disturbance, more))  # type: ignore[arg-type]
-
-    def to_json(self) -> str:
-        return json.dumps({"version": VERSION, **asdict(self)}, indent=1)
-
-    @classmethod
-    def from_json(cls, text: str) -> "Certificate":
-        """The certificate that to_json wrote; ValueError, KeyError or TypeError when it is none of this version."""
-        table = _tuples(json.loads(text))
-        if table.pop("version") != VERSION:
-            raise ValueError("certificate of another version")
-        plant = table.pop("plant")
-        ranges = plant.pop("operating")["ranges"]
-        return cls(**table | {
-            "plant": Plant(**plant, operating=OperatingSet(ranges)), "disturbance": Disturbance(**table["disturbance"])
-        })  # fmt: skip
+    calm: Row
+    step: Recursion
 
 
-@dataclass(frozen=True)
-class Flow:
-    """What one sample of the physics does to a difference of two motions, from exponentials of the slopes; free of K.
-
-    least, most: on the diagonal, of itself; across: |.| of the rest, off the diagonal; turned: by a heading error of one radian;
-    stirred: what a push of one unit [m/s2, rad/s2] during the sample leaves at its end.
-    """
-
-    least: Row
-    most: Row
-    across: Matrix
-    turned: Row
-    stirred: Matrix
-
-    def change(self) -> Matrix:
-        """|V - I|: how far a difference can move in one sample."""
-        return c3.matrix(lambda i, j: max(abs(self.least[i] - 1.0), abs(self.most[i] - 1.0)) if i == j else self.across[i][j])
-
-
-def flow_of(plant: Plant, extra: Matrix | None = None) -> Flow:
-    """|dPhi/dnu| <= exp(h A^M) with the heading as a fourth state; the diagonal from below by variation of constants."""
-    h, more = plant.h, extra or c3.scaled(0.0, c3.IDENTITY)
-    growth = c3.plus(plant.growth(), more)
-    rows = [(*(h * growth[i][j] for j in AXES), h * plant.heading[i]) for i in AXES]
-    w = c3.exponential((*rows, (0.0, 0.0, h, 0.0)))
-    fall = [exp(h * (min(plant.lo[i][i], 0.0) - more[i][i])) for i in AXES]
-    return Flow(
-        least=tuple(f - (w[i][i] - exp(rows[i][i])) for i, f in enumerate(fall)), most=tuple(w[i][i] for i in AXES),  # type: ignore[arg-type]
-        across=c3.matrix(lambda i, j: w[i][j] if i != j else 0.0), turned=tuple(w[i][3] for i in AXES),  # type: ignore[arg-type]
-        stirred=c3.matrix(lambda i, j: h * w[i][j]),
-    )  # fmt: skip
-
-
-@dataclass(frozen=True)
-class Recursion:
-    """How an error bound goes on by one sample, before noise and disturbance are known (Theorem 2)."""
-
-    now: Matrix
-    past: Matrix
-    coast: Matrix
-    pull: Matrix  # h K
-    echo: Matrix  # I + m h K: a push seen again in late measurements
-
-    @property
-    def G(self) -> Matrix:
-        return c3.plus(self.now, self.past)
-
-
-def recursion(flow: Flow, h: float, K: Row, m: int) -> Recursion:
-    """The matrices of |e+| <= now |e| + past max(|e|, |e-|, ...), all without a negative entry."""
-    pull = c3.diagonal(tuple(h * k for k in K))  # type: ignore[arg-type]
-
-    def held(i: int, k: float) -> float:
-        return max(abs(flow.least[i] - h * k), abs(flow.most[i] - h * k))
-
-    return Recursion(
-        now=c3.plus(flow.across, c3.diagonal(tuple(held(i, K[i]) for i in AXES))),  # type: ignore[arg-type]
-        past=c3.scaled(m, c3.product(pull, c3.plus(flow.change(), pull))),
-        coast=c3.plus(flow.across, c3.diagonal(tuple(held(i, 0.0) for i in AXES))),  # type: ignore[arg-type]
-        pull=pull, echo=c3.plus(c3.IDENTITY, c3.scaled(m, pull)),
-    )  # fmt: skip
-
-
-def assess(
-    plant: Plant,
-    K: Row,
-    m: int,
-    noise: Row,
-    d: Disturbance,
-    heading_noise: float = 0.0,
-    aligned: bool = True,
-    extra: Matrix | None = None,
-    flow: Flow | None = None,
-) -> Certificate:
+def assess(plant: Plant, K: Row, m: int, noise: Row, d: Disturbance, heading_noise: float = 0.0, extra: Matrix | None = None) -> Promise:
     """Theorems 1 and 2 of docs/stability.md for one gain, once the slopes are known."""
-    h, flow = plant.h, flow or flow_of(plant, extra)
-    if not aligned:  # an old measurement against the present estimate: the ship's way in between counts as noise
-        way = c3.add(plant.most, c3.apply(plant.inertia, d.calm))
-        noise, m = tuple(n + m * h * w for n, w in zip(noise, way, strict=True)), 0  # type: ignore[assignment]
-    step = recursion(flow, h, K, m)
-    calm: Row = tuple(t * heading_noise + h * e for t, e in zip(flow.turned, plant.step_error, strict=True))  # type: ignore[assignment]
-    push = c3.product(flow.stirred, plant.inertia)
-    inner = c3.product(step.echo, push)
-    rest = c3.apply(step.echo, c3.add(calm, c3.apply(step.pull, noise)))
+    step = recursion(plant, K, m, extra)
+    push, calm = pushed(plant, heading_noise)
     end, worst, ratio = c3.settled(step.G), c3.radius(step.G), _ratio(plant, K, extra)
-    blank = c3.matrix(lambda i, j: NEVER)
-    return Certificate(
-        ok=end is not None, reason=_reason(plant, flow, K, m, ratio, worst), K=K, delay_samples=m, noise=noise, disturbance=d,
-        margin=1.0 - ratio, rate=-log(worst) / h if worst < NEVER else -NEVER, G=step.G, now=step.now, past=step.past, coast=step.coast,
-        bound=c3.apply(end, c3.add(c3.apply(inner, d.calm), rest)) if end else (NEVER, NEVER, NEVER),
-        gains_disturbance=c3.product(end, inner) if end else blank,
-        gains_noise=c3.product(end, c3.product(step.echo, step.pull)) if end else blank,
-        push=inner, push_coast=push, rest=rest, rest_coast=calm, plant=plant,
-    )  # fmt: skip
+    reason = _reason(plant, K, m, ratio, worst, extra)
+    if end is None:
+        none = c3.matrix(lambda i, j: NEVER)
+        return Promise(False, reason, 1.0 - ratio, -NEVER, NOWHERE, none, none, step.G, push, calm, step)
+    by_force, by_noise = c3.product(c3.product(end, step.share()), push), c3.product(end, step.heard())
+    sampling = c3.apply(c3.product(end, step.share()), calm)
+    bound = c3.add(c3.apply(by_force, d.calm), c3.apply(by_noise, noise), sampling)
+    return Promise(True, reason, 1.0 - ratio, _rate(step, plant.h), bound, by_force, by_noise, step.G, push, calm, step)
 
 
-def _ratio(plant: Plant, K: Row, extra: Matrix | None) -> float:
-    """The share of K at which K - A^M ceases to be an M-matrix (Theorem 1)."""
-    growth = plant.growth() if extra is None else c3.plus(plant.growth(), extra)
-    return c3.radius(c3.matrix(lambda i, j: growth[i][j] / K[i]))
+def pushed(plant: Plant, heading_noise: float) -> tuple[Matrix, Row]:
+    """d = push force + calm: a bounded force, a heading error, and the ship's own bend within one sample (Euler's error, surely)."""
+    h, size = plant.h, plant.magnitude()
+    along = c3.plus(c3.IDENTITY, c3.scaled(0.5 * h, size))
+    turn = max(abs(x) for x in plant.operating.ranges["r"])
+    bend = c3.apply(size, plant.most)
+    calm = tuple(h * (p * heading_noise + 0.5 * h * (b + p * turn)) for p, b in zip(plant.heading, bend, strict=True))
+    return c3.scaled(h, c3.product(along, plant.inertia)), calm  # type: ignore[return-value]
 
 
-def gains_that_do(flow: Flow, h: float, m: int) -> tuple[float, float] | None:
+def gains_that_do(plant: Plant, m: int, extra: Matrix | None = None) -> tuple[float, float] | None:
     """The least and the greatest uniform K that the sample period and the delay allow [1/s]; None when there is none."""
 
     def holds(k: float) -> bool:
-        return c3.contracts(recursion(flow, h, (k, k, k), m).G)
+        return c3.contracts(recursion(plant, (k, k, k), m, extra).G)
 
-    grid = [10.0 ** (-4.0 + 0.05 * i) / h for i in range(84)]
+    grid = [10.0 ** (-4.0 + 0.05 * i) / plant.h for i in range(84)]
     good = [k for k in grid if holds(k)]
     if not good:
         return None
@@ -197,7 +128,7 @@ def gains_that_do(flow: Flow, h: float, m: int) -> tuple[float, float] | None:
 
 def usual_gain(plant: Plant, m: int, extra: Matrix | None = None) -> Row | None:
     """A K to begin with: four times the least, or the middle of what the period and the delay allow if that is less."""
-    limits = gains_that_do(flow_of(plant, extra), plant.h, m)
+    limits = gains_that_do(plant, m, extra)
     if limits is None:
         return None
     k = min(4.0 * limits[0], sqrt(limits[0] * limits[1]))
@@ -206,19 +137,20 @@ def usual_gain(plant: Plant, m: int, extra: Matrix | None = None) -> Row | None:
 
 def best_gain(plant: Plant, m: int, noise: Row, d: Disturbance, H_s: float = 0.0, extra: Matrix | None = None) -> Row | None:
     """The K with the smallest bound against hostile noise and disturbance, each axis in units of its range; None when none is certified."""
-    flow = flow_of(plant, extra)
-    limits = gains_that_do(flow, plant.h, m)
+    limits = gains_that_do(plant, m, extra)
     if limits is None:
         return None
     width = [hi - lo for lo, hi in (plant.operating.ranges[n] for n in NU)]
+    push, calm = pushed(plant, 0.0)
+    during = c3.add(c3.apply(push, d.at(H_s)), calm)
 
     def size(K: Row) -> float:
-        step = recursion(flow, plant.h, K, m)
+        step = recursion(plant, K, m, extra)
         end = c3.settled(step.G)
         if end is None:
             return NEVER
-        g = c3.add(c3.apply(flow.stirred, c3.apply(plant.inertia, d.at(H_s))), c3.apply(step.pull, noise))
-        return sum(b / w for b, w in zip(c3.apply(end, c3.apply(step.echo, g)), width, strict=True))
+        g = c3.add(c3.apply(step.share(), during), c3.apply(step.heard(), noise))
+        return sum(b / w for b, w in zip(c3.apply(end, g), width, strict=True))
 
     K: Row = min(((k, k, k) for k in _between(*limits)), key=size)
     for factor in (1.5, 1.2, 1.07):
@@ -231,52 +163,46 @@ def best_gain(plant: Plant, m: int, noise: Row, d: Disturbance, H_s: float = 0.0
     return K
 
 
-def self_regressor(plant: Plant, weights: Matrix, slope: float, per_state: Row) -> Matrix:
-    """What a network fed with its own estimate (coasting) adds to the growth of errors: |M^-1| |W| Lip(phi) |d zeta/d nu|.
-
-    weights: diagonal of the greatest row norms of W [N, N, N m]; slope: `lipschitz(...)` of the trunk; per_state: |d zeta/d nu_j|.
-    """
-    return c3.product(plant.inertia, c3.matrix(lambda i, j: weights[i][i] * slope * per_state[j]))
+def _ratio(plant: Plant, K: Row, extra: Matrix | None) -> float:
+    """The share of K at which K - A^M ceases to be an M-matrix (Theorem 1)."""
+    growth = plant.growth() if extra is None else c3.plus(plant.growth(), extra)
+    return c3.radius(c3.matrix(lambda i, j: growth[i][j] / K[i]))
 
 
-def lipschitz(spectral_norms: "list[float]", steepest: float = 1.0998) -> float:
-    """Lipschitz bound of a trunk from its layers' spectral norms and the steepest slope of its activation (swish: 1.0998)."""
-    total = 1.0
-    for norm in spectral_norms:
-        total *= norm * steepest
-    return total
+def _rate(step: Recursion, h: float) -> float:
+    """The decay of a bound that looks back over 2m+1 samples: the x with x = greatest eigenvalue of (now + x^-2m past)."""
+    low, high = 0.0, 1.0
+    for _ in range(60):
+        x = 0.5 * (low + high)
+        under = x > 0.0 and c3.contracts(c3.plus(step.now, c3.scaled(x ** (-2 * step.m), step.past)), x)
+        low, high = (low, x) if under else (x, high)
+    return -log(high) / h
 
 
-def output_bound(row_norm: float, features: float, saturation: float) -> float:
-    """|w phi + a q| <= min(||w|| ||phi||, saturation): what one row of the learned force can reach [N or N m]."""
-    return min(row_norm * features, saturation)
-
-
-def _reason(plant: Plant, flow: Flow, K: Row, m: int, ratio: float, worst: float) -> str:
-    h = plant.h
+def _reason(plant: Plant, K: Row, m: int, ratio: float, worst: float, extra: Matrix | None) -> str:
     told = ", ".join(f"{k:.3g}" for k in K)
     if worst < 1.0:
-        return f"K = ({told}) 1/s holds: old errors fade by {-log(worst) / h:.3g} 1/s; {100 * ratio:.0f} % of this K is the least."
+        return f"K = ({told}) 1/s holds: {100 * ratio:.0f} % of it is the least that pulls back faster than errors can grow."
     if not worst < NEVER:
         return "the slopes of the physics have no bound over the operating set. Narrow the set (speed, depth, distance to the banks)."
-    limits = gains_that_do(flow, h, m)
+    limits = gains_that_do(plant, m, extra)
     if limits is None:
         return (
-            f"no K holds at a period of {h:g} s with measurements {m} samples old. "
-            f"Run the loop every {_period_that_does(plant, m):.2g} s or faster, or narrow the operating set."
+            f"no K holds at a period of {plant.h:g} s with measurements {m} samples old. "
+            f"Run the loop every {_period_that_does(plant, m, extra):.2g} s or faster, or narrow the operating set."
         )
     do = f"K from {limits[0]:.3g} to {limits[1]:.3g} 1/s would do (the same on every axis)."
     if max(K) < limits[0] or ratio >= 1.0:
         return f"K = ({told}) 1/s is too small: errors could grow faster than it pulls them back. {do}"
-    return f"K = ({told}) 1/s is outside what a period of {h:g} s and measurements {m} samples old allow. {do}"
+    return f"K = ({told}) 1/s is outside what a period of {plant.h:g} s and measurements {m} samples old allow. {do}"
 
 
-def _period_that_does(plant: Plant, m: int) -> float:
+def _period_that_does(plant: Plant, m: int, extra: Matrix | None) -> float:
     """A shorter period at which some K holds [s]."""
     h = plant.h
-    for _ in range(40):
-        h *= 0.85
-        if gains_that_do(flow_of(replace(plant, h=h)), h, m):
+    for _ in range(60):
+        h *= 0.9
+        if gains_that_do(replace(plant, h=h), m, extra):
             break
     return h
 
@@ -290,8 +216,3 @@ def _edge(holds: Any, good: float, bad: float) -> float:
 
 def _between(low: float, high: float, count: int = 25) -> list[float]:
     return [low * (high / low) ** (i / (count + 1.0)) for i in range(1, count + 1)]
-
-
-def _tuples(x: Any) -> Any:
-    """JSON lists as the tuples they were."""
-    return tuple(map(_tuples, x)) if isinstance(x, list) else {k: _tuples(v) for k, v in x.items()} if isinstance(x, dict) else x

@@ -1,25 +1,30 @@
 """The live bound of the observer's error, tick by tick, through measurements, drop-outs and changing seas.
 
-    with a measurement:     beta+ = now beta + past max(last 2m+1 beta) + push d(H_s) + rest
-    without (row by row):   beta+ = coast beta + push_coast d(H_s) + rest_coast
+    before the measurements of a tick:   E = V p + push d(H_s) + calm
+    with one (row by row):               p = keep E + again max(E) + drift max(p) + c
+    without:                             p = E, and what a rejected sample was allowed to pull
 """
 
 from collections import deque
+from typing import TYPE_CHECKING
 
 from twin.physics.state import Situation
 
 from .comparison import add, apply
-from .theorem import Certificate
+
+if TYPE_CHECKING:
+    from .certificate import Certificate
 
 NOTHING = 1e9  # a bound so wide that it says nothing: hours without a measurement, or no certificate
 
 Three = tuple[float, float, float]
+STILL = (0.0, 0.0, 0.0)
 
 
 class Tube:
     """|nu_hat - nu| <= beta, component by component [m/s, m/s, rad/s], as long as the assumptions hold."""
 
-    def __init__(self, certificate: Certificate, start: Three | None = None) -> None:
+    def __init__(self, certificate: "Certificate", start: Three | None = None) -> None:
         """`start` bounds the error of the first estimate; by default it is a first measurement, so its noise."""
         self.certificate = certificate
         self._window = 2 * certificate.delay_samples + 1
@@ -28,36 +33,54 @@ class Tube:
     def reset(self, start: Three | None = None) -> None:
         """Begin anew, after the observer was set to a measurement."""
         self.beta: Three = self.certificate.noise if start is None else start
-        self._past = tuple(deque((b,), maxlen=self._window) for b in self.beta)
+        self._after = tuple(deque((b,), maxlen=self._window) for b in self.beta)
+        self._before = tuple(deque((b,), maxlen=self._window) for b in self.beta)
         self._seas: deque[float] = deque(maxlen=self._window)
+        self._pulls: deque[Three] = deque(maxlen=self._window)
         self._sea = -1.0  # the highest in the window, for which the rows below were made
 
-    def step(self, received: tuple[bool, bool, bool], H_s: float = 0.0) -> Three:
-        """The bound one sample on; `received` says which of u, v, r was measured and accepted this tick."""
-        seas, past, (bu, bv, br) = self._seas, self._past, self.beta
-        seas.append(H_s)
-        if self._sea != (high := max(seas)):
+    def step(self, received: tuple[bool, bool, bool], H_s: float = 0.0, pulled: Three = STILL) -> Three:
+        """The bound after this tick; `received` says which of u, v, r was measured and accepted.
+
+        `pulled`: by how much a sample that was not accepted may have moved the estimate all the same.
+        """
+        after, before = self._after, self._before
+        self._seas.append(H_s)
+        if self._sea != (high := max(self._seas)):
             self._sea = high
-            self._with, self._without = self._rows(high)
-        wu, wv, wr = max(past[0]), max(past[1]), max(past[2])
-        after = []
-        for got, measured, missed in zip(received, self._with, self._without):  # noqa: B905 (a tick, not a check)
-            a0, a1, a2, p0, p1, p2, g = measured if got else missed
-            after.append(min(a0 * bu + a1 * bv + a2 * br + p0 * wu + p1 * wv + p2 * wr + g, NOTHING))
-        self.beta = bu, bv, br = after[0], after[1], after[2]
-        past[0].append(bu)
-        past[1].append(bv)
-        past[2].append(br)
+            self._rows(high)
+        pu, pv, pr = max(after[0]), max(after[1]), max(after[2])
+        u, v, r = self.beta
+        beta = []
+        for i, (v0, v1, v2, d, keep, again, d0, d1, d2, c) in enumerate(self._table):
+            E = min(v0 * u + v1 * v + v2 * r + d, NOTHING)
+            before[i].append(E)
+            if received[i]:
+                E = keep * E + again * max(before[i]) + d0 * pu + d1 * pv + d2 * pr + c
+            beta.append(E)
+        if pulled is not STILL or self._pulls:
+            beta = self._and_pulled(beta, received, pulled)
+        for row, b in zip(after, beta):  # noqa: B905 (a tick, not a check)
+            row.append(b)
+        self.beta = beta[0], beta[1], beta[2]
         return self.beta
 
-    def _rows(self, H_s: float) -> tuple[tuple[tuple[float, ...], ...], ...]:
-        """For each axis (now, past, g) with a measurement and (coast, 0, g) without, in this sea."""
+    def _and_pulled(self, beta: list[float], received: tuple[bool, bool, bool], pulled: Three) -> list[float]:
+        """A rejected sample's pull counts in full now, and shows in late measurements for a while."""
+        step = self.certificate.step
+        late = [step.m * step.pull[i] * max((p[i] for p in self._pulls), default=0.0) for i in (0, 1, 2)]
+        self._pulls.append(pulled)
+        if not any(any(p) for p in self._pulls):
+            self._pulls.clear()
+        return [b + (late[i] if received[i] else pulled[i]) for i, b in enumerate(beta)]
+
+    def _rows(self, H_s: float) -> None:
+        """For each axis (V, d, keep, again, drift, c) in this sea."""
         c = self.certificate
-        d = c.disturbance.at(H_s)
-        seen, unseen = add(apply(c.push, d), c.rest), add(apply(c.push_coast, d), c.rest_coast)
-        return (
-            tuple((*c.now[i], *c.past[i], seen[i]) for i in (0, 1, 2)),
-            tuple((*c.coast[i], 0.0, 0.0, 0.0, unseen[i]) for i in (0, 1, 2)),
+        step, d = c.step, add(apply(c.push, c.disturbance.at(H_s)), c.calm)
+        self._table = tuple(
+            (*step.V[i], d[i], step.keep[i], step.again[i], *step.drift[i], step.pull[i] * (c.noise[i] + step.m * (step.pull[i] * c.noise[i] + d[i])))
+            for i in (0, 1, 2)
         )
 
     def inside(self, s: Situation) -> bool:
