@@ -1,0 +1,202 @@
+"""Open-loop prediction: the model alone, from the measured state, over many windows of a voyage side by side.
+
+Each window begins in the smooth motion under the readings (kinematics only), with the faults of the instruments undone, and runs
+on recorded controls and weather; what it promises goes through the instruments before it is compared with what they said.
+
+Beside every prediction runs the noise floor: the same window begun in a state that is off as the readings' scatter leaves it,
+read with that scatter (`SENSORS`); and once more with the slow disturbances a calibrated model of this ship is known to miss
+(`STRUCTURE`). What these two are off by is what a perfect model, and a model as good as its calibration, would still show.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from twin.physics.effects.current import Current
+from twin.physics.model import Model
+from twin.physics.state import Force, Situation
+
+from .innovations import MEMORY_B, Floor, busy, standard
+from .respond import lagged, readings
+from .start import noisy, true_motion
+from .track import READINGS, STATE, Track
+
+HORIZONS_S = (10.0, 60.0, 120.0)
+STRIDE_S = 10.0  # a window begins this often
+MOST_WINDOWS = 400  # of one track; longer voyages are sampled more sparsely
+RUNAWAY = 1e6  # m, or whatever the unit is
+LEADS = 24  # moments within a window at which the prediction is kept
+MODEL, SENSORS, STRUCTURE = range(3)  # the three runs of each window
+
+
+@dataclass(frozen=True)
+class Windows:
+    """One track's predictions: W windows, looked at K steps ahead."""
+
+    track: Track
+    start: np.ndarray  # (W,) grid step at which each begins
+    lead: np.ndarray  # (K,) grid steps ahead
+    promised: np.ndarray  # (3, K, W, 8) readings; of the floors only the difference to the model's has a meaning
+    valid: np.ndarray  # (K, W) controls known all the way, and the position measured at both ends
+
+    @property
+    def step(self) -> np.ndarray:
+        """(K, W) grid step of each promise (kept inside the track: see `valid`)."""
+        return np.minimum(self.start + self.lead[:, None], len(self.track) - 1)
+
+    def at(self, horizon_s: float) -> int:
+        """The row of a horizon."""
+        return int(np.argmin(np.abs(self.lead * self.track.h - horizon_s)))
+
+    def off(self, run: int = MODEL) -> np.ndarray:
+        """(K, W, 8) promise minus measurement of the model; of a floor, what noise alone makes of it. NaN where not valid."""
+        if run == MODEL:
+            off = self.promised[MODEL] - self.track.measured[self.step]
+        else:
+            off = self.promised[run] - self.promised[MODEL]
+        off[..., 2] = (off[..., 2] + np.pi) % (2.0 * np.pi) - np.pi
+        return np.where(self.valid[..., None], off, np.nan)
+
+    def errors(self, run: int = MODEL) -> dict[str, np.ndarray]:
+        """(K, W) sizes: `position` [m], `lateral` (across the heading at the start) [m] and `heading` [rad]."""
+        off, psi = self.off(run), self.track.state[self.start, 2]
+        return {
+            "position": np.hypot(off[..., 0], off[..., 1]),
+            "lateral": np.abs(off[..., 1] * np.cos(psi) - off[..., 0] * np.sin(psi)),
+            "heading": np.abs(off[..., 2]),
+        }
+
+
+def predict(
+    track: Track, model: Model, horizons_s: Sequence[float] = HORIZONS_S, *, floor: Floor | None = None,
+    stride_s: float = STRIDE_S, leads: int = LEADS, seed: int = 0,
+) -> Windows:  # fmt: skip
+    """Run the model over the track's windows. `floor`: what calibration left unexplained, if the ship knows it.
+
+    Effects whose inputs the track lacks must have been left out (Model.without_inputs).
+    """
+    lead = _leads(track, horizons_s, leads)
+    start = _starts(track, int(round(min(horizons_s) / track.h)), stride_s)
+    rng = np.random.default_rng(seed)
+    state, wind_to = true_motion(track, model)
+    fuzz = noisy(track, model, rng)[start]
+    begin = np.concatenate([state[start], state[start] + fuzz, state[start] + fuzz]).T
+    run = _Run(track, model, start, wind_to, _slow(track, model, floor, start, rng))
+    with np.errstate(all="ignore"):  # a bad model may run away: it is then as wrong as can be written down
+        kept = np.nan_to_num(run.through(tuple(begin), lead), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)
+    promised = kept.reshape(len(lead), 3, start.size, len(READINGS)).transpose(1, 0, 2, 3)
+    promised[1:] += track.sd * rng.standard_normal(promised[1].shape)
+    return Windows(track, start, lead, promised, _valid(track, start, lead))
+
+
+def _leads(track: Track, horizons_s: Sequence[float], count: int) -> np.ndarray:
+    """Grid steps ahead: every horizon, and an even spread of `count` up to the longest."""
+    steps = [max(1, int(round(h / track.h))) for h in horizons_s]
+    return np.unique([*steps, *np.linspace(1, max(steps), min(count, max(steps))).round().astype(int)])
+
+
+def _starts(track: Track, shortest: int, stride_s: float) -> np.ndarray:
+    last = max(len(track) - max(shortest, 1), 1)
+    stride = max(1, round(stride_s / track.h), int(np.ceil(last / MOST_WINDOWS)))
+    return np.arange(0, last, stride)
+
+
+def _valid(track: Track, start: np.ndarray, lead: np.ndarray) -> np.ndarray:
+    end = start + lead[:, None]
+    inside = end < len(track)
+    end = np.minimum(end, len(track) - 1)
+    broken = np.concatenate([[0], np.cumsum(~track.whole)])
+    placed = np.isfinite(track.measured[:, :3]).all(1)
+    return inside & (broken[end + 1] == broken[start]) & placed[end] & placed[start]
+
+
+@dataclass
+class _Slow:
+    """Slow disturbances of the third run: an acceleration that wanders (b), and water that moves (c)."""
+
+    size: np.ndarray  # (N, 3) how large b usually is at each step of the track
+    b: np.ndarray  # (3, W) in units of it
+    keep: float  # what is left of b after a step
+    water: tuple[np.ndarray, np.ndarray]  # (3 W,) toward north and east [m/s]
+    rng: np.random.Generator
+
+    def force(self, model: Model, step: np.ndarray) -> Force:
+        """(3 W,) the force that gives this acceleration; none on the first two runs."""
+        self.b = self.keep * self.b + np.sqrt(1.0 - self.keep**2) * self.rng.standard_normal(self.b.shape)
+        a, none, c = self.b * self.size[step].T, np.zeros(2 * step.size), model.c
+        return Force(
+            np.append(none, c.m_u * a[0]), np.append(none, c.m_v * a[1] + c.m_vr * a[2]), np.append(none, c.m_rv * a[1] + c.m_r * a[2])
+        )
+
+
+def _slow(track: Track, model: Model, floor: Floor | None, start: np.ndarray, rng: np.random.Generator) -> _Slow | None:
+    """The disturbances that a floor describes (see innovations.py), drawn for every window."""
+    if floor is None:
+        return None
+    size = np.array(floor.share) * np.hypot(busy(track, model), floor.calm * standard(model))
+    flow = floor.flow * float(model.ship.scale("speed"))
+    water = [np.append(np.zeros(2 * start.size), flow * rng.standard_normal(start.size)) for _ in "ne"]
+    keep = float(np.exp(-track.h / (MEMORY_B * float(model.ship.scale("time")))))
+    return _Slow(size, rng.standard_normal((3, start.size)), keep, (water[0], water[1]), rng)
+
+
+class _Run:
+    """All windows of a track, three times, stepped together."""
+
+    def __init__(self, track: Track, model: Model, start: np.ndarray, wind_to: np.ndarray | None, slow: _Slow | None):
+        self.track, self.start, self.slow = track, start, slow
+        self.known = replace(model, residual=None)
+        self.learned = model.residual
+        self.inputs = dict(track.weather) | {"delta": lagged(track, model), "n": track.n}
+        if wind_to is not None:
+            self.inputs["wind_to"] = wind_to
+        if slow is not None:
+            self.known = replace(self.known, effects=(*model.effects, Current(north=slow.water[0], east=slow.water[1])))
+
+    def through(self, state: tuple, lead: np.ndarray) -> np.ndarray:
+        """(K, 3 W, 8) readings at each lead."""
+        kept = []
+        for k in range(int(lead[-1]) + 1):
+            if k:
+                state = self._model(k - 1, state).step(state, self._situation(k - 1, 0.5), self.track.h)
+            if k in lead:
+                kept.append(self._read(k, state))
+        return np.stack(kept)
+
+    def _situation(self, k: int, ahead: float = 0.0) -> Situation:
+        """Inputs of every window k steps on; controls `ahead` of a step later."""
+        step = np.minimum(self.start + k, len(self.track) - 1)
+        after = np.minimum(step + 1, len(self.track) - 1)
+        values = {name: np.tile(w[step], 3) for name, w in self.inputs.items()}
+        for name in ("delta", "n"):
+            values[name] = values[name] + ahead * (np.tile(self.inputs[name][after], 3) - values[name])
+        return Situation(**values, t=np.tile(self.track.t[step], 3) + ahead * self.track.h)
+
+    def _model(self, k: int, state: tuple) -> Model:
+        """The model with what is learned and what is slow held for one step."""
+        more = []
+        if self.learned is not None:
+            more.append(self._held(k, state))
+        if self.slow is not None:
+            more.append(self.slow.force(self.known, np.minimum(self.start + k, len(self.track) - 1)))
+        if not more:
+            return self.known
+        force = sum(more, Force())
+        return replace(self.known, residual=lambda _: force)
+
+    def _held(self, k: int, state: tuple) -> Force:
+        """The learned force at the model's own runs; the floors are given the same."""
+        s = self._situation(k)
+        s.x, s.y, s.psi, s.u, s.v, s.r = state
+        self.known.forces(s, self.known.water(s))
+        W = self.start.size
+        own = {name: getattr(s, name)[:W] for name in (*STATE, "u_r", "v_r", "t", *self.inputs)}
+        return Force(*(np.tile(f, 3) for f in self.learned(Situation(**own))))  # type: ignore[misc]
+
+    def _read(self, k: int, state: tuple) -> np.ndarray:
+        s = self._situation(k)
+        s.x, s.y, s.psi, s.u, s.v, s.r = state
+        rates = self.known.nu_dot(s)
+        s.u_dot, s.v_dot = rates.u, rates.v
+        return readings(s, self.known)

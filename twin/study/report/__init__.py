@@ -1,0 +1,12 @@
+"""One self-contained page for compare, diagnose and add: opens from a stick, asks nothing of any network.
+
+    report.write("diagnose.html", "diagnose", result, tracks, model)
+
+`result` is the verb's JSON by the contract. Further keys are shown when they are there: `verdict_text` (the sentence on top; else it
+is made from the contract), `command` (what was typed), `history` (the ship's ladder), `ship_file`. What the page needs and
+`result` lacks (horizons, channels, where, worst_windows, switched_off) is worked out from tracks and model.
+"""
+
+from .page import write
+
+__all__ = ["write"]

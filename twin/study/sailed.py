@@ -1,0 +1,70 @@
+"""The voyages a verb works on: read, put on the ship's grid, and with the effects that their recordings can feed."""
+
+import hashlib
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from twin.errors import DataError
+from twin.physics.effect import Effect
+from twin.physics.model import Model
+from twin.physics.ship import Ship
+
+from .innovations import Floor
+from .read import read_voyage
+from .track import Track, track
+from .voyage import Voyage
+
+
+@dataclass(frozen=True)
+class Sailed:
+    """One voyage file, its track, and the hash that provenance keeps of it."""
+
+    voyage: Voyage
+    track: Track
+    sha256: str
+
+    def provenance(self) -> dict[str, Any]:
+        start = self.voyage.meta.get("start_time_utc")
+        return {"name": self.track.name, "sha256": self.sha256} | ({"start_time_utc": str(start)} if start else {})
+
+
+def read_all(paths: Sequence[str], ship: Ship) -> list[Sailed]:
+    """Every voyage, ready; DataError names the file that cannot be used, or that was given twice."""
+    out: list[Sailed] = []
+    for path in paths:
+        print(f"reading {path} ...", file=sys.stderr)
+        voyage = read_voyage(path)
+        made = Sailed(voyage, track(voyage, ship), hashlib.sha256(Path(path).read_bytes()).hexdigest())
+        twin = next((s for s in out if s.sha256 == made.sha256), None)
+        if twin is not None:
+            raise DataError(f"{path}: is the same voyage as {twin.track.name}. Give each voyage once.")
+        out.append(made)
+    return out
+
+
+def floor_of(ship: Ship) -> Floor | None:
+    """What calibration found a model of this kind to leave unexplained on this ship, or None when she was never calibrated."""
+    stored = ship.notes.get("structural", {})
+    stored = stored.get("floor", stored)
+    known = {f.name: stored[f.name] for f in fields(Floor) if f.name in stored}
+    if "share" in known:
+        known["share"] = tuple(known["share"])
+    return Floor(**known) if known else None
+
+
+def fed(model: Model, t: Track) -> tuple[Model, tuple[Effect, ...]]:
+    """The model without the effects whose inputs this track lacks, and those effects."""
+    return model.without_inputs(t.missing())
+
+
+def switched_off(model: Model, tracks: Sequence[Track]) -> list[dict[str, Any]]:
+    """Which effects of the model are switched off on which voyages, and for want of what."""
+    out = []
+    for t in tracks:
+        for effect in fed(model, t)[1]:
+            lacks = sorted(t.missing().intersection(effect.needs))
+            out.append({"effect": type(effect).__name__, "voyage": t.name, "not_measured": lacks})
+    return out

@@ -1,0 +1,61 @@
+"""Where a prediction begins: the smooth motion with the instruments' known faults undone, and how far off it may be."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from twin.physics.model import Model
+from twin.physics.state import Situation
+
+from .track import STATE, Track
+from .track import _smooth_motion as smooth_motion
+
+ROUNDS = 6  # of the fixed point; each is smaller by the size of the fault
+
+
+def true_motion(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray | None]:
+    """(N, 6) the smooth motion as it would be without the model's sensor faults, and the wind's direction (N,) likewise.
+
+    Place and heading are corrected until the faulty instruments would show what they showed; speeds follow from them.
+    """
+    wind_to = track.weather.get("wind_to")
+    if not _moved(track, model, wind_to):
+        return track.state, wind_to
+    place, shown = track.state[:, :3].copy(), track.state[:, :3]
+    for _ in range(ROUNDS):
+        read = _read(track, model, kinematics(place, track.h), wind_to)
+        place += shown - np.column_stack([read.x, read.y, read.psi])
+        if wind_to is not None:
+            wind_to = wind_to + track.weather["wind_to"] - read.wind_to
+    return kinematics(place, track.h), wind_to
+
+
+def _moved(track: Track, model: Model, wind_to: np.ndarray | None) -> bool:
+    """Whether any fault touches place, heading or wind direction (most only touch a log or a gyro)."""
+    read = _read(track, model, track.state, wind_to)
+    return read.wind_to is not wind_to or not np.array_equal(np.column_stack([read.x, read.y, read.psi]), track.state[:, :3])
+
+
+def kinematics(place: np.ndarray, h: float) -> np.ndarray:
+    """(N, 6) the motion along a path of x, y, psi (N, 3)."""
+    north, east, r = np.gradient(place, h, axis=0).T
+    c, s = np.cos(place[:, 2]), np.sin(place[:, 2])
+    return np.column_stack([place, north * c + east * s, east * c - north * s, r])
+
+
+def _read(track: Track, model: Model, state: np.ndarray, wind_to: np.ndarray | None) -> Situation:
+    """What the faulty instruments show of a ship that moves so."""
+    s = track.situation(**dict(zip(STATE, state.T, strict=True)))
+    s.wind_to, s.u_r, s.v_r = wind_to, s.u, s.v
+    s.u_dot = np.gradient(s.u, track.h)
+    s.v_dot = np.gradient(s.v, track.h)
+    for fault in model.faults:
+        s = fault.read(replace(s), model.loaded)
+    return s
+
+
+def noisy(track: Track, model: Model, rng: np.random.Generator) -> np.ndarray:
+    """(N, 6) one draw of how far the smooth motion is off, when the readings scatter as they do: smoothed like the readings."""
+    exact = np.column_stack([track.state, track.measured[:, 6:]])
+    shaken = np.where(np.isfinite(track.measured), exact + track.sd * rng.standard_normal(exact.shape), np.nan)
+    return smooth_motion(shaken, track.h, model.ship)[0] - track.state

@@ -1,0 +1,82 @@
+"""What compare found, as lines on a terminal: the verdict first, every error beside its noise."""
+
+import textwrap
+from typing import Any
+
+BAR = 24
+
+
+def told(result: dict[str, Any]) -> list[str]:
+    """The whole answer, a line each."""
+    return [
+        *textwrap.wrap(result["verdict"], 100),
+        "",
+        f"{result['ship']}, {len(result['voyages'])} voyage{'s' * (len(result['voyages']) > 1)}; model: core"
+        + "".join(f" + {e}" for e in result["model"]["effects"]) + (" + residual" if result["model"].get("residual") else ""),
+        *_horizons(result["horizons"]),
+        *_channels(result["channels"]),
+        *_forces(result),
+        *_where(result),
+        *_worst(result["worst_windows"]),
+        *_off(result["switched_off"]),
+        *_checks(result["data_checks"]),
+    ]  # fmt: skip
+
+
+def _units(error: float, floor: float) -> str:
+    """Error in units of noise, and a bar of it (doubling every fifth of its length)."""
+    times = error / max(floor, 1e-12)
+    bar = 0
+    while bar < BAR and 2.0 ** (bar * 5.0 / BAR) < times:
+        bar += 1
+    return f"x{times:<6.3g}{'#' * bar}"
+
+
+def _horizons(rows: list[dict[str, Any]]) -> list[str]:
+    of = rows[0]["noise_floor"]["of"]
+    out = ["", f"open loop   position [m]   across [m]   heading [deg]   position over its noise ({of})"]
+    for r in rows:
+        n = r["noise_floor"]
+        cells = [f"{r[k]:.3g} / {n[k]:.2g}" for k in ("position_mae_m", "lateral_mae_m", "heading_mae_deg")]
+        out.append(f"{r['horizon_s']:>6g} s    {cells[0]:<15}{cells[1]:<13}{cells[2]:<16}{_units(r['position_mae_m'], n['position_mae_m'])}")
+    return out
+
+
+def _channels(channels: dict[str, dict[str, Any]]) -> list[str]:
+    out = ["", f"{'channel':<36}{'error':>9}{'noise':>9}{'R2':>8}{'skill':>8}   (skill: against dead reckoning)"]
+    for name, c in channels.items():
+        cells = [f"{c[k]:>{w}.3f}" if c[k] is not None else " " * (w - 1) + "-" for k, w in (("r2", 8), ("skill", 8))]
+        out.append(f"{name:<36}{c['mae']:>9.3g}{c['noise']:>9.2g}{cells[0]}{cells[1]}")
+    return out
+
+
+def _forces(result: dict[str, Any]) -> list[str]:
+    share = ", ".join(f"{axis} {100.0 * x:.1f} %" for axis, x in result["unexplained_force"].items())
+    out = ["", f"force the model misses, beyond noise: {share}"]
+    return out + ([f"learned share of all force: {100.0 * result['learned_share']:.1f} %"] if result["model"].get("residual") else [])
+
+
+def _where(result: dict[str, Any]) -> list[str]:
+    if not result["where"]:
+        return ["", "where: no condition stands out beyond chance"]
+    out = ["", "where it fails (error against elsewhere, share of the time)"]
+    return out + [f"  x{w['error_ratio']:<5.2g}{100 * w['time_share']:>4.0f} %  {w['condition']}" for w in result["where"]]
+
+
+def _worst(windows: list[dict[str, Any]]) -> list[str]:
+    out = ["", "worst windows"]
+    return out + [
+        f"  {w['voyage']}: {w['start_s']:.0f} to {w['end_s']:.0f} s, {w['position_m']:.3g} m and {w['heading_deg']:.2g} deg off (x{w['error_ratio']:.2g})"
+        for w in windows
+    ]
+
+
+def _off(entries: list[dict[str, Any]]) -> list[str]:
+    return [f"switched off on {e['voyage']}: {e['effect']}, {', '.join(e['not_measured'])} was not recorded" for e in entries]
+
+
+def _checks(checks: list[dict[str, Any]]) -> list[str]:
+    bad = [c for c in checks if not c["ok"]]
+    if not bad:
+        return ["", f"data checks: all {len(checks)} pass"]
+    return ["", "data checks"] + [f"  look  {c.get('voyage', '')}{': ' * ('voyage' in c)}{c['check']}: {c['text']}" for c in bad]

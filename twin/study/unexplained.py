@@ -1,0 +1,78 @@
+"""Which share of the force that moves the ship the model misses, axis by axis, and how much of it is learned.
+
+    missing force = M (measured acceleration - the model's), both averaged over half a ship length of sailing
+    share = (energy of the missing force - energy that sensor noise gives it) / (that + energy of every known force)
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from twin.physics.model import Model
+
+from .respond import lagged
+from .start import noisy, true_motion
+from .track import STATE, Track
+
+AXES = ("surge", "sway", "yaw")
+
+
+@dataclass(frozen=True)
+class Energy:
+    """Sums of squared forces (3,): X, Y [N2] and N [N2 m2]."""
+
+    missing: np.ndarray
+    known: np.ndarray
+    learned: np.ndarray
+
+    def unexplained(self) -> dict[str, float]:
+        share = self.missing / np.maximum(self.missing + self.known + self.learned, 1e-12)
+        return dict(zip(AXES, share.tolist(), strict=True))
+
+    def learned_share(self) -> float:
+        """Mean over the axes of what the learned force has of all force."""
+        return float(np.mean(self.learned / np.maximum(self.missing + self.known + self.learned, 1e-12)))
+
+
+def energy(tracks: Sequence[Track], models: Sequence[Model]) -> Energy:
+    """Over all voyages, each with the model that its recordings can feed."""
+    parts = [_energy(t, m) for t, m in zip(tracks, models, strict=True)]
+    missing = np.maximum(sum(p[0] for p in parts), 0.0)
+    return Energy(missing, sum(p[1] for p in parts), sum(p[2] for p in parts))
+
+
+def _energy(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    width = max(2, round(0.5 * float(model.ship.scale("time")) / track.h))
+    state, wind_to = true_motion(track, model)
+    s = track.situation(delta=lagged(track, model), **dict(zip(STATE, state.T, strict=True)))
+    s.wind_to = wind_to
+    physics = replace(model, residual=None)
+    known = physics.known(s)
+    rates = np.column_stack([np.broadcast_to(a, track.t.shape) for a in physics.nu_dot(s)])
+    learned = np.zeros_like(rates)
+    if model.residual is not None:
+        learned = np.column_stack([np.broadcast_to(f, track.t.shape) for f in model.residual(s)])
+    noise = noisy(track, model, np.random.default_rng(0))[:, 3:]
+    missing = _force(_slope(state[:, 3:], track.h, width) - _mean(rates, width), model) - _mean(learned, width)
+    shaken = _force(_slope(noise, track.h, width), model)
+    whole = _mean(track.whole[:, None].astype(float), width) > 0.999
+    each = np.array([sum(np.broadcast_to(np.square(f[i]), track.t.shape)[track.whole].sum() for f in known.values()) for i in range(3)])
+    square = np.where(whole, np.square(missing) - np.square(shaken), 0.0)
+    return square.sum(0), each, np.square(learned)[track.whole].sum(0)
+
+
+def _slope(values: np.ndarray, h: float, width: int) -> np.ndarray:
+    return (values[width:] - values[:-width]) / (width * h)
+
+
+def _mean(values: np.ndarray, width: int) -> np.ndarray:
+    """Mean over `width` steps between grid points k and k + width, by trapezes."""
+    steps = 0.5 * (values[1:] + values[:-1])
+    total = np.concatenate([np.zeros((1, values.shape[1])), np.cumsum(steps, axis=0)])
+    return (total[width:] - total[:-width]) / width
+
+
+def _force(a: np.ndarray, model: Model) -> np.ndarray:
+    c = model.c
+    return np.column_stack([c.m_u * a[:, 0], c.m_v * a[:, 1] + c.m_vr * a[:, 2], c.m_rv * a[:, 1] + c.m_r * a[:, 2]])
