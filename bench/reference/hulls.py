@@ -1,8 +1,8 @@
 """Four hulls, each number with its source, in the normalisation of the MMG standard method.
 
-Forces / (1/2 rho L d U^2), moments / (1/2 rho L^2 d U^2), masses / (1/2 rho L^2 d), inertias / (1/2 rho L^4 d);
-v' = v/U, r' = r L/U; origin midship, x forward, y starboard, z down. Roll levers in metres, below the centre of
-gravity.
+Forces / (1/2 rho L d U^2), moments / (1/2 rho L^2 d U^2), masses / (1/2 rho L^2 d), inertias / (1/2 rho
+L^4 d); v' = v/U, r' = r L/U; origin midship, x forward, y starboard, z down. Roll levers in metres, below the
+centre of gravity.
 
 Sources
   YY15  Yasukawa & Yoshimura (2015), J Mar Sci Technol 20, 37-52: KVLCC2.
