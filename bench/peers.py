@@ -9,7 +9,6 @@ beside it, carrying its state. look_ahead: 120 s in 1200 steps, for one ship and
 
 import argparse
 import json
-import os
 from collections.abc import Callable
 from typing import Any
 
@@ -17,6 +16,7 @@ import numpy as np
 
 from bench.ekf import ShipFilter
 from bench.lstm import HIDDEN, INPUTS, LAYERS, lstm_bytes
+from bench.ort import session
 from bench.timing import hot_us, quantiles
 from twin.physics.model import Model
 from twin.physics.ship import load
@@ -46,24 +46,24 @@ def ekf(ship: Any) -> Callable[[], object]:
 
 
 def lstm(ship: Any) -> Callable[[], object]:
-    session, window = _session(lstm_bytes(False)), np.zeros((WINDOW, 1, INPUTS), np.float32)
+    net, window = session(lstm_bytes(False)), np.zeros((WINDOW, 1, INPUTS), np.float32)
     newest = np.ones(INPUTS, np.float32)
 
     def step() -> object:
         window[:-1] = window[1:]
         window[-1, 0] = newest
-        return session.run(["y"], {"x": window})
+        return net.run(["y"], {"x": window})
 
     return step
 
 
 def lstm_stateful(ship: Any) -> Callable[[], object]:
-    session, feed = _session(lstm_bytes(True)), {"x": np.ones((1, 1, INPUTS), np.float32)}
+    net, feed = session(lstm_bytes(True)), {"x": np.ones((1, 1, INPUTS), np.float32)}
     names = [f"{s}{layer}" for layer in range(LAYERS) for s in "hc"]
     feed |= {name: np.zeros((1, 1, HIDDEN), np.float32) for name in names}
 
     def step() -> object:
-        y, *carried = session.run(["y", *(f"{name}_out" for name in names)], feed)
+        y, *carried = net.run(["y", *(f"{name}_out" for name in names)], feed)
         feed.update(zip(names, carried, strict=True))
         return y
 
@@ -99,16 +99,6 @@ def measure(repeats: int) -> dict[str, Any]:
         times = hot_us(look_ahead(ship, members), 3, warm_up=1)
         result["look_ahead_ms"][name] = round(sorted(times)[1] * 1e-3, 1)
     return result
-
-
-def _session(model: bytes) -> Any:
-    os.environ["ORT_DISABLE_TELEMETRY"] = "1"
-    import onnxruntime
-
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = options.inter_op_num_threads = 1
-    options.add_session_config_entry("session.intra_op.allow_spinning", "0")
-    return onnxruntime.InferenceSession(model, options, providers=["CPUExecutionProvider"])
 
 
 if __name__ == "__main__":

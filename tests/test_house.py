@@ -86,7 +86,7 @@ def test_torch_is_loaded_in_export_only():
 
 
 def test_the_loops_process_stays_light():
-    """Test: import the service, in a process of its own. Expected: no library of the training or the study."""
+    """Test: import the service, in a process of its own. Expected: no library of training or study."""
     code = f"import sys, twin.live.run as _; print(*set({NOT_ON_BOARD}) & set(sys.modules))"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.returncode == 0, done.stderr

@@ -1,0 +1,172 @@
+"""The whole service in a process, measured from inside: bus over loopback TCP, log, network, adaptation.
+
+Only what the service loads is loaded here, so that the memory is the service's. The stop-watch is the
+clock that the service waits for: a step is everything it does between two waits. Prints one JSON object.
+
+    python -m bench.tick_process CONFIG STEPS PARTS fast|paced
+"""
+
+import json
+import os
+import sys
+import time
+import traceback
+from array import array
+from typing import Any
+
+from bench.memory import Memory, memory
+from bench.timing import quantiles
+from twin.live import build, config, realtime, run
+from twin.live.clock import Clock, Instant, MonotonicClock
+from twin.live.inbox import Inbox
+from twin.live.outbox import Outbox
+from twin.live.publish import Publisher
+
+WARM_UP = 300  # ticks before anything is counted: gates open, the first prediction is made, the log is open
+CONNECT_S = 20.0
+
+
+class FastClock:
+    """A clock that is always due: each tick is one period later than the last, whatever the time is.
+
+    Now and then it rests, outside every step: the kernel stops a real-time process that never sleeps.
+    """
+
+    overruns = 0
+    work_s, rest_s = 0.05, 0.01
+
+    def __init__(self, rate_hz: float):
+        self.period_s, self._index = 1.0 / rate_hz, 0
+        self._start_s, self._wall_s = time.monotonic(), time.time()
+        self._rested_s = self._start_s
+
+    def wait(self) -> Instant:
+        if time.monotonic() - self._rested_s > self.work_s:
+            time.sleep(self.rest_s)
+            self._rested_s = time.monotonic()
+        at = self._index * self.period_s
+        self._index += 1
+        return Instant(self._index - 1, self._start_s + at, self._wall_s + at)
+
+    def slack_s(self) -> None:
+        return None
+
+
+class StopWatch:
+    """A clock around a clock: WARM_UP ticks, `steps` that are measured, `parts` with a watch on each part."""
+
+    def __init__(self, clock: Any, steps: int, parts: int):
+        self.clock, self.steps, self.parts, self.index = clock, steps, parts, 0
+        self.times, self.late = array("f", bytes(4 * steps)), array("f", bytes(4 * steps))
+        self.at: dict[str, Any] = {}  # tick number -> what to do before it
+        self._began = 0
+
+    def wait(self) -> Instant | None:
+        ended, step = time.perf_counter_ns(), self.index - WARM_UP - 1
+        if 0 <= step < self.steps:
+            self.times[step] = (ended - self._began) * 1e-3
+        if self.index == WARM_UP + self.steps + self.parts:
+            return None
+        if self.index in self.at:
+            self.at[self.index]()
+        instant: Instant = self.clock.wait()
+        if 0 <= step + 1 < self.steps:
+            self.late[step + 1] = instant.late_s * 1e6
+        self.index += 1
+        self._began = time.perf_counter_ns()
+        return instant
+
+    def slack_s(self) -> float | None:
+        return self.clock.slack_s()  # type: ignore[no-any-return]
+
+
+class Measured:
+    """One service, and what was seen of it."""
+
+    def __init__(self, path: str, steps: int, parts: int, paced: bool):
+        self.settings = config.load(path)
+        self.steps, self.parts, self.paced = steps, parts, paced
+        self.notes: list[str] = []
+        self.seen: list[tuple[Memory, int, int, float]] = []  # memory, messages, overruns, processor time
+        self.watches: Any = None
+        self.last: Any = None
+
+    def run(self) -> dict[str, Any]:
+        settings, recorder = self.settings, run.recorder_of(self.settings)
+        with run.bus_of(settings) as self.bus:
+            names = settings["bus.base"], settings["bus.entity"]
+            voice = Outbox(Publisher(), *names, self.bus, recorder.write)
+            self.loop = build.loop_of(settings, Inbox(self.bus, recorder.write), voice)
+            recorder.start()
+            clock: Clock = MonotonicClock(self.loop.rate_hz) if self.paced else FastClock(self.loop.rate_hz)
+            self.watch = StopWatch(clock, self.steps, self.parts)
+            end = WARM_UP + self.steps
+            self.watch.at = {WARM_UP: self._settle, WARM_UP + self.steps // 10: self._look, end: self._finish}
+            _connect(self.bus)
+            run.Service(self.loop, self.bus, recorder, settings, self.watch).run(run.Stop(), None, self._keep)
+            if not self.parts:
+                self._look()
+            return self._result() | {"log": recorder.close(2.0)._asdict()}
+
+    def _keep(self, tick: Any) -> None:
+        self.last = tick
+
+    def _settle(self) -> None:
+        s = self.settings
+        names = ("priority", "cpu", "lock_memory", "drop_pages")
+        self.notes = realtime.settle(*(s[f"loop.{name}"] for name in names))
+        self._look()
+
+    def _look(self) -> None:
+        clock = self.watch.clock
+        self.seen.append((memory(), self.bus.state.received, clock.overruns, time.process_time()))
+
+    def _finish(self) -> None:
+        self._look()
+        self.watches = self.loop.measure_parts()
+
+    def _result(self) -> dict[str, Any]:
+        (_, received, overruns, used), (early, *_), (end, received_2, overruns_2, used_2) = self.seen[:3]
+        period_us = self.loop.period_s * 1e6
+        return {
+            "step_us": quantiles(self.watch.times),
+            "wake_up_us": quantiles(self.watch.late),
+            "missed_deadlines": overruns_2 - overruns,
+            "longer_than_period": sum(t > period_us for t in self.watch.times),
+            "messages_per_step": round((received_2 - received) / self.steps, 2),
+            "cpu_us_per_step": round((used_2 - used) / self.steps * 1e6, 1),
+            "memory": end._asdict(),
+            "growth_mb": round(end.now_mb - early.now_mb, 2),
+            "growth_anon_mb": round(end.anon_mb - early.anon_mb, 2),
+            "mode": self.last.mode,
+            "reasons": list(self.last.reasons),
+            "learned_weight": self.last.learned.weight,
+            "notes": [*self.loop.notes, *self.notes],
+            "parts_us": self._parts(),
+        }
+
+    def _parts(self) -> dict[str, dict[str, float]]:
+        ns = self.watches.ns if self.watches else {}
+        return {part: quantiles([n * 1e-3 for n in times], ("median", "p99")) for part, times in ns.items()}
+
+
+def _connect(bus: Any) -> None:
+    until = time.monotonic() + CONNECT_S
+    while not bus.state.connected and time.monotonic() < until:
+        time.sleep(0.05)
+    if not bus.state.connected:
+        raise SystemExit("nobody connected: the feed did not start")
+
+
+if __name__ == "__main__":
+    code = 1
+    try:
+        _, settings, steps, parts, pace = sys.argv
+        print(json.dumps(Measured(settings, int(steps), int(parts), pace == "paced").run()))
+        code = 0
+    except BaseException:
+        traceback.print_exc()
+    finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
+        os._exit(code)

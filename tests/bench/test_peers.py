@@ -1,0 +1,105 @@
+"""The peers compute what they claim to, and the yardsticks are what they say."""
+
+import numpy as np
+import pytest
+
+from bench import cortex, instructions, lstm, nbody, peers
+from bench.ekf import ShipFilter
+from bench.memory import memory
+from bench.ort import session
+from bench.timing import hot_us, quantiles
+from twin.physics.model import Model
+from twin.physics.ship import load
+
+
+@pytest.fixture(scope="module")
+def ship():
+    return load(peers.SHIP)
+
+
+def test_an_lstm_that_carries_its_state_says_what_one_that_is_re_run_says():
+    """Test: 50 inputs at once and one by one. Expected: the same output, so both are the same network."""
+    x = np.random.default_rng(3).standard_normal((50, 1, lstm.INPUTS)).astype(np.float32)
+    whole = session(lstm.lstm_bytes(False)).run(["y"], {"x": x})[0]
+    one = session(lstm.lstm_bytes(True))
+    names = [f"{s}{layer}" for layer in range(lstm.LAYERS) for s in "hc"]
+    carried = {name: np.zeros((1, 1, lstm.HIDDEN), np.float32) for name in names}
+    for row in x:
+        y, *state = one.run(["y", *(f"{n}_out" for n in names)], {"x": row[None]} | carried)
+        carried = dict(zip(names, state, strict=True))
+    assert np.allclose(y, whole, atol=1e-5)
+
+
+def test_the_lstm_has_two_layers_of_128():
+    """Expected: 4 gates x 128 x (inputs + 128) weights and 8 x 128 biases a layer, and the last layer."""
+    import onnx
+    from onnx import numpy_helper
+
+    tensors = onnx.load_from_string(lstm.lstm_bytes(False)).graph.initializer
+    numbers = sum(numpy_helper.to_array(t).size for t in tensors if not t.name.startswith("axis"))
+    n = lstm.HIDDEN
+    layers = 4 * n * (lstm.INPUTS + n) + 8 * n + 4 * n * (n + n) + 8 * n
+    assert numbers == layers + lstm.OUTPUTS * n + lstm.OUTPUTS
+
+
+def test_the_filter_finds_a_disturbance_that_no_known_force_explains(ship):
+    """Test: a ship pushed aside by 1 cm/s2 beyond her model. Expected: the filter says so within 20 %."""
+    s = peers.situation(ship)
+    model = Model.of(ship)
+    peer, push = ShipFilter(model, peers.situation(ship), 0.1), 0.01
+    truth = (0.0, 0.0, 0.0, s.u, s.v, s.r)
+    for _ in range(1500):
+        ahead = model.step(truth, s, 0.1)
+        truth = (*ahead[:4], ahead[4] + push * 0.1, ahead[5])
+        peer.tick(np.array(truth))
+    assert peer.x[7] == pytest.approx(push, rel=0.2)
+
+
+def test_an_ensemble_of_equal_ships_goes_where_one_goes(ship, monkeypatch):
+    monkeypatch.setattr(peers, "AHEAD_STEPS", 50)
+    one = peers.look_ahead(ship, 1)()
+    many = peers.look_ahead(ship, 3)()  # the one in the middle is not varied
+    assert [float(np.asarray(x)[1]) for x in many] == pytest.approx([float(x) for x in one])
+
+
+def test_every_peer_runs(ship):
+    for make in peers.PEERS.values():
+        assert quantiles(hot_us(make(ship), 5, warm_up=1))["median"] > 0
+
+
+def test_quantiles_are_values_that_were_measured():
+    found = quantiles(range(1000))
+    assert found == {"median": 500, "p99": 990, "p999": 999, "max": 999}
+    assert quantiles([7.0])["p999"] == 7.0
+
+
+def test_memory_is_split_in_anonymous_and_file_backed_parts():
+    now = memory()
+    assert now.peak_mb >= now.now_mb
+    assert now.anon_mb + now.file_mb == pytest.approx(now.now_mb, rel=0.02)
+
+
+def test_on_a_cortex_a72_nothing_is_scaled():
+    found = cortex.estimate(300.0, 900.0, "CPU implementer : 0x41\nCPU part\t: 0xd08\n")
+    assert found["factor"] == 1.0 and found["step_ms_p999"] == 0.9
+
+
+def test_elsewhere_the_estimate_lies_between_its_ends():
+    found = cortex.estimate(1000.0, 2000.0, "model name : another\n")
+    assert found["factor_low"] == 2.6 and found["factor_high"] == 6.8
+    low, high = found["step_ms_median_range"]
+    assert low < found["step_ms_median"] < high
+
+
+def test_the_yardstick_conserves_momentum():
+    """Expected: what the bodies pull on each other sums to nothing, so the program is the N-body problem."""
+    bodies = [([0.0, 0.0, 0.0], [0.0, 0.0, 0.0], 3.0), ([1.0, 0.5, 0.2], [0.1, 0.0, 0.3], 0.5)]
+    before = [sum(v[i] * m for _, v, m in bodies) for i in range(3)]
+    nbody._advance(bodies, [tuple(bodies)], 100)
+    assert [sum(v[i] * m for _, v, m in bodies) for i in range(3)] == pytest.approx(before)
+
+
+@pytest.mark.skipif(not instructions.available(), reason="valgrind is not installed")
+def test_instruction_counts_repeat_exactly():
+    few = [instructions._finish(instructions._start("analytic", 1)) for _ in range(2)]
+    assert few[0] == few[1]
