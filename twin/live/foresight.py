@@ -11,7 +11,7 @@ from typing import NamedTuple
 from twin.live.derive import turn
 from twin.live.dynamics import INPUTS, Known
 from twin.live.loop import Loop
-from twin.live.predict import STEP, LearnedAt, carried
+from twin.live.predict import STEP, LearnedAt, carry
 from twin.physics.state import Situation
 
 
@@ -80,13 +80,14 @@ class Foresight:
             if t_next - t > 5.0:
                 break
             while left and start.time_s + left[0] <= t_next + 1e-6:
-                there = carried(s, start.physics, start.learned(s, start.physics.force(s)), start.time_s + left[0] - t)
+                there = replace(s)
+                carry(there, start.physics, start.learned(there, start.physics.force(there)), start.time_s + left[0] - t)
                 if error := _error(there, si, si_next, (start.time_s + left[0] - t) / (t_next - t)):
                     found[left[0]] = error
                 left.pop(0)
             steps = ceil((t_next - t) / self.step_s)
             for _ in range(steps):
-                s = carried(s, start.physics, start.learned(s, start.physics.force(s)), (t_next - t) / steps)
+                carry(s, start.physics, start.learned(s, start.physics.force(s)), (t_next - t) / steps)
         return found
 
 
