@@ -23,9 +23,9 @@ NOISE = {
 @pytest.fixture(scope="module")
 def voyages():
     """One voyage for each effect, and the same voyage with nothing hidden: same seed, same noise."""
-    cases = [Case("usv", "mixed", seed=11, duration_s=50.0)]
-    cases += [Case("usv", "mixed", hidden=((name, 1.0),), seed=11, duration_s=50.0) for name in EFFECTS]
-    cases += [Case("usv", "mixed", decoys=(name,), seed=11, duration_s=50.0) for name in DECOYS]
+    cases = [Case("usv", "mixed", seed=11, duration_s=40.0)]
+    cases += [Case("usv", "mixed", hidden=((name, 1.0),), seed=11, duration_s=40.0) for name in EFFECTS]
+    cases += [Case("usv", "mixed", decoys=(name,), seed=11, duration_s=40.0) for name in DECOYS]
     reference, *others = simulate(cases)
     return reference, dict(zip([*EFFECTS, *DECOYS], others, strict=True))
 

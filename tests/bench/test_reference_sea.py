@@ -67,7 +67,7 @@ def test_a_live_sea_sails_at_fifty_hertz_without_an_end():
 
 @pytest.mark.parametrize("hull", ["container", "usv"])
 def test_a_mirrored_manoeuvre_of_a_symmetric_hull_is_mirrored(hull):
-    time = 10 * HULLS[hull].L / HULLS[hull].U0
+    time = 7 * HULLS[hull].L / HULLS[hull].U0
     pair = [
         Case(hull, (Leg(ZIGZAG, 99, a, 10),), STILL, heading_deg=0, duration_s=time, sensors="perfect")
         for a in (10, -10)
@@ -86,7 +86,7 @@ def test_a_model_at_froude_scale_sails_the_same_voyage_in_lengths():
     ends = []
     for hull, tick in ((big, 0.5), (small, 0.5 * (7 / 320) ** 0.5)):
         case = Case(
-            hull, (Leg(RUDDER, 99, 20),), STILL, heading_deg=0, duration_s=250 * tick / 0.5, sensors="perfect"
+            hull, (Leg(RUDDER, 99, 20),), STILL, heading_deg=0, duration_s=150 * tick / 0.5, sensors="perfect"
         )
         true = simulate([case], tick_s=tick)[0].truth
         ends.append([true["north"][-1] / hull.L, true["east"][-1] / hull.L, true["psi"][-1]])
