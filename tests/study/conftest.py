@@ -1,4 +1,4 @@
-"""A ship that exists only in kinematics: enough to make a voyage whose columns agree, and to plant one mistake in it."""
+"""A ship that exists only in kinematics: her columns agree, until a test plants a mistake."""
 
 import numpy as np
 import pytest
@@ -13,7 +13,7 @@ def sail(
     noise: float = 1.0,
     seed: int = 0,
 ):
-    """{column: (N,)} with `time_s`: zigzags of 20 deg by Nomoto's equation, wind, a log in a current, honest noise."""
+    """{column: (N,)} with `time_s`: 20 deg zigzags by Nomoto's equation, wind, a log in a current, noise."""
     t = np.arange(0.0, duration_s, STEP_S)
     rng = np.random.default_rng(seed)
     r, psi, rudder, order = (np.zeros(t.size) for _ in range(4))

@@ -1,4 +1,4 @@
-"""`twin import` end to end: good files go in, wrong ones are refused with what to do, nothing is left half."""
+"""`twin import` end to end: good files go in, wrong ones are refused with what to do."""
 
 import argparse
 import json

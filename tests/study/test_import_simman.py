@@ -1,4 +1,5 @@
-"""The measured KVLCC2 runs of SIMMAN 2008 go in through their maps; left in the map, each of their traps is named.
+"""The measured KVLCC2 runs of SIMMAN 2008 go in through their maps; left in the map, each of their traps is
+named.
 
 The files have no licence and stay outside: SHIPTWIN_DATA names the folder that holds `kvlcc2_simman/`.
 """
@@ -63,14 +64,18 @@ def test_marins_step_is_rebuilt_from_its_rounded_stamps_and_the_position_stays_o
 EARTH = {"surge_velocity_mps": Column(5), "sway_velocity_mps": Column(6)}
 EARTH_MARIN = {"surge_velocity_mps": Column(6), "sway_velocity_mps": Column(7)}
 TRAPS = {
-    "hsva: earth-fixed velocities called u and v": ("hsva", with_columns(HSVA, **EARTH), "velocity_frame", "earth-fixed"),
-    "hsva: rudder positive to port": ("hsva", with_columns(HSVA, rudder_angle_deg=Column(9)), "rudder_sign", "to port"),
+    "hsva: earth-fixed velocities called u and v": (
+        "hsva", with_columns(HSVA, **EARTH), "velocity_frame", "earth-fixed"),
+    "hsva: rudder positive to port": (
+        "hsva", with_columns(HSVA, rudder_angle_deg=Column(9)), "rudder_sign", "to port"),
     "hsva: 1/s for rpm": ("hsva", with_columns(HSVA, propeller_rate_rpm=Column(10)), "propeller_rate", "1/s"),
     "marin: earth-fixed velocities, without position": (
         "marin", with_columns(MARIN, **EARTH_MARIN), "velocity_frame", "earth-fixed"),
     "marin: earth-fixed velocities, with position": (
-        "marin", with_columns(MARIN, north_m=Column(2), east_m=Column(3), **EARTH_MARIN), "velocity_frame", "earth-fixed"),
-    "marin: rudder positive to port": ("marin", with_columns(MARIN, rudder_angle_deg=Column(10)), "rudder_sign", "to port"),
+        "marin", with_columns(MARIN, north_m=Column(2), east_m=Column(3), **EARTH_MARIN),
+        "velocity_frame", "earth-fixed"),
+    "marin: rudder positive to port": (
+        "marin", with_columns(MARIN, rudder_angle_deg=Column(10)), "rudder_sign", "to port"),
     "marin: rounded stamps that repeat": (
         "marin", replace(MARIN, time=replace(MARIN.time, rebuild=False)), "time_stamps", "rounded"),
 }  # fmt: skip

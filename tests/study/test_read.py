@@ -1,4 +1,4 @@
-"""Files go in as they are written by the world; what cannot be used is one line with file, line, column and value."""
+"""Files go in as the world writes them; what cannot be used is one line with file, line, column, value."""
 
 import tracemalloc
 

@@ -1,4 +1,5 @@
-"""Positions and velocities of a file brought to the chart and to the ship's own axes; what is missing is derived.
+"""Positions and velocities of a file brought to the chart and to the ship's own axes; what is missing is
+derived.
 
 north' = u cos psi - v sin psi        east' = u sin psi + v cos psi
 """
@@ -14,7 +15,7 @@ SMOOTH_S = 2.0  # a derivative is the slope of the line through this much time
 def chart(
     latitude_deg: np.ndarray, longitude_deg: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, dict[str, float]]:
-    """(north_m, east_m, datum): the plane that touches the earth at the first position; NaN where there is none."""
+    """(north_m, east_m, datum) on the plane that touches the earth at the first position; NaN without one."""
     places = list(zip(latitude_deg.tolist(), longitude_deg.tolist(), strict=True))
     good = [not (a != a or b != b or is_no_position(a, b)) for a, b in places]
     if not any(good):
@@ -58,7 +59,7 @@ def integral(time_s: np.ndarray, rate: np.ndarray) -> np.ndarray:
 
 
 def slope(time_s: np.ndarray, values: np.ndarray, width_s: float = SMOOTH_S) -> np.ndarray:
-    """d(values)/dt: the mean of the half `width_s` [s] ahead less the mean of the half behind, over their distance."""
+    """d(values)/dt: mean of the half `width_s` [s] ahead less that of the half behind, by their distance."""
     there = np.isfinite(values)
     out = np.full(values.shape, np.nan)
     if np.count_nonzero(there) < 2:

@@ -1,4 +1,4 @@
-"""The header of a file that comes without a map: contract names are taken, near misses refused, others named as unused."""
+"""A header without a map: contract names are taken, near misses refused, other columns named as unused."""
 
 import difflib
 from pathlib import Path
@@ -32,14 +32,14 @@ def column_names(path: Path) -> list[str]:
         names = Sheet(path, stream, Layout()).names
     if any(is_number(name) for name in names):
         raise DataError(
-            f"{path}: line 1 has numbers where column names should be ({', '.join(names)[:60]}). Add a header line, "
-            "or give a map with header = false and columns by number (--map)."
+            f"{path}: line 1 has numbers where column names should be ({', '.join(names)[:60]}). Add a "
+            "header line, or give a map with header = false and columns by number (--map)."
         )
     return names
 
 
 def unknown(path: Path, name: str) -> str:
-    """What to say of a column that the contract does not know; DataError when it is nearly one that it knows."""
+    """What to say of a column that the contract does not know; DataError when it is a slip of the pen."""
     near = nearest(name, ALLOWED)
     if near and difflib.SequenceMatcher(None, name, near).ratio() >= MISSPELT:
         raise DataError(

@@ -57,7 +57,7 @@ class Imported(NamedTuple):
 def import_voyage(
     path: str | Path, map_path: str | Path | None = None, ship_path: str | Path | None = None
 ) -> Imported:
-    """Reads a file, through a map if it has its own columns, and checks it, against a ship if one is given."""
+    """Reads a file, through a map if it has its own columns, and checks it, with a ship if one is given."""
     ship = load(ship_path) if ship_path else None
     voyage = read_voyage(path, read_map(Path(map_path)) if map_path else None)
     if ship:

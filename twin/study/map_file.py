@@ -1,4 +1,4 @@
-"""Reading a map from its TOML file; what is wrong in it is a SettingsError that says where. Format: docs/import.md."""
+"""A map from its TOML file (format: docs/import.md); a mistake in it is a SettingsError that says where."""
 
 import tomllib
 from collections.abc import Mapping
@@ -30,10 +30,11 @@ WORDS: dict[type, str] = {
     list: "a list",
 }
 KINDS: dict[str, tuple[type, ...]] = {
-    "skip_lines": (int,), "header": (bool,), "skip_after_header": (int,), "separator": (str,), "decimal": (str,),
-    "encoding": (str,), "missing": (list,), "column": (str, int, list), "unit": (str,), "format": (str,),
-    "rebuild": (bool, int, float), "sign": (int,), "offset": (int, float), "frame": (str,), "direction": (str,),
-    "despike": (bool,),
+    "skip_lines": (int,), "header": (bool,), "skip_after_header": (int,), "separator": (str,),
+    "decimal": (str,), "encoding": (str,), "missing": (list,), 
+    "column": (str, int, list), "unit": (str,), "format": (str,),
+    "rebuild": (bool, int, float), "sign": (int,), "offset": (int, float), "frame": (str,),
+    "direction": (str,), "despike": (bool,),
 }  # fmt: skip
 
 

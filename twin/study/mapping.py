@@ -29,7 +29,9 @@ class Layout:
 
 @dataclass(frozen=True)
 class TimeColumn:
-    """`[time]`: a number in `unit`, or text (`unit = "iso"` or a strptime `format`); `rebuild` makes it even."""
+    """`[time]`: a number in `unit`, or text (`unit = "iso"` or a strptime `format`); `rebuild` makes it
+    even.
+    """
 
     column: Key | tuple[Key, ...] = "time_s"
     unit: str = "s"

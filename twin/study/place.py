@@ -1,4 +1,4 @@
-"""Where the ship was and how she moved, on the chart and in her own axes; what is missing is derived and said."""
+"""Where the ship was and how she moved, on the chart and in her own axes; what is absent is derived."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -48,7 +48,7 @@ def turned(columns: Columns, by: Map) -> Columns:
 
 
 def derive(time_s: np.ndarray, columns: Columns) -> tuple[Columns, dict[str, str]]:
-    """Position from velocity, velocity from position, yaw rate from heading: what is absent, with how it was made."""
+    """Position from velocity, velocity from position, yaw rate from heading; second: what was made how."""
     columns, how = dict(columns), dict[str, str]()
     psi = np.radians(continuous(columns["heading_true_north_deg"], 360.0))
     if not present(columns, *CHART):

@@ -28,7 +28,7 @@ CONTROLS = ("rudder_angle_deg", "propeller_rate_rpm")
 
 @dataclass
 class Raw:
-    """A file's samples in border units, before anything is judged; `lines` is where each row stands in the file."""
+    """A file's samples in border units, before anything is judged; `lines`: where each row stands in it."""
 
     path: Path
     lines: np.ndarray
@@ -42,8 +42,9 @@ class Raw:
 def read_voyage(path: str | Path, by: Map | None = None) -> Voyage:
     """The voyage in an `.mcap` log or in a text file; `by` names a text file's own columns, units and signs.
 
-    Positions come as north and east, velocities in the ship's axes, headings in [0, 360). Absent velocities, yaw rate
-    or position are derived: `meta["derived"]` says how. `meta["notes"]` lists what was blanked or assumed.
+    Positions come as north and east, velocities in the ship's axes, headings in [0, 360). Absent velocities,
+    yaw rate or position are derived: `meta["derived"]` says how. `meta["notes"]` lists what was blanked or
+    assumed.
     """
     path = Path(path)
     if not path.is_file():
@@ -126,7 +127,7 @@ def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) 
 
 
 def finished(raw: Raw) -> Voyage:
-    """The voyage: rows without a time left out, implausible samples blanked, what is required there, the rest derived."""
+    """The voyage: rows without a time left out, implausible samples blanked, what is absent derived."""
     with_time(raw)
     refuse_backwards(raw.path, raw.lines, raw.time_s)
     if raw.rebuild is not False:
@@ -149,7 +150,8 @@ def with_time(raw: Raw) -> None:
     rows = int(np.count_nonzero(keep))
     if rows < FEWEST_ROWS:
         raise DataError(
-            f"{raw.path}: has {rows} rows with a time; at least {FEWEST_ROWS} are needed. Is it the right time column?"
+            f"{raw.path}: has {rows} rows with a time; at least {FEWEST_ROWS} are needed. Is it the right "
+            "time column?"
         )
     if rows < keep.size:
         raw.notes.append(
@@ -169,6 +171,6 @@ def require(raw: Raw) -> None:
         empty = [n for n in raw.columns if not present(raw.columns, n)]
         said = [f"{', '.join(empty)}: no usable sample"] * bool(empty) + raw.notes
         raise DataError(
-            f"{raw.path}: needs {', '.join(missing)}. {'; '.join(said)}{'. ' if said else ''}"
-            "Add the column, or say in a map which one it is (--map)."
+            f"{raw.path}: needs {', '.join(missing)}. {'; '.join(said)}{'. ' if said else ''}Add the "
+            "column, or say in a map which one it is (--map)."
         )

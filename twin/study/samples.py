@@ -23,7 +23,8 @@ def plausible(name: str, values: np.ndarray, lines: np.ndarray) -> tuple[np.ndar
     if outside.any():
         i = int(np.flatnonzero(outside)[0])
         notes.append(
-            f"{name}: {count(outside, lines)} outside [{ch.low:g}, {ch.high:g}], the first {values[i]:g}: wrong unit?"
+            f"{name}: {count(outside, lines)} outside [{ch.low:g}, {ch.high:g}], the first {values[i]:g}: "
+            "wrong unit?"
         )
     return np.where(outside, np.nan, values), notes
 
@@ -57,8 +58,9 @@ def from_zero(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
 def spikes(values: np.ndarray, period: float = 0.0) -> np.ndarray:
     """Places where one or two samples leave the line and come back, as a sensor does and a ship does not.
 
-    Away from the median of five by more than 10 sigma, by more than 6 usual steps from sample to sample (97 of 100 are
-    smaller; a wave that is sampled coarsely has large ones), and by more than five steps of the sensor's resolution.
+    Away from the median of five by more than 10 sigma, by more than 6 usual steps from sample to sample (97
+    of 100 are smaller; a wave that is sampled coarsely has large ones), and by more than five steps of the
+    sensor's resolution.
     """
     at = np.flatnonzero(np.isfinite(values))
     if at.size < FEWEST:

@@ -41,8 +41,8 @@ class Sheet:
         if self.names.count(key) > 1:
             places = [i + 1 for i, name in enumerate(self.names) if name == key]
             raise DataError(
-                f"{self.path}: the header names {key!r} {len(places)} times (columns {places}). Rename all but "
-                "one, or choose by number in a map."
+                f"{self.path}: the header names {key!r} {len(places)} times (columns {places}). Rename all "
+                "but one, or choose by number in a map."
             )
         if key not in self.names:
             raise DataError(

@@ -22,7 +22,7 @@ COMMA_NUMBER = re.compile(r"\s*[-+]?\d+,\d+([eE][-+]?\d+)?\s*")
 
 @dataclass(frozen=True)
 class Table:
-    """Columns of one file: `numbers` as float arrays, `texts` as lists; `lines` is each row's line in the file."""
+    """Columns of one file: `numbers` as float arrays, `texts` as lists; `lines`: each row's line in it."""
 
     path: Path
     lines: np.ndarray
@@ -97,7 +97,7 @@ def one(path: Path, key: Key, line: int, cell: str, layout: Layout) -> float:
         return float(cell.replace(",", ".") if layout.decimal == "," else cell)
     except ValueError:
         raise DataError(
-            f"{path}: line {line}, column {key!r}: {cell[:40]!r} is not a number. Correct it or leave the cell "
-            "empty; in a map, [file] missing = [...] lists cells that mean 'no sample', skip_after_header skips "
-            "a line of units."
+            f"{path}: line {line}, column {key!r}: {cell[:40]!r} is not a number. Correct it or leave the "
+            "cell empty; in a map, [file] missing = [...] lists cells that mean 'no sample', "
+            "skip_after_header skips a line of units."
         ) from None

@@ -1,4 +1,4 @@
-"""The clock of a file: stamps as numbers or as text, to seconds; and stamps that were rounded, made even again."""
+"""The clock of a file: stamps as numbers or as text, to seconds; rounded stamps made even again."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -48,7 +48,8 @@ def moment(path: Path, line: int, stamp: str, spec: TimeColumn) -> float:
     except ValueError:
         form = spec.format or "ISO 8601, such as 2024-05-17T08:30:00.25Z"
         raise DataError(
-            f"{path}: line {line}: the time {stamp!r} is not {form}. Correct it, or give its format in a map: "
+            f"{path}: line {line}: the time {stamp!r} is not {form}. Correct it, or give its format in a "
+            "map: "
             '[time] format = "%d.%m.%Y %H:%M:%S".'
         ) from None
     return (t if t.tzinfo else t.replace(tzinfo=UTC)).timestamp()
@@ -81,8 +82,8 @@ def refuse_backwards(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
 def rebuilt(path: Path, time_s: np.ndarray, step: bool | float) -> tuple[np.ndarray, str]:
     """Even stamps in place of rounded ones, and a sentence that says so.
 
-    The step is the given one [s], or the straight line through the stamps. Refused when a stamp lies farther from the
-    line than rounding explains: then rows are missing.
+    The step is the given one [s], or the straight line through the stamps. Refused when a stamp lies farther
+    from the line than rounding explains: then rows are missing.
     """
     k = np.arange(time_s.size)
     if step is True:
@@ -96,8 +97,9 @@ def rebuilt(path: Path, time_s: np.ndarray, step: bool | float) -> tuple[np.ndar
     worst, allowed = int(np.argmax(off)), rounding + step
     if off[worst] > allowed:
         raise DataError(
-            f"{path}: row {worst + 1}: the stamp {time_s[worst]:g} s lies {off[worst]:.3g} s from an even step of "
-            f"{step:.6g} s; rounding explains {allowed:.2g} s. Rows are missing, or the step is wrong: leave rebuild out."
+            f"{path}: row {worst + 1}: the stamp {time_s[worst]:g} s lies {off[worst]:.3g} s from an even "
+            f"step of {step:.6g} s; rounding explains {allowed:.2g} s. Rows are missing, or the step is "
+            "wrong: leave rebuild out."
         )
-    note = f"time stamps rebuilt with an even step of {step:.6g} s (the stamps are within {off.max():.2g} s of it)"
-    return time_s[0] + step * k, note
+    within = f"the stamps are within {off.max():.2g} s of it"
+    return time_s[0] + step * k, f"time stamps rebuilt with an even step of {step:.6g} s ({within})"

@@ -1,4 +1,4 @@
-"""Units a file may use, as factors to the unit that ends a channel's name; and how each scales from model to ship."""
+"""Units a file may use, as factors to the unit that ends a channel's name; how each scales to a ship."""
 
 from math import pi
 

@@ -16,7 +16,7 @@ NS = 1_000_000_000
 
 
 def write_voyage(voyage: Voyage, path: str | Path) -> None:
-    """Writes aside and renames: the file is whole, or it is not there. Missing samples are left out of their row."""
+    """Writes aside and renames: the file is whole or not there. Missing samples are left out of a row."""
     start_ns = round(moment_of(voyage.meta.get("start_time_utc")) * NS)
     names = sorted(voyage.columns)
     table = np.stack([voyage.columns[name] for name in names], axis=1)

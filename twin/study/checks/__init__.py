@@ -1,8 +1,9 @@
 """What a voyage says about itself before anyone believes it: signs, units, frames, clock, gaps.
 
-Each check is a function of a `View` that answers with one `Check`: what it saw, what it believes and what to do, with
-numbers. `ok` is True when nothing speaks against the data, also when the data cannot tell (the text says which). A
-check that can *prove* a mistake is `unusable`: `twin import` then refuses the file (exit 4) unless told to accept it.
+Each check is a function of a `View` that answers with one `Check`: what it saw, what it believes and what to
+do, with numbers. `ok` is True when nothing speaks against the data, also when the data cannot tell (the text
+says which). A check that can *prove* a mistake is `unusable`: `twin import` then refuses the file (exit 4)
+unless told to accept it.
 """
 
 from collections.abc import Callable
@@ -10,10 +11,12 @@ from collections.abc import Callable
 from twin.physics.ship import Ship
 from twin.study.checks.answer import Check
 from twin.study.checks.clock import time_gaps, time_stamps
-from twin.study.checks.controls import propeller_rate, rudder_sign, rudder_unit
-from twin.study.checks.motion import velocity_frame, yaw_rate
+from twin.study.checks.motion import velocity_frame
+from twin.study.checks.propeller import propeller_rate
+from twin.study.checks.rudder import rudder_sign, rudder_unit
 from twin.study.checks.samples import frozen, missing_samples, plausible_values, spikes
 from twin.study.checks.size import duration, ship_size
+from twin.study.checks.turning import yaw_rate
 from twin.study.checks.view import View
 from twin.study.checks.water import speed_log
 from twin.study.checks.wind import wind

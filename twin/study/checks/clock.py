@@ -20,9 +20,10 @@ def time_stamps(view: View) -> Check:
     if share > FEW:
         return wrong(
             name,
-            f"{100 * share:.0f} % of the time stamps repeat, the first at {t[np.flatnonzero(repeated)[0]]:g} s; steps of up to "
-            f"{steps.max():g} s beside a mean of {mean:.6g} s: the stamps are believed to be rounded. In the map: "
-            f"[time] rebuild = true (even steps of {mean:.6g} s), or give more digits.",
+            f"{100 * share:.0f} % of the time stamps repeat, the first at "
+            f"{t[np.flatnonzero(repeated)[0]]:g} s; steps of up to {steps.max():g} s beside a mean of "
+            f"{mean:.6g} s: the stamps are believed to be rounded. In the map: [time] rebuild = true (even "
+            f"steps of {mean:.6g} s), or give more digits.",
         )
     if repeated.any():
         i = int(np.flatnonzero(repeated)[0])
@@ -34,8 +35,8 @@ def time_stamps(view: View) -> Check:
     if scatter > UNEVEN:
         return doubtful(
             name,
-            f"the steps are uneven: {inside.min():.3g} to {inside.max():.3g} s, usually {usual:.3g} s. Were the stamps taken at "
-            "arrival? Log the sensor's own time.",
+            f"the steps are uneven: {inside.min():.3g} to {inside.max():.3g} s, usually {usual:.3g} s. "
+            "Were the stamps taken at arrival? Log the sensor's own time.",
         )
     return good(name, f"a sample every {usual:.6g} s, scatter {100 * scatter:.1f} % of a step.")
 
@@ -52,6 +53,6 @@ def time_gaps(view: View) -> Check:
     worst = int(gaps[np.argmax(steps[gaps])])
     return doubtful(
         name,
-        f"{gaps.size} gaps, {steps[gaps].sum():.4g} s in all, the longest {steps[worst]:.4g} s after {t[worst]:g} s. Nothing is "
-        "made up there; predictions are not run across them.",
+        f"{gaps.size} gaps, {steps[gaps].sum():.4g} s in all, the longest {steps[worst]:.4g} s after "
+        f"{t[worst]:g} s. Nothing is made up there; predictions are not run across them.",
     )

@@ -27,7 +27,7 @@ def missing_samples(view: View) -> Check:
 
 
 def hole(v: Voyage, name: str) -> str:
-    """The longest stretch without a sample of a channel that has some, if that is longer than it may be old."""
+    """The longest stretch without a sample of a channel that has some, if longer than it may be old."""
     at = np.flatnonzero(np.isfinite(v[name]))
     if not at.size:
         return ""

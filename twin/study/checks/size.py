@@ -24,7 +24,9 @@ def ship_size(view: View) -> Check:
     turning = tightest(view, length)
     draught = float(np.nanmedian(view.voyage["draught_mean_m"])) if view.voyage.has("draught_mean_m") else 0.0
     saw = f"Froude number {froude:.3f}, tightest turn r L/U = {turning:.2f} with L = {length:.4g} m"
-    other = f"Another ship's file, or a model's (then [scale] froude = ...)? {view.ship.name} is {length:.4g} m long."
+    other = (
+        f"Another ship's file, or a model's ([scale] froude = ...)? {view.ship.name} is {length:.4g} m long."
+    )
     if froude > FASTEST_FROUDE:
         return doubtful(name, f"{saw}: {speed:.3g} m/s is too fast for her. {other}")
     if turning > TIGHTEST_TURN:
@@ -37,7 +39,7 @@ def ship_size(view: View) -> Check:
 
 
 def tightest(view: View, length: float) -> float:
-    """The 99 % quantile of |r| L / U, means over a quarter of a ship length's time (3 s at least), under way."""
+    """The 99 % quantile of |r| L / U under way, means over a quarter of L / U (WAVE_S [s] at least)."""
     if not view.speed > 0.02:
         return 0.0
     first, last = view.windows(max(0.25 * length / view.speed, WAVE_S))
@@ -66,6 +68,7 @@ def duration(view: View) -> Check:
     if short:
         return doubtful(
             name,
-            f"{saw}: too short to judge a cause by. Use it beside other voyages; 20 minutes with manoeuvres are good.{calm}",
+            f"{saw}: too short to judge a cause by. Use it beside other voyages; 20 minutes with "
+            f"manoeuvres are good.{calm}",
         )
     return good(name, f"{saw}.{calm}")

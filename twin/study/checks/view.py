@@ -1,4 +1,4 @@
-"""A voyage as the checks look at it: once on an even grid, in SI, with windows over which motion is summed."""
+"""A voyage as the checks look at it: on an even grid, in SI, with windows that motion is summed over."""
 
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,4 +1,5 @@
-"""True wind, apparent wind and the ship's own motion make a triangle. Directions say where the wind comes from.
+"""True wind, apparent wind and the ship's own motion make a triangle. Directions say where the wind comes
+from.
 
 A e^{i alpha} = T e^{i (theta - psi)} + (u + i v)
 """
@@ -77,8 +78,9 @@ def triangle(name: str, view: View) -> Check:
     if relative_taken_as_true(t, h, a, b, view):
         return wrong(
             name,
-            "the true wind is the apparent wind, only turned: the ship's own speed was not taken away. In the map: leave "
-            "the true wind out (it is computed from the apparent one), or give the corrected one.",
+            "the true wind is the apparent wind, only turned: the ship's own speed was not taken away. In "
+            "the map: leave the true wind out (it is computed from the apparent one), or give the "
+            "corrected one.",
         )
     tried = []
     for text, fix, reading in MISTAKES:
@@ -104,7 +106,7 @@ def relative_taken_as_true(t: np.ndarray, h: np.ndarray, a: np.ndarray, b: np.nd
 
 
 def alone(name: str, view: View, true: bool) -> Check:
-    """One wind only: a true direction that turns with the bow was measured from the bow; one in radians stays small."""
+    """One wind only: a true direction that turns with the bow was measured from it; radians stay small."""
     column = "true_wind_direction_deg" if true else "apparent_wind_angle_deg"
     raw = view.voyage[column]
     raw = raw[np.isfinite(raw)]
@@ -122,8 +124,9 @@ def alone(name: str, view: View, true: bool) -> Check:
     if followed < -0.7:
         return wrong(
             name,
-            f"the wind direction turns {followed:.2f} times as the heading does: it is counted from the bow. In the map "
-            "call it apparent_wind_angle_deg (and its speed apparent_wind_speed_mps), or add the heading.",
+            f"the wind direction turns {followed:.2f} times as the heading does: it is counted from the "
+            "bow. In the map call it apparent_wind_angle_deg (and its speed apparent_wind_speed_mps), or "
+            "add the heading.",
         )
     return good(
         name,

@@ -1,4 +1,4 @@
-"""Do rudder and propeller act on this ship as their signs and units say?
+"""Does the rudder turn this ship as its sign and unit say?
 
     dr/dt = b U^2 delta - a U r - d |r| r + c   with b > 0: a rudder to starboard turns the ship to starboard
 
@@ -14,18 +14,10 @@ RUDDER_SHARE = 0.15  # the rudder must explain this share of the changes of yaw 
 HELD_RUDDER_DEG, HELD_TURN_DEG = 5.0, 30.0
 PROOF_SHARE = 0.5  # and this share to prove it
 LEAST_RUDDER_DEG = 0.7  # a ship that manoeuvres with less than this has it in radians
-SLOWEST_RPM = 20.0  # no propeller drives a ship with fewer turns
-ADVANCE = (0.08, 2.0)  # plausible J = U / (n D) of a ship under way
-
-ADVANCE_MISTAKES = (
-    (1.0 / 60.0, 'the turns are in 1/s (in the map: unit = "1/s")', "a larger"),
-    (np.pi / 30.0, 'the turns are in rad/s (in the map: unit = "rad/s")', "a larger"),
-    (60.0, "the turns are 60 times too large (converted twice)", "a smaller"),
-)
 
 
 def rudder_sign(view: View) -> Check:
-    """Which way the rudder turns the ship: where it is held over, or else by its share in the changes of yaw rate."""
+    """Which way the rudder turns the ship: where it is held over, or by its share in changes of yaw rate."""
     name = "rudder_sign"
     same, against = held_turns(view)
     if same + against and min(same, against) == 0:
@@ -33,22 +25,22 @@ def rudder_sign(view: View) -> Check:
             name, f"with the rudder held over the ship turns {same + against} times", same > 0, True
         )
     share, b = best_gain(view)
-    if share < RUDDER_SHARE:
-        text = f"the rudder explains {100 * share:.0f} % of the changes of yaw rate; a zigzag or a turn would show it."
-        return cannot_tell(name, text)
     saw = f"the rudder explains {100 * share:.0f} % of the changes of yaw rate"
+    if share < RUDDER_SHARE:
+        return cannot_tell(name, f"{saw}; a zigzag or a turn would show it.")
     return sign_seen(name, saw, b > 0.0, share > PROOF_SHARE)
 
 
 def sign_seen(name: str, saw: str, to_own_side: bool, proved: bool) -> Check:
     if to_own_side:
         return good(name, f"{saw}, always to the rudder's own side.")
-    text = f"{saw}, to the other side: it is believed to be positive to port. In the map: sign = -1 for rudder_angle_deg."
+    believed = "it is believed to be positive to port. In the map: sign = -1 for rudder_angle_deg."
+    text = f"{saw}, to the other side: {believed}"
     return wrong(name, text) if proved else doubtful(name, text)
 
 
 def held_turns(view: View) -> tuple[int, int]:
-    """How often a rudder held over turned the ship by HELD_TURN_DEG or more: (to its own side, to the other)."""
+    """How often a rudder held over turned the ship by HELD_TURN_DEG: (to its own side, to the other)."""
     rudder = view.even["rudder_angle_deg"]
     most = float(np.nanmax(np.abs(rudder)))
     if not most >= HELD_RUDDER_DEG:
@@ -106,45 +98,7 @@ def rudder_unit(view: View) -> Check:
         )
     return wrong(
         name,
-        f"the rudder stays within {most:.2g} 'deg' while the heading swings {swung:.0f} deg: it is believed to be in "
+        f"the rudder stays within {most:.2g} 'deg' while the heading swings {swung:.0f} deg: it is believed "
+        "to be in "
         'radians. In the map: unit = "rad" for it.',
-    )
-
-
-def propeller_rate(view: View) -> Check:
-    """Turns against speed: by the advance ratio J = U / (n D) of a known ship, else by what any propeller does."""
-    name = "propeller_rate"
-    n, speed = np.abs(view.si("propeller_rate_rpm")), np.abs(view.velocity)
-    under_way = (n > 0.5 / 60.0) & (speed > 0.5 * view.speed) & (view.velocity.real > 0.0)
-    if np.count_nonzero(under_way) < 10 or view.speed < 0.05:
-        return cannot_tell(name, "the ship is hardly ever under way with her propeller turning.")
-    rate, way = float(np.median(n[under_way])), float(np.median(speed[under_way]))
-    if view.ship is not None:
-        return advance(name, way, rate, float(view.ship.D_P))
-    if 60.0 * rate < SLOWEST_RPM:
-        return wrong(
-            name,
-            f"the ship makes {way:.2f} m/s with {60 * rate:.3g} turns a minute, {way / rate:.1f} m a turn: no propeller does; "
-            'the column is believed to be in 1/s. In the map: unit = "1/s" for it (with --ship this is computed).',
-        )
-    return good(
-        name,
-        f"{60 * rate:.3g} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked closer.",
-    )
-
-
-def advance(name: str, way: float, rate: float, diameter: float) -> Check:
-    low, high = ADVANCE
-    j = way / (rate * diameter)
-    saw = f"advance ratio J = U/(nD) = {way:.3g}/({rate:.3g} x {diameter:.3g}) = {j:.3g}"
-    if low <= j <= high:
-        return good(name, f"{saw}, as a ship under way has it.")
-    for factor, said, other in ADVANCE_MISTAKES:
-        if 0.25 <= j * factor <= 1.4:
-            return wrong(
-                name,
-                f"{saw}; {j * factor:.2g} if {said}: that is believed, unless the file is of {other} ship.",
-            )
-    return doubtful(
-        name, f"{saw}, expected {low:g} to {high:g}: another ship's file, a wrong unit, or a wrong diameter?"
     )

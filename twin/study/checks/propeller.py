@@ -1,0 +1,57 @@
+"""Do the propeller's turns fit the ship's speed?    J = U / (n D)"""
+
+import numpy as np
+
+from twin.study.checks.answer import Check, cannot_tell, doubtful, good, wrong
+from twin.study.checks.view import View
+
+SLOWEST_RPM = 20.0  # no propeller drives a ship with fewer turns
+ADVANCE = (0.08, 2.0)  # plausible J = U / (n D) of a ship under way
+
+ADVANCE_MISTAKES = (
+    (1.0 / 60.0, 'the turns are in 1/s (in the map: unit = "1/s")', "a larger"),
+    (np.pi / 30.0, 'the turns are in rad/s (in the map: unit = "rad/s")', "a larger"),
+    (60.0, "the turns are 60 times too large (converted twice)", "a smaller"),
+)
+
+
+def propeller_rate(view: View) -> Check:
+    """Turns against speed: by the advance ratio of a known ship, else by what any propeller does."""
+    name = "propeller_rate"
+    n, speed = np.abs(view.si("propeller_rate_rpm")), np.abs(view.velocity)
+    under_way = (n > 0.5 / 60.0) & (speed > 0.5 * view.speed) & (view.velocity.real > 0.0)
+    if np.count_nonzero(under_way) < 10 or view.speed < 0.05:
+        return cannot_tell(name, "the ship is hardly ever under way with her propeller turning.")
+    rate, way = float(np.median(n[under_way])), float(np.median(speed[under_way]))
+    if view.ship is not None:
+        return advance(name, way, rate, float(view.ship.D_P))
+    if 60.0 * rate < SLOWEST_RPM:
+        return wrong(
+            name,
+            f"the ship makes {way:.2f} m/s with {60 * rate:.3g} turns a minute, {way / rate:.1f} m a turn: "
+            "no propeller does; "
+            'the column is believed to be in 1/s. In the map: unit = "1/s" for it (with --ship this is '
+            "computed).",
+        )
+    return good(
+        name,
+        f"{60 * rate:.3g} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked "
+        "closer.",
+    )
+
+
+def advance(name: str, way: float, rate: float, diameter: float) -> Check:
+    low, high = ADVANCE
+    j = way / (rate * diameter)
+    saw = f"advance ratio J = U/(nD) = {way:.3g}/({rate:.3g} x {diameter:.3g}) = {j:.3g}"
+    if low <= j <= high:
+        return good(name, f"{saw}, as a ship under way has it.")
+    for factor, said, other in ADVANCE_MISTAKES:
+        if 0.25 <= j * factor <= 1.4:
+            return wrong(
+                name,
+                f"{saw}; {j * factor:.2g} if {said}: that is believed, unless the file is of {other} ship.",
+            )
+    return doubtful(
+        name, f"{saw}, expected {low:g} to {high:g}: another ship's file, a wrong unit, or a wrong diameter?"
+    )

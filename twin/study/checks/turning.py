@@ -1,0 +1,51 @@
+"""Do heading and yaw rate tell of the same turning?    d psi/dt = r, compared as sums over windows."""
+
+import numpy as np
+
+from twin.study.checks.answer import Check, cannot_tell, doubtful, good, wrong
+from twin.study.checks.view import View, fit, rms
+from twin.study.units import DEG_PER_RAD
+
+RATES = (
+    (1.0, "", ""),
+    (-1.0, "it is positive to port", "sign = -1"),
+    (DEG_PER_RAD, "it is in rad/s", 'unit = "rad/s"'),
+    (-DEG_PER_RAD, "it is in rad/s and positive to port", 'unit = "rad/s", sign = -1'),
+    (1.0 / 60.0, "it is in deg/min", 'unit = "deg/min"'),
+    (-1.0 / 60.0, "it is in deg/min and positive to port", 'unit = "deg/min", sign = -1'),
+    (1.0 / DEG_PER_RAD, "the heading is in radians", 'unit = "rad" for the heading'),
+    (1e-3, "the time is in milliseconds", '[time] unit = "ms"'),
+    (60.0, "the time is in minutes", '[time] unit = "min"'),
+    (3600.0, "the time is in hours", '[time] unit = "h"'),
+)
+
+
+def yaw_rate(view: View) -> Check:
+    """The heading's change against the summed yaw rate."""
+    name = "yaw_rate"
+    if view.derived("yaw_rate_degps"):
+        return cannot_tell(name, "no yaw rate was recorded; it is derived from the heading.")
+    first, last = view.windows(np.clip(view.voyage.duration_s / 50.0, 5.0 * view.step_s, 30.0))
+    swung = view.psi[last] - view.psi[first]
+    summed = view.summed(view.si("yaw_rate_degps"), first, last)
+    (k, _), (error, _), left = fit([summed, np.ones(summed.size)], swung)
+    turn = np.degrees(rms(swung))
+    if not np.isfinite(k) or (turn < 0.5 and np.degrees(rms(summed)) < 5.0):
+        return cannot_tell(name, f"the heading changes by {turn:.2g} deg in a window; a turn would show it.")
+    ratio, said, fix = min(RATES, key=lambda c: abs(np.log(abs(k / c[0]))) if k * c[0] > 0 else np.inf)
+    saw = f"the heading turns {k:.3g} times the summed yaw rate"
+    if left > 0.5 or error > 0.3 * abs(k):
+        if rms(summed) < 3.0 * rms(swung) and turn < 2.0:
+            return cannot_tell(
+                name, f"the heading changes by {turn:.2g} deg in a window, too little beside the noise."
+            )
+        return doubtful(
+            name, f"heading and yaw rate do not tell of the same turning ({100 * left:.0f} % of it is left)."
+        )
+    if 0.75 < k < 1.33:
+        return good(name, f"{saw} (1 expected).")
+    if abs(np.log(abs(k / ratio))) < 0.25:
+        return wrong(name, f"{saw}: {said}, that is believed. In the map: {fix}.")
+    return doubtful(
+        name, f"{saw}, and no known unit explains it. Look at the units of yaw rate, heading and time."
+    )
