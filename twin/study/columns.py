@@ -68,7 +68,10 @@ def columns(
     acceleration, reading = respond(track, model)
     A = np.zeros((len(track), 3, len(unknowns)))
     R = np.zeros((len(track), 8, len(unknowns)))
+    missing = track.missing()
     for j, unknown in enumerate(unknowns):
+        if unknown.owner != "core" and missing.intersection(catalogue[unknown.owner].needs):
+            continue  # without its input the effect does nothing on this track
         here = (at or {}).get(unknown.label)
         step = _step(unknown, here)
         a, r = respond(track, changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue))

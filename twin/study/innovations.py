@@ -8,7 +8,7 @@ equations A = G'G, b = G'e of every later question. Tracks are cut into segments
 Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy & O'Hagan (2001) (model discrepancy).
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -42,8 +42,9 @@ class Floor:
     flow: float = 0.004
     sensor: float = 1.3
 
-    def scaled(self, factor: float) -> "Floor":
-        return replace(self, share=tuple(factor * s for s in self.share), white=factor * self.white)
+    def scaled(self, factor: float = 1.0, white: float = 1.0, flow: float = 1.0) -> "Floor":
+        share = tuple(factor * s for s in self.share)
+        return replace(self, share=share, white=white * self.white, flow=flow * self.flow)
 
 
 @dataclass(frozen=True)
@@ -59,13 +60,16 @@ class Linear:
     R: np.ndarray  # (N, 8, P) float32
     busy: np.ndarray  # (N, 3): acceleration that hull, rudder and propeller cause
     model: Model = field(repr=False)
+    doubt: np.ndarray | float = 0.0  # (N, 3): further slow acceleration error, of an effect whose form is only roughly known
 
 
-def linearise(track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]]) -> Linear:
-    """Everything about one track that does not depend on the floor."""
+def linearise(
+    track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None
+) -> Linear:
+    """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model already holds)."""
     h, n = track.h, len(track)
     _, reading = respond(track, model)
-    A, R = columns(track, model, unknowns, catalogue)
+    A, R = columns(track, model, unknowns, catalogue, at)
     U = float(model.ship.scale("speed"))
     current = [Unknown("Current", axis, "m/s", 0.0, 0.02 * U, -U, U) for axis in ("north", "east")]
     flow, _ = columns(track, _without_current(model), current, {"Current": find("Current")})
@@ -156,62 +160,65 @@ def segments(lines: Sequence[Linear]) -> list[tuple[int, int, int]]:
     return out
 
 
-def innovate(lines: Sequence[Linear], floor: Floor, unknowns: slice | np.ndarray = slice(None)) -> Normal:
-    """Filter every segment of every track side by side and gather their normal equations."""
+def innovate(lines: Sequence[Linear], floors: Sequence[Floor]) -> list[Normal]:
+    """Filter every segment of every track, under every floor, side by side; the normal equations for each floor."""
     where = segments(lines)
-    S, T = len(where), max(b - a for _, a, b in where)
-    P = lines[0].A[:, :, unknowns].shape[2]
+    T, S, W = max(b - a for _, a, b in where), len(where), len(floors)
+    P = lines[0].A.shape[2]
 
-    def stack(pick: "object", shape: tuple[int, ...], fill: float = 0.0, kind: type = float) -> np.ndarray:
-        out = np.full((T, S, *shape), fill, kind)
+    def stack(pick: Callable[[Linear], np.ndarray], fill: float = 0.0) -> np.ndarray:
+        first = pick(lines[0])
+        out = np.full((T, S, *first.shape[1:]), fill, first.dtype)
         for k, (i, a, b) in enumerate(where):
-            out[: b - a, k] = pick(lines[i])[a:b]  # type: ignore[operator]
+            out[: b - a, k] = pick(lines[i])[a:b]
         return out
 
-    F, H = stack(lambda x: x.F, (STATES, STATES)), stack(lambda x: x.H, (8, STATES))
-    e = stack(lambda x: x.e, (8,), np.nan)
-    defect = stack(lambda x: x.defect, (6,))
-    A = stack(lambda x: x.A[:, :, unknowns], (3, P), kind=np.float32)
-    R = stack(lambda x: x.R[:, :, unknowns], (8, P), kind=np.float32)
-    turn = stack(_turn, (3, 3))
-    noise = np.stack([(floor.sensor * lines[i].track.sd) ** 2 for i, _, _ in where])  # (S, 8)
-    slow = stack(lambda x: _slow(x, floor), (3,))
-    h = np.array([lines[i].track.h for i, _, _ in where])
+    F, H, e = stack(lambda x: x.F), stack(lambda x: x.H), stack(lambda x: x.e, np.nan)
+    defect, turn = stack(lambda x: x.defect), stack(_turn)
+    A, R = stack(lambda x: x.A), stack(lambda x: x.R)
+    slow = np.concatenate([stack(lambda x, f=f: _slow(x, f)) for f in floors], axis=1)  # type: ignore[misc]
+    row = np.tile(np.arange(S), W)  # every floor runs over all segments
     model = lines[0].model
-    time = np.array([float(lines[i].model.ship.scale("time")) for i, _, _ in where])
+    h = np.array([lines[i].track.h for i, _, _ in where])[row]
+    time, speed = float(model.ship.scale("time")), float(model.ship.scale("speed"))
+    scatter = np.stack([lines[i].track.sd for i, _, _ in where])
+
+    def by_floor(value: Callable[[Floor], "float | np.ndarray"]) -> np.ndarray:
+        return np.repeat(np.array([value(f) for f in floors], dtype=float), S, axis=0)
+
+    noise = (by_floor(lambda f: f.sensor)[:, None] * scatter[row]) ** 2  # (SW, 8)
+    flow = (by_floor(lambda f: f.flow) * speed) ** 2
+    fast = (by_floor(lambda f: f.white)[:, None] * standard(model)) ** 2 * (h * time)[:, None]  # velocity variance in one step
     keep_b, keep_c = 1.0 - np.exp(-2.0 * h / (MEMORY_B * time)), 1.0 - np.exp(-2.0 * h / (MEMORY_C * time))
-    flow = floor.flow * float(model.ship.scale("speed"))
-    fast = (floor.white * standard(model)) ** 2 * (h * time)[:, None]  # (S, 3) variance of velocity in one step
-    P0 = _start(lines, where, slow[0], flow)
-    X = np.zeros((S, STATES, 1 + P))
-    C = P0
-    eye, sums = np.arange(STATES), _Sums(S, P)
+    C, X = _start(model, slow[0], flow), np.zeros((S * W, STATES, 1 + P))
+    eye, sums = np.arange(STATES), _Sums(S * W, P)
+    h_ = h[:, None, None]
     for k in range(T):
-        here = np.isfinite(e[k])
-        Hk = H[k] * here[:, :, None]
+        ok = np.isfinite(e[k])[row]
+        Hk = H[k][row] * ok[:, :, None]
         E = -(Hk @ X)
-        E[:, :, 0] += np.where(here, e[k], 0.0)
-        E[:, :, 1:] -= np.where(here[:, :, None], R[k], 0.0)
-        CH = C @ Hk.transpose(0, 2, 1)
-        Sk = Hk @ CH
-        Sk[:, eye[:8], eye[:8]] += np.where(here, noise, 1.0)
+        E[:, :, 0] += np.where(ok, e[k][row], 0.0)
+        E[:, :, 1:] -= R[k][row] * ok[:, :, None]
+        HC = Hk @ C
+        Sk = HC @ Hk.transpose(0, 2, 1)
+        Sk[:, eye[:8], eye[:8]] += np.where(ok, noise, 1.0)
         L = np.linalg.cholesky(Sk)
-        W = np.linalg.solve(L, np.concatenate([E, Hk @ C], axis=2))  # whitened innovations | whitened H C
-        white, V = W[:, :, : 1 + P], W[:, :, 1 + P :]
-        sums.add(white, L, here)
+        white = np.linalg.solve(L, np.concatenate([E, HC], axis=2))
+        V = white[:, :, 1 + P :]
+        sums.add(white[:, :, : 1 + P], L, ok)
         VT = V.transpose(0, 2, 1)
-        X = X + VT @ white
-        C = C - VT @ V
-        X = F[k] @ X
-        X[:, :6, 0] += defect[k]
-        hA = h[:, None, None] * A[k]
-        X[:, 3:6, 1:] += hA
-        X[:, 0:3, 1:] += 0.5 * h[:, None, None] * (turn[k] @ hA)
-        C = F[k] @ C @ F[k].transpose(0, 2, 1)
+        Fk = F[k][row]
+        X = Fk @ (X + VT @ white[:, :, : 1 + P])
+        X[:, :6, 0] += defect[k][row]
+        push = h_ * A[k][row]
+        X[:, 3:6, 1:] += push
+        X[:, 0:3, 1:] += 0.5 * h_ * (turn[k][row] @ push)
+        C = Fk @ (C - VT @ V) @ Fk.transpose(0, 2, 1)
         C[:, eye[3:6], eye[3:6]] += fast
         C[:, eye[6:9], eye[6:9]] += keep_b[:, None] * slow[k]
-        C[:, eye[9:], eye[9:]] += (keep_c * flow**2)[:, None]
-    return sums.normal(tuple(where))
+        C[:, eye[9:], eye[9:]] += (keep_c * flow)[:, None]
+    whole = sums.normal(tuple(where) * W)
+    return [whole.only(np.arange(S * W) // S == w) for w in range(W)]
 
 
 class _Sums:
@@ -253,15 +260,13 @@ def _turn(line: Linear) -> np.ndarray:
 def _slow(line: Linear, floor: Floor) -> np.ndarray:
     """(N, 3) variance of the slowly varying acceleration error."""
     calm = floor.calm * standard(line.model)
-    return (np.array(floor.share) ** 2) * (line.busy**2 + calm**2)
+    return (np.array(floor.share) ** 2) * (line.busy**2 + calm**2) + np.square(line.doubt)
 
 
-def _start(lines: Sequence[Linear], where: Sequence[tuple[int, int, int]], slow: np.ndarray, flow: float) -> np.ndarray:
+def _start(model: Model, slow: np.ndarray, flow: np.ndarray) -> np.ndarray:
     """(S, 11, 11) covariance at the start of each segment: the motion nearly unknown, b and c as they usually are."""
-    ship = lines[0].model.ship
+    ship = model.ship
     L, U, time = float(ship.L_pp), float(ship.scale("speed")), float(ship.scale("time"))
     motion = np.array([0.05 * L, 0.05 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time]) ** 2
-    C = np.zeros((len(where), STATES, STATES))
-    for k in range(len(where)):
-        C[k][np.diag_indices(STATES)] = np.concatenate([motion, slow[k], [flow**2, flow**2]])
-    return C
+    diagonal = np.column_stack([np.tile(motion, (len(slow), 1)), slow, flow, flow])
+    return np.eye(STATES) * diagonal[:, None, :]

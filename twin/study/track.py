@@ -23,6 +23,7 @@ MEASURED = {  # reading -> channel
 READINGS = tuple(MEASURED)
 STATE = ("x", "y", "psi", "u", "v", "r")
 STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail her own length
+JERK = 0.15  # rad in (L/U_0)^3: how suddenly a ship turns; what is faster is the sea's doing
 LONGEST_HOLD_S = 5.0  # a control that is missing for longer breaks the track
 
 
@@ -51,7 +52,8 @@ class Track:
 
     def missing(self) -> set[str]:
         """Fields of Situation that were not measured: effects that need one are switched off."""
-        return {name for name in WEATHER if name not in self.weather}
+        unread = {name for name, column in zip(READINGS, self.measured.T, strict=True) if not np.isfinite(column).any()}
+        return {name for name in WEATHER if name not in self.weather} | unread
 
     def part(self, first: int, last: int) -> "Track":
         """Grid steps first <= k < last."""
@@ -129,7 +131,7 @@ def _smooth_motion(measured: np.ndarray, h: float, ship: Ship) -> tuple[np.ndarr
     """The path of least jerk through the readings (N, 6), and the scatter of the readings about it (8,)."""
     x, y, psi, u, v, r, u_r, v_r = measured.T
     time, speed = float(ship.scale("time")), float(ship.scale("speed"))
-    turn = (1.0 / time**3) ** 2 * time * h**5  # what third differences of heading do by themselves: (rad)^2
+    turn = (JERK / time**3) ** 2 * time * h**5  # what third differences of heading do by themselves: (rad)^2
     sd = {name: _scatter(column) for name, column in zip(READINGS, measured.T, strict=True)}
     floor = dict(x=1e-4 * ship.L_pp, y=1e-4 * ship.L_pp, psi=2e-4, r=1e-3 / time)
     floor |= dict.fromkeys(("u", "v", "u_r", "v_r"), 1e-3 * speed)

@@ -1,0 +1,97 @@
+"""From voyages and a ship file to a case that can be judged: tracks, candidates, what is known beforehand."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from twin.errors import DataError
+from twin.physics.effect import Effect
+from twin.physics.effects import catalogue as known_effects
+from twin.physics.model import Model
+from twin.physics.ship import Ship
+
+from .columns import Unknown, effect_unknowns
+from .innovations import Floor, Linear, innovate, linearise
+from .nuisance import TEMPER, from_references, from_ship, instruments, nuisance_unknowns, temper_of
+from .search import ODDS, ODDS_MEASURED, Case, settle
+from .structure import structural_floor
+from .track import Track, track
+from .voyage import Voyage
+
+Progress = Callable[[str], None]
+
+
+def stored_floor(ship: Ship) -> Floor | None:
+    """The structural floor that calibration left in the ship file."""
+    table = ship.notes.get("structural", {}).get("floor")
+    return Floor(**(dict(table) | {"share": tuple(table["share"])})) if table else None
+
+
+def assemble(
+    voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage] = (), progress: Progress = lambda text: None
+) -> Case:
+    """Everything `search` needs; DataError when the voyages cannot be used at all."""
+    if not voyages:
+        raise DataError("no voyage given. Name at least one file with measurements.")
+    model, catalogue = Model.of(ship), known_effects()
+    progress("smoothing tracks")
+    tracks = tuple(track(v, ship) for v in voyages)
+    candidates = judgeable(tracks, model, catalogue)
+    effects = tuple(u for name in candidates for u in effect_unknowns(catalogue[name], model))
+    nuisance = nuisance_unknowns(model, catalogue)
+    core = [u for u in nuisance if u.owner == "core"]
+    extra = [u for u in instruments(model, catalogue) if u.owner not in candidates]
+    unknowns = (*core, *effects, *extra)
+    floor, temper = stored_floor(ship) or Floor(), float(ship.notes.get("structural", {}).get("temper", TEMPER))
+    if references:
+        progress("reading the reference voyages")
+        lines = [_line(track(v, ship), model, nuisance, catalogue) for v in references]
+        if stored_floor(ship) is None:
+            progress("finding the structural floor")
+            floor = structural_floor(lines, nuisance)
+        temper = temper_of(innovate(lines, [floor])[0], nuisance)
+        known = from_references(lines, nuisance, floor, temper)
+    else:
+        known = from_ship(model, nuisance)
+    progress("linearising")
+    case = Case(
+        tracks, model, catalogue, candidates, unknowns, effects, known, floor, temper, _odds(tracks, candidates, ship),
+        tuple(_line(t, model, unknowns, catalogue) for t in tracks),
+    )  # fmt: skip
+    return settle(case)
+
+
+def judgeable(tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]) -> tuple[str, ...]:
+    """Effects whose inputs at least one voyage holds, and that the ship does not have yet."""
+    present = {type(e).__name__ for e in model.effects}
+    return tuple(name for name in catalogue if name not in present and not unjudged_because(name, tracks, model, catalogue))
+
+
+def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]) -> tuple[str, ...]:
+    """The inputs or particulars for want of which this effect cannot be judged on any of the voyages."""
+    effect = catalogue[name]
+    lacking = [tuple(n for n in effect.needs if n in t.missing()) for t in tracks]
+    if all(lacking):
+        return min(lacking, key=len)
+    return tuple(n for n in effect.needs_ship if getattr(model.ship, n, None) is None)
+
+
+def _line(t: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]]) -> Linear:
+    here, _ = model.without_inputs(t.missing())
+    return linearise(t, here, unknowns, catalogue)
+
+
+def _odds(tracks: Sequence[Track], candidates: Sequence[str], ship: Ship) -> dict[str, float]:
+    """Prior odds of each candidate: higher where its cause was measured to be strong."""
+    strong = {
+        "Wind": _typical(tracks, "wind_speed") > max(8.0 * min(1.0, float(ship.U_0) / 8.0), 0.5),
+        "WaveDrift": _typical(tracks, "H_s") > 0.008 * float(ship.L_pp),
+        "ShallowWater": _typical(tracks, "depth", np.nanmin) < 3.0 * float(ship.T),
+        "Bank": min(_typical(tracks, "bank_port", np.nanmin), _typical(tracks, "bank_starboard", np.nanmin)) < 6.0 * float(ship.B),
+    }
+    return {name: ODDS_MEASURED if strong.get(name) else ODDS for name in candidates}
+
+
+def _typical(tracks: Sequence[Track], name: str, of: Callable[[np.ndarray], float] = np.nanmedian) -> float:
+    values = [of(t.weather[name]) for t in tracks if name in t.weather]
+    return float(max(values)) if values and of is np.nanmedian else float(min(values)) if values else np.nan

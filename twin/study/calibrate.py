@@ -1,0 +1,215 @@
+"""`twin calibrate`: fits the core to reference voyages, and learns what a model of this kind still leaves unexplained."""
+
+import argparse
+import datetime
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from twin.physics.effects import catalogue
+from twin.physics.model import Model
+from twin.physics.ship import Ship, load, save
+
+from .columns import Unknown
+from .compare import plain
+from .fit import Fit, fit
+from .import_voyage import write_json
+from .innovations import Floor
+from .nuisance import nuisance_unknowns, temper_of
+from .openloop import HORIZONS_S, predict
+from .sailed import Sailed, fed, read_all
+from .structure import structural_floor
+from .track import Track
+
+SCHEMA_VERSION = 1
+UNEXCITED = 0.1  # a derivative of whose prior variance the voyages took away less than this keeps its prior
+EPILOG = """example:
+  twin calibrate calm1.mcap calm2.mcap zigzag.mcap --ship alma.toml -o alma2.toml
+
+Reference voyages are ones on which nothing was wrong and the weather was calm: zigzags, circles, speed changes. Without --held-out
+the last third of the voyages (or of a single voyage) is held back to measure the error. The standard errors, and the structural
+error that remains, are stored in the ship file: they keep an imperfect model from being called a missing effect.
+Exit code 4: a voyage cannot be used; 5: the ship file is not valid.
+"""
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """The calibrated ship, and the numbers of how it came about."""
+
+    ship: Ship
+    result: dict[str, Any]
+
+
+def calibrate(
+    fitted: Sequence[Sailed], held_out: Sequence[tuple[Track, int]], ship: Ship, progress: Callable[[str], None] = lambda text: None
+) -> Calibrated:
+    """Fit the core to the tracks; `held_out`: tracks with the first grid step that was not used for the fit."""
+    model, known = Model.of(ship), catalogue()
+    unknowns = tuple(_prior(u, ship) for u in nuisance_unknowns(model, known))
+    tracks = [s.track for s in fitted]
+    progress("fitting the core")
+    found = fit(tracks, model, unknowns, known, Floor(), temper=3.0, rounds=4)
+    progress("finding the structural floor")
+    floor = structural_floor(found.lines, unknowns)
+    temper = temper_of(found.normal, unknowns)
+    progress("fitting again above the floor")
+    found = fit(tracks, found.model, unknowns, known, floor, temper=temper, rounds=4)
+    after = _calibrated(ship, found, floor, temper, [s.provenance() for s in fitted])
+    before, behind = (_errors(m, held_out) for m in (model, Model.of(after)))
+    regimes = _by_regime(Model.of(after), held_out)
+    after.notes["structural"]["held_out"] = behind  # type: ignore[index]
+    after.notes["structural"]["by_regime"] = regimes  # type: ignore[index]
+    unexcited = [u.name for u, g in zip(unknowns, found.gained, strict=True) if u.owner == "core" and g < UNEXCITED]
+    result = {
+        "schema_version": SCHEMA_VERSION,
+        "ship": ship.name,
+        "derivatives": [
+            {"name": u.name, "before": float(getattr(ship.derivatives, u.name)), "value": float(getattr(after.derivatives, u.name)),
+             "sd": float(s), "excited": bool(g >= UNEXCITED)}
+            for u, s, g in zip(unknowns, found.sd, found.gained, strict=True) if u.owner == "core"
+        ],
+        "unexcited": unexcited,
+        "instruments": _instruments(unknowns, found),
+        "floor": asdict(floor), "temper": temper, "by_regime": regimes,
+        "held_out": [b | {"before_m": a["position_m"], "before_deg": a["heading_deg"]} for a, b in zip(before, behind, strict=True)],
+    }  # fmt: skip
+    return Calibrated(after, plain(result))
+
+
+def _prior(unknown: Unknown, ship: Ship) -> Unknown:
+    """A derivative that was calibrated before keeps the prior that it had then, so that no voyage counts twice."""
+    entry = ship.notes.get("derivatives", {}).get(unknown.name, {}) if unknown.owner == "core" else {}
+    centre = entry.get("prior_value") if isinstance(entry, dict) else None
+    return unknown if centre is None else replace(unknown, centre=float(centre))
+
+
+def _calibrated(ship: Ship, found: Fit, floor: Floor, temper: float, voyages: list[dict[str, Any]]) -> Ship:
+    """The ship with the fitted derivatives, their standard errors and priors, and what remains."""
+    values = {
+        u.name: float(v) if g >= UNEXCITED else u.centre
+        for u, v, g in zip(found.unknowns, found.value, found.gained, strict=True)
+        if u.owner == "core"
+    }
+    today = datetime.date.today().isoformat()
+    after = ship.with_derivatives(**values)
+    notes = dict(ship.notes)
+    notes["derivatives"] = dict(notes.get("derivatives", {})) | {
+        u.name: {"value": values[u.name], "unit": u.unit, "sd": float(s), "prior_value": u.centre, "prior_sd": u.sd,
+                 "source": f"calibrated {today}" if g >= UNEXCITED else "prior kept: the reference voyages do not excite it"}
+        for u, s, g in zip(found.unknowns, found.sd, found.gained, strict=True) if u.owner == "core"
+    }  # fmt: skip
+    notes["structural"] = {
+        "floor": plain(asdict(floor)), "temper": temper, "date": today, "voyages": voyages,
+        "labels": [u.label for u in found.unknowns],
+        "values": [values.get(u.name, float(v)) if u.owner == "core" else float(v) for u, v in zip(found.unknowns, found.value, strict=True)],
+        "covariance": [[float(c) for c in row] for row in found.covariance],
+    }  # fmt: skip
+    return replace(after, notes=notes)
+
+
+def _instruments(unknowns: Sequence[Unknown], found: Fit) -> list[dict[str, Any]]:
+    """Usual errors of instruments that are clearly not zero."""
+    return [
+        {"name": u.label, "value": float(v), "sd": float(s), "unit": u.unit}
+        for u, v, s in zip(unknowns, found.value, found.sd, strict=True)
+        if u.owner != "core" and abs(v) > 4.0 * s
+    ]
+
+
+def _errors(model: Model, held_out: Sequence[tuple[Track, int]]) -> list[dict[str, float]]:
+    """Mean open-loop errors by horizon on what was held out."""
+    out = []
+    for horizon in HORIZONS_S:
+        position, heading = [], []
+        for track, first in held_out:
+            windows = predict(track, fed(model, track)[0], [horizon], leads=1)
+            k = windows.at(horizon)
+            ok = windows.valid[k] & (windows.start >= first)
+            errors = windows.errors()
+            position.append(errors["position"][k][ok])
+            heading.append(errors["heading"][k][ok])
+        some = sum(p.size for p in position)
+        mean = [float(np.concatenate(e).mean()) if some else float("nan") for e in (position, heading)]
+        out.append({"horizon_s": float(horizon), "windows": some, "position_m": mean[0], "heading_deg": float(np.degrees(mean[1]))})
+    return out
+
+
+def _by_regime(model: Model, held_out: Sequence[tuple[Track, int]]) -> list[dict[str, Any]]:
+    """Position error after the middle horizon while sailing straight, turning, and turning hard."""
+    horizon, time = HORIZONS_S[1], float(model.ship.scale("time"))
+    pairs = []
+    for track, first in held_out:
+        windows = predict(track, fed(model, track)[0], [horizon], leads=1)
+        k = windows.at(horizon)
+        ok = windows.valid[k] & (windows.start >= first)
+        pairs.append(np.column_stack([np.abs(track.state[windows.start, 5]) * time, windows.errors()["position"][k]])[ok])
+    all_ = np.concatenate(pairs) if pairs else np.empty((0, 2))
+    bands = (("straight", 0.0, 0.1), ("turning", 0.1, 0.4), ("turning hard", 0.4, np.inf))
+    out = []
+    for name, lo, hi in bands:
+        e = all_[(all_[:, 0] >= lo) & (all_[:, 0] < hi), 1]
+        if e.size:
+            out.append({"regime": name, "horizon_s": float(horizon), "windows": int(e.size), "position_m": float(e.mean())})
+    return out
+
+
+def _split(fitted: list[Sailed], held_out: list[Sailed]) -> tuple[list[Sailed], list[tuple[Track, int]], str]:
+    """What is fitted, what is held out, and how to say so."""
+    if held_out:
+        return fitted, [(s.track, 0) for s in held_out], "the voyages given with --held-out"
+    if len(fitted) > 2:
+        keep = len(fitted) - max(1, len(fitted) // 3)
+        return fitted[:keep], [(s.track, 0) for s in fitted[keep:]], "the last " + ", ".join(s.track.name for s in fitted[keep:])
+    parts, rest = [], []
+    for s in fitted:
+        cut = int(0.7 * len(s.track))
+        parts.append(replace(s, track=s.track.part(0, cut)))
+        rest.append((s.track, cut))
+    return parts, rest, "the last 30 % of each voyage"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EPILOG
+    parser.add_argument("voyages", metavar="VOYAGE", nargs="+", help="reference voyages: calm, nothing wrong, manoeuvring")
+    parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the ship file to start from, or a bundled ship's name")
+    parser.add_argument("-o", "--output", metavar="SHIP2.toml", required=True, help="the calibrated ship file")
+    parser.add_argument("--held-out", metavar="VOYAGE", nargs="+", default=[], help="voyages on which the error is measured")
+    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+
+
+def run(args: argparse.Namespace) -> int:
+    ship = load(args.ship)
+    fitted, held_out, words = _split(read_all(args.voyages, ship), read_all(args.held_out, ship))
+    done = calibrate(fitted, held_out, ship, lambda text: print(f"{text} ...", file=sys.stderr))
+    save(done.ship, args.output)
+    result = done.result | {"held_out_is": words, "output": str(args.output)}
+    if args.json:
+        write_json(result, args.json)
+    page = sys.stderr if args.json == "-" else sys.stdout
+    print("\n".join(told(result)), file=page)
+    print(f"\nwrote {args.output}\nnext: twin compare VOYAGE.mcap --ship {args.output} --report compare.html", file=page)
+    return 0
+
+
+def told(result: dict[str, Any]) -> list[str]:
+    """Lines for the terminal: the error first."""
+    lines = [f"{result['ship']}: open-loop error on what was not used for the fit ({result['held_out_is']})"]
+    for e in result["held_out"]:
+        if e["position_m"] is not None:
+            lines.append(
+                f"  {e['horizon_s']:>4.0f} s   {e['before_m']:>8.3g} m -> {e['position_m']:<8.3g} m    "
+                f"{e['before_deg']:>7.3g} deg -> {e['heading_deg']:<7.3g} deg   ({e['windows']} windows)"
+            )
+    lines += [f"  after {r['horizon_s']:.0f} s while {r['regime']}: {r['position_m']:.3g} m ({r['windows']} windows)" for r in result["by_regime"]]
+    share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
+    lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
+    lines += [f"{i['name']}: {i['value']:.3g} {i['unit']} +- {i['sd']:.1g}, taken into account" for i in result["instruments"]]
+    lines += ["", f"{'derivative':<10}{'before':>11}{'now':>11}{'+-':>9}"]
+    lines += [f"{d['name']:<10}{d['before']:>11.4g}{d['value']:>11.4g}{d['sd']:>9.2g}" for d in result["derivatives"] if d["excited"]]
+    if result["unexcited"]:
+        lines.append(f"not excited by these voyages, prior kept: {', '.join(result['unexcited'])}")
+    return lines

@@ -1,0 +1,157 @@
+"""`twin diagnose`: which physical effect is missing, in newtons, with its confidence, or an honest answer that is none."""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from twin.physics.ship import Ship, load
+
+from .assemble import assemble, unjudged_because
+from .compare import plain
+from .import_voyage import write_json
+from .manoeuvres import next_manoeuvre
+from .read import read_voyage
+from .search import Case, Found, search
+from .tell_diagnosis import told
+from .verdict import alike, held_out_error, judge, parameters, typical_force, visible, weights
+from .voyage import Voyage
+
+SCHEMA_VERSION = 1
+SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
+LEAST = 0.05
+EPILOG = """example:
+  twin diagnose monday.mcap tuesday.mcap --ship alma.toml --reference calm.mcap --report diagnosis.html
+
+Verdicts: missing (named, with size and interval), nothing_missing, unknown (something is there that no effect of the catalogue
+explains), undecided (the voyages cannot tell; next_manoeuvre says what to sail). Reference voyages are those of the same ship on
+which nothing was wrong: they set the floor below which an imperfect model is not called a missing effect.
+Exit code 4: a voyage cannot be used; 5: the ship file is not valid.
+"""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """The contract's JSON, and what a report draws it from."""
+
+    result: dict[str, Any]
+    case: Case
+    found: dict[tuple[str, ...], Found]
+
+
+def diagnose(
+    voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage] = (), progress: Callable[[str], None] = lambda text: None
+) -> Diagnosis:
+    """Judge all candidates jointly on these voyages."""
+    case = assemble(voyages, ship, references, progress)
+    weighed, found = search(case, progress)
+    w, seen = weights(case, weighed), visible(case)
+    verdict, missing = judge(case, w, seen)
+    likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
+    likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
+    progress("predicting held-out parts")
+    candidates = [_candidate(case, weighed, found, name, w.effects[name]) for name in likely]
+    result = {
+        "schema_version": SCHEMA_VERSION,
+        "ship": ship.name,
+        "verdict": verdict,
+        "missing": missing,
+        "probabilities": {"nothing_missing": w.nothing, "unknown": w.unknown},
+        "candidates": [c for c in candidates if c],
+        "next_manoeuvre": _next(case, found, verdict, missing, candidates, progress),
+        "not_judged": _not_judged(case),
+        "not_visible": [n for n, can in seen.items() if not can and n not in missing],
+        "floor": {"share_surge_sway_yaw": case.floor.share, "sensor_factor": case.floor.sensor, "temper": case.temper},
+        "voyages": [v.name for v in voyages],
+        "references": [v.name for v in references],
+    }
+    return Diagnosis(plain(result), case, found)
+
+
+def _candidate(case: Case, weighed: Sequence[Any], found: dict[tuple[str, ...], Found], name: str, probability: float) -> dict[str, Any]:
+    sets = [h.effects for h in weighed if name in h.effects and h.effects in found]
+    if not sets:
+        return {}
+    best = found[sets[0]]
+    without, with_ = held_out_error(case, best)
+    return {
+        "effect": name,
+        "probability": probability,
+        "parameters": parameters(case, best.posterior, name),
+        "typical_force": typical_force(case, best.model, name),
+        "error_without": without,
+        "error_with": with_,
+        "together_with": [n for n in best.hypothesis.effects if n != name],
+        "cannot_be_told_from": alike(case, weighed, name),
+        "says": (case.catalogue[name].__doc__ or "").strip().splitlines()[0],
+    }
+
+
+def _next(
+    case: Case, found: dict[tuple[str, ...], Found], verdict: str, missing: Sequence[str], candidates: Sequence[dict[str, Any]],
+    progress: Callable[[str], None],
+) -> dict[str, Any] | None:  # fmt: skip
+    """What to sail next, when two effects stand in each other's way or the voyages could not tell."""
+    listed = [c for c in candidates if c]
+    rivals = next(((c["effect"], o) for c in listed for o in c["cannot_be_told_from"] if c["effect"] in missing or verdict != "missing"), None)
+    if rivals is None and verdict == "undecided" and len(listed) > 1:
+        rivals = (listed[0]["effect"], listed[1]["effect"])
+    if rivals is None:
+        return None
+    progress(f"sailing manoeuvres that would tell {rivals[0]} from {rivals[1]}")
+    sets = [s for s in found if rivals[0] in s]
+    z = found[sets[0]].posterior.z if sets else np.ones(len(case.effects))
+    return next_manoeuvre(case, case.model, *rivals, z)
+
+
+def _not_judged(case: Case) -> list[dict[str, Any]]:
+    """Effects that could not be judged, and for want of what."""
+    present = {type(e).__name__ for e in case.model.effects}
+    return [
+        {"effect": name, "lacks": list(unjudged_because(name, case.tracks, case.model, case.catalogue))}
+        for name in case.catalogue
+        if name not in case.candidates and name not in present
+    ]
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EPILOG
+    parser.add_argument("voyages", metavar="VOYAGE", nargs="+", help="voyages on which something may be wrong")
+    parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name")
+    parser.add_argument("--reference", metavar="VOYAGE", nargs="+", default=[], help="voyages of the same ship on which nothing was wrong")
+    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+    parser.add_argument("--report", metavar="FILE.html", help="one self-contained page with the plots")
+    parser.add_argument("--identifiability", action="store_true", help="also say what these voyages can tell at all")
+
+
+def run(args: argparse.Namespace) -> int:
+    ship = load(args.ship)
+    voyages, references = ([read_voyage(p) for p in paths] for paths in (args.voyages, args.reference))
+    done = diagnose(voyages, ship, references, lambda text: print(f"{text} ...", file=sys.stderr))
+    result = done.result | {"command": f"twin diagnose {' '.join(args.voyages)} --ship {args.ship}"}
+    page = sys.stderr if args.json == "-" else sys.stdout
+    if args.identifiability:
+        from .identifiability import report as identifiability
+
+        result["identifiability"] = plain(identifiability(voyages[0], done.case.model))
+    if args.json:
+        write_json(result, args.json)
+    print("\n".join(told(result)), file=page)
+    if args.report:
+        from . import report
+
+        report.write(args.report, "diagnose", result, list(done.case.tracks), done.case.model, voyages=voyages)
+        print(f"\nwrote {args.report}", file=page)
+    print(f"\nnext: {_next_command(args, result)}", file=page)
+    return 0
+
+
+def _next_command(args: argparse.Namespace, result: dict[str, Any]) -> str:
+    if result["missing"]:
+        return f"twin add {' '.join(result['missing'])} --ship {args.ship} --voyage {' '.join(args.voyages)} -o better.toml"
+    if result["next_manoeuvre"]:
+        return f"sail {result['next_manoeuvre']['manoeuvre']}, then twin diagnose with that voyage too"
+    return f"twin compare {' '.join(args.voyages)} --ship {args.ship} --report compare.html"

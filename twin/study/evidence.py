@@ -1,0 +1,152 @@
+"""Which effects explain what the model cannot: the probability of every hypothesis, all judged jointly.
+
+A hypothesis is a set of effects (none, one, two) and a state of the world (how large the floor, how restless the water). Its
+evidence integrates out everything else: the core's derivatives and the instruments' usual errors as the reference voyages left
+them, and a small amount of every effect (a spike a tenth as wide as its plausible size), so that only what is clearly more than
+nothing counts. The parameters of its own effects are integrated over their priors (half-normal in a box with one side), so that a
+flexible effect pays for its freedom.
+
+Source: MacKay (2003) Information theory, inference, and learning algorithms, ch. 28; George & McCulloch (1993), spike and slab.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+from scipy.special import log_ndtr
+
+from .columns import Unknown
+from .innovations import Normal
+
+SPIKE = 0.1  # width of "not there", in widths of "there"
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """A set of effects in one state of the world, and what the data says of it."""
+
+    effects: tuple[str, ...]
+    world: str
+    log_evidence: float
+    log_prior: float
+
+    @property
+    def log_weight(self) -> float:
+        return self.log_evidence + self.log_prior
+
+
+@dataclass(frozen=True)
+class Nuisance:
+    """What the reference voyages (or the ship file) say of core and instruments, in prior widths: information and its pull."""
+
+    unknowns: tuple[Unknown, ...]
+    information: np.ndarray  # (C, C)
+    pull: np.ndarray  # (C,)
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """Tempered normal equations in prior widths with the nuisance integrated out: what is left concerns the effects."""
+
+    A: np.ndarray  # (Q, Q)
+    b: np.ndarray  # (Q,)
+    base: float  # log evidence without any effect, not even a spike
+    unknowns: tuple[Unknown, ...]
+    at: np.ndarray  # (Q,) where the equations were linearised, in prior widths from "not there"
+
+    def rows(self, effects: Sequence[str]) -> np.ndarray:
+        return np.array([i for i, u in enumerate(self.unknowns) if u.owner in effects], dtype=int)
+
+    @property
+    def box(self) -> np.ndarray:
+        """(2, Q) the boxes, in prior widths from "not there"."""
+        return np.array([[(u.lo - u.centre) / u.sd, (u.hi - u.centre) / u.sd] for u in self.unknowns]).T.reshape(2, -1)
+
+
+def reduce(
+    normal: Normal, nuisance: Nuisance, all_unknowns: Sequence[Unknown], effects: Sequence[Unknown], temper: float,
+    at: np.ndarray | None = None,
+) -> Reduced:  # fmt: skip
+    """Integrate the nuisance out of normal equations whose columns are `all_unknowns` (an instrument's usual error and its
+    fault share a column)."""
+    A, b, ee = normal.total()
+    place = {u.label: i for i, u in enumerate(all_unknowns)}
+    order = (*nuisance.unknowns, *effects)
+    pick, sd, C = [place[u.label] for u in order], np.array([u.sd for u in order]), len(nuisance.unknowns)
+    A, b = A[np.ix_(pick, pick)] * np.outer(sd, sd) / temper, b[pick] * sd / temper
+    L = np.linalg.cholesky(A[:C, :C] + nuisance.information)
+    half = np.linalg.solve(L, np.column_stack([A[:C, C:], b[:C] + nuisance.pull]))
+    cross, mean = half[:, :-1], half[:, -1]
+    base = -0.5 * (ee + float(normal.logdet.sum())) / temper + 0.5 * float(mean @ mean) - float(np.log(np.diag(L)).sum())
+    return Reduced(A[C:, C:] - cross.T @ cross, b[C:] - cross.T @ mean, base, tuple(effects), np.zeros(len(effects)) if at is None else at)
+
+
+@dataclass(frozen=True)
+class Posterior:
+    """Parameters of all effects in prior widths from "not there", under one hypothesis."""
+
+    z: np.ndarray  # (Q,)
+    covariance: np.ndarray  # (Q, Q)
+    log_evidence: float  # without the boxes
+
+
+def posterior(reduced: Reduced, effects: Sequence[str]) -> Posterior:
+    """The effects' parameters when these effects are there and the others are not."""
+    width = np.full(len(reduced.unknowns), SPIKE)
+    width[reduced.rows(effects)] = 1.0
+    K = reduced.A * np.outer(width, width)
+    K[np.diag_indices_from(K)] += 1.0
+    L = np.linalg.cholesky(K)
+    pull = width * reduced.b - reduced.at / width
+    half = np.linalg.solve(L, pull)
+    gain = 0.5 * float(half @ half) - 0.5 * float(np.sum((reduced.at / width) ** 2)) - float(np.log(np.diag(L)).sum())
+    inverse = np.linalg.inv(K)
+    return Posterior(reduced.at + width * (inverse @ pull), inverse * np.outer(width, width), reduced.base + gain)
+
+
+def log_evidence(reduced: Reduced, effects: Sequence[str], found: Posterior) -> float:
+    """Log evidence of a set of effects: what they explain, less what their freedom costs, inside their boxes."""
+    rows = reduced.rows(effects)
+    return found.log_evidence + _inside(reduced, rows, found.z[rows], found.covariance[np.ix_(rows, rows)])
+
+
+def _inside(reduced: Reduced, rows: np.ndarray, value: np.ndarray, covariance: np.ndarray) -> float:
+    """Log of (posterior mass inside the box) / (prior mass inside it), one parameter at a time."""
+    lo, hi = reduced.box[:, rows]
+    s = np.sqrt(np.diag(covariance))
+    return float((_log_mass((lo - value) / s, (hi - value) / s) - _log_mass(lo, hi)).sum())
+
+
+def _log_mass(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
+    """log of the standard normal's mass between lo and hi, safe far out in either tail."""
+    flip = lo > 0.0
+    lo, hi = np.where(flip, -hi, lo), np.where(flip, -lo, hi)
+    upper, lower = log_ndtr(hi), log_ndtr(lo)
+    return upper + np.log1p(-np.exp(np.minimum(lower - upper, -1e-12)))
+
+
+def weigh_all(reduced: Reduced, candidates: Sequence[str], most: int = 2) -> list[tuple[tuple[str, ...], float]]:
+    """Log evidence of every set of up to `most` candidates: from the one in which every effect is a spike, low-rank steps away."""
+    spikes = posterior(reduced, ())
+    M, z = spikes.covariance, spikes.z - reduced.at
+    rows = {name: reduced.rows((name,)) for name in candidates}
+    open_up = 1.0 - 1.0 / SPIKE**2  # what a spike's precision loses when it becomes a slab
+    out = [((), spikes.log_evidence)]
+    for size in range(1, most + 1):
+        for chosen in combinations(candidates, size):
+            at = np.concatenate([rows[name] for name in chosen])
+            inner = M[np.ix_(at, at)]
+            K = np.eye(at.size) + open_up * inner
+            wide = np.linalg.solve(K, inner)
+            mean = np.linalg.solve(K, z[at])
+            change = -0.5 * open_up * float(z[at] @ mean) - 0.5 * float(np.linalg.slogdet(K)[1]) + at.size * np.log(SPIKE)
+            out.append((chosen, spikes.log_evidence + change + _inside(reduced, at, mean, wide)))
+    return out
+
+
+def probabilities(weighed: Sequence[Hypothesis]) -> np.ndarray:
+    """Posterior probability of each hypothesis."""
+    w = np.array([h.log_weight for h in weighed])
+    w = np.exp(w - w.max())
+    return w / w.sum()

@@ -1,0 +1,87 @@
+"""Fit unknown numbers to tracks: Gauss-Newton on the filter's innovations, with priors, inside boxes.
+
+Each unknown is z = (value - centre)/sd, so that its prior is N(0, 1) whatever its unit. Evidence is tempered by `temper`: what a
+model leaves over is not white, and a likelihood taken at face value believes itself too much.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from twin.physics.effect import Effect
+from twin.physics.model import Model
+
+from .columns import Unknown, with_values
+from .innovations import Floor, Linear, Normal, innovate, linearise
+from .track import Track
+
+Catalogue = dict[str, type[Effect]]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """What a fit found: `model` holds the values; `value`, `sd` (P,) in the unknowns' units; `gained` (P,): 1 - posterior/prior variance."""
+
+    model: Model
+    unknowns: tuple[Unknown, ...]
+    value: np.ndarray
+    covariance: np.ndarray
+    lines: tuple[Linear, ...]
+    normal: Normal
+
+    @property
+    def sd(self) -> np.ndarray:
+        return np.sqrt(np.diag(self.covariance))
+
+    @property
+    def gained(self) -> np.ndarray:
+        prior = np.array([u.sd for u in self.unknowns])
+        return 1.0 - (self.sd / prior) ** 2
+
+
+def fit(
+    tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue, floor: Floor, *,
+    temper: float = 1.0, rounds: int = 4,
+) -> Fit:  # fmt: skip
+    """The most probable values of the unknowns, given the tracks and their priors."""
+    centre, sd = np.array([u.centre for u in unknowns]), np.array([u.sd for u in unknowns])
+    value = np.array([_present(model, u) for u in unknowns])
+    for last in range(rounds):
+        model = with_values(model, unknowns, value, catalogue)
+        here = {u.label: float(v) for u, v in zip(unknowns, value, strict=True)}
+        lines = [linearise(t, model, [replace(u, centre=here[u.label]) for u in unknowns], catalogue) for t in tracks]
+        normal = innovate(lines, [floor])[0]
+        A, b, _ = normal.total()
+        A, b = A / temper * np.outer(sd, sd), b / temper * sd
+        H = A + np.eye(sd.size)
+        step = np.linalg.solve(H, b - (value - centre) / sd)
+        new = np.clip(value + sd * step, [u.lo for u in unknowns], [u.hi for u in unknowns])
+        moved, value = np.max(np.abs(new - value) / sd), new
+        if moved < 0.02 or last == rounds - 1:
+            break
+    model = with_values(model, unknowns, value, catalogue)
+    covariance = np.linalg.inv(H) * np.outer(sd, sd)
+    return Fit(model, tuple(unknowns), value, covariance, tuple(lines), normal)
+
+
+def _present(model: Model, unknown: Unknown) -> float:
+    """The unknown's value in the model as it stands; its centre where the effect is not there."""
+    if unknown.owner == "core":
+        return float(getattr(model.ship.derivatives, unknown.name))
+    for effect in model.effects:
+        if type(effect).__name__ == unknown.owner:
+            return float(getattr(effect, unknown.name))
+    return unknown.centre
+
+
+def evidence(normal: Normal, sd: np.ndarray, offset: np.ndarray | None = None) -> float:
+    """Log probability of the innovations with the unknowns integrated out over N(offset, sd^2)."""
+    A, b, ee = normal.total()
+    A, b = A * np.outer(sd, sd), b * sd
+    if offset is not None:
+        z = offset / sd
+        ee, b = ee - 2.0 * float(b @ z) + float(z @ A @ z), b - A @ z
+    L = np.linalg.cholesky(A + np.eye(sd.size))
+    half = np.linalg.solve(L, b)
+    return -0.5 * (ee - float(half @ half) + float(normal.logdet.sum())) - float(np.log(np.diag(L)).sum())

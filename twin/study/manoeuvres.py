@@ -1,0 +1,127 @@
+"""Standard manoeuvres, sailed by the model itself, and which of them would tell two effects apart.
+
+The one to sail is the one after which the wrong effect would explain least of what the right one does (expected information).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import pi
+
+import numpy as np
+
+from twin.physics.model import Model
+from twin.physics.state import Situation
+
+from .innovations import linearise
+from .search import Case
+from .track import READINGS, Track
+
+LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of her lengths
+STEPS_PER_LENGTH = 12
+DEG = pi / 180.0
+
+
+@dataclass
+class Helm:
+    """What the helmsman sees and remembers: lengths sailed, heading change [rad], his last order."""
+
+    lengths: float = 0.0
+    turned: float = 0.0
+    rate: float = 0.0  # r L / U
+    side: float = 1.0
+
+
+Order = Callable[[Helm], tuple[float, float]]  # rudder [rad], shaft speed as a share of the usual
+
+
+def _zigzag(angle: float) -> Order:
+    def order(helm: Helm) -> tuple[float, float]:
+        if helm.side * helm.turned > angle:
+            helm.side = -helm.side
+        return helm.side * angle, 1.0
+
+    return order
+
+
+def _steer(course: Callable[[float], float], power: Callable[[float], float]) -> Order:
+    """Hold a course (of lengths sailed) by proportional and rate action."""
+
+    def order(helm: Helm) -> tuple[float, float]:
+        error = course(helm.lengths) - helm.turned
+        return float(np.clip(1.5 * error - 1.0 * helm.rate, -25 * DEG, 25 * DEG)), power(helm.lengths)
+
+    return order
+
+
+MANOEUVRES: dict[str, tuple[Order, str]] = {
+    "zigzag 10/10": (_zigzag(10 * DEG), "10 deg of rudder to each side whenever the heading has changed by 10 deg, at constant power"),
+    "zigzag 20/20": (_zigzag(20 * DEG), "20 deg of rudder to each side whenever the heading has changed by 20 deg, at constant power"),
+    "turning circles": (lambda h: (25 * DEG if h.lengths < LENGTHS / 2 else -25 * DEG, 1.0), "a full circle to each side with 25 deg of rudder"),
+    "speed changes": (_steer(lambda s: 0.0, lambda s: (1.0, 0.6, 1.0, 0.4)[int(s / 10) % 4]), "a straight course at 100, 60, 100 and 40 % of the usual shaft speed"),
+    "reciprocal runs": (_steer(lambda s: pi * (s > LENGTHS / 2), lambda s: 1.0), "the same straight run there and back at constant power"),
+    "square": (_steer(lambda s: 0.5 * pi * int(s / 10), lambda s: 1.0), "four straight legs at right angles at constant power"),
+    "zigzag with speed changes": (
+        lambda h, z=_zigzag(20 * DEG): (z(h)[0], (1.0, 0.6, 1.0, 0.4)[int(h.lengths / 10) % 4]),  # type: ignore[misc]
+        "a 20/20 zigzag at 100, 60, 100 and 40 % of the usual shaft speed",
+    ),
+}  # fmt: skip
+
+
+def sail(case: Case, model: Model, order: Order) -> Track:
+    """The track of a manoeuvre that the model sails in the weather of the case's first track."""
+    like = case.tracks[0]
+    h = float(model.ship.scale("time")) / STEPS_PER_LENGTH
+    steps = LENGTHS * STEPS_PER_LENGTH
+    usual = float(np.median(like.n[like.whole]))
+    weather = {name: float(np.median(values)) for name, values in like.weather.items()}
+    state = (0.0, 0.0, 0.0, float(np.median(like.state[:, 3])), 0.0, 0.0)
+    helm, L = Helm(), float(model.ship.L_pp)
+    states, orders = np.empty((steps, 6)), np.empty((steps, 2))
+    for k in range(steps):
+        delta, power = order(helm)
+        states[k], orders[k] = state, (delta, power * usual)
+        s = Situation(delta=delta, n=power * usual, t=k * h, **weather)
+        state = model.step(state, s, h)
+        speed = max(abs(state[3]), 1e-3)
+        helm.lengths, helm.turned, helm.rate = helm.lengths + speed * h / L, state[2], state[5] * L / speed
+    measured = np.full((steps, len(READINGS)), np.nan)
+    seen = np.isfinite(like.measured).any(0)
+    measured[:, seen] = 0.0  # only which readings there are counts: information does not depend on their values
+    return Track(
+        "planned", h * np.arange(steps), h, states, orders[:, 0], orders[:, 1],
+        {name: np.full(steps, value) for name, value in weather.items()}, measured, like.sd, np.ones(steps, bool),
+    )  # fmt: skip
+
+
+def separation(case: Case, model: Model, track: Track, first: str, second: str, z: np.ndarray) -> float:
+    """Log odds that this track would be expected to give for `first` (at z prior widths) against `second`."""
+    here, _ = case.model.without_inputs(track.missing())
+    A = case.reduced([linearise(track, here, case.unknowns, case.catalogue)], [case.floor])[0]
+    a, b = A.rows((first,)), A.rows((second,))
+    size = z[a]
+    alone = float(size @ A.A[np.ix_(a, a)] @ size)
+    pull = A.A[np.ix_(b, a)] @ size
+    mimic = float(pull @ np.linalg.solve(A.A[np.ix_(b, b)] + np.eye(b.size), pull))
+    return 0.5 * (alone - mimic)
+
+
+def next_manoeuvre(case: Case, model: Model, first: str, second: str, z: np.ndarray) -> dict[str, object] | None:
+    """The manoeuvre that tells these two apart best, or None when none would."""
+    scores = {}
+    for name, (order, _) in MANOEUVRES.items():
+        track = sail(case, model, order)
+        if np.isfinite(track.state).all():
+            scores[name] = separation(case, model, track, first, second, z)
+    best = max(scores, key=lambda name: scores[name], default="")
+    if not best or scores[best] < 1.0:
+        return None
+    rest = sorted((name for name in scores if name != best), key=lambda name: -scores[name])
+    why = (
+        f"{MANOEUVRES[best][1]}: expected odds of {_odds(scores[best])} for the right one of the two"
+        f" (next best: {rest[0]}, {_odds(scores[rest[0]])})"
+    )
+    return {"separates": [first, second], "manoeuvre": best, "why": why}
+
+
+def _odds(log_odds: float) -> str:
+    return f"{np.exp(log_odds):.0f} to 1" if log_odds < 6.9 else "more than 1000 to 1"

@@ -1,0 +1,61 @@
+"""A diagnosis in words: the sentence first, then the ranking with sizes and intervals."""
+
+from typing import Any
+
+
+def told(result: dict[str, Any]) -> list[str]:
+    """Lines for the terminal."""
+    lines = [sentence(result), ""]
+    for c in result["candidates"]:
+        lines += _candidate(c)
+    chances = result["probabilities"]
+    lines.append(f"nothing missing: {chances['nothing_missing']:.0%}   something unknown: {chances['unknown']:.0%}")
+    if result["next_manoeuvre"]:
+        m = result["next_manoeuvre"]
+        lines += ["", f"To tell {m['separates'][0]} from {m['separates'][1]}, sail: {m['manoeuvre']} ({m['why']})."]
+    lines += [f"{n['effect']} cannot be judged: no {', '.join(n['lacks'])} was recorded." for n in result["not_judged"]]
+    if result["not_visible"]:
+        lines.append(f"Too small to be seen in these voyages, even at a plausible size: {', '.join(result['not_visible'])}.")
+    return lines
+
+
+def sentence(result: dict[str, Any]) -> str:
+    """The verdict, as one would say it on the bridge."""
+    by_name = {c["effect"]: c for c in result["candidates"]}
+    if result["verdict"] == "missing":
+        first = by_name[result["missing"][0]]
+        names = " and ".join(f"{n} ({by_name[n]['probability']:.0%})" for n in result["missing"])
+        force = first["typical_force"]
+        size = f"; typically X {_si(force['X_N'], 'N')}, Y {_si(force['Y_N'], 'N')}, N {_si(force['N_Nm'], 'N m')}" if any(force.values()) else ""
+        rivals = first["cannot_be_told_from"]
+        doubt = f" These voyages cannot tell it from {', '.join(rivals)}." if rivals else ""
+        return f"Missing: {names}. {first['says']}{size}{'.' if size else ''}{doubt}"
+    if result["verdict"] == "nothing_missing":
+        return "Nothing is missing: what the model cannot explain is no more than it left unexplained on good voyages."
+    if result["verdict"] == "unknown":
+        return "Something is missing, but none of the effects I know explains it."
+    return "Undecided: these voyages cannot tell what, if anything, is missing."
+
+
+def _candidate(c: dict[str, Any]) -> list[str]:
+    head = f"{c['probability']:6.0%}  {c['effect']}"
+    if c["together_with"]:
+        head += f" (together with {', '.join(c['together_with'])})"
+    lines = [head]
+    for p in c["parameters"]:
+        lines.append(f"          {p['name']:<12} {p['value']:>11.4g} {p['unit']:<5} 95 %: {p['low95']:.4g} to {p['high95']:.4g}")
+    force = c["typical_force"]
+    if any(force.values()):
+        lines.append(f"          typically    X {_si(force['X_N'], 'N')}, Y {_si(force['Y_N'], 'N')}, N {_si(force['N_Nm'], 'N m')}")
+    lines.append(f"          120 s error  {c['error_without']:.3g} m without, {c['error_with']:.3g} m with it, on parts not used for the fit")
+    if c["cannot_be_told_from"]:
+        lines.append(f"          not told from {', '.join(c['cannot_be_told_from'])}")
+    return lines
+
+
+def _si(value: float, unit: str) -> str:
+    """A size with the prefix that engineers use."""
+    for prefix, factor in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
+        if abs(value) >= factor:
+            return f"{value / factor:.3g} {prefix}{unit}"
+    return f"{value:.3g} {unit}"

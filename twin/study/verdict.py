@@ -1,0 +1,140 @@
+"""From weighed hypotheses to an answer: missing, nothing missing, unknown or undecided, with numbers an engineer can check."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.physics.model import Model
+
+from .columns import with_values
+from .evidence import Hypothesis, Posterior, posterior, probabilities
+from .innovations import innovate
+from .openloop import predict
+from .respond import respond
+from .search import WORLDS, Case, Found
+
+SURE = 0.5  # an effect is named when it is more likely there than not
+ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
+VISIBLE = 4.0  # log odds that an effect of plausible size would have to show, or the data could not have seen it
+HORIZON_S = 120.0
+
+
+@dataclass(frozen=True)
+class Weights:
+    """Probability of every answer, and of every effect."""
+
+    nothing: float
+    unknown: float
+    effects: dict[str, float]
+    best: Hypothesis
+
+
+def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
+    p = probabilities(weighed)
+    effects = dict.fromkeys(case.candidates, 0.0)
+    nothing = unknown = 0.0
+    for h, share in zip(weighed, p, strict=True):
+        for name in h.effects:
+            effects[name] += float(share)
+        unknown += float(share) * WORLDS[h.world].unknown
+        nothing += float(share) * (not h.effects and not WORLDS[h.world].unknown)
+    return Weights(nothing, unknown, effects, weighed[0])
+
+
+def visible(case: Case) -> dict[str, bool]:
+    """Whether each candidate, had it its plausible size, would have shown in these voyages."""
+    reduced = case.reduced(case.lines, [case.floor])[0]
+    out = {}
+    for name in case.candidates:
+        rows = reduced.rows((name,))
+        A = reduced.A[np.ix_(rows, rows)]
+        gain = 0.5 * float(np.max(np.diag(A))) - 0.5 * float(np.linalg.slogdet(A + np.eye(rows.size))[1])
+        out[name] = gain > VISIBLE
+    return out
+
+
+def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
+    """Effects that could stand in for this one: what is said of the voyages would be nearly as likely."""
+    best = next(h for h in weighed if name in h.effects)
+    rest = set(best.effects) - {name}
+    out = []
+    for other in case.candidates:
+        if other in best.effects:
+            continue
+        swapped = next((h for h in weighed if set(h.effects) == rest | {other}), None)
+        if swapped is not None and best.log_weight - swapped.log_weight < ALIKE:
+            out.append(other)
+    return out
+
+
+def judge(case: Case, w: Weights, seen: dict[str, bool]) -> tuple[str, list[str]]:
+    """The verdict, and the effects to add, the most probable first."""
+    named = sorted((n for n in w.best.effects if w.effects[n] >= SURE), key=lambda n: -w.effects[n])
+    if w.unknown >= SURE:
+        return "unknown", []
+    if w.nothing >= SURE:
+        return ("nothing_missing" if 2 * sum(seen.values()) >= len(seen) else "undecided"), []
+    return ("missing", named) if named else ("undecided", [])
+
+
+def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:
+    """Each parameter of one effect with its 95 % interval, inside its box."""
+    out = []
+    for i, u in enumerate(case.effects):
+        if u.owner == name:
+            value, sd = u.centre + u.sd * found.z[i], u.sd * float(np.sqrt(found.covariance[i, i]))
+            low, high = value - 1.96 * sd, value + 1.96 * sd
+            out.append(
+                {"name": u.name, "value": float(np.clip(value, u.lo, u.hi)), "low95": float(np.clip(low, u.lo, u.hi)),
+                 "high95": float(np.clip(high, u.lo, u.hi)), "unit": u.unit}
+            )  # fmt: skip
+    return out
+
+
+def typical_force(case: Case, model: Model, name: str) -> dict[str, float]:
+    """Root mean square of the force by which the model changes when this effect is taken out [N, N, N m]."""
+    without = Model(model.ship, tuple(e for e in model.effects if type(e).__name__ != name))
+    total, count = np.zeros(3), 0
+    for track in case.tracks:
+        a, b = (respond(track, m.without_inputs(track.missing())[0])[0] for m in (model, without))
+        total, count = total + ((a - b) ** 2).sum(0), count + len(track)
+    c = model.c
+    X, Y, N = np.sqrt(total / max(count, 1)) * (float(c.m_u), float(c.m_v), float(c.m_r))
+    return {"X_N": float(X), "Y_N": float(Y), "N_Nm": float(N)}
+
+
+def held_out_error(case: Case, found: Found) -> tuple[float, float]:
+    """Mean position error [m] after HORIZON_S without and with the effects, each half of the segments predicted with the
+    parameters that the other half asks for."""
+    lines = case.lines
+    chosen = found.hypothesis.effects
+    mine = [i for i, u in enumerate(case.effects) if u.owner in chosen]
+    normal = innovate(lines, case.worlds([found.hypothesis.world]))[0]
+    from .evidence import reduce
+
+    half = np.arange(len(normal.where)) % 2
+    sums = np.zeros((2, 2))
+    for side in (0, 1):
+        part = reduce(normal.only(half != side), case.nuisance, case.unknowns, case.effects, case.temper) if half.any() else None
+        z = posterior(part, chosen).z if part is not None else found.posterior.z
+        values = [case.effects[i].centre + case.effects[i].sd * z[i] for i in mine]
+        model = with_values(case.model, [case.effects[i] for i in mine], values, case.catalogue)
+        for i, track in enumerate(case.tracks):
+            mine_here = [(a, b) for (t, a, b), s in zip(normal.where, half, strict=True) if t == i and s == side]
+            for k, m in enumerate((case.model, model)):
+                error, n = _error(track, m.without_inputs(track.missing())[0], mine_here)
+                sums[k] += error, n
+    return float(sums[0, 0] / max(sums[0, 1], 1)), float(sums[1, 0] / max(sums[1, 1], 1))
+
+
+def _error(track: "object", model: Model, stretches: list[tuple[int, int]]) -> tuple[float, int]:
+    """Sum of position errors over windows that start in these stretches, and their number."""
+    horizon = min(HORIZON_S, 0.25 * float(track.t[-1]))  # type: ignore[attr-defined]
+    windows = predict(track, model, [horizon], leads=1)  # type: ignore[arg-type]
+    k = windows.at(horizon)
+    inside = np.zeros(windows.start.size, bool)
+    for a, b in stretches:
+        inside |= (windows.start >= a) & (windows.start < b)
+    ok = inside & windows.valid[k]
+    return float(windows.errors()["position"][k][ok].sum()), int(ok.sum())
