@@ -15,7 +15,7 @@ ships = pytest.mark.parametrize("name", bundled())
 
 
 def matrices(ship):
-    """M of Fossen (2021) eq. (3.57) and (6.51), rigid body and added mass."""
+    """M of Fossen (2021) ch. 3 and 6, rigid body and added mass."""
     d, mass = ship.derivatives, 0.5 * ship.rho * ship.L_pp**2 * ship.T
     rigid = np.array([[ship.m, 0, 0], [0, ship.m, ship.m * ship.x_G], [0, ship.m * ship.x_G, ship.I_z]])
     L = ship.L_pp
@@ -24,7 +24,7 @@ def matrices(ship):
 
 
 def coriolis_matrix(M, nu):
-    """C(nu) from M, Fossen (2021) theorem 3.2, for a surface ship: skew-symmetric."""
+    """C(nu) from M, Fossen (2021) ch. 3, for a surface ship: skew-symmetric."""
     a1 = M[0, 0] * nu[0]
     a2 = M[1, 1] * nu[1] + M[1, 2] * nu[2]
     return np.array([[0, 0, -a2], [0, 0, a1], [a2, -a1, 0]])

@@ -1,6 +1,6 @@
 """The 3-DOF Fossen core: inertia, Coriolis, damping, propeller and rudder, by components.
 
-    M nu_dot_r + C(nu_r) nu_r + D(nu_r) nu_r = tau_propeller + tau_rudder + ...        [Fossen 2021, eq. (6.95) ff.]
+    M nu_dot_r + C(nu_r) nu_r + D(nu_r) nu_r = tau_propeller + tau_rudder + ...        [Fossen 2021, ch. 6]
 
 Derivatives are stored in prime form, made non-dimensional by 1/2 rho L T U^2 (forces) and 1/2 rho L^2 T U^2 (moment), with
 v' = v/U and r' = r L/U, so that one set of priors serves every size of ship; `coefficients` gives them back their units.
@@ -117,7 +117,7 @@ def coriolis(u: Number, v: Number, r: Number, c: Coefficients) -> Tau:
 
 
 def thrust(u: Number, n: Number, c: Coefficients) -> Number:
-    """Propeller thrust [N], linear in the advance ratio [Fossen 2021, sec. 9.6]."""
+    """Propeller thrust [N], linear in the advance ratio [Fossen 2021, ch. 9]."""
     N = abs(n)
     return c.T_nn * N * n + c.T_nu * N * (c.wake_share * u)
 

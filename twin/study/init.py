@@ -146,15 +146,16 @@ def _derivatives(h: reg.Hull, p: Numbers, given: Given) -> Numbers:
     out: Numbers = {f.name: (0.0, "ZERO") for f in DERIVATIVES}
     out |= reg.added_masses(h)
     m_x, m_y = -out["X_udot"][0], -out["Y_vdot"][0]
-    polynomial = reg.hull_polynomial(h, m_x, m_y) | {"R0": reg.resistance(h)}
-    out |= {k: (v, "HAS80; LSQ" if k == "X_vr" else "YM12; LSQ") for k, v in modulus_form(polynomial, m_x, m_y).items()}
+    polynomial = reg.hull_polynomial(h, m_y) | {"R0": reg.resistance(h)}
+    source = {"X_vr": "HAS80; LSQ"} | dict.fromkeys(("X_vv", "X_rr"), "YM12; LSQ")
+    out |= {k: (v, source.get(k, "CGH83; KIJ90; YM12; LSQ")) for k, v in modulus_form(polynomial, m_x, m_y).items()}
     out["X_uu"] = (-polynomial["R0"], "ITTC57")
     height = given["rudder-height-m"] or min(0.7 * h.T, (2.2 * p["A_R"][0]) ** 0.5)
     out |= reg.steering(h, height**2 / p["A_R"][0])
     screw = reg.propulsion(h, _pitch_ratio(h, p, given, out))
     eta = min(1.0, p["D_P"][0] / height)
-    epsilon, kappa = slipstream(screw["K_T0"][0], screw["K_T1"][0], 1.0, 0.55 - 0.8 * h.C_b * h.B / h.L, eta)
-    out |= screw | {"epsilon": (epsilon, "YM12; LSQ"), "kappa": (kappa, "YM12; LSQ")}
+    epsilon, kappa = slipstream(screw["K_T0"][0], screw["K_T1"][0], 1.02, 0.6 / 1.02, eta)
+    out |= screw | {"epsilon": (epsilon, "MAT80; LSQ"), "kappa": (kappa, "MAT80; LSQ")}
     return {k: (float(f"{v:.5g}") + 0.0, s) for k, (v, s) in out.items()}
 
 

@@ -67,7 +67,9 @@ def slipstream(
 
 
 def _cubic(p: Mapping[str, float], axis: str, v: np.ndarray, r: np.ndarray) -> np.ndarray:
-    powers = {"v": v, "r": r, "vvv": v**3, "vvr": v * v * r, "vrr": v * r * r, "rrr": r**3}
+    powers = {
+        "v": v, "r": r, "vvv": v**3, "vvr": v * v * r, "vrr": v * r * r, "rrr": r**3, "vv": abs(v) * v, "rr": abs(r) * r,
+    }  # fmt: skip
     return sum(p.get(f"{axis}_{name}", 0.0) * term for name, term in powers.items())  # type: ignore[return-value]
 
 

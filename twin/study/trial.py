@@ -34,12 +34,12 @@ def shaft_speed(model: Model, speed: float) -> float:
 
 
 def sail(model: Model, steer: Steer, n: float, seconds: float, u: float, rate: float | None = None) -> list[tuple[float, Eta_nu]]:
-    """The voyage [(t, state)] under a helmsman, in steps of 1/200 L/U, from straight ahead at u [m/s].
+    """The voyage [(t, state)] under a helmsman, in steps of 1/100 L/U, from straight ahead at u [m/s].
 
     `rate`: fastest rudder [rad/s]; by default 65 deg in 0.7 L/U_0 (28 s for a large tanker, SOLAS).
     """
     time = model.ship.L_pp / model.ship.U_0
-    h = time / 200.0
+    h = time / 100.0
     most = h * (radians(65.0) / (0.7 * time) if rate is None else rate)
     state: Eta_nu = (0.0, 0.0, 0.0, u, 0.0, 0.0)
     delta, log = 0.0, [(0.0, state)]

@@ -15,7 +15,7 @@ from twin.physics.state import Situation
 class AntennaOffset(SensorFault):
     """The satellite antenna stands elsewhere on board than the settings say: she seems to swing about the wrong point."""
 
-    source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 2.4 and 14 (lever arms)"
+    source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 2 and 13 (lever arms)"
 
     ahead: float = param(0.1, unit="m", lo=-0.6, hi=0.6, sd=0.1, of="length", doc="antenna ahead of where the settings put it")
     starboard: float = param(0.0, unit="m", lo=-0.1, hi=0.1, sd=0.015, of="length", doc="antenna to starboard of where the settings put it")

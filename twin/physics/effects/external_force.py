@@ -14,7 +14,7 @@ from twin.physics.state import Situation
 class ExternalForce(Force):
     """Something pulls at her from a fixed bearing: a mooring or tug line from shore, a swell that was not measured."""
 
-    source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 2.2 (rotation from NED to body)"
+    source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 2 (rotation from NED to body)"
 
     north: float = param(0.4, unit="N", lo=-8.0, hi=8.0, sd=0.6, of="force", doc="force toward north")
     east: float = param(0.0, unit="N", lo=-8.0, hi=8.0, sd=0.6, of="force", doc="force toward east")

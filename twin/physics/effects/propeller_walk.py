@@ -12,7 +12,7 @@ from twin.physics.state import Situation
 class PropellerWalk(Force):
     """The single screw pushes her stern to one side, so she needs helm to go straight and turns easier one way."""
 
-    source = "Yasukawa & Yoshimura (2015) sec. 2; Hooft & Quadvlieg (1996) Non-linear hydrodynamic forces, MARSIM: side force of a screw"
+    source = "Brix (1993) Manoeuvring Technical Manual (side force of a single screw)"
 
     c_y: float = param(0.01, unit="-", lo=-0.1, hi=0.1, sd=0.01, doc="side force, positive to starboard when going ahead")
     c_n: float = param(-0.005, unit="-", lo=-0.05, hi=0.05, sd=0.005, doc="yaw moment, positive to starboard when going ahead")

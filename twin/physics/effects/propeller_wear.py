@@ -13,7 +13,7 @@ from twin.physics.state import Situation
 class PropellerWear(Force):
     """The propeller gives less thrust than it did, so she is slower and her rudder, in a weaker slipstream, bites less."""
 
-    source = "Carlton (2018) Marine Propellers and Propulsion, 4th ed., sec. 24 (blade roughness and damage)"
+    source = "Carlton (2018) Marine Propellers and Propulsion, 4th ed. (blade roughness and damage in service)"
 
     loss: float = param(0.1, unit="-", lo=0.0, hi=0.7, sd=0.1, doc="share of the thrust that is lost")
 

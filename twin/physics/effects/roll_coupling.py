@@ -15,7 +15,7 @@ class RollCoupling(Force):
     """When she heels she is no longer the same on both sides: heel pushes her aside and turns her, most in a turn."""
 
     needs = ("phi",)
-    source = "Son & Nomoto (1981) J. Soc. Naval Arch. Japan 150 (Y_phi, N_phi, Y_rrphi, N_rrphi); Fossen (2021) sec. 6.6"
+    source = "Son & Nomoto (1981) J. Soc. Naval Arch. Japan 150 (Y_phi, N_phi, Y_rrphi, N_rrphi); Fossen (2021) ch. 6"
 
     c_y: float = param(0.0, unit="1/rad", lo=-0.3, hi=0.3, sd=0.02, doc="side force of heel, running straight")
     c_n: float = param(-0.003, unit="1/rad", lo=-0.2, hi=0.2, sd=0.01, doc="yaw moment of heel, running straight")

@@ -1,0 +1,158 @@
+"""`twin effects`: the catalogue in words, formulas and numbers, for the terminal, for programs and for docs/effects.md."""
+
+import argparse
+import inspect
+import json
+import os
+import shutil
+import sys
+import textwrap
+from pathlib import Path
+from typing import Any
+
+from twin.errors import SettingsError
+from twin.physics.effect import Effect, Param
+from twin.physics.effects import BUILT_IN, catalogue, find
+from twin.physics.ship import Ship, load
+
+KINDS = {
+    "Force": "pushes the ship, or changes her inertia",
+    "Flow": "changes the water that hull, propeller and rudder feel",
+    "Lag": "gives an actuator a state of its own",
+    "SensorFault": "leaves the ship alone and changes what an instrument says of her",
+}
+SCALES = {"force": "F_0", "moment": "F_0 L", "speed": "U_0", "time": "L/U_0", "length": "L"}
+SCALES_SAID = "U_0: service speed, L: length between perpendiculars, F_0 = 0.005 rho L T U_0^2, about half of a ship's resistance."
+INPUTS = {
+    "wind_speed": "true_wind_speed_mps", "wind_to": "true_wind_direction_deg", "depth": "water_depth_m", "H_s": "wave_height_significant_m",
+    "T_p": "wave_period_peak_s", "wave_to": "wave_direction_deg", "bank_port": "bank_distance_port_m", "bank_starboard": "bank_distance_starboard_m",
+    "phi": "roll_deg", "u_r": "surge_velocity_through_water_mps", "v_r": "sway_velocity_through_water_mps", "t": "time_s",
+}  # fmt: skip
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("name", nargs="?", metavar="NAME", help="one effect, with its formula; without it, the whole catalogue")
+    parser.add_argument("--ship", metavar="SHIP.toml", help="give boxes and sizes in this ship's own units")
+    parser.add_argument("--json", metavar="FILE", help="the same as JSON; - is standard output")
+    parser.add_argument("--markdown", metavar="FILE", help="the whole catalogue as a page (docs/effects.md is made by it)")
+
+
+def run(args: argparse.Namespace) -> int:
+    ship = load(args.ship) if args.ship else None
+    chosen = [find(args.name)] if args.name else list(catalogue().values())
+    if args.json:
+        _write(args.json, json.dumps({"schema_version": 1, "effects": [as_table(e, ship) for e in chosen]}, indent=2, ensure_ascii=False))
+    if args.markdown:
+        _write(args.markdown, page(list(BUILT_IN)))
+    if "-" not in (args.json, args.markdown):
+        width = min(120, shutil.get_terminal_size((100, 24)).columns)
+        print(one(chosen[0], ship, width) if args.name else overview(chosen, width))
+    return 0
+
+
+def _write(path: str, text: str) -> None:
+    if path == "-":
+        print(text)
+        return
+    try:
+        Path(path).write_text(text.rstrip("\n") + "\n", encoding="utf-8")
+    except OSError as error:
+        raise SettingsError(f"{path}: cannot be written ({error.strerror}). Choose another place.") from None
+
+
+def sentence(effect: type[Effect]) -> str:
+    """What an engineer would say of it in a report."""
+    return " ".join((effect.__doc__ or "").split())
+
+
+def formula(effect: type[Effect]) -> str:
+    """The head of its file: what it means, and the equation."""
+    return inspect.cleandoc(sys.modules[effect.__module__].__doc__ or "")
+
+
+def inputs(effect: type[Effect]) -> list[str]:
+    """The columns of a voyage without which it is switched off."""
+    return [INPUTS.get(name, name) for name in effect.needs]
+
+
+def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:
+    """Everything that is declared of it; with a ship, sizes in SI instead of multiples of the ship's own scales."""
+    params = []
+    for p in effect.params():
+        k = p.scale(ship) if ship else 1.0
+        sizes = {key: getattr(p, key) * k for key in ("default", "lo", "hi", "sd", "null")}
+        params.append({"name": p.name, "unit": p.unit, **sizes, "times": SCALES[p.of] if p.of and not ship else None, "doc": p.doc})
+    return {
+        "name": effect.__name__, "kind": effect.kind, "doc": sentence(effect), "formula": formula(effect), "needs": inputs(effect),
+        "needs_ship": list(effect.needs_ship), "source": effect.source, "parameters": params,
+    }  # fmt: skip
+
+
+def overview(effects: list[type[Effect]], width: int) -> str:
+    """The catalogue on one screen, by kind."""
+    lines = []
+    name_width = max(len(e.__name__) for e in effects) + 2
+    for kind, means in KINDS.items():
+        lines += [bold(kind) + f"  {means}"]
+        for effect in (e for e in effects if e.kind == kind):
+            text = textwrap.wrap(sentence(effect), width - name_width - 2)
+            lines += [f"  {effect.__name__:{name_width}}{text[0]}", *(" " * (name_width + 2) + more for more in text[1:])]
+        lines += [""]
+    return "\n".join([*lines, f"{len(effects)} effects. One in full: twin effects {effects[0].__name__}"])
+
+
+def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
+    """One effect in full."""
+    lines = [f"{bold(effect.__name__)}  {effect.kind}: {KINDS[effect.kind]}", "", *textwrap.wrap(sentence(effect), width), ""]
+    lines += [f"  {line}".rstrip() for line in formula(effect).splitlines()] + [""]
+    rows = [("parameter", "unit", "plausible", "box", "prior sd", "meaning"), *(row(p, ship) for p in effect.params())]
+    widths = [max(len(r[i]) for r in rows) + 2 for i in range(5)]
+    lines += ["  " + "".join(f"{cell:{w}}" for cell, w in zip(r, (*widths, 0), strict=True)).rstrip() for r in rows]
+    if ship is None and any(p.of for p in effect.params()):
+        lines += ["", *(f"  {line}" for line in textwrap.wrap(SCALES_SAID, width - 2))]
+    needs = ", ".join(inputs(effect)) or "nothing beyond the ship's own motion"
+    lines += ["", f"needs     {needs}"] + ([f"of a ship {', '.join(effect.needs_ship)}"] if effect.needs_ship else [])
+    lines += [textwrap.fill(f"source    {effect.source}", width, subsequent_indent=" " * 10)]
+    return "\n".join([*lines, "", f"next: twin add {effect.__name__} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"])
+
+
+def row(p: Param, ship: Ship | None) -> tuple[str, str, str, str, str, str]:
+    """A parameter in a table: name, unit, plausible size, box, prior width, meaning."""
+    k, times = (p.scale(ship), "") if ship else (1.0, f" {SCALES[p.of]}" if p.of else "")
+    says = lambda x: f"{x * k:.4g}" + (times if x else "")  # noqa: E731
+    return p.name, p.unit, says(p.default), f"{says(p.lo)} .. {says(p.hi)}", says(p.sd), p.doc
+
+
+def bold(text: str) -> str:
+    return f"\033[1m{text}\033[0m" if sys.stdout.isatty() and "NO_COLOR" not in os.environ else text
+
+
+def page(effects: list[type[Effect]]) -> str:
+    """docs/effects.md."""
+    lines = [
+        "# The catalogue of effects", "",
+        "Made by `twin effects --markdown docs/effects.md`; a test holds it current. Symbols: [notation](notation.md). "
+        "To add one of your own: [tutorial](tutorials/own-effect.md).", "",
+        f"A size that stands with a letter is a multiple of the ship's own. {SCALES_SAID} The prior of a parameter is normal about the "
+        "value at which the effect is not there (zero), half-normal where its box has one side.", "",
+    ]  # fmt: skip
+    for kind, means in KINDS.items():
+        lines += [f"## {kind}", "", f"{means.capitalize()}.", ""]
+        for effect in (e for e in effects if e.kind == kind):
+            lines += _entry(effect)
+    return "\n".join(lines)
+
+
+def _entry(effect: type[Effect]) -> list[str]:
+    needs = ", ".join(f"`{name}`" for name in inputs(effect)) or "nothing beyond the ship's own motion"
+    if effect.needs_ship:
+        needs += f"; of the ship {', '.join(effect.needs_ship)}"
+    rows = [
+        f"| `{name}` | {unit} | {size} | {box} | {sd} | {doc.replace('|', '/')} |"
+        for name, unit, size, box, sd, doc in (row(p, None) for p in effect.params())
+    ]
+    return [
+        f"### {effect.__name__}", "", sentence(effect), "", "```text", formula(effect), "```", "",
+        "| parameter | unit | plausible | box | prior sd | meaning |", "|---|---|---|---|---|---|", *rows, "",
+        f"Needs {needs}. Source: {effect.source}.", "",
+    ]  # fmt: skip
