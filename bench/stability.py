@@ -35,7 +35,7 @@ class Case(NamedTuple):
 
     ship: str
     rate_hz: float
-    delay: int
+    delays: tuple[int, int, int]  # oldest measurement of u, v, r, in samples
     runs: int
     H_s: float = 0.0
     dropouts: bool = False
@@ -43,16 +43,16 @@ class Case(NamedTuple):
 
 
 CASES = (
-    Case("kvlcc2", 10.0, 1, 3000),
-    Case("kvlcc2", 10.0, 1, 1000, H_s=2.0),
-    Case("kvlcc2", 10.0, 1, 1500, dropouts=True),
-    Case("kvlcc2", 10.0, 10, 500),
-    Case("kvlcc2", 50.0, 1, 500),
-    Case("container", 10.0, 1, 1500),
-    Case("container", 10.0, 1, 500, dropouts=True),
-    Case("usv", 50.0, 1, 500),
-    Case("usv", 50.0, 0, 500, dropouts=True),
-    Case("usv", 10.0, 0, 500),
+    Case("kvlcc2", 10.0, (1, 1, 1), 3000),
+    Case("kvlcc2", 10.0, (1, 1, 1), 1000, H_s=2.0),
+    Case("kvlcc2", 10.0, (1, 1, 1), 1500, dropouts=True),
+    Case("kvlcc2", 10.0, (12, 12, 1), 500),
+    Case("kvlcc2", 50.0, (1, 1, 1), 500),
+    Case("container", 10.0, (1, 1, 1), 1500),
+    Case("container", 10.0, (1, 1, 1), 500, dropouts=True),
+    Case("usv", 50.0, (1, 1, 1), 500),
+    Case("usv", 50.0, (0, 0, 0), 500, dropouts=True),
+    Case("usv", 10.0, (0, 0, 0), 500),
 )
 
 
@@ -71,13 +71,14 @@ class Outcome:
 
 
 def certified(case: Case) -> tuple[Model, Certificate]:
-    """The model of a case, with wind, and its certificate."""
+    """The model of a case, with wind and a current, and its certificate."""
     model = Model.of(load(case.ship))
-    model = model if model.effects else model.but(find("Wind").plausible(model.ship))
+    U = model.ship.U_0
+    model = model.but(find("Wind").plausible(model.ship), find("Current").plausible(model.ship).but(north=0.12 * U, east=-0.08 * U))
     h = 1.0 / case.rate_hz
     plant = cert.plant_of(model, cert.of_ship(model), h)
-    K = case.K or cert.usual_gain(plant, case.delay) or 1.0 / model.ship.scale("time")  # if none holds, the certificate says so
-    return model, cert.certify(model, K, h, case.delay, NOISE[case.ship], heading_noise=HEADING_NOISE)
+    K = case.K or cert.usual_gain(plant, case.delays) or 1.0 / model.ship.scale("time")  # if none holds, the certificate says so
+    return model, cert.certify(model, K, h, case.delays, NOISE[case.ship], heading_noise=HEADING_NOISE)
 
 
 class Fleet:
@@ -96,9 +97,11 @@ class Fleet:
 
     def _start(self) -> None:
         n, rng, ranges = self.runs, self.rng, self.c.operating.ranges
-        nu = np.array([rng.uniform(*_inner(ranges[a], s), n) for a, s in (("u", 0.5), ("v", 0.2), ("r", 0.2))])
-        zero = np.zeros(n)
-        self.truth = (zero, zero, rng.uniform(-np.pi, np.pi, n), *nu)
+        through = [rng.uniform(*_inner(ranges[a], s), n) for a, s in (("u", 0.5), ("v", 0.2), ("r", 0.2))]
+        zero, psi = np.zeros(n), rng.uniform(-np.pi, np.pi, n)
+        w = self.true.water(Situation(psi=psi))
+        nu = np.array([through[0] + w.u, through[1] + w.v, through[2]])
+        self.truth = (zero, zero, psi, *nu)
         self.estimate = nu + self.noise * rng.uniform(-1, 1, (3, n))
         self.past = deque(maxlen=self.c.delay_samples + 1)
         self.tube = np.repeat(np.array(self.c.noise)[:, None], n, axis=1)
@@ -148,9 +151,8 @@ class Fleet:
         side = self._against(k)
         force = np.sign(self.inverse.T @ (side / np.array(self.c.bound)[:, None])) * self.limit
         self.push, self.learned = -self.share * force, (1.0 - self.share) * force
-        s = Situation(**self.inputs, psi=self.truth[2] + HEADING_NOISE * side[2])
-        s.u, s.v, s.r = self.estimate
-        self.estimate = self.estimate + self.h * np.array(self.twin.nu_dot(s))
+        heading = self.truth[2] + HEADING_NOISE * side[2]
+        self.estimate = np.array(self.twin.step((0.0, 0.0, heading, *self.estimate), Situation(**self.inputs), self.h)[3:])
         for _ in range(2):
             self.truth = self.true.step(self.truth, Situation(**self.inputs), 0.5 * self.h)
         self.past.append((np.array(self.truth[3:]), self.estimate))
@@ -158,15 +160,19 @@ class Fleet:
         self.estimate = self.estimate + np.where(self.received, self._pull(k, side), 0.0)
         self._grow()
         low, high = np.array([self.c.operating.ranges[a] for a in ("u", "v", "r")]).T
-        nu = np.array(self.truth[3:])
-        self.alive = self.alive & np.all((nu >= low[:, None]) & (nu <= high[:, None]), axis=0)
+        nu, w = np.array(self.truth[3:]), self.true.water(Situation(psi=self.truth[2]))
+        through = nu - np.array([w.u, w.v, 0.0 * w.u])
+        self.alive = self.alive & np.all((through >= low[:, None]) & (through <= high[:, None]), axis=0)
         return self.estimate - nu
 
     def _pull(self, k: int, side: np.ndarray) -> np.ndarray:
         """h K times a late and noisy measurement less the estimate of its own time; the age changes now and then."""
-        oldest = min(len(self.past) - 1, self.c.delay_samples)
-        was, thought = self.past[-1 - (oldest if k % 3 else int(self.rng.integers(0, oldest + 1)))]
-        return np.array(self.c.step.pull)[:, None] * (was + self.noise * side - thought)
+        measured = []
+        for axis, oldest in enumerate(self.c.delays):
+            age = min(len(self.past) - 1, oldest if k % 3 else int(self.rng.integers(0, oldest + 1)))
+            was, thought = self.past[-1 - age]
+            measured.append(was[axis] - thought[axis])
+        return np.array(self.c.step.pull)[:, None] * (np.array(measured) + self.noise * side)
 
     def _grow(self) -> None:
         """The same bound as `Tube`, for all runs at once."""
@@ -175,7 +181,7 @@ class Fleet:
         d = np.array(c.push) @ self.limit[:, 0] + c.calm
         E = V @ self.tube + d[:, None]
         self.before.append(E)
-        c_ = pull * (c.noise + step.m * (pull * c.noise + d))
+        c_ = pull * (c.noise + np.array(step.m) * (pull * c.noise + d))
         seen = keep[:, None] * E + again[:, None] * np.max(self.before, axis=0) + drift @ np.max(self.after, axis=0) + c_[:, None]
         self.tube = np.where(self.received, seen, E)
         self.after.append(self.tube)

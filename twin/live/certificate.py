@@ -19,7 +19,7 @@ from . import comparison as c3
 from .comparison import Matrix, Row
 from .operating import Confined, OperatingSet, of_ship
 from .plant import Disturbance, Plant, lipschitz, output_bound, plant_of, self_regressor, usual_disturbance
-from .theorem import Promise, Recursion, assess, best_gain, gains_that_do, usual_gain
+from .theorem import Ages, Promise, Recursion, assess, best_gain, gains_that_do, usual_gain
 from .tube import Tube
 
 __all__ = [
@@ -27,7 +27,7 @@ __all__ = [
     "kept", "lipschitz", "of_ship", "output_bound", "plant_of", "self_regressor", "usual_disturbance", "usual_gain",
 ]  # fmt: skip
 
-VERSION = 2
+VERSION = 3
 
 
 @dataclass(frozen=True)
@@ -35,12 +35,17 @@ class Certificate(Promise):
     """The promise made to one ship, with what it rests on: gain [1/s], period, delay, noise, disturbance and operating set."""
 
     K: Row
-    delay_samples: int
+    delays: Ages
     noise: Row
     disturbance: Disturbance
     plant: Plant
     ship: str = ""
     fingerprint: str = ""
+
+    @property
+    def delay_samples(self) -> int:
+        """The greatest age of a measurement on any axis."""
+        return max(self.delays)
 
     @property
     def h(self) -> float:
@@ -62,7 +67,7 @@ class Certificate(Promise):
     def from_json(cls, text: str) -> "Certificate":
         """The certificate that to_json wrote; ValueError, KeyError or TypeError when it is none of this version."""
         table = _tuples(json.loads(text))
-        if table.pop("version") != VERSION:
+        if not isinstance(table, dict) or table.pop("version") != VERSION:
             raise ValueError("certificate of another version")
         plant = table.pop("plant")
         ranges = plant.pop("operating")["ranges"]
@@ -76,7 +81,7 @@ def certify(
     model: Model,
     K: float | Sequence[float],
     h: float,
-    delay_samples: int = 1,
+    delay_samples: int | Sequence[int] = 1,
     noise: Sequence[float] = (0.15, 0.15, 0.0005),
     disturbance: Sequence[float] | Disturbance | None = None,
     operating_set: OperatingSet | None = None,
@@ -86,16 +91,18 @@ def certify(
     """Work out the certificate of an observer with gain K [1/s] and period h [s] (its longest); takes about half a second.
 
     noise: bounds of |y - nu| [m/s, m/s, rad/s]; heading_noise [rad]; disturbance: see Disturbance (default: `usual_disturbance`).
-    delay_samples: the greatest age of a used measurement, in samples, a value held until the sensor's next one included.
+    delay_samples: the greatest age of a used measurement, in samples, a value held until the sensor's next one included; one number,
+    or one for each of u, v, r.
     extra_growth: `self_regressor(...)` when the network is fed with the estimate instead of measurements.
     """
     K = (K, K, K) if isinstance(K, (int, float)) else tuple(K)
-    _check(K, h, delay_samples, noise)
+    m = (delay_samples,) * 3 if isinstance(delay_samples, int) else tuple(delay_samples)
+    _check(K, h, m, noise)
     d = disturbance if isinstance(disturbance, Disturbance) else Disturbance(tuple(disturbance)) if disturbance else usual_disturbance(model)  # type: ignore[arg-type]
     plant, noise = plant_of(model, operating_set or of_ship(model), h), tuple(noise)
-    promise = assess(plant, K, delay_samples, noise, d, heading_noise, extra_growth)  # type: ignore[arg-type]
+    promise = assess(plant, K, m, noise, d, heading_noise, extra_growth)  # type: ignore[arg-type]
     parts = {name: getattr(promise, name) for name in Promise.__dataclass_fields__}
-    return Certificate(**parts, K=K, delay_samples=delay_samples, noise=noise, disturbance=d, plant=plant, ship=model.ship.name)  # type: ignore[arg-type]
+    return Certificate(**parts, K=K, delays=m, noise=noise, disturbance=d, plant=plant, ship=model.ship.name)  # type: ignore[arg-type]
 
 
 def kept(path: str | os.PathLike[str], model: Model, K: float | Sequence[float], h: float, **settings: Any) -> Certificate:
@@ -123,12 +130,12 @@ def _mark(model: Model, *settings: Any) -> str:
     return hashlib.sha256(repr((VERSION, ship, model.effects, *settings)).encode()).hexdigest()[:16]
 
 
-def _check(K: Sequence[float], h: float, delay_samples: int, noise: Sequence[float]) -> None:
+def _check(K: Sequence[float], h: float, m: Sequence[int], noise: Sequence[float]) -> None:
     """Refuse what is no gain, period, delay or noise."""
-    numbers = (*K, h, delay_samples, *noise)
-    if len(K) != 3 or len(noise) != 3 or not all(0.0 <= x < float("inf") for x in numbers) or not h > 0.0 or not all(k > 0.0 for k in K):
+    numbers = (*K, h, *m, *noise)
+    if not len(K) == len(noise) == len(m) == 3 or not all(0.0 <= x < float("inf") for x in numbers) or not h > 0.0 or not all(k > 0.0 for k in K):
         raise SettingsError(
-            f"stabilizer: K = {tuple(K)}, period {h} s, delay {delay_samples}, noise {tuple(noise)}: three positive gains, a positive "
+            f"stabilizer: K = {tuple(K)}, period {h} s, delay {tuple(m)} samples, noise {tuple(noise)}: three positive gains, a positive "
             "period, and no negative number are needed. Correct the configuration."
         )
 

@@ -74,3 +74,13 @@ def radius(a: Matrix) -> float:
 def settled(g: Matrix) -> Matrix | None:
     """(I - G)^-1 when G is a contraction (its inverse then has no negative entry), else None."""
     return inverse(plus(IDENTITY, scaled(-1.0, g))) if contracts(g) else None
+
+
+def beyond_first(a: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
+    """exp(a) - I - a for a square matrix of any size with no negative entry: the bend of a step beyond its first order."""
+    axes = range(len(a))
+    term, total = a, tuple(tuple(0.0 for _ in axes) for _ in axes)
+    for k in range(2, 40):
+        term = tuple(tuple(sum(row[n] * a[n][j] for n in axes) / k for j in axes) for row in term)
+        total = tuple(tuple(x + y for x, y in zip(*rows, strict=True)) for rows in zip(total, term, strict=True))
+    return total

@@ -2,7 +2,8 @@
 
 The set is cut into boxes, each box goes through the physics once as dual numbers over intervals, and the hull of what comes out
 holds every slope and every acceleration in the set, not only those at sampled points. Forces that share inputs are summed box by
-box; forces that do not (wind and rudder) are summed as ranges, which is sure, and a little wide.
+box; forces that do not (wind and rudder) are summed as ranges, which is sure, and a little wide. A current is no box: seen from the
+water it only turns with the heading, r x nu_c, and adds itself to the wind.
 """
 
 from collections.abc import Iterator, Mapping
@@ -14,7 +15,9 @@ import numpy as np
 from twin.physics import core
 from twin.physics.dual import Dual
 from twin.physics.effect import Effect
-from twin.physics.interval import Interval, of
+from twin.physics.effects.current import Current
+from twin.physics.effects.varying_current import VaryingCurrent
+from twin.physics.interval import Interval, hull, of
 from twin.physics.model import CORE, Model
 from twin.physics.state import Situation
 
@@ -50,7 +53,11 @@ class Slopes:
 
 
 def slopes(model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES) -> Slopes:
-    """Sure bounds of the slopes of the known physics (the learned residual is an input, not a slope)."""
+    """Sure bounds of the slopes of the known physics (the learned residual is an input, not a slope).
+
+    They hold as well while effects are switched off for want of an input.
+    """
+    model, ranges = _seen_from_the_water(model, ranges)
     total: list[Any] = [0.0] * 15
     boxes = 0
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
@@ -61,14 +68,17 @@ def slopes(model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES) -> 
             s = boxed(ranges, group, pieces)
             parts = _flat(contribution(model, s, names))
             boxes += max(np.broadcast(of(p).lo).size for p in parts)
-            total = [a + Interval(np.min(p.lo, axis=1), np.max(p.hi, axis=1)) for a, p in zip(total, map(_two_axes, parts), strict=True)]
+            parts = [Interval(np.min(p.lo, axis=1), np.max(p.hi, axis=1)) for p in map(_two_axes, parts)]
+            total = [a + (p if group is GROUPS[0] else hull(p, 0.0)) for a, p in zip(total, parts, strict=True)]
+    total = _with_the_stream(total, ranges)
     lo, hi = [float(np.min(t.lo)) for t in total], [float(np.max(t.hi)) for t in total]
     return Slopes.of(lo, hi, boxes)
 
 
 def sampled(model: Model, ranges: Ranges, count: int = 20000, seed: int = 0) -> Slopes:
     """The same from random points and corners: what the sure bounds are compared with, never what is certified."""
-    s = Situation(**{name: _seed(name, x) for name, x in _points(ranges, count, seed).items()})
+    model, ranges = _seen_from_the_water(model, ranges)
+    s = _situation(_points(ranges, count, seed))
     names = frozenset(name for group in GROUPS for name in _forces(model, group))
     parts = [np.broadcast_to(p, count) for p in _flat(contribution(model, s, names))]
     lo, hi = [float(p.min()) for p in parts], [float(p.max()) for p in parts]
@@ -91,7 +101,7 @@ def boxed(ranges: Ranges, group: tuple[str, ...], pieces: Mapping[str, int]) -> 
     values = {name: Interval(lo, hi) for name, (lo, hi) in ranges.items()}
     values |= {name: Interval(lo[:, None], hi[:, None]) for name, lo, hi in axes[0]}
     values |= {name: Interval(lo[None, :], hi[None, :]) for name, lo, hi in axes[1]}
-    return Situation(**{name: _seed(name, x) for name, x in values.items()})
+    return _situation(values)
 
 
 def contribution(model: Model, s: Situation, names: frozenset[str]) -> tuple[Any, Any, Any]:
@@ -105,6 +115,33 @@ def contribution(model: Model, s: Situation, names: frozenset[str]) -> tuple[Any
     if "hull" in names:
         u_dot, v_dot = u_dot + s.r * water.v, v_dot - s.r * water.u
     return u_dot, v_dot, r_dot
+
+
+def _seen_from_the_water(model: Model, ranges: Ranges) -> tuple[Model, Ranges]:
+    """The model without its currents, and a wind that may have the current on top."""
+    calm = Model(model.ship, tuple(e for e in model.effects if not isinstance(e, (Current, VaryingCurrent))))
+    lo, hi = ranges["wind_speed"]
+    stream = ranges["stream"][1]
+    return calm, {**ranges, "wind_speed": (max(lo - stream, 0.0), hi + stream)}
+
+
+def _with_the_stream(total: list[Any], ranges: Ranges) -> list[Any]:
+    """What a current adds: r x nu_c to the rates, itself to their slope with r, and with the heading what turning nu_c does."""
+    c, r = ranges["stream"][1], max(abs(x) for x in ranges["r"])
+    for i in range(3):
+        value, by_u, by_v, by_r, by_psi = total[5 * i : 5 * i + 5]
+        own = c if i < 2 else 0.0
+        turned = c * (float(np.max(of(by_u).magnitude)) + float(np.max(of(by_v).magnitude))) + r * own
+        total[5 * i : 5 * i + 5] = [value + _either_way(r * own), by_u, by_v, by_r + _either_way(own), by_psi + _either_way(turned)]
+    return total
+
+
+def _either_way(x: float) -> Interval:
+    return Interval(-x, x)
+
+
+def _situation(values: Mapping[str, Any]) -> Situation:
+    return Situation(**{name: _seed(name, x) for name, x in values.items() if name != "stream"})
 
 
 def _forces(model: Model, group: tuple[str, ...]) -> frozenset[str]:

@@ -1,13 +1,12 @@
 """The operating set: the motions and the inputs for which something is promised.
 
-In the ship's own scales, so that one rule serves a 2 m boat and a 320 m tanker: speed in U_0, turning in U_0/L, depth in draughts,
-propeller in the rate that drives her at U_0. Outside it the certificate says nothing, and the twin says that.
+In the ship's own scales, so that one rule serves a 2 m boat and a 320 m tanker: speed through the water in U_0, turning in U_0/L,
+depth in draughts, propeller in the rate that drives her at U_0. Outside it the certificate says nothing, and the twin says that.
 """
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import isfinite, pi
-from typing import Any
+from math import hypot, isfinite, pi
 
 from twin.errors import SettingsError
 from twin.physics import core
@@ -17,28 +16,35 @@ from twin.physics.state import Rates, Situation
 
 NU = ("u", "v", "r")
 WORDS = {
-    "u": "surge speed", "v": "sway speed", "r": "rate of turn", "delta": "rudder angle", "n": "propeller rate", "wind_speed": "wind",
-    "depth": "water depth", "H_s": "wave height", "T_p": "wave period", "draught": "draught", "bank_port": "distance to the port bank",
-    "bank_starboard": "distance to the starboard bank", "phi": "roll",
+    "u": "surge speed through water", "v": "sway speed through water", "r": "rate of turn", "stream": "current", "delta": "rudder angle",
+    "n": "propeller rate", "wind_speed": "wind", "depth": "water depth", "H_s": "wave height", "T_p": "wave period",
+    "draught": "draught", "bank_port": "distance to the port bank", "bank_starboard": "distance to the starboard bank", "phi": "roll",
 }  # fmt: skip
 
 
 @dataclass(frozen=True)
 class OperatingSet:
-    """Field of Situation -> (least, greatest) in SI; an angle that runs round the circle is always inside."""
+    """Field of Situation -> (least, greatest) in SI, u and v through the water, `stream` the speed of the current over ground.
+
+    An angle that runs round the circle is always inside.
+    """
 
     ranges: Mapping[str, tuple[float, float]]
 
     def clip(self, nu: tuple[float, float, float]) -> tuple[float, float, float]:
-        """The motion inside the set that is nearest (floats or arrays)."""
+        """The motion through water inside the set that is nearest (floats or arrays)."""
         (u, v, r), at = nu, self.ranges
         return clip(u, *at["u"]), clip(v, *at["v"]), clip(r, *at["r"])
 
     def outside(self, s: Situation, within: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> str | None:
-        """The first thing that lies outside, in words; None when all is inside. `within` widens the motion by its bound."""
+        """The first thing that lies outside, in words; None when all is inside. s.u_r and s.v_r are set, as Model.known does.
+
+        `within` widens the motion by its bound.
+        """
         margin = dict(zip(NU, within, strict=True))
+        at = {"u": s.u_r, "v": s.v_r, "stream": hypot(s.u - s.u_r, s.v - s.v_r)}
         for name in WORDS:
-            value = getattr(s, name)
+            value = at[name] if name in at else getattr(s, name)
             if value is None or name not in self.ranges:
                 continue
             lo, hi = self.ranges[name]
@@ -64,7 +70,9 @@ class Confined(Model):
 
     def nu_dot(self, s: Situation) -> Rates:
         assert self.operating is not None
-        s.u, s.v, s.r = self.operating.clip((s.u, s.v, s.r))
+        w = self.water(s)
+        u, v, s.r = self.operating.clip((s.u - w.u, s.v - w.v, s.r))
+        s.u, s.v = u + w.u, v + w.v
         return super().nu_dot(s)
 
 
@@ -72,12 +80,13 @@ def of_ship(model: Model, **ranges: tuple[float, float]) -> OperatingSet:
     """The set a ship is certified for unless told otherwise; named ranges replace those of the rule."""
     ship = model.loaded
     U, L, T = ship.U_0, ship.L_pp, ship.T
-    n, stream = propeller_rate(model), strongest_stream(model)
+    n = propeller_rate(model)
     rule = {
-        "u": (0.15 * U + stream, 1.1 * U + stream),
-        "v": (-0.25 * U - stream, 0.25 * U + stream),
+        "u": (0.15 * U, 1.1 * U),
+        "v": (-0.25 * U, 0.25 * U),
         "r": (-0.5 * U / L, 0.5 * U / L),
         "psi": (-pi, pi),
+        "stream": (0.0, 0.25 * U),
         "delta": (-35.0 * pi / 180.0, 35.0 * pi / 180.0),
         "n": (-0.6 * n, 1.25 * n),
         "t": (0.0, 3600.0),
@@ -113,13 +122,3 @@ def propeller_rate(model: Model) -> float:
         low, high = (low, middle) if surplus(middle) > 0.0 else (middle, high)
     return high
 
-
-def strongest_stream(model: Model) -> float:
-    """How fast the water of the ship's flows can run [m/s]: looked for every 10 deg of heading and 5 min of the hour."""
-    if not model.flows:
-        return 0.0
-    calm = {"wind_speed": 0.0, "wind_to": 0.0, "depth": 1e4 * model.loaded.T, "H_s": 0.0, "T_p": 10.0, "wave_to": 0.0}
-    waters: list[Any] = [
-        model.water(Situation(psi=a * pi / 18.0, t=300.0 * k, u=model.loaded.U_0, n=0.0, **calm)) for a in range(36) for k in range(12)
-    ]
-    return max(max(abs(w.u), abs(w.v)) for w in waters)

@@ -1,6 +1,6 @@
 """What the stabilizer's theorem needs to know of a ship: how steep her equations are over the operating set, and how she is disturbed."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from twin.physics import core
 from twin.physics.model import Model
@@ -15,7 +15,7 @@ class Plant:
     """Sure bounds over the operating set; SI units, plain numbers, kept as JSON.
 
     lo, hi: slopes of nu_dot with (u, v, r) [1/s, and m, 1/m where units differ]; heading: greatest slope with psi;
-    most: greatest |nu_dot|; inertia: |M^-1|; h: sample period [s].
+    most: greatest |nu_dot|; inertia: |M^-1|; h: sample period [s]; bend: of a step's slopes beyond I + h A (see `at_period`).
     """
 
     lo: Matrix
@@ -25,10 +25,17 @@ class Plant:
     inertia: Matrix
     h: float
     operating: OperatingSet
+    bend: tuple[tuple[float, ...], ...] = ()
 
     def magnitude(self) -> Matrix:
         """|A|: the greatest slope either way."""
         return c3.matrix(lambda i, j: max(-self.lo[i][j], self.hi[i][j]))
+
+    def at_period(self, h: float) -> "Plant":
+        """The same ship sampled every h seconds: the bend is exp(h |A|) from its second term on, with the heading as a fourth state."""
+        size = self.magnitude()
+        rows = tuple((*(h * x for x in size[i]), h * self.heading[i]) for i in AXES)
+        return replace(self, h=h, bend=c3.beyond_first((*rows, (0.0, 0.0, h, 0.0))))
 
     def growth(self) -> Matrix:
         """A^M: what can make an error grow; on the diagonal only a slope above zero, because clip() may switch damping off."""
@@ -57,7 +64,7 @@ def plant_of(model: Model, operating: OperatingSet, h: float) -> Plant:
         lo=c3.matrix(lambda i, j: steep.lo[i][j]), hi=c3.matrix(lambda i, j: steep.hi[i][j]), most=steep.most,  # type: ignore[arg-type]
         heading=tuple(max(-steep.lo[i][3], steep.hi[i][3]) for i in AXES), inertia=c3.matrix(lambda i, j: abs(unit[j][i])),  # type: ignore[arg-type]
         h=h, operating=operating,
-    )  # fmt: skip
+    ).at_period(h)  # fmt: skip
 
 
 def usual_disturbance(model: Model) -> Disturbance:

@@ -1,12 +1,12 @@
 """The stabilizer's theorem in numbers: from the ship's slopes and a gain K to what is promised (docs/stability.md has the proof).
 
-    nu-  = nu+ + h (nu_dot(clip(nu+)) + M^-1 f_learned)              E = error of nu-, one sample on
-    nu+  = nu- + h K (y - nu-),  compared at the time of y            p = error of nu+, which is published
+    nu-  = nu+ + [one Euler or Runge-Kutta step of the physics, f_learned held]     E = error of nu-, one sample on
+    nu+  = nu- + h K (y - nu-),  compared at the time of y                           p = error of nu+, which is published
     E <= V p + d,    p <= keep E + again max(E) + drift max(p) + c,   max over the last 2m+1 samples
     G = (keep + again) V + drift,   b = (I - G)^-1 g   when the greatest eigenvalue of G is under one
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from math import log, sqrt
 from typing import Any
 
@@ -15,20 +15,21 @@ from .comparison import AXES, Matrix, Row
 from .operating import NU
 from .plant import Disturbance, Plant
 
+Ages = tuple[int, int, int]
 NEVER = float("inf")
 NOWHERE: Row = (NEVER, NEVER, NEVER)
 
 
 @dataclass(frozen=True)
 class Recursion:
-    """How error bounds go on by one sample; rows are axes, nothing is negative. m is the greatest age of a measurement in samples."""
+    """How error bounds go on by one sample; rows are axes, nothing is negative. m: greatest age of a used measurement, in samples."""
 
-    V: Matrix  # one step of the physics on a difference of two motions: |I + h A|
+    V: Matrix  # one step of the physics on a difference of two motions: |I + h A| and its bend
     keep: Row  # |1 - h K|
     again: Row  # m (h K)^2: a pull seen again in late measurements
-    drift: Matrix  # m h K h |A|: the ship's way while a measurement was under way
+    drift: Matrix  # m h K (h |A| + bend): the ship's way while a measurement was under way
     pull: Row  # h K
-    m: int
+    m: Ages
 
     @property
     def G(self) -> Matrix:
@@ -44,25 +45,26 @@ class Recursion:
 
     def share(self) -> Matrix:
         """How much of a push d during one sample reaches p."""
-        return c3.diagonal(tuple(self.keep[i] + self.again[i] + self.m * self.pull[i] for i in AXES))  # type: ignore[arg-type]
+        return c3.diagonal(tuple(self.keep[i] + self.again[i] + self.m[i] * self.pull[i] for i in AXES))  # type: ignore[arg-type]
 
     def heard(self) -> Matrix:
         """How much of the noise reaches p."""
-        return c3.diagonal(tuple(self.pull[i] * (1.0 + self.m * self.pull[i]) for i in AXES))  # type: ignore[arg-type]
+        return c3.diagonal(tuple(self.pull[i] * (1.0 + self.m[i] * self.pull[i]) for i in AXES))  # type: ignore[arg-type]
 
 
-def recursion(plant: Plant, K: Row, m: int, extra: Matrix | None = None) -> Recursion:
+def recursion(plant: Plant, K: Row, m: Ages, extra: Matrix | None = None) -> Recursion:
     """The matrices of one sample for one gain; `extra`: see self_regressor."""
-    h, more = plant.h, extra or c3.scaled(0.0, c3.IDENTITY)
+    h, bend, more = plant.h, plant.bend, extra or c3.scaled(0.0, c3.IDENTITY)
     size, growth = c3.plus(plant.magnitude(), more), c3.plus(plant.growth(), more)
     pull: Row = tuple(h * k for k in K)  # type: ignore[assignment]
+    change = c3.matrix(lambda i, j: h * size[i][j] + bend[i][j])
 
     def step(i: int, j: int) -> float:  # clip() may switch damping off, so the diagonal reaches from 1 - h |lo| to 1 + h hi
-        return h * size[i][j] if i != j else max(1.0 + h * growth[i][i], h * size[i][i] - 1.0)
+        return change[i][j] if i != j else max(1.0 + h * growth[i][i] + bend[i][i], change[i][i] - 1.0)
 
     return Recursion(
-        V=c3.matrix(step), keep=tuple(abs(1.0 - p) for p in pull), again=tuple(m * p * p for p in pull),  # type: ignore[arg-type]
-        drift=c3.matrix(lambda i, j: m * pull[i] * h * size[i][j]), pull=pull, m=m,
+        V=c3.matrix(step), keep=tuple(abs(1.0 - p) for p in pull), again=tuple(n * p * p for n, p in zip(m, pull, strict=True)),  # type: ignore[arg-type]
+        drift=c3.matrix(lambda i, j: m[i] * pull[i] * change[i][j]), pull=pull, m=m,
     )  # fmt: skip
 
 
@@ -88,7 +90,7 @@ class Promise:
     step: Recursion
 
 
-def assess(plant: Plant, K: Row, m: int, noise: Row, d: Disturbance, heading_noise: float = 0.0, extra: Matrix | None = None) -> Promise:
+def assess(plant: Plant, K: Row, m: Ages, noise: Row, d: Disturbance, heading_noise: float = 0.0, extra: Matrix | None = None) -> Promise:
     """Theorems 1 and 2 of docs/stability.md for one gain, once the slopes are known."""
     step = recursion(plant, K, m, extra)
     push, calm = pushed(plant, heading_noise)
@@ -104,29 +106,29 @@ def assess(plant: Plant, K: Row, m: int, noise: Row, d: Disturbance, heading_noi
 
 
 def pushed(plant: Plant, heading_noise: float) -> tuple[Matrix, Row]:
-    """d = push force + calm: a bounded force, a heading error, and the ship's own bend within one sample (Euler's error, surely)."""
-    h, size = plant.h, plant.magnitude()
+    """d = push force + calm: a bounded force, a heading error, and what one step, of first order or fourth, misses of the ship's path."""
+    h, size, bend = plant.h, plant.magnitude(), plant.bend
     along = c3.plus(c3.IDENTITY, c3.scaled(0.5 * h, size))
     turn = max(abs(x) for x in plant.operating.ranges["r"])
-    bend = c3.apply(size, plant.most)
-    calm = tuple(h * (p * heading_noise + 0.5 * h * (b + p * turn)) for p, b in zip(plant.heading, bend, strict=True))
+    curve = c3.apply(size, plant.most)
+    calm = tuple((h * p + bend[i][3]) * heading_noise + h * h * (curve[i] + p * turn) for i, p in enumerate(plant.heading))
     return c3.scaled(h, c3.product(along, plant.inertia)), calm  # type: ignore[return-value]
 
 
-def gains_that_do(plant: Plant, m: int, extra: Matrix | None = None) -> tuple[float, float] | None:
+def gains_that_do(plant: Plant, m: Ages, extra: Matrix | None = None) -> tuple[float, float] | None:
     """The least and the greatest uniform K that the sample period and the delay allow [1/s]; None when there is none."""
 
     def holds(k: float) -> bool:
         return c3.contracts(recursion(plant, (k, k, k), m, extra).G)
 
-    grid = [10.0 ** (-4.0 + 0.05 * i) / plant.h for i in range(84)]
+    grid = [10.0 ** (-6.0 + 0.05 * i) / plant.h for i in range(124)]
     good = [k for k in grid if holds(k)]
     if not good:
         return None
     return _edge(holds, good[0], good[0] / 1.2), _edge(holds, good[-1], good[-1] * 1.2)
 
 
-def usual_gain(plant: Plant, m: int, extra: Matrix | None = None) -> Row | None:
+def usual_gain(plant: Plant, m: Ages, extra: Matrix | None = None) -> Row | None:
     """A K to begin with: four times the least, or the middle of what the period and the delay allow if that is less."""
     limits = gains_that_do(plant, m, extra)
     if limits is None:
@@ -135,7 +137,7 @@ def usual_gain(plant: Plant, m: int, extra: Matrix | None = None) -> Row | None:
     return k, k, k
 
 
-def best_gain(plant: Plant, m: int, noise: Row, d: Disturbance, H_s: float = 0.0, extra: Matrix | None = None) -> Row | None:
+def best_gain(plant: Plant, m: Ages, noise: Row, d: Disturbance, H_s: float = 0.0, extra: Matrix | None = None) -> Row | None:
     """The K with the smallest bound against hostile noise and disturbance, each axis in units of its range; None when none is certified."""
     limits = gains_that_do(plant, m, extra)
     if limits is None:
@@ -174,13 +176,13 @@ def _rate(step: Recursion, h: float) -> float:
     low, high = 0.0, 1.0
     for _ in range(60):
         x = 0.5 * (low + high)
-        under = x > 0.0 and c3.contracts(c3.plus(step.now, c3.scaled(x ** (-2 * step.m), step.past)), x)
+        under = x > 0.0 and c3.contracts(c3.plus(step.now, c3.scaled(x ** (-2 * max(step.m)), step.past)), x)
         low, high = (low, x) if under else (x, high)
     return -log(high) / h
 
 
-def _reason(plant: Plant, K: Row, m: int, ratio: float, worst: float, extra: Matrix | None) -> str:
-    told = ", ".join(f"{k:.3g}" for k in K)
+def _reason(plant: Plant, K: Row, m: Ages, ratio: float, worst: float, extra: Matrix | None) -> str:
+    told, told_m = ", ".join(f"{k:.3g}" for k in K), "/".join(map(str, m))
     if worst < 1.0:
         return f"K = ({told}) 1/s holds: {100 * ratio:.0f} % of it is the least that pulls back faster than errors can grow."
     if not worst < NEVER:
@@ -188,21 +190,21 @@ def _reason(plant: Plant, K: Row, m: int, ratio: float, worst: float, extra: Mat
     limits = gains_that_do(plant, m, extra)
     if limits is None:
         return (
-            f"no K holds at a period of {plant.h:g} s with measurements {m} samples old. "
+            f"no K holds at a period of {plant.h:g} s with measurements {told_m} samples old. "
             f"Run the loop every {_period_that_does(plant, m, extra):.2g} s or faster, or narrow the operating set."
         )
     do = f"K from {limits[0]:.3g} to {limits[1]:.3g} 1/s would do (the same on every axis)."
     if max(K) < limits[0] or ratio >= 1.0:
         return f"K = ({told}) 1/s is too small: errors could grow faster than it pulls them back. {do}"
-    return f"K = ({told}) 1/s is outside what a period of {plant.h:g} s and measurements {m} samples old allow. {do}"
+    return f"K = ({told}) 1/s is outside what a period of {plant.h:g} s and measurements {told_m} samples old allow. {do}"
 
 
-def _period_that_does(plant: Plant, m: int, extra: Matrix | None) -> float:
+def _period_that_does(plant: Plant, m: Ages, extra: Matrix | None) -> float:
     """A shorter period at which some K holds [s]."""
     h = plant.h
     for _ in range(60):
         h *= 0.9
-        if gains_that_do(replace(plant, h=h), m, extra):
+        if gains_that_do(plant.at_period(h), m, extra):
             break
     return h
 

@@ -27,7 +27,7 @@ class Tube:
     def __init__(self, certificate: "Certificate", start: Three | None = None) -> None:
         """`start` bounds the error of the first estimate; by default it is a first measurement, so its noise."""
         self.certificate = certificate
-        self._window = 2 * certificate.delay_samples + 1
+        self._window = 2 * max(certificate.delays) + 1
         self.reset(start)
 
     def reset(self, start: Three | None = None) -> None:
@@ -68,7 +68,7 @@ class Tube:
     def _and_pulled(self, beta: list[float], received: tuple[bool, bool, bool], pulled: Three) -> list[float]:
         """A rejected sample's pull counts in full now, and shows in late measurements for a while."""
         step = self.certificate.step
-        late = [step.m * step.pull[i] * max((p[i] for p in self._pulls), default=0.0) for i in (0, 1, 2)]
+        late = [step.m[i] * step.pull[i] * max((p[i] for p in self._pulls), default=0.0) for i in (0, 1, 2)]
         self._pulls.append(pulled)
         if not any(any(p) for p in self._pulls):
             self._pulls.clear()
@@ -79,7 +79,7 @@ class Tube:
         c = self.certificate
         step, d = c.step, add(apply(c.push, c.disturbance.at(H_s)), c.calm)
         self._table = tuple(
-            (*step.V[i], d[i], step.keep[i], step.again[i], *step.drift[i], step.pull[i] * (c.noise[i] + step.m * (step.pull[i] * c.noise[i] + d[i])))
+            (*step.V[i], d[i], step.keep[i], step.again[i], *step.drift[i], step.pull[i] * (c.noise[i] + step.m[i] * (step.pull[i] * c.noise[i] + d[i])))
             for i in (0, 1, 2)
         )
 
@@ -88,5 +88,11 @@ class Tube:
         return self.outside(s) is None
 
     def outside(self, s: Situation) -> str | None:
-        """What leaves the operating set, in words; None when nothing does."""
-        return self.certificate.operating.outside(s, self.beta)
+        """What leaves the operating set, or may within a sample, in words; None when nothing does."""
+        return self.certificate.operating.outside(s, self._reach())
+
+    def _reach(self) -> Three:
+        """The bound, and how far the ship can get in one sample."""
+        h, most = self.certificate.h, self.certificate.plant.most
+        u, v, r = self.beta
+        return u + h * most[0], v + h * most[1], r + h * most[2]
