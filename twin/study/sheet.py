@@ -73,6 +73,8 @@ class Sheet:
 def cells(line: str, layout: Layout) -> list[str]:
     if layout.separator == " ":
         return line.split()
+    if '"' not in line:
+        return line.rstrip("\r\n").split(layout.separator or ",")
     return next(csv.reader((line,), delimiter=layout.separator or ","), [])
 
 

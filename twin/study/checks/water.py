@@ -39,7 +39,8 @@ def speed_log(view: View) -> Check:
         return doubtful(
             name, f"{saw}, {apart:.2f} m/s apart: look at the log's unit, calibration and fouling."
         )
-    return good(name, f"{saw}.")
+    doubt = f" In {unit}, or a current? A turn, or another speed, would tell." if unit else ""
+    return good(name, f"{saw}.{doubt}")
 
 
 def factor(
