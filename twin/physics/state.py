@@ -20,9 +20,6 @@ class Force(NamedTuple):
     def __add__(self, other: "Force") -> "Force":  # type: ignore[override]
         return Force(self.X + other.X, self.Y + other.Y, self.N + other.N)
 
-    def times(self, factor: Number) -> "Force":
-        return Force(self.X * factor, self.Y * factor, self.N * factor)
-
 
 class Water(NamedTuple):
     """The water an effect makes the ship feel.
