@@ -8,19 +8,21 @@ import math
 import os
 import signal
 import time
+from dataclasses import replace
+from pathlib import Path
 
 import zenoh
 
-from bench.reference import HULLS, WEATHERS, Case, Sea
+from bench.reference import HULLS, WEATHERS, Case, Sea, simulate
 from bench.reference.manoeuvres import MANOEUVRES
 from twin.errors import SettingsError, did_you_mean
 from twin.live import geodesy
 from twin.live.messages import encode_fix, encode_float, wrap
-from twin.live.topics import INPUTS, key
+from twin.live.topics import INPUTS, OWN_SOURCE, key
 from twin.live.zenoh_config import BusSettings, configuration
 
 SOURCE = "sea"
-MATCHING_S = 10.0  # the longest wait for somebody who listens
+LISTENER_S = 30.0  # the longest wait for a twin that listens
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -36,6 +38,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--duration", type=float, default=math.inf, metavar="S", help="how long (default: until stopped)"
     )
+    parser.add_argument("--csv", metavar="FILE", help="write the voyage there at once, and speak to nobody")
     parser.add_argument(
         "--latitude-deg", type=float, default=57.62, help="of the chart's origin (default: off Vinga)"
     )
@@ -43,13 +46,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    if args.csv:
+        return _write(args)
     sea = Sea(_case(args), 1.0 / args.hz)
     signal.signal(signal.SIGTERM, lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
     place = BusSettings(args.base, args.entity, args.listen, (args.connect,) if args.connect else ())
     session = zenoh.open(configuration(place))
     try:
         voice = Voice(session, args)
-        voice.wait_for_listener()
+        voice.wait_for_twin()
         _sail(sea, voice, args)
     except KeyboardInterrupt:
         pass
@@ -64,6 +69,8 @@ class Voice:
     def __init__(self, session: zenoh.Session, args: argparse.Namespace):
         self.datum = geodesy.datum(args.latitude_deg, args.longitude_deg)
         self.scalars, self.fix = {}, None
+        tick = key(args.base, args.entity, "twin_tick", OWN_SOURCE)
+        self.twin = session.declare_subscriber(tick, zenoh.handlers.RingChannel(1))
         for topic in INPUTS:
             publisher = session.declare_publisher(key(args.base, args.entity, topic.subject, SOURCE))
             if topic.subject == "location_fix":
@@ -71,10 +78,10 @@ class Voice:
             elif topic.factor == 1.0:
                 self.scalars[topic.channels[0]] = publisher
 
-    def wait_for_listener(self) -> None:
-        """Slow instruments speak once a minute: their first word should not be lost."""
-        until = time.monotonic() + MATCHING_S
-        while not self.fix.matching_status.matching and time.monotonic() < until:
+    def wait_for_twin(self) -> None:
+        """Until a twin ticks: slow instruments speak once a minute, their first word must not be lost."""
+        until = time.monotonic() + LISTENER_S
+        while self.twin.try_recv() is None and time.monotonic() < until:
             time.sleep(0.02)
 
     def say(self, row: dict[str, float], wall_ns: int) -> int:
@@ -100,6 +107,21 @@ def _sail(sea: Sea, voice: Voice, args: argparse.Namespace) -> None:
         sea.step()
         tick += 1
         time.sleep(max(0.0, start + tick / args.hz - time.monotonic()))
+
+
+def _write(args: argparse.Namespace) -> int:
+    """The voyage as a file of measurements, as fast as it can be sailed."""
+    if not math.isfinite(args.duration):
+        raise SettingsError("--csv needs an end: add --duration with the seconds to sail.")
+    path = Path(args.csv)
+    aside = path.with_name(f".{path.name}.part")
+    (voyage,) = simulate([replace(_case(args), duration_s=args.duration)], 1.0 / args.hz)
+    voyage.write_csv(aside)
+    aside.replace(path)
+    print(
+        f"{path}: {args.duration:g} s of {args.hull}. Next: twin import {path} -o {path.with_suffix('.mcap')}"
+    )
+    return 0
 
 
 def _case(args: argparse.Namespace) -> Case:

@@ -1,0 +1,175 @@
+"""`twin demo`: a ship's twin alive, from nothing, in about a minute.
+
+A reference ship sails in a process of her own, her instruments speak Keelson over Zenoh, the loop listens,
+estimates, speaks and logs; the log is then replayed, and the replay held against what was said live.
+"""
+
+import argparse
+import importlib.util
+import math
+import shlex
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from twin.errors import TwinError
+from twin.live import messages, replay
+from twin.live import run as service
+from twin.live.config import Settings
+from twin.live.logfile import read
+from twin.live.view import View
+from twin.physics.ship import load
+
+SEA = "bench.sea_process"  # the reference sea: a program beside the twin, not a part of it
+SEEN = (
+    "north_m",
+    "east_m",
+    "heading_true_north_deg",
+    "surge_velocity_mps",
+    "sway_velocity_mps",
+    "yaw_rate_degps",
+)
+STORY: tuple[
+    str, ...
+] = ()  # commands of the study, shown and run one after the other; {log} is this demo's log
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--seconds", type=float, default=40.0, help="how long she sails (default: 40)")
+    parser.add_argument(
+        "--ship", default="usv", help="a bundled ship: usv (2 m, lively; the default), kvlcc2, ..."
+    )
+    parser.add_argument(
+        "--manoeuvre", default="zigzag_20", help="what the helmsman does (default: zigzag_20)"
+    )
+    parser.add_argument("--logs", default="logs", metavar="FOLDER", help="where the log goes (default: logs)")
+
+
+def run(args: argparse.Namespace) -> int:
+    """Sail, look, log, replay, and say what to do next."""
+    if not 5.0 <= args.seconds <= 3600.0:
+        raise TwinError(f"--seconds {args.seconds:g}: 5 to 3600 can be shown.")
+    ship = load(args.ship)
+    folder = Path(args.logs) / time.strftime("demo-%Y%m%d-%H%M%S")
+    settings = settings_for(args.ship, folder)
+    print(
+        f"{ship.name} sails a {args.manoeuvre} in the reference sea for {args.seconds:g} s; her twin listens."
+    )
+    with reference_sea(settings, args):
+        view = View(sys.stdout, f"shiptwin demo: {ship.name}", args.seconds, str(folder))
+        code = service.serve(settings, args.seconds, view.show)
+    if code:
+        return code
+    log = newest(folder)
+    tell(log, view.ticks, settings)
+    story(log)
+    return 0
+
+
+def settings_for(ship: str, folder: Path) -> Settings:
+    """As `twin run`, on a free port, 20 times a second, without the rights of a service."""
+    values = {
+        "ship.file": ship, "bus.listen": f"tcp/127.0.0.1:{free_port()}", "log.folder": str(folder),
+        "loop.rate_hz": 20.0, "loop.priority": 0, "loop.lock_memory": False,
+    }  # fmt: skip
+    settings = Settings()
+    for name, value in values.items():
+        settings = settings.but(name, value)
+    return settings
+
+
+@contextmanager
+def reference_sea(settings: Settings, args: argparse.Namespace) -> Iterator[None]:
+    """The ship and her instruments, in a process of its own, until the demo is over."""
+    if importlib.util.find_spec("bench") is None:
+        raise TwinError(
+            "The reference sea (package `bench`) is not installed here. Run `make demo` in the source folder."
+        )
+    command = [sys.executable, "-m", SEA, "--connect", settings["bus.listen"], "--hull", args.ship]
+    command += [
+        "--manoeuvre",
+        args.manoeuvre,
+        "--base",
+        settings["bus.base"],
+        "--entity",
+        settings["bus.entity"],
+    ]
+    with tempfile.TemporaryFile("w+") as said:
+        sea = subprocess.Popen(command, stdout=said, stderr=said)
+        try:
+            time.sleep(0.5)
+            if sea.poll() is not None:
+                said.seek(0)
+                raise TwinError(f"The reference sea did not start: {said.read().strip().splitlines()[-1:]}")
+            yield
+        finally:
+            sea.terminate()
+            sea.wait(10)
+
+
+def tell(log: Path, ticks: int, settings: Settings) -> None:
+    """Replay the log and print where it is and what to do next."""
+    print(f"\n{ticks} ticks. Replaying the log through the same objects ...", flush=True)
+    again = log.with_name("again.mcap")
+    summary = replay.replay(log, settings, again)
+    modes = ", ".join(f"{mode} {n}" for mode, n in summary.modes.items())
+    print(f"replayed {summary.ticks} ticks ({modes}); {compared(log, again)}")
+    print(f"log:  {log} ({log.stat().st_size / 1e3:.0f} kB; Lichtblick, Foxglove and Rerun open it)")
+    print(f"next: twin replay {shlex.quote(str(log))} --ship {shlex.quote(settings['ship.file'])}")
+
+
+def compared(log: Path, again: Path) -> str:
+    """How far the replay's estimates are from those said live."""
+    live, replayed = ({t.index: t.estimate for t in ticks_of(path)} for path in (log, again))
+    worst = max(
+        (
+            abs(getattr(live[i], name) - getattr(replayed[i], name))
+            for i in live.keys() & replayed.keys()
+            for name in SEEN
+        ),
+        default=math.nan,
+    )
+    return (
+        "the same estimates as live, bit for bit"
+        if worst == 0.0
+        else f"estimates differ from live by {worst:.2g} at most"
+    )
+
+
+def ticks_of(path: Path) -> Iterator[Any]:
+    for message in read(path):
+        if message.type_name == "shiptwin.Tick":
+            yield messages.Tick.FromString(message.data)
+
+
+def story(log: Path) -> None:
+    """The study's part of the story, once the study is there: each command is shown, then run."""
+    from twin import cli
+
+    if importlib.util.find_spec("twin.study.diagnose") is None:
+        return
+    for command in STORY:
+        text = command.format(log=shlex.quote(str(log)))
+        print(f"\n$ twin {text}", flush=True)
+        code = cli.main(shlex.split(text))
+        if code:
+            raise TwinError(f"`twin {text}` ended with exit code {code}.")
+
+
+def newest(folder: Path) -> Path:
+    logs = sorted(folder.glob("*.mcap"))
+    if not logs:
+        raise TwinError(f"{folder}: no log was written. Is the disk full?")
+    return logs[-1]
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
