@@ -1,4 +1,4 @@
-"""The README: two set-up commands, and every other command shown runs as it stands, in order, in one folder."""
+"""The README: two set-up commands, and every other command shown runs as it stands and in order."""
 
 import os
 import re
