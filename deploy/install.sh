@@ -1,5 +1,5 @@
 #!/bin/sh
-# Installs a version beside those that are there and switches to it; when it is not healthy, switches back.
+# Installs a version beside those that are there and switches to it; when it does not stay up, switches back.
 #   sudo deploy/install.sh [WHEEL]      without WHEEL the version of this source folder
 # For a trial without systemd: ROOT=/some/folder deploy/install.sh
 set -eu

@@ -7,15 +7,20 @@ point_to() {  # the symlink changes in one step: there is never none, and never 
     mv -T "$base/.current.$$" "$base/current"
 }
 
-restart() {
+restart() {  # good when it says that it is ready and still runs, fed its watchdog, after five seconds
     [ -z "$root" ] || return 0
     systemctl daemon-reload
     systemctl reset-failed shiptwin 2>/dev/null || true
     systemctl enable --quiet shiptwin
-    systemctl restart shiptwin && "$base/current/bin/twin" health --config /etc/shiptwin/twin.toml
+    systemctl restart shiptwin || return 1
+    started="$(systemctl show --property NRestarts --value shiptwin)"
+    sleep 5
+    systemctl is-active --quiet shiptwin || return 1
+    [ "$(systemctl show --property NRestarts --value shiptwin)" = "$started" ] || return 1
+    systemctl show --property StatusText --value shiptwin
 }
 
-switch_to() {  # VERSION: run it; when it is not healthy, run again what ran before
+switch_to() {  # VERSION: run it; when it does not stay up, run again what ran before
     before="$(running)"
     point_to "$1"
     if restart; then
@@ -23,7 +28,7 @@ switch_to() {  # VERSION: run it; when it is not healthy, run again what ran bef
         echo "running: $1. Before: ${before:-nothing}. Back: deploy/rollback.sh"
         return 0
     fi
-    echo "version $1 is not healthy" >&2
+    echo "version $1 does not run" >&2
     [ -z "$before" ] || { point_to "$before"; restart || true; echo "running again: $before" >&2; }
     return 1
 }
