@@ -1,58 +1,50 @@
 """Instructions of one step, counted by valgrind: a figure that does not depend on the machine's mood.
 
-The same program is counted with few and with many repeats; the difference, divided, is one repeat. Two
-runs give the same count, so that a change of one per cent is a change of the code.
+The same program is counted with few and with many repeats; the difference, divided, is one repeat. Two runs
+give the same count, so that a change of one per cent is a change of the code.
 
-    python -m bench.instructions PROGRAM REPEATS      runs a program (below) so often; valgrind watches it
+    python -m bench.instructions PROGRAM REPEATS      runs a program of counted.py so often; valgrind watches it
 """
 
 import re
 import shutil
 import subprocess
 import sys
-from collections.abc import Callable
+import tempfile
 
+from bench import counted
 from twin.errors import TwinError
 
-FEW, MANY = 20, 520
-LIMIT_S = 300
+FEW, MANY = 40, 240
+LIMIT_S = 600
 VALGRIND = ("valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null")
-
-
-def analytic() -> Callable[[], object]:
-    """One Runge-Kutta step of the equations."""
-    from twin.physics.model import Model
-    from twin.physics.ship import load
-    from twin.physics.state import Situation
-
-    ship = load("kvlcc2")
-    model, s = Model.of(ship), Situation(u=ship.U_0, delta=0.1, n=1.5, wind_speed=8.0, wind_to=0.7)
-    state = (0.0, 0.0, 0.0, ship.U_0, 0.1, 0.002)
-    return lambda: model.step(state, s, 0.1)
-
-
-PROGRAMS: dict[str, Callable[[], Callable[[], object]]] = {"analytic": analytic}
 
 
 def available() -> bool:
     return shutil.which("valgrind") is not None
 
 
-def counts(names: tuple[str, ...] = tuple(PROGRAMS)) -> dict[str, int]:
-    """{program: instructions of one repeat}; every run is a process of its own, two at a time."""
-    running = {(name, n): _start(name, n) for name in names for n in (FEW, MANY)}
-    total = {key: _finish(process) for key, process in running.items()}
-    return {name: round((total[name, MANY] - total[name, FEW]) / (MANY - FEW)) for name in names}
+def counts(names: tuple[str, ...] = tuple(counted.PROGRAMS)) -> dict[str, int]:
+    """{program: instructions of one repeat}; every run is a process of its own."""
+    with tempfile.TemporaryDirectory(prefix="twin-bench-") as home:
+        return {name: _count(name, home) for name in names}
 
 
-def _start(name: str, repeats: int) -> "subprocess.Popen[str]":
-    program = [sys.executable, "-m", "bench.instructions", name, str(repeats)]
-    command = [*VALGRIND, *program]
-    env = {"PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1", "PATH": "/usr/bin:/bin", "HOME": "/tmp"}
+def _count(name: str, home: str) -> int:
+    start((), name, 1, home).communicate(timeout=LIMIT_S)  # puts on file what is worked out only once
+    few, many = (start(VALGRIND, name, repeats, home) for repeats in (FEW, MANY))
+    return round((total(many) - total(few)) / (MANY - FEW))
+
+
+def start(watcher: tuple[str, ...], name: str, repeats: int, home: str) -> "subprocess.Popen[str]":
+    """The program, watched; its surroundings are the same each time."""
+    command = [*watcher, sys.executable, "-m", "bench.instructions", name, str(repeats)]
+    env = {"PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1", "PATH": "/usr/bin:/bin", "HOME": home}
     return subprocess.Popen(command, env=env, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
 
-def _finish(process: "subprocess.Popen[str]") -> int:
+def total(process: "subprocess.Popen[str]") -> int:
+    """All instructions of a watched process."""
     try:
         text = process.communicate(timeout=LIMIT_S)[1]
     except subprocess.TimeoutExpired:
@@ -65,6 +57,6 @@ def _finish(process: "subprocess.Popen[str]") -> int:
 
 
 if __name__ == "__main__":
-    step = PROGRAMS[sys.argv[1]]()
+    step = counted.PROGRAMS[sys.argv[1]]()
     for _ in range(int(sys.argv[2])):
         step()

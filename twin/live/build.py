@@ -84,7 +84,7 @@ def keep(adaptation: Adaptation, learned: LearnedForce) -> str:
 def stabilizer_of(settings: Settings, ship: Ship) -> Stabilizer:
     """The certificate from its file; when there is none it is worked out by another process (it needs numpy, the loop does not)."""
     h, K = 1.0 / settings["loop.rate_hz"], settings["observer.gain"] or gain_for(ship)
-    oldest_s = settings["observer.oldest_s"] or min(max(0.03 * ship.L_pp / ship.U_0, 2.0 * h), 1.2)
+    oldest_s = settings["observer.oldest_s"] or min(max(0.0125 * ship.L_pp / ship.U_0, 2.0 * h), 1.2)
     delay = max(round(oldest_s / h), 1)
     path = certificate_file(settings)
     try:

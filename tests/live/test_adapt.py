@@ -1,0 +1,138 @@
+"""Learning on board: it finds what is planted, it never leaves its bounds, and it stands still when it should."""
+
+import json
+import random
+from math import isfinite, sin
+
+import pytest
+
+from twin.live.adapt import A_MAX, Adaptation
+from twin.live.learned import LearnedForce, scale_of
+from twin.live.residual import bundled, load
+from twin.physics.state import Force
+
+LAM = 0.05
+
+
+def made(ship, components=2):
+    return Adaptation(ship, scale_of(ship), components)
+
+
+def known(ship, hull=(0.5, 0.5, 0.5), rudder=(0.0, 0.3, 0.3)):
+    S = scale_of(ship)
+    return {
+        "hull": Force(*(h * s for h, s in zip(hull, S, strict=True))),
+        "rudder": Force(*(h * s for h, s in zip(rudder, S, strict=True))),
+        "propeller": Force(0.4 * S.X, 0.0, 0.0),
+    }
+
+
+def teach(adaptation, ship, truth, seconds=4000, dt=0.5, noise=0.1, seed=1, frozen=""):
+    """Feed d = truth(regressors) + noise; the regressors move as in manoeuvres."""
+    dice = random.Random(seed)
+    filtered = [0.0, 0.0, 0.0]
+    for k in range(int(seconds / dt)):
+        t = dt * k
+        q = [sin(t / 40.0), sin(t / 27.0 + 1.0)]
+        rows = adaptation.regressors(q, known(ship, hull=(0.5, 0.6 * sin(t / 35.0), 0.5 * sin(t / 30.0)), rudder=(0, sin(t / 50.0), sin(t / 45.0))))
+        a = LAM * dt
+        filtered = [f + a * (truth(r, row) - f) for r, (f, row) in enumerate(zip(filtered, rows, strict=True))]
+        d = tuple(f + noise * dice.gauss(0.0, 1.0) for f in filtered)
+        adaptation.learn(d, [0.0, 0.0, 0.0], rows, LAM, dt, frozen)
+    return rows
+
+
+def test_it_finds_a_hull_force_that_is_20_percent_off(kvlcc2):
+    adaptation = made(kvlcc2)
+    teach(adaptation, kvlcc2, lambda r, q: 0.2 * q[2])
+    found = {p.name: p for p in adaptation.parameters()}
+    assert found["sway hull"].value == pytest.approx(0.2, abs=0.06)
+    assert found["sway hull"].status == "estimated"
+
+
+def test_with_nothing_to_find_the_gate_stays_shut(kvlcc2):
+    adaptation = made(kvlcc2)
+    rows = teach(adaptation, kvlcc2, lambda r, q: 0.0)
+    assert max(abs(x) for x in adaptation.correction(rows)) < 0.02
+    assert {p.status for p in adaptation.parameters()} == {"unestimated"}
+
+
+def test_M12_whatever_it_is_fed_it_stays_finite_and_inside_its_bounds(kvlcc2):
+    """Test: hostile regressors and forces. Expected: every number in its box, the whole in the ball, nothing that is no number."""
+    adaptation = made(kvlcc2)
+    dice = random.Random(7)
+    for _ in range(4000):
+        q = [dice.choice((-3.0, 3.0)) for _ in range(2)]
+        rows = adaptation.regressors(q, known(kvlcc2, hull=[dice.uniform(-1e3, 1e3) for _ in range(3)]))
+        d = tuple(dice.choice((-1e6, 1e6, 0.0, 1e300)) for _ in range(3))
+        adaptation.learn(d, [0.0] * 3, rows, LAM, dice.choice((0.01, 0.1, 0.9)), "")
+        assert adaptation.norm() <= A_MAX + 1e-12
+    for p in adaptation.parameters():
+        assert isfinite(p.value) and p.low <= p.value <= p.high and isfinite(p.sigma)
+    assert all(isfinite(x) for x in adaptation.correction(rows))
+
+
+def test_a_number_at_its_bound_is_called_invalid(kvlcc2):
+    adaptation = made(kvlcc2)
+    teach(adaptation, kvlcc2, lambda r, q: 3.0 * q[2], noise=0.01)
+    assert "invalid" in {p.status for p in adaptation.parameters()}
+
+
+def test_while_frozen_nothing_changes(kvlcc2):
+    adaptation = made(kvlcc2)
+    teach(adaptation, kvlcc2, lambda r, q: 0.2 * q[2], seconds=200, frozen="a sensor is out")
+    assert adaptation.updates == 0 and adaptation.norm() == 0.0 and adaptation.frozen == "a sensor is out"
+
+
+def test_without_a_manoeuvre_there_is_nothing_to_learn_from(kvlcc2):
+    adaptation = made(kvlcc2)
+    rows = adaptation.regressors([0.1, 0.2], known(kvlcc2))
+    for _ in range(4000):
+        adaptation.learn((0.3, 0.3, 0.3), [0.0] * 3, rows, LAM, 0.5, "")
+    assert "manoeuvre" in adaptation.frozen and adaptation.norm() < 0.2
+
+
+def test_M12_saved_numbers_come_back_clamped_and_must_prove_themselves_again(kvlcc2, tmp_path):
+    adaptation = made(kvlcc2)
+    rows = teach(adaptation, kvlcc2, lambda r, q: 0.2 * q[2])
+    path = tmp_path / "adaptation.json"
+    table = json.loads(adaptation.saved("mark"))
+    table["rows"][0]["a"][0] = 1e9
+    path.write_text(json.dumps(table))
+    again = made(kvlcc2)
+    again.restore(path, "mark")
+    values = {p.name: p.value for p in again.parameters()}
+    assert values["sway hull"] == pytest.approx({p.name: p.value for p in adaptation.parameters()}["sway hull"])
+    assert values["surge feature 1"] <= 0.5 and again.correction(rows) == (0.0, 0.0, 0.0)
+
+
+@pytest.mark.parametrize("text", ("", "{", "[]", '{"mark": "mark", "rows": [1, 2, 3]}', '{"mark": "mark", "rows": []}', '{"mark": "mark", "rows": [{"a": [NaN]}, {}, {}]}', "[" * 100_000))
+def test_M12_a_garbage_file_is_left_out_and_said(kvlcc2, tmp_path, text):
+    path = tmp_path / "adaptation.json"
+    path.write_text(text)
+    adaptation = made(kvlcc2)
+    adaptation.restore(path, "mark")
+    assert adaptation.norm() == 0.0 and "begins anew" in adaptation.notes[0]
+
+
+def test_M12_numbers_of_another_network_are_left_out(kvlcc2, tmp_path):
+    path = tmp_path / "adaptation.json"
+    path.write_text(made(kvlcc2).saved("theirs"))
+    adaptation = made(kvlcc2)
+    adaptation.restore(path, "mine")
+    assert "another ship or network" in adaptation.notes[0]
+
+
+def test_it_learns_from_a_ship_whose_rudder_is_weaker_than_the_model_thinks(kvlcc2, make_bridge):
+    """Test: a rudder of 80 % in a zigzag, perfect instruments. Expected: the yaw error falls, the correction is small and named."""
+    from dataclasses import replace
+
+    from twin.physics.model import Model
+
+    learned = LearnedForce(kvlcc2, load(bundled(kvlcc2), kvlcc2))
+    bridge = make_bridge(loop={"learned": learned}, noise=0.2)
+    bridge.sailing.model = Model.of(replace(kvlcc2, A_R=0.8 * kvlcc2.A_R))
+    bridge.run(700.0)
+    values = {p.name: p.value for p in learned.adaptation.parameters()}
+    assert values["yaw rudder"] < -0.02
+    assert learned.adaptation.updates > 1000
