@@ -3,9 +3,10 @@
 The same program is counted with few and with many repeats; the difference, divided, is one repeat. Two runs
 give the same count, so that a change of one per cent is a change of the code.
 
-    python -m bench.instructions PROGRAM REPEATS      runs a program of counted.py so often; valgrind watches it
+    python -m bench.instructions PROGRAM REPEATS      runs a program of counted.py; valgrind watches it
 """
 
+import gc
 import re
 import shutil
 import subprocess
@@ -15,7 +16,7 @@ import tempfile
 from bench import counted
 from twin.errors import TwinError
 
-FEW, MANY = 40, 240
+FEW, MANY = 30, 90
 LIMIT_S = 600
 VALGRIND = ("valgrind", "--tool=cachegrind", "--cache-sim=no", "--cachegrind-out-file=/dev/null")
 
@@ -58,5 +59,7 @@ def total(process: "subprocess.Popen[str]") -> int:
 
 if __name__ == "__main__":
     step = counted.PROGRAMS[sys.argv[1]]()
+    gc.freeze()
+    gc.disable()  # as the service does
     for _ in range(int(sys.argv[2])):
         step()

@@ -22,6 +22,7 @@ from twin.physics.ship import load
 SCHEMA_VERSION = 1
 PARTS = 2000  # ticks with a stop-watch on each part, after the measured ones
 PACED_S = 20.0
+COUNTED_FROM = 5000  # steps: a quick look does not wait for valgrind
 COMPUTING = ("sensors", "correct", "known", "learned", "adapt", "predict")  # what a peer does too
 
 
@@ -73,7 +74,7 @@ def measure(args: argparse.Namespace) -> dict[str, Any]:
             _say("the peers ...")
             peers = _json_of([sys.executable, "-m", "bench.peers"], "the peers")
         counted = {}
-        if not args.no_instructions and instructions.available():
+        if args.steps >= COUNTED_FROM and not args.no_instructions and instructions.available():
             _say("counting instructions with valgrind ...")
             counted = instructions.counts()
         residual = place.residual

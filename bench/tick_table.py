@@ -22,6 +22,11 @@ PEERS = {
     "lstm": "2 x 128, re-run over its window of 50",
     "lstm_stateful": "2 x 128, carrying its state",
 }
+COUNTED = {
+    "analytic": "one Runge-Kutta step of the equations",
+    "network": "one run of the residual's network",
+    "tick": "one whole tick, without bus and disk",
+}
 
 
 def text(r: dict[str, Any]) -> str:
@@ -118,7 +123,7 @@ def _counts(r: dict[str, Any]) -> str:
     if not r["instructions"]:
         return ""
     lines = [_title("Instructions of one step (valgrind), the same on every run")]
-    lines += [f"  {name:<22}{count:>14,}" for name, count in r["instructions"].items()]
+    lines += [f"  {name:<14}{count:>14,}   {COUNTED[name]}" for name, count in r["instructions"].items()]
     return "\n".join(lines)
 
 

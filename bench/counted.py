@@ -1,0 +1,81 @@
+"""What is counted in instructions: a step of the equations, a run of the network, a tick without bus and disk.
+
+Each function prepares its program and gives the step that is repeated; nothing hangs on a clock or on chance.
+"""
+
+from collections.abc import Callable
+from math import cos, sin
+
+from twin.live.build import loop_of
+from twin.live.bus import MemoryBus
+from twin.live.clock import Instant
+from twin.live.config import Settings
+from twin.live.inbox import Inbox
+from twin.live.messages import encode_fix, encode_float, wrap
+from twin.live.outbox import Outbox
+from twin.live.publish import Publisher
+from twin.live.residual import bundled
+from twin.live.residual import load as load_residual
+from twin.live.topics import key
+from twin.physics.model import Model
+from twin.physics.ship import load
+from twin.physics.state import Situation
+
+SHIP, RATE_HZ, WALL_S = "kvlcc2", 10.0, 1.7e9
+MOST = 100  # ticks for which there are messages
+Step = Callable[[], object]
+
+
+def analytic() -> Step:
+    """One Runge-Kutta step of the equations."""
+    ship = load(SHIP)
+    model, s = Model.of(ship), Situation(u=ship.U_0, delta=0.1, n=1.5, wind_speed=8.0, wind_to=0.7)
+    state = (0.0, 0.0, 0.0, ship.U_0, 0.1, 0.002)
+    return lambda: model.step(state, s, 0.1)
+
+
+def network() -> Step:
+    """One run of the learned residual's network."""
+    ship = load(SHIP)
+    residual = load_residual(bundled(ship) or "", ship)
+    zeta = [0.1] * len(residual.manifest.inputs)
+    return lambda: residual.network.run(zeta)
+
+
+def tick() -> Step:
+    """One whole tick: decode, gates, observer, forces, adaptation, prediction, certificate, records."""
+    settings = Settings().but("ship.file", SHIP).but("loop.rate_hz", RATE_HZ)
+    bus, count = MemoryBus(), iter(range(MOST))
+    voice = Outbox(Publisher(), settings["bus.base"], settings["bus.entity"], bus, _forget)
+    loop = loop_of(settings, Inbox(bus, _forget), voice)
+    said = [_messages(i / RATE_HZ) for i in range(MOST)]
+
+    def step() -> object:
+        i = next(count)
+        for topic, data in said[i]:
+            bus.put(topic, data)
+        return loop.tick(Instant(i, i / RATE_HZ, WALL_S + i / RATE_HZ))
+
+    return step
+
+
+PROGRAMS: dict[str, Callable[[], Step]] = {"analytic": analytic, "network": network, "tick": tick}
+
+
+def _messages(t: float) -> list[tuple[str, bytes]]:
+    """What the instruments of a ship say that sails a wide circle, with a little waver on it."""
+    r, speed, ns = 0.002, 7.0, int((WALL_S + t) * 1e9)
+    waver = sin(7.0 * t) + 0.3 * cos(31.0 * t)
+    north, east = speed / r * sin(r * t), speed / r * (1.0 - cos(r * t))
+    values = {
+        "heading_true_north_deg": 0.1146 * t + 0.05 * waver, "yaw_rate_degps": 0.1146 + 0.003 * waver,
+        "surge_velocity_mps": speed + 0.02 * waver, "sway_velocity_mps": -0.1 + 0.02 * waver,
+        "rudder_angle_deg": 5.0 + 0.05 * waver, "propeller_rate_rpm": 85.0 + 0.1 * waver,
+    }  # fmt: skip
+    fix = encode_fix(57.62 + north / 111e3, 11.58 + east / 59e3, ns)
+    said = {"location_fix": fix} | {name: encode_float(value, ns) for name, value in values.items()}
+    return [(key("twin", "ship", subject, "sea"), wrap(data, ns)) for subject, data in said.items()]
+
+
+def _forget(topic: str, type_name: str, payload: bytes, wall_ns: int) -> None:
+    """A log that keeps nothing: files are not counted."""
