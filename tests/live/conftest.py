@@ -121,3 +121,19 @@ def make_bridge(kvlcc2):
         return Bridge(ship, Sailing(ship, Model.of(ship), **sailing), **(loop or {}))
 
     return make
+
+
+def every_number(message):
+    for field, value in message.ListFields():
+        many = value if not isinstance(value, (str, float, int, bool)) and hasattr(value, "__len__") else [value]
+        for one in many:
+            if hasattr(one, "ListFields"):
+                yield from every_number(one)
+            elif isinstance(one, (float, int)):
+                yield field.name, one
+
+
+@pytest.fixture(scope="session")
+def numbers():
+    """Every number in a message, however deep, with its name."""
+    return every_number

@@ -8,17 +8,6 @@ from twin.live.clock import Instant
 from twin.live.readings import Reading
 
 
-def numbers(message):
-    """Every number in a message, however deep."""
-    for field, value in message.ListFields():
-        many = value if not isinstance(value, (str, float, int, bool)) and hasattr(value, "__len__") else [value]
-        for one in many:
-            if hasattr(one, "ListFields"):
-                yield from numbers(one)
-            elif isinstance(one, (float, int)):
-                yield field.name, one
-
-
 def test_the_estimate_follows_a_zigzag_closer_than_the_instruments_say(bridge):
     bridge.run(60.0)
     errors = {name: [] for name in ("north_m", "heading_true_north_deg", "surge_velocity_mps", "yaw_rate_degps")}
@@ -99,7 +88,7 @@ def test_the_same_messages_give_the_same_bytes(make_bridge):
     assert [t.SerializeToString(deterministic=True) for t in one] == [t.SerializeToString(deterministic=True) for t in other]
 
 
-def test_nothing_that_is_not_finite_is_ever_said(bridge):
+def test_nothing_that_is_not_finite_is_ever_said(bridge, numbers):
     def wild(readings, bridge):
         value = float(bridge.sailing.random.choice([1e300, -1e300, 1e9, 0.0, 359.99, -359.0]))
         return [Reading(r.channel, value, r.time_s, r.received_s, r.source) for r in readings]

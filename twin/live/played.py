@@ -80,17 +80,19 @@ class PlayedLog:
         """Ticks each period from the first sample to the last; a tick has what was measured up to its time."""
         results: list[Result] = []
         raw: list[Message] = []
-        tick_s: float | None = None
+        start_s: float | None = None
+        late_s, tick_s, number = 0.02 * self.period_s, 0.0, 0
         for time_s, found, message in source:
-            if tick_s is None or time_s - tick_s > MAX_GAP_S:
-                tick_s = time_s
-            while time_s > tick_s + 1e-6:
+            if start_s is None or time_s - tick_s > MAX_GAP_S:
+                start_s, tick_s, number = time_s, time_s, 0
+            while time_s > tick_s + late_s:
                 yield Batch(tick_s, tick_s, _received(results, tick_s), raw)
                 results, raw = [], []
-                tick_s += self.period_s
+                number += 1
+                tick_s = start_s + number * self.period_s
             results += found
             raw.append(message)
-        if tick_s is not None:
+        if start_s is not None:
             yield Batch(tick_s, tick_s, _received(results, tick_s), raw)
 
     def _rows(self, source: Iterator[Message]) -> Iterator[tuple[float, list[Result], Message]]:

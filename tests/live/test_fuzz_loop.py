@@ -1,0 +1,69 @@
+"""A hundred thousand messages, true, mutated and made up, through decoder, gates and tick: no crash, nothing that is not finite,
+no bound broken."""
+
+import random
+from math import hypot, isfinite
+
+from twin.live.adapt import A_MAX
+from twin.live.channels import CHANNELS
+from twin.live.clock import Instant
+from twin.live.decode import Decoder
+from twin.live.inbox import Played
+from twin.live.learned import LearnedForce
+from twin.live.loop import Loop
+from twin.live.messages import encode_fix, encode_float, wrap
+from twin.live.outbox import Outbox
+from twin.live.publish import Publisher
+from twin.live.residual import bundled, load
+from twin.live.topics import INPUTS, key
+
+MESSAGES, EACH_TICK = 100_000, 60
+WALL = 1.7e9
+
+
+def made_up(dice: random.Random, now_s: float) -> tuple[str, bytes]:
+    """One message: plausible, at the edge, or mutilated."""
+    topic = dice.choice(INPUTS)
+    stamp_ns = round((WALL + now_s + dice.choice((0.0, 0.0, 0.0, -0.3, -5.0, 4000.0, -1e9))) * 1e9)
+    channel = next(c for c in CHANNELS if c.name == topic.channels[0])
+    value = dice.choice((dice.uniform(channel.low, channel.high), dice.uniform(-1.0, 1.0), channel.high, channel.low, 1e30, float("nan"), 0.0))
+    if topic.subject == "location_fix":
+        data = encode_fix(dice.choice((57.6, 57.6001, 91.0, -57.0)), dice.choice((11.6, 11.6001, 181.0)), stamp_ns)
+    else:
+        data = encode_float(value, stamp_ns)
+    data = wrap(data, stamp_ns)
+    if dice.random() < 0.2:
+        data = mutated(dice, data)
+    return key("twin", "ship", dice.choice((topic.subject,) * 9 + ("unknown",)), dice.choice(("a", "a", "a", "b"))), data
+
+
+def mutated(dice: random.Random, data: bytes) -> bytes:
+    how = dice.randrange(4)
+    if how == 0:
+        return data[: dice.randrange(len(data))]
+    if how == 1:
+        return dice.randbytes(dice.randrange(200))
+    spoilt = bytearray(data)
+    for _ in range(dice.randrange(1, 4)):
+        spoilt[dice.randrange(len(spoilt))] ^= 1 << dice.randrange(8)
+    return bytes(spoilt)
+
+
+def test_a_hundred_thousand_messages_do_no_harm(kvlcc2, numbers):
+    dice = random.Random(11)
+    ears, decoder = Played([]), Decoder()
+    learned = LearnedForce(kvlcc2, load(bundled(kvlcc2), kvlcc2))
+    loop = Loop(kvlcc2, ears, Outbox(Publisher(), "twin", "ship"), learned)
+    modes = set()
+    for k in range(MESSAGES // EACH_TICK):
+        now_s = 100.0 + 0.1 * k
+        ears.next = [r for _ in range(EACH_TICK) for r in decoder.decode(*made_up(dice, now_s), now_s)]
+        tick = loop.tick(Instant(k, now_s, WALL + now_s))
+        modes.add(tick.mode)
+        assert all(isfinite(x) for _, x in numbers(tick))
+        assert hypot(tick.learned.X_N, tick.learned.Y_N) <= 2.0 * tick.learned.bound_N + 1e-6
+        assert abs(tick.learned.N_Nm) <= tick.learned.bound_Nm + 1e-6
+        assert learned.adaptation.norm() <= A_MAX + 1e-9
+        e = tick.estimate
+        assert hypot(e.current_north_mps, e.current_east_mps) <= 5.0 + 1e-9
+    assert loop.sensors.rejected > MESSAGES / 10 and len(modes) > 1

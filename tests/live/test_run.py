@@ -1,0 +1,187 @@
+"""The service as a process: it starts without a file, stops when told, and ends by itself when something breaks."""
+
+import json
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+
+import pytest
+
+from twin.live.mcap_read import McapReader
+
+SERVE = """
+import os, sys, traceback
+from twin.live import config, run
+from twin.live.config import Settings
+def on_tick(tick):
+    {hook}
+code = 1
+try:
+    code = run.serve(config.load(sys.argv[1]), on_tick=on_tick)
+except BaseException:
+    traceback.print_exc()
+finally:
+    sys.stderr.flush()
+    os._exit(code)
+"""
+
+
+def free_port():
+    with socket.socket() as s:
+        s.bind(("127.0.0.1", 0))
+        return s.getsockname()[1]
+
+
+@pytest.fixture
+def place(tmp_path):
+    """A folder with settings of its own: port, log, state."""
+    (tmp_path / "twin.toml").write_text(
+        f'[loop]\nrate_hz = 20.0\npriority = 0\nlock_memory = false\n[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n'
+        f'[log]\nfolder = "{tmp_path}/logs"\n[state]\nfolder = "{tmp_path}/state"\n'
+    )
+    return tmp_path
+
+
+def start(place, *more, **env):
+    command = [sys.executable, "-m", "twin.cli", "run", "--config", str(place / "twin.toml"), *more]
+    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=os.environ | env)
+
+
+def started(process):
+    """Waits for the greeting."""
+    line = process.stderr.readline()
+    assert "KVLCC2" in line, line
+    return line
+
+
+def ticks(place):
+    from twin.live import messages
+
+    path = max((place / "logs").glob("*.mcap"))
+    return [messages.Tick.FromString(m.data) for m in McapReader(path).messages() if m.type_name == "shiptwin.Tick"]
+
+
+def test_C7_told_to_stop_it_finishes_cleanly_within_two_seconds(place):
+    process = start(place)
+    started(process)
+    time.sleep(1.5)
+    asked = time.monotonic()
+    process.send_signal(signal.SIGTERM)
+    assert process.wait(10.0) == 0
+    assert time.monotonic() - asked < 2.0 * slowness()
+    made = ticks(place)
+    assert made[0].index == 0 and made[-1].index == len(made) - 1 > 10
+    assert made[-1].mode == "starting"
+    assert json.loads((place / "state" / "adaptation.json").read_text())["rows"]
+
+
+def test_an_interrupt_says_so_in_the_exit_code(place):
+    process = start(place)
+    started(process)
+    process.send_signal(signal.SIGINT)
+    assert process.wait(10.0) == 130
+
+
+def slowness():
+    """How many times slower than it should be this machine is now (others may be busy on it)."""
+    began = time.perf_counter()
+    x = 0.0
+    for i in range(100_000):
+        x += i * 1.1
+    return max(1.0, (time.perf_counter() - began) / 0.008)
+
+
+def test_C4_an_uncaught_exception_ends_the_process_and_does_not_hang(place):
+    """Test: a bug on the tenth tick, bus and log open. Expected: exit code not 0 within a second, traceback said."""
+    hook = "if tick.index == 10: print('BROKEN', file=sys.stderr, flush=True); raise RuntimeError('planted')"
+    process = subprocess.Popen([sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml")], stderr=subprocess.PIPE, text=True)
+    while "BROKEN" not in process.stderr.readline():
+        pass
+    broke = time.monotonic()
+    assert process.wait(20.0) == 1
+    assert time.monotonic() - broke < 1.0 + 0.5 * slowness()
+    assert "planted" in process.stderr.read()
+
+
+def test_C2_a_stall_of_200_ms_is_counted_and_followed_by_no_burst(place):
+    process = start(place)
+    started(process)
+    time.sleep(1.0)
+    process.send_signal(signal.SIGSTOP)
+    time.sleep(0.2)
+    process.send_signal(signal.SIGCONT)
+    time.sleep(0.6)
+    process.terminate()
+    process.wait(10.0)
+    made = ticks(place)
+    gaps = [b.time_s - a.time_s for a, b in zip(made, made[1:], strict=False)]
+    assert max(gaps) > 0.15 and made[-1].overruns >= 2
+    assert not [g for g in gaps if g < 0.02 and slowness() < 2.0]
+
+
+def test_C3_the_watchdog_is_fed_after_good_steps_and_not_while_the_loop_hangs(place, tmp_path):
+    """Test: a service manager's socket; the loop hangs at tick 20. Expected: READY, then WATCHDOG, then silence."""
+    address = str(tmp_path / "notify")
+    with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
+        manager.bind(address)
+        manager.settimeout(20.0)
+        hook = "import time; time.sleep(60) if tick.index == 20 else None"
+        process = subprocess.Popen(
+            [sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml")],
+            stderr=subprocess.DEVNULL, env=os.environ | {"NOTIFY_SOCKET": address},
+        )  # fmt: skip
+        heard = [manager.recv(1000).decode()]
+        assert heard[0].startswith("READY=1\nSTATUS=")
+        manager.settimeout(3.0)
+        with pytest.raises(TimeoutError):
+            while True:
+                heard.append(manager.recv(1000).decode())
+        process.kill()
+        process.wait()
+    assert sum(word == "WATCHDOG=1" for word in heard) >= 2
+    assert any(word.startswith("STATUS=starting") for word in heard)
+
+
+@pytest.mark.parametrize("text, words", (
+    ("[loop]\nrate_hzz = 10\n", "line 2"), ('[ship]\nfile = "no_such_ship"\n', "no_such_ship"),
+    ('[residual]\nfile = "no.onnx"\nrequired = true\n', "no.onnx"),
+))  # fmt: skip
+def test_F1_M1_settings_that_cannot_be_used_end_it_with_exit_code_5_and_one_line(place, text, words):
+    (place / "twin.toml").write_text(text + f'[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n[log]\nfolder = ""\n')
+    process = start(place)
+    assert process.wait(30.0) == 5
+    said = process.stderr.read()
+    assert words in said and len(said.strip().splitlines()) == 1
+
+
+def test_M13_a_residual_of_another_ship_that_was_asked_for_ends_it(place):
+    from twin.live.residual import bundled
+    from twin.physics.ship import load
+
+    path = bundled(load("kvlcc2"))
+    (place / "twin.toml").write_text(
+        f'[ship]\nfile = "usv"\n[residual]\nfile = "{path}"\n[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n[log]\nfolder = ""\n'
+    )
+    process = start(place)
+    assert process.wait(30.0) == 5 and "made for the ship 'KVLCC2'" in process.stderr.read()
+
+
+def test_the_example_settings_can_be_printed():
+    done = subprocess.run([sys.executable, "-m", "twin.cli", "run", "--example-config"], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0 and done.stdout.startswith("[ship]\n")
+
+
+def test_health_hears_the_twin_and_says_when_it_does_not(place):
+    process = start(place)
+    started(process)
+    health = [sys.executable, "-m", "twin.cli", "health", "--config", str(place / "twin.toml"), "--json", "-"]
+    done = subprocess.run(health, capture_output=True, text=True, timeout=60)
+    told = json.loads(done.stdout)
+    assert done.returncode == 1 and told["mode"] == "starting" and "waiting for heading" in told["text"]
+    process.terminate()
+    process.wait(10.0)
+    done = subprocess.run([*health[:-2], "--timeout", "0.5"], capture_output=True, text=True, timeout=60)
+    assert done.returncode == 1 and "not heard" in done.stdout
