@@ -1,8 +1,9 @@
 """Ten thousand ships try to break the stabilizer's certificate: `twin-bench stability`.
 
-Truth is the ship's own equations with a bounded force added, integrated twice as finely; the observer sees late, noisy, missing
-measurements and a hostile network. Disturbance, noise and network are chosen against it (along its error, held in one corner,
-square waves, white), all within their bounds. A run that leaves the operating set is judged until it leaves, and counted.
+Truth is the ship's own equations with a bounded force added, integrated twice as finely; the observer sees
+late, noisy, missing measurements and a hostile network. Disturbance, noise and network are chosen against it
+(along its error, held in one corner, square waves, white), all within their bounds. A run that leaves the
+operating set is judged until it leaves, and counted.
 """
 
 import argparse
@@ -26,7 +27,11 @@ from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Force, Situation
 
-NOISE = {"kvlcc2": (0.15, 0.15, 0.0005), "container": (0.15, 0.15, 0.0006), "usv": (0.06, 0.06, 0.008)}  # three sigma of usual sensors
+NOISE = {
+    "kvlcc2": (0.15, 0.15, 0.0005),
+    "container": (0.15, 0.15, 0.0006),
+    "usv": (0.06, 0.06, 0.008),
+}  # three sigma of usual sensors
 HEADING_NOISE = 0.005  # rad
 
 
@@ -74,17 +79,24 @@ def certified(case: Case) -> tuple[Model, Certificate]:
     """The model of a case, with wind and a current, and its certificate."""
     model = Model.of(load(case.ship))
     U = model.ship.U_0
-    model = model.but(find("Wind").plausible(model.ship), find("Current").plausible(model.ship).but(north=0.12 * U, east=-0.08 * U))
+    model = model.but(
+        find("Wind").plausible(model.ship),
+        find("Current").plausible(model.ship).but(north=0.12 * U, east=-0.08 * U),
+    )
     h = 1.0 / case.rate_hz
     plant = cert.plant_of(model, cert.of_ship(model), h)
-    K = case.K or cert.usual_gain(plant, case.delays) or 1.0 / model.ship.scale("time")  # if none holds, the certificate says so
+    K = (
+        case.K or cert.usual_gain(plant, case.delays) or 1.0 / model.ship.scale("time")
+    )  # if none holds, the certificate says so
     return model, cert.certify(model, K, h, case.delays, NOISE[case.ship], heading_noise=HEADING_NOISE)
 
 
 class Fleet:
     """Many ships of one kind at once, each with an observer and an adversary of her own."""
 
-    def __init__(self, model: Model, c: Certificate, runs: int, seed: int, H_s: float = 0.0, dropouts: bool = False) -> None:
+    def __init__(
+        self, model: Model, c: Certificate, runs: int, seed: int, H_s: float = 0.0, dropouts: bool = False
+    ) -> None:
         self.c, self.runs, self.rng, self.h = c, runs, np.random.default_rng(seed), c.h
         self.H_s, self.dropouts = H_s, dropouts
         self.time = model.ship.scale("time")  # L/U_0 [s]
@@ -137,7 +149,9 @@ class Fleet:
         return np.choose(self.policy, [error, self.corner, square, white])
 
     def _received(self) -> np.ndarray:
-        """(3, runs) which rows were measured: all, or one in ten lost and now and then all of an axis for a while."""
+        """(3, runs) which rows were measured: all, or one in ten lost and now and then all of an axis for a
+        while.
+        """
         if not self.dropouts:
             return np.ones((3, self.runs), bool)
         burst = self.rng.random((3, self.runs)) < self.h / (2.0 * self.time)
@@ -152,7 +166,9 @@ class Fleet:
         force = np.sign(self.inverse.T @ (side / np.array(self.c.bound)[:, None])) * self.limit
         self.push, self.learned = -self.share * force, (1.0 - self.share) * force
         heading = self.truth[2] + HEADING_NOISE * side[2]
-        self.estimate = np.array(self.twin.step((0.0, 0.0, heading, *self.estimate), Situation(**self.inputs), self.h)[3:])
+        self.estimate = np.array(
+            self.twin.step((0.0, 0.0, heading, *self.estimate), Situation(**self.inputs), self.h)[3:]
+        )
         for _ in range(2):
             self.truth = self.true.step(self.truth, Situation(**self.inputs), 0.5 * self.h)
         self.past.append((np.array(self.truth[3:]), self.estimate))
@@ -166,7 +182,9 @@ class Fleet:
         return self.estimate - nu
 
     def _pull(self, k: int, side: np.ndarray) -> np.ndarray:
-        """h K times a late and noisy measurement less the estimate of its own time; the age changes now and then."""
+        """h K times a late and noisy measurement less the estimate of its own time; the age changes now and
+        then.
+        """
         measured = []
         for axis, oldest in enumerate(self.c.delays):
             age = min(len(self.past) - 1, oldest if k % 3 else int(self.rng.integers(0, oldest + 1)))
@@ -177,18 +195,35 @@ class Fleet:
     def _grow(self) -> None:
         """The same bound as `Tube`, for all runs at once."""
         c, step = self.c, self.c.step
-        V, drift, keep, again, pull = (np.array(x) for x in (step.V, step.drift, step.keep, step.again, step.pull))
+        V, drift, keep, again, pull = (
+            np.array(x) for x in (step.V, step.drift, step.keep, step.again, step.pull)
+        )
         d = np.array(c.push) @ self.limit[:, 0] + c.calm
         E = V @ self.tube + d[:, None]
         self.before.append(E)
         c_ = pull * (c.noise + np.array(step.m) * (pull * c.noise + d))
-        seen = keep[:, None] * E + again[:, None] * np.max(self.before, axis=0) + drift @ np.max(self.after, axis=0) + c_[:, None]
+        seen = (
+            keep[:, None] * E
+            + again[:, None] * np.max(self.before, axis=0)
+            + drift @ np.max(self.after, axis=0)
+            + c_[:, None]
+        )
         self.tube = np.where(self.received, seen, E)
         self.after.append(self.tube)
 
 
-def trial(model: Model, c: Certificate, runs: int, seed: int, H_s: float = 0.0, dropouts: bool = False, seconds: float | None = None) -> Outcome:
-    """Let a fleet sail until old errors have faded five times over, at least two ship lengths (at most 1500 samples)."""
+def trial(
+    model: Model,
+    c: Certificate,
+    runs: int,
+    seed: int,
+    H_s: float = 0.0,
+    dropouts: bool = False,
+    seconds: float | None = None,
+) -> Outcome:
+    """Let a fleet sail until old errors have faded five times over, at least two ship lengths (at most 1500
+    samples).
+    """
     begin = time.perf_counter()
     fleet = Fleet(model, c, runs, seed, H_s, dropouts)
     steps = min(int((seconds or max(5.0 / c.rate, 2.0 * fleet.time)) / c.h), 1500)
@@ -206,7 +241,14 @@ def trial(model: Model, c: Certificate, runs: int, seed: int, H_s: float = 0.0, 
         of_bound = np.maximum(of_bound, (e / bound)[:, inside].max(axis=1))
         error = np.maximum(error, e[:, inside].max(axis=1))
     took = time.perf_counter() - begin
-    return Outcome(runs, int((~fleet.alive).sum()), samples, violations, *map(tuple, map(np.ndarray.tolist, (of_tube, of_bound, error))), took)
+    return Outcome(
+        runs,
+        int((~fleet.alive).sum()),
+        samples,
+        violations,
+        *map(tuple, map(np.ndarray.tolist, (of_tube, of_bound, error))),
+        took,
+    )
 
 
 def _inner(span: tuple[float, float], share: float) -> tuple[float, float]:
@@ -215,7 +257,9 @@ def _inner(span: tuple[float, float], share: float) -> tuple[float, float]:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--runs", type=int, default=sum(c.runs for c in CASES), help="runs in all (default: %(default)s)")
+    parser.add_argument(
+        "--runs", type=int, default=sum(c.runs for c in CASES), help="runs in all (default: %(default)s)"
+    )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--json", metavar="FILE", help="the numbers as JSON (- = standard output)")
     parser.add_argument("--results", metavar="FILE", help="write the tables as Markdown")
@@ -233,15 +277,27 @@ def run(args: argparse.Namespace) -> int:
         made = time.perf_counter() - begin
         outcome = trial(model, c, max(1, round(case.runs * share)), args.seed + i, case.H_s, case.dropouts)
         rows.append((case, c, outcome, made))
-        print(f"{case.ship} {case.rate_hz:g} Hz: {outcome.violations} violations in {outcome.runs} runs", file=sys.stderr)
+        print(
+            f"{case.ship} {case.rate_hz:g} Hz: {outcome.violations} violations in {outcome.runs} runs",
+            file=sys.stderr,
+        )
     text = tables(rows, args)
     print(text)
     if args.results:
         Path(args.results).write_text(text, encoding="utf-8")
     if args.json:
-        told = json.dumps({"schema_version": 1, "cases": [{**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o, _ in rows]})
+        told = json.dumps(
+            {
+                "schema_version": 1,
+                "cases": [
+                    {**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o, _ in rows
+                ],
+            }
+        )
         print(told) if args.json == "-" else Path(args.json).write_text(told, encoding="utf-8")
     broken = sum(o.violations for _, _, o, _ in rows)
     if broken:
-        raise ThresholdError(f"the bound was broken in {broken} samples inside the operating set. The certificate is wrong: do not use it.")
+        raise ThresholdError(
+            f"the bound was broken in {broken} samples inside the operating set. Do not use the certificate."
+        )
     return 0

@@ -48,11 +48,13 @@ def test_the_sure_slopes_hold_every_sampled_one_and_are_little_wider(name):
 
 @pytest.mark.parametrize("Kind", MOVING, ids=lambda kind: kind.__name__)
 def test_every_effect_of_the_catalogue_can_be_certified(Kind):
-    """Expected: finite bounds that hold sampled slopes; a current is seen from the water, so it is sampled over ground."""
+    """Expected: finite bounds that hold sampled slopes; a current is seen from the water, so it is sampled
+    over ground.
+    """
     ship = load("kvlcc2")
     model = Model.of(ship).but(Kind.plausible(ship))
     operating = cert.of_ship(model)
-    coarse = {name: 3 for name in operating.ranges}
+    coarse = dict.fromkeys(operating.ranges, 3)
     sure, seen = slopes(model, operating.ranges, coarse), sampled(model, operating.ranges, count=2000)
     for i in range(3):
         for j in range(4):
@@ -61,22 +63,33 @@ def test_every_effect_of_the_catalogue_can_be_certified(Kind):
 
 
 def test_a_current_of_any_direction_keeps_within_the_slopes():
-    """Test: the true model over ground in random currents of the operating set. Expected: its own slopes lie in the bounds."""
+    """Test: the true model over ground in random currents of the operating set. Expected: its own slopes lie
+    in the bounds.
+    """
     still = windy("kvlcc2")
     operating = cert.of_ship(still)
     sure = slopes(still, operating.ranges)
     rng = np.random.default_rng(3)
     at = {name: rng.uniform(lo, hi) for name, (lo, hi) in operating.ranges.items()}
     for _ in range(200):
-        at = {name: float(rng.choice([lo, hi, rng.uniform(lo, hi)])) for name, (lo, hi) in operating.ranges.items()}
+        at = {
+            name: float(rng.choice([lo, hi, rng.uniform(lo, hi)]))
+            for name, (lo, hi) in operating.ranges.items()
+        }
         stream, angle = at.pop("stream"), rng.uniform(-np.pi, np.pi)
         north, east = stream * np.cos(angle), stream * np.sin(angle)
         model = still.but(find("Current").plausible(still.ship).but(north=north, east=east))
         w = model.water(Situation(psi=at["psi"]))
         at["u"], at["v"] = at["u"] + w.u, at["v"] + w.v
-        seeds = {n: Dual(at[n], tuple(float(n == k) for k in ("u", "v", "r", "psi"))) for n in ("u", "v", "r", "psi")}
+        seeds = {
+            n: Dual(at[n], tuple(float(n == k) for k in ("u", "v", "r", "psi")))
+            for n in ("u", "v", "r", "psi")
+        }
         for i, rate in enumerate(model.nu_dot(Situation(**at | seeds))):
-            assert all(a - 1e-12 <= s <= b + 1e-12 for a, s, b in zip(sure.lo[i], rate.slopes, sure.hi[i], strict=True))
+            assert all(
+                a - 1e-12 <= s <= b + 1e-12
+                for a, s, b in zip(sure.lo[i], rate.slopes, sure.hi[i], strict=True)
+            )
             assert sure.rate[i][0] <= rate.value <= sure.rate[i][1]
 
 
@@ -102,7 +115,11 @@ def test_the_bound_is_a_fixed_point_of_the_recursion(vlcc):
     E = c3.add(c3.apply(c.step.V, c.bound), d)
     for i in range(3):
         heard = c.step.pull[i] * (c.noise[i] + c.step.m[i] * (c.step.pull[i] * c.noise[i] + d[i]))
-        again = (c.step.keep[i] + c.step.again[i]) * E[i] + sum(a * b for a, b in zip(c.step.drift[i], c.bound, strict=True)) + heard
+        again = (
+            (c.step.keep[i] + c.step.again[i]) * E[i]
+            + sum(a * b for a, b in zip(c.step.drift[i], c.bound, strict=True))
+            + heard
+        )
         assert again == pytest.approx(c.bound[i], rel=1e-9)
 
 
@@ -150,13 +167,26 @@ def test_the_best_gain_beats_the_usual_one(vlcc):
 def test_a_network_fed_with_its_own_estimate_needs_a_larger_gain(vlcc):
     _, c = vlcc
     force, moment = 2e6, 7e8
-    extra = cert.self_regressor(c.plant, (0.1 * force, 0.1 * force, 0.1 * moment), cert.lipschitz([1.5, 1.2, 1.0, 0.8]), (0.1, 0.5, 80.0))
+    extra = cert.self_regressor(
+        c.plant,
+        (0.1 * force, 0.1 * force, 0.1 * moment),
+        cert.lipschitz([1.5, 1.2, 1.0, 0.8]),
+        (0.1, 0.5, 80.0),
+    )
     without, with_ = cert.gains_that_do(c.plant, c.delays), cert.gains_that_do(c.plant, c.delays, extra)
     assert with_[0] > without[0]
     assert cert.output_bound(3.0, 2.0, 5.0) == 5.0 and cert.output_bound(1.0, 2.0, 5.0) == 2.0
 
 
-@pytest.mark.parametrize(("changes", "word"), [({"K": -0.1}, "gains"), ({"h": 0.0}, "period"), ({"noise": (0.1, 0.1)}, "noise"), ({"delay_samples": -1}, "delay")])
+@pytest.mark.parametrize(
+    ("changes", "word"),
+    [
+        ({"K": -0.1}, "gains"),
+        ({"h": 0.0}, "period"),
+        ({"noise": (0.1, 0.1)}, "noise"),
+        ({"delay_samples": -1}, "delay"),
+    ],
+)
 def test_settings_that_are_none_are_refused(changes, word):
     settings = {"K": 0.3, "h": 0.1} | changes
     with pytest.raises(SettingsError, match=word):
@@ -175,10 +205,14 @@ def test_the_confined_model_is_the_model_inside_and_the_nearest_motion_outside()
     operating = cert.of_ship(model)
     twin = Confined.to(model, operating)
     inputs = {"psi": 0.4, "r": 0.001, "n": 1.5, "delta": 0.1, "wind_speed": 8.0, "wind_to": 1.0}
-    assert twin.nu_dot(Situation(u=6.0, v=0.2, **inputs)) == pytest.approx(model.nu_dot(Situation(u=6.0, v=0.2, **inputs)), rel=1e-12)
+    assert twin.nu_dot(Situation(u=6.0, v=0.2, **inputs)) == pytest.approx(
+        model.nu_dot(Situation(u=6.0, v=0.2, **inputs)), rel=1e-12
+    )
     w = model.water(Situation(psi=0.4))
     edge = operating.ranges["v"][1] + w.v
-    assert twin.nu_dot(Situation(u=6.0, v=9.0, **inputs)) == pytest.approx(model.nu_dot(Situation(u=6.0, v=edge, **inputs)), rel=1e-12)
+    assert twin.nu_dot(Situation(u=6.0, v=9.0, **inputs)) == pytest.approx(
+        model.nu_dot(Situation(u=6.0, v=edge, **inputs)), rel=1e-12
+    )
 
 
 def test_a_certificate_goes_through_its_file_unchanged(vlcc, tmp_path):
@@ -200,7 +234,8 @@ def test_the_loop_reads_a_certificate_without_numpy(vlcc, tmp_path):
     path.write_text(vlcc[1].to_json())
     code = (
         "import sys; from twin.live.certificate import Certificate, Tube; from pathlib import Path;"
-        f"t = Tube(Certificate.from_json(Path({str(path)!r}).read_text())); t.step((True, True, False)); print('numpy' in sys.modules)"
+        f"t = Tube(Certificate.from_json(Path({str(path)!r}).read_text())); t.step((True, True, False)); "
+        "print('numpy' in sys.modules)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
     assert done.stdout.strip() == "False", done.stderr
@@ -233,7 +268,9 @@ def test_perron_and_inverse_against_numpy():
 
 
 def test_effects_switched_off_keep_within_the_certificate():
-    """Test: the wind sensor fails, the wind effect goes. Expected: slopes without it lie within the bounds with it."""
+    """Test: the wind sensor fails, the wind effect goes. Expected: slopes without it lie within the bounds
+    with it.
+    """
     model = windy("usv")
     operating = cert.of_ship(model)
     with_, without = slopes(model, operating.ranges), slopes(replace(model, effects=()), operating.ranges)

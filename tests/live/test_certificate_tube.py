@@ -99,7 +99,9 @@ def test_the_fleets_tube_is_the_tube_of_the_loop():
     ids=["calm", "drop-outs", "waves", "usv"],
 )
 def test_two_hundred_hostile_runs_never_break_the_bound(case, runs, seconds):
-    """Expected: no violation inside the operating set, and the tube nearly touched, so that it is not vacuous."""
+    """Expected: no violation inside the operating set, and the tube nearly touched, so that it is not
+    vacuous.
+    """
     model, c = certified(case)
     assert c.ok
     outcome = trial(model, c, runs, seed=11, H_s=case.H_s, dropouts=case.dropouts, seconds=seconds)
@@ -109,7 +111,9 @@ def test_two_hundred_hostile_runs_never_break_the_bound(case, runs, seconds):
 
 
 def test_with_the_stated_noise_exceeded_the_bound_can_be_broken():
-    """The oracle of the test above: the same fleet, three times the promised noise. Expected: violations are seen."""
+    """The oracle of the test above: the same fleet, three times the promised noise. Expected: violations are
+    seen.
+    """
     model, c = certified(Case("kvlcc2", 10.0, (1, 1, 1), 0))
     fleet = Fleet(model, c, 60, seed=5)
     fleet.noise = 3.0 * fleet.noise

@@ -16,20 +16,45 @@ from twin.physics.model import Model
 from twin.physics.state import Situation
 
 ordinary = st.floats(-50.0, 50.0).map(lambda x: round(x, 6))
-boxes = st.tuples(ordinary, ordinary, st.floats(0.0, 1.0), st.floats(0.0, 1.0)).map(
-    lambda t: (min(t[:2]), max(t[:2]), min(t[:2]) + t[2] * (max(t[:2]) - min(t[:2])))
-)
+
+
+def box_and_point(ends, share):
+    """(lo, hi, a point inside)."""
+    lo, hi = min(ends), max(ends)
+    return lo, hi, min(max(lo + share * (hi - lo), lo), hi)
+
+
+boxes = st.builds(box_and_point, st.tuples(ordinary, ordinary), st.floats(0.0, 1.0))
 ONE = {
-    "sin": maths.sin, "cos": maths.cos, "tanh": maths.tanh, "exp": maths.exp, "abs": abs, "negative": lambda x: -x,
-    "square": lambda x: x * x, "cube": lambda x: x**3, "fourth": lambda x: x**4, "root": lambda x: maths.sqrt(x * x + 0.5),
-    "positive": maths.positive, "self": lambda x: x * abs(x), "inverse": lambda x: 1.0 / (x * x + 0.1), "clip": lambda x: maths.clip(x, -1.0, 2.0),
-    "switch": lambda x: maths.where(x > 3.0, x * x, -x), "both": lambda x: maths.where((x > -1.0) & (x < 2.0), x, 0.5 * x),
-}  # fmt: skip
+    "sin": maths.sin,
+    "cos": maths.cos,
+    "tanh": maths.tanh,
+    "exp": maths.exp,
+    "abs": abs,
+    "negative": lambda x: -x,
+    "square": lambda x: x * x,
+    "cube": lambda x: x**3,
+    "fourth": lambda x: x**4,
+    "root": lambda x: maths.sqrt(x * x + 0.5),
+    "positive": maths.positive,
+    "self": lambda x: x * abs(x),
+    "inverse": lambda x: 1.0 / (x * x + 0.1),
+    "clip": lambda x: maths.clip(x, -1.0, 2.0),
+    "switch": lambda x: maths.where(x > 3.0, x * x, -x),
+    "both": lambda x: maths.where((x > -1.0) & (x < 2.0), x, 0.5 * x),
+}
 TWO = {
-    "sum": lambda x, y: x + y, "difference": lambda x, y: x - y, "product": lambda x, y: x * y, "quotient": lambda x, y: x / (y * y + 1.0),
-    "length": maths.hypot, "least": maths.minimum, "most": maths.maximum, "angle": maths.atan2,
-    "modulus": lambda x, y: abs(x) * y, "larger": lambda x, y: maths.where(x > y, x * y, x + y),
-}  # fmt: skip
+    "sum": lambda x, y: x + y,
+    "difference": lambda x, y: x - y,
+    "product": lambda x, y: x * y,
+    "quotient": lambda x, y: x / (y * y + 1.0),
+    "length": maths.hypot,
+    "least": maths.minimum,
+    "most": maths.maximum,
+    "angle": maths.atan2,
+    "modulus": lambda x, y: abs(x) * y,
+    "larger": lambda x, y: maths.where(x > y, x * y, x + y),
+}
 
 
 def holds(interval, value):
@@ -106,24 +131,31 @@ def test_arrays_of_boxes_answer_as_boxes_one_by_one():
 
 
 SPREAD = {
-    "u": 0.6, "v": 0.8, "r": 0.01, "psi": 1.0, "delta": 0.3, "n": 1.0, "wind_speed": 6.0, "wind_to": 2.0, "depth": 3.0, "H_s": 1.0,
-    "T_p": 2.0, "wave_to": 2.0, "draught": 0.3, "bank_port": 20.0, "bank_starboard": 20.0, "phi": 0.1, "t": 600.0,
+    "u": 0.6, "v": 0.8, "r": 0.01, "psi": 1.0, "delta": 0.3, "n": 1.0, "wind_speed": 6.0, "wind_to": 2.0,
+    "depth": 3.0, "H_s": 1.0, "T_p": 2.0, "wave_to": 2.0, "draught": 0.3, "bank_port": 20.0,
+    "bank_starboard": 20.0, "phi": 0.1, "t": 600.0,
 }  # fmt: skip
 MOVING = [None, *(kind for kind in BUILT_IN if kind.kind in ("Force", "Flow"))]
 
 
 @pytest.mark.parametrize("Kind", MOVING, ids=lambda kind: kind.__name__ if kind else "core")
-@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])  # the moment is only read
+@settings(
+    max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)  # the moment is only read
 @given(data=st.data())
 def test_every_force_and_flow_is_enclosed_with_its_slopes(Kind, data, ship, moment):
-    """Test: random boxes around a busy moment, random points inside. Expected: nu_dot and its slopes lie inside, finite."""
+    """Test: random boxes around a busy moment, random points inside. Expected: nu_dot and its slopes lie
+    inside, finite.
+    """
     draw = data.draw
     model = Model(ship, (Kind.plausible(ship),) if Kind else ())
     middle = {k: moment[k] + draw(st.floats(-1.0, 1.0)) * 0.3 * w for k, w in SPREAD.items()}
     width = {k: draw(st.floats(0.0, 1.0)) * 0.2 * w for k, w in SPREAD.items()}
     point = {k: middle[k] + draw(st.floats(-1.0, 1.0)) * width[k] for k in SPREAD}
     names = ("u", "v", "r", "psi")
-    box = Situation(**{k: seeded(k, Interval(middle[k] - width[k], middle[k] + width[k]), names) for k in SPREAD})
+    box = Situation(
+        **{k: seeded(k, Interval(middle[k] - width[k], middle[k] + width[k]), names) for k in SPREAD}
+    )
     exact = Situation(**{k: seeded(k, float(x), names) for k, x in point.items()})
     for sure, here in zip(model.nu_dot(box), model.nu_dot(exact), strict=True):
         for a, b in zip((sure.value, *sure.slopes), (here.value, *here.slopes), strict=True):
@@ -142,7 +174,9 @@ def test_dual_numbers_on_floats_agree_with_differences(ship, moment):
     known = {f.name for f in fields(Situation)}
     values = {k: v for k, v in moment.items() if k in known}
     names = ("u", "v", "r", "psi")
-    slopes = model.nu_dot(Situation(**{k: seeded(k, v, names) if k in SPREAD else v for k, v in values.items()}))
+    slopes = model.nu_dot(
+        Situation(**{k: seeded(k, v, names) if k in SPREAD else v for k, v in values.items()})
+    )
     for j, name in enumerate(names):
         h = 1e-6
         up, down = (model.nu_dot(Situation(**values | {name: values[name] + s * h})) for s in (1.0, -1.0))

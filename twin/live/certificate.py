@@ -1,7 +1,9 @@
-"""The stabilizer's certificate: how far the observer's error can go, worked out from the ship's own numbers before she sails.
+"""The stabilizer's certificate: how far the observer's error can go, worked out from the ship's own numbers
+before she sails.
 
-`certify` at start (or `kept`, which looks it up in a file beside the ship), `Tube.step` once a tick. Assumptions, proof and what is
-not promised: docs/stability.md. Plain floats; only the sure bounds of the slopes need numpy, and only when they are not on file.
+`certify` at start (or `kept`, which looks it up in a file beside the ship), `Tube.step` once a tick.
+Assumptions, proof and what is not promised: docs/stability.md. Plain floats; only the sure bounds of the
+slopes need numpy, and only when they are not on file.
 """
 
 import hashlib
@@ -23,8 +25,9 @@ from .theorem import Ages, Promise, Recursion, assess, best_gain, gains_that_do,
 from .tube import Tube
 
 __all__ = [
-    "Certificate", "Confined", "Disturbance", "OperatingSet", "Plant", "Tube", "assess", "best_gain", "certify", "gains_that_do",
-    "kept", "lipschitz", "of_ship", "output_bound", "plant_of", "self_regressor", "usual_disturbance", "usual_gain",
+    "Certificate", "Confined", "Disturbance", "OperatingSet", "Plant", "Tube", "assess", "best_gain",
+    "certify", "gains_that_do", "kept", "lipschitz", "of_ship", "output_bound", "plant_of", "self_regressor",
+    "usual_disturbance", "usual_gain",
 ]  # fmt: skip
 
 VERSION = 3
@@ -32,7 +35,9 @@ VERSION = 3
 
 @dataclass(frozen=True)
 class Certificate(Promise):
-    """The promise made to one ship, with what it rests on: gain [1/s], period, delay, noise, disturbance and operating set."""
+    """The promise made to one ship, with what it rests on: gain [1/s], period, delay, noise, disturbance and
+    operating set.
+    """
 
     K: Row
     delays: Ages
@@ -65,16 +70,18 @@ class Certificate(Promise):
 
     @classmethod
     def from_json(cls, text: str) -> "Certificate":
-        """The certificate that to_json wrote; ValueError, KeyError or TypeError when it is none of this version."""
+        """The certificate that to_json wrote; ValueError, KeyError or TypeError when it is none of this
+        version.
+        """
         table = _tuples(json.loads(text))
         if not isinstance(table, dict) or table.pop("version") != VERSION:
             raise ValueError("certificate of another version")
         plant = table.pop("plant")
         ranges = plant.pop("operating")["ranges"]
-        return cls(**table | {
-            "plant": Plant(**plant, operating=OperatingSet(ranges)), "disturbance": Disturbance(**table["disturbance"]),
-            "step": Recursion(**table["step"]),
-        })  # fmt: skip
+        table["plant"] = Plant(**plant, operating=OperatingSet(ranges))
+        table["disturbance"] = Disturbance(**table["disturbance"])
+        table["step"] = Recursion(**table["step"])
+        return cls(**table)
 
 
 def certify(
@@ -88,25 +95,31 @@ def certify(
     heading_noise: float = 0.0,
     extra_growth: Matrix | None = None,
 ) -> Certificate:
-    """Work out the certificate of an observer with gain K [1/s] and period h [s] (its longest); takes about half a second.
+    """Work out the certificate of an observer with gain K [1/s] and period h [s] (its longest).
 
-    noise: bounds of |y - nu| [m/s, m/s, rad/s]; heading_noise [rad]; disturbance: see Disturbance (default: `usual_disturbance`).
-    delay_samples: the greatest age of a used measurement, in samples, a value held until the sensor's next one included; one number,
-    or one for each of u, v, r.
+    Takes a tenth of a second to a second.
+    noise: bounds of |y - nu| [m/s, m/s, rad/s]; heading_noise [rad].
+    disturbance: see Disturbance (default: `usual_disturbance`).
+    delay_samples: the greatest age of a used measurement, in samples, a value held until the sensor's next
+    one included; one number, or one for each of u, v, r.
     extra_growth: `self_regressor(...)` when the network is fed with the estimate instead of measurements.
     """
     K = (K, K, K) if isinstance(K, (int, float)) else tuple(K)
     m = (delay_samples,) * 3 if isinstance(delay_samples, int) else tuple(delay_samples)
     _check(K, h, m, noise)
-    d = disturbance if isinstance(disturbance, Disturbance) else Disturbance(tuple(disturbance)) if disturbance else usual_disturbance(model)  # type: ignore[arg-type]
+    d = _bound_of(disturbance) or usual_disturbance(model)
     plant, noise = plant_of(model, operating_set or of_ship(model), h), tuple(noise)
     promise = assess(plant, K, m, noise, d, heading_noise, extra_growth)  # type: ignore[arg-type]
     parts = {name: getattr(promise, name) for name in Promise.__dataclass_fields__}
     return Certificate(**parts, K=K, delays=m, noise=noise, disturbance=d, plant=plant, ship=model.ship.name)  # type: ignore[arg-type]
 
 
-def kept(path: str | os.PathLike[str], model: Model, K: float | Sequence[float], h: float, **settings: Any) -> Certificate:
-    """The certificate from its file if it is of this ship, K and settings; else worked out and, where possible, written there."""
+def kept(
+    path: str | os.PathLike[str], model: Model, K: float | Sequence[float], h: float, **settings: Any
+) -> Certificate:
+    """The certificate from its file if it is of this ship, K and settings; else worked out and, where
+    possible, written there.
+    """
     mark = _mark(model, K, h, settings)
     try:
         found = Certificate.from_json(Path(path).read_text(encoding="utf-8"))
@@ -125,21 +138,41 @@ def kept(path: str | os.PathLike[str], model: Model, K: float | Sequence[float],
 
 
 def _mark(model: Model, *settings: Any) -> str:
-    """What the certificate depends on, as a hash: the ship's numbers, her effects, the settings and the theorem's version."""
+    """What the certificate depends on, as a hash: the ship's numbers, her effects, the settings and the
+    theorem's version.
+    """
     ship = replace(model.ship, notes={})
     return hashlib.sha256(repr((VERSION, ship, model.effects, *settings)).encode()).hexdigest()[:16]
+
+
+def _bound_of(disturbance: Sequence[float] | Disturbance | None) -> Disturbance | None:
+    if disturbance is None or isinstance(disturbance, Disturbance):
+        return disturbance
+    X, Y, N = disturbance
+    return Disturbance((X, Y, N))
 
 
 def _check(K: Sequence[float], h: float, m: Sequence[int], noise: Sequence[float]) -> None:
     """Refuse what is no gain, period, delay or noise."""
     numbers = (*K, h, *m, *noise)
-    if not len(K) == len(noise) == len(m) == 3 or not all(0.0 <= x < float("inf") for x in numbers) or not h > 0.0 or not all(k > 0.0 for k in K):
+    if (
+        not len(K) == len(noise) == len(m) == 3
+        or not all(0.0 <= x < float("inf") for x in numbers)
+        or not h > 0.0
+        or not all(k > 0.0 for k in K)
+    ):
         raise SettingsError(
-            f"stabilizer: K = {tuple(K)}, period {h} s, delay {tuple(m)} samples, noise {tuple(noise)}: three positive gains, a positive "
-            "period, and no negative number are needed. Correct the configuration."
+            f"stabilizer: K = {tuple(K)}, period {h} s, delay {tuple(m)} samples, noise {tuple(noise)}: "
+            "three positive gains, a positive period, no negative number are needed. Correct the settings."
         )
 
 
 def _tuples(x: Any) -> Any:
     """JSON lists as the tuples they were."""
-    return tuple(map(_tuples, x)) if isinstance(x, list) else {k: _tuples(v) for k, v in x.items()} if isinstance(x, dict) else x
+    return (
+        tuple(map(_tuples, x))
+        if isinstance(x, list)
+        else {k: _tuples(v) for k, v in x.items()}
+        if isinstance(x, dict)
+        else x
+    )

@@ -1,7 +1,8 @@
 """Three-by-three algebra of comparison systems, on plain floats: what bounds an error component by component.
 
-If |e+| <= G |e| + g with G >= 0, the error stays under b = (I - G)^-1 g as soon as the greatest eigenvalue of G is below one.
-Source: Berman & Plemmons (1994) Nonnegative Matrices in the Mathematical Sciences, ch. 6 (M-matrices).
+If |e+| <= G |e| + g with G >= 0, the error stays under b = (I - G)^-1 g as soon as the greatest eigenvalue of
+G is below one. Source: Berman & Plemmons (1994) Nonnegative Matrices in the Mathematical Sciences, ch. 6
+(M-matrices).
 """
 
 from collections.abc import Callable
@@ -50,7 +51,9 @@ def inverse(a: Matrix) -> Matrix | None:
 
 
 def contracts(a: Matrix, under: float = 1.0) -> bool:
-    """True when every eigenvalue of a matrix with no negative entry lies under a number: the minors of (under I - A) are positive."""
+    """True when every eigenvalue of a matrix with no negative entry lies under a number: the minors of (under
+    I - A) are positive.
+    """
     (a00, a01, a02), (a10, a11, a12), (a20, a21, a22) = a
     p, q, r = under - a00, under - a11, under - a22
     second = p * q - a01 * a10
@@ -77,10 +80,14 @@ def settled(g: Matrix) -> Matrix | None:
 
 
 def beyond_first(a: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], ...]:
-    """exp(a) - I - a for a square matrix of any size with no negative entry: the bend of a step beyond its first order."""
+    """exp(a) - I - a for a square matrix of any size with no negative entry: the bend of a step beyond its
+    first order.
+    """
     axes = range(len(a))
     term, total = a, tuple(tuple(0.0 for _ in axes) for _ in axes)
     for k in range(2, 40):
         term = tuple(tuple(sum(row[n] * a[n][j] for n in axes) / k for j in axes) for row in term)
-        total = tuple(tuple(x + y for x, y in zip(*rows, strict=True)) for rows in zip(total, term, strict=True))
+        total = tuple(
+            tuple(x + y for x, y in zip(*rows, strict=True)) for rows in zip(total, term, strict=True)
+        )
     return total

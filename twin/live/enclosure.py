@@ -1,9 +1,11 @@
-"""How steep the equations of motion can be: sure bounds of d(nu_dot)/d(u, v, r, psi) over a whole operating set.
+"""How steep the equations of motion can be: sure bounds of d(nu_dot)/d(u, v, r, psi) over a whole operating
+set.
 
-The set is cut into boxes, each box goes through the physics once as dual numbers over intervals, and the hull of what comes out
-holds every slope and every acceleration in the set, not only those at sampled points. Forces that share inputs are summed box by
-box; forces that do not (wind and rudder) are summed as ranges, which is sure, and a little wide. A current is no box: seen from the
-water it only turns with the heading, r x nu_c, and adds itself to the wind.
+The set is cut into boxes, each box goes through the physics once as dual numbers over intervals, and the hull
+of what comes out holds every slope and every acceleration in the set, not only those at sampled points.
+Forces that share inputs are summed box by box; forces that do not (wind and rudder) are summed as ranges,
+which is sure, and a little wide. A current is no box: seen from the water it only turns with the heading, r x
+nu_c, and adds itself to the wind.
 """
 
 from collections.abc import Iterator, Mapping
@@ -24,16 +26,24 @@ from twin.physics.state import Situation
 Ranges = Mapping[str, tuple[float, float]]
 NU, STATES = ("u", "v", "r"), ("u", "v", "r", "psi")
 PIECES = {
-    "u": 8, "v": 6, "r": 6, "delta": 6, "n": 6, "psi": 4, "wind_to": 8, "wind_speed": 2, "wave_to": 8, "H_s": 2,
-    "T_p": 2, "depth": 4, "draught": 1, "bank_port": 3, "bank_starboard": 3, "phi": 2, "t": 4,
+    "u": 8, "v": 6, "r": 6, "delta": 6, "n": 6, "psi": 4, "wind_to": 8, "wind_speed": 2, "wave_to": 8,
+    "H_s": 2, "T_p": 2, "bank_port": 3, "bank_starboard": 3, "phi": 2,
 }  # fmt: skip
-# What is cut together. A force belongs to the first line that names an input it needs; hull, propeller and rudder to the first.
-GROUPS = (("delta", "n"), ("psi", "wind_to", "wind_speed"), ("psi", "wave_to", "H_s", "T_p"), ("bank_port", "bank_starboard"), ("phi",))
+# What is cut together. A force belongs to the first line that names an input it needs; the core to the first.
+GROUPS = (
+    ("delta", "n"),
+    ("psi", "wind_to", "wind_speed"),
+    ("psi", "wave_to", "H_s", "T_p"),
+    ("bank_port", "bank_starboard"),
+    ("phi",),
+)
 
 
 @dataclass(frozen=True)
 class Slopes:
-    """Bounds over the set, SI: d(nu_dot_i)/d(u, v, r, psi)_j lies in [lo, hi][i][j], nu_dot_i itself in rate[i] = (least, greatest)."""
+    """Bounds over the set, SI: d(nu_dot_i)/d(u, v, r, psi)_j lies in [lo, hi][i][j], nu_dot_i itself in
+    rate[i] = (least, greatest).
+    """
 
     lo: tuple[tuple[float, ...], ...]
     hi: tuple[tuple[float, ...], ...]
@@ -69,14 +79,18 @@ def slopes(model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES) -> 
             parts = _flat(contribution(model, s, names))
             boxes += max(np.broadcast(of(p).lo).size for p in parts)
             parts = [Interval(np.min(p.lo, axis=1), np.max(p.hi, axis=1)) for p in map(_two_axes, parts)]
-            total = [a + (p if group is GROUPS[0] else hull(p, 0.0)) for a, p in zip(total, parts, strict=True)]
+            total = [
+                a + (p if group is GROUPS[0] else hull(p, 0.0)) for a, p in zip(total, parts, strict=True)
+            ]
     total = _with_the_stream(total, ranges)
     lo, hi = [float(np.min(t.lo)) for t in total], [float(np.max(t.hi)) for t in total]
     return Slopes.of(lo, hi, boxes)
 
 
 def sampled(model: Model, ranges: Ranges, count: int = 20000, seed: int = 0) -> Slopes:
-    """The same from random points and corners: what the sure bounds are compared with, never what is certified."""
+    """The same from random points and corners: what the sure bounds are compared with, never what is
+    certified.
+    """
     model, ranges = _seen_from_the_water(model, ranges)
     s = _situation(_points(ranges, count, seed))
     names = frozenset(name for group in GROUPS for name in _forces(model, group))
@@ -105,7 +119,7 @@ def boxed(ranges: Ranges, group: tuple[str, ...], pieces: Mapping[str, int]) -> 
 
 
 def contribution(model: Model, s: Situation, names: frozenset[str]) -> tuple[Any, Any, Any]:
-    """What the named forces add to nu_dot; "hull" stands with the turning of the current (see Model.nu_dot)."""
+    """What the named forces add to nu_dot; with the hull goes the turning of the water (Model.nu_dot)."""
     water = model.water(s)
     X = Y = N = 0.0
     for name, (x, y, n) in zip(model.names, model.forces(s, water), strict=True):
@@ -126,13 +140,21 @@ def _seen_from_the_water(model: Model, ranges: Ranges) -> tuple[Model, Ranges]:
 
 
 def _with_the_stream(total: list[Any], ranges: Ranges) -> list[Any]:
-    """What a current adds: r x nu_c to the rates, itself to their slope with r, and with the heading what turning nu_c does."""
+    """What a current adds: r x nu_c to the rates, itself to their slope with r, and with the heading what
+    turning nu_c does.
+    """
     c, r = ranges["stream"][1], max(abs(x) for x in ranges["r"])
     for i in range(3):
         value, by_u, by_v, by_r, by_psi = total[5 * i : 5 * i + 5]
         own = c if i < 2 else 0.0
         turned = c * (float(np.max(of(by_u).magnitude)) + float(np.max(of(by_v).magnitude))) + r * own
-        total[5 * i : 5 * i + 5] = [value + _either_way(r * own), by_u, by_v, by_r + _either_way(own), by_psi + _either_way(turned)]
+        total[5 * i : 5 * i + 5] = [
+            value + _either_way(r * own),
+            by_u,
+            by_v,
+            by_r + _either_way(own),
+            by_psi + _either_way(turned),
+        ]
     return total
 
 
@@ -158,7 +180,9 @@ def _seed(name: str, value: Any) -> Dual:
     return Dual(value, tuple(1.0 if name == state else 0.0 for state in STATES))
 
 
-def _cut(names: tuple[str, ...], ranges: Ranges, pieces: Mapping[str, int]) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+def _cut(
+    names: tuple[str, ...], ranges: Ranges, pieces: Mapping[str, int]
+) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
     """(name, lo, hi) of every box of the grid over these names, flattened."""
     names = tuple(n for n in names if n in ranges)
     edges = [_edges(*ranges[n], pieces.get(n, 1)) for n in names]
@@ -166,7 +190,8 @@ def _cut(names: tuple[str, ...], ranges: Ranges, pieces: Mapping[str, int]) -> I
         shape = [1] * len(names)
         shape[i] = -1
         size = [len(e) - 1 for e in edges]
-        yield name, *(np.broadcast_to(e.reshape(shape), size).ravel() for e in (edges[i][:-1], edges[i][1:]))
+        lo, hi = (np.broadcast_to(e.reshape(shape), size).ravel() for e in (edges[i][:-1], edges[i][1:]))
+        yield name, lo, hi
 
 
 def _edges(lo: float, hi: float, pieces: int) -> np.ndarray:
@@ -186,4 +211,3 @@ def _two_axes(x: Any) -> Interval:
     x = of(x)
     lo, hi = np.atleast_2d(x.lo), np.atleast_2d(x.hi)
     return Interval(lo, hi)
-

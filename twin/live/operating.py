@@ -1,7 +1,8 @@
 """The operating set: the motions and the inputs for which something is promised.
 
-In the ship's own scales, so that one rule serves a 2 m boat and a 320 m tanker: speed through the water in U_0, turning in U_0/L,
-depth in draughts, propeller in the rate that drives her at U_0. Outside it the certificate says nothing, and the twin says that.
+In the ship's own scales, so that one rule serves a 2 m boat and a 320 m tanker: speed through the water in
+U_0, turning in U_0/L, depth in draughts, propeller in the rate that drives her at U_0. Outside it the
+certificate says nothing, and the twin says that.
 """
 
 from collections.abc import Mapping
@@ -16,15 +17,18 @@ from twin.physics.state import Rates, Situation
 
 NU = ("u", "v", "r")
 WORDS = {
-    "u": "surge speed through water", "v": "sway speed through water", "r": "rate of turn", "stream": "current", "delta": "rudder angle",
-    "n": "propeller rate", "wind_speed": "wind", "depth": "water depth", "H_s": "wave height", "T_p": "wave period",
-    "draught": "draught", "bank_port": "distance to the port bank", "bank_starboard": "distance to the starboard bank", "phi": "roll",
+    "u": "surge speed through water", "v": "sway speed through water", "r": "rate of turn",
+    "stream": "current", "delta": "rudder angle", "n": "propeller rate", "wind_speed": "wind",
+    "depth": "water depth", "H_s": "wave height", "T_p": "wave period", "draught": "draught",
+    "bank_port": "distance to the port bank",
+    "bank_starboard": "distance to the starboard bank", "phi": "roll",
 }  # fmt: skip
 
 
 @dataclass(frozen=True)
 class OperatingSet:
-    """Field of Situation -> (least, greatest) in SI, u and v through the water, `stream` the speed of the current over ground.
+    """Field of Situation -> (least, greatest) in SI, u and v through the water, `stream` the speed of the
+    current over ground.
 
     An angle that runs round the circle is always inside.
     """
@@ -37,7 +41,8 @@ class OperatingSet:
         return clip(u, *at["u"]), clip(v, *at["v"]), clip(r, *at["r"])
 
     def outside(self, s: Situation, within: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> str | None:
-        """The first thing that lies outside, in words; None when all is inside. s.u_r and s.v_r are set, as Model.known does.
+        """The first thing that lies outside, in words; None when all is inside. s.u_r and s.v_r are set, as
+        Model.known does.
 
         `within` widens the motion by its bound.
         """
@@ -57,9 +62,11 @@ class OperatingSet:
 
 @dataclass(frozen=True)
 class Confined(Model):
-    """The same physics with the motion clipped to the operating set wherever it is evaluated: what the observer integrates.
+    """The same physics with the motion clipped to the operating set wherever it is evaluated: what the
+    observer integrates.
 
-    Inside the set nothing changes; outside, forces are those of the nearest motion inside, so that their slopes stay bounded.
+    Inside the set nothing changes; outside, forces are those of the nearest motion inside, so that their
+    slopes stay bounded.
     """
 
     operating: OperatingSet | None = None
@@ -103,7 +110,9 @@ def of_ship(model: Model, **ranges: tuple[float, float]) -> OperatingSet:
     }
     for name, (lo, hi) in ranges.items():
         if name not in rule or not lo < hi or not (isfinite(lo) and isfinite(hi)):
-            raise SettingsError(f"operating set: {name} = [{lo}, {hi}] is no range of {', '.join(rule)}. Correct it.")
+            raise SettingsError(
+                f"operating set: {name} = [{lo}, {hi}] is no range of {', '.join(rule)}. Correct it."
+            )
     return OperatingSet(rule | ranges)
 
 
@@ -121,4 +130,3 @@ def propeller_rate(model: Model) -> float:
         middle = 0.5 * (low + high)
         low, high = (low, middle) if surplus(middle) > 0.0 else (middle, high)
     return high
-

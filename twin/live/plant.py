@@ -1,4 +1,6 @@
-"""What the stabilizer's theorem needs to know of a ship: how steep her equations are over the operating set, and how she is disturbed."""
+"""What the stabilizer's theorem needs to know of a ship: how steep her equations are over the operating set,
+and how she is disturbed.
+"""
 
 from dataclasses import dataclass, replace
 
@@ -14,8 +16,9 @@ from .operating import OperatingSet
 class Plant:
     """Sure bounds over the operating set; SI units, plain numbers, kept as JSON.
 
-    lo, hi: slopes of nu_dot with (u, v, r) [1/s, and m, 1/m where units differ]; heading: greatest slope with psi;
-    most: greatest |nu_dot|; inertia: |M^-1|; h: sample period [s]; bend: of a step's slopes beyond I + h A (see `at_period`).
+    lo, hi: slopes of nu_dot with (u, v, r) [1/s, and m, 1/m where units differ]; heading: greatest slope with
+    psi; most: greatest |nu_dot|; inertia: |M^-1|; h: sample period [s]; bend: of a step's slopes beyond I + h
+    A (see `at_period`).
     """
 
     lo: Matrix
@@ -32,20 +35,26 @@ class Plant:
         return c3.matrix(lambda i, j: max(-self.lo[i][j], self.hi[i][j]))
 
     def at_period(self, h: float) -> "Plant":
-        """The same ship sampled every h seconds: the bend is exp(h |A|) from its second term on, with the heading as a fourth state."""
+        """The same ship sampled every h seconds: the bend is exp(h |A|) from its second term on, with the
+        heading as a fourth state.
+        """
         size = self.magnitude()
         rows = tuple((*(h * x for x in size[i]), h * self.heading[i]) for i in AXES)
         return replace(self, h=h, bend=c3.beyond_first((*rows, (0.0, 0.0, h, 0.0))))
 
     def growth(self) -> Matrix:
-        """A^M: what can make an error grow; on the diagonal only a slope above zero, because clip() may switch damping off."""
+        """A^M: what can make an error grow; on the diagonal only a slope above zero, because clip() may
+        switch damping off.
+        """
         size = self.magnitude()
         return c3.matrix(lambda i, j: max(self.hi[i][i], 0.0) if i == j else size[i][j])
 
 
 @dataclass(frozen=True)
 class Disturbance:
-    """Bound of what neither physics nor network explain, |f - f_learned| [N, N, N m]: calm water, and per metre of wave height."""
+    """Bound of what neither physics nor network explain, |f - f_learned| [N, N, N m]: calm water, and per
+    metre of wave height.
+    """
 
     calm: Row
     per_metre: Row = (0.0, 0.0, 0.0)
@@ -55,40 +64,55 @@ class Disturbance:
 
 
 def plant_of(model: Model, operating: OperatingSet, h: float) -> Plant:
-    """Sure bounds of the known physics (the learned force is an input, not a slope); a quarter of a second for a ship with wind."""
+    """Sure bounds of the known physics (the learned force is an input, not a slope); a quarter of a second
+    for a ship with wind.
+    """
     from .enclosure import slopes
 
     steep = slopes(model, operating.ranges)
     unit = [core.accelerations(*row, model.c) for row in c3.IDENTITY]
-    return Plant(
-        lo=c3.matrix(lambda i, j: steep.lo[i][j]), hi=c3.matrix(lambda i, j: steep.hi[i][j]), most=steep.most,  # type: ignore[arg-type]
-        heading=tuple(max(-steep.lo[i][3], steep.hi[i][3]) for i in AXES), inertia=c3.matrix(lambda i, j: abs(unit[j][i])),  # type: ignore[arg-type]
-        h=h, operating=operating,
-    ).at_period(h)  # fmt: skip
+    made = Plant(
+        lo=c3.matrix(lambda i, j: steep.lo[i][j]),
+        hi=c3.matrix(lambda i, j: steep.hi[i][j]),
+        heading=tuple(max(-steep.lo[i][3], steep.hi[i][3]) for i in AXES),  # type: ignore[arg-type]
+        most=steep.most,  # type: ignore[arg-type]
+        inertia=c3.matrix(lambda i, j: abs(unit[j][i])),
+        h=h,
+        operating=operating,
+    )
+    return made.at_period(h)
 
 
 def usual_disturbance(model: Model) -> Disturbance:
-    """Before any voyage: in calm water 1 % of 1/2 rho U_0^2 L T ahead and in yaw and three times that aside; in waves their pressure.
+    """Before any voyage: in calm water 1 % of 1/2 rho U_0^2 L T ahead and in yaw and three times that aside;
+    in waves their pressure.
 
-    The waves' part is the Froude-Krylov size rho g H_s times (B T, L T, L^2 T) and shares that a tanker needed; a residual record of
-    one's own ship gives better numbers.
+    The waves' part is the Froude-Krylov size rho g H_s times (B T, L T, L^2 T) and shares that a tanker
+    needed; a residual record of one's own ship gives better numbers.
     """
     ship = model.loaded
     force, moment = ship.scale("force"), ship.scale("moment")
     wave = ship.rho * core.GRAVITY * ship.T
-    return Disturbance((force, 3.0 * force, moment), (0.5 * wave * ship.B, 0.75 * wave * ship.L_pp, 0.22 * wave * ship.L_pp**2))
+    return Disturbance(
+        (force, 3.0 * force, moment),
+        (0.5 * wave * ship.B, 0.75 * wave * ship.L_pp, 0.22 * wave * ship.L_pp**2),
+    )
 
 
 def self_regressor(plant: Plant, weights: Row, slope: float, per_state: Row) -> Matrix:
-    """What a network fed with its own estimate (coasting) adds to the growth of errors: |M^-1| |W| Lip(phi) |d zeta/d nu|.
+    """What a network fed with its own estimate (coasting) adds to the growth of errors: |M^-1| |W| Lip(phi)
+    |d zeta/d nu|.
 
-    weights: norm of each row of W [N, N, N m]; slope: `lipschitz(...)` of the trunk; per_state: |d zeta/d nu_j|.
+    weights: norm of each row of W [N, N, N m]; slope: `lipschitz(...)` of the trunk; per_state: |d zeta/d
+    nu_j|.
     """
     return c3.product(plant.inertia, c3.matrix(lambda i, j: weights[i] * slope * per_state[j]))
 
 
 def lipschitz(spectral_norms: list[float], steepest: float = 1.0998) -> float:
-    """Lipschitz bound of a trunk from its layers' spectral norms and the steepest slope of its activation (swish: 1.0998)."""
+    """Lipschitz bound of a trunk from its layers' spectral norms and the steepest slope of its activation
+    (swish: 1.0998).
+    """
     total = 1.0
     for norm in spectral_norms:
         total *= norm * steepest
@@ -96,5 +120,7 @@ def lipschitz(spectral_norms: list[float], steepest: float = 1.0998) -> float:
 
 
 def output_bound(row_norm: float, features: float, saturation: float) -> float:
-    """|w phi| <= min(||w|| ||phi||, saturation): what one row of the learned force can reach [N or N m], whatever adapts w."""
+    """|w phi| <= min(||w|| ||phi||, saturation): what one row of the learned force can reach [N or N m],
+    whatever adapts w.
+    """
     return min(row_norm * features, saturation)

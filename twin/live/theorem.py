@@ -1,9 +1,11 @@
-"""The stabilizer's theorem in numbers: from the ship's slopes and a gain K to what is promised (docs/stability.md has the proof).
+"""The stabilizer's theorem in numbers: from the ship's slopes and a gain K to what is promised.
 
-    nu-  = nu+ + [one Euler or Runge-Kutta step of the physics, f_learned held]     E = error of nu-, one sample on
-    nu+  = nu- + h K (y - nu-),  compared at the time of y                           p = error of nu+, which is published
-    E <= V p + d,    p <= keep E + again max(E) + drift max(p) + c,   max over the last 2m+1 samples
+    predict   nu- = one Euler or Runge-Kutta step from nu+, f_learned held      its error one sample on: E
+    correct   nu+ = nu- + h K (y - nu-), compared at the time of y              its error, published: p
+    E <= V p + d,   p <= keep E + again max(E) + drift max(p) + c,   max over the last 2m+1 samples
     G = (keep + again) V + drift,   b = (I - G)^-1 g   when the greatest eigenvalue of G is under one
+
+The proof is in docs/stability.md.
 """
 
 from dataclasses import dataclass
@@ -22,7 +24,10 @@ NOWHERE: Row = (NEVER, NEVER, NEVER)
 
 @dataclass(frozen=True)
 class Recursion:
-    """How error bounds go on by one sample; rows are axes, nothing is negative. m: greatest age of a used measurement, in samples."""
+    """How error bounds go on by one sample; rows are axes, nothing is negative.
+
+    m: greatest age of a used measurement, in samples.
+    """
 
     V: Matrix  # one step of the physics on a difference of two motions: |I + h A| and its bend
     keep: Row  # |1 - h K|
@@ -59,22 +64,27 @@ def recursion(plant: Plant, K: Row, m: Ages, extra: Matrix | None = None) -> Rec
     pull: Row = tuple(h * k for k in K)  # type: ignore[assignment]
     change = c3.matrix(lambda i, j: h * size[i][j] + bend[i][j])
 
-    def step(i: int, j: int) -> float:  # clip() may switch damping off, so the diagonal reaches from 1 - h |lo| to 1 + h hi
+    def step(i: int, j: int) -> float:
+        # clip() may switch damping off, so the diagonal reaches from 1 - h |lo| to 1 + h hi
         return change[i][j] if i != j else max(1.0 + h * growth[i][i] + bend[i][i], change[i][i] - 1.0)
 
     return Recursion(
-        V=c3.matrix(step), keep=tuple(abs(1.0 - p) for p in pull), again=tuple(n * p * p for n, p in zip(m, pull, strict=True)),  # type: ignore[arg-type]
-        drift=c3.matrix(lambda i, j: m[i] * pull[i] * change[i][j]), pull=pull, m=m,
-    )  # fmt: skip
+        V=c3.matrix(step),
+        keep=tuple(abs(1.0 - p) for p in pull),  # type: ignore[arg-type]
+        again=tuple(n * p * p for n, p in zip(m, pull, strict=True)),  # type: ignore[arg-type]
+        drift=c3.matrix(lambda i, j: m[i] * pull[i] * change[i][j]),
+        pull=pull,
+        m=m,
+    )
 
 
 @dataclass(frozen=True)
 class Promise:
     """What holds for one gain; `ok` is False when nothing does, and `reason` says why.
 
-    margin: 1 - the share of K at which K - A^M ceases to be an M-matrix; rate: guaranteed decay of an old error [1/s];
-    bound = gains_disturbance d + gains_noise n + what the sampling itself costs [m/s, m/s, rad/s].
-    push: what a force [N, N, N m] does in one sample; calm: what heading error and sampling do.
+    margin: 1 - the share of K at which K - A^M ceases to be an M-matrix; rate: guaranteed decay of an old
+    error [1/s]; bound = gains_disturbance d + gains_noise n + what the sampling itself costs [m/s, m/s,
+    rad/s]. push: what a force [N, N, N m] does in one sample; calm: what heading error and sampling do.
     """
 
     ok: bool
@@ -90,7 +100,15 @@ class Promise:
     step: Recursion
 
 
-def assess(plant: Plant, K: Row, m: Ages, noise: Row, d: Disturbance, heading_noise: float = 0.0, extra: Matrix | None = None) -> Promise:
+def assess(
+    plant: Plant,
+    K: Row,
+    m: Ages,
+    noise: Row,
+    d: Disturbance,
+    heading_noise: float = 0.0,
+    extra: Matrix | None = None,
+) -> Promise:
     """Theorems 1 and 2 of docs/stability.md for one gain, once the slopes are known."""
     step = recursion(plant, K, m, extra)
     push, calm = pushed(plant, heading_noise)
@@ -102,21 +120,26 @@ def assess(plant: Plant, K: Row, m: Ages, noise: Row, d: Disturbance, heading_no
     by_force, by_noise = c3.product(c3.product(end, step.share()), push), c3.product(end, step.heard())
     sampling = c3.apply(c3.product(end, step.share()), calm)
     bound = c3.add(c3.apply(by_force, d.calm), c3.apply(by_noise, noise), sampling)
-    return Promise(True, reason, 1.0 - ratio, _rate(step, plant.h), bound, by_force, by_noise, step.G, push, calm, step)
+    return Promise(
+        True, reason, 1.0 - ratio, _rate(step, plant.h), bound, by_force, by_noise, step.G, push, calm, step
+    )
 
 
 def pushed(plant: Plant, heading_noise: float) -> tuple[Matrix, Row]:
-    """d = push force + calm: a bounded force, a heading error, and what one step, of first order or fourth, misses of the ship's path."""
+    """d = push force + calm: a bounded force, an error of heading, what one step misses of her path."""
     h, size, bend = plant.h, plant.magnitude(), plant.bend
     along = c3.plus(c3.IDENTITY, c3.scaled(0.5 * h, size))
     turn = max(abs(x) for x in plant.operating.ranges["r"])
     curve = c3.apply(size, plant.most)
-    calm = tuple((h * p + bend[i][3]) * heading_noise + h * h * (curve[i] + p * turn) for i, p in enumerate(plant.heading))
+    calm = tuple(
+        (h * p + bend[i][3]) * heading_noise + h * h * (curve[i] + p * turn)
+        for i, p in enumerate(plant.heading)
+    )
     return c3.scaled(h, c3.product(along, plant.inertia)), calm  # type: ignore[return-value]
 
 
 def gains_that_do(plant: Plant, m: Ages, extra: Matrix | None = None) -> tuple[float, float] | None:
-    """The least and the greatest uniform K that the sample period and the delay allow [1/s]; None when there is none."""
+    """The least and the greatest uniform K that the period and the delay allow [1/s]; None: there is none."""
 
     def holds(k: float) -> bool:
         return c3.contracts(recursion(plant, (k, k, k), m, extra).G)
@@ -129,7 +152,7 @@ def gains_that_do(plant: Plant, m: Ages, extra: Matrix | None = None) -> tuple[f
 
 
 def usual_gain(plant: Plant, m: Ages, extra: Matrix | None = None) -> Row | None:
-    """A K to begin with: four times the least, or the middle of what the period and the delay allow if that is less."""
+    """A K to begin with: four times the least, or the middle of what is allowed if that is less."""
     limits = gains_that_do(plant, m, extra)
     if limits is None:
         return None
@@ -137,8 +160,12 @@ def usual_gain(plant: Plant, m: Ages, extra: Matrix | None = None) -> Row | None
     return k, k, k
 
 
-def best_gain(plant: Plant, m: Ages, noise: Row, d: Disturbance, H_s: float = 0.0, extra: Matrix | None = None) -> Row | None:
-    """The K with the smallest bound against hostile noise and disturbance, each axis in units of its range; None when none is certified."""
+def best_gain(
+    plant: Plant, m: Ages, noise: Row, d: Disturbance, H_s: float = 0.0, extra: Matrix | None = None
+) -> Row | None:
+    """The K with the smallest bound against hostile noise and disturbance, each axis in units of its range;
+    None when none is certified.
+    """
     limits = gains_that_do(plant, m, extra)
     if limits is None:
         return None
@@ -154,10 +181,11 @@ def best_gain(plant: Plant, m: Ages, noise: Row, d: Disturbance, H_s: float = 0.
         g = c3.add(c3.apply(step.share(), during), c3.apply(step.heard(), noise))
         return sum(b / w for b, w in zip(c3.apply(end, g), width, strict=True))
 
-    K: Row = min(((k, k, k) for k in _between(*limits)), key=size)
+    uniform: list[Row] = [(k, k, k) for k in _between(*limits)]
+    K = min(uniform, key=size)
     for factor in (1.5, 1.2, 1.07):
         for _ in range(6):
-            trials = [K] + [tuple(k * f if i == j else k for j, k in enumerate(K)) for i in AXES for f in (factor, 1.0 / factor)]
+            trials: list[Row] = [K] + [_one_changed(K, i, f) for i in AXES for f in (factor, 1.0 / factor)]
             better = min(trials, key=size)
             if better == K:
                 break
@@ -172,7 +200,9 @@ def _ratio(plant: Plant, K: Row, extra: Matrix | None) -> float:
 
 
 def _rate(step: Recursion, h: float) -> float:
-    """The decay of a bound that looks back over 2m+1 samples: the x with x = greatest eigenvalue of (now + x^-2m past)."""
+    """The decay of a bound that looks back over 2m+1 samples: the x with x = greatest eigenvalue of (now +
+    x^-2m past).
+    """
     low, high = 0.0, 1.0
     for _ in range(60):
         x = 0.5 * (low + high)
@@ -182,21 +212,23 @@ def _rate(step: Recursion, h: float) -> float:
 
 
 def _reason(plant: Plant, K: Row, m: Ages, ratio: float, worst: float, extra: Matrix | None) -> str:
-    told, told_m = ", ".join(f"{k:.3g}" for k in K), "/".join(map(str, m))
+    told, late = ", ".join(f"{k:.3g}" for k in K), "/".join(map(str, m))
     if worst < 1.0:
-        return f"K = ({told}) 1/s holds: {100 * ratio:.0f} % of it is the least that pulls back faster than errors can grow."
+        least = f"{100 * ratio:.0f} % of it is the least that pulls back faster than errors can grow"
+        return f"K = ({told}) 1/s holds: {least}."
     if not worst < NEVER:
-        return "the slopes of the physics have no bound over the operating set. Narrow the set (speed, depth, distance to the banks)."
+        cure = "Narrow the set (speed, depth, distance to the banks)."
+        return f"the slopes of the physics have no bound over the operating set. {cure}"
     limits = gains_that_do(plant, m, extra)
     if limits is None:
-        return (
-            f"no K holds at a period of {plant.h:g} s with measurements {told_m} samples old. "
-            f"Run the loop every {_period_that_does(plant, m, extra):.2g} s or faster, or narrow the operating set."
-        )
+        period = _period_that_does(plant, m, extra)
+        cure = f"Run the loop every {period:.2g} s or faster, or narrow the operating set."
+        return f"no K holds at a period of {plant.h:g} s with measurements {late} samples old. {cure}"
     do = f"K from {limits[0]:.3g} to {limits[1]:.3g} 1/s would do (the same on every axis)."
     if max(K) < limits[0] or ratio >= 1.0:
         return f"K = ({told}) 1/s is too small: errors could grow faster than it pulls them back. {do}"
-    return f"K = ({told}) 1/s is outside what a period of {plant.h:g} s and measurements {told_m} samples old allow. {do}"
+    allowed = f"what a period of {plant.h:g} s and measurements {late} samples old allow"
+    return f"K = ({told}) 1/s is outside {allowed}. {do}"
 
 
 def _period_that_does(plant: Plant, m: Ages, extra: Matrix | None) -> float:
@@ -207,6 +239,11 @@ def _period_that_does(plant: Plant, m: Ages, extra: Matrix | None) -> float:
         if gains_that_do(plant.at_period(h), m, extra):
             break
     return h
+
+
+def _one_changed(K: Row, axis: int, factor: float) -> Row:
+    u, v, r = (k * factor if i == axis else k for i, k in enumerate(K))
+    return u, v, r
 
 
 def _edge(holds: Any, good: float, bad: float) -> float:

@@ -3,6 +3,8 @@
     before the measurements of a tick:   E = V p + push d(H_s) + calm
     with one (row by row):               p = keep E + again max(E) + drift max(p) + c
     without:                             p = E, and what a rejected sample was allowed to pull
+
+The matrices are those of twin/live/theorem.py.
 """
 
 from collections import deque
@@ -25,7 +27,7 @@ class Tube:
     """|nu_hat - nu| <= beta, component by component [m/s, m/s, rad/s], as long as the assumptions hold."""
 
     def __init__(self, certificate: "Certificate", start: Three | None = None) -> None:
-        """`start` bounds the error of the first estimate; by default it is a first measurement, so its noise."""
+        """`start` bounds the error of the first estimate; by default that is a measurement, so its noise."""
         self.certificate = certificate
         self._window = 2 * max(certificate.delays) + 1
         self.reset(start)
@@ -79,12 +81,21 @@ class Tube:
         c = self.certificate
         step, d = c.step, add(apply(c.push, c.disturbance.at(H_s)), c.calm)
         self._table = tuple(
-            (*step.V[i], d[i], step.keep[i], step.again[i], *step.drift[i], step.pull[i] * (c.noise[i] + step.m[i] * (step.pull[i] * c.noise[i] + d[i])))
+            (
+                *step.V[i],
+                d[i],
+                step.keep[i],
+                step.again[i],
+                *step.drift[i],
+                step.pull[i] * (c.noise[i] + step.m[i] * (step.pull[i] * c.noise[i] + d[i])),
+            )
             for i in (0, 1, 2)
         )
 
     def inside(self, s: Situation) -> bool:
-        """True when the ship is surely in the operating set: the estimate, widened by its bound, and every measured input."""
+        """True when the ship is surely in the operating set: the estimate, widened by its bound, and every
+        measured input.
+        """
         return self.outside(s) is None
 
     def outside(self, s: Situation) -> str | None:

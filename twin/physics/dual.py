@@ -1,10 +1,12 @@
-"""A number with its slopes: forward differentiation through the physics, for floats, arrays and intervals alike.
+"""A number with its slopes: forward differentiation through the physics, for floats, arrays and intervals
+alike.
 
     (a, a') (b, b') = (a b, a' b + a b'),   f(a, a') = (f(a), f'(a) a')
 
-Over intervals it encloses every slope the function has in the box. The slope of a length sqrt(x^2 + y^2 + c) is recognised: each
-x / sqrt(...) lies in [-1, 1], also where the box holds the point of rest. `abs` has the slope [-1, 1] across zero.
-Source: Griewank & Walther (2008) Evaluating Derivatives, ch. 3; Moore, Kearfott & Cloud (2009), ch. 6.
+Over intervals it encloses every slope the function has in the box. The slope of a length sqrt(x^2 + y^2 + c)
+is recognised: each x / sqrt(...) lies in [-1, 1], also where the box holds the point of rest. `abs` has the
+slope [-1, 1] across zero. Source: Griewank & Walther (2008) Evaluating Derivatives, ch. 3; Moore, Kearfott &
+Cloud (2009), ch. 6.
 """
 
 from typing import Any
@@ -14,7 +16,9 @@ from .interval import Interval, Unsure, hull
 
 
 class Dual:
-    """A value and its slopes along chosen directions; a slope of 0.0 (the float) is known to be nothing and costs nothing."""
+    """A value and its slopes along chosen directions; a slope of 0.0 (the float) is known to be nothing and
+    costs nothing.
+    """
 
     __slots__ = ("slopes", "squares", "value")
     _maths = "twin.physics.dual"
@@ -95,7 +99,9 @@ class Dual:
 
 
 class Choice:
-    """A comparison of duals: what their values say, and which they were (so that min and max keep their values exact)."""
+    """A comparison of duals: what their values say, and which they were (so that min and max keep their
+    values exact).
+    """
 
     __slots__ = ("less", "more", "said")
     _maths = "twin.physics.dual"
@@ -118,14 +124,18 @@ class Choice:
 
 
 def where(condition: Any, yes: Any, no: Any) -> Dual:
-    """Value and slopes of the side that holds; over intervals, of both sides where the condition is not decided."""
+    """Value and slopes of the side that holds; over intervals, of both sides where the condition is not
+    decided.
+    """
     said = getattr(condition, "said", condition)
     value = maths.where(said, _value(yes), _value(no))
     if isinstance(said, Unsure):  # the slopes differ from the values: min and max must not be taken of them
         said = Unsure(said.yes, said.no)
     count = len((yes if isinstance(yes, Dual) else no).slopes)
     pairs = zip(_slopes(yes, count), _slopes(no, count), strict=True)
-    return Dual(value, tuple(0.0 if _nothing(a) and _nothing(b) else maths.where(said, a, b) for a, b in pairs))
+    return Dual(
+        value, tuple(0.0 if _nothing(a) and _nothing(b) else maths.where(said, a, b) for a, b in pairs)
+    )
 
 
 def sqrt(x: Dual) -> Dual:
@@ -182,7 +192,9 @@ def _times(slope: Any, factor: Any) -> Any:
 
 
 def _chain(outer: Any, slopes: tuple[Any, ...]) -> tuple[Any, ...]:
-    return tuple(0.0 if _nothing(s) else outer if type(s) is float and s == 1.0 else outer * s for s in slopes)
+    return tuple(
+        0.0 if _nothing(s) else outer if type(s) is float and s == 1.0 else outer * s for s in slopes
+    )
 
 
 def _sum(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[Any, ...]:

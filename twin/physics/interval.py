@@ -1,8 +1,10 @@
-"""An interval [lo, hi] that goes through the physics like a number and comes out enclosing every value it can take.
+"""An interval [lo, hi] that goes through the physics like a number and comes out enclosing every value it can
+take.
 
-Every operation widens its result by more than its rounding error, so the enclosure is a proof, not an estimate; lo and hi may be
-arrays (many boxes at once; then the functions are those of the arrays' library). Three forms that physics uses are recognised, because taking their parts apart loses too much:
-x*x (never negative), min and max written with `where`, and x + sqrt(x*x + c) (`maths.positive`, increasing in x).
+Every operation widens its result by more than its rounding error, so the enclosure is a proof, not an
+estimate; lo and hi may be arrays (many boxes at once; then the functions are those of the arrays' library).
+Three forms that physics uses are recognised, because taking their parts apart loses too much: x*x (never
+negative), min and max written with `where`, and x + sqrt(x*x + c) (`maths.positive`, increasing in x).
 Source: Moore, Kearfott & Cloud (2009) Introduction to Interval Analysis, ch. 2 and 5.
 """
 
@@ -31,14 +33,18 @@ def _ours(operation: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
 
 
 class Interval:
-    """All numbers from lo to hi; `square_of` = (x, c) when it was made as x*x + c, `root_of` when as sqrt(x*x + c)."""
+    """All numbers from lo to hi; `square_of` = (x, c) when it was made as x*x + c, `root_of` when as sqrt(x*x
+    + c).
+    """
 
     __slots__ = ("hi", "lo", "root_of", "square_of")
     _maths = "twin.physics.interval"
     __array_ufunc__ = None  # array * Interval is ours to answer
 
     def __init__(self, lo: Any, hi: Any) -> None:
-        self.lo, self.hi, self.square_of, self.root_of = lo, hi, None, None
+        self.lo, self.hi = lo, hi
+        self.square_of: tuple[Interval, float] | None = None
+        self.root_of: tuple[Interval, float] | None = None
 
     def __repr__(self) -> str:
         return f"Interval({self.lo}, {self.hi})"
@@ -140,7 +146,9 @@ class Interval:
 
 
 class Unsure:
-    """A comparison of intervals: surely true, surely false, or neither; and what was compared, for minimum and maximum."""
+    """A comparison of intervals: surely true, surely false, or neither; and what was compared, for minimum
+    and maximum.
+    """
 
     __slots__ = ("less", "more", "no", "yes")
     _maths = "twin.physics.interval"
@@ -235,7 +243,9 @@ def _multiple_inside(lo: Any, hi: Any) -> Any:
 
 
 def _with_its_root(x: Interval, c: float) -> Interval:
-    """x + sqrt(x^2 + c), which increases with x and is never negative; its error is that of x, not of the small result."""
+    """x + sqrt(x^2 + c), which increases with x and is never negative; its error is that of x, not of the
+    small result.
+    """
     lo, hi = (z + maths.sqrt(z * z + c) for z in (x.lo, x.hi))
     return Interval(_most(lo - 4.0 * ULP * (abs(x.lo) + c), 0.0), hi + 4.0 * ULP * (abs(x.hi) + c))
 

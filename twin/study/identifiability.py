@@ -1,10 +1,12 @@
-"""What a voyage can tell at all: which states can be seen in its measurements, and which forces look alike along it.
+"""What a voyage can tell at all: which states can be seen in its measurements, and which forces look alike
+along it.
 
-Empirical observability Gramian [Krener & Ide 2009]: start, current and a constant unknown force are nudged by a tenth of what is
-not known of them, the model is run on over windows of the voyage, and the readings' answer is counted in their own scatter. A
-direction that answers with less than one is not told by the window; below 1e-4 of the strongest it cannot be seen at all, which
-is what a Lie-rank test would say. Principal angles [Bjorck & Golub 1973] tell how far an effect's columns, or the features of a learned
-residual, stand out of the span of the core's columns: 90 deg is apart, 0 deg is the same thing under another name.
+Empirical observability Gramian [Krener & Ide 2009]: start, current and a constant unknown force are nudged by
+a tenth of what is not known of them, the model is run on over windows of the voyage, and the readings' answer
+is counted in their own scatter. A direction that answers with less than one is not told by the window; below
+1e-4 of the strongest it cannot be seen at all, which is what a Lie-rank test would say. Principal angles
+[Bjorck & Golub 1973] tell how far an effect's columns, or the features of a learned residual, stand out of
+the span of the core's columns: 90 deg is apart, 0 deg is the same thing under another name.
 """
 
 from collections.abc import Callable, Mapping
@@ -39,7 +41,9 @@ Features = Callable[[Situation], np.ndarray]  # (N, F) of a situation of arrays
 
 
 def report(voyage: Voyage, model: Model, residual: Features | None = None) -> dict[str, Any]:
-    """`observability` by set of sensors, `angles` by effect, `residual` where its features are given; see `text`."""
+    """`observability` by set of sensors, `angles` by effect, `residual` where its features are given; see
+    `text`.
+    """
     t = track(voyage, model.ship)
     return {
         "voyage": voyage.name,
@@ -51,7 +55,9 @@ def report(voyage: Voyage, model: Model, residual: Features | None = None) -> di
 
 
 def observability(t: Track, model: Model) -> dict[str, Any]:
-    """For each set of sensors: rank, condition and weakest direction of the Gramian, and what is still unknown after a window."""
+    """For each set of sensors: rank, condition and weakest direction of the Gramian, and what is still
+    unknown after a window.
+    """
     answer = sensitivities(t, model)
     there = [i for i, name in enumerate(READINGS) if np.isfinite(t.measured[:, i]).any()]
     out = {}
@@ -62,7 +68,12 @@ def observability(t: Track, model: Model) -> dict[str, Any]:
         judged = [gramian(w[:, keep]) for w in answer]
         middle = sorted(judged, key=lambda g: g["log10_condition"])[len(judged) // 2]
         ranks = [g["rank"] for g in judged]
-        out[suite] = middle | {"of": len(UNKNOWNS), "windows": len(judged), "least_rank": min(ranks), "greatest_rank": max(ranks)}
+        out[suite] = middle | {
+            "of": len(UNKNOWNS),
+            "windows": len(judged),
+            "least_rank": min(ranks),
+            "greatest_rank": max(ranks),
+        }
     return out
 
 
@@ -84,50 +95,58 @@ def gramian(answer: np.ndarray) -> dict[str, Any]:
 
 
 def sensitivities(t: Track, model: Model) -> list[np.ndarray]:
-    """For each window (K, 8, 11): what the readings answer, in sigmas, to one prior width of each unknown."""
+    """For each window (K, 8, 11): what the readings answer, in sigmas, to a prior width of each."""
     steps = max(int(LENGTHS * float(model.ship.scale("time")) / t.h), 8)
     starts = [k for k in range(0, len(t) - steps, steps) if t.whole[k : k + steps].all()]
     if not starts:
-        raise DataError(f"{t.name}: no window of {steps * t.h:.0f} s has rudder and propeller throughout. Record a longer voyage.")
-    widths = prior_widths(model)
-    sides = []
-    for sign in (1.0, -1.0):
-        nudged = [_run(t, model, starts, steps, {name: sign * NUDGE * width}) for name, width in widths.items()]
-        sides.append(np.stack(nudged, axis=-1))  # (K, windows, 8, unknowns)
-    answer = (sides[0] - sides[1]) / (2.0 * NUDGE) / t.sd[:, None]
+        raise DataError(
+            f"{t.name}: no window of {steps * t.h:.0f} s has rudder and propeller throughout. Sail longer."
+        )
+    up, down = (
+        _run(t, model, np.array(starts), steps, sign * NUDGE * prior_widths(model)) for sign in (1.0, -1.0)
+    )
+    answer = (up - down) / (2.0 * NUDGE) / t.sd[:, None]
     return [answer[:, w] for w in range(len(starts))]
 
 
-def prior_widths(model: Model) -> dict[str, float]:
-    """What is not known before any measurement, in the ship's own scales."""
+def prior_widths(model: Model) -> np.ndarray:
+    """(11,) what is not known of UNKNOWNS before any measurement, in the ship's own scales."""
     ship = model.ship
     L, U, time, force = (float(ship.scale(of)) for of in ("length", "speed", "time", "force"))
-    widths = (0.1 * L, 0.1 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time, 0.1 * U, 0.1 * U, force, 3.0 * force, force * L)
-    return dict(zip(UNKNOWNS, widths, strict=True))
+    return np.array(
+        [0.1 * L, 0.1 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time, 0.1 * U, 0.1 * U, force, 3.0 * force, force * L]
+    )
 
 
-def _run(t: Track, model: Model, starts: list[int], steps: int, nudge: Mapping[str, float]) -> np.ndarray:
-    """(K, windows, 8) readings of runs from every window's start, with one unknown nudged."""
-    push = Force(*(nudge.get(f"force {axis}", 0.0) for axis in "XYN"))
-    now = next((e for e in model.effects if isinstance(e, Current)), Current(north=0.0, east=0.0))
-    here = now.but(north=now.north + nudge.get("current north", 0.0), east=now.east + nudge.get("current east", 0.0))
+def _run(t: Track, model: Model, starts: np.ndarray, steps: int, nudges: np.ndarray) -> np.ndarray:
+    """(K, windows, 8, unknowns) readings of runs from every window's start, each with one unknown nudged."""
+    first = np.repeat(starts, len(nudges))
+    by = np.tile(np.diag(nudges), (len(starts), 1)).T  # (unknowns, runs)
+    now = next((e for e in model.effects if isinstance(e, Current)), Current.absent(model.ship)).values()
+    here = Current.absent(model.ship).but(north=now["north"] + by[6], east=now["east"] + by[7])
+    push = Force(*by[8:11])
     model = replace(model.but(here), residual=lambda s: push)
-    first = np.array(starts)
-    state = tuple(t.state[first, i] + nudge.get(name, 0.0) for i, name in enumerate(STATE))
+    state = tuple(t.state[first, i] + by[i] for i in range(len(STATE)))
     delta, out = lagged(t, model), []
     for k in range(steps):
         rows = first + k
-        inputs = {name: x[rows] for name, x in t.weather.items()} | {"delta": delta[rows], "n": t.n[rows], "t": t.t[rows]}
+        inputs = {name: x[rows] for name, x in t.weather.items()} | {
+            "delta": delta[rows],
+            "n": t.n[rows],
+            "t": t.t[rows],
+        }
         s = Situation(**dict(zip(STATE, state, strict=True)), **inputs)
         rates = model.nu_dot(s)
         s.u_dot, s.v_dot = rates.u, rates.v
-        out.append(readings(s, model))
+        out.append(readings(s, model).reshape(len(starts), len(nudges), -1).swapaxes(1, 2))
         state = model.step(state, Situation(**inputs), t.h)
     return np.stack(out)
 
 
 def angles(t: Track, model: Model) -> dict[str, dict[str, Any]]:
-    """For each force and flow that the voyage can feed: its angles to the span of the core's columns, and what of it lies inside."""
+    """For each force and flow that the voyage can feed: its angles to the span of the core's columns, and
+    what of it lies inside.
+    """
     thin, known = _thinned(t), catalogue()
     scale = _axis_scale(model)
     core = basis(_stacked(columns(thin, model, core_unknowns(model), known)[0], scale))
@@ -142,30 +161,44 @@ def angles(t: Track, model: Model) -> dict[str, dict[str, Any]]:
         own = basis(span)
         rivals = {other: float(principal(own, basis(s))[0]) for other, s in spans.items() if other != name}
         nearest = min(rivals, key=lambda other: rivals[other]) if rivals else None
-        out[name] = _told(own, span, core) | {"nearest": nearest, "nearest_deg": rivals[nearest] if nearest else None}
+        out[name] = _told(own, span, core) | {
+            "nearest": nearest,
+            "nearest_deg": rivals[nearest] if nearest else None,
+        }
     return out
 
 
 def residual_angles(t: Track, model: Model, features: Features) -> dict[str, dict[str, Any]]:
-    """For each axis: the residual's features against the core's columns of that axis (the paper's F_theta against F_D)."""
+    """For each axis: the residual's features against the core's columns of that axis (the paper's F_theta
+    against F_D).
+    """
     thin, known = _thinned(t), catalogue()
     A = columns(thin, model, core_unknowns(model), known)[0]
     s = thin.situation()
     model.nu_dot(s)
     phi = np.asarray(features(s), float)
     if phi.shape[0] != len(thin):
-        raise DataError(f"the residual gave {phi.shape} features for {len(thin)} situations: one row each is needed.")
+        raise DataError(
+            f"the residual gave {phi.shape} features for {len(thin)} situations: one row each is needed."
+        )
     return {axis: _told(basis(phi), phi, basis(A[:, i])) for i, axis in enumerate(("surge", "sway", "yaw"))}
 
 
 def _told(own: np.ndarray, span: np.ndarray, core: np.ndarray) -> dict[str, Any]:
     found = principal(own, core)
     inside = float(np.sum((core.T @ span) ** 2) / max(np.sum(span**2), 1e-300))
-    return {"smallest_deg": float(found[0]), "largest_deg": float(found[-1]), "share_inside_core": inside, "dimensions": int(own.shape[1])}
+    return {
+        "smallest_deg": float(found[0]),
+        "largest_deg": float(found[-1]),
+        "share_inside_core": inside,
+        "dimensions": int(own.shape[1]),
+    }
 
 
 def principal(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Principal angles [deg] between two spans, from orthonormal bases; small ones by their sine, which keeps its digits."""
+    """Principal angles [deg] between two spans, from orthonormal bases; small ones by their sine, which keeps
+    its digits.
+    """
     if a.shape[1] > b.shape[1]:
         a, b = b, a
     cosines = np.clip(np.linalg.svd(a.T @ b, compute_uv=False), 0.0, 1.0)
@@ -174,7 +207,9 @@ def principal(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 
 def basis(span: np.ndarray) -> np.ndarray:
-    """(rows, d) orthonormal; columns are put to the same size first, and directions below 1e-6 of the strongest dropped."""
+    """(rows, d) orthonormal; columns are put to the same size first, and directions below 1e-6 of the
+    strongest dropped.
+    """
     size = np.linalg.norm(span, axis=0)
     u, s, _ = np.linalg.svd(span[:, size > 0.0] / size[size > 0.0], full_matrices=False)
     return u[:, s > 1e-6 * s[0]]
@@ -191,7 +226,9 @@ def _axis_scale(model: Model) -> np.ndarray:
 
 
 def _thinned(t: Track) -> Track:
-    """The track on at most ROWS of its rows with known controls (columns are pointwise, so the gaps do not matter)."""
+    """The track on at most ROWS of its rows with known controls (columns are pointwise, so the gaps do not
+    matter).
+    """
     rows = np.flatnonzero(t.whole)
     rows = rows[:: max(1, rows.size // ROWS)]
     return replace(
@@ -211,7 +248,9 @@ def text(result: Mapping[str, Any]) -> list[str]:
     lines += ["", f"{'effect':<20}{'angle to core':>15}{'inside core':>13}  most alike"]
     for name, a in sorted(result["angles"].items(), key=lambda item: item[1]["smallest_deg"]):
         nearest = f"{a['nearest']} ({a['nearest_deg']:.1f} deg)" if a["nearest"] else "-"
-        lines.append(f"{name:<20}{a['smallest_deg']:>11.1f} deg{100.0 * a['share_inside_core']:>11.0f} %  {nearest}")
+        lines.append(
+            f"{name:<20}{a['smallest_deg']:>11.1f} deg{100.0 * a['share_inside_core']:>11.0f} %  {nearest}"
+        )
     for axis, a in (result["residual"] or {}).items():
         lines.append(
             f"residual, {axis:<10}{a['smallest_deg']:>11.1f} deg{100.0 * a['share_inside_core']:>11.0f} %  "
@@ -221,17 +260,23 @@ def text(result: Mapping[str, Any]) -> list[str]:
 
 
 def verdict(result: Mapping[str, Any]) -> list[str]:
-    """In sentences: what cannot be seen, what cannot be told from the core, and whether the paper's F_D and F_theta meet."""
+    """In sentences: what cannot be seen, what cannot be told from the core, and whether the paper's F_D and
+    F_theta meet.
+    """
     measured = result["observability"]["as measured"]
     lines = []
     if measured["rank"] < measured["of"]:
         names = ", ".join(measured["weakest"])
-        lines.append(f"Not everything can be seen: {names} move together. Turn, or change speed, to tell them apart.")
+        lines.append(
+            f"Not everything can be seen: {names} move together. Turn, or change speed, to tell them apart."
+        )
     alike = [name for name, a in result["angles"].items() if a["smallest_deg"] < 5.0]
     if alike:
         lines.append(f"Within 5 deg of what the core can say by itself: {', '.join(alike)}.")
     if result["residual"]:
         least = min(a["smallest_deg"] for a in result["residual"].values())
-        apart = "do not meet" if least > 5.0 else "meet: a regularizer does not make them disjoint"
-        lines.append(f"Learned features and the core's columns {apart} along this voyage (smallest angle {least:.2f} deg).")
+        apart = "do not meet" if least > 5.0 else "meet; a regularizer does not make them disjoint"
+        lines.append(
+            f"Here learned features and the core's columns {apart} (smallest angle {least:.2f} deg)."
+        )
     return lines or ["Every unknown of the Gramian can be seen, and no effect is hidden in the core."]
