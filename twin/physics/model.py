@@ -70,8 +70,9 @@ class Model:
         s.u_r, s.v_r = u, v = s.u - w.u, s.v - w.v
         c, r, ship = self.c, s.r, self.loaded
         thrust = core.thrust(u, s.n, c)
+        X, Y, N = core.damping(u, v, r, c)
         return [
-            core.damping(u * (1.0 + w.k_u), v * (1.0 + w.k_v), r * (1.0 + w.k_r), c),
+            (X * (1.0 + w.k_u), Y * (1.0 + w.k_v), N * (1.0 + w.k_r)),
             core.coriolis(u, v, r, c),
             core.propeller(thrust, c),
             core.rudder(u, v, r, s.delta, thrust, c),

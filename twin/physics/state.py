@@ -24,8 +24,8 @@ class Force(NamedTuple):
 class Water(NamedTuple):
     """The water an effect makes the ship feel.
 
-    (u, v): its velocity in body axes [m/s]. (k_u, k_v, k_r): how much faster than nu_r the hull feels it flow past, as
-    fractions (a bottom or a bank squeezes the stream; propeller and rudder, in the wake, do not feel that part).
+    (u, v): its velocity in body axes [m/s]. (k_u, k_v, k_r): by how much it holds the hull harder in surge, sway and yaw, as
+    shares of the hull's damping (a bottom squeezes the stream past her; propeller and rudder, in the wake, do not feel it).
     """
 
     u: Number = 0.0

@@ -16,14 +16,23 @@ from twin.physics.ship import Ship
 from .columns import Unknown, effect_unknowns
 from .fit import Fit, fit
 from .innovations import Floor, innovate, linearise
+from .jsonable import short
 from .nuisance import TEMPER, from_ship, nuisance_unknowns
 from .openloop import Windows, predict
 from .sailed import fed, floor_of
 from .track import Track
 
-OF_THE_DAY = ("Current", "VaryingCurrent", "ExternalForce", "TowForce")  # their numbers belong to a voyage, not to the ship
+OF_THE_DAY = (
+    "Current",
+    "VaryingCurrent",
+    "ExternalForce",
+    "TowForce",
+)  # their numbers belong to a voyage, not to the ship
 UNTOUCHED = 0.1  # a number whose doubt shrank by less was not excited
-FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {"wind_to": "true_wind_direction_deg", "wave_to": "wave_direction_deg"}
+FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {
+    "wind_to": "true_wind_direction_deg",
+    "wave_to": "wave_direction_deg",
+}
 
 
 @dataclass(frozen=True)
@@ -40,7 +49,13 @@ class Found:
     gained: float
 
     def entry(self) -> dict[str, Any]:
-        return {"value": self.value, "unit": self.unit, "sd": self.sd, "low95": self.low95, "high95": self.high95}
+        return {
+            "value": self.value,
+            "unit": self.unit,
+            "sd": self.sd,
+            "low95": self.low95,
+            "high95": self.high95,
+        }
 
 
 def can_be_judged(effects: Sequence[type[Effect]], tracks: Sequence[Track]) -> None:
@@ -72,10 +87,18 @@ def fitted(ship: Ship, effects: Sequence[type[Effect]], tracks: Sequence[Track])
     found = fit(tracks, usable, unknowns, known, floor, temper=_temper(ship))
     sd = _doubt(found, tracks, floor, known, _temper(ship))
     names = {e.__name__ for e in effects}
-    made = [e for e in found.model.effects if type(e).__name__ in names]
-    for effect in made:
-        effect.check(ship)
-    return base.but(*made), [_found(u, v, s) for u, v, s in zip(unknowns, found.value, sd, strict=True)]
+    made = [_written(e, ship) for e in found.model.effects if type(e).__name__ in names]
+    value = [float(getattr(e, u.name)) for u in unknowns for e in made if type(e).__name__ == u.owner]
+    return base.but(*made), [_found(u, v, s) for u, v, s in zip(unknowns, value, sd, strict=True)]
+
+
+def _written(effect: Effect, ship: Ship) -> Effect:
+    """The effect with as many digits as a file should hold, still inside its boxes."""
+    values = {}
+    for p in effect.params():
+        low, high = p.box(ship)
+        values[p.name] = min(max(short(float(getattr(effect, p.name))), low), high)
+    return effect.but(**values)
 
 
 def _temper(ship: Ship) -> float:
@@ -83,7 +106,9 @@ def _temper(ship: Ship) -> float:
     return float(ship.notes.get("structural", {}).get("temper", TEMPER))
 
 
-def _doubt(found: Fit, tracks: Sequence[Track], floor: Floor, known: dict[str, type[Effect]], temper: float) -> np.ndarray:
+def _doubt(
+    found: Fit, tracks: Sequence[Track], floor: Floor, known: dict[str, type[Effect]], temper: float
+) -> np.ndarray:
     """(P,) standard errors, the doubt about core and instruments included: it is wider than that of a fit with the core fixed."""
     own = {u.owner for u in found.unknowns}
     beside = tuple(u for u in nuisance_unknowns(found.model, known) if u.owner not in own)
@@ -99,13 +124,24 @@ def _doubt(found: Fit, tracks: Sequence[Track], floor: Floor, known: dict[str, t
 
 def _found(u: Unknown, value: float, sd: float) -> Found:
     low, high = max(u.lo, value - 1.96 * sd), min(u.hi, value + 1.96 * sd)
-    return Found(u.owner, u.name, u.unit, float(value), float(sd), float(low), float(high), 1.0 - min(sd / u.sd, 1.0) ** 2)
+    return Found(
+        u.owner,
+        u.name,
+        u.unit,
+        float(value),
+        float(sd),
+        float(low),
+        float(high),
+        1.0 - min(sd / u.sd, 1.0) ** 2,
+    )
 
 
 def thirds(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:
     """The first two thirds of every voyage, and the last."""
     cut = [round(2 * len(t) / 3) for t in tracks]
-    return [t.part(0, k) for t, k in zip(tracks, cut, strict=True)], [t.part(k, len(t)) for t, k in zip(tracks, cut, strict=True)]
+    return [t.part(0, k) for t, k in zip(tracks, cut, strict=True)], [
+        t.part(k, len(t)) for t, k in zip(tracks, cut, strict=True)
+    ]
 
 
 def ahead(tracks: Sequence[Track], model: Model, horizons_s: Sequence[float]) -> list[Windows]:

@@ -10,9 +10,9 @@ from twin.physics.effects import catalogue as known_effects
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
-from .columns import Unknown, effect_unknowns
+from .columns import Unknown, effect_unknowns, lateness_unknowns
 from .innovations import Floor, Linear, innovate, linearise
-from .nuisance import TEMPER, from_references, from_ship, instruments, nuisance_unknowns, temper_of
+from .nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, temper_of
 from .search import ODDS, ODDS_MEASURED, Case, settle
 from .structure import structural_floor
 from .track import Track, track
@@ -40,8 +40,8 @@ def assemble(
     effects = tuple(u for name in candidates for u in effect_unknowns(catalogue[name], model))
     nuisance = nuisance_unknowns(model, catalogue)
     core = [u for u in nuisance if u.owner == "core"]
-    extra = [u for u in instruments(model, catalogue) if u.owner not in candidates]
-    unknowns = (*core, *effects, *extra)
+    extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
+    unknowns = (*core, *effects, *extra, *lateness_unknowns())
     floor, temper = stored_floor(ship) or Floor(), float(ship.notes.get("structural", {}).get("temper", TEMPER))
     if references:
         progress("reading the reference voyages")

@@ -9,16 +9,17 @@ from typing import Any
 
 import numpy as np
 
+from twin.physics.effect import Effect
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 
-from .columns import Unknown
+from .columns import Unknown, core_unknowns
 from .compare import plain
 from .fit import Fit, fit
 from .import_voyage import write_json
-from .innovations import Floor
-from .nuisance import nuisance_unknowns, temper_of
+from .innovations import Floor, linearise
+from .nuisance import TEMPER, from_references, instruments, nuisance_unknowns, temper_of
 from .openloop import HORIZONS_S, predict
 from .sailed import Sailed, fed, read_all
 from .structure import structural_floor
@@ -49,16 +50,19 @@ def calibrate(
 ) -> Calibrated:
     """Fit the core to the tracks; `held_out`: tracks with the first grid step that was not used for the fit."""
     model, known = Model.of(ship), catalogue()
-    unknowns = tuple(_prior(u, ship) for u in nuisance_unknowns(model, known))
+    unknowns = tuple(_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
     tracks = [s.track for s in fitted]
     progress("fitting the core")
-    found = fit(tracks, model, unknowns, known, Floor(), temper=3.0, rounds=4)
+    found = fit(tracks, model, unknowns, known, Floor(), temper=TEMPER, rounds=4)
     progress("finding the structural floor")
     floor = structural_floor(found.lines, unknowns)
     temper = temper_of(found.normal, unknowns)
     progress("fitting again above the floor")
     found = fit(tracks, found.model, unknowns, known, floor, temper=temper, rounds=4)
     after = _calibrated(ship, found, floor, temper, [s.provenance() for s in fitted])
+    progress("learning what is usual on this ship")
+    usual = _usual(after, tracks, known, floor, temper)
+    after.notes["structural"].update(usual)  # type: ignore[attr-defined]
     before, behind = (_errors(m, held_out) for m in (model, Model.of(after)))
     regimes = _by_regime(Model.of(after), held_out)
     after.notes["structural"]["held_out"] = behind  # type: ignore[index]
@@ -73,7 +77,7 @@ def calibrate(
             for u, s, g in zip(unknowns, found.sd, found.gained, strict=True) if u.owner == "core"
         ],
         "unexcited": unexcited,
-        "instruments": _instruments(unknowns, found),
+        "usual": _told_usual(after, usual),
         "floor": asdict(floor), "temper": temper, "by_regime": regimes,
         "held_out": [b | {"before_m": a["position_m"], "before_deg": a["heading_deg"]} for a, b in zip(before, behind, strict=True)],
     }  # fmt: skip
@@ -104,19 +108,33 @@ def _calibrated(ship: Ship, found: Fit, floor: Floor, temper: float, voyages: li
     }  # fmt: skip
     notes["structural"] = {
         "floor": plain(asdict(floor)), "temper": temper, "date": today, "voyages": voyages,
-        "labels": [u.label for u in found.unknowns],
-        "values": [values.get(u.name, float(v)) if u.owner == "core" else float(v) for u, v in zip(found.unknowns, found.value, strict=True)],
-        "covariance": [[float(c) for c in row] for row in found.covariance],
     }  # fmt: skip
     return replace(after, notes=notes)
 
 
-def _instruments(unknowns: Sequence[Unknown], found: Fit) -> list[dict[str, Any]]:
-    """Usual errors of instruments that are clearly not zero."""
+def _usual(ship: Ship, tracks: Sequence[Track], known: dict[str, type[Effect]], floor: Floor, temper: float) -> dict[str, Any]:
+    """What is known after calibration of the core, of every lasting effect and of the instruments: offsets from the ship file and
+    their covariance, in the unknowns' own units. A diagnosis starts from here."""
+    model = Model.of(ship)
+    unknowns = nuisance_unknowns(model, known)
+    lines = [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
+    nuisance = from_references(lines, unknowns, floor, temper, np.array([_prior(u, ship).centre for u in unknowns]))
+    sd = np.array([u.sd for u in unknowns])
+    covariance = np.linalg.inv(nuisance.information)
+    return {
+        "labels": [u.label for u in unknowns],
+        "offset": [float(v) for v in sd * (covariance @ nuisance.pull)],
+        "covariance": [[float(c) for c in row] for row in covariance * np.outer(sd, sd)],
+    }
+
+
+def _told_usual(ship: Ship, usual: dict[str, Any]) -> list[dict[str, Any]]:
+    """What this ship clearly shows of lasting effects: not wrong, but part of her."""
+    sd = np.sqrt(np.diag(np.array(usual["covariance"])))
     return [
-        {"name": u.label, "value": float(v), "sd": float(s), "unit": u.unit}
-        for u, v, s in zip(unknowns, found.value, found.sd, strict=True)
-        if u.owner != "core" and abs(v) > 4.0 * s
+        {"name": label, "value": float(v), "sd": float(s)}
+        for label, v, s in zip(usual["labels"], usual["offset"], sd, strict=True)
+        if not label.startswith("core.") and abs(v) > 4.0 * s
     ]
 
 
@@ -207,7 +225,7 @@ def told(result: dict[str, Any]) -> list[str]:
     lines += [f"  after {r['horizon_s']:.0f} s while {r['regime']}: {r['position_m']:.3g} m ({r['windows']} windows)" for r in result["by_regime"]]
     share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
-    lines += [f"{i['name']}: {i['value']:.3g} {i['unit']} +- {i['sd']:.1g}, taken into account" for i in result["instruments"]]
+    lines += [f"usual on this ship: {i['name']} {i['value']:.3g} +- {i['sd']:.1g} (kept in mind by diagnose)" for i in result["usual"]]
     lines += ["", f"{'derivative':<10}{'before':>11}{'now':>11}{'+-':>9}"]
     lines += [f"{d['name']:<10}{d['before']:>11.4g}{d['value']:>11.4g}{d['sd']:>9.2g}" for d in result["derivatives"] if d["excited"]]
     if result["unexcited"]:

@@ -37,6 +37,15 @@ class Unknown:
 FIXED = ("t", "w", "C_L", "x_R", "epsilon")  # scale other derivatives one for one: the data cannot tell them apart
 
 
+LATE = "late"  # owner of the instruments' usual lateness: a column, but no part of any model
+LATENESS = {"log": [6, 7], "compass": [2], "gyro": [5]}  # instrument -> its readings
+
+
+def lateness_unknowns() -> list[Unknown]:
+    """How late each instrument usually is [s]; satellite positions have SensorDelay."""
+    return [Unknown(LATE, name, "s", 0.0, 0.15, -1.0, 3.0) for name in LATENESS]
+
+
 def core_unknowns(model: Model) -> list[Unknown]:
     """The core's derivatives, with the ship file's own standard errors where it has them."""
     own = model.ship.notes.get("derivatives", {})
@@ -70,6 +79,10 @@ def columns(
     R = np.zeros((len(track), 8, len(unknowns)))
     missing = track.missing()
     for j, unknown in enumerate(unknowns):
+        if unknown.owner == LATE:
+            late = LATENESS[unknown.name]
+            R[:, late, j] = -np.gradient(reading[:, late], track.h, axis=0)
+            continue
         if unknown.owner != "core" and missing.intersection(catalogue[unknown.owner].needs):
             continue  # without its input the effect does nothing on this track
         here = (at or {}).get(unknown.label)
@@ -88,6 +101,8 @@ def _step(unknown: Unknown, here: float | None) -> float:
 
 def changed(model: Model, unknown: Unknown, value: float, catalogue: dict[str, type[Effect]]) -> Model:
     """The model with one number changed; an effect that is not in it yet is put in at null first."""
+    if unknown.owner == LATE:
+        return model
     if unknown.owner == "core":
         return Model(model.ship.with_derivatives(**{unknown.name: value}), model.effects)
     present = next((e for e in model.effects if type(e).__name__ == unknown.owner), None)

@@ -1,13 +1,10 @@
 """`twin compare`: model against measurement, open loop from the measured state: how wrong, and where."""
 
 import argparse
-import math
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
-
-import numpy as np
 
 from twin.errors import DataError, ThresholdError
 from twin.physics.model import Model
@@ -15,9 +12,11 @@ from twin.physics.ship import Ship, load
 
 from . import locate, score
 from .import_voyage import write_json
+from .jsonable import plain
 from .openloop import HORIZONS_S, Windows, predict
 from .sailed import Sailed, fed, floor_of, read_all, switched_off
 from .tell import told
+from .thresholds import passed, positive, threshold
 from .unexplained import Energy, energy
 
 SCHEMA_VERSION = 1
@@ -45,12 +44,15 @@ def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] 
     """Predict every voyage open loop and judge the errors together."""
     ship, floor = model.ship, floor_of(model.ship)
     models = [fed(model, s.track)[0] for s in sailed]
-    windows = [predict(s.track, m, horizons_s, floor=floor, seed=i) for i, (s, m) in enumerate(zip(sailed, models, strict=True))]
+    windows = [
+        predict(s.track, m, horizons_s, floor=floor, seed=i)
+        for i, (s, m) in enumerate(zip(sailed, models, strict=True))
+    ]
     rows = score.horizons(windows, horizons_s, floor is not None)
     if not rows:
         raise DataError(
-            f"{', '.join(s.track.name for s in sailed)}: no stretch of {min(horizons_s):g} s with controls and position throughout. "
-            "Give a longer voyage, or shorter horizons with --horizon."
+            f"{', '.join(s.track.name for s in sailed)}: no stretch of {min(horizons_s):g} s with controls and position "
+            "throughout. Give a longer voyage, or shorter horizons with --horizon."
         )
     longest = rows[-1]["horizon_s"]
     judged = energy([s.track for s in sailed], models)
@@ -66,7 +68,9 @@ def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] 
     return Compared(plain(result), tuple(sailed), tuple(models), tuple(windows))
 
 
-def _result(ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[str, Any]], judged: Energy) -> dict[str, Any]:
+def _result(
+    ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[str, Any]], judged: Energy
+) -> dict[str, Any]:
     from twin.live.residual import ship_hash
 
     from .checks import run_checks
@@ -76,7 +80,11 @@ def _result(ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[
     return {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
-        "model": {"effects": [type(e).__name__ for e in model.effects], "hash": ship_hash(ship), "residual": model.residual is not None},
+        "model": {
+            "effects": [type(e).__name__ for e in model.effects],
+            "hash": ship_hash(ship),
+            "residual": model.residual is not None,
+        },
         "voyages": [s.provenance() | {"duration_s": s.voyage.duration_s} for s in sailed],
         "horizons": rows,
         "unexplained_force": judged.unexplained(),
@@ -93,78 +101,50 @@ def _locating(rows: list[dict[str, Any]]) -> float:
 def verdict(result: dict[str, Any]) -> str:
     """The sentence that an engineer reads first."""
     row = result["horizons"][-1]
-    error, floor = row["position_mae_m"], row["noise_floor"]["position_mae_m"]
-    times = max(score.in_noise(row, n) for n in ("position_mae_m", "heading_mae_deg"))
+    floor, keys = row["noise_floor"], ("position_mae_m", "heading_mae_deg")
+    times = [score.in_noise(row, k) for k in keys]
     best = "a model as good as its calibration" if row["noise_floor"]["of"] != "sensors" else "a perfect model"
-    head = f"After {row['horizon_s']:g} s the model is {error:.3g} m and {row['heading_mae_deg']:.2g} deg off"
-    if times < 1.5:
-        return f"{head}: no worse than {best} would look through these instruments ({floor:.3g} m)."
-    tail = f"; {best} would look {floor:.3g} m off, so the error is {times:.2g} times the noise"
+    head = f"After {row['horizon_s']:g} s the model is {row[keys[0]]:.3g} m and {row[keys[1]]:.2g} deg off"
+    would = f"{best} would look through these instruments ({floor[keys[0]]:.2g} m, {floor[keys[1]]:.2g} deg)"
+    if max(times) < 1.5:
+        return f"{head}: no worse than {would}."
+    tail = f", {times[0]:.2g} and {times[1]:.2g} times what {would}"
     where = result["where"][:1]
-    return head + tail + "".join(f", and {w['error_ratio']:.2g} times larger with {w['condition']} than elsewhere" for w in where) + "."
-
-
-def plain(value: Any) -> Any:
-    """The same in types that JSON knows; what is not finite becomes null."""
-    if isinstance(value, dict):
-        return {k: plain(v) for k, v in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(v) for v in value]
-    if isinstance(value, (float, np.floating)):
-        return float(value) if math.isfinite(value) else None
-    return value.item() if isinstance(value, np.generic) else value
-
-
-def threshold(text: str) -> tuple[str, float]:
-    """METRIC=VALUE."""
-    name, _, value = text.partition("=")
-    try:
-        return name, float(value)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"{text!r}: METRIC=VALUE is needed, such as position_mae_m=50") from None
-
-
-def metric(result: dict[str, Any], name: str) -> float | None:
-    """The number that --fail-above speaks of; None when there is no such metric."""
-    name, _, at = name.partition("@")
-    row = next((r for r in result["horizons"] if at and f"{r['horizon_s']:g}" == at), None if at else result["horizons"][-1])
-    if row is not None and name == "noise_units":
-        return score.in_noise(row)
-    value: Any = row if row is not None and name in score.NAMES.values() else result
-    for part in name.split("."):
-        value = value.get(part) if isinstance(value, dict) else None
-    return float(value) if isinstance(value, (int, float)) else None
-
-
-def passed(result: dict[str, Any], limits: Sequence[tuple[str, float]]) -> list[str]:
-    """Sentences about the thresholds that are not met."""
-    out = []
-    for name, limit in limits:
-        value = metric(result, name)
-        if value is None:
-            out.append(f"{name} is not in the result (see twin compare --help)")
-        elif value > limit:
-            out.append(f"{name} = {value:.4g} is above {limit:g}")
-    return out
-
-
-def positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0.0 < value < 86400.0:
-        raise argparse.ArgumentTypeError(f"{text!r}: seconds between 0 and 86400 are needed")
-    return value
+    return (
+        head
+        + tail
+        + "".join(f"; it is {w['error_ratio']:.2g} times larger with {w['condition']} than elsewhere" for w in where)
+        + "."
+    )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EPILOG
-    parser.add_argument("voyages", metavar="VOYAGE", nargs="+", help="voyages: MCAP logs or CSV files with the contract's columns")
-    parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name")
-    parser.add_argument("--horizon", metavar="S", type=positive, action="append", help="seconds ahead (repeat; default 10, 60, 120)")
+    parser.add_argument(
+        "voyages",
+        metavar="VOYAGE",
+        nargs="+",
+        help="voyages: MCAP logs or CSV files with the contract's columns",
+    )
+    parser.add_argument(
+        "--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name"
+    )
+    parser.add_argument(
+        "--horizon",
+        metavar="S",
+        type=positive,
+        action="append",
+        help="seconds ahead (repeat; default 10, 60, 120)",
+    )
     parser.add_argument("--residual", metavar="FILE.onnx", help="what was learned, added as the loop adds it")
-    parser.add_argument("--fail-above", metavar="METRIC=VALUE", type=threshold, action="append", default=[], help="exit 3 above VALUE")
+    parser.add_argument(
+        "--fail-above",
+        metavar="METRIC=VALUE",
+        type=threshold,
+        action="append",
+        default=[],
+        help="exit 3 above VALUE",
+    )
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
     parser.add_argument("--report", metavar="FILE.html", help="one self-contained page with the plots")
 
@@ -177,7 +157,10 @@ def run(args: argparse.Namespace) -> int:
     sailed = read_all(args.voyages, ship)
     print("predicting ...", file=sys.stderr)
     found = compare(sailed, model, sorted(set(args.horizon or HORIZONS_S)))
-    result = found.result | {"command": f"twin compare {' '.join(args.voyages)} --ship {args.ship}"}
+    result = found.result | {
+        "command": f"twin compare {' '.join(args.voyages)} --ship {args.ship}",
+        "files": {"ship": args.ship, "voyages": args.voyages},
+    }
     if args.json:
         write_json(result, args.json)
     page = sys.stderr if args.json == "-" else sys.stdout
@@ -200,11 +183,19 @@ def _learned(path: str, ship: Ship) -> Callable:
 def _report(path: str, found: Compared, model: Model, result: dict[str, Any]) -> None:
     from . import report
 
-    report.write(path, "compare", result, [s.track for s in found.sailed], model, voyages=[s.voyage for s in found.sailed])
+    report.write(
+        path,
+        "compare",
+        result,
+        [s.track for s in found.sailed],
+        model,
+        voyages=[s.voyage for s in found.sailed],
+    )
 
 
 def _next(args: argparse.Namespace, result: dict[str, Any]) -> str:
     rest = f"{' '.join(args.voyages)} --ship {args.ship}"
     if result["horizons"][-1]["noise_floor"]["of"] == "sensors":
-        return f"twin calibrate REFERENCE.mcap --ship {args.ship} -o calibrated.toml, or twin diagnose {rest} --report diagnose.html"
+        first = f"twin calibrate REFERENCE.mcap --ship {args.ship} -o calibrated.toml, or "
+        return f"{first}twin diagnose {rest} --report diagnose.html"
     return f"twin diagnose {rest} --report diagnose.html"

@@ -11,6 +11,7 @@ Source: MacKay (2003) Information theory, inference, and learning algorithms, ch
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
@@ -58,7 +59,7 @@ class Reduced:
     def rows(self, effects: Sequence[str]) -> np.ndarray:
         return np.array([i for i, u in enumerate(self.unknowns) if u.owner in effects], dtype=int)
 
-    @property
+    @cached_property
     def box(self) -> np.ndarray:
         """(2, Q) the boxes, in prior widths from "not there"."""
         return np.array([[(u.lo - u.centre) / u.sd, (u.hi - u.centre) / u.sd] for u in self.unknowns]).T.reshape(2, -1)

@@ -12,7 +12,7 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 
-from .columns import Unknown, with_values
+from .columns import LATE, Unknown, with_values
 from .innovations import Floor, Linear, Normal, innovate, linearise
 from .track import Track
 
@@ -50,7 +50,8 @@ def fit(
     for last in range(rounds):
         model = with_values(model, unknowns, value, catalogue)
         here = {u.label: float(v) for u, v in zip(unknowns, value, strict=True)}
-        lines = [linearise(t, model, [replace(u, centre=here[u.label]) for u in unknowns], catalogue) for t in tracks]
+        late = {label: v for label, v in here.items() if label.startswith(LATE)}
+        lines = [linearise(t, model, [replace(u, centre=here[u.label]) for u in unknowns], catalogue, late) for t in tracks]
         normal = innovate(lines, [floor])[0]
         A, b, _ = normal.total()
         A, b = A / temper * np.outer(sd, sd), b / temper * sd

@@ -18,7 +18,7 @@ from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
 
-from .columns import Unknown, columns
+from .columns import LATE, Unknown, columns
 from .respond import advance, jacobian, lagged, respond
 from .track import Track
 
@@ -95,6 +95,9 @@ def linearise(
     H[:, 6, 3] = H[:, 7, 4] = 1.0
     H[:, 6, 9], H[:, 6, 10], H[:, 7, 9], H[:, 7, 10] = -c, -s, s, -c
     e = track.measured - reading
+    for j, unknown in enumerate(unknowns):
+        if unknown.owner == LATE:  # no model holds it: what is known of it is taken off the readings
+            e -= R[:, :, j] * (at or {}).get(unknown.label, 0.0)
     e[:, 2] = (e[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
     return Linear(track, F, defect, H, e, A.astype(np.float32), R.astype(np.float32), busy(track, model), model)
 
@@ -160,9 +163,12 @@ def segments(lines: Sequence[Linear]) -> list[tuple[int, int, int]]:
     return out
 
 
-def innovate(lines: Sequence[Linear], floors: Sequence[Floor]) -> list[Normal]:
-    """Filter every segment of every track, under every floor, side by side; the normal equations for each floor."""
+def innovate(lines: Sequence[Linear], floors: Sequence[Floor], most: int | None = None) -> list[Normal]:
+    """Filter every segment of every track (or an even choice of `most`), under every floor, side by side; the normal equations
+    for each floor."""
     where = segments(lines)
+    if most is not None and len(where) > most:
+        where = [where[i] for i in np.linspace(0, len(where) - 1, most).astype(int)]
     T, S, W = max(b - a for _, a, b in where), len(where), len(floors)
     P = lines[0].A.shape[2]
 
@@ -203,7 +209,7 @@ def innovate(lines: Sequence[Linear], floors: Sequence[Floor]) -> list[Normal]:
         Sk = HC @ Hk.transpose(0, 2, 1)
         Sk[:, eye[:8], eye[:8]] += np.where(ok, noise, 1.0)
         L = np.linalg.cholesky(Sk)
-        white = np.linalg.solve(L, np.concatenate([E, HC], axis=2))
+        white = np.linalg.inv(L) @ np.concatenate([E, HC], axis=2)
         V = white[:, :, 1 + P :]
         sums.add(white[:, :, : 1 + P], L, ok)
         VT = V.transpose(0, 2, 1)

@@ -8,47 +8,60 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 
-from .columns import Unknown, core_unknowns, effect_unknowns
+from .columns import Unknown, core_unknowns, effect_unknowns, lateness_unknowns
 from .evidence import Nuisance
 from .innovations import Floor, Linear, Normal, innovate
 
-USUAL = 0.3  # an instrument's usual error, in widths of the fault's prior
+USUAL = 0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
 TEMPER = 3.0  # when no reference voyage tells how far innovations are from white
+SURROUNDINGS = ("Wind", "WaveDrift", "Current", "VaryingCurrent", "ShallowWater", "Bank", "TowForce", "ExternalForce")
+
+
+def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
+    """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of each."""
+    present = {type(e).__name__ for e in model.effects}
+    return [u for name, e in catalogue.items() if name not in (*SURROUNDINGS, *present) for u in effect_unknowns(e, model)]
 
 
 def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
-    """The faults of instruments, each as wide as a fault."""
-    return [u for e in catalogue.values() if e.kind == "SensorFault" for u in effect_unknowns(e, model)]
+    """Core derivatives aside, what a calibration fits: the instruments' usual errors, and how late they are."""
+    faults = [replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue) if catalogue[u.owner].kind == "SensorFault"]
+    return [*faults, *lateness_unknowns()]
 
 
 def nuisance_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
-    """Core derivatives, and the instruments' usual errors."""
-    return (*core_unknowns(model), *(replace(u, sd=USUAL * u.sd) for u in instruments(model, catalogue)))
+    """Core derivatives, what a healthy ship usually shows of every lasting effect, and how late her instruments are."""
+    usual = (replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue))
+    return (*core_unknowns(model), *usual, *lateness_unknowns())
 
 
-def from_references(lines: Sequence[Linear], unknowns: tuple[Unknown, ...], floor: Floor, temper: float) -> Nuisance:
-    """Prior and reference voyages together (`lines` linearised with exactly these unknowns, in this order)."""
+def from_references(
+    lines: Sequence[Linear], unknowns: tuple[Unknown, ...], floor: Floor, temper: float, prior: np.ndarray | None = None
+) -> Nuisance:
+    """Prior and reference voyages together (`lines` linearised with exactly these unknowns, in this order).
+
+    `prior` (C,): prior means where they are not the unknowns' centres.
+    """
     A, b, _ = innovate(lines, [floor])[0].total()
     sd = np.array([u.sd for u in unknowns])
-    return Nuisance(unknowns, A * np.outer(sd, sd) / temper + np.eye(sd.size), b * sd / temper)
+    pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
+    return Nuisance(unknowns, A * np.outer(sd, sd) / temper + np.eye(sd.size), b * sd / temper + pull)
 
 
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     """What the ship file's calibration left open; where it says nothing, the priors."""
     stored = model.ship.notes.get("structural", {})
-    labels, size = stored.get("labels", []), len(unknowns)
-    information, place = np.eye(size), {label: i for i, label in enumerate(labels)}
+    place = {label: i for i, label in enumerate(stored.get("labels", []))}
+    size = len(unknowns)
+    information, mean = np.eye(size), np.zeros(size)
     mine = [i for i, u in enumerate(unknowns) if u.label in place]
     if mine:
         theirs = [place[unknowns[i].label] for i in mine]
         sd = np.array([unknowns[i].sd for i in mine])
         covariance = np.array(stored["covariance"])[np.ix_(theirs, theirs)] / np.outer(sd, sd)
-        information[np.ix_(mine, mine)] = np.linalg.inv(covariance + 1e-6 * np.eye(len(mine)))
-    pull = np.zeros(size)
-    for i, u in enumerate(unknowns):
-        if u.owner != "core" and u.label in place:
-            pull[i] = stored["values"][place[u.label]] / u.sd
-    return Nuisance(unknowns, information, information @ pull)
+        information[np.ix_(mine, mine)] = np.linalg.inv(covariance + 1e-9 * np.eye(len(mine)))
+        mean[mine] = np.array(stored["offset"])[theirs] / sd
+    return Nuisance(unknowns, information, information @ mean)
 
 
 def temper_of(normal: Normal, unknowns: Sequence[Unknown]) -> float:

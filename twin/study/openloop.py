@@ -19,7 +19,7 @@ from twin.physics.state import Force, Situation
 
 from .innovations import MEMORY_B, Floor, busy, standard
 from .respond import lagged, readings
-from .start import noisy, true_motion
+from .start import noisy, seen, true_motion
 from .track import READINGS, STATE, Track
 
 HORIZONS_S = (10.0, 60.0, 120.0)
@@ -37,8 +37,11 @@ class Windows:
     track: Track
     start: np.ndarray  # (W,) grid step at which each begins
     lead: np.ndarray  # (K,) grid steps ahead
-    promised: np.ndarray  # (3, K, W, 8) readings; of the floors only the difference to the model's has a meaning
+    promised: (
+        np.ndarray
+    )  # (3, K, W, 8) readings; of the floors only the difference to the model's has a meaning
     valid: np.ndarray  # (K, W) controls known all the way, and the position measured at both ends
+    seen: np.ndarray  # (N, 8) what was measured, with short holes bridged (see start.py)
 
     @property
     def step(self) -> np.ndarray:
@@ -51,10 +54,8 @@ class Windows:
 
     def off(self, run: int = MODEL) -> np.ndarray:
         """(K, W, 8) promise minus measurement of the model; of a floor, what noise alone makes of it. NaN where not valid."""
-        if run == MODEL:
-            off = self.promised[MODEL] - self.track.measured[self.step]
-        else:
-            off = self.promised[run] - self.promised[MODEL]
+        against = self.seen[self.step] if run == MODEL else self.promised[MODEL]
+        off = self.promised[run] - against
         off[..., 2] = (off[..., 2] + np.pi) % (2.0 * np.pi) - np.pi
         return np.where(self.valid[..., None], off, np.nan)
 
@@ -77,22 +78,25 @@ def predict(
     Effects whose inputs the track lacks must have been left out (Model.without_inputs).
     """
     lead = _leads(track, horizons_s, leads)
-    start = _starts(track, int(round(min(horizons_s) / track.h)), stride_s)
+    start = _starts(track, round(min(horizons_s) / track.h), stride_s)
     rng = np.random.default_rng(seed)
     state, wind_to = true_motion(track, model)
     fuzz = noisy(track, model, rng)[start]
     begin = np.concatenate([state[start], state[start] + fuzz, state[start] + fuzz]).T
     run = _Run(track, model, start, wind_to, _slow(track, model, floor, start, rng))
     with np.errstate(all="ignore"):  # a bad model may run away: it is then as wrong as can be written down
-        kept = np.nan_to_num(run.through(tuple(begin), lead), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)
+        kept = np.nan_to_num(
+            run.through(tuple(begin), lead), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY
+        ).clip(-RUNAWAY, RUNAWAY)
     promised = kept.reshape(len(lead), 3, start.size, len(READINGS)).transpose(1, 0, 2, 3)
     promised[1:] += track.sd * rng.standard_normal(promised[1].shape)
-    return Windows(track, start, lead, promised, _valid(track, start, lead))
+    measured = seen(track)
+    return Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
 
 
 def _leads(track: Track, horizons_s: Sequence[float], count: int) -> np.ndarray:
     """Grid steps ahead: every horizon, and an even spread of `count` up to the longest."""
-    steps = [max(1, int(round(h / track.h))) for h in horizons_s]
+    steps = [max(1, round(h / track.h)) for h in horizons_s]
     return np.unique([*steps, *np.linspace(1, max(steps), min(count, max(steps))).round().astype(int)])
 
 
@@ -102,12 +106,12 @@ def _starts(track: Track, shortest: int, stride_s: float) -> np.ndarray:
     return np.arange(0, last, stride)
 
 
-def _valid(track: Track, start: np.ndarray, lead: np.ndarray) -> np.ndarray:
+def _valid(track: Track, measured: np.ndarray, start: np.ndarray, lead: np.ndarray) -> np.ndarray:
     end = start + lead[:, None]
     inside = end < len(track)
     end = np.minimum(end, len(track) - 1)
     broken = np.concatenate([[0], np.cumsum(~track.whole)])
-    placed = np.isfinite(track.measured[:, :3]).all(1)
+    placed = np.isfinite(measured[:, :3]).all(1)
     return inside & (broken[end + 1] == broken[start]) & placed[end] & placed[start]
 
 
@@ -126,11 +130,15 @@ class _Slow:
         self.b = self.keep * self.b + np.sqrt(1.0 - self.keep**2) * self.rng.standard_normal(self.b.shape)
         a, none, c = self.b * self.size[step].T, np.zeros(2 * step.size), model.c
         return Force(
-            np.append(none, c.m_u * a[0]), np.append(none, c.m_v * a[1] + c.m_vr * a[2]), np.append(none, c.m_rv * a[1] + c.m_r * a[2])
+            np.append(none, c.m_u * a[0]),
+            np.append(none, c.m_v * a[1] + c.m_vr * a[2]),
+            np.append(none, c.m_rv * a[1] + c.m_r * a[2]),
         )
 
 
-def _slow(track: Track, model: Model, floor: Floor | None, start: np.ndarray, rng: np.random.Generator) -> _Slow | None:
+def _slow(
+    track: Track, model: Model, floor: Floor | None, start: np.ndarray, rng: np.random.Generator
+) -> _Slow | None:
     """The disturbances that a floor describes (see innovations.py), drawn for every window."""
     if floor is None:
         return None
@@ -144,7 +152,9 @@ def _slow(track: Track, model: Model, floor: Floor | None, start: np.ndarray, rn
 class _Run:
     """All windows of a track, three times, stepped together."""
 
-    def __init__(self, track: Track, model: Model, start: np.ndarray, wind_to: np.ndarray | None, slow: _Slow | None):
+    def __init__(
+        self, track: Track, model: Model, start: np.ndarray, wind_to: np.ndarray | None, slow: _Slow | None
+    ):
         self.track, self.start, self.slow = track, start, slow
         self.known = replace(model, residual=None)
         self.learned = model.residual
@@ -152,7 +162,9 @@ class _Run:
         if wind_to is not None:
             self.inputs["wind_to"] = wind_to
         if slow is not None:
-            self.known = replace(self.known, effects=(*model.effects, Current(north=slow.water[0], east=slow.water[1])))
+            self.known = replace(
+                self.known, effects=(*model.effects, Current.absent(model.ship).but(north=slow.water[0], east=slow.water[1]))
+            )
 
     def through(self, state: tuple, lead: np.ndarray) -> np.ndarray:
         """(K, 3 W, 8) readings at each lead."""

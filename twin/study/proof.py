@@ -21,9 +21,10 @@ UNCHANGED = 1e-6  # [m, rad] predictions of the position nearer than this are th
 
 @dataclass(frozen=True)
 class Fall:
-    """`measure`: what was judged; mean error before and after at the longest horizon; `change` = after - before with its 95 % interval."""
+    """`measure`: what was judged, in `unit`; mean error at the longest horizon; low95, high95: interval of after - before."""
 
     measure: str
+    unit: str
     before: float
     after: float
     low95: float
@@ -36,36 +37,65 @@ class Fall:
 
     def sentence(self) -> str:
         change = f"{self.after - self.before:+.3g} ({self.low95:+.2g} to {self.high95:+.2g})"
-        return f"{self.measure} {self.before:.4g} -> {self.after:.4g}, change {change} on {self.windows} held-out windows"
+        sizes = f"{self.before:.4g} -> {self.after:.4g} {self.unit}"
+        return f"{self.measure} {sizes}, change {change} on {self.windows} held-out windows"
 
 
 def fall(before: Sequence[Windows], after: Sequence[Windows], horizon_s: float) -> Fall:
     """Judge by the position error at the horizon; by the instruments that changed, when position predictions are the same."""
-    measure, pairs = _judged(before, after, horizon_s)
+    measure, unit, pairs = _judged(before, after, horizon_s)
     errors = [(b, a, w) for (b, a), w in zip(pairs, before, strict=True)]
     kept = [np.isfinite(b) & np.isfinite(a) for b, a, _ in errors]
     b = np.concatenate([e[0][k] for e, k in zip(errors, kept, strict=True)])
     a = np.concatenate([e[1][k] for e, k in zip(errors, kept, strict=True)])
-    change = _bootstrap([e[1][k] - e[0][k] for e, k in zip(errors, kept, strict=True)], [_block(w, horizon_s) for w in before])
+    change = _bootstrap(
+        [e[1][k] - e[0][k] for e, k in zip(errors, kept, strict=True)], [_block(w, horizon_s) for w in before]
+    )
     low, high = np.quantile(change, [0.025, 0.975]) if change.size else (-np.inf, np.inf)
-    return Fall(measure, float(b.mean()), float(a.mean()), float(low), float(high), b.size)
+    return Fall(measure, unit, float(b.mean()), float(a.mean()), float(low), float(high), b.size)
 
 
-def _judged(before: Sequence[Windows], after: Sequence[Windows], horizon_s: float) -> tuple[str, list[tuple[np.ndarray, np.ndarray]]]:
-    """The name of the measure, and for each voyage the errors (W,) before and after."""
-    moved = max(float(np.nanmax(np.abs(a.promised[MODEL, ..., :3] - b.promised[MODEL, ..., :3]))) for b, a in zip(before, after, strict=True))
+def _judged(
+    before: Sequence[Windows], after: Sequence[Windows], horizon_s: float
+) -> tuple[str, str, list[tuple[np.ndarray, np.ndarray]]]:
+    """The name and unit of the measure, and for each voyage the errors (W,) before and after."""
+    moved = max(
+        float(np.nanmax(np.abs(a.promised[MODEL, ..., :3] - b.promised[MODEL, ..., :3])))
+        for b, a in zip(before, after, strict=True)
+    )
     rows = [w.at(horizon_s) for w in before]
     if moved > UNCHANGED:
-        name = f"position error at {horizon_s:g} s [m]"
-        return name, [(b.errors()["position"][k], a.errors()["position"][k]) for b, a, k in zip(before, after, rows, strict=True)]
-    touched = [i for i in range(3, len(MEASURED)) if any(not np.allclose(a.promised[MODEL, ..., i], b.promised[MODEL, ..., i]) for b, a in zip(before, after, strict=True))]
+        name = f"position error at {horizon_s:g} s"
+        return (
+            name,
+            "m",
+            [
+                (b.errors()["position"][k], a.errors()["position"][k])
+                for b, a, k in zip(before, after, rows, strict=True)
+            ],
+        )
+    touched = [
+        i
+        for i in range(3, len(MEASURED))
+        if any(
+            not np.allclose(a.promised[MODEL, ..., i], b.promised[MODEL, ..., i])
+            for b, a in zip(before, after, strict=True)
+        )
+    ]
     names = [list(MEASURED.values())[i] for i in touched] or ["no reading"]
     noise = [float(np.nanmean([np.nanmean(np.abs(w.off(SENSORS)[..., i])) for w in before])) for i in touched]
 
     def size(w: Windows, k: int) -> np.ndarray:
-        return sum((np.abs(w.off()[k, :, i]) / n for i, n in zip(touched, noise, strict=True)), np.zeros(w.start.size)) / max(len(touched), 1)
+        return sum(
+            (np.abs(w.off()[k, :, i]) / n for i, n in zip(touched, noise, strict=True)),
+            np.zeros(w.start.size),
+        ) / max(len(touched), 1)
 
-    return f"error of {', '.join(names)} at {horizon_s:g} s [noise]", [(size(b, k), size(a, k)) for b, a, k in zip(before, after, rows, strict=True)]
+    return (
+        f"error of {', '.join(names)} at {horizon_s:g} s",
+        "times its noise",
+        [(size(b, k), size(a, k)) for b, a, k in zip(before, after, rows, strict=True)],
+    )
 
 
 def _block(w: Windows, horizon_s: float) -> int:
@@ -81,7 +111,11 @@ def _bootstrap(changes: Sequence[np.ndarray], blocks: Sequence[int]) -> np.ndarr
     for change, block in zip(changes, blocks, strict=True):
         if not change.size:
             continue
-        sums = np.cumsum(np.concatenate([[0.0], change, change[: block - 1] if change.size >= block else np.resize(change, block - 1)]))
+        sums = np.cumsum(
+            np.concatenate(
+                [[0.0], change, change[: block - 1] if change.size >= block else np.resize(change, block - 1)]
+            )
+        )
         runs = sums[block:] - sums[:-block]
         needed = int(np.ceil(change.size / block))
         total += runs[rng.integers(0, runs.size, (RESAMPLES, needed))].sum(1) / (needed * block) * change.size
@@ -89,24 +123,37 @@ def _bootstrap(changes: Sequence[np.ndarray], blocks: Sequence[int]) -> np.ndarr
     return total / count if count else np.array([])
 
 
-def ladder(before: Sequence[Windows], after: Sequence[Windows], horizons_s: Sequence[float], structural: bool) -> list[dict[str, Any]]:
+def ladder(
+    before: Sequence[Windows], after: Sequence[Windows], horizons_s: Sequence[float], structural: bool
+) -> list[dict[str, Any]]:
     """One row for each horizon: errors before and after, and the floor."""
-    rows = zip(score.horizons(before, horizons_s, structural), score.horizons(after, horizons_s, structural), strict=True)
+    rows = zip(
+        score.horizons(before, horizons_s, structural),
+        score.horizons(after, horizons_s, structural),
+        strict=True,
+    )
     keys = score.NAMES.values()
     return [
         {
-            "horizon_s": b["horizon_s"], "windows": b["windows"], "before": {k: b[k] for k in keys}, "after": {k: a[k] for k in keys},
-            "noise_floor": a["noise_floor"],
+            "horizon_s": b["horizon_s"], "windows": b["windows"],
+            "before": {k: b[k] for k in keys}, "after": {k: a[k] for k in keys}, "noise_floor": a["noise_floor"],
         }
         for b, a in rows
     ]  # fmt: skip
 
 
-def by_regime(before: Sequence[Windows], after: Sequence[Windows], horizon_s: float, ship: Ship, structural: bool) -> list[dict[str, Any]]:
+def by_regime(
+    before: Sequence[Windows], after: Sequence[Windows], horizon_s: float, ship: Ship, structural: bool
+) -> list[dict[str, Any]]:
     """Where the model failed before, and what became of it: mean position error [m] before and after."""
     b, a = score.pooled(before, horizon_s)["position"], score.pooled(after, horizon_s)["position"]
     everywhere = [{"condition": "everywhere", "time_share": 1.0, "mask": np.isfinite(b)}]
     return [
-        {"condition": r["condition"], "time_share": r["time_share"], "before_m": float(np.nanmean(b[r["mask"]])), "after_m": float(np.nanmean(a[r["mask"]]))}
+        {
+            "condition": r["condition"],
+            "time_share": r["time_share"],
+            "before_m": float(np.nanmean(b[r["mask"]])),
+            "after_m": float(np.nanmean(a[r["mask"]])),
+        }
         for r in everywhere + locate.regimes(before, horizon_s, ship, structural)
     ]

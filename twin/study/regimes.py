@@ -35,7 +35,10 @@ def means(windows: Sequence[Windows], horizon_s: float) -> Means:
     parts = [_of_track(w, horizon_s) for w in windows]
     names = sorted(set().union(*parts))
     sizes = [w.start.size for w in windows]
-    values = {n: np.concatenate([p.get(n, np.full(size, np.nan)) for p, size in zip(parts, sizes, strict=True)]) for n in names}
+    values = {
+        n: np.concatenate([p.get(n, np.full(size, np.nan)) for p, size in zip(parts, sizes, strict=True)])
+        for n in names
+    }
     return Means(values, np.repeat(np.arange(len(windows)), sizes), tuple(w.track.name for w in windows))
 
 
@@ -50,17 +53,25 @@ def _of_track(w: Windows, horizon_s: float) -> dict[str, np.ndarray]:
     x, y, psi, u, v, r = t.state.T
     rate = np.abs(np.gradient(t.n, t.h)) * ahead * t.h
     out = {
-        "time": t.t[w.start], "north": mean(x), "east": mean(y), "speed": mean(np.hypot(u, v)), "drift": mean(np.arctan2(v, np.abs(u) + 0.01)) * DEG,
-        "rudder": mean(t.delta) * DEG, "rudder_size": mean(np.abs(t.delta)) * DEG, "turning": mean(r) * DEG, "turning_size": mean(np.abs(r)) * DEG,
+        "time": t.t[w.start], "north": mean(x), "east": mean(y),
+        "speed": mean(np.hypot(u, v)), "drift": mean(np.arctan2(v, np.abs(u) + 0.01)) * DEG,
+        "rudder": mean(t.delta) * DEG, "rudder_size": mean(np.abs(t.delta)) * DEG,
+        "turning": mean(r) * DEG, "turning_size": mean(np.abs(r)) * DEG,
         "heading": np.arctan2(mean(np.sin(psi)), mean(np.cos(psi))) * DEG, "rpm": mean(t.n) * 60.0, "rpm_change": mean(rate) * 60.0,
     }  # fmt: skip
     seas = t.weather
     if "wind_speed" in seas:
-        ahead_, aside = (u - seas["wind_speed"] * np.cos(seas["wind_to"] - psi), v - seas["wind_speed"] * np.sin(seas["wind_to"] - psi))
+        ahead_, aside = (
+            u - seas["wind_speed"] * np.cos(seas["wind_to"] - psi),
+            v - seas["wind_speed"] * np.sin(seas["wind_to"] - psi),
+        )
         out |= {"wind": mean(seas["wind_speed"]), "wind_angle": np.arctan2(mean(aside), mean(ahead_)) * DEG}
     if "H_s" in seas and "wave_to" in seas:
         angle = seas["wave_to"] + np.pi - psi
-        out |= {"waves": mean(seas["H_s"]), "wave_angle": np.arctan2(mean(np.sin(angle)), mean(np.cos(angle))) * DEG}
+        out |= {
+            "waves": mean(seas["H_s"]),
+            "wave_angle": np.arctan2(mean(np.sin(angle)), mean(np.cos(angle))) * DEG,
+        }
     for name in ("depth", "draught"):
         if name in seas:
             out[name] = mean(seas[name])
@@ -73,6 +84,7 @@ def _of_track(w: Windows, horizon_s: float) -> dict[str, np.ndarray]:
 def conditions(m: Means, ship: Ship) -> list[Condition]:
     """Every condition worth asking about."""
     U, L, T, B = (float(x) for x in (ship.U_0, ship.L_pp, ship.T, ship.B))
+    rpm = float(np.nanmax(np.abs(m.values["rpm"])))
     turn = U / L * DEG  # a turn of one length's radius [deg/s]
     return [
         *_thirds(m["speed"], "speed", "m/s", 0.05 * U),
@@ -81,8 +93,8 @@ def conditions(m: Means, ship: Ship) -> list[Condition]:
         *_thirds(m["turning_size"], "turning", "deg/s", 0.05 * turn),
         *_sides(m["turning"], "turning", "deg/s", 0.1 * turn),
         *_sides(m["drift"], "drifting", "deg", 2.0),
-        *_thirds(m["rpm"], "propeller rate", "rpm", 0.05 * np.nanmax(np.abs(m["rpm"]))),
-        *_above(m["rpm_change"], "propeller rate changing", 0.05 * np.nanmax(np.abs(m["rpm"]))),
+        *_thirds(m["rpm"], "propeller rate", "rpm", 0.05 * rpm),
+        *_above(m["rpm_change"], "propeller rate changing", 0.05 * rpm),
         *_below(m["rpm"], "propeller astern", 0.0),
         *_weather(m, "wind", "wind", "m/s", 0.5 + 0.1 * U),
         *_weather(m, "waves", "waves", "m", 0.003 * L),

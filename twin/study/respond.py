@@ -13,8 +13,8 @@ from .track import READINGS, STATE, Track
 def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3) accelerations [m/s2, m/s2, rad/s2] and (N, 8) readings (see READINGS) of a ship that moves along the track."""
     s = track.situation(delta=lagged(track, model))
-    acceleration = np.column_stack([np.broadcast_to(a, track.t.shape) for a in model.nu_dot(s)])
-    return acceleration, readings(s, model)
+    s.u_dot, s.v_dot, r_dot = (np.broadcast_to(a, track.t.shape) for a in model.nu_dot(s))
+    return np.column_stack([s.u_dot, s.v_dot, r_dot]), readings(s, model)
 
 
 def readings(s: Situation, model: Model) -> np.ndarray:

@@ -19,7 +19,9 @@ def pooled(windows: Sequence[Windows], horizon_s: float, run: int = MODEL) -> di
     return {name: np.concatenate([p[name] for p in parts]) * DEGREES.get(name, 1.0) for name in NAMES}
 
 
-def horizons(windows: Sequence[Windows], horizons_s: Sequence[float], structural: bool) -> list[dict[str, Any]]:
+def horizons(
+    windows: Sequence[Windows], horizons_s: Sequence[float], structural: bool
+) -> list[dict[str, Any]]:
     """One row for each horizon that has windows; `noise_floor` is of sensors, and of structure when the ship knows it."""
     rows = []
     for horizon in horizons_s:
@@ -31,7 +33,10 @@ def horizons(windows: Sequence[Windows], horizons_s: Sequence[float], structural
         rows.append(
             {"horizon_s": horizon, "windows": count}
             | {NAMES[name]: float(np.nanmean(e)) for name, e in errors.items()}
-            | {"noise_floor": {NAMES[n]: float(np.nanmean(e)) for n, e in floor.items()} | {"of": _of(structural)}}
+            | {
+                "noise_floor": {NAMES[n]: float(np.nanmean(e)) for n, e in floor.items()}
+                | {"of": _of(structural)}
+            }
         )
     return rows
 
@@ -51,8 +56,13 @@ def channels(windows: Sequence[Windows], structural: bool) -> dict[str, dict[str
         error = np.concatenate([w.off()[..., i].ravel() for w in windows]) * k
         if not np.isfinite(error).any():
             continue
-        noise = np.concatenate([w.off(STRUCTURE if structural else SENSORS)[..., i].ravel() for w in windows]) * k
-        told = np.concatenate([np.where(w.valid, w.track.measured[w.step, i], np.nan).ravel() for w in windows]) * k
+        noise = (
+            np.concatenate([w.off(STRUCTURE if structural else SENSORS)[..., i].ravel() for w in windows]) * k
+        )
+        told = (
+            np.concatenate([np.where(w.valid, w.seen[w.step, i], np.nan).ravel() for w in windows])
+            * k
+        )
         naive = np.concatenate([reckoned(w)[..., i].ravel() for w in windows]) * k
         out[column] = {
             "mae": float(np.nanmean(np.abs(error))),
@@ -76,9 +86,14 @@ def reckoned(w: Windows) -> np.ndarray:
     turned = 0.5 * r * t
     chord = t * np.sinc(turned / np.pi)
     c, s = np.cos(psi + turned) * chord, np.sin(psi + turned) * chord
-    log = w.track.measured[w.start, 6:].T
-    held = [x + u * c - v * s, y + u * s + v * c, psi + r * t, *(np.broadcast_to(a, t.shape[:1] + u.shape) for a in (u, v, r, *log))]
-    off = np.stack(held, -1) - w.track.measured[w.step]
+    log = w.seen[w.start, 6:].T
+    held = [
+        x + u * c - v * s,
+        y + u * s + v * c,
+        psi + r * t,
+        *(np.broadcast_to(a, t.shape[:1] + u.shape) for a in (u, v, r, *log)),
+    ]
+    off = np.stack(held, -1) - w.seen[w.step]
     off[..., READINGS.index("psi")] = (off[..., 2] + np.pi) % (2.0 * np.pi) - np.pi
     return np.where(w.valid[..., None], off, np.nan)
 

@@ -20,7 +20,10 @@ from .respond import respond
 from .track import Track
 
 DOUBT = 0.2
+MOST_SEGMENTS = 20  # of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
 SHORTLIST = 6
+FAR = 12.0  # log odds beyond which a hypothesis is not looked at again
+EARNED = 1.5  # log evidence that an effect must add to be looked at again
 
 
 @dataclass(frozen=True)
@@ -62,7 +65,7 @@ class Case:
     lines: tuple[Linear, ...]
 
     def reduced(self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None) -> list[Reduced]:
-        normals = innovate(lines, floors)
+        normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))
         return [reduce(n, self.nuisance, self.unknowns, self.effects, self.temper, at) for n in normals]
 
     def worlds(self, names: Sequence[str]) -> list[Floor]:
@@ -88,7 +91,7 @@ def settle(case: Case) -> Case:
 
     Judged with every effect allowed, so that no cause is mistaken for noise.
     """
-    grid = [(white, sensor) for sensor in (1.0, 2.0, 4.0) for white in (1.0, 2.0, 4.0, 8.0, 16.0, 64.0)]
+    grid = [(white, sensor) for sensor in (1.0, 3.0) for white in (1.0, 2.0, 4.0, 8.0, 32.0)]
     floors = [replace(case.floor, white=w * case.floor.white, sensor=s * case.floor.sensor) for w, s in grid]
     scores = [posterior(r, case.candidates).log_evidence for r in case.reduced(case.lines, floors)]
     return replace(case, floor=floors[int(np.argmax(scores))])
@@ -124,16 +127,18 @@ def _first_pass(case: Case, worlds: Mapping[str, Reduced]) -> list[Hypothesis]:
 
 
 def _shortlist(first: Sequence[Hypothesis]) -> list[tuple[str, ...]]:
-    """The best few sets, and each member of a pair among them on its own: granted doubt, one may do what took two."""
-    out: dict[tuple[str, ...], None] = {}
+    """The best few sets that explain something their parts do not, and each member of a pair among them on its own: granted
+    doubt, one may do what took two."""
+    evidence = {(h.effects, h.world): h.log_evidence for h in first}
+    top, out = first[0].log_weight, {}
     for h in first:
-        if h.effects:
-            out.setdefault(h.effects)
-        if len(out) >= SHORTLIST:
+        if top - h.log_weight > FAR or len(out) >= SHORTLIST:
             break
+        parts = [tuple(e for e in h.effects if e != name) for name in h.effects]
+        if h.effects and all(h.log_evidence > evidence.get((part, h.world), -np.inf) + EARNED for part in parts):
+            out[h.effects] = None
     for chosen in list(out):
-        for name in chosen if len(chosen) > 1 else ():
-            out.setdefault((name,))
+        out |= dict.fromkeys((name,) for name in chosen)
     return list(out)
 
 

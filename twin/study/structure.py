@@ -1,11 +1,10 @@
 """The structural floor of a ship: how much a calibrated model of this kind still leaves unexplained, found on reference voyages.
 
 Each number of the Floor is the one under which the reference voyages are most probable, the core's own uncertainty integrated
-out (type-II maximum likelihood; Rasmussen & Williams 2006, sec. 5.4), searched on a geometric grid, one number at a time.
+out (type-II maximum likelihood; Rasmussen & Williams 2006, sec. 5.4), climbed on a geometric grid.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -13,48 +12,65 @@ from .columns import Unknown
 from .fit import evidence
 from .innovations import Floor, Linear, innovate
 
-STEPS = (0.5, 2.0)
+MOST_SEGMENTS = 40
 BOUNDS = {"share": (0.005, 0.5), "calm": (0.1, 4.0), "white": (0.002, 1.0), "flow": (0.0005, 0.05), "sensor": (0.7, 4.0)}
 
 
-def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor = Floor(), temper: float = 1.0) -> Floor:
+def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor = Floor()) -> Floor:
     """The most probable floor of these reference voyages (linearised about the fitted model)."""
     sd = np.array([u.sd for u in unknowns])
-
-    def score(floor: Floor) -> float:
-        return evidence(innovate(lines, [floor])[0], sd) / temper
-
-    floor, best = start, score(start)
-    for name, change in (*_numbers(), *_numbers()):
-        floor, best = _climb(floor, best, name, change, score)
+    floor, step = start, 2.0
+    best = _scores(lines, [floor], sd)[0]
+    while step > 1.2:
+        trials = [(i, t) for i, change in enumerate(CHANGES) for k in (step, 1.0 / step) if _inside(t := change(floor, k))]
+        scores = _scores(lines, [t for _, t in trials], sd)
+        better: dict[int, tuple[float, Floor]] = {}
+        for (i, trial), score in zip(trials, scores, strict=True):
+            if score > max(best, better.get(i, (best, floor))[0]):
+                better[i] = (score, trial)
+        moves = sorted(better.values(), key=lambda m: -m[0])
+        together = [_together(floor, [m for _, m in moves[:n]]) for n in range(1, len(moves) + 1)]
+        scores = [moves[0][0], *_scores(lines, together[1:], sd)] if moves else []
+        if moves and max(scores) > best + 0.5:
+            best, floor = max(scores), together[int(np.argmax(scores))]
+        else:
+            step = step**0.5
     return floor
 
 
-def _numbers() -> list[tuple[str, Callable[[Floor, float], Floor]]]:
-    def share(i: int) -> Callable[[Floor, float], Floor]:
-        return lambda f, k: replace(f, share=tuple(s * k if j == i else s for j, s in enumerate(f.share)))
-
-    def single(name: str) -> Callable[[Floor, float], Floor]:
-        return lambda f, k: replace(f, **{name: getattr(f, name) * (k**0.5 if name == "sensor" else k)})
-
-    return [("share", share(i)) for i in range(3)] + [(n, single(n)) for n in ("calm", "white", "flow", "sensor")]
-
-
-def _climb(floor: Floor, best: float, name: str, change: Callable[[Floor, float], Floor], score: Callable[[Floor], float]) -> tuple[Floor, float]:
-    """Walk one number up or down while the voyages become more probable."""
-    for step in STEPS:
-        walked = False
-        while _inside(trial := change(floor, step), name):
-            value = score(trial)
-            if value <= best + 1e-6:
-                break
-            floor, best, walked = trial, value, True
-        if walked:
-            break
-    return floor, best
+def _together(floor: Floor, moves: Sequence[Floor]) -> Floor:
+    """The floor with all these single changes made together."""
+    start, out = _logs(floor), _logs(floor)
+    for move in moves:
+        out = out + (_logs(move) - start)
+    share, rest = np.exp(out[:3]), np.exp(out[3:])
+    return Floor((float(share[0]), float(share[1]), float(share[2])), *(float(r) for r in rest))
 
 
-def _inside(floor: Floor, name: str) -> bool:
-    lo, hi = BOUNDS[name]
-    values = getattr(floor, name)
-    return all(lo <= v <= hi for v in (values if isinstance(values, tuple) else (values,)))
+def _logs(floor: Floor) -> np.ndarray:
+    return np.log([*floor.share, floor.calm, floor.white, floor.flow, floor.sensor])
+
+
+def _scores(lines: Sequence[Linear], floors: Sequence[Floor], sd: np.ndarray) -> list[float]:
+    return [evidence(n, sd) for n in innovate(lines, floors, MOST_SEGMENTS)] if floors else []
+
+
+def _change(i: int) -> Callable[[Floor, float], Floor]:
+    def change(floor: Floor, factor: float) -> Floor:
+        logs = _logs(floor)
+        logs[i] += np.log(factor) * (0.5 if i == 6 else 1.0)
+        values = np.exp(logs).tolist()
+        return Floor((values[0], values[1], values[2]), *values[3:])
+
+    return change
+
+
+CHANGES = tuple(_change(i) for i in range(7))
+
+
+def _inside(floor: Floor) -> bool:
+    return all(
+        lo <= v <= hi
+        for name, (lo, hi) in BOUNDS.items()
+        for v in (floor.share if name == "share" else (getattr(floor, name),))
+    )

@@ -38,14 +38,21 @@ def _horizons(rows: list[dict[str, Any]]) -> list[str]:
     for r in rows:
         n = r["noise_floor"]
         cells = [f"{r[k]:.3g} / {n[k]:.2g}" for k in ("position_mae_m", "lateral_mae_m", "heading_mae_deg")]
-        out.append(f"{r['horizon_s']:>6g} s    {cells[0]:<15}{cells[1]:<13}{cells[2]:<16}{_units(r['position_mae_m'], n['position_mae_m'])}")
+        units = _units(r["position_mae_m"], n["position_mae_m"])
+        out.append(f"{r['horizon_s']:>6g} s    {cells[0]:<15}{cells[1]:<13}{cells[2]:<16}{units}")
     return out
 
 
 def _channels(channels: dict[str, dict[str, Any]]) -> list[str]:
-    out = ["", f"{'channel':<36}{'error':>9}{'noise':>9}{'R2':>8}{'skill':>8}   (skill: against dead reckoning)"]
+    out = [
+        "",
+        f"{'channel':<36}{'error':>9}{'noise':>9}{'R2':>8}{'skill':>8}   (skill: against dead reckoning)",
+    ]
     for name, c in channels.items():
-        cells = [f"{c[k]:>{w}.3f}" if c[k] is not None else " " * (w - 1) + "-" for k, w in (("r2", 8), ("skill", 8))]
+        cells = [
+            f"{c[k]:>{w}.3f}" if c[k] is not None else " " * (w - 1) + "-"
+            for k, w in (("r2", 8), ("skill", 8))
+        ]
         out.append(f"{name:<36}{c['mae']:>9.3g}{c['noise']:>9.2g}{cells[0]}{cells[1]}")
     return out
 
@@ -53,30 +60,43 @@ def _channels(channels: dict[str, dict[str, Any]]) -> list[str]:
 def _forces(result: dict[str, Any]) -> list[str]:
     share = ", ".join(f"{axis} {100.0 * x:.1f} %" for axis, x in result["unexplained_force"].items())
     out = ["", f"force the model misses, beyond noise: {share}"]
-    return out + ([f"learned share of all force: {100.0 * result['learned_share']:.1f} %"] if result["model"].get("residual") else [])
+    return out + (
+        [f"learned share of all force: {100.0 * result['learned_share']:.1f} %"]
+        if result["model"].get("residual")
+        else []
+    )
 
 
 def _where(result: dict[str, Any]) -> list[str]:
     if not result["where"]:
         return ["", "where: no condition stands out beyond chance"]
     out = ["", "where it fails (error against elsewhere, share of the time)"]
-    return out + [f"  x{w['error_ratio']:<5.2g}{100 * w['time_share']:>4.0f} %  {w['condition']}" for w in result["where"]]
+    return out + [
+        f"  x{w['error_ratio']:<5.2g}{100 * w['time_share']:>4.0f} %  {w['condition']}"
+        for w in result["where"]
+    ]
 
 
 def _worst(windows: list[dict[str, Any]]) -> list[str]:
     out = ["", "worst windows"]
     return out + [
-        f"  {w['voyage']}: {w['start_s']:.0f} to {w['end_s']:.0f} s, {w['position_m']:.3g} m and {w['heading_deg']:.2g} deg off (x{w['error_ratio']:.2g})"
+        f"  {w['voyage']}: {w['start_s']:.0f} to {w['end_s']:.0f} s, "
+        f"{w['position_m']:.3g} m and {w['heading_deg']:.2g} deg off (x{w['error_ratio']:.2g})"
         for w in windows
     ]
 
 
 def _off(entries: list[dict[str, Any]]) -> list[str]:
-    return [f"switched off on {e['voyage']}: {e['effect']}, {', '.join(e['not_measured'])} was not recorded" for e in entries]
+    return [
+        f"switched off on {e['voyage']}: {e['effect']}, {', '.join(e['not_measured'])} was not recorded"
+        for e in entries
+    ]
 
 
 def _checks(checks: list[dict[str, Any]]) -> list[str]:
     bad = [c for c in checks if not c["ok"]]
     if not bad:
         return ["", f"data checks: all {len(checks)} pass"]
-    return ["", "data checks"] + [f"  look  {c.get('voyage', '')}{': ' * ('voyage' in c)}{c['check']}: {c['text']}" for c in bad]
+    return ["", "data checks"] + [
+        f"  look  {c.get('voyage', '')}{': ' * ('voyage' in c)}{c['check']}: {c['text']}" for c in bad
+    ]

@@ -74,7 +74,7 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
             "nothing can be judged from it. Record at least twenty minutes of manoeuvring."
         )
     grid = voyage.on_grid(h)
-    measured = np.column_stack([grid.si(channel) for channel in MEASURED.values()])
+    measured = np.column_stack([_samples(voyage, channel, len(grid), h) for channel in MEASURED.values()])
     controls, whole = _controls(grid)
     if not whole.any():
         raise DataError(f"{voyage.name}: rudder_angle_deg and propeller_rate_rpm are never there together. Check the map.")
@@ -82,6 +82,16 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
     return Track(
         voyage.name, grid.time_s - voyage.time_s[0], h, state, *controls, _weather(grid, measured, state), measured, sd, whole
     )
+
+
+def _samples(voyage: Voyage, channel: str, steps: int, h: float) -> np.ndarray:
+    """(steps,) mean of the samples that fall nearest to each grid step; NaN where none does: nothing is interpolated."""
+    values = voyage.si(channel)
+    ok = np.isfinite(values)
+    k = np.rint((voyage.time_s[ok] - voyage.time_s[0]) / h).astype(int)
+    k, values = k[k < steps], values[ok][: np.count_nonzero(k < steps)]
+    count = np.bincount(k, minlength=steps)
+    return np.where(count, np.bincount(k, values, steps) / np.maximum(count, 1), np.nan)
 
 
 def _controls(grid: Voyage) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
@@ -163,8 +173,7 @@ def _running_mean(values: np.ndarray, width: int) -> np.ndarray:
 
 def _scatter(values: np.ndarray) -> float:
     """White scatter of a series, from its third differences: what is smooth drops out."""
-    d = np.diff(values, 3)
-    d = d[np.isfinite(d)]
+    d = np.diff(values[np.isfinite(values)], 3)
     return 1.4826 * float(np.median(np.abs(d))) / np.sqrt(20.0) if d.size else np.nan
 
 

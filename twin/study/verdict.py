@@ -8,11 +8,11 @@ import numpy as np
 from twin.physics.model import Model
 
 from .columns import with_values
-from .evidence import Hypothesis, Posterior, posterior, probabilities
+from .evidence import Hypothesis, Posterior, posterior, probabilities, reduce
 from .innovations import innovate
 from .openloop import predict
 from .respond import respond
-from .search import WORLDS, Case, Found
+from .search import MOST_SEGMENTS, WORLDS, Case, Found
 
 SURE = 0.5  # an effect is named when it is more likely there than not
 ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
@@ -110,9 +110,7 @@ def held_out_error(case: Case, found: Found) -> tuple[float, float]:
     lines = case.lines
     chosen = found.hypothesis.effects
     mine = [i for i, u in enumerate(case.effects) if u.owner in chosen]
-    normal = innovate(lines, case.worlds([found.hypothesis.world]))[0]
-    from .evidence import reduce
-
+    normal = innovate(lines, case.worlds([found.hypothesis.world]), MOST_SEGMENTS)[0]
     half = np.arange(len(normal.where)) % 2
     sums = np.zeros((2, 2))
     for side in (0, 1):

@@ -1,7 +1,7 @@
-"""Shallow water: the bottom squeezes the stream, so that the hull feels the water run past faster than the ship does.
+"""Shallow water: the bottom squeezes the stream past the hull, whose damping grows.
 
-    F = T/h,  g(F) = F^2/(1 - F):   k_u = surge g,  k_v = sway g,  k_r = yaw g     (propeller and rudder feel nu_r)
-With sway = 0.75 the lift of the hull grows x1.4, x2.0 and x4.2 at h/T = 2, 1.5 and 1.2, as Kijima's regression
+    F = T/h,  g(F) = F^2/(1 - F):   X, Y, N of the hull times 1 + surge g, 1 + sway g, 1 + yaw g   (propeller and rudder unchanged)
+With sway = 0.75 the side force grows x1.4, x2.0 and x4.2 at h/T = 2, 1.5 and 1.2, as Kijima's regression
 1/(1-F)^n - F gives for a full tanker (n = 0.9). Below h/T = 1.05 the growth is held.
 """
 
@@ -17,9 +17,9 @@ class ShallowWater(Flow):
     needs = ("depth",)
     source = "Kijima, Katsuno, Nakiri & Furukawa (1990) J. Soc. Naval Arch. Japan 168 (shallow-water correction); Lackenby (1963) for surge"
 
-    surge: float = param(0.09, unit="-", lo=0.0, hi=0.6, sd=0.1, doc="how fast the stream along the hull grows with g(T/h)")
-    sway: float = param(0.75, unit="-", lo=0.0, hi=2.0, sd=0.6, doc="how fast the stream across the hull grows with g(T/h)")
-    yaw: float = param(0.25, unit="-", lo=0.0, hi=1.5, sd=0.3, doc="how fast the stream of turning grows with g(T/h)")
+    surge: float = param(0.15, unit="-", lo=0.0, hi=1.0, sd=0.15, doc="how fast the resistance grows with g(T/h)")
+    sway: float = param(0.75, unit="-", lo=0.0, hi=3.0, sd=0.6, doc="how fast the side force grows with g(T/h)")
+    yaw: float = param(0.35, unit="-", lo=0.0, hi=2.0, sd=0.3, doc="how fast the yaw moment grows with g(T/h)")
 
     def water(self, s: Situation, ship: Ship) -> Water:
         F = ship.T / maximum(s.depth, 1.05 * ship.T)

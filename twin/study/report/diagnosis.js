@@ -1,0 +1,57 @@
+// What diagnose and add show beside the common parts: ranking, next manoeuvre, what was fitted, the ladder.
+function addCommand(names) {
+  const f = RESULT.files || {};
+  return `twin add ${[].concat(names).join(" ")} --ship ${f.ship || "SHIP.toml"} --voyage ${(f.voyages || ["VOYAGE.mcap"]).join(" ")} -o ${f.better || "better.toml"}`;
+}
+
+function rankingSection() {
+  const list = RESULT.candidates || [], out = [];
+  for (const c of list) out.push(candidate(c));
+  if (!out.length) out.push(el("p.note", null, "No candidate is worth a line."));
+  const missing = RESULT.missing || [];
+  if (missing.length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Add what is missing, and see whether the error falls on measurements that were not used:"), command(addCommand(missing)));
+  return section("Which effect is missing", "judged together; forces are typical of these voyages", ...out);
+}
+
+function candidate(c) {
+  const force = c.typical_force || {}, weak = (c.probability || 0) < 0.1 && !(RESULT.missing || []).includes(c.effect);
+  const left = el("div", null, el("h3", null, c.effect), el("div", null, bar(c.probability || 0), `${num(100 * (c.probability || 0), 2)} %`));
+  const said = [["X_N", "ahead", "N"], ["Y_N", "aside", "N"], ["N_Nm", "turning", "N m"]].filter(([k]) => force[k]).map(([k, w, u]) => `${si(Math.abs(force[k]), u)} ${w}`);
+  const right = el("div", null, said.length ? el("div", null, said.join(", ")) : null, (c.parameters || []).map(parameter));
+  if (c.error_without !== undefined && c.error_with !== undefined && c.error_without !== null) right.append(el("p.note", null, `error ${num(c.error_without)} without it, ${num(c.error_with)} with it`));
+  if ((c.cannot_be_told_from || []).length) right.append(el("div", null, el("span.note", null, "cannot be told from "), c.cannot_be_told_from.map((n) => el("span.chip", null, n))));
+  if (!weak && !(RESULT.missing || []).includes(c.effect)) right.append(command(addCommand(c.effect)));
+  return el(weak ? ".candidate.weak" : ".candidate", null, left, right);
+}
+
+/** A number with its 95 % interval; the dashed mark is zero. */
+function parameter(p) {
+  const lo = Math.min(p.low95, 0), hi = Math.max(p.high95, 0), P = (x) => `${(100 * (x - lo)) / (hi - lo || 1)}%`;
+  const draw = el("span.whisker", null, el(".z", { style: { left: P(0) } }), el(".w", { style: { left: P(p.low95), width: `calc(${P(p.high95)} - ${P(p.low95)})` } }), el(".p", { style: { left: P(p.value) } }));
+  const unit = p.unit === "-" ? "" : ` ${p.unit}`;
+  return el(".parameter", null, el("code", null, p.name), draw, el("span", null, `${num(p.value)}${unit}`), el("span.note", null, `95 %: ${num(p.low95)} to ${num(p.high95)}${unit}`));
+}
+
+function manoeuvreSection() {
+  const m = RESULT.next_manoeuvre;
+  if (!m) return null;
+  const apart = (m.separates || []).join(" and ");
+  return section("Sail this next", apart ? `it tells ${apart} apart` : null, el("p", { style: { margin: 0 } }, m.manoeuvre), el("p.note", null, m.why || ""));
+}
+
+function fittedSection() {
+  const out = [];
+  for (const [effect, numbers] of Object.entries(RESULT.parameters || {})) out.push(el(".candidate", null, el("h3", null, effect), el("div", null, Object.entries(numbers).map(([name, p]) => parameter({ name, ...p })))));
+  const j = RESULT.judged_by || {};
+  if (j.measure) out.push(el("p.note", null, `Judged by the ${j.measure}: ${num(j.before)} → ${num(j.after)} ${j.unit}; 95 % of the change ${num(j.low95, 2)} to ${num(j.high95, 2)} (windows resampled in blocks).`));
+  return section("What was fitted", "95 % intervals, doubt about the core included", ...out);
+}
+
+/** Every step of the ship's history: position error before and after, at the longest horizon. */
+function ladderSection() {
+  const list = (RESULT.history || []).filter((h) => h.errors && h.errors.length);
+  if (!list.length) return null;
+  const longest = (h) => h.errors[h.errors.length - 1], top = Math.max(...list.map((h) => longest(h).before_m));
+  const rows = list.map((h) => { const e = longest(h); return el("tr", null, el("td", null, h.date || ""), el("td", null, `+ ${(h.added || []).join(", ")}${h.forced ? " (forced)" : ""}`), el("td", null, bar(e.before_m / top), `${num(e.before_m)} m`), el("td", null, bar(e.after_m / top), `${num(e.after_m)} m`), el("td.n", null, `${num(e.noise_floor_m, 2)} m`)); });
+  return section("The ladder", "held-out position error at the longest horizon, each step on its own held-out voyages", table(["date", "step", "before", "after", ">noise"], rows));
+}

@@ -1,0 +1,81 @@
+// Elements, numbers and colours.
+const DATA = JSON.parse(document.getElementById("data").textContent);
+const RESULT = DATA.result;
+
+/** An element: el("td.n", {onclick}, children...); text is always text, never markup. */
+function el(what, props, ...children) {
+  const [tag, ...classes] = what.split(".");
+  const node = document.createElement(tag || "div");
+  if (classes.length) node.className = classes.join(" ");
+  for (const [key, value] of Object.entries(props || {})) {
+    if (key === "style") Object.assign(node.style, value);
+    else if (key.startsWith("on") || key in node) node[key] = value;
+    else node.setAttribute(key, value);
+  }
+  for (const child of children.flat()) if (child !== null && child !== undefined && child !== false) node.append(child);
+  return node;
+}
+
+function section(title, about, ...children) {
+  return el("section", null, el(".head", null, el("h2", null, title), about ? el("p", null, about) : null), ...children);
+}
+
+/** Three significant digits, thousands with a thin space. */
+function num(x, digits = 3) {
+  if (x === null || x === undefined || !isFinite(x)) return "–";
+  const size = Math.abs(x);
+  if (size >= 1e6 || (size > 0 && size < 1e-3)) return x.toExponential(digits - 1).replace("e+", "e");
+  const places = size === 0 ? 0 : Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return x.toFixed(Math.min(places, 6)).replace(/\B(?<!\.\d*)(?=(\d{3})+(?!\d))/g, "\u202f");
+}
+
+/** 1234567 N as 1.23 MN. */
+function si(x, unit) {
+  if (x === null || x === undefined) return "–";
+  for (const [k, p] of [[1e9, "G"], [1e6, "M"], [1e3, "k"]]) if (Math.abs(x) >= k) return `${num(x / k)} ${p}${unit}`;
+  return `${num(x)} ${unit}`;
+}
+
+function clock(s) {
+  const sign = s < 0 ? "-" : "", t = Math.abs(Math.round(s)), h = Math.floor(t / 3600), m = Math.floor((t % 3600) / 60);
+  const two = (x) => String(x).padStart(2, "0");
+  return sign + (h ? `${h}:${two(m)}:${two(t % 60)}` : `${m}:${two(t % 60)}`);
+}
+
+/** "sway_velocity_through_water_mps" -> ["sway velocity through water", "m/s"]. */
+function named(column) {
+  const units = { mps: "m/s", degps: "deg/s", deg: "deg", rpm: "rpm", m: "m", s: "s" };
+  const words = column.split("_"), unit = units[words[words.length - 1]];
+  if (unit) words.pop();
+  return [words.join(" ").replace(" true north", ""), unit || ""];
+}
+
+function unpack(text) {
+  const bytes = atob(text), raw = new Uint8Array(bytes.length);
+  for (let i = 0; i < bytes.length; i++) raw[i] = bytes.charCodeAt(i);
+  return new Float32Array(raw.buffer);
+}
+
+function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+/** A command with a button that copies it. */
+function command(text) {
+  const button = el("button", { onclick: () => copy(text, button) }, "copy");
+  return el(".command", null, el("code", null, text), button);
+}
+
+function copy(text, button) {
+  const done = () => { button.textContent = "copied"; setTimeout(() => (button.textContent = "copy"), 1200); };
+  const box = el("textarea", { value: text, style: { position: "fixed", opacity: 0 } });
+  document.body.append(box);
+  box.select();
+  if (document.execCommand("copy")) done();
+  box.remove();
+}
+
+function table(heads, rows) {
+  const head = el("tr", null, heads.map((h) => el(h.startsWith(">") ? "th.n" : "th", null, h.replace(">", ""))));
+  return el(".scroll", null, el("table", null, el("thead", null, head), el("tbody", null, rows)));
+}

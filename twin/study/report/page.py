@@ -1,0 +1,115 @@
+"""The page: what a verb found, what it is drawn from, and the scripts that draw it, in one file."""
+
+import json
+import os
+import tempfile
+from collections.abc import Sequence
+from importlib import resources
+from pathlib import Path
+from typing import Any
+
+from twin.errors import TwinError
+from twin.physics.model import Model
+
+from .. import locate, score
+from ..openloop import HORIZONS_S
+from ..sailed import floor_of, switched_off
+from ..track import Track
+from ..unexplained import energy
+from ..voyage import Voyage
+from .series import shown
+from .words import sentence, title
+
+SCRIPTS = ("dom.js", "plot.js", "track.js", "sections.js", "diagnosis.js", "main.js")
+
+
+def write(
+    path: str | os.PathLike[str], kind: str, result: dict[str, Any], tracks: Sequence[Track], model: Model, *,
+    before: Model | None = None, voyages: Sequence[Voyage] = (),
+) -> None:  # fmt: skip
+    """Write the page of a verb (`compare`, `diagnose`, `add`), aside and renamed.
+
+    `before`: the model without what was added. `voyages`: the recordings behind the tracks, in the same order; with them the
+    page plots every sample instead of the grid's means.
+    """
+    page = html(content(kind, result, tracks, model, before, voyages))
+    path = Path(path)
+    try:
+        with tempfile.NamedTemporaryFile(
+            "w", dir=path.parent, prefix=f".{path.name}.", delete=False, encoding="utf-8"
+        ) as file:
+            file.write(page)
+        os.chmod(file.name, 0o644)
+        os.replace(file.name, path)
+    except OSError as error:
+        raise TwinError(
+            f"{path}: cannot be written ({error.strerror}). Choose another place with --report."
+        ) from None
+
+
+def content(
+    kind: str,
+    result: dict[str, Any],
+    tracks: Sequence[Track],
+    model: Model,
+    before: Model | None = None,
+    voyages: Sequence[Voyage] = (),
+) -> dict[str, Any]:
+    """Everything the page shows, as JSON."""
+    from ..adding import ahead
+    from ..jsonable import plain
+
+    structural = floor_of(model.ship) is not None
+    asked = [h["horizon_s"] for h in result.get("horizons", [])] or list(HORIZONS_S)
+    windows = ahead(tracks, model, asked)
+    result = _whole(dict(result), tracks, model, windows, asked, structural)
+    longest = result["horizons"][-1]["horizon_s"] if result["horizons"] else asked[-1]
+    models = {"before": before, "after": model} if before is not None else {"model": model}
+    drawn = shown(tracks, windows, models, longest, structural, list(voyages) or [None] * len(tracks))
+    return plain({
+        "kind": kind, "title": title(kind, result), "verdict": sentence(kind, result), "result": result, "voyages": drawn,
+        "longest_s": longest, "floor": "sensors and structure" if structural else "sensors",
+    })  # fmt: skip
+
+
+def _whole(
+    result: dict[str, Any],
+    tracks: Sequence[Track],
+    model: Model,
+    windows: Sequence[Any],
+    asked: Sequence[float],
+    structural: bool,
+) -> dict[str, Any]:
+    """The result, with what the page shows of every verb worked out where it is absent."""
+    rows = score.horizons(windows, asked, structural)
+    result.setdefault("horizons", rows)
+    if rows:
+        longest, nearer = rows[-1]["horizon_s"], rows[max(len(rows) - 2, 0)]["horizon_s"]
+        if "where" not in result:
+            found = locate.regimes(windows, nearer, model.ship, structural)
+            result["where"] = [{k: v for k, v in w.items() if k != "mask"} for w in found]
+        result.setdefault("worst_windows", locate.worst(windows, longest))
+    result.setdefault("channels", score.channels(windows, structural))
+    if "unexplained_force" not in result:
+        result["unexplained_force"] = energy(tracks, [model] * len(tracks)).unexplained()
+    result.setdefault("switched_off", switched_off(model, tracks))
+    return result
+
+
+def html(content: dict[str, Any]) -> str:
+    """One file: template, style, scripts and data."""
+    here = resources.files(__package__)
+    data = (
+        json.dumps(content, separators=(",", ":"), allow_nan=False)
+        .replace("</", "<\\/")
+        .replace("<!--", "<\\u0021--")
+    )
+    page = (here / "page.html").read_text(encoding="utf-8")
+    script = "\n".join((here / name).read_text(encoding="utf-8") for name in SCRIPTS)
+    for mark, text in (
+        ("/*STYLE*/", (here / "page.css").read_text(encoding="utf-8")),
+        ("/*SCRIPT*/", script),
+        ("/*DATA*/", data),
+    ):
+        page = page.replace(mark, text, 1)
+    return page

@@ -1,0 +1,54 @@
+"""`--fail-above METRIC=VALUE`: a limit that a script holds the twin to."""
+
+import argparse
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from . import score
+
+
+def threshold(text: str) -> tuple[str, float]:
+    """METRIC=VALUE."""
+    name, _, value = text.partition("=")
+    try:
+        return name, float(value)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r}: METRIC=VALUE is needed, such as position_mae_m=50") from None
+
+
+def metric(result: dict[str, Any], name: str) -> float | None:
+    """The number that --fail-above speaks of; None when there is no such metric."""
+    name, _, at = name.partition("@")
+    row = next(
+        (r for r in result["horizons"] if at and f"{r['horizon_s']:g}" == at),
+        None if at else result["horizons"][-1],
+    )
+    if row is not None and name == "noise_units":
+        return score.in_noise(row)
+    value: Any = row if row is not None and name in score.NAMES.values() else result
+    for part in name.split("."):
+        value = value.get(part) if isinstance(value, dict) else None
+    return float(value) if isinstance(value, (int, float)) else None
+
+
+def passed(result: dict[str, Any], limits: Sequence[tuple[str, float]]) -> list[str]:
+    """Sentences about the thresholds that are not met."""
+    out = []
+    for name, limit in limits:
+        value = metric(result, name)
+        if value is None:
+            out.append(f"{name} is not in the result (see twin compare --help)")
+        elif value > limit:
+            out.append(f"{name} = {value:.4g} is above {limit:g}")
+    return out
+
+
+def positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < 86400.0:
+        raise argparse.ArgumentTypeError(f"{text!r}: seconds between 0 and 86400 are needed")
+    return value
