@@ -5,6 +5,7 @@ import pytest
 
 from bench.stability import Case, Fleet, certified, trial
 from twin.live.certificate import Tube, certify
+from twin.live.tube import Highest
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load
@@ -54,6 +55,15 @@ def test_hours_without_a_measurement_leave_a_number_that_says_nothing(certificat
         beta = tube.step(NONE)
     assert all(np.isfinite(beta)) and max(beta) == 1e9
     assert settled(tube, ticks=6000) == pytest.approx(certificate.bound, rel=1e-6)
+
+
+def test_the_greatest_of_a_window_is_that_of_the_window():
+    rng = np.random.default_rng(2)
+    values = np.round(rng.normal(size=500), 1)
+    for size in (1, 3, 25):
+        window = Highest(size)
+        told = [window.push(x) for x in values]
+        assert told == [max(values[max(0, k + 1 - size) : k + 1]) for k in range(values.size)]
 
 
 def test_what_a_rejected_sample_pulled_counts(certificate):

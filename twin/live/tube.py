@@ -23,6 +23,29 @@ Three = tuple[float, float, float]
 STILL = (0.0, 0.0, 0.0)
 
 
+class Highest:
+    """The greatest of the last so many values, in a time that does not grow with their number."""
+
+    __slots__ = ("count", "kept", "size")
+
+    def __init__(self, size: int, *first: float) -> None:
+        self.size, self.count = size, 0
+        self.kept: deque[tuple[int, float]] = deque()  # falling values with the number each came as
+        for x in first:
+            self.push(x)
+
+    def push(self, x: float) -> float:
+        """Take one more; the greatest of the window with it."""
+        kept = self.kept
+        while kept and kept[-1][1] <= x:
+            kept.pop()
+        kept.append((self.count, x))
+        self.count += 1
+        if kept[0][0] <= self.count - 1 - self.size:
+            kept.popleft()
+        return kept[0][1]
+
+
 class Tube:
     """|nu_hat - nu| <= beta, component by component [m/s, m/s, rad/s], as long as the assumptions hold."""
 
@@ -35,9 +58,9 @@ class Tube:
     def reset(self, start: Three | None = None) -> None:
         """Begin anew, after the observer was set to a measurement."""
         self.beta: Three = self.certificate.noise if start is None else start
-        self._after = tuple(deque((b,), maxlen=self._window) for b in self.beta)
-        self._before = tuple(deque((b,), maxlen=self._window) for b in self.beta)
-        self._seas: deque[float] = deque(maxlen=self._window)
+        self._after, self._before = ([Highest(self._window, b) for b in self.beta] for _ in range(2))
+        self._widest = self.beta  # greatest after of the window
+        self._seas = Highest(self._window)
         self._pulls: deque[Three] = deque(maxlen=self._window)
         self._sea = -1.0  # the highest in the window, for which the rows below were made
 
@@ -46,25 +69,23 @@ class Tube:
 
         `pulled`: by how much a sample that was not accepted may have moved the estimate all the same.
         """
-        after, before = self._after, self._before
-        self._seas.append(H_s)
-        if self._sea != (high := max(self._seas)):
+        if self._sea != (high := self._seas.push(H_s)):
             self._sea = high
             self._rows(high)
-        pu, pv, pr = max(after[0]), max(after[1]), max(after[2])
+        pu, pv, pr = self._widest
         u, v, r = self.beta
         beta = []
         for i, (v0, v1, v2, d, keep, again, d0, d1, d2, c) in enumerate(self._table):
             E = min(v0 * u + v1 * v + v2 * r + d, NOTHING)
-            before[i].append(E)
+            widest = self._before[i].push(E)
             if received[i]:
-                E = keep * E + again * max(before[i]) + d0 * pu + d1 * pv + d2 * pr + c
+                E = keep * E + again * widest + d0 * pu + d1 * pv + d2 * pr + c
             beta.append(E)
         if pulled is not STILL or self._pulls:
             beta = self._and_pulled(beta, received, pulled)
-        for row, b in zip(after, beta):  # noqa: B905 (a tick, not a check)
-            row.append(b)
-        self.beta = beta[0], beta[1], beta[2]
+        u, v, r = self.beta = beta[0], beta[1], beta[2]
+        first, second, third = self._after
+        self._widest = first.push(u), second.push(v), third.push(r)
         return self.beta
 
     def _and_pulled(self, beta: list[float], received: tuple[bool, bool, bool], pulled: Three) -> list[float]:
