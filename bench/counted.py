@@ -1,4 +1,4 @@
-"""What is counted in instructions: a step of the equations, a run of the network, a tick without bus and disk.
+"""What is counted in instructions: a step of the equations, a run of the network, a tick without bus and log.
 
 Each function prepares its program and gives the step that is repeated; nothing hangs on a clock or on chance.
 """
