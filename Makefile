@@ -10,7 +10,7 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 help:  ## these words
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
 
-demo: $(VENV)/.on-board  ## makes .venv, installs what goes on board, and shows a ship's twin alive
+demo: $(VENV)/.on-board  ## makes .venv, installs, and tells the whole story: a twin alive, then what her owner finds
 	$(BIN)/twin demo
 
 test: lint types tests  ## the same with the tools of development: ruff, mypy and all tests
@@ -31,7 +31,7 @@ clean:  ## takes away .venv and what the tools left
 	rm -rf $(VENV) .pytest_cache .ruff_cache .mypy_cache .hypothesis *.egg-info
 
 $(VENV)/.on-board: pyproject.toml | $(BIN)/python
-	$(PIP) --editable .
+	$(PIP) --editable '.[study]'
 	@touch $@
 
 $(VENV)/.development: pyproject.toml | $(BIN)/python

@@ -43,7 +43,7 @@ VERBS: dict[str, Verb] = {
     "history": Verb("twin.study.history", "the ladder of what was added and how far the error fell", "twin history alma3.toml"),
     "effects": Verb("twin.study.effects", "the catalogue: formula, inputs, parameters, units, source", "twin effects Wind"),
     "train": Verb("export.train", "trains and exports the residual", "twin train v*.mcap --ship alma3.toml -o residual.onnx"),
-    "demo": Verb("twin.live.demo", "the whole story on a bundled voyage, in a minute or two", "twin demo"),
+    "demo": Verb("twin.study.demo", "the whole story on a bundled voyage, in a minute or two", "twin demo"),
     "health": Verb("twin.live.health", "is the twin on this machine alive and well?", "twin health"),
 }
 

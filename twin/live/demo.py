@@ -35,10 +35,6 @@ SEEN = (
     "sway_velocity_mps",
     "yaw_rate_degps",
 )
-STORY: tuple[
-    str, ...
-] = ()  # commands of the study, shown and run one after the other; {log} is this demo's log
-
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, default=40.0, help="how long she sails (default: 40)")
@@ -68,7 +64,6 @@ def run(args: argparse.Namespace) -> int:
         return code
     log = newest(folder)
     tell(log, view.ticks, settings)
-    story(log)
     return 0
 
 
@@ -146,20 +141,6 @@ def ticks_of(path: Path) -> Iterator[Any]:
     for message in read(path):
         if message.type_name == "shiptwin.Tick":
             yield messages.Tick.FromString(message.data)
-
-
-def story(log: Path) -> None:
-    """The study's part of the story, once the study is there: each command is shown, then run."""
-    from twin import cli
-
-    if importlib.util.find_spec("twin.study.diagnose") is None:
-        return
-    for command in STORY:
-        text = command.format(log=shlex.quote(str(log)))
-        print(f"\n$ twin {text}", flush=True)
-        code = cli.main(shlex.split(text))
-        if code:
-            raise TwinError(f"`twin {text}` ended with exit code {code}.")
 
 
 def newest(folder: Path) -> Path:

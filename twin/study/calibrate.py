@@ -15,7 +15,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 
 from .columns import Unknown, core_unknowns
-from .compare import plain
+from .jsonable import plain
 from .fit import Fit, fit
 from .import_voyage import write_json
 from .innovations import Floor, linearise

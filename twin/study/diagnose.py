@@ -11,7 +11,7 @@ import numpy as np
 from twin.physics.ship import Ship, load
 
 from .assemble import assemble, unjudged_because
-from .compare import plain
+from .jsonable import plain
 from .import_voyage import write_json
 from .manoeuvres import next_manoeuvre
 from .read import read_voyage

@@ -26,10 +26,10 @@ def sentence(result: dict[str, Any]) -> str:
         first = by_name[result["missing"][0]]
         names = " and ".join(f"{n} ({by_name[n]['probability']:.0%})" for n in result["missing"])
         force = first["typical_force"]
-        size = f"; typically X {_si(force['X_N'], 'N')}, Y {_si(force['Y_N'], 'N')}, N {_si(force['N_Nm'], 'N m')}" if any(force.values()) else ""
+        size = f" Typically {_force(force)}." if _force(force) else ""
         rivals = first["cannot_be_told_from"]
         doubt = f" These voyages cannot tell it from {', '.join(rivals)}." if rivals else ""
-        return f"Missing: {names}. {first['says']}{size}{'.' if size else ''}{doubt}"
+        return f"Missing: {names}. {first['says']}{size}{doubt}"
     if result["verdict"] == "nothing_missing":
         return "Nothing is missing: what the model cannot explain is no more than it left unexplained on good voyages."
     if result["verdict"] == "unknown":
@@ -45,12 +45,17 @@ def _candidate(c: dict[str, Any]) -> list[str]:
     for p in c["parameters"]:
         lines.append(f"          {p['name']:<12} {p['value']:>11.4g} {p['unit']:<5} 95 %: {p['low95']:.4g} to {p['high95']:.4g}")
     force = c["typical_force"]
-    if any(force.values()):
-        lines.append(f"          typically    X {_si(force['X_N'], 'N')}, Y {_si(force['Y_N'], 'N')}, N {_si(force['N_Nm'], 'N m')}")
+    if _force(force):
+        lines.append(f"          typically    {_force(force)}")
     lines.append(f"          120 s error  {c['error_without']:.3g} m without, {c['error_with']:.3g} m with it, on parts not used for the fit")
     if c["cannot_be_told_from"]:
         lines.append(f"          not told from {', '.join(c['cannot_be_told_from'])}")
     return lines
+
+
+def _force(force: dict[str, float]) -> str:
+    """The components that are there, in words."""
+    return ", ".join(f"{key[0]} {_si(value, 'N m' if key == 'N_Nm' else 'N')}" for key, value in force.items() if abs(value) > 1e-9)
 
 
 def _si(value: float, unit: str) -> str:
