@@ -1,0 +1,123 @@
+"""Voyages sailed by the twin's own model, for tests that need one quickly and want to know what is in it."""
+
+from dataclasses import replace
+from functools import lru_cache
+
+import numpy as np
+import pytest
+
+from twin.cli import main
+from twin.physics.model import Model
+from twin.physics.ship import Ship, load
+from twin.physics.state import Situation
+from twin.study.sailed import Sailed
+from twin.study.track import track
+from twin.study.voyage import Voyage
+from twin.study.write import write_voyage
+
+DEG = 180.0 / np.pi
+STEP_S = 320.0 / 7.97388 / 32.0  # the study's own grid for this ship
+
+
+@lru_cache
+def ship() -> Ship:
+    return load("kvlcc2")
+
+
+def voyage(*effects, **facts) -> Voyage:
+    """A voyage of one's own to change: see `sail`."""
+    made = sail(*effects, **facts)
+    return made.with_rows(made.time_s.copy(), {k: x.copy() for k, x in made.columns.items()})
+
+
+@lru_cache(maxsize=32)
+def sail(
+    *effects,
+    seed: int = 0,
+    seconds: float = 1500.0,
+    step: float = STEP_S,
+    noise: float = 1.0,
+    wind: float | None = None,
+    name: str = "made",
+    of: Ship | None = None,
+) -> Voyage:
+    """Turns and straight legs of a ship with these effects, measured with noise; `wind` [m/s] from the east, if measured."""
+    model, rng = Model.of(of or ship()).but(*effects), np.random.default_rng(seed)
+    t = np.arange(0.0, seconds, step)
+    legs = np.repeat(rng.choice([-20.0, -10.0, 0.0, 10.0, 20.0], t.size), rng.integers(50, 130, t.size))
+    order = legs[: t.size]
+    rudder = np.radians(np.convolve(np.pad(order, (5, 5), "edge"), np.ones(11) / 11.0, "valid"))  # 2.2 deg/s
+    n = np.interp(t, [0.6 * seconds, 0.6 * seconds + 120.0], [1.6, 1.25])
+    seas = {} if wind is None else {"wind_speed": wind, "wind_to": np.pi * 1.5}
+    rows, state = [], (0.0, 0.0, 0.3 * seed, 7.0, 0.0, 0.0)
+    for k in range(t.size):
+        s = Situation(delta=rudder[k], n=n[k], t=t[k], **seas)
+        half = Situation(delta=rudder[k : k + 2].mean(), n=n[k : k + 2].mean(), t=t[k] + 0.5 * step, **seas)
+        s.x, s.y, s.psi, s.u, s.v, s.r = state
+        rates = model.nu_dot(s)
+        s.u_dot, s.v_dot = rates.u, rates.v
+        shown = s
+        for fault in model.faults:
+            shown = fault.read(replace(shown), model.loaded)
+        rows.append([shown.x, shown.y, shown.psi, shown.u, shown.v, shown.r, shown.u_r, shown.v_r])
+        state = model.step(state, half, step)
+    x, y, psi, u, v, r, u_r, v_r = (
+        np.array(rows) + noise * rng.normal(size=(t.size, 8)) * [0.4, 0.4, 1e-3, 0.02, 0.02, 2e-5, 0.03, 0.03]
+    ).T
+    columns = {
+        "north_m": x,
+        "east_m": y,
+        "heading_true_north_deg": np.mod(psi * DEG, 360.0),
+        "surge_velocity_mps": u,
+        "sway_velocity_mps": v,
+        "yaw_rate_degps": r * DEG,
+        "surge_velocity_through_water_mps": u_r,
+        "sway_velocity_through_water_mps": v_r,
+        "rudder_angle_deg": rudder * DEG,
+        "propeller_rate_rpm": n * 60.0,
+    }
+    if wind is not None:
+        columns |= {
+            "true_wind_speed_mps": np.full(t.size, wind),
+            "true_wind_direction_deg": np.full(t.size, 90.0),
+        }
+    return Voyage(name, t, columns, {"start_time_utc": f"2026-05-0{1 + seed % 9}T08:00:00Z"})
+
+
+@pytest.fixture(scope="session")
+def make():
+    """The function that makes a voyage."""
+    return voyage
+
+
+@pytest.fixture(scope="session")
+def kvlcc2():
+    return ship()
+
+
+@pytest.fixture
+def sailed():
+    """A voyage and its track, as the verbs take them."""
+
+    def wrap(voyage: Voyage, of: Ship | None = None, sha256: str = "") -> Sailed:
+        return Sailed(voyage, track(voyage, of or ship()), sha256 or voyage.name)
+
+    return wrap
+
+
+@pytest.fixture
+def on_disk(tmp_path):
+    """A voyage as a file."""
+
+    def write(voyage: Voyage) -> str:
+        path = tmp_path / f"{voyage.name}.mcap"
+        write_voyage(voyage, path)
+        return str(path)
+
+    return write
+
+
+@pytest.fixture
+def verb():
+    """Runs a verb as the command line does: words in, exit code out."""
+    return lambda *words: main([str(w) for w in words])

@@ -1,0 +1,144 @@
+"""`twin add`: fits only what it was asked for, proves the fall where it was not fitted, and refuses when there is none."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from twin.cli import main
+from twin.physics.effects import find
+from twin.physics.model import Model
+from twin.physics.ship import load, to_table
+from twin.study.add import add
+from twin.study.openloop import predict
+from twin.study.proof import fall
+from twin.study.track import track
+from twin.study.write import write_voyage
+
+
+@pytest.fixture(scope="module")
+def stream(make, kvlcc2):
+    current = find("Current").absent(kvlcc2).but(north=-0.3, east=0.5)
+    return lambda seed=0: make(current, seed=seed, name=f"stream{seed}")
+
+
+@pytest.fixture(scope="module")
+def added(stream, tmp_path_factory):
+    """A current added to the bundled ship, by the command line; (exit code, ship file, JSON)."""
+    folder = tmp_path_factory.mktemp("added")
+    out, result = folder / "better.toml", folder / "add.json"
+    write_voyage(stream(0), folder / "a.mcap"), write_voyage(stream(1), folder / "b.mcap")
+    words = ["--voyage", folder / "a.mcap", "--held-out", folder / "b.mcap", "-o", out, "--json", result]
+    code = main(["add", "Current", "--ship", "kvlcc2", *map(str, words)])
+    return code, out, json.loads(result.read_text())
+
+
+def test_a_hidden_current_is_found_and_the_error_falls_to_the_noise(added):
+    code, path, result = added
+    (effect,) = load(path).effects
+    assert code == 0 and result["accepted"]
+    assert effect.north == pytest.approx(-0.3, abs=0.05) and effect.east == pytest.approx(0.5, abs=0.05)
+    for p in result["parameters"]["Current"].values():
+        assert p["low95"] <= {True: -0.3, False: 0.5}[p["value"] < 0] <= p["high95"]
+    last = result["horizons"][-1]
+    assert last["after"]["position_mae_m"] < 0.1 * last["before"]["position_mae_m"]
+    assert last["after"]["position_mae_m"] < 2.5 * last["noise_floor"]["position_mae_m"]
+
+
+def test_the_core_stays_as_it_was_and_so_does_the_bundled_ship(added, kvlcc2):
+    _, path, result = added
+    assert load(path).derivatives == kvlcc2.derivatives == load("kvlcc2").derivatives
+    assert any("core" in note for note in result["notes"])
+
+
+def test_the_ship_file_remembers_voyages_interval_errors_and_date(added):
+    _, path, result = added
+    ship = load(path)
+    step = ship.notes["history"][-1]
+    assert step["added"] == ["Current"] and step["interval"] == "95 %" and not step["forced"]
+    assert [len(v["sha256"]) for v in (*step["voyages"], *step["held_out"])] == [64, 64]
+    assert [e["horizon_s"] for e in step["errors"]] == [10.0, 60.0, 120.0]
+    assert step["errors"][-1]["after_m"] < step["errors"][-1]["before_m"]
+    entry = to_table(ship)["effects"]["Current"]["east"]
+    assert entry["value"] == result["parameters"]["Current"]["east"]["value"] and entry["low95"] < entry["high95"]
+
+
+def test_without_a_held_out_voyage_the_last_third_is_held_back_and_it_is_said(sailed, stream, kvlcc2):
+    made = add(kvlcc2, [find("Current")], [sailed(stream())])
+    assert made.result["accepted"] and made.result["held_out"][0]["part"] == "last third"
+    assert any("last third" in n for n in made.result["notes"])
+    assert made.held[0].t[0] == pytest.approx(1000.0, abs=2.0)
+
+
+def test_an_effect_that_is_not_there_is_refused_with_the_numbers_and_nothing_is_written(
+    verb, on_disk, make, tmp_path, capsys
+):
+    out, result = tmp_path / "worse.toml", tmp_path / "r.json"
+    words = ("--ship", "kvlcc2", "--voyage", on_disk(make()), "-o", out, "--json", result)
+    assert verb("add", "PropellerWalk", *words) == 3
+    assert not out.exists() and not json.loads(result.read_text())["accepted"]
+    error = capsys.readouterr().err
+    assert "ThresholdError: position error at 120 s" in error and "--force" in error
+    assert verb("add", "PropellerWalk", *words, "--force") == 0
+    assert load(out).notes["history"][-1]["forced"] and json.loads(result.read_text())["forced"]
+
+
+def test_a_fault_that_moves_no_track_is_judged_by_the_instrument_it_touches(sailed, make, kvlcc2):
+    scale = find("SpeedLogScale").absent(kvlcc2).but(scale=-0.08)
+    made = add(kvlcc2, [find("SpeedLogScale")], [sailed(make(scale))])
+    assert made.fall.proved and "surge_velocity_through_water_mps" in made.fall.measure
+    assert made.result["parameters"]["SpeedLogScale"]["scale"]["value"] == pytest.approx(-0.08, abs=0.01)
+
+
+def test_two_effects_are_fitted_together(sailed, make, kvlcc2):
+    hidden = [find("Current").absent(kvlcc2).but(east=0.5), find("HullFouling").absent(kvlcc2).but(extra=0.4)]
+    made = add(
+        kvlcc2, [find("Current"), find("HullFouling")], [sailed(make(*hidden, seed=k, name=str(k))) for k in range(2)]
+    )
+    found = made.result["parameters"]
+    assert found["Current"]["east"]["value"] == pytest.approx(0.5, abs=0.06)
+    assert found["HullFouling"]["extra"]["value"] == pytest.approx(0.4, abs=0.2)
+
+
+def test_a_current_judged_on_another_day_is_said_to_belong_to_its_voyage(added):
+    assert any("belong to a voyage" in note and "another day" in note for note in added[2]["notes"])
+
+
+@pytest.mark.parametrize(
+    "effect, code, said",
+    [
+        ("Curent", 5, "Did you mean 'Current'?"),
+        ("Wind", 4, "true_wind_speed_mps, true_wind_direction_deg, which was not recorded"),
+    ],
+)
+def test_what_cannot_be_added_is_one_clear_line_and_no_file(verb, on_disk, make, tmp_path, capsys, effect, code, said):
+    out = tmp_path / "never.toml"
+    assert verb("add", effect, "--ship", "kvlcc2", "--voyage", on_disk(make()), "-o", out) == code
+    error = capsys.readouterr().err
+    assert said in error and "Traceback" not in error
+    assert not out.exists() and not list(tmp_path.glob(".never*"))
+
+
+def test_the_voyage_is_not_overwritten_by_the_ship(verb, on_disk, make):
+    path = on_disk(make())
+    before = Path(path).read_bytes()
+    assert verb("add", "Current", "--ship", "kvlcc2", "--voyage", path, "-o", path) == 5
+    assert Path(path).read_bytes() == before
+
+
+def test_a_better_model_is_proved_better_and_chance_is_not(make, kvlcc2):
+    current = find("Current").absent(kvlcc2).but(east=0.4)
+    t = track(make(current), kvlcc2)
+    right, none = Model.of(kvlcc2).but(current), Model.of(kvlcc2)
+    a, b = [predict(t, none)], [predict(t, right)]
+    assert fall(a, b, 120.0).proved and not fall(b, a, 120.0).proved and not fall(a, a, 120.0).proved
+
+
+def test_the_interval_of_the_fall_is_as_wide_as_overlapping_windows_make_it():
+    from twin.study.proof import _bootstrap
+
+    rng = np.random.default_rng(0)
+    wander = np.convolve(rng.standard_normal(412), np.ones(12), "valid")
+    spread = [float(np.std(_bootstrap([wander], [block]))) for block in (1, 12)]
+    assert spread[1] > 2.0 * spread[0]

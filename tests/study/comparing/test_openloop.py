@@ -1,0 +1,112 @@
+"""Open-loop prediction: true to the model that made the voyage, honest about noise, whole about instruments and holes."""
+
+import numpy as np
+import pytest
+
+from twin.physics.effects import find
+from twin.physics.model import Model
+from twin.physics.state import Force
+from twin.study.innovations import Floor
+from twin.study.openloop import HORIZONS_S, SENSORS, STRUCTURE, predict
+from twin.study.sailed import fed, switched_off
+from twin.study.track import track
+
+
+def mean(windows, name, horizon, run=0):
+    return float(np.nanmean(windows.errors(run)[name][windows.at(horizon)]))
+
+
+def with_effect(ship, name, **values):
+    return Model.of(ship).but(find(name).absent(ship).but(**values))
+
+
+def test_the_model_that_made_a_voyage_without_noise_predicts_it_within_centimetres(make, kvlcc2):
+    w = predict(track(make(noise=0.0), kvlcc2), Model.of(kvlcc2))
+    assert mean(w, "position", 120.0) < 0.5 and np.degrees(mean(w, "heading", 120.0)) < 0.05
+
+
+@pytest.mark.parametrize("horizon", HORIZONS_S)
+@pytest.mark.parametrize("name", ["position", "lateral", "heading"])
+def test_a_perfect_model_errs_as_much_as_the_noise_floor_says(make, kvlcc2, name, horizon):
+    windows = [predict(track(make(seed=k), kvlcc2), Model.of(kvlcc2), seed=k) for k in range(3)]
+    error = np.mean([mean(w, name, horizon) for w in windows])
+    floor = np.mean([mean(w, name, horizon, SENSORS) for w in windows])
+    assert 0.6 < error / floor < 1.6
+
+
+def test_a_structural_floor_stands_above_that_of_the_sensors(make, kvlcc2):
+    w = predict(track(make(), kvlcc2), Model.of(kvlcc2), floor=Floor())
+    for name in ("position", "lateral", "heading"):
+        assert mean(w, name, 120.0, STRUCTURE) > 2.0 * mean(w, name, 120.0, SENSORS)
+
+
+@pytest.mark.parametrize(
+    "name, values",
+    [
+        ("HeadingBias", {"bias": 0.05}),
+        ("AntennaOffset", {"ahead": -60.0, "starboard": 8.0}),
+        ("SensorDelay", {"delay": 3.0}),
+        ("SpeedLogScale", {"scale": 0.1}),
+    ],
+)
+def test_a_known_fault_of_an_instrument_is_undone_at_the_start_and_shown_in_the_readings(make, kvlcc2, name, values):
+    effect = find(name).absent(kvlcc2).but(**values)
+    t = track(make(effect, noise=0.0), kvlcc2)
+    aware, unaware = predict(t, Model.of(kvlcc2).but(effect)), predict(t, Model.of(kvlcc2))
+    off = [np.nanmean(np.abs(w.off()[w.at(120.0)]) / t.sd) for w in (aware, unaware)]
+    assert off[0] < 0.25 * off[1]
+
+
+def test_the_steering_gear_turns_orders_into_angles(make, kvlcc2):
+    lag = find("SteeringLag").absent(kvlcc2).but(delay=8.0, travel_time=60.0)
+    t = track(make(), kvlcc2)
+    prompt, late = predict(t, Model.of(kvlcc2)), predict(t, Model.of(kvlcc2).but(lag))
+    assert mean(late, "heading", 60.0) > 5.0 * mean(prompt, "heading", 60.0)
+
+
+def test_a_window_over_a_hole_in_the_controls_is_not_judged(make, kvlcc2):
+    v = make()
+    v.columns["rudder_angle_deg"][(v.time_s > 600.0) & (v.time_s < 640.0)] = np.nan
+    w = predict(track(v, kvlcc2), Model.of(kvlcc2))
+    start, end = w.track.t[w.start], w.track.t[w.start] + 120.0
+    over = (start < 640.0) & (end > 606.0)
+    assert over.any() and not w.valid[w.at(120.0)][over].any()
+    assert w.valid[w.at(120.0)][(end < 599.0)].all()
+
+
+def test_an_effect_whose_input_was_not_recorded_is_switched_off_and_said(make, kvlcc2):
+    windy = Model.of(kvlcc2.with_effects(find("Wind").plausible(kvlcc2)))
+    t = track(make(), kvlcc2)
+    model, off = fed(windy, t)
+    assert [type(e).__name__ for e in off] == ["Wind"] and not model.pushes
+    assert switched_off(windy, [t]) == [{"effect": "Wind", "voyage": "made", "not_measured": ["wind_speed", "wind_to"]}]
+
+
+def test_a_learned_force_acts_as_a_force_of_the_same_size_does(make, kvlcc2):
+    from dataclasses import replace
+
+    t, push = track(make(), kvlcc2), 3e5
+    learned = replace(Model.of(kvlcc2), residual=lambda s: Force(s.u * 0.0, s.u * 0.0 + push, s.u * 0.0))
+    known = with_effect(
+        kvlcc2, "TowForce", **{p.name: push for p in find("TowForce").params() if p.name in ("Y", "aside", "starboard")}
+    )
+    a, b = predict(t, learned).promised[0], predict(t, known).promised[0]
+    assert known.pushes[0] != find("TowForce").absent(kvlcc2)
+    assert np.allclose(a[-1, :, :2], b[-1, :, :2], atol=0.05)
+
+
+def test_a_model_that_runs_away_is_as_wrong_as_can_be_written_and_no_more(make, kvlcc2):
+    wild = Model.of(kvlcc2.with_derivatives(N_ur=50.0, N_uv=-50.0))
+    w = predict(track(make(), kvlcc2), wild)
+    assert np.isfinite(w.promised).all() and mean(w, "position", 120.0) > 50.0
+
+
+def test_a_receiver_slower_than_the_grid_is_compared_and_a_hole_is_not(make, kvlcc2):
+    v = make()
+    for name in ("north_m", "east_m"):
+        v.columns[name][1::2] = np.nan
+        v.columns[name][(v.time_s > 600.0) & (v.time_s < 660.0)] = np.nan
+    w = predict(track(v, kvlcc2), Model.of(kvlcc2))
+    end = (w.track.t[w.start] + 60.0)[w.start < w.start[-1]]
+    valid = w.valid[w.at(60.0)][w.start < w.start[-1]]
+    assert not valid[(end > 606.0) & (end < 654.0)].any() and valid[end < 590.0].all()

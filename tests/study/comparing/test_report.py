@@ -1,0 +1,131 @@
+"""The page: whole in itself, opens in a real browser without a complaint, says what was found."""
+
+import json
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from twin.errors import TwinError
+from twin.physics.effects import find
+from twin.physics.model import Model
+from twin.study import report
+from twin.study.compare import compare
+from twin.study.report.page import content
+
+BROWSER = next((b for b in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if b), None)
+FLAGS = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking --enable-logging=stderr"
+
+
+@pytest.fixture
+def stream(make, kvlcc2):
+    return make(find("Current").absent(kvlcc2).but(east=0.8), name="stream")
+
+
+@pytest.fixture
+def page(sailed, stream, kvlcc2, tmp_path):
+    """A page of compare, with text that would break a careless one."""
+    s = sailed(stream)
+    result = compare([s], Model.of(kvlcc2)).result | {"notes": ["</script><script>console.error('x')</script>"]}
+    report.write(tmp_path / "page.html", "compare", result, [s.track], Model.of(kvlcc2), voyages=[s.voyage])
+    return tmp_path / "page.html"
+
+
+def opened(path, fragment=""):
+    """(DOM, console lines) of a page in a real browser."""
+    if BROWSER is None:
+        pytest.skip("no Chromium on this machine")
+    words = [BROWSER, *FLAGS.split(), "--virtual-time-budget=4000", "--dump-dom", f"file://{path}{fragment}"]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=120)
+    return done.stdout, [line for line in done.stderr.splitlines() if "CONSOLE" in line]
+
+
+def test_the_page_asks_nothing_of_any_network(page):
+    text = page.read_text()
+    assert not re.findall(r"https?://|\bsrc=|@import|url\(|fetch\(|XMLHttpRequest|WebSocket", text)
+    assert "default-src 'none'" in text
+
+
+def test_the_page_opens_in_a_browser_without_a_complaint_and_shows_every_part(page):
+    dom, complaints = opened(page)
+    assert complaints == []
+    assert "data-ready-ms" in dom
+    for words in (
+        "Error in units of noise",
+        "Where it fails",
+        "Worst windows",
+        "Channel by time",
+        "Track",
+        "Data checks",
+        "Provenance",
+    ):
+        assert f"<h2>{words}</h2>" in dom
+    assert dom.index("<h1>After 120 s") < dom.index("<h2>") and "twin diagnose" in dom
+
+
+def test_the_page_is_dark_when_it_is_asked_to_be(page):
+    assert 'data-theme="dark"' in opened(page, "#theme=dark")[0]
+
+
+def test_the_page_of_diagnose_ranks_causes_in_newtons_with_the_command_beside(stream, sailed, kvlcc2, tmp_path):
+    number = {"name": "east", "value": 0.8, "low95": 0.7, "high95": 0.9, "unit": "m/s"}
+    cause = {
+        "effect": "Current", "probability": 0.97, "parameters": [number],
+        "typical_force": {"X_N": 4.1e4, "Y_N": 5.12e5, "N_Nm": 3.2e7}, "error_without": 72.0, "error_with": 13.0, "cannot_be_told_from": ["VaryingCurrent"],
+    }  # fmt: skip
+    next_one = {"separates": ["Current", "VaryingCurrent"], "manoeuvre": "reciprocal runs", "why": "it changes sign"}
+    result = {
+        "schema_version": 1,
+        "verdict": "missing",
+        "missing": ["Current"],
+        "candidates": [cause],
+        "next_manoeuvre": next_one,
+    }
+    report.write(tmp_path / "d.html", "diagnose", result, [sailed(stream).track], Model.of(kvlcc2))
+    dom, complaints = opened(tmp_path / "d.html")
+    assert complaints == []
+    for words in (
+        "Current (probability 97 %) is missing",
+        "512 kN aside",
+        "32.0 MN m turning",
+        "VaryingCurrent",
+        "reciprocal runs",
+        "twin add Current",
+    ):
+        assert words in dom
+
+
+def test_the_page_of_add_shows_before_and_after(verb, on_disk, stream, tmp_path):
+    words = ("--voyage", on_disk(stream), "-o", tmp_path / "s.toml", "--report", tmp_path / "a.html")
+    assert verb("add", "Current", "--ship", "kvlcc2", *words) == 0
+    dom, complaints = opened(tmp_path / "a.html")
+    assert complaints == [] and "What was fitted" in dom and "The ladder" in dom and "model before" in dom
+
+
+@pytest.mark.parametrize("verdict", ["nothing_missing", "unknown", "undecided"])
+def test_every_verdict_has_a_sentence(sailed, make, kvlcc2, verdict):
+    result = {"verdict": verdict, "missing": [], "candidates": [], "next_manoeuvre": None}
+    shown = content("diagnose", result, [sailed(make(seconds=400.0)).track], Model.of(kvlcc2))
+    assert len(shown["verdict"]) > 30
+    json.dumps(shown, allow_nan=False)
+
+
+def test_an_hour_at_ten_hertz_is_a_page_of_a_few_megabytes_that_opens_in_two_seconds(sailed, make, kvlcc2, tmp_path):
+    hour = make(seconds=3600.0, wind=8.0)
+    import numpy as np
+
+    t = np.arange(0.0, 3598.0, 0.1)
+    dense = hour.with_rows(t, {k: np.interp(t, hour.time_s, x) for k, x in hour.columns.items()})
+    report.write(
+        tmp_path / "h.html", "compare", {"verdict": "an hour"}, [sailed(hour).track], Model.of(kvlcc2), voyages=[dense]
+    )
+    dom, complaints = opened(tmp_path / "h.html")
+    ready = int(re.search(r'data-ready-ms="(\d+)"', dom).group(1))
+    assert complaints == [] and (tmp_path / "h.html").stat().st_size < 8e6
+    assert ready < 2000
+
+
+def test_a_page_that_cannot_be_written_is_one_clear_line(sailed, make, kvlcc2, tmp_path):
+    with pytest.raises(TwinError, match="cannot be written"):
+        report.write(tmp_path / "no" / "p.html", "compare", {}, [sailed(make(seconds=400.0)).track], Model.of(kvlcc2))
