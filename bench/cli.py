@@ -31,7 +31,12 @@ BENCHES: dict[str, Bench] = {
         "bench.paper", "the paper's tables beside the paper's numbers", "twin-bench paper --quick"
     ),
     "hidden-effects": Bench(
-        "bench.hidden_effects", "the hidden-effect league", "twin-bench hidden-effects --json -"
+        "bench.hidden_effects",
+        "the hidden-effect league: is what is missing named?",
+        "twin-bench hidden-effects --quick --json -",
+    ),
+    "real": Bench(
+        "bench.real_kvlcc2", "measured KVLCC2 manoeuvres (SIMMAN 2008)", "twin-bench real --data DIR"
     ),
 }
 

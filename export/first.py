@@ -24,7 +24,7 @@ from twin.live.residual import ship_hash
 from twin.live.rows import read_rows
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
-from twin.physics.state import Situation
+from twin.physics.state import Force, Situation
 from twin.physics.zeta import inputs
 
 NAMES = ("surge", "sway", "yaw", "rudder", "propeller")
@@ -76,7 +76,7 @@ def read(path: Path, ship: Ship) -> Run:
     psi, r, delta = (np.radians(si[name]) for name in ("psi", "r", "delta"))
     s = Situation(0.0, 0.0, psi, si["u"], si["v"], r, delta=delta, n=si["n"] / 60.0)
     known = Known(Model.of(ship))
-    rates = np.stack(known.rates(s, (0.0, 0.0, 0.0)), axis=1)  # type: ignore[arg-type]
+    rates = np.stack(known.rates(s, Force(0.0, 0.0, 0.0)), axis=1)
     nu = np.stack([s.u, s.v, s.r], axis=1)
     left = np.diff(nu, axis=0) / STEP_S - 0.5 * (rates[1:] + rates[:-1])
     force = known.force_for(*left.T)

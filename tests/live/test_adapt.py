@@ -11,8 +11,6 @@ from twin.live.learned import LearnedForce, scale_of
 from twin.live.residual import bundled, load
 from twin.physics.state import Force
 
-LAM = 0.05
-
 
 def made(ship, components=2):
     return Adaptation(ship, scale_of(ship), components)
@@ -20,26 +18,20 @@ def made(ship, components=2):
 
 def known(ship, hull=(0.5, 0.5, 0.5), rudder=(0.0, 0.3, 0.3)):
     S = scale_of(ship)
-    return {
-        "hull": Force(*(h * s for h, s in zip(hull, S, strict=True))),
-        "rudder": Force(*(h * s for h, s in zip(rudder, S, strict=True))),
-        "propeller": Force(0.4 * S.X, 0.0, 0.0),
-    }
+    sized = [Force(*(h * s for h, s in zip(f, S, strict=True))) for f in (hull, rudder)]
+    return [sized[0], Force(), Force(0.4 * S.X), sized[1]]  # in the order of the core
 
 
 def teach(adaptation, ship, truth, seconds=4000, dt=0.5, noise=0.1, seed=1, frozen=""):
-    """Feed d = truth(regressors) + noise; the regressors move as in manoeuvres."""
+    """Feed truth(row, its regressors) + noise; the regressors move as in manoeuvres."""
     dice = random.Random(seed)
-    filtered = [0.0, 0.0, 0.0]
     for k in range(int(seconds / dt)):
         t = dt * k
-        q = [sin(t / 40.0), sin(t / 27.0 + 1.0)]
-        rows = adaptation.regressors(q, known(ship, hull=(0.5, 0.6 * sin(t / 35.0), 0.5 * sin(t / 30.0)), rudder=(0, sin(t / 50.0), sin(t / 45.0))))
-        a = LAM * dt
-        filtered = [f + a * (truth(r, row) - f) for r, (f, row) in enumerate(zip(filtered, rows, strict=True))]
-        d = tuple(f + noise * dice.gauss(0.0, 1.0) for f in filtered)
-        adaptation.learn(d, [0.0, 0.0, 0.0], rows, LAM, dt, frozen)
-    return rows
+        forces = known(ship, hull=(0.5, 0.6 * sin(t / 35.0), 0.5 * sin(t / 30.0)), rudder=(0, sin(t / 50.0), sin(t / 45.0)))
+        q = adaptation.regressors([sin(t / 40.0), sin(t / 27.0 + 1.0)], forces)
+        d = tuple(truth(r, adaptation._of_row(r, q)) + noise * dice.gauss(0.0, 1.0) for r in range(3))
+        adaptation.learn(d, q, dt, frozen)
+    return q
 
 
 def test_it_finds_a_hull_force_that_is_20_percent_off(kvlcc2):
@@ -65,7 +57,7 @@ def test_M12_whatever_it_is_fed_it_stays_finite_and_inside_its_bounds(kvlcc2):
         q = [dice.choice((-3.0, 3.0)) for _ in range(2)]
         rows = adaptation.regressors(q, known(kvlcc2, hull=[dice.uniform(-1e3, 1e3) for _ in range(3)]))
         d = tuple(dice.choice((-1e6, 1e6, 0.0, 1e300)) for _ in range(3))
-        adaptation.learn(d, [0.0] * 3, rows, LAM, dice.choice((0.01, 0.1, 0.9)), "")
+        adaptation.learn(d, rows, dice.choice((0.01, 0.1, 0.9)), "")
         assert adaptation.norm() <= A_MAX + 1e-12
     for p in adaptation.parameters():
         assert isfinite(p.value) and p.low <= p.value <= p.high and isfinite(p.sigma)
@@ -88,7 +80,7 @@ def test_without_a_manoeuvre_there_is_nothing_to_learn_from(kvlcc2):
     adaptation = made(kvlcc2)
     rows = adaptation.regressors([0.1, 0.2], known(kvlcc2))
     for _ in range(4000):
-        adaptation.learn((0.3, 0.3, 0.3), [0.0] * 3, rows, LAM, 0.5, "")
+        adaptation.learn((0.3, 0.3, 0.3), rows, 0.5, "")
     assert "manoeuvre" in adaptation.frozen and adaptation.norm() < 0.2
 
 

@@ -14,7 +14,8 @@ from twin.live.topics import OUTPUTS, address
 
 def test_numbers_that_are_none_are_withheld_and_counted():
     publisher = Publisher()
-    assert publisher._finite({"a": 1.0, "b": nan, "c": -inf, "d": 3, "e": None}) == {"a": 1.0, "d": 3, "e": None}
+    assert publisher._finite({"a": 1.0, "b": nan, "c": -inf, "d": 3}) == {"a": 1.0, "d": 3}
+    assert publisher._finite({"a": 1e308, "b": 1e308}) == {"a": 1e308, "b": 1e308}
     assert publisher.withheld == 2
 
 

@@ -81,13 +81,13 @@ class Foresight:
                 break
             while left and start.time_s + left[0] <= t_next + 1e-6:
                 there = replace(s)
-                carry(there, start.physics, start.learned(there, start.physics.force(there)), start.time_s + left[0] - t)
+                carry(there, start.physics, start.learned, start.time_s + left[0] - t)
                 if error := _error(there, si, si_next, (start.time_s + left[0] - t) / (t_next - t)):
                     found[left[0]] = error
                 left.pop(0)
             steps = ceil((t_next - t) / self.step_s)
             for _ in range(steps):
-                carry(s, start.physics, start.learned(s, start.physics.force(s)), (t_next - t) / steps)
+                carry(s, start.physics, start.learned, (t_next - t) / steps)
         return found
 
 
