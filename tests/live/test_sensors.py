@@ -173,6 +173,20 @@ def test_I13_I14_stamps_far_from_now_are_refused(bridge, shift, quality):
     assert ticks[-1].quality.heading_true_north_deg == quality
 
 
+def test_I13_samples_older_than_their_channel_may_be_are_of_no_use_and_do_no_harm(bridge):
+    """Test: every channel suddenly 1.5 s late (its ten periods are 1 s). Expected: stale, dead reckoning, no crash; back again."""
+    bridge.run(20.0)
+    late = []
+
+    def delayed(readings, b):
+        late.append(readings)
+        return [r._replace(received_s=b.now_s) for r in late[-16]] if len(late) > 15 else []
+
+    ticks = bridge.run(6.0, delayed)
+    assert ticks[-1].mode == "dead reckoning" and ticks[-1].quality.heading_true_north_deg == Quality.STALE
+    assert bridge.run(2.0)[-1].mode == "physics only"
+
+
 @pytest.mark.parametrize("factor, word", ((57.2958, "degrees where radians"), (0.0174533, "radians where degrees"), (-1.0, "wrong sign")))
 def test_I17_I18_a_yaw_rate_in_the_wrong_unit_or_sign_is_named(bridge, factor, word):
     """Test: the rate of turn times 57.3, over 57.3, or negated. Expected: said within two ship lengths of turning."""

@@ -1,10 +1,10 @@
 """From settings to a loop: the ship, her residual, her certificate, and what had to be left out, in words."""
 
-import subprocess
 import sys
 from pathlib import Path
 
 from twin.errors import SettingsError
+from twin.live import network, realtime
 from twin.live import residual as residuals
 from twin.live.adapt import Adaptation
 from twin.live.certificate import Certificate, Tube, kept
@@ -27,10 +27,18 @@ CERTIFY_S = 20.0  # the longest the start waits for a certificate
 
 
 def loop_of(settings: Settings, ears: Ears, voice: Outbox, ship: Ship | None = None, certify: bool = True) -> Loop:
-    """The loop these settings describe; SettingsError when they cannot be used. `certify` False: no certificate is worked out."""
+    """The loop these settings describe; SettingsError when they cannot be used. `certify` False: no certificate is worked out.
+
+    What loading a library leaves in memory is given back before the next one is loaded: their sum would be the peak.
+    """
+    breathe = realtime.drop_pages if settings["loop.drop_pages"] else int
+    breathe()
     ship = ship or load_ship(settings["ship.file"])
     notes: list[str] = []
+    if settings["residual.file"] != "none":
+        network.open_library(breathe)
     residual, why_not = residual_of(settings, ship)
+    breathe()
     learned = LearnedForce(ship, residual, why_not, settings["adaptation.on"])
     if learned.adaptation is not None and (path := learned_file(settings)):
         learned.adaptation.restore(path, mark_of(learned))
@@ -83,6 +91,8 @@ def keep(adaptation: Adaptation, learned: LearnedForce) -> str:
 
 def stabilizer_of(settings: Settings, ship: Ship) -> Stabilizer:
     """The certificate from its file; when there is none it is worked out by another process (it needs numpy, the loop does not)."""
+    import subprocess  # costs a megabyte, and only here
+
     h, K = 1.0 / settings["loop.rate_hz"], settings["observer.gain"] or gain_for(ship)
     oldest_s = settings["observer.oldest_s"] or min(max(0.0125 * ship.L_pp / ship.U_0, 2.0 * h), 1.2)
     delay = max(round(oldest_s / h), 1)

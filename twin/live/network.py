@@ -7,6 +7,8 @@ indices below hold for every release. One thread, no arena, no telemetry.
 
 import ctypes
 import os
+from collections.abc import Callable
+from contextlib import suppress
 from ctypes import POINTER, byref, c_char_p, c_float, c_int, c_int64, c_size_t, c_uint32, c_void_p
 from functools import lru_cache
 from importlib.machinery import PathFinder
@@ -37,8 +39,7 @@ class _Runtime:
     """The functions of ONNX Runtime, and its one environment."""
 
     def __init__(self) -> None:
-        os.environ["ORT_DISABLE_TELEMETRY"] = "1"  # before the library is loaded: a thread and a database otherwise
-        library = ctypes.CDLL(str(_library()))
+        library = _load()
         library.OrtGetApiBase.restype = POINTER(_Base)
         base = library.OrtGetApiBase().contents
         self.version = base.version().decode()
@@ -53,7 +54,8 @@ class _Runtime:
 
     def call(self, name: str, *arguments: Any) -> None:
         """Call a function that returns a status; a bad one becomes a NetworkError."""
-        self.check(self.function(name, c_void_p, *(type(a) if type(a).__name__ != "CArgObject" else c_void_p for a in arguments))(*arguments))
+        types = [c_void_p if type(a).__name__ == "CArgObject" else type(a) for a in arguments]  # byref() gives a CArgObject
+        self.check(self.function(name, c_void_p, *types)(*arguments))
 
     def check(self, status: int | None) -> None:
         if status:
@@ -117,6 +119,21 @@ class Network:
         self._runtime.call("CreateTensorWithDataAsOrtValue", info, data, size, shape_at, c_size_t(2), kind, byref(value))
         self._runtime.release("ReleaseMemoryInfo", info)
         return value.value or 0
+
+
+def open_library(breathe: Callable[[], object]) -> None:
+    """Load ONNX Runtime now, if it is there; `breathe` is called between its steps (it may give memory back)."""
+    with suppress(NetworkError):
+        _load()
+        breathe()
+        _runtime()
+        breathe()
+
+
+@lru_cache(maxsize=1)
+def _load() -> ctypes.CDLL:
+    os.environ["ORT_DISABLE_TELEMETRY"] = "1"  # before the library is loaded: a thread and a database otherwise
+    return ctypes.CDLL(str(_library()))
 
 
 @lru_cache(maxsize=1)

@@ -1,16 +1,17 @@
-"""Readings in, one `Measured` out: what the ship's instruments say now, in SI, each with its age, and why some of it is missing.
+"""Readings in, one `Measured` out: what the ship's instruments say now, in SI, with its age, and why some of it is missing.
 
 Every channel has its gate; what no instrument measures is derived where that is exact enough, and said to be derived.
 """
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
 from math import degrees, inf, pi
 
-from twin.live.channels import BY_NAME, CHANNELS
+from twin.live.channels import CHANNELS
 from twin.live.derive import RateFromHeading, SpeedFromPosition, true_wind
 from twin.live.estimate import Estimate
 from twin.live.frozen import Frozen
 from twin.live.gate import Gate
+from twin.live.measured import Measured
 from twin.live.readings import WORDS, Quality, Reading, Rejected
 from twin.live.stamps import Stamps
 from twin.physics.ship import Ship
@@ -20,146 +21,145 @@ NOISY = (
     "surge_velocity_mps", "sway_velocity_mps", "surge_velocity_through_water_mps", "sway_velocity_through_water_mps",
     "yaw_rate_degps", "true_wind_speed_mps", "true_wind_direction_deg", "apparent_wind_speed_mps", "apparent_wind_angle_deg",
 )  # fmt: skip
-DERIVED_FROM = {"u": "x", "v": "x", "r": "psi"}
 FROM = {"wind_from": "wind_to", "wave_from": "wave_to"}  # physics says where wind and waves go
-
-
-@dataclass(slots=True)
-class Measured:
-    """What may be believed now: SI values by attribute of physics; an attribute that is not there is not measured.
-
-    `fresh` has those with a new sample in this tick and the time since the one before [s]; `age_s` how old each value is;
-    `steps` those that were reset because a step lasted; `derived` those that no instrument measured itself.
-    """
-
-    now_s: float
-    si: dict[str, float] = field(default_factory=dict)
-    fresh: dict[str, float] = field(default_factory=dict)
-    age_s: dict[str, float] = field(default_factory=dict)
-    since_s: dict[str, float] = field(default_factory=dict)  # time since the newest sample arrived
-    hold_s: dict[str, float] = field(default_factory=dict)  # how long until the next one is due
-    steps: dict[str, float] = field(default_factory=dict)
-    derived: set[str] = field(default_factory=set)
-    border: dict[str, float] = field(default_factory=dict)  # by channel, border units: what is logged and shown
-    clock_step_s: float = 0.0
-
-    def has(self, *attributes: str) -> bool:
-        return all(a in self.si for a in attributes)
-
-    def age_by_channel(self) -> dict[str, float]:
-        return {name: self.age_s[BY_NAME[name].attribute] for name in self.border}
+FAR = inf
 
 
 class Sensors:
-    """All channels of one ship."""
+    """All channels of one ship; `rejected` counts the samples that were refused."""
 
     def __init__(self, ship: Ship, sources: dict[str, str] | None = None, max_delay_s: float = 2.0):
         floors = noise_floors(ship)
         sources = sources or {}
         self.gates = {
-            c.name: Gate(c, floors.get(c.name, inf), _frozen(c.name, floors), sources.get(c.name)) for c in CHANNELS
+            c.name: Gate(c, floors.get(c.name, FAR), _frozen(c.name, floors), sources.get(c.name)) for c in CHANNELS
         }
         self.stamps = Stamps(max_delay_s)
         self.rejected = 0
+        self.codes: dict[str, int] = {name: int(Quality.NEVER_SEEN) for name in self.gates}
+        self._live: dict[str, Gate] = {}  # channels whose value may be used
+        self._odd: set[str] = set()  # channels that were not well when last looked at
+        self._losing: set[str] = set()
+        self._now = Measured(0.0)  # kept up to date, copied out each tick
+        self._names = tuple(self.gates)
+        self._ticks = 0
         slow = ship.U_0 / ship.L_pp
         self._speed = SpeedFromPosition(min(max(12.0 * slow, 0.05), 2.0))
         self._turn = RateFromHeading(min(max(36.0 * slow, 0.2), 5.0))
         self._motion: dict[str, float] = {}
-        self._last: dict[str, float] = {}  # attribute: when its newest used sample was measured
-        self._derived: dict[str, tuple[float, float]] = {}  # attribute: value, time
+        self._derived: dict[str, tuple[float, str]] = {}  # attribute: value, what it was derived from
 
-    def read(self, arrived: list[Reading | Rejected], now_s: float, wall_s: float, own: Estimate) -> Measured:
+    def read(self, arrived: Sequence[Reading | Rejected], now_s: float, wall_s: float, own: Estimate) -> Measured:
         """Takes what arrived since the last tick; `own` is where the twin believes the ship to be."""
-        measured = Measured(now_s, clock_step_s=self.stamps.observe(now_s, wall_s))
+        step_s = self.stamps.observe(now_s, wall_s)
         self._motion = motion_of(own)
-        touched: dict[str, Gate] = {}
+        fresh: dict[str, float] = {}
+        steps: dict[str, float] = {}
         for result in arrived:
-            gate = self._take(result)
-            if gate is not None:
-                touched[gate.channel.name] = gate
-                if gate.step:
-                    measured.steps[gate.channel.attribute] = gate.step * gate.channel.to_si
-        for name, gate in self.gates.items():
-            if gate.value is not None and not gate.lost(now_s):
-                self._put(measured, gate, name in touched)
+            self._take(result, fresh, steps)
+        for name in [name for name, gate in self._live.items() if now_s > gate.expires_s]:
+            attribute = self._lose(name)
+            fresh.pop(attribute, None)  # a sample may be too old when it comes
+            steps.pop(attribute, None)
+        measured = self._now.at(now_s, fresh, steps, step_s)
         self._derive(measured, own)
+        self._judge(now_s)
         return measured
 
-    def _take(self, result: Reading | Rejected) -> Gate | None:
-        """One result through its gate; the gate, if it took the sample."""
-        gate = self.gates.get(result.channel)
-        if isinstance(result, Rejected) or gate is None:
+    def _take(self, result: Reading | Rejected, fresh: dict[str, float], steps: dict[str, float]) -> None:
+        """One result through its gate."""
+        name = result.channel
+        gate = self.gates.get(name)
+        if gate is None:
             self.rejected += 1
-            if gate is not None:
-                gate.refuse(result.quality if isinstance(result, Rejected) else Quality.UNKNOWN_KEY, result.received_s)
-            return None
+            return
+        self._odd.add(name)
+        if isinstance(result, Rejected):
+            gate.refuse(result.quality, result.received_s)
+            self.rejected += 1
+            return
         t, quality = self.stamps.on_monotonic(result)
+        before_s = gate.time_s
         if quality is not Quality.OK:
             gate.refuse(quality, result.received_s)
         else:
-            quality = gate.accept(result, t, self._motion.get(result.channel, 0.0))
-        if quality is Quality.OK:
-            return gate
-        self.rejected += 1
-        return None
+            quality = gate.accept(result, t, self._motion.get(name, 0.0))
+        if quality is not Quality.OK:
+            self.rejected += 1
+            return
+        self._put(name, gate)
+        attribute = gate.channel.attribute
+        fresh[attribute] = fresh.get(attribute, 0.0) + (t - before_s if before_s > 0.0 else 0.0)
+        if gate.step:
+            steps[attribute] = gate.step * gate.channel.to_si
 
-    def _put(self, measured: Measured, gate: Gate, touched: bool) -> None:
-        channel, value = gate.channel, gate.value or 0.0
+    def _put(self, name: str, gate: Gate) -> None:
+        channel, value, now = gate.channel, gate.value or 0.0, self._now
         attribute = channel.attribute
-        measured.border[channel.name] = value
-        measured.age_s[attribute] = measured.now_s - gate.time_s
-        measured.since_s[attribute] = measured.now_s - gate.received_s
-        measured.hold_s[attribute] = min(1.2 * gate.interval_s, 2.0)
-        measured.si[attribute] = value * channel.to_si
+        self._live[name] = gate
+        now.border[name], now.taken[name] = value, gate.time_s
+        now.si[attribute] = value * channel.to_si
+        now.time[attribute], now.heard[attribute] = gate.time_s, gate.received_s
+        now.hold_s[attribute] = min(1.2 * gate.interval_s, 2.0)
         if attribute in FROM:
-            measured.si[FROM[attribute]] = (value * channel.to_si + pi) % (2.0 * pi)
-        if touched:
-            measured.fresh[attribute] = gate.time_s - self._last.get(attribute, gate.time_s)
-            self._last[attribute] = gate.time_s
+            now.si[FROM[attribute]] = (value * channel.to_si + pi) % (2.0 * pi)
+
+    def _lose(self, name: str) -> str:
+        """The channel's last value is too old; returns its attribute."""
+        now, attribute = self._now, self._live.pop(name).channel.attribute
+        self._odd.add(name)
+        del now.border[name], now.taken[name], now.si[attribute]
+        now.si.pop(FROM.get(attribute, ""), None)
+        return attribute
 
     def _derive(self, measured: Measured, own: Estimate) -> None:
-        """Speed over ground, rate of turn and true wind, where no instrument gives them."""
+        """Speed over ground, rate of turn and true wind, where no instrument gives them; the filters run along, ready to stand in."""
         si, fresh = measured.si, measured.fresh
-        if "r" not in si and "psi" in fresh:
-            self._keep(measured, self._turn.feed(si["psi"], self._last["psi"]), "psi", {"r": self._turn.r})
-        if not ("u" in si and "v" in si) and "x" in fresh and "y" in fresh and measured.has("psi"):
+        if "psi" in fresh:
+            ready = self._turn.feed(si["psi"], measured.time["psi"])
+            self._keep(ready, "psi", {"r": self._turn.r})
+        if "x" in fresh and "y" in fresh and "psi" in si:
             if measured.steps:
                 self._speed = SpeedFromPosition(self._speed.omega)
-            ready = self._speed.feed(si["x"], si["y"], si["psi"], self._last["x"])
-            self._keep(measured, ready, "x", {"u": self._speed.u, "v": self._speed.v})
-        for attribute, (value, t) in self._derived.items():
-            if attribute not in si and DERIVED_FROM[attribute] in si:
-                si[attribute], measured.age_s[attribute] = value, measured.now_s - t
-                of = DERIVED_FROM[attribute]
-                measured.since_s[attribute], measured.hold_s[attribute] = measured.since_s[of], measured.hold_s[of]
-                measured.derived.add(attribute)
+            ready = self._speed.feed(si["x"], si["y"], si["psi"], measured.time["x"])
+            self._keep(ready, "x", {"u": self._speed.u, "v": self._speed.v})
+        for attribute, (value, of) in self._derived.items():
+            if attribute not in si and of in si:
+                measured.derive(attribute, value, of)
         if "wind_speed" not in si and measured.has("apparent_wind_speed", "apparent_wind_from"):
             felt = si["apparent_wind_speed"], si["apparent_wind_from"]
             si["wind_speed"], si["wind_to"] = true_wind(*felt, own.psi, own.u, own.v)
             measured.derived.update(("wind_speed", "wind_to"))
 
-    def _keep(self, measured: Measured, ready: bool, of: str, values: dict[str, float]) -> None:
-        if not ready:
-            return
+    def _keep(self, ready: bool, of: str, values: dict[str, float]) -> None:
         for attribute, value in values.items():
-            if attribute not in measured.si:
-                self._derived[attribute] = (value, self._last[of])
-                measured.fresh[attribute] = measured.fresh[of]
+            if ready:
+                self._derived[attribute] = (value, of)
+            else:
+                self._derived.pop(attribute, None)
 
-    def qualities(self, now_s: float) -> dict[str, int]:
-        """The quality code of each channel."""
-        return {name: gate.quality(now_s) for name, gate in self.gates.items()}
+    def _judge(self, now_s: float) -> None:
+        """The codes of the channels that were touched or were not well, and one after the other which lose samples."""
+        for name in tuple(self._odd):
+            quality = self.gates[name].quality(now_s)
+            self.codes[name] = int(quality)
+            if quality is Quality.OK:
+                self._odd.discard(name)
+        self._ticks += 1
+        name = self._names[self._ticks % len(self._names)]
+        (self._losing.add if self.gates[name].losing(now_s) else self._losing.discard)(name)
 
-    def reasons(self, now_s: float) -> list[str]:
+    def reasons(self) -> list[str]:
         """What is wrong with the channels that were ever heard of, in words."""
         said = []
-        for name, gate in self.gates.items():
-            quality = gate.quality(now_s)
-            if quality is Quality.CONFLICT:
+        for name in self._names if self._odd or self._losing else ():
+            quality = self.codes[name]
+            gate = self.gates[name]
+            if quality == Quality.CONFLICT:
                 said.append(f"{name}: {gate.source} and {gate.rival} both publish it; {gate.source} is used. Choose one under [sources]")
             elif quality not in (Quality.OK, Quality.NEVER_SEEN):
-                said.append(f"{name}: {WORDS[quality]}")
-            elif gate.losing(now_s):
+                said.append(f"{name}: {WORDS[Quality(quality)]}")
+            elif name in self._losing:
                 said.append(f"{name}: samples are lost, less than 60 % of the usual rate arrives")
         return said
 
@@ -188,6 +188,3 @@ def _frozen(name: str, floors: dict[str, float]) -> Frozen | None:
     if name in MOVING:
         return Frozen(least=0.5 * floors[name])
     return Frozen() if name in NOISY else None
-
-
-assert all(name in BY_NAME for name in (*MOVING, *NOISY))
