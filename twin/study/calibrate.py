@@ -27,10 +27,7 @@ from .track import Track
 
 SCHEMA_VERSION = 1
 UNEXCITED = 0.1  # a derivative of whose prior variance the voyages took away less than this keeps its prior
-EPILOG = """example:
-  twin calibrate calm1.mcap calm2.mcap zigzag.mcap --ship alma.toml -o alma2.toml
-
-Reference voyages are ones on which nothing was wrong and the weather was calm: zigzags, circles, speed changes. Without --held-out
+EPILOG = """Reference voyages are ones on which nothing was wrong and the weather was calm: zigzags, circles, speed changes. Without --held-out
 the last third of the voyages (or of a single voyage) is held back to measure the error. The standard errors, and the structural
 error that remains, are stored in the ship file: they keep an imperfect model from being called a missing effect.
 Exit code 4: a voyage cannot be used; 5: the ship file is not valid.
@@ -191,7 +188,7 @@ def _split(fitted: list[Sailed], held_out: list[Sailed]) -> tuple[list[Sailed], 
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = EPILOG
+    parser.epilog = f"{parser.epilog or ''}\n\n{EPILOG}"
     parser.add_argument("voyages", metavar="VOYAGE", nargs="+", help="reference voyages: calm, nothing wrong, manoeuvring")
     parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the ship file to start from, or a bundled ship's name")
     parser.add_argument("-o", "--output", metavar="SHIP2.toml", required=True, help="the calibrated ship file")

@@ -23,10 +23,7 @@ from .voyage import Voyage
 SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
 LEAST = 0.05
-EPILOG = """example:
-  twin diagnose monday.mcap tuesday.mcap --ship alma.toml --reference calm.mcap --report diagnosis.html
-
-Verdicts: missing (named, with size and interval), nothing_missing, unknown (something is there that no effect of the catalogue
+EPILOG = """Verdicts: missing (named, with size and interval), nothing_missing, unknown (something is there that no effect of the catalogue
 explains), undecided (the voyages cannot tell; next_manoeuvre says what to sail). Reference voyages are those of the same ship on
 which nothing was wrong: they set the floor below which an imperfect model is not called a missing effect.
 Exit code 4: a voyage cannot be used; 5: the ship file is not valid.
@@ -49,7 +46,7 @@ def diagnose(
     case = assemble(voyages, ship, references, progress)
     weighed, found = search(case, progress)
     w, seen = weights(case, weighed), visible(case)
-    verdict, missing = judge(case, w, seen)
+    verdict, missing = judge(case, weighed, w, seen)
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
@@ -118,7 +115,7 @@ def _not_judged(case: Case) -> list[dict[str, Any]]:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = EPILOG
+    parser.epilog = f"{parser.epilog or ''}\n\n{EPILOG}"
     parser.add_argument("voyages", metavar="VOYAGE", nargs="+", help="voyages on which something may be wrong")
     parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name")
     parser.add_argument("--reference", metavar="VOYAGE", nargs="+", default=[], help="voyages of the same ship on which nothing was wrong")

@@ -23,7 +23,7 @@ def learned_force(path: str, ship: Ship) -> Callable[[Situation], Force]:
         }
         width = max(x.size for x in there.values())
         rows = zip(*(np.broadcast_to(x, width).tolist() for x in there.values()), strict=True)
-        found = [learned.at(Situation(**dict(zip(there, row, strict=True))), {})[0].force for row in rows]
+        found = [learned.at(Situation(**dict(zip(there, row, strict=True))), ()).force for row in rows]
         return Force(*np.array(found).T)
 
     return force

@@ -8,13 +8,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from scipy.special import stdtrit
 
+from twin.errors import DataError
 from twin.physics.ship import Ship
 
 from . import locate, score
 from .openloop import MODEL, SENSORS, Windows
 from .track import MEASURED
 
+FEWEST = 2.0  # windows that do not overlap, below which nothing can be proved
 RESAMPLES = 2000
 UNCHANGED = 1e-6  # [m, rad] predictions of the position nearer than this are the same
 
@@ -48,11 +51,23 @@ def fall(before: Sequence[Windows], after: Sequence[Windows], horizon_s: float) 
     kept = [np.isfinite(b) & np.isfinite(a) for b, a, _ in errors]
     b = np.concatenate([e[0][k] for e, k in zip(errors, kept, strict=True)])
     a = np.concatenate([e[1][k] for e, k in zip(errors, kept, strict=True)])
-    change = _bootstrap(
-        [e[1][k] - e[0][k] for e, k in zip(errors, kept, strict=True)], [_block(w, horizon_s) for w in before]
-    )
-    low, high = np.quantile(change, [0.025, 0.975]) if change.size else (-np.inf, np.inf)
+    changes, blocks = [e[1][k] - e[0][k] for e, k in zip(errors, kept, strict=True)], [_block(w, horizon_s) for w in before]
+    independent = sum(c.size / block for c, block in zip(changes, blocks, strict=True))
+    if independent < FEWEST:
+        names = ", ".join(w.track.name for w in before)
+        raise DataError(
+            f"{names}: what is left to judge by holds {independent:.1f} windows of {horizon_s:g} s that do not overlap; "
+            f"at least {FEWEST:g} are needed. Give a longer voyage, or another one with --held-out."
+        )
+    low, high = _interval(_bootstrap(changes, blocks), float((a - b).mean()), independent)
     return Fall(measure, unit, float(b.mean()), float(a.mean()), float(low), float(high), b.size)
+
+
+def _interval(means: np.ndarray, middle: float, independent: float) -> tuple[float, float]:
+    """95 % about the change, widened as Student's t is for so few independent windows."""
+    wider = float(stdtrit(independent - 1.0, 0.975)) / 1.96
+    low, high = np.quantile(means, [0.025, 0.975])
+    return middle + wider * (float(low) - middle), middle + wider * (float(high) - middle)
 
 
 def _judged(

@@ -22,6 +22,7 @@ from .track import Track
 DOUBT = 0.2
 MOST_SEGMENTS = 20  # of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
 SHORTLIST = 6
+SINGLES = 4
 FAR = 12.0  # log odds beyond which a hypothesis is not looked at again
 EARNED = 1.5  # log evidence that an effect must add to be looked at again
 
@@ -113,7 +114,22 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> t
             weighed.pop((chosen, name), None)
         weighed |= {(h.effects, h.world): h for h, _, _ in refined}
         found[chosen] = Found(*max(refined, key=lambda item: item[0].log_weight))
-    return sorted(weighed.values(), key=lambda h: -h.log_weight), found
+    return sorted(_level(weighed, first, found), key=lambda h: -h.log_weight), found
+
+
+def _level(
+    weighed: Mapping[tuple[tuple[str, ...], str], Hypothesis], first: Sequence[Hypothesis], found: Mapping[tuple[str, ...], Found]
+) -> list[Hypothesis]:
+    """A pair that was not judged again gains what its member gained when that was: what it adds stays what it was."""
+    linear = {(h.effects, h.world): h.log_evidence for h in first}
+    gained = {key: h.log_evidence - linear[key] for key, h in weighed.items() if key[0] in found and key in linear}
+    out = []
+    for (effects, world), h in weighed.items():
+        parts = [gained[(name,), world] for name in effects if ((name,), world) in gained]
+        if effects not in found and parts:
+            h = replace(h, log_evidence=h.log_evidence + max(parts))
+        out.append(h)
+    return out
 
 
 def _first_pass(case: Case, worlds: Mapping[str, Reduced]) -> list[Hypothesis]:
@@ -139,6 +155,9 @@ def _shortlist(first: Sequence[Hypothesis]) -> list[tuple[str, ...]]:
             out[h.effects] = None
     for chosen in list(out):
         out |= dict.fromkeys((name,) for name in chosen)
+    if len(first[0].effects) != 1 or first[0].world != "usual":  # no plain answer yet: what is not linear deserves a second look
+        singles = [h.effects for h in first if len(h.effects) == 1 and h.log_evidence > evidence.get(((), h.world), -np.inf) + EARNED]
+        out |= dict.fromkeys(list(dict.fromkeys(singles))[:SINGLES])
     return list(out)
 
 

@@ -10,6 +10,7 @@ from twin.physics.model import Model
 from .columns import with_values
 from .evidence import Hypothesis, Posterior, posterior, probabilities, reduce
 from .innovations import innovate
+from .nuisance import SURROUNDINGS
 from .openloop import predict
 from .respond import respond
 from .search import MOST_SEGMENTS, WORLDS, Case, Found
@@ -68,14 +69,22 @@ def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
     return out
 
 
-def judge(case: Case, w: Weights, seen: dict[str, bool]) -> tuple[str, list[str]]:
-    """The verdict, and the effects to add, the most probable first."""
-    named = sorted((n for n in w.best.effects if w.effects[n] >= SURE), key=lambda n: -w.effects[n])
+def judge(case: Case, weighed: Sequence[Hypothesis], w: Weights, seen: dict[str, bool]) -> tuple[str, list[str]]:
+    """The verdict, and the effects to add, first the one that explains most."""
+    alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
+    named = [n for n in w.best.effects if w.effects[n] >= SURE]
+    named.sort(key=lambda n: -alone.get((n,), -np.inf))
     if w.unknown >= SURE:
         return "unknown", []
     if w.nothing >= SURE:
-        return ("nothing_missing" if 2 * sum(seen.values()) >= len(seen) else "undecided"), []
+        return ("nothing_missing" if _enough(seen) else "undecided"), []
     return ("missing", named) if named else ("undecided", [])
+
+
+def _enough(seen: dict[str, bool]) -> bool:
+    """Whether the voyages would have shown three in four of the effects that do not depend on the day's weather and water."""
+    lasting = [can for name, can in seen.items() if name not in SURROUNDINGS]
+    return sum(lasting) >= 0.75 * len(lasting)
 
 
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:

@@ -1,0 +1,63 @@
+"""Calibration: the held-out error falls, what is not excited keeps its prior, and the file carries what remains."""
+
+import json
+
+import pytest
+
+from twin import cli
+from twin.physics.ship import load
+from twin.study.write import write_voyage
+
+
+@pytest.fixture(scope="module")
+def calibrated(voyages, tmp_path_factory):
+    """The published tanker calibrated on two voyages and measured on a third."""
+    folder = tmp_path_factory.mktemp("calibrate")
+    paths = {}
+    for name in ("calm", "calm too", "nothing"):
+        paths[name] = folder / f"{name.replace(' ', '-')}.mcap"
+        write_voyage(voyages[name], paths[name])
+    out, said = folder / "better.toml", folder / "said.json"
+    words = ["calibrate", str(paths["calm"]), str(paths["calm too"]), "--held-out", str(paths["nothing"])]
+    assert cli.main([*words, "--ship", "kvlcc2", "-o", str(out), "--json", str(said)]) == 0
+    return load(out), json.loads(said.read_text())
+
+
+def test_the_error_falls_on_a_voyage_that_was_not_used(calibrated):
+    _, said = calibrated
+    at_120 = said["held_out"][-1]
+    assert at_120["horizon_s"] == 120.0
+    assert at_120["position_m"] < 0.8 * at_120["before_m"]
+
+
+def test_the_ship_file_carries_standard_errors_and_what_remains(calibrated):
+    ship, said = calibrated
+    assert ship.notes["derivatives"]["X_uu"]["sd"] > 0.0
+    structural = ship.notes["structural"]
+    size = len(structural["labels"])
+    assert len(structural["offset"]) == size and len(structural["covariance"]) == size
+    assert set(structural["floor"]) == {"share", "calm", "white", "flow", "sensor"}
+    assert structural["by_regime"] and said["floor"]["share"]
+
+
+def test_what_the_voyages_do_not_excite_is_named_and_keeps_its_prior(calibrated):
+    ship, said = calibrated
+    published = load("kvlcc2")
+    for name in said["unexcited"]:
+        assert getattr(ship.derivatives, name) == getattr(published.derivatives, name)
+        assert "prior kept" in ship.notes["derivatives"][name]["source"]
+
+
+def test_calibrating_again_starts_from_the_prior_and_not_from_its_own_answer(calibrated):
+    ship, _ = calibrated
+    entry = ship.notes["derivatives"]["N_ur"]
+    assert entry["prior_value"] == load("kvlcc2").derivatives.N_ur
+    assert entry["prior_value"] != entry["value"]
+
+
+def test_a_file_that_is_no_voyage_leaves_no_ship_file(tmp_path, capsys):
+    (tmp_path / "empty.csv").write_text("")
+    code = cli.main(["calibrate", str(tmp_path / "empty.csv"), "--ship", "kvlcc2", "-o", str(tmp_path / "x.toml")])
+    assert code == 4
+    assert not (tmp_path / "x.toml").exists()
+    assert len(capsys.readouterr().err.strip().splitlines()[-1]) > 20

@@ -1,0 +1,97 @@
+"""Plant and find: an effect hidden in a truth of another form is named; with nothing hidden the answer is nothing."""
+
+import json
+
+import numpy as np
+import pytest
+
+from twin import cli
+from twin.study.diagnose import diagnose
+from twin.study.read import read_voyage
+from twin.study.story import MONDAY, SHIP, TUESDAY
+from twin.study.tell_diagnosis import told
+from twin.study.voyage import Voyage
+
+
+@pytest.fixture(scope="module")
+def monday(tmp_path_factory):
+    """What the command says of the bundled voyage."""
+    out = tmp_path_factory.mktemp("diagnosis") / "d.json"
+    assert cli.main(["diagnose", str(MONDAY), "--ship", str(SHIP), "--json", str(out)]) == 0
+    return json.loads(out.read_text())
+
+
+def test_the_hidden_effect_of_the_bundled_voyage_is_named(monday):
+    assert monday["verdict"] == "missing"
+    assert monday["missing"] == ["HullFouling"]
+
+
+def test_the_answer_has_the_keys_of_the_contract(monday):
+    assert {"schema_version", "verdict", "missing", "candidates", "next_manoeuvre"} <= monday.keys()
+    first = monday["candidates"][0]
+    assert {"effect", "probability", "parameters", "typical_force", "error_without", "error_with", "cannot_be_told_from"} <= first.keys()
+    assert {"name", "value", "low95", "high95", "unit"} <= first["parameters"][0].keys()
+    assert first["typical_force"].keys() == {"X_N", "Y_N", "N_Nm"}
+
+
+def test_the_size_comes_with_an_interval_and_a_force_in_newtons(monday):
+    first = monday["candidates"][0]
+    extra = first["parameters"][0]
+    assert extra["low95"] < extra["value"] < extra["high95"]
+    assert extra["low95"] > 0.05
+    assert 1e5 < first["typical_force"]["X_N"] < 2e6
+
+
+def test_the_error_falls_on_parts_not_used_for_the_fit(monday):
+    first = monday["candidates"][0]
+    assert first["error_with"] < 0.8 * first["error_without"]
+
+
+def test_two_voyages_together_say_it_more_clearly_than_one(tanker, monday):
+    both = diagnose([read_voyage(MONDAY), read_voyage(TUESDAY)], tanker).result
+    assert both["missing"] == ["HullFouling"]
+    one, two = (r["candidates"][0]["parameters"][0] for r in (monday, both))
+    assert two["high95"] - two["low95"] < one["high95"] - one["low95"]
+
+
+@pytest.mark.parametrize("name", ["HeadingBias", "Current", "RudderWear"])
+def test_an_effect_hidden_in_the_reference_sea_is_named(tanker, voyages, name):
+    result = diagnose([voyages[name]], tanker).result
+    assert result["verdict"] == "missing"
+    assert result["missing"][0] == name, "\n".join(told(result))
+
+
+def test_nothing_hidden_means_nothing_missing(tanker, voyages):
+    result = diagnose([voyages["nothing"]], tanker).result
+    assert result["verdict"] == "nothing_missing", "\n".join(told(result))
+    assert result["missing"] == []
+
+
+def test_a_straight_voyage_is_not_enough_to_acquit_a_ship(tanker, voyages):
+    """Test: a calm, straight, steady voyage. Expected: undecided, and no name."""
+    result = diagnose([voyages["straight"]], tanker).result
+    assert result["verdict"] == "undecided", "\n".join(told(result))
+    assert result["missing"] == []
+
+
+def test_what_was_not_recorded_cannot_be_judged_and_the_answer_says_so(tanker, voyages):
+    whole = voyages["nothing"]
+    blind = Voyage("blind", whole.time_s, {n: x for n, x in whole.columns.items() if "wind" not in n})
+    result = diagnose([blind], tanker).result
+    assert {"effect": "Wind", "lacks": ["wind_speed", "wind_to"]} in result["not_judged"]
+    assert any("Wind cannot be judged" in line for line in told(result))
+
+
+def test_a_voyage_too_short_to_judge_exits_with_4_and_one_line(tanker, voyages, tmp_path, capsys):
+    from twin.study.write import write_voyage
+
+    write_voyage(voyages["nothing"].between(0.0, 60.0), tmp_path / "short.mcap")
+    assert cli.main(["diagnose", str(tmp_path / "short.mcap"), "--ship", str(SHIP)]) == 4
+    said = capsys.readouterr().err.strip().splitlines()[-1]
+    assert "short" in said and "ship lengths" in said
+
+
+def test_references_given_on_the_command_count_like_a_calibration(tanker, voyages):
+    result = diagnose([voyages["HeadingBias"]], tanker, [voyages["calm"], voyages["calm too"]]).result
+    assert result["missing"][:1] == ["HeadingBias"], "\n".join(told(result))
+    assert np.isfinite(result["floor"]["temper"])

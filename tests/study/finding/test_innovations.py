@@ -1,0 +1,70 @@
+"""The filter: its tangents are the innovations' own, and floors side by side are floors one at a time."""
+
+import numpy as np
+import pytest
+
+from twin.physics.effects import catalogue
+from twin.physics.model import Model
+from twin.study.columns import core_unknowns, effect_unknowns, with_values
+from twin.study.innovations import Floor, innovate, linearise, segments
+from twin.study.track import READINGS, track
+
+
+@pytest.fixture(scope="module")
+def judged(tanker, voyages):
+    model = Model.of(tanker)
+    unknowns = [*core_unknowns(model)[:4], *effect_unknowns(catalogue()["HeadingBias"], model)]
+    return track(voyages["nothing"], tanker), model, unknowns
+
+
+def test_tangents_say_what_a_changed_model_would_leave_over(judged):
+    """Misfit at theta predicted from A and b against the misfit of a model that was really changed."""
+    t, model, unknowns = judged
+    known, floor = catalogue(), Floor()
+    A, b, ee = innovate([linearise(t, model, unknowns, known)], [floor])[0].total()
+    theta = np.array([0.0, 0.004, 0.0, 0.0, 0.002, 0.0])
+    changed = with_values(model, unknowns, [u.centre + d for u, d in zip(unknowns, theta, strict=True)], known)
+    _, _, really = innovate([linearise(t, changed, unknowns, known)], [floor])[0].total()
+    predicted = ee - 2.0 * float(b @ theta) + float(theta @ A @ theta)
+    assert really != pytest.approx(ee, rel=1e-3)
+    assert predicted == pytest.approx(really, rel=5e-3)
+
+
+def test_floors_side_by_side_are_floors_one_at_a_time(judged):
+    t, model, unknowns = judged
+    lines = [linearise(t, model, unknowns, catalogue())]
+    floors = [Floor(), Floor().scaled(4.0, white=2.0)]
+    together = innovate(lines, floors)
+    for floor, both in zip(floors, together, strict=True):
+        alone = innovate(lines, [floor])[0]
+        np.testing.assert_allclose(both.A, alone.A, rtol=1e-9)
+        np.testing.assert_allclose(both.logdet, alone.logdet, rtol=1e-9)
+
+
+def test_innovations_of_a_calibrated_ship_are_no_larger_than_promised(judged):
+    t, model, unknowns = judged
+    from twin.study.sailed import floor_of
+
+    normal = innovate([linearise(t, model, unknowns, catalogue())], [floor_of(model.ship)])[0]
+    assert 0.5 < normal.ee.sum() / normal.count.sum() < 1.6
+
+
+def test_a_hole_in_the_controls_ends_a_segment(judged):
+    t, model, unknowns = judged
+    line = linearise(t, model, unknowns, catalogue())
+    whole = t.whole.copy()
+    whole[300:310] = False
+    from dataclasses import replace
+
+    broken = replace(line, track=replace(t, whole=whole))
+    assert all(b <= 300 or a >= 310 for _, a, b in segments([broken]))
+
+
+def test_a_track_holds_samples_and_invents_none(tanker, voyages):
+    """The log speaks every half second, the grid is slower: every step has one; a silenced log has none."""
+    whole = voyages["nothing"]
+    columns = dict(whole.columns)
+    columns["surge_velocity_through_water_mps"] = np.where(whole.time_s < 600.0, columns["surge_velocity_through_water_mps"], np.nan)
+    t = track(type(whole)("half", whole.time_s, columns), tanker)
+    seen = np.isfinite(t.measured[:, READINGS.index("u_r")])
+    assert seen[t.t < 590.0].mean() > 0.9 and not seen[t.t > 605.0].any()

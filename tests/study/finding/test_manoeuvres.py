@@ -1,0 +1,28 @@
+"""The next manoeuvre: each can be sailed by any ship, and the advised one excites what it should."""
+
+import numpy as np
+import pytest
+
+from twin.study.assemble import assemble
+from twin.study.manoeuvres import MANOEUVRES, next_manoeuvre, sail
+
+
+@pytest.fixture(scope="module")
+def case(tanker, voyages):
+    return assemble([voyages["straight"]], tanker)
+
+
+@pytest.mark.parametrize("name", MANOEUVRES)
+def test_the_ship_sails_every_manoeuvre(case, name):
+    t = sail(case, case.model, MANOEUVRES[name][0])
+    assert np.isfinite(t.state).all()
+    assert t.state[:, 3].max() < 2.0 * float(case.model.ship.U_0)
+
+
+def test_fouling_and_a_worn_propeller_are_told_apart_by_changing_speed(case):
+    z = np.ones(len(case.effects))
+    advice = next_manoeuvre(case, case.model, "HullFouling", "PropellerWear", z)
+    assert advice is not None
+    assert advice["separates"] == ["HullFouling", "PropellerWear"]
+    assert "speed" in advice["manoeuvre"] or "circle" in advice["manoeuvre"]
+    assert "to 1" in advice["why"]
