@@ -142,3 +142,16 @@ def test_the_interval_of_the_fall_is_as_wide_as_overlapping_windows_make_it():
     wander = np.convolve(rng.standard_normal(412), np.ones(12), "valid")
     spread = [float(np.std(_bootstrap([wander], [block]))) for block in (1, 12)]
     assert spread[1] > 2.0 * spread[0]
+
+
+def test_five_minutes_are_too_short_to_prove_anything(verb, on_disk, make, tmp_path, capsys):
+    words = ("--ship", "kvlcc2", "--voyage", on_disk(make(seconds=300.0)), "-o", tmp_path / "s.toml")
+    assert verb("add", "Current", *words) == 4
+    assert "--held-out" in capsys.readouterr().err and not (tmp_path / "s.toml").exists()
+
+
+def test_few_windows_make_a_wide_interval():
+    from twin.study.proof import _interval
+
+    spread = np.linspace(-1.0, 1.0, 101)
+    assert np.diff(_interval(spread, 0.0, 2.5)) > 2.5 * np.diff(_interval(spread, 0.0, 50.0))

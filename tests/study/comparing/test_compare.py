@@ -8,7 +8,7 @@ import pytest
 
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.physics.ship import save
+from twin.physics.ship import load, save
 from twin.study.compare import compare
 
 KEYS = {
@@ -156,3 +156,25 @@ def test_spoilt_but_usable_voyages_are_compared_all_the_same(verb, on_disk, make
     if spoil == "constant":
         columns["sway_velocity_mps"][:] = 0.0
     assert verb("compare", on_disk(v.with_rows(t, columns)), "--ship", "kvlcc2") == 0
+
+
+def test_a_residual_is_added_as_the_loop_adds_it_and_its_share_is_told(verb, on_disk, make, tmp_path):
+    from twin.live.residual import bundled
+
+    path = bundled(load("kvlcc2"))
+    if path is None:
+        pytest.skip("no residual comes with this ship")
+    words = ("--ship", "kvlcc2", "--residual", path, "--json", tmp_path / "r.json")
+    assert verb("compare", on_disk(make()), *words) == 0
+    result = json.loads((tmp_path / "r.json").read_text())
+    assert 0.0 < result["learned_share"] < 0.2 and result["model"]["residual"]
+
+
+def test_a_residual_made_for_another_ship_is_exit_code_5(verb, on_disk, make, capsys):
+    from twin.live.residual import bundled
+
+    path = bundled(load("kvlcc2"))
+    if path is None:
+        pytest.skip("no residual comes with this ship")
+    assert verb("compare", on_disk(make()), "--ship", "container", "--residual", path) == 5
+    assert "KVLCC2" in capsys.readouterr().err
