@@ -1,0 +1,119 @@
+"""Legs as tensors: single samples for losses of one moment, windows for roll-outs."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from twin.live.learned import scale_of
+from twin.physics.model import Model
+from twin.physics.state import Situation
+
+from .data import Leg
+from .loss import Inputs, left_over, span
+from .network import Residual
+
+STRIDE = 2  # grid steps in one step of a roll-out: a sixteenth of the time the ship takes to sail her length
+STATE = ("x", "y", "psi", "u", "v", "r")
+
+
+@dataclass(frozen=True)
+class Samples:
+    """Single moments (N, ...): `d` is what physics leaves, `columns` the core's forces, both in units of the force scale."""
+
+    fields: Inputs
+    ahead: torch.Tensor  # (N, 3) speeds one grid step later
+    h: torch.Tensor
+    d: torch.Tensor
+    columns: torch.Tensor
+
+    def __len__(self) -> int:
+        return self.h.numel()
+
+    def situation(self, k: torch.Tensor) -> Situation:
+        return Situation(**{name: x[k] for name, x in self.fields.items()})
+
+
+@dataclass(frozen=True)
+class Windows:
+    """Free runs side by side: start (W, 6), inputs (T + 1, W), wanted (T, W, 6); `group` (W,) is the block each comes from."""
+
+    start: torch.Tensor
+    inputs: Inputs
+    wanted: torch.Tensor
+    h: torch.Tensor
+    group: np.ndarray
+
+    def __len__(self) -> int:
+        return self.h.numel()
+
+    def some(self, k: torch.Tensor) -> "Windows":
+        inputs = {name: x[:, k] for name, x in self.inputs.items()}
+        return Windows(self.start[k], inputs, self.wanted[:, k], self.h[k], self.group[k.numpy()])
+
+
+def samples(legs: Sequence[Leg], model: Model, names: Sequence[str]) -> Samples:
+    """Every grid step with known controls and a step after it."""
+    kept = [(leg, leg.starts(1, 1)) for leg in legs]
+    fields = (
+        {
+            name: _tensor([leg.state[k, i] - (leg.state[k, i] if i < 2 else 0.0) for leg, k in kept])
+            for i, name in enumerate(STATE)
+        }
+        | {name: _tensor([leg.inputs[name][k] for leg, k in kept]) for name in names}
+        | {"t": _tensor([leg.t[k] for leg, k in kept])}
+    )
+    rate = torch.tensor(np.concatenate([leg.rate[k] for leg, k in kept]))
+    exact = Situation(**fields)
+    scale = torch.tensor(scale_of(model.ship), dtype=torch.float64)
+    d, columns = left_over(model, exact, rate, scale), span(model, exact) / scale[:, None]
+    ahead = torch.tensor(np.concatenate([leg.state[k + 1, 3:] for leg, k in kept]))
+    h = _tensor([np.full(k.size, leg.h) for leg, k in kept])
+    fields |= {"u_r": exact.u_r, "v_r": exact.v_r}
+    return Samples(
+        {n: x.float() for n, x in fields.items()}, ahead.float(), h.float(), d.float(), columns.float()
+    )
+
+
+def windows(
+    legs: Sequence[Leg], names: Sequence[str], horizon_s: float, stride_s: float, block_s: float = 300.0
+) -> Windows:
+    """Free runs of `horizon_s` that begin every `stride_s`."""
+    starts, wanted, h, group = [], [], [], []
+    inputs: dict[str, list[np.ndarray]] = {name: [] for name in (*names, "t")}
+    for i, leg in enumerate(legs):
+        steps = max(1, round(horizon_s / (STRIDE * leg.h)))
+        k = leg.starts(STRIDE * steps, max(1, round(stride_s / leg.h)))
+        at = k + STRIDE * np.arange(steps + 1)[:, None]
+        state = leg.state[at] - np.where(np.arange(6) < 2, leg.state[k], 0.0)
+        starts.append(state[0]), wanted.append(state[1:]), h.append(np.full(k.size, STRIDE * leg.h))
+        group.append(1000 * i + (leg.t[k] // block_s).astype(int))
+        for name in names:
+            inputs[name].append(leg.inputs[name][at])
+        inputs["t"].append(leg.t[at])
+    return Windows(
+        _tensor(starts).float(), {n: torch.tensor(np.concatenate(x, 1)).float() for n, x in inputs.items()},
+        torch.tensor(np.concatenate(wanted, 1)).float(), _tensor(h).float(), np.concatenate(group),
+    )  # fmt: skip
+
+
+def input_names(legs: Sequence[Leg]) -> tuple[str, ...]:
+    """Controls and the weather that every leg knows."""
+    return tuple(sorted(set.intersection(*(set(leg.inputs) for leg in legs))))
+
+
+def zeta_of(network: Residual, data: Samples) -> torch.Tensor:
+    return network.zeta(Situation(**data.fields))
+
+
+def shuffled(count: int, batch: int, seed: int) -> Iterator[torch.Tensor]:
+    """Batches of indices in an order that depends on the seed alone; a last batch of less than half is left out."""
+    order = torch.randperm(count, generator=torch.Generator().manual_seed(seed))
+    for part in order.split(batch):
+        if part.numel() >= min(batch, count) / 2:
+            yield part
+
+
+def _tensor(parts: Sequence[np.ndarray]) -> torch.Tensor:
+    return torch.tensor(np.concatenate(parts))

@@ -1,0 +1,140 @@
+"""The losses, the paper's and those that work better, on the same physics as the loop: Model.forces and Model.step with tensors.
+
+acceleration   |S^-1 (M nu_dot - F(nu)) - f|^2, one sample at a time
+paper          lambda_data |nu(t+h) - nu_pred(t+h)|^2 + lambda_phys |S^-1 R|^2,  R = M nu_dot_pred - F(nu) - S f,
+               nu_dot_pred = d nu_pred/dh by automatic differentiation through Model.step
+rollout        Huber of heading, place and speeds along a free run of many steps
+orthogonal     what of f lies in the span of the core's own forces: |P f|^2
+mirror         f must be mirrored when the ship is (for hulls that are symmetric)
+"""
+
+from dataclasses import replace
+
+import torch
+
+from twin.physics.model import CORE, Model
+from twin.physics.state import Force, Situation
+
+from .network import Residual
+
+ODD = ("sway", "yaw", "rudder", "air_starboard", "wave_starboard", "roll")
+Inputs = dict[str, torch.Tensor]  # fields of Situation, each (..., B)
+
+
+class Held:
+    """A learned force that stays the same within a step."""
+
+    force = Force()
+
+    def __call__(self, s: Situation) -> Force:
+        return self.force
+
+
+def needed(model: Model, rate: torch.Tensor) -> torch.Tensor:
+    """(B, 3) M nu_dot in newtons."""
+    u, v, r = rate.unbind(-1)
+    c = model.c
+    return torch.stack([c.m_u * u, c.m_v * v + c.m_vr * r, c.m_rv * v + c.m_r * r], -1)
+
+
+def known(model: Model, s: Situation) -> torch.Tensor:
+    """(B, 3) the sum of all known forces; sets the speeds through water of s."""
+    forces = model.forces(s, model.water(s))
+    return torch.stack([sum((f[i] for f in forces), torch.zeros_like(s.u)) for i in range(3)], -1)
+
+
+def left_over(model: Model, s: Situation, rate: torch.Tensor, scale: torch.Tensor) -> torch.Tensor:
+    """(B, 3) what the known forces leave, in units of the force scale."""
+    return (needed(model, rate) - known(model, s)) / scale
+
+
+def acceleration(network: Residual, zeta: torch.Tensor, d: torch.Tensor, size: torch.Tensor) -> torch.Tensor:
+    return (((network.f(zeta) - d) / size) ** 2).mean()
+
+
+def paper(
+    network: Residual, model: Model, s: Situation, ahead: torch.Tensor, h: torch.Tensor, size: torch.Tensor,
+    lambda_data: float = 1.0, lambda_phys: float = 0.1,
+) -> tuple[torch.Tensor, dict[str, float]]:  # fmt: skip
+    """The literal loss of one step; `ahead` (B, 3) the measured speeds h later, `size` (3,) of one step's change. Diagnostics too."""
+    h = h.clone().requires_grad_(True)
+    hybrid = replace(model, residual=network)
+    start = (s.x, s.y, s.psi, s.u, s.v, s.r)
+    nu = torch.stack(hybrid.step(start, s, h)[3:], -1)
+    data = (((nu - ahead) / size) ** 2).mean()
+    dot = torch.stack([torch.autograd.grad(nu[:, i].sum(), h, create_graph=True)[0] for i in range(3)], -1)
+    end = replace(s, u=nu[:, 0], v=nu[:, 1], r=nu[:, 2])
+    scale = torch.tensor(network.S, dtype=nu.dtype)
+    without = (needed(model, dot) - known(model, end)) / scale
+    R = without - network.f(network.zeta(end))
+    loss = lambda_data * data + lambda_phys * (R**2).mean()
+    return loss, {"data": float(data.detach()), "R": _rms(R), "f": _rms(without)}
+
+
+def _rms(x: torch.Tensor) -> float:
+    return float((x.detach() ** 2).mean().sqrt())
+
+
+def free_run(
+    network: Residual | None, model: Model, start: torch.Tensor, inputs: Inputs, h: torch.Tensor
+) -> torch.Tensor:
+    """(T, B, 6) states after each step; `start` (B, 6), inputs (T + 1, B), the learned force held for a step."""
+    held = Held()
+    moving = replace(model, residual=held) if network is not None else model
+    state, kept = tuple(start.unbind(-1)), []
+    for k in range(next(iter(inputs.values())).shape[0] - 1):
+        now = {name: x[k] for name, x in inputs.items()}
+        if network is not None:
+            s = Situation(*state, **now)
+            model.forces(s, model.water(s))
+            held.force = network(s)
+        middle = {name: 0.5 * (x[k] + x[k + 1]) for name, x in inputs.items()}
+        state = moving.step(state, Situation(**middle), h)
+        kept.append(torch.stack(state, -1))
+    return torch.stack(kept)
+
+
+def allowed(model: Model) -> torch.Tensor:
+    """(6,) an error of this size counts as one: a hundredth of her length, her speed, a radian and their ratios."""
+    L, U = float(model.ship.L_pp), float(model.ship.U_0)
+    return 0.01 * torch.tensor([L, L, 1.0, U, U, U / L])
+
+
+def rollout(
+    network: Residual,
+    model: Model,
+    start: torch.Tensor,
+    inputs: Inputs,
+    wanted: torch.Tensor,
+    h: torch.Tensor,
+) -> torch.Tensor:
+    """Huber loss along the run; a ship that runs away counts as much as can be."""
+    off = (free_run(network, model, start, inputs, h) - wanted) / allowed(model)
+    off = torch.nan_to_num(off, nan=1e3, posinf=1e3, neginf=-1e3).clamp(-1e3, 1e3)
+    return torch.nn.functional.huber_loss(off, torch.zeros_like(off), delta=2.0)
+
+
+def orthogonal(f: torch.Tensor, columns: torch.Tensor) -> torch.Tensor:
+    """|P f|^2/|size|^2 of a batch: f (B, 3), columns (B, 3, K) of the core; the basis is not differentiated."""
+    total = f.new_zeros(())
+    for axis in range(3):
+        A = columns[:, axis].detach()
+        A = A[:, A.abs().amax(0) > 0]
+        basis = torch.linalg.qr(A / A.norm(dim=0))[0]
+        total = total + ((basis.T @ f[:, axis]) ** 2).sum() / f.shape[0]
+    return total
+
+
+def span(model: Model, s: Situation) -> torch.Tensor:
+    """(B, 3, 4) the core's forces one by one: hull, Coriolis, propeller, rudder."""
+    forces = model.forces(s, model.water(s))[: len(CORE)]
+    return torch.stack(
+        [torch.stack([f + torch.zeros_like(s.u) for f in map(torch.as_tensor, tau)], -1) for tau in forces],
+        -1,
+    )
+
+
+def mirror(network: Residual, zeta: torch.Tensor) -> torch.Tensor:
+    """How far f is from that of the mirrored ship, mirrored."""
+    sign = torch.tensor([-1.0 if name in ODD else 1.0 for name in network.names])
+    return ((network.f(zeta) - network.f(zeta * sign) * torch.tensor([1.0, -1.0, -1.0])) ** 2).mean()

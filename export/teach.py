@@ -1,0 +1,280 @@
+"""The training itself: Table 1's protocol on single moments, then roll-outs; resumable, and the same for the same seed."""
+
+import contextlib
+import hashlib
+import json
+import os
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from twin.physics.model import Model
+from twin.physics.state import Situation
+from twin.physics.zeta import inputs
+
+from . import loss as losses
+from .batches import Samples, Windows, input_names, samples, shuffled, windows, zeta_of
+from .data import Leg
+from .network import Residual, names_for
+
+SEEDS = (42, 123, 256, 512, 1024)
+LOSSES = ("paper", "acceleration", "rollout")
+Progress = Callable[[str, int, int, float, float], None]  # stage, epoch, epochs, loss, validation loss
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Table 1 of the paper, and what it leaves open; horizons in ship lengths sailed (1.5 lengths of KVLCC2 are 60 s)."""
+
+    seed: int = 42
+    loss: str = "rollout"
+    epochs: int = 150
+    patience: int = 20
+    batch: int = 512
+    rate: float = 1e-3
+    decay: float = 0.98  # of the rate, every DECAY_EPOCHS
+    l2: float = 1e-5
+    lambda_data: float = 1.0
+    lambda_phys: float = 0.1
+    rollout_epochs: int = 40
+    rollout_batch: int = 64
+    rollout_lengths: float = 1.5
+    rollout_rate: float = 1e-3
+    orthogonality: float = 0.0
+    mirror: float = 0.0
+
+
+DECAY_EPOCHS = 10
+
+
+@dataclass
+class Set:
+    """One part of the data as tensors."""
+
+    samples: Samples
+    windows: Windows
+
+
+@dataclass
+class Taught:
+    """The network and how its training went: (stage, epoch, loss, validation loss) for each epoch."""
+
+    network: Residual
+    curve: list[tuple[str, int, float, float]]
+    seconds: float
+    diagnostics: dict[str, float]
+    samples: Samples  # what it was taught with
+    validation: float  # the best loss of the last stage on the validation part
+
+
+def prepared(parts: dict[str, list[Leg]], model: Model, settings: Settings) -> dict[str, Set]:
+    """Training and validation data as tensors."""
+    names = input_names([leg for legs in parts.values() for leg in legs])
+    length_s = float(model.ship.scale("time"))
+    horizon = settings.rollout_lengths * length_s
+    return {
+        part: Set(samples(parts[part], model, names), windows(parts[part], names, horizon, 0.5 * horizon))
+        for part in ("train", "validation")
+    }
+
+
+def teach(
+    parts: dict[str, list[Leg]],
+    model: Model,
+    settings: Settings,
+    progress: Progress | None = None,
+    keep: Path | None = None,
+) -> Taught:
+    """Train a residual for the model; `keep` is a checkpoint file, continued when it belongs to the same training."""
+    torch.set_num_threads(1)
+    torch.manual_seed(settings.seed)
+    data = prepared(parts, model, settings)
+    legs = [leg for some in parts.values() for leg in some]
+    names = names_for(legs)
+    with torch.no_grad():
+        probe = _probe(model, names, data["train"].samples)
+    network = Residual(model.ship, names, probe.numpy())
+    course = Course(network, model, settings, data, progress or (lambda *_: None), keep)
+    began = time.monotonic()
+    for stage in STAGES[settings.loss]:
+        course.run(stage)
+    network.bind(zeta_of(network, data["train"].samples))
+    return Taught(
+        network,
+        course.curve,
+        time.monotonic() - began,
+        course.diagnostics,
+        data["train"].samples,
+        course.best,
+    )
+
+
+def _probe(model: Model, names: tuple[str, ...], data: Samples) -> torch.Tensor:
+    """(N, inputs) the training data as the network will see them."""
+    return torch.stack(torch.broadcast_tensors(*inputs(names, Situation(**data.fields), model.ship)), -1)
+
+
+STAGES = {"paper": ("paper",), "acceleration": ("acceleration",), "rollout": ("acceleration", "rollout")}
+
+
+class Course:
+    """One training: its network, its optimiser, and where it stands."""
+
+    def __init__(
+        self,
+        network: Residual,
+        model: Model,
+        settings: Settings,
+        data: dict[str, Set],
+        progress: Progress,
+        keep: Path | None,
+    ):
+        self.network, self.model, self.settings, self.data, self.progress, self.keep = (
+            network,
+            model,
+            settings,
+            data,
+            progress,
+            keep,
+        )
+        self.curve: list[tuple[str, int, float, float]] = []
+        self.diagnostics: dict[str, float] = {}
+        self.zeta = {part: zeta_of(network, s.samples) for part, s in data.items()}
+        self.size = data["train"].samples.d.std(0)
+        first = data["train"].samples
+        nu = torch.stack([first.fields[n] for n in "uvr"], -1)
+        self.jump = (first.ahead - nu).std(0)
+        self.key = _key(settings, data)
+        self.kept = self._kept()
+        self.best = float("inf")
+
+    def run(self, stage: str) -> None:
+        """All epochs of a stage; the weights of the best validation loss stay."""
+        c = self.settings
+        epochs = c.rollout_epochs if stage == "rollout" else c.epochs
+        rate = c.rollout_rate if stage == "rollout" else c.rate
+        self.optimiser = torch.optim.Adam(self.network.parameters(), lr=rate, weight_decay=c.l2)
+        best, since, first = (self._copy(), self.validation(stage)), 0, 0
+        if self.kept and self.kept["stage"] == stage:
+            best, since, first = self._resume()
+        elif self.kept and stage in self.kept["done"]:
+            return
+        for epoch in range(first, epochs):
+            if since >= c.patience:
+                break
+            for group in self.optimiser.param_groups:
+                group["lr"] = rate * c.decay ** (epoch // DECAY_EPOCHS)
+            value = self._epoch(stage, epoch)
+            validation = self.validation(stage)
+            self.curve.append((stage, epoch, value, validation))
+            self.progress(stage, epoch + 1, epochs, value, validation)
+            best, since = ((self._copy(), validation), 0) if validation < best[1] else (best, since + 1)
+            self._save(stage, epoch + 1, best, since)
+        self.network.load_state_dict(best[0])
+        self.best = best[1]
+
+    def _epoch(self, stage: str, epoch: int) -> float:
+        total, count = 0.0, 0
+        for value in self._losses(stage, 100_003 * self.settings.seed + epoch):
+            self.optimiser.zero_grad()
+            value.backward()
+            torch.nn.utils.clip_grad_norm_(self.network.parameters(), 10.0)
+            self.optimiser.step()
+            total, count = total + float(value.detach()), count + 1
+        return total / max(count, 1)
+
+    def _losses(self, stage: str, seed: int) -> Iterator[torch.Tensor]:
+        """The loss of every batch of an epoch."""
+        part = self.data["train"]
+        many, batch = (
+            (len(part.windows), self.settings.rollout_batch)
+            if stage == "rollout"
+            else (len(part.samples), self.settings.batch)
+        )
+        for k in shuffled(many, batch, seed):
+            value = self._loss(stage, "train", k)
+            yield value + self._penalty(
+                torch.randint(
+                    len(part.samples), (self.settings.batch,), generator=torch.Generator().manual_seed(seed)
+                )
+            )
+
+    def _loss(self, stage: str, part: str, k: torch.Tensor) -> torch.Tensor:
+        data, c = self.data[part], self.settings
+        if stage == "rollout":
+            w = data.windows.some(k)
+            return losses.rollout(self.network, self.model, w.start, w.inputs, w.wanted, w.h)
+        if stage == "acceleration":
+            return losses.acceleration(self.network, self.zeta[part][k], data.samples.d[k], self.size)
+        one = data.samples
+        value, self.diagnostics = losses.paper(
+            self.network,
+            self.model,
+            one.situation(k),
+            one.ahead[k],
+            one.h[k],
+            self.jump,
+            c.lambda_data,
+            c.lambda_phys,
+        )
+        return value
+
+    def _penalty(self, k: torch.Tensor) -> torch.Tensor:
+        c, zeta, total = self.settings, self.zeta["train"][k], torch.zeros(())
+        if c.orthogonality:
+            f = self.network.f(zeta) / self.size
+            total = total + c.orthogonality * losses.orthogonal(f, self.data["train"].samples.columns[k])
+        if c.mirror:
+            total = total + c.mirror * losses.mirror(self.network, zeta)
+        return total
+
+    def validation(self, stage: str) -> float:
+        """The loss of the stage on the validation part, in one piece (of at most 4096)."""
+        data = self.data["validation"]
+        many = len(data.windows) if stage == "rollout" else len(data.samples)
+        k = torch.arange(0, many, max(1, many // 4096))
+        grad = contextlib.nullcontext() if stage == "paper" else torch.no_grad()
+        with grad:
+            return float(self._loss(stage, "validation", k).detach())
+
+    def _copy(self) -> dict[str, Any]:
+        return {name: x.detach().clone() for name, x in self.network.state_dict().items()}
+
+    def _kept(self) -> dict[str, Any] | None:
+        if self.keep is None or not self.keep.exists():
+            return None
+        found = torch.load(self.keep, weights_only=True)
+        return found if found.get("key") == self.key else None
+
+    def _resume(self) -> tuple[tuple[dict[str, Any], float], int, int]:
+        kept, self.kept = self.kept, None
+        assert kept is not None
+        self.network.load_state_dict(kept["network"])
+        self.optimiser.load_state_dict(kept["optimiser"])
+        self.curve = [(str(a), int(b), float(c), float(d)) for a, b, c, d in kept["curve"]]
+        return (kept["best"], kept["best_loss"]), kept["since"], kept["epoch"]
+
+    def _save(self, stage: str, epoch: int, best: tuple[dict[str, Any], float], since: int) -> None:
+        if self.keep is None:
+            return
+        stages = STAGES[self.settings.loss]
+        aside = self.keep.with_name(f"{self.keep.name}.aside")
+        torch.save(
+            {"key": self.key, "stage": stage, "done": list(stages[: stages.index(stage)]), "epoch": epoch, "since": since,
+             "network": self.network.state_dict(), "optimiser": self.optimiser.state_dict(), "best": best[0],
+             "best_loss": best[1], "curve": [list(row) for row in self.curve]},
+            aside,
+        )  # fmt: skip
+        os.replace(aside, self.keep)
+
+
+def _key(settings: Settings, data: dict[str, Set]) -> str:
+    """Tells one training from another: its settings and its data."""
+    digest = hashlib.sha256(json.dumps(asdict(settings)).encode())
+    for part in data.values():
+        digest.update(part.samples.d.numpy().tobytes())
+    return digest.hexdigest()

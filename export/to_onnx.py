@@ -1,0 +1,119 @@
+"""The trained residual as the two files that the twin reads (docs/residual.md): trunk in ONNX, everything else in the manifest."""
+
+import hashlib
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+from onnx import TensorProto, checker, helper, numpy_helper
+
+from twin.live.manifest import SCHEMA_VERSION
+from twin.live.residual import ship_hash
+from twin.physics.zeta import ZETA
+
+from .network import WIDTH, Residual
+
+OPSET, COMPONENTS, GOLDEN = 17, 4, 8
+
+
+def trunk(network: Residual) -> bytes:
+    """zeta, already scaled, float32 (1, n) -> phi (1, 64)."""
+    nodes, weights, source = [], [], "zeta"
+    for i, layer in enumerate(network.layers):
+        out = "phi" if layer is network.layers[-1] else f"x{i}"
+        weights += [
+            numpy_helper.from_array(x.detach().numpy(), f"{n}{i}")
+            for n, x in (("w", layer.weight), ("b", layer.bias))
+        ]
+        nodes += [
+            helper.make_node("Gemm", [source, f"w{i}", f"b{i}"], [f"z{i}"], transB=1),
+            helper.make_node("Sigmoid", [f"z{i}"], [f"s{i}"]),
+            helper.make_node("Mul", [f"z{i}", f"s{i}"], [out]),
+        ]
+        source = out
+    ends = [
+        helper.make_tensor_value_info(n, TensorProto.FLOAT, [1, size])
+        for n, size in (("zeta", len(network.names)), ("phi", WIDTH))
+    ]
+    graph = helper.make_graph(nodes, "trunk", ends[:1], ends[1:], weights)
+    model = helper.make_model(
+        graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=8, producer_name="shiptwin"
+    )
+    checker.check_model(model)
+    return bytes(model.SerializeToString())
+
+
+def manifest(network: Residual, model: bytes, zeta: torch.Tensor, training: dict[str, Any]) -> dict[str, Any]:
+    """The manifest; `zeta` (N, inputs) is the training data as the network saw it."""
+    W = network.last.weight.detach().numpy().astype(float)
+    with torch.no_grad():
+        phi = network.phi(zeta).numpy().astype(float)
+        x = (
+            torch.clamp(zeta[:: max(len(zeta) // GOLDEN, 1)][:GOLDEN], network.low, network.high)
+            - network.offset
+        ) / network.scale
+        answers = network.trunk(x).numpy()
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "sha256": hashlib.sha256(model).hexdigest(),
+        "onnx_opset": OPSET,
+        "ship": {"name": network.ship.name, "hash": ship_hash(network.ship)},
+        "inputs": _inputs(network),
+        "features": WIDTH,
+        "W": W.tolist(),
+        "W_max": 1.5 * float(np.linalg.norm(W)) + 1e-6,
+        "force_scale": {"X_N": float(network.S.X), "Y_N": float(network.S.Y), "N_Nm": float(network.S.N)},
+        "output_bound": float(network.bound),
+        "whitening": _whitening(phi),
+        "spectral_norms": [
+            float(np.linalg.norm(layer.weight.detach().numpy(), 2)) for layer in network.layers
+        ],
+        "golden": {"inputs": x.tolist(), "outputs": answers.tolist()},
+        "training": training,
+    }
+
+
+def _inputs(network: Residual) -> list[dict[str, Any]]:
+    columns = zip(
+        *(getattr(network, name).tolist() for name in ("scale", "offset", "low", "high")), strict=True
+    )
+    return [
+        {
+            "name": n,
+            "unit": _unit(n),
+            "formula": ZETA[n].formula,
+            "scale": s,
+            "offset": o,
+            "low": a,
+            "high": b,
+        }
+        for n, (s, o, a, b) in zip(network.names, columns, strict=True)
+    ]
+
+
+def _unit(name: str) -> str:
+    return "rad" if "[rad]" in ZETA[name].formula else "-"
+
+
+def _whitening(phi: np.ndarray) -> dict[str, Any]:
+    """The features' mean and their strongest directions, each of deviation one."""
+    mean = phi.mean(0)
+    centred = phi - mean
+    _, _, directions = np.linalg.svd(centred[:: max(len(centred) // 20_000, 1)], full_matrices=False)
+    rows = directions[:COMPONENTS]
+    deviations = (centred @ rows.T).std(0) + 1e-9
+    return {"mean": mean.tolist(), "components": (rows / deviations[:, None]).tolist()}
+
+
+def write(path: Path, model: bytes, table: dict[str, Any]) -> None:
+    """Both files, aside and renamed, the manifest last: the twin believes neither without the other."""
+    for target, content in (
+        (path, model),
+        (path.with_suffix(".json"), (json.dumps(table, indent=1) + "\n").encode()),
+    ):
+        aside = target.with_name(f".{target.name}.part")
+        aside.write_bytes(content)
+        os.replace(aside, target)

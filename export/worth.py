@@ -1,0 +1,99 @@
+"""Is the residual worth having? Free runs on the part that no training saw, physics alone beside physics and residual."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import torch
+
+from twin.physics.model import Model
+from twin.physics.state import Situation
+
+from .batches import Windows, input_names, windows
+from .data import Leg
+from .loss import free_run
+from .network import Residual
+
+LENGTHS = 3.0  # the horizon, in ship lengths sailed: 120 s for KVLCC2
+RESAMPLES = 2000
+RUNAWAY = 1e6
+
+
+@dataclass(frozen=True)
+class Worth:
+    """Mean errors over the horizon without and with the residual, and the 95 % interval of the ratio of places."""
+
+    horizon_s: float
+    windows: int
+    blocks: int
+    position_m: tuple[float, float]
+    heading_deg: tuple[float, float]
+    ratio_low95: float
+    ratio_high95: float
+
+    @property
+    def proved(self) -> bool:
+        """The place is predicted better beyond chance, and the heading no worse."""
+        return self.ratio_high95 < 1.0 and self.heading_deg[1] <= 1.02 * self.heading_deg[0]
+
+    def sentence(self) -> str:
+        (p, q), (a, b) = self.position_m, self.heading_deg
+        said = "is worth having" if self.proved else "is not worth having"
+        return (
+            f"the residual {said}: over {self.horizon_s:.0f} s on {self.windows} held-out free runs the place is off by {q:.3g} m "
+            f"with it, {p:.3g} m without (ratio {self.ratio_low95:.2f} to {self.ratio_high95:.2f}), the heading by {b:.3g} deg, {a:.3g} deg without"
+        )
+
+    def told(self) -> dict[str, Any]:
+        return {
+            "horizon_s": self.horizon_s, "windows": self.windows, "blocks": self.blocks, "worth_having": self.proved,
+            "position_mae_m": dict(zip(("physics", "with_residual"), self.position_m, strict=True)),
+            "heading_mae_deg": dict(zip(("physics", "with_residual"), self.heading_deg, strict=True)),
+            "position_ratio_95": [self.ratio_low95, self.ratio_high95],
+        }  # fmt: skip
+
+
+def errors(network: Residual | None, model: Model, w: Windows) -> np.ndarray:
+    """(W, 2) mean position error [m] and heading error [deg] along each free run."""
+    with torch.no_grad():
+        off = torch.nan_to_num(
+            free_run(network, model, w.start, w.inputs, w.h) - w.wanted, nan=RUNAWAY
+        ).clamp(-RUNAWAY, RUNAWAY)
+    place, heading = off[..., :2].norm(dim=-1), torch.rad2deg(off[..., 2].abs())
+    return torch.stack([place.mean(0), heading.mean(0)], -1).double().numpy()
+
+
+def worth(network: Residual, model: Model, legs: Sequence[Leg], seed: int = 0) -> Worth:
+    """The verdict on these legs; whole blocks are resampled, because neighbouring windows are not independent."""
+    length_s = float(model.ship.scale("time"))
+    horizon = min(LENGTHS * length_s, 0.3 * max(len(leg) * leg.h for leg in legs))
+    w = windows(legs, input_names(legs), horizon, 0.5 * length_s)
+    before, after = errors(None, model, w), errors(network, model, w)
+    low, high = ratio(before[:, 0], after[:, 0], w.group, seed)
+    return Worth(
+        horizon, len(w), len(set(w.group.tolist())), (float(before[:, 0].mean()), float(after[:, 0].mean())),
+        (float(before[:, 1].mean()), float(after[:, 1].mean())), low, high,
+    )  # fmt: skip
+
+
+def ratio(before: np.ndarray, after: np.ndarray, group: np.ndarray, seed: int) -> tuple[float, float]:
+    """The 95 % interval of mean(after)/mean(before) by the bootstrap over blocks."""
+    blocks, index = np.unique(group, return_inverse=True)
+    a, b = (np.bincount(index, x, blocks.size) for x in (before, after))
+    drawn = np.random.default_rng(seed).integers(blocks.size, size=(RESAMPLES, blocks.size))
+    low, high = np.quantile(b[drawn].sum(1) / a[drawn].sum(1), (0.025, 0.975))
+    return float(low), float(high)
+
+
+def share(network: Residual, model: Model, s: Situation) -> float:
+    """How much of the force the network gives: rms of f over rms of f and the known forces, in units of the force scale."""
+    with torch.no_grad():
+        known = [
+            torch.stack([torch.as_tensor(x) + torch.zeros_like(s.u) for x in f], -1)
+            for f in model.forces(s, model.water(s))
+        ]
+        scale = torch.tensor(network.S)
+        f = network.f(network.zeta(s)).abs().sum(-1).mean()
+        total = sum((k / scale).abs().sum(-1).mean() for k in known)
+    return float(f / (f + total))

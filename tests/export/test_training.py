@@ -1,0 +1,151 @@
+"""Training: it learns what was planted, says so, is the same twice, goes on where it was, and writes what the twin can read."""
+
+import hashlib
+import json
+from dataclasses import replace
+
+import pytest
+
+torch = pytest.importorskip("torch", reason="torch is not installed: pip install 'shiptwin[train]'")
+pytest.importorskip("onnx", reason="onnx is not installed: pip install 'shiptwin[train]'")
+
+from export import loss, to_onnx, train  # noqa: E402
+from export.batches import input_names, samples  # noqa: E402
+from export.data import leg, model_of, split  # noqa: E402
+from export.network import Residual  # noqa: E402
+from export.teach import Settings, teach  # noqa: E402
+from twin.errors import ThresholdError  # noqa: E402
+from twin.live import residual as live  # noqa: E402
+from twin.live.learned import scale_of  # noqa: E402
+from twin.physics.state import Situation  # noqa: E402
+
+FEW = Settings(epochs=3, rollout_epochs=2, rollout_lengths=0.75)
+
+
+@pytest.fixture(scope="module")
+def parts(ship, sailed):
+    tracks = [s.track for s in sailed]
+    model = model_of(ship, tracks)
+    return split([leg(t, model) for t in tracks]), model
+
+
+@pytest.fixture(scope="module")
+def learned(ship, sailed, tmp_path_factory):
+    path = tmp_path_factory.mktemp("learned") / "residual.onnx"
+    made = []
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(
+            to_onnx, "trunk", lambda network, trunk=to_onnx.trunk: (made.append(network), trunk(network))[1]
+        )
+        return path, train.learn(ship, sailed, FEW, [42], path), made[0].state_dict()
+
+
+def test_it_says_that_a_planted_weakness_was_worth_learning(learned):
+    """Test: a rudder 20 % weaker than the ship file says. Expected: held-out free runs better beyond chance."""
+    assert learned[1]["held_out"]["worth_having"] and "is worth having" in learned[1]["verdict"]
+    errors = learned[1]["held_out"]["position_mae_m"]
+    assert errors["with_residual"] < 0.7 * errors["physics"]
+
+
+def test_torch_and_onnx_runtime_agree_to_1e_6(learned):
+    assert learned[1]["torch_onnx_difference"] <= 1e-6
+
+
+def test_the_twin_reads_the_two_files(learned, ship):
+    """Expected: hash, golden vectors, shapes and ship are as the loop wants them."""
+    found = live.load(learned[0], ship)
+    assert found.manifest.training["seed"] == 42
+    assert len(found.manifest.spectral_norms) == 4
+
+
+def test_the_twin_says_what_the_training_says(learned, ship, parts):
+    """Test: a situation in the middle of the data, through both. Expected: the same f."""
+    model = parts[1]
+    table = json.loads(learned[0].with_suffix(".json").read_text())
+    again = Residual(ship, table["training"]["inputs"], parts[0]["train"][0].state[:, :5])
+    again.load_state_dict(learned[2])
+    s = Situation(psi=0.5, u=6.5, v=0.1, r=0.001, delta=0.1, n=1.6)
+    model.forces(s, model.water(s))
+    on_board = live.load(learned[0], ship).features(s)
+    t = Situation(
+        **{n: torch.tensor([getattr(s, n)]) for n in ("psi", "u", "v", "r", "delta", "n", "u_r", "v_r")}
+    )
+    f = again.f(again.zeta(t))[0].tolist()
+    assert on_board.weight == pytest.approx(float(again.weight(again.zeta(t))), abs=1e-6)
+    assert on_board.trained == pytest.approx(f, abs=1e-5)
+
+
+def test_the_same_seed_gives_the_same_weights_and_an_interrupted_training_goes_on(parts, tmp_path):
+    """Test: stop after two epochs, start again. Expected: bit for bit what an uninterrupted training gives."""
+    settings = replace(FEW, loss="acceleration", epochs=4)
+    whole = teach(*parts, settings)
+
+    def stop(stage, epoch, *_):
+        if epoch == 3:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        teach(*parts, settings, stop, tmp_path / "kept.pt")
+    again = teach(*parts, settings, None, tmp_path / "kept.pt")
+    assert _digest(again.network) == _digest(whole.network)
+    assert [row[1] for row in again.curve] == [0, 1, 2, 3]
+
+
+def _digest(network):
+    return hashlib.sha256(b"".join(x.numpy().tobytes() for x in network.state_dict().values())).hexdigest()
+
+
+def test_a_residual_that_does_not_help_is_refused(ship, sailed, tmp_path, monkeypatch):
+    """Test: a network that was hardly trained. Expected: exit code 3, no file."""
+    monkeypatch.setattr(train, "read_all", lambda paths, ship: sailed)
+    parser = train.argparse.ArgumentParser()
+    train.add_arguments(parser)
+    args = parser.parse_args(
+        [
+            "v.mcap",
+            "--ship",
+            "kvlcc2",
+            "-o",
+            str(tmp_path / "r.onnx"),
+            "--loss",
+            "acceleration",
+            "--epochs",
+            "0",
+        ]
+    )
+    with pytest.raises(ThresholdError, match="not worth having"):
+        train.run(args)
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_papers_R_is_nothing_whatever_the_network_says(parts):
+    """Expected: R by automatic differentiation is zero (it holds by construction), while f is not: lambda_phys pulls at nothing."""
+    taught = teach(*parts, replace(FEW, loss="paper", epochs=1))
+    assert taught.diagnostics["R"] < 0.02 * taught.diagnostics["f"]
+
+
+def test_physics_alone_explains_a_ship_that_is_as_her_file_says(parts):
+    """Expected: M nu_dot less the forces is zero for accelerations that the model itself gave."""
+    split_parts, model = parts
+    data = samples(split_parts["test"], model, input_names(split_parts["test"]))
+    s = data.situation(slice(0, 50))
+    rates = torch.stack(list(model.nu_dot(s)), -1)
+    scale = torch.tensor(scale_of(model.ship))
+    assert loss.left_over(model, s, rates, scale).abs().max() < 1e-3
+
+
+def test_what_the_core_says_itself_is_penalised_whole(parts):
+    """Test: f made of the core's own columns, and f across them. Expected: all of it, and next to nothing."""
+    g = torch.Generator().manual_seed(3)
+    columns = torch.randn(200, 3, 4, generator=g)
+    inside = columns.sum(-1)
+    assert float(loss.orthogonal(inside, columns)) == pytest.approx(float((inside**2).sum() / 200), rel=1e-4)
+    across = torch.randn(200, 3, generator=g)
+    assert float(loss.orthogonal(across, columns)) < 0.1 * float((across**2).sum() / 200)
+
+
+def test_golden_vectors_and_units_are_in_the_manifest(learned, parts):
+    table = json.loads(learned[0].with_suffix(".json").read_text())
+    assert {entry["unit"] for entry in table["inputs"]} == {"-", "rad"}
+    assert len(table["golden"]["inputs"]) >= 2 and len(table["golden"]["outputs"][0]) == 64
+    assert table["training"]["voyages"] and table["training"]["held_out"]["windows"] > 0
