@@ -16,6 +16,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from bench.mark import Mark
 from twin.live import geodesy
 from twin.live.messages import Tick, encode_fix, encode_float, unwrap, wrap
 from twin.live.topics import BY_SUBJECT, INPUTS, key
@@ -86,12 +87,15 @@ def main(rows: str, endpoint: str, base: str, entity: str) -> None:
     session = zenoh.open(configuration(BusSettings(base, entity, "", (endpoint,))))
     newest = session.declare_subscriber(key(base, entity, "twin_tick", "twin"), zenoh.handlers.RingChannel(1))
     feed, parent = Feed(session, base, entity, voyage), os.getppid()
+    mark = Mark(Path(rows).with_suffix(".mark"))
     while os.getppid() == parent:
         sample = newest.try_recv()
         if sample is None:
             time.sleep(2e-4)
         else:
-            feed.follow(Tick.FromString(unwrap(sample.payload.to_bytes())[1]).wall_s)
+            wall_s = Tick.FromString(unwrap(sample.payload.to_bytes())[1]).wall_s
+            feed.follow(wall_s)
+            mark.write(wall_s)
 
 
 if __name__ == "__main__":

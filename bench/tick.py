@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from bench import cortex, feed, instructions, tick_table
+from bench import cortex, feed, instructions, mark, tick_table
 from bench.tick_process import WARM_UP
 from twin.errors import TwinError
 from twin.live.residual import bundled
@@ -103,7 +103,8 @@ def judged(
         "cpu_us_per_step": fast["cpu_us_per_step"], "paced": _paced(paced), "rss_peak_mb": memory["peak_mb"],
         "rss_anon_mb": memory["anon_mb"], "rss_file_mb": memory["file_mb"],
         "rss_growth_mb": fast["growth_mb"],
-        "rss_growth_anon_mb": fast["growth_anon_mb"], "mode": fast["mode"], "reasons": fast["reasons"],
+        "rss_growth_anon_mb": fast["growth_anon_mb"], "mode": fast["mode"],
+        "modes": fast["modes"], "reasons": fast["reasons"],
         "notes": fast["notes"], "log": fast["log"], **peers, "ratios": _ratios(computing, peers["peers"]),
         "instructions": counted, "cortex_a72": estimate,
         "budget": {"step_ms": args.budget_ms, "rss_mb": args.budget_mb}, "over_budget": over,
@@ -133,22 +134,12 @@ class Place:
 
     def loop(self, steps: int, parts: int, pace: str) -> dict[str, Any]:
         """One run of the service, fed by a process beside it."""
-        beside = [
-            sys.executable,
-            "-m",
-            "bench.feed",
-            str(self.folder / "rows"),
-            self.endpoint,
-            "twin",
-            "ship",
-        ]
-        feeder = subprocess.Popen(beside)
+        rows, settings = self.folder / "rows", str(self.folder / "twin.toml")
+        python = [sys.executable, "-m"]
+        measured = ["bench.tick_process", settings, str(mark.new(rows)), str(steps), str(parts), pace]
+        feeder = subprocess.Popen([*python, "bench.feed", str(rows), self.endpoint, "twin", "ship"])
         try:
-            settings = str(self.folder / "twin.toml")
-            return _json_of(
-                [sys.executable, "-m", "bench.tick_process", settings, str(steps), str(parts), pace],
-                "the loop",
-            )
+            return _json_of([*python, *measured], "the loop")
         finally:
             feeder.terminate()
             feeder.wait(10)

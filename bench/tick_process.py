@@ -3,7 +3,7 @@
 Only what the service loads is loaded here, so that the memory is the service's. The stop-watch is the
 clock that the service waits for: a step is everything it does between two waits. Prints one JSON object.
 
-    python -m bench.tick_process CONFIG STEPS PARTS fast|paced
+    python -m bench.tick_process CONFIG MARK STEPS PARTS fast|paced
 """
 
 import json
@@ -14,6 +14,7 @@ import traceback
 from array import array
 from typing import Any
 
+from bench.mark import Mark
 from bench.memory import Memory, memory
 from bench.timing import quantiles
 from twin.live import build, config, realtime, run
@@ -24,19 +25,22 @@ from twin.live.publish import Publisher
 
 WARM_UP = 300  # ticks before anything is counted: gates open, the first prediction is made, the log is open
 CONNECT_S = 20.0
+FEED_S = 20.0  # a feed that is silent for so long has stopped
+LAG_S = 0.2  # of the loop's own time
 
 
 class FastClock:
     """A clock that is always due: each tick is one period later than the last, whatever the time is.
 
-    Now and then it rests, outside every step: the kernel stops a real-time process that never sleeps.
+    Outside every step it waits for a feed that lags by more than `LAG_S` (without measurements the loop would do
+    less work), and rests now and then (the kernel stops a real-time process that never sleeps).
     """
 
     overruns = 0
     work_s, rest_s = 0.05, 0.01
 
-    def __init__(self, rate_hz: float):
-        self.period_s, self._index = 1.0 / rate_hz, 0
+    def __init__(self, rate_hz: float, mark: Mark | None = None):
+        self.period_s, self._index, self._mark = 1.0 / rate_hz, 0, mark
         self._start_s, self._wall_s = time.monotonic(), time.time()
         self._rested_s = self._start_s
 
@@ -45,11 +49,22 @@ class FastClock:
             time.sleep(self.rest_s)
             self._rested_s = time.monotonic()
         at = self._index * self.period_s
+        if self._mark is not None:
+            self._wait_for_feed(self._wall_s + at - LAG_S)
         self._index += 1
         return Instant(self._index - 1, self._start_s + at, self._wall_s + at)
 
     def slack_s(self) -> None:
         return None
+
+    def _wait_for_feed(self, wall_s: float) -> None:
+        if self._index * self.period_s <= LAG_S:
+            return
+        until = time.monotonic() + FEED_S
+        while self._mark.read() < wall_s:  # type: ignore[union-attr]
+            if time.monotonic() > until:
+                raise SystemExit("the feed has stopped")
+            time.sleep(5e-5)
 
 
 class StopWatch:
@@ -83,8 +98,9 @@ class StopWatch:
 class Measured:
     """One service, and what was seen of it."""
 
-    def __init__(self, path: str, steps: int, parts: int, paced: bool):
-        self.settings = config.load(path)
+    def __init__(self, path: str, mark: str, steps: int, parts: int, paced: bool):
+        self.settings, self.mark = config.load(path), Mark(mark)
+        self.modes: dict[str, int] = {}
         self.steps, self.parts, self.paced = steps, parts, paced
         self.notes: list[str] = []
         self.seen: list[tuple[Memory, int, int, float]] = []  # memory, messages, overruns, processor time
@@ -98,7 +114,8 @@ class Measured:
             voice = Outbox(Publisher(), *names, self.bus, recorder.write)
             self.loop = build.loop_of(settings, Inbox(self.bus, recorder.write), voice)
             recorder.start()
-            clock: Clock = MonotonicClock(self.loop.rate_hz) if self.paced else FastClock(self.loop.rate_hz)
+            rate = self.loop.rate_hz
+            clock: Clock = MonotonicClock(rate) if self.paced else FastClock(rate, self.mark)
             self.watch = StopWatch(clock, self.steps, self.parts)
             end = WARM_UP + self.steps
             self.watch.at = {WARM_UP: self._settle, WARM_UP + self.steps // 10: self._look, end: self._finish}
@@ -110,6 +127,8 @@ class Measured:
 
     def _keep(self, tick: Any) -> None:
         self.last = tick
+        if self.watch.index > WARM_UP:
+            self.modes[tick.mode] = self.modes.get(tick.mode, 0) + 1
 
     def _settle(self) -> None:
         s = self.settings
@@ -138,7 +157,8 @@ class Measured:
             "memory": end._asdict(),
             "growth_mb": round(end.now_mb - early.now_mb, 2),
             "growth_anon_mb": round(end.anon_mb - early.anon_mb, 2),
-            "mode": self.last.mode,
+            "mode": max(self.modes, key=lambda mode: self.modes[mode]),
+            "modes": self.modes,
             "reasons": list(self.last.reasons),
             "learned_weight": self.last.learned.weight,
             "notes": [*self.loop.notes, *self.notes],
@@ -161,8 +181,8 @@ def _connect(bus: Any) -> None:
 if __name__ == "__main__":
     code = 1
     try:
-        _, settings, steps, parts, pace = sys.argv
-        print(json.dumps(Measured(settings, int(steps), int(parts), pace == "paced").run()))
+        _, settings, mark, steps, parts, pace = sys.argv
+        print(json.dumps(Measured(settings, mark, int(steps), int(parts), pace == "paced").run()))
         code = 0
     except BaseException:
         traceback.print_exc()

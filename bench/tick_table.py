@@ -54,6 +54,9 @@ def _head(r: dict[str, Any]) -> str:
     lines.append(
         f"residual: {r['residual']}; {r['messages_per_step']:g} messages a step; {r['log']['written']} logged"
     )
+    others = {mode: n for mode, n in r["modes"].items() if mode != r["mode"]}
+    if others:
+        lines.append(f"note: not all steps did all the work: {others}")
     lines += [f"note: {note}" for note in [*r["notes"], *r["reasons"]]]
     return "\n".join(lines)
 

@@ -30,7 +30,7 @@ def test_a_short_run_of_the_whole_loop_is_good(short):
     done, result = short
     assert done.returncode == 0, done.stdout + done.stderr
     assert result["within_budget"] is True
-    assert result["mode"] == "hybrid"
+    assert result["modes"]["hybrid"] > 0.98 * sum(result["modes"].values())  # else it did not do all its work
     assert result["messages_per_step"] > 0.5
     assert result["log"]["written"] > 120
 
@@ -66,7 +66,8 @@ def measured(step_p999_us=1000.0, peak_mb=40.0):
     memory = {"peak_mb": peak_mb, "now_mb": 30.0, "anon_mb": 20.0, "file_mb": 10.0}
     return {
         "step_us": step, "memory": memory, "growth_mb": 0.0, "growth_anon_mb": 0.0, "missed_deadlines": 0,
-        "messages_per_step": 1.0, "cpu_us_per_step": 200.0, "mode": "hybrid", "reasons": [], "notes": [],
+        "messages_per_step": 1.0, "cpu_us_per_step": 200.0, "mode": "hybrid",
+        "modes": {"hybrid": 1}, "reasons": [], "notes": [],
         "log": {"written": 1}, "parts_us": {"known": {"median": 10.0, "p99": 12.0}},
     }  # fmt: skip
 
