@@ -10,7 +10,7 @@ function rankingSection() {
   if (!out.length) out.push(el("p.note", null, "No candidate is worth a line."));
   const missing = RESULT.missing || [];
   if (missing.length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Add what is missing, and see whether the error falls on measurements that were not used:"), command(addCommand(missing)));
-  const words = (x) => (typeof x === "string" ? x : [x.effect, x.why || (x.not_measured || []).join(", ")].filter(Boolean).join(": "));
+  const words = (x) => (typeof x === "string" ? x : [x.effect, x.why || (x.lacks || x.not_measured || []).map((n) => `no ${n}`).join(", ")].filter(Boolean).join(": "));
   for (const [key, said] of [["not_judged", "Could not be judged: "], ["not_visible", "Too small to be seen in these voyages, even at a plausible size: "]]) {
     if ((RESULT[key] || []).length) out.push(el("p.note", { style: { marginTop: "8px" } }, said + RESULT[key].map(words).join("; ")));
   }
