@@ -81,12 +81,13 @@ def _steps(r: dict[str, Any]) -> str:
 
 
 def _parts(r: dict[str, Any]) -> str:
-    lines = [_title("Part by part [us]"), f"  {'':<14}{'median':>9}{'p99':>10}"]
-    total = sum(p["median"] for p in r["parts_us"].values()) or 1.0
+    lines = [_title("Part by part [us]"), f"  {'':<12}{'median':>8}{'p99':>8}{'mean':>8}"]
+    total = sum(p["mean"] for p in r["parts_us"].values()) or 1.0
     for name, times in r["parts_us"].items():
-        bar = "█" * round(18 * times["median"] / total)
+        bar = "█" * round(14 * times["mean"] / total)
         lines.append(
-            f"  {name:<14}{times['median']:>9,.0f}{times['p99']:>10,.0f}  {DOC.get(name, ''):<42}{bar}"
+            f"  {name:<12}{times['median']:>8,.0f}{times['p99']:>8,.0f}{times['mean']:>8,.0f}"
+            f"  {DOC.get(name, ''):<42}{bar}"
         )
     return "\n".join(lines)
 
@@ -107,7 +108,7 @@ def _peers(r: dict[str, Any]) -> str:
     if not r["peers"]:
         return ""
     lines = [_title("Computing of one step, beside the peers [us]", "median   twin/peer")]
-    lines.append(f"  {'twin':<14}{'sensors to predict, of the parts above':<42}{r['computing_us']:>10,.0f}")
+    lines.append(f"  {'twin':<14}{'sensors to predict, means of the above':<42}{r['computing_us']:>10,.0f}")
     for name, doc in PEERS.items():
         ratio = r["ratios"][f"hybrid_over_{name}"]
         lines.append(f"  {name:<14}{doc:<42}{r['peers'][name]['median_us']:>10,.0f}{ratio:>10.2f}")

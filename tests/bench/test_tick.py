@@ -43,7 +43,7 @@ def test_the_json_holds_what_the_contract_says(short):
     assert set(result["budget"]) == {"step_ms", "rss_mb"}
     names = {"factor_low", "factor", "factor_high", "step_ms_median", "step_ms_p999"}
     assert names <= set(result["cortex_a72"])
-    assert all(set(part) == {"median", "p99"} for part in result["parts_us"].values())
+    assert all({"median", "p99"} <= set(part) for part in result["parts_us"].values())
 
 
 def test_the_parts_are_there_and_their_sum_is_less_than_the_step(short):
@@ -68,7 +68,7 @@ def measured(step_p999_us=1000.0, peak_mb=40.0):
         "step_us": step, "memory": memory, "growth_mb": 0.0, "growth_anon_mb": 0.0, "missed_deadlines": 0,
         "messages_per_step": 1.0, "cpu_us_per_step": 200.0, "mode": "hybrid",
         "modes": {"hybrid": 1}, "reasons": [], "notes": [],
-        "log": {"written": 1}, "parts_us": {"known": {"median": 10.0, "p99": 12.0}},
+        "log": {"written": 1}, "parts_us": {"known": {"median": 9.0, "p99": 12.0, "mean": 10.0}},
     }  # fmt: skip
 
 
