@@ -9,6 +9,7 @@ The full training, with roll-outs and its protocol, is `twin train`; this one gi
 
 import argparse
 import hashlib
+import itertools
 import json
 import os
 from pathlib import Path
@@ -49,7 +50,9 @@ class Trunk(torch.nn.Module):
     def __init__(self, offset: np.ndarray, scale: np.ndarray):
         super().__init__()
         sizes = [len(NAMES)] + [FEATURES] * LAYERS
-        self.layers = torch.nn.ModuleList(torch.nn.Linear(a, b) for a, b in zip(sizes, sizes[1:], strict=False))
+        self.layers = torch.nn.ModuleList(
+            torch.nn.Linear(a, b) for a, b in itertools.pairwise(sizes)
+        )
         for layer in self.layers:
             torch.nn.init.xavier_uniform_(layer.weight)
             torch.nn.init.zeros_(layer.bias)
@@ -145,7 +148,10 @@ def _on(grid: np.ndarray, time_s: np.ndarray, values: np.ndarray) -> np.ndarray:
 def explained(trunk: Trunk, runs: list[Run]) -> list[float]:
     """Share of the mean square of d that the network takes away, by axis."""
     with torch.no_grad():
-        pairs = [(low_passed(trunk(torch.tensor(run.zeta, dtype=torch.float32))).numpy()[KERNEL:], run.d[KERNEL:]) for run in runs]
+        pairs = [
+            (low_passed(trunk(torch.tensor(run.zeta, dtype=torch.float32))).numpy()[KERNEL:], run.d[KERNEL:])
+            for run in runs
+        ]
     left = np.concatenate([d - f for f, d in pairs])
     whole = np.concatenate([d for _, d in pairs])
     return [float(x) for x in 1.0 - (left**2).mean(0) / (whole**2).mean(0)]
@@ -166,14 +172,21 @@ def trunk_onnx(trunk: Trunk) -> bytes:
             helper.make_node("Mul", [f"z{i}", f"s{i}"], [out]),
         ]
         source = out
-    ends = [helper.make_tensor_value_info(n, TensorProto.FLOAT, [1, size]) for n, size in (("zeta", len(NAMES)), ("phi", FEATURES))]
+    ends = [
+        helper.make_tensor_value_info(n, TensorProto.FLOAT, [1, size])
+        for n, size in (("zeta", len(NAMES)), ("phi", FEATURES))
+    ]
     graph = helper.make_graph(nodes, "trunk", ends[:1], ends[1:], weights)
-    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=8, producer_name="shiptwin")
+    model = helper.make_model(
+        graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=8, producer_name="shiptwin"
+    )
     checker.check_model(model)
     return bytes(model.SerializeToString())
 
 
-def manifest(trunk: Trunk, model: bytes, ship: Ship, runs: list[Run], about: dict[str, Any]) -> dict[str, Any]:
+def manifest(
+    trunk: Trunk, model: bytes, ship: Ship, runs: list[Run], about: dict[str, Any]
+) -> dict[str, Any]:
     """The manifest of docs/residual.md."""
     zeta = np.concatenate([run.zeta for run in runs])
     low, high = zeta.min(0), zeta.max(0)
@@ -181,7 +194,7 @@ def manifest(trunk: Trunk, model: bytes, ship: Ship, runs: list[Run], about: dic
         phi = trunk.phi(torch.tensor(zeta, dtype=torch.float32)).numpy().astype(float)
         force = phi @ trunk.W.numpy().T.astype(float)
     centred = phi - phi.mean(0)
-    _, sizes, directions = np.linalg.svd(centred[:: max(len(centred) // 20000, 1)], full_matrices=False)
+    _, _sizes, directions = np.linalg.svd(centred[:: max(len(centred) // 20000, 1)], full_matrices=False)
     deviations = (centred @ directions[:COMPONENTS].T).std(0)
     offset, scale = trunk.offset.numpy(), trunk.scale.numpy()
     golden = (zeta[:: len(zeta) // 5][:5] - offset) / scale
@@ -207,7 +220,10 @@ def manifest(trunk: Trunk, model: bytes, ship: Ship, runs: list[Run], about: dic
             "components": [[float(x) for x in row] for row in directions[:COMPONENTS] / deviations[:, None]],
         },
         "spectral_norms": [float(np.linalg.norm(layer.weight.detach().numpy(), 2)) for layer in trunk.layers],
-        "golden": {"inputs": [[float(x) for x in row] for row in golden], "outputs": [[float(x) for x in row] for row in answers]},
+        "golden": {
+            "inputs": [[float(x) for x in row] for row in golden],
+            "outputs": [[float(x) for x in row] for row in answers],
+        },
         "training": about,
     }
 
@@ -230,7 +246,13 @@ def main() -> int:
         "explained_held_out": dict(zip(("surge", "sway", "yaw"), explained(trunk, held_out), strict=True)),
     }  # fmt: skip
     model = trunk_onnx(trunk)
-    for path, data in ((args.output.with_suffix(".json"), json.dumps(manifest(trunk, model, ship, used, about), indent=1).encode()), (args.output, model)):
+    for path, data in (
+        (
+            args.output.with_suffix(".json"),
+            json.dumps(manifest(trunk, model, ship, used, about), indent=1).encode(),
+        ),
+        (args.output, model),
+    ):
         aside = path.with_name(f".{path.name}.part")
         aside.write_bytes(data)
         os.replace(aside, path)

@@ -66,7 +66,11 @@ class Sailing:
         said = []
         for name, value in self.true().items():
             value += self.noise * self.random.gauss(0.0, NOISE[name])
-            said.append(Reading(name, value % 360.0 if "north_deg" in name else value, WALL + now_s, now_s, self.source))
+            said.append(
+                Reading(
+                    name, value % 360.0 if "north_deg" in name else value, WALL + now_s, now_s, self.source
+                )
+            )
         return said
 
 
@@ -125,7 +129,9 @@ def make_bridge(kvlcc2):
 
 def every_number(message):
     for field, value in message.ListFields():
-        many = value if not isinstance(value, (str, float, int, bool)) and hasattr(value, "__len__") else [value]
+        many = (
+            value if not isinstance(value, (str, float, int, bool)) and hasattr(value, "__len__") else [value]
+        )
         for one in many:
             if hasattr(one, "ListFields"):
                 yield from every_number(one)

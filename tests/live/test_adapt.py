@@ -27,7 +27,11 @@ def teach(adaptation, ship, truth, seconds=4000, dt=0.5, noise=0.1, seed=1, froz
     dice = random.Random(seed)
     for k in range(int(seconds / dt)):
         t = dt * k
-        forces = known(ship, hull=(0.5, 0.6 * sin(t / 35.0), 0.5 * sin(t / 30.0)), rudder=(0, sin(t / 50.0), sin(t / 45.0)))
+        forces = known(
+            ship,
+            hull=(0.5, 0.6 * sin(t / 35.0), 0.5 * sin(t / 30.0)),
+            rudder=(0, sin(t / 50.0), sin(t / 45.0)),
+        )
         q = adaptation.regressors([sin(t / 40.0), sin(t / 27.0 + 1.0)], forces)
         d = tuple(truth(r, adaptation._of_row(r, q)) + noise * dice.gauss(0.0, 1.0) for r in range(3))
         adaptation.learn(d, q, dt, frozen)
@@ -94,11 +98,24 @@ def test_M12_saved_numbers_come_back_clamped_and_must_prove_themselves_again(kvl
     again = made(kvlcc2)
     again.restore(path, "mark")
     values = {p.name: p.value for p in again.parameters()}
-    assert values["sway hull"] == pytest.approx({p.name: p.value for p in adaptation.parameters()}["sway hull"])
+    assert values["sway hull"] == pytest.approx(
+        {p.name: p.value for p in adaptation.parameters()}["sway hull"]
+    )
     assert values["surge feature 1"] <= 0.5 and again.correction(rows) == (0.0, 0.0, 0.0)
 
 
-@pytest.mark.parametrize("text", ("", "{", "[]", '{"mark": "mark", "rows": [1, 2, 3]}', '{"mark": "mark", "rows": []}', '{"mark": "mark", "rows": [{"a": [NaN]}, {}, {}]}', "[" * 100_000))
+@pytest.mark.parametrize(
+    "text",
+    (
+        "",
+        "{",
+        "[]",
+        '{"mark": "mark", "rows": [1, 2, 3]}',
+        '{"mark": "mark", "rows": []}',
+        '{"mark": "mark", "rows": [{"a": [NaN]}, {}, {}]}',
+        "[" * 100_000,
+    ),
+)
 def test_M12_a_garbage_file_is_left_out_and_said(kvlcc2, tmp_path, text):
     path = tmp_path / "adaptation.json"
     path.write_text(text)

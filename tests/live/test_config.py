@@ -91,7 +91,10 @@ def test_F2_a_file_that_cannot_be_read_is_named(tmp_path):
 
 
 def test_horizons_are_a_list_of_numbers(tmp_path):
-    assert load(write(tmp_path, "[prediction]\nhorizons_s = [5, 30]\n"))["prediction.horizons_s"] == [5.0, 30.0]
+    assert load(write(tmp_path, "[prediction]\nhorizons_s = [5, 30]\n"))["prediction.horizons_s"] == [
+        5.0,
+        30.0,
+    ]
     assert "line 2" in complaint(tmp_path, "[prediction]\nhorizons_s = []\n")
 
 

@@ -26,15 +26,29 @@ def made_up(dice: random.Random, now_s: float) -> tuple[str, bytes]:
     topic = dice.choice(INPUTS)
     stamp_ns = round((WALL + now_s + dice.choice((0.0, 0.0, 0.0, -0.3, -5.0, 4000.0, -1e9))) * 1e9)
     channel = next(c for c in CHANNELS if c.name == topic.channels[0])
-    value = dice.choice((dice.uniform(channel.low, channel.high), dice.uniform(-1.0, 1.0), channel.high, channel.low, 1e30, float("nan"), 0.0))
+    value = dice.choice(
+        (
+            dice.uniform(channel.low, channel.high),
+            dice.uniform(-1.0, 1.0),
+            channel.high,
+            channel.low,
+            1e30,
+            float("nan"),
+            0.0,
+        )
+    )
     if topic.subject == "location_fix":
-        data = encode_fix(dice.choice((57.6, 57.6001, 91.0, -57.0)), dice.choice((11.6, 11.6001, 181.0)), stamp_ns)
+        data = encode_fix(
+            dice.choice((57.6, 57.6001, 91.0, -57.0)), dice.choice((11.6, 11.6001, 181.0)), stamp_ns
+        )
     else:
         data = encode_float(value, stamp_ns)
     data = wrap(data, stamp_ns)
     if dice.random() < 0.2:
         data = mutated(dice, data)
-    return key("twin", "ship", dice.choice((topic.subject,) * 9 + ("unknown",)), dice.choice(("a", "a", "a", "b"))), data
+    return key(
+        "twin", "ship", dice.choice((topic.subject,) * 9 + ("unknown",)), dice.choice(("a", "a", "a", "b"))
+    ), data
 
 
 def mutated(dice: random.Random, data: bytes) -> bytes:

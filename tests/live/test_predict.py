@@ -45,7 +45,9 @@ def test_the_coarse_steps_of_a_prediction_agree_with_fine_ones(name):
 def test_a_round_is_spread_over_ticks(kvlcc2):
     e, s = start(kvlcc2)
     predictor = Predictor(kvlcc2, refresh_s=2.0, rate_hz=10.0)
-    rounds = [bool(predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, True)) for k in range(60)]
+    rounds = [
+        bool(predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, True)) for k in range(60)
+    ]
     assert 2 <= sum(rounds) <= 4 and predictor.steps_a_tick <= 4
 
 
@@ -79,7 +81,13 @@ def test_on_a_voyage_the_predictions_come_true_at_the_time_they_name(make_bridge
         said += [(tick.time_s + p.horizon_s, p) for p in tick.predictions if abs(p.horizon_s - 10.0) < 0.5]
         truth[round(tick.time_s, 1)] = tick.estimate
     late = [(t, p) for t, p in said[len(said) // 2 :] if round(t, 1) in truth]
-    gaps = [(hypot(p.state.north_m - truth[round(t, 1)].north_m, p.state.east_m - truth[round(t, 1)].east_m), p.sigma.north_m) for t, p in late]
+    gaps = [
+        (
+            hypot(p.state.north_m - truth[round(t, 1)].north_m, p.state.east_m - truth[round(t, 1)].east_m),
+            p.sigma.north_m,
+        )
+        for t, p in late
+    ]
     assert len(gaps) > 20 and all(gap < 0.5 for gap, _ in gaps)
     assert sum(gap < 1.51 * 3.0 * sigma for gap, sigma in gaps) > 0.9 * len(gaps)
 
@@ -87,16 +95,30 @@ def test_on_a_voyage_the_predictions_come_true_at_the_time_they_name(make_bridge
 def test_without_a_good_estimate_nothing_is_foretold(kvlcc2):
     e, s = start(kvlcc2)
     predictor = Predictor(kvlcc2)
-    assert all(not predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, False) for k in range(100))
+    assert all(
+        not predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, False) for k in range(100)
+    )
 
 
 def test_an_ensemble_of_64_ships_sails_as_64_single_ones(kvlcc2):
     import numpy as np
 
-    e, s = start(kvlcc2)
+    _e, s = start(kvlcc2)
     rudders = np.linspace(-0.3, 0.3, 64)
-    many = ensemble(Situation(0.0, 0.0, s.psi, s.u, np.zeros(64), 0.0, delta=rudders, n=s.n), Known(Model.of(kvlcc2)), nothing, 120.0, 1.0)
+    many = ensemble(
+        Situation(0.0, 0.0, s.psi, s.u, np.zeros(64), 0.0, delta=rudders, n=s.n),
+        Known(Model.of(kvlcc2)),
+        nothing,
+        120.0,
+        1.0,
+    )
     for k in (0, 31, 63):
-        one = ensemble(Situation(0.0, 0.0, s.psi, s.u, 0.0, 0.0, delta=float(rudders[k]), n=s.n), Known(Model.of(kvlcc2)), nothing, 120.0, 1.0)
+        one = ensemble(
+            Situation(0.0, 0.0, s.psi, s.u, 0.0, 0.0, delta=float(rudders[k]), n=s.n),
+            Known(Model.of(kvlcc2)),
+            nothing,
+            120.0,
+            1.0,
+        )
         assert many.x[k] == pytest.approx(one.x, abs=1e-6) and many.psi[k] == pytest.approx(one.psi, abs=1e-9)
     assert radians(5.0) < abs(many.psi[0] - s.psi)

@@ -38,7 +38,11 @@ def test_what_is_not_allowed_is_said_and_nothing_else_happens():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, cwd="/")
     assert done.returncode == 0, done.stderr
-    assert "loop.cpu = 1000" in done.stdout and "real-time priority" in done.stdout and "not locked" in done.stdout
+    assert (
+        "loop.cpu = 1000" in done.stdout
+        and "real-time priority" in done.stdout
+        and "not locked" in done.stdout
+    )
 
 
 def test_a_writable_mapping_is_never_dropped():

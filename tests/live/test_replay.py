@@ -27,7 +27,11 @@ def settings(tmp_path, **more):
 
 
 def ticks(path):
-    return [messages.Tick.FromString(m.data) for m in McapReader(path).messages() if m.type_name == "shiptwin.Tick"]
+    return [
+        messages.Tick.FromString(m.data)
+        for m in McapReader(path).messages()
+        if m.type_name == "shiptwin.Tick"
+    ]
 
 
 def spoken(readings, bus):
@@ -95,7 +99,10 @@ def test_an_imported_voyage_is_sailed_and_judged(sailing, tmp_path):
 
 
 def test_a_voyage_of_one_sample_a_second_has_ticks_in_between(sailing, tmp_path):
-    summary = replay(rows_log(tmp_path / "v.mcap", sailing, 100.0, every=10), settings(tmp_path, **{"residual.file": "none"}))
+    summary = replay(
+        rows_log(tmp_path / "v.mcap", sailing, 100.0, every=10),
+        settings(tmp_path, **{"residual.file": "none"}),
+    )
     assert summary.ticks == 991 and set(summary.modes) == {"physics only"}
 
 
@@ -106,10 +113,17 @@ def test_a_log_of_scalars_without_a_twin_is_sailed_too(sailing, tmp_path):
             ns = round((WALL + 0.1 * k) * 1e9)
             for r in sailing.readings(0.1 * k):
                 if r.channel in BY_SUBJECT:
-                    log.add(key("rise", "alma", r.channel, "x"), "keelson.TimestampedFloat", encode_float(r.value, ns), ns)
+                    log.add(
+                        key("rise", "alma", r.channel, "x"),
+                        "keelson.TimestampedFloat",
+                        encode_float(r.value, ns),
+                        ns,
+                    )
             sailing.advance()
     summary = replay(path, settings(tmp_path))
-    assert summary.kind == "a log of Keelson scalars" and summary.ticks == 600 and summary.modes["hybrid"] > 500
+    assert (
+        summary.kind == "a log of Keelson scalars" and summary.ticks == 600 and summary.modes["hybrid"] > 500
+    )
 
 
 @pytest.mark.parametrize("data", (b"", b"not a log", b"\x89MCAP0\r\n"))
@@ -123,7 +137,9 @@ def test_what_is_no_log_is_refused_in_one_line(tmp_path, data):
 def test_a_log_without_anything_the_twin_knows_is_refused(tmp_path):
     path = tmp_path / "x.mcap"
     with LogFile(path) as log:
-        log.add("rise/@v0/alma/pubsub/unknown/x", "keelson.TimestampedFloat", encode_float(1.0, 10**18), 10**18)
+        log.add(
+            "rise/@v0/alma/pubsub/unknown/x", "keelson.TimestampedFloat", encode_float(1.0, 10**18), 10**18
+        )
     with pytest.raises(DataError, match="no measurements in it"):
         replay(path, settings(tmp_path))
 

@@ -1,5 +1,6 @@
 """The service as a process: it starts without a file, stops when told, and ends by itself when something breaks."""
 
+import itertools
 import json
 import os
 import signal
@@ -61,7 +62,11 @@ def ticks(place):
     from twin.live import messages
 
     path = max((place / "logs").glob("*.mcap"))
-    return [messages.Tick.FromString(m.data) for m in McapReader(path).messages() if m.type_name == "shiptwin.Tick"]
+    return [
+        messages.Tick.FromString(m.data)
+        for m in McapReader(path).messages()
+        if m.type_name == "shiptwin.Tick"
+    ]
 
 
 def test_C7_told_to_stop_it_finishes_cleanly_within_two_seconds(place):
@@ -97,7 +102,11 @@ def slowness():
 def test_C4_an_uncaught_exception_ends_the_process_and_does_not_hang(place):
     """Test: a bug on the tenth tick, bus and log open. Expected: exit code not 0 within a second, traceback said."""
     hook = "if tick.index == 10: print('BROKEN', file=sys.stderr, flush=True); raise RuntimeError('planted')"
-    process = subprocess.Popen([sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml")], stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml")],
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     while "BROKEN" not in process.stderr.readline():
         pass
     broke = time.monotonic()
@@ -117,7 +126,7 @@ def test_C2_a_stall_of_200_ms_is_counted_and_followed_by_no_burst(place):
     process.terminate()
     process.wait(10.0)
     made = ticks(place)
-    gaps = [b.time_s - a.time_s for a, b in zip(made, made[1:], strict=False)]
+    gaps = [b.time_s - a.time_s for a, b in itertools.pairwise(made)]
     assert max(gaps) > 0.15 and made[-1].overruns >= 2
     assert not [g for g in gaps if g < 0.02 and slowness() < 2.0]
 
@@ -150,7 +159,9 @@ def test_C3_the_watchdog_is_fed_after_good_steps_and_not_while_the_loop_hangs(pl
     ('[residual]\nfile = "no.onnx"\nrequired = true\n', "no.onnx"),
 ))  # fmt: skip
 def test_F1_M1_settings_that_cannot_be_used_end_it_with_exit_code_5_and_one_line(place, text, words):
-    (place / "twin.toml").write_text(text + f'[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n[log]\nfolder = ""\n')
+    (place / "twin.toml").write_text(
+        text + f'[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n[log]\nfolder = ""\n'
+    )
     process = start(place)
     assert process.wait(30.0) == 5
     said = process.stderr.read()
@@ -170,7 +181,12 @@ def test_M13_a_residual_of_another_ship_that_was_asked_for_ends_it(place):
 
 
 def test_the_example_settings_can_be_printed():
-    done = subprocess.run([sys.executable, "-m", "twin.cli", "run", "--example-config"], capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        [sys.executable, "-m", "twin.cli", "run", "--example-config"],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert done.returncode == 0 and done.stdout.startswith("[ship]\n")
 
 

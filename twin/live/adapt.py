@@ -1,4 +1,4 @@
-"""Slow learning on board: a few numbers on top of the trained last layer, kept small, and thrown away when they do not help.
+"""Slow learning on board: a few numbers on top of the trained last layer, kept small, unused when they do not help.
 
     learned force_r = W_r phi + g_r a_r q_r         q_r = [whitened components of phi | known forces of row r | 1]
     e = clip(d_r - a_r q_f, +-3 s_r)                K = P q_f / (R s_r^2/h + q_f' P q_f)
@@ -9,24 +9,26 @@ on boxes and on ||A|| <= A_MAX. The evidence gate g opens only as far as the err
 """
 
 import json
-from collections.abc import Mapping
 from dataclasses import dataclass
 from math import isfinite, sqrt
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from twin.live.evidence import Filtered, Three
+from twin.live.dynamics import Forces
+from twin.live.evidence import Three
 from twin.live.residual import dot
+from twin.physics.model import CORE
 from twin.physics.ship import Ship
 from twin.physics.state import Force
 
 ROWS = ("surge", "sway", "yaw")
 COLUMNS = (("hull", "propeller"), ("hull", "rudder"), ("hull", "rudder"))  # known forces whose size each row may correct
+HULL, PROPELLER, RUDDER = CORE.index("hull"), CORE.index("propeller"), CORE.index("rudder")
 A_MAX = 1.0  # norm of all numbers together
 BOX_COMPONENT, BOX_KNOWN, BOX_CONSTANT = 0.5, 0.3, 0.5
 P_FIRST, P_TRACE = 0.05, 1.0
 NOISE_S = 0.75  # time over which noise hangs together, in L/U_0
-LEAK, SPREAD, GATE = 15.0, 1.5, 3.0  # time constants, in L/U_0
+LEAK, SPREAD, GATE = 60.0, 1.5, 3.0  # time constants, in L/U_0
 WALK = 8e-4  # Q: how fast the truth may wander, per L/U_0
 EXCITED = 0.02  # rms of the regressors' motion below which there is nothing to learn from
 
@@ -41,6 +43,9 @@ class Parameter(NamedTuple):
     sigma: float
     unit: str
     status: str
+
+    def numbers(self) -> dict[str, float]:
+        return {"value": self.value, "low": self.low, "high": self.high, "sigma": self.sigma}
 
 
 @dataclass(slots=True)
@@ -68,44 +73,47 @@ class Adaptation:
         self.updates = 0
         self._boxes = [BOX_COMPONENT] * components + [BOX_KNOWN] * 2 + [BOX_CONSTANT]
         self._rows = [self._blank() for _ in ROWS]
-        self._filters = [Filtered() for _ in ROWS]
-        self._slow = [Filtered() for _ in ROWS]
+        self.open = False  # whether any gate is
+        self._slow: list[float] = []
         self._excited = 0.0
         self._turn = 0
         self._since = [0.0, 0.0, 0.0]
 
-    def regressors(self, components: list[float], known: Mapping[str, Force]) -> list[list[float]]:
-        """q of each row."""
-        q = components or [0.0] * self.components
-        return [
-            [*q, *(min(max(known[name][r] / self.scale[r], -5.0), 5.0) for name in COLUMNS[r]), 1.0] for r in range(3)
-        ]
+    def regressors(self, components: list[float], forces: Forces) -> list[float]:
+        """The whitened components, then two known forces for each row."""
+        S, hull, rudder = self.scale, forces[HULL], forces[RUDDER]
+        sizes = (
+            hull[0] / S[0], forces[PROPELLER][0] / S[0], hull[1] / S[1], rudder[1] / S[1], hull[2] / S[2], rudder[2] / S[2],
+        )  # fmt: skip
+        return [*(components or [0.0] * self.components), *[-5.0 if x < -5.0 else 5.0 if x > 5.0 else x for x in sizes]]
 
-    def correction(self, regressors: list[list[float]]) -> Three:
+    def correction(self, regressors: list[float]) -> Three:
         """g A q, in units of the force scale."""
-        rows = self._rows
-        return tuple([row.gate * dot(row.a, q) if row.gate else 0.0 for row, q in zip(rows, regressors, strict=True)])  # type: ignore[return-value]
+        rows = enumerate(self._rows)
+        return tuple([row.gate * dot(row.a, self._of_row(r, regressors)) if row.gate else 0.0 for r, row in rows])  # type: ignore[return-value]
 
-    def learn(self, d: Three, trained_f: list[float], regressors: list[list[float]], lam: float, dt: float, frozen: str) -> None:
-        """One tick. d: unexplained force; trained_f: what the trained layer explains of it; `frozen`: why not to learn, or ""."""
-        a = min(lam * dt, 0.5)
-        filtered = [f.feed(q, a) for f, q in zip(self._filters, regressors, strict=True)]
-        self._watch(filtered, dt)
+    def learn(self, wanted: Three, regressors: list[float], dt: float, frozen: str) -> None:
+        """What the rows should give (low-passed, like the regressors), the time since the last call, why not to learn, or ""."""
+        self._watch(regressors, dt)
         self.frozen = frozen or ("" if self._excited > EXCITED else "waits for a manoeuvre: nothing moves that could teach it")
-        for r in range(3):
-            self._since[r] += dt
         if self.frozen:
             self._since = [0.0, 0.0, 0.0]
             return
-        self._turn = (self._turn + 1) % 3  # one row each tick keeps the tick short
-        self._update(self._turn, d[self._turn] - trained_f[self._turn], filtered[self._turn])
+        self._since = [s + dt for s in self._since]
+        self._turn = r = (self._turn + 1) % 3  # one row at a time keeps the tick short
+        self._update(r, wanted[r], self._of_row(r, regressors))
+        self.open = any(row.gate for row in self._rows)
 
-    def _watch(self, filtered: list[list[float]], dt: float) -> None:
+    def _of_row(self, r: int, regressors: list[float]) -> list[float]:
+        """q of one row: the components, its two known forces, 1."""
+        p = self.components
+        return [*regressors[:p], regressors[p + 2 * r], regressors[p + 2 * r + 1], 1.0]
+
+    def _watch(self, regressors: list[float], dt: float) -> None:
         """How much the regressors move about their slow means."""
         a = min(dt / (3.0 * self.time_s), 0.5)
-        motion = 0.0
-        for slow, q in zip(self._slow, filtered, strict=True):
-            motion += sum((x - m) ** 2 for x, m in zip(q, slow.feed(q, a), strict=True))
+        self._slow = [m + a * (x - m) for m, x in zip(self._slow, regressors, strict=True)] if self._slow else regressors
+        motion = sum([(x - m) ** 2 for x, m in zip(regressors, self._slow, strict=True)])
         self._excited = sqrt(max(self._excited**2 + a * (motion - self._excited**2), 0.0))
 
     def _update(self, r: int, wanted: float, q: list[float]) -> None:
@@ -122,8 +130,8 @@ class Adaptation:
         row.with_a += g * (error * error - row.with_a)
         Pq = [dot(p, q) for p in row.P]
         gain = 1.0 / (NOISE_S * row.spread / h + dot(q, Pq))
-        leak = 1.0 - h / LEAK
-        row.a = [leak * x + gain * p * error for x, p in zip(row.a, Pq, strict=True)]
+        leak, pull = 1.0 - h / LEAK, gain * error
+        row.a = [leak * x + pull * p for x, p in zip(row.a, Pq, strict=True)]
         self._covariance(row, Pq, gain, h)
         self._project(row)
         ratio = row.with_a / row.without if row.without > 0.0 else 1.0
@@ -131,7 +139,10 @@ class Adaptation:
 
     def _covariance(self, row: Row, Pq: list[float], gain: float, h: float) -> None:
         keep, walk = 1.0 - 2.0 * h / LEAK, h * WALK
-        row.P = [[keep * p - gain * x * y for p, y in zip(line, Pq, strict=True)] for line, x in zip(row.P, Pq, strict=True)]
+        row.P = [
+            [keep * p - gx * y for p, y in zip(line, Pq)]  # noqa: B905 (the inner loop of the tick)
+            for line, gx in zip(row.P, [gain * x for x in Pq], strict=True)
+        ]
         for i in range(self.width):
             row.P[i][i] = max(row.P[i][i] + walk, 1e-9)
         trace = sum(row.P[i][i] for i in range(self.width))
@@ -165,13 +176,9 @@ class Adaptation:
                 out.append(Parameter(f"{ROWS[r]} {name}", value, -box, box, sigma, "-", status))
         return out
 
-    def save(self, path: str | Path, mark: str) -> None:
-        """Write the numbers aside and rename them into place; `mark` names ship and network they belong to."""
-        path = Path(path)
-        table = {"mark": mark, "rows": [{"a": row.a, "gate": row.gate} for row in self._rows]}
-        aside = path.with_name(f".{path.name}.part")
-        aside.write_text(json.dumps(table))
-        aside.replace(path)
+    def saved(self, mark: str) -> str:
+        """The numbers as a text to keep; `mark` names ship and network they belong to."""
+        return json.dumps({"mark": mark, "rows": [{"a": row.a} for row in self._rows]})
 
     def restore(self, path: str | Path, mark: str) -> None:
         """Read the numbers back, clamped; what cannot be used is left out, and `notes` says why."""
@@ -193,11 +200,9 @@ class Adaptation:
             if len(values) != self.width or not all(map(isfinite, values)):
                 raise ValueError("numbers that are not finite or too many")
             fresh.append([min(max(x, -b), b) for x, b in zip(values, box, strict=True)])
-        for row, values, entry in zip(self._rows, fresh, rows, strict=True):
-            row.a = values
+        for row, values in zip(self._rows, fresh, strict=True):
+            row.a = values  # the gate stays shut: old numbers must prove themselves again
             self._project(row)
-            row.gate = 0.0  # the old numbers must prove themselves again
-            row.with_a, row.without = 1.0, 1.0
 
     def _blank(self) -> Row:
         P = [[P_FIRST if i == j else 0.0 for j in range(self.width)] for i in range(self.width)]

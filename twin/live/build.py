@@ -26,7 +26,9 @@ CERTIFY = "from twin.live.build import certify_aside; certify_aside({!r}, {!r}, 
 CERTIFY_S = 20.0  # the longest the start waits for a certificate
 
 
-def loop_of(settings: Settings, ears: Ears, voice: Outbox, ship: Ship | None = None, certify: bool = True) -> Loop:
+def loop_of(
+    settings: Settings, ears: Ears, voice: Outbox, ship: Ship | None = None, certify: bool = True
+) -> Loop:
     """The loop these settings describe; SettingsError when they cannot be used. `certify` False: no certificate is worked out.
 
     What loading a library leaves in memory is given back before the next one is loaded: their sum would be the peak.
@@ -101,7 +103,13 @@ def stabilizer_of(settings: Settings, ship: Ship) -> Stabilizer:
         certificate = _on_file(path, ship, K, h, delay)
         if certificate is None:
             command = CERTIFY.format(settings["ship.file"], str(path), K, h, delay)
-            done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, timeout=CERTIFY_S, check=False)
+            done = subprocess.run(
+                [sys.executable, "-c", command],
+                capture_output=True,
+                text=True,
+                timeout=CERTIFY_S,
+                check=False,
+            )
             certificate = _on_file(path, ship, K, h, delay)
             if certificate is None:
                 said = done.stderr.strip().splitlines()[-1:] or ["no reason given"]
@@ -136,5 +144,3 @@ def _on_file(path: Path, ship: Ship, K: float, h: float, delay: int) -> Certific
         return None
     wanted = _mark(Model.of(ship), (K, K, K), h, {"delay_samples": delay})
     return found if found.fingerprint == wanted else None
-
-

@@ -5,10 +5,10 @@ and without those effects whose inputs nobody measures.
 """
 
 from collections import deque
-from dataclasses import replace
+from collections.abc import Sequence
 
 from twin.live.estimate import Estimate
-from twin.live.sensors import Measured
+from twin.live.measured import Measured
 from twin.physics import core
 from twin.physics.effect import Effect, Lag
 from twin.physics.effects.current import Current
@@ -17,6 +17,8 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import WEATHER, Force, Number, Rates, Situation, Water
 
+Forces = Sequence[core.Tau]
+NONE = Force(0.0, 0.0, 0.0)
 INPUTS = ("delta", "n", *WEATHER)
 
 
@@ -28,39 +30,61 @@ class Known:
 
     def water(self, s: Situation) -> Water:
         """The flows of the ship's effects and the current that the twin follows."""
-        w = self.model.water(s)
         c, si = cos(s.psi), sin(s.psi)
         north, east = self.current
-        return Water(w.u + north * c + east * si, w.v + east * c - north * si, w.k_u, w.k_v, w.k_r)
+        u, v = north * c + east * si, east * c - north * si
+        if not self.model.flows:
+            return Water(u, v)
+        w = self.model.water(s)
+        return Water(w.u + u, w.v + v, w.k_u, w.k_v, w.k_r)
 
-    def force(self, s: Situation) -> dict[str, Force]:
-        """Every known force by its name, the core first. Sets the speeds through water of s."""
-        return self.model.known(s, self.water(s))
+    def forces(self, s: Situation) -> Forces:
+        """Every known force, in the order of `names`. Sets the speeds through water of s."""
+        return self.model.forces(s, self.water(s))
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What the forces are called: hull, coriolis, propeller, rudder, and each effect."""
+        return self.model.names
 
     def rates(self, s: Situation, learned: Force) -> Rates:
         """d(nu)/dt over ground; sets the speeds through water of s."""
-        w = self.water(s)
+        return self.rates_of(s, self.forces(s), learned)
+
+    def rates_of(self, s: Situation, forces: Forces, learned: Force = NONE) -> Rates:
+        """The same by known forces that were worked out before."""
         X, Y, N = learned
-        for x, y, n in self.model.forces(s, w):
+        for x, y, n in forces:
             X, Y, N = X + x, Y + y, N + n
         u_dot, v_dot, r_dot = core.accelerations(X, Y, N, self.model.c)
-        return Rates(u_dot + s.r * w.v, v_dot - s.r * w.u, r_dot)
+        r = s.r
+        return Rates(u_dot + r * (s.v - s.v_r), v_dot - r * (s.u - s.u_r), r_dot)
 
-    def rates_of(self, s: Situation, forces: dict[str, Force]) -> Rates:
-        """The same by forces that were worked out before, the learned one left out."""
-        X = Y = N = 0.0
-        for x, y, n in forces.values():
-            X, Y, N = X + x, Y + y, N + n
-        u_dot, v_dot, r_dot = core.accelerations(X, Y, N, self.model.c)
-        return Rates(u_dot + s.r * (s.v - s.v_r), v_dot - s.r * (s.u - s.u_r), r_dot)
+    def mean_rates(self, s: Situation, forces: Forces, learned: Force, h: float) -> Rates:
+        """What takes nu over the next h seconds: a Runge-Kutta step of second order (midpoint), learned force and inputs held."""
+        start = s.psi, s.u, s.v, s.r
+        _along(s, start, s.r, self.rates_of(s, forces, learned), 0.5 * h)
+        middle = self.rates(s, learned)
+        s.psi, s.u, s.v, s.r = start
+        return middle
 
-    def mean_rates(self, s: Situation, learned: Force, h: float) -> Rates:
-        """What takes nu over the next h seconds: the mean slope of one Runge-Kutta step, learned force and inputs held."""
-        k1 = self.rates(s, learned)
-        k2 = self.rates(_along(s, k1, s.r, 0.5 * h), learned)
-        k3 = self.rates(_along(s, k2, s.r + 0.5 * h * k1.r, 0.5 * h), learned)
-        k4 = self.rates(_along(s, k3, s.r + 0.5 * h * k2.r, h), learned)
-        return Rates(*[(a + 2.0 * (b + c) + d) / 6.0 for a, b, c, d in zip(k1, k2, k3, k4, strict=True)])
+    def far_rates(self, s: Situation, forces: Forces, learned: Force, h: float) -> Rates:
+        """The same for long steps: the mean slope of a Runge-Kutta step of fourth order."""
+        start = s.psi, s.u, s.v, s.r
+        half = 0.5 * h
+        k1 = self.rates_of(s, forces, learned)
+        _along(s, start, start[3], k1, half)
+        k2 = self.rates(s, learned)
+        _along(s, start, start[3] + half * k1[2], k2, half)
+        k3 = self.rates(s, learned)
+        _along(s, start, start[3] + half * k2[2], k3, h)
+        k4 = self.rates(s, learned)
+        s.psi, s.u, s.v, s.r = start
+        return Rates(
+            (k1[0] + 2.0 * (k2[0] + k3[0]) + k4[0]) / 6.0,
+            (k1[1] + 2.0 * (k2[1] + k3[1]) + k4[1]) / 6.0,
+            (k1[2] + 2.0 * (k2[2] + k3[2]) + k4[2]) / 6.0,
+        )
 
     def force_for(self, u_dot: Number, v_dot: Number, r_dot: Number) -> Force:
         """M times an acceleration: the force it takes."""
@@ -82,6 +106,11 @@ class Dynamics:
         self._models: dict[tuple[str, ...], tuple[Model, tuple[Effect, ...]]] = {}
         self._gears = [Gear(lag) for lag in self.full.lags]
 
+    def known(self, e: Estimate, measured: Measured) -> tuple[Situation, Known, Forces]:
+        """The ship's situation, the physics that holds in it, and every known force."""
+        s = self.situation(e, measured)
+        return s, self.now, self.now.forces(s)
+
     def situation(self, e: Estimate, measured: Measured) -> Situation:
         """The ship's state as estimated, with controls and weather as measured (rudder and shaft 0 when nobody says)."""
         si = measured.si
@@ -99,9 +128,10 @@ class Dynamics:
         return s
 
 
-def _along(s: Situation, k: Rates, r: Number, h: float) -> Situation:
-    """The situation h seconds on at these rates (place held: the water does not change over a ship's step)."""
-    return replace(s, psi=s.psi + h * r, u=s.u + h * k.u, v=s.v + h * k.v, r=s.r + h * k.r)
+def _along(s: Situation, start: tuple[Number, ...], r: Number, k: Rates, h: float) -> None:
+    """Puts s where it is h seconds after the start at rates k, turning with r meanwhile."""
+    psi0, u0, v0, r0 = start
+    s.psi, s.u, s.v, s.r = psi0 + h * r, u0 + h * k[0], v0 + h * k[1], r0 + h * k[2]
 
 
 class Gear:

@@ -3,25 +3,23 @@
     nu_hat+  = nu_hat + h nu_dot(model) + h K (nu - nu_hat)         (compared at the time nu was measured)
     eta_hat+ = eta_hat + h R(psi_hat) nu_hat + h K (eta - eta_hat)
 
-K = 12 U_0/L unless the settings say otherwise (0.3 1/s for a 320 m ship). A slow sensor's sample pulls until its next one is
-due. What is not measured is predicted, and its uncertainty grows.
+K = 12 U_0/L unless the settings say otherwise (0.3 1/s for a 320 m ship), less for a sensor too slow or too late for that.
+A sample pulls until the next one is due. What is not measured is predicted, and its uncertainty grows.
 """
 
 from collections import deque
 from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
-from typing import TYPE_CHECKING
 
 from twin.live.derive import turn
+from twin.live.measured import Measured
 from twin.physics.ship import Ship
 from twin.physics.state import Rates
-
-if TYPE_CHECKING:
-    from twin.live.sensors import Measured
 
 STATES = ("x", "y", "psi", "u", "v", "r")
 WATER = {"u": "u_r", "v": "v_r"}  # what stands in for a speed over ground
 A_MAX = 0.5  # no sample pulls more than half way in one tick
+DELAYED = 0.6  # K times (delay + time until the next sample): above about 1 an observer swings
 OUTLIER = 4.0  # usual deviations beyond which a sample pulls no more
 MAX_GAP_S = 3.0  # the model is not carried over a longer pause of the machine
 HISTORY = 128  # ticks remembered, to compare a late sample with its own time
@@ -73,7 +71,7 @@ class Observer:
         """The model's accelerations from now on."""
         self._rates = rates
 
-    def correct(self, measured: "Measured") -> Estimate:
+    def correct(self, measured: Measured) -> Estimate:
         """The model carried to now, then pulled by what is measured."""
         now_s = measured.now_s
         dt, self._now_s = now_s - (self._now_s if self._now_s is not None else now_s), now_s
@@ -91,7 +89,7 @@ class Observer:
         e.current_north, e.current_east = self._current.feed(measured, e)
         return e
 
-    def _begin(self, measured: "Measured") -> None:
+    def _begin(self, measured: Measured) -> None:
         """Start, or start again after a pause: from what is measured now, as soon as heading and speed or place are."""
         si, e = measured.si, self.estimate
         self.restarts += e.ready
@@ -106,6 +104,7 @@ class Observer:
         self.sigma.begin(si)
         self.innovation.clear()
         self._past.clear()
+        self._past.append((measured.now_s, e.state()))
         self._rates = Rates(0.0, 0.0, 0.0)
         e.sigma, e.ready = self.sigma.all(), True
 
@@ -119,36 +118,40 @@ class Observer:
         e.y += (mean_u * s + mean_v * c) * dt
         e.psi += 0.5 * (e.r + r) * dt
         e.u, e.v, e.r = u, v, r
-        self.sigma.grow(dt)
+        self.sigma.grow(dt, abs(u) + abs(v))
 
-    def _compare(self, measured: "Measured") -> None:
+    def _compare(self, measured: Measured) -> None:
         """The innovation of what is fresh, at the time it was measured; water speed stands in for a missing ground speed."""
-        si, fresh, e = measured.si, measured.fresh, self.estimate
-        drift = dict(zip("uv", e.current_body(), strict=True))
+        si, fresh = measured.si, measured.fresh
         for i, state in enumerate(STATES):
-            if state in measured.steps and state in si:
-                self._take_over(i, state, si[state])
-            elif state in si:
-                if state in fresh:
-                    self._innovate(i, state, si[state], measured.age_s[state])
-            elif WATER.get(state) in fresh:
-                self._innovate(i, state, si[WATER[state]] + drift[state], measured.age_s[WATER[state]])
+            if state in fresh and state in si:
+                if state in measured.steps:
+                    self._take_over(i, state, si[state])
+                else:
+                    self._innovate(i, state, si[state], measured.age_s(state))
+            elif state not in si and WATER.get(state) in fresh:
+                water = WATER[state]
+                drift = self.estimate.current_body()["uv".index(state)]
+                self._innovate(i, state, si[water] + drift, measured.age_s(water))
 
     def _innovate(self, i: int, state: str, value: float, age_s: float) -> None:
-        gap = value - self._at(age_s)[i]
+        gap = value - self._at(i, age_s)
         self.innovation[state] = turn(gap) if state == "psi" else gap
 
-    def _at(self, age_s: float) -> tuple[float, ...]:
-        """The estimate of `age_s` seconds ago, on the line between the ticks around it."""
-        want = self._past[-1][0] - age_s
-        after_t, after = self._past[-1]
-        for k in range(len(self._past) - 2, -1, -1):
-            t, state = self._past[k]
+    def _at(self, i: int, age_s: float) -> float:
+        """One number of the estimate, `age_s` seconds ago, on the line between the ticks around it."""
+        past = self._past
+        after_t, after = past[-1]
+        if age_s < 1e-6:
+            return after[i]
+        want = after_t - age_s
+        for k in range(len(past) - 2, -1, -1):
+            t, state = past[k]
             if t <= want:
-                share = (want - t) / (after_t - t) if after_t > t else 1.0
-                return tuple([a + share * (b - a) if i != 2 else a + share * turn(b - a) for i, (a, b) in enumerate(zip(state, after, strict=True))])
+                step = after[i] - state[i]
+                return state[i] + (want - t) / (after_t - t) * (turn(step) if i == 2 else step)
             after_t, after = t, state
-        return after
+        return after[i]
 
     def _take_over(self, i: int, state: str, value: float) -> None:
         """A step that lasted: the estimate jumps, and so does its past."""
@@ -158,15 +161,19 @@ class Observer:
         self.innovation[state] = 0.0
         self.sigma.begin_one(state)
 
-    def _pull(self, state: str, dt: float, measured: "Measured") -> None:
+    def _pull(self, state: str, dt: float, measured: Measured) -> None:
         """The last innovation pulls until the next is due; an outlier pulls as much as four usual deviations do."""
         gap = self.innovation.get(state)
         source = state if state in measured.si else WATER.get(state, state)
         self.received[state] = False
-        if gap is None or measured.since_s.get(source, 1e9) > measured.hold_s.get(source, 0.0) + 1e-9:
+        if gap is None or source not in measured.si:
+            return
+        heard_s, hold_s = measured.heard[source], measured.hold_s[source]
+        if measured.now_s - heard_s > hold_s + 1e-9:
             return
         limit = self.sigma.limit(state)
-        a = min(self.gain * dt, A_MAX)
+        waits_s = hold_s + heard_s - measured.time[source] + dt
+        a = min(min(self.gain, DELAYED / waits_s) * dt, A_MAX)
         setattr(self.estimate, state, getattr(self.estimate, state) + a * min(max(gap, -limit), limit))
         self.received[state] = abs(gap) <= limit
         self.sigma.shrink(state, gap, a, source in measured.fresh)
@@ -195,9 +202,10 @@ class Sigma:
         """Beyond this an innovation is an outlier."""
         return OUTLIER * sqrt(self._spread[state] + self._now[state] ** 2)
 
-    def grow(self, dt: float) -> None:
+    def grow(self, dt: float, speed: float) -> None:
+        """The model alone for dt seconds at this speed."""
         now, astray = self._now, self._astray
-        moving = (now["u"] + now["v"]) * dt
+        moving = (now["u"] + now["v"] + speed * now["psi"]) * dt
         now["x"] += moving
         now["y"] += moving
         now["psi"] += now["r"] * dt
@@ -221,7 +229,7 @@ class CurrentFilter:
         self.time_s = 3.0 * ship.L_pp / ship.U_0
         self.bound = min(max(0.6 * ship.U_0, 1.0), 5.0)  # [m/s]
 
-    def feed(self, measured: "Measured", e: Estimate) -> tuple[float, float]:
+    def feed(self, measured: Measured, e: Estimate) -> tuple[float, float]:
         """Only along those axes of the ship on which both speeds are measured."""
         si, fresh = measured.si, measured.fresh
         c, s = cos(e.psi), sin(e.psi)

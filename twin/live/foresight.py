@@ -4,6 +4,7 @@ Every `every_s` a ship is set off where the estimate was, with the current and t
 carried ahead; after each horizon she is compared with what was measured. Never a smoothed fit.
 """
 
+import itertools
 from dataclasses import replace
 from math import ceil, degrees, hypot
 from typing import NamedTuple
@@ -34,7 +35,9 @@ class Start(NamedTuple):
 class Foresight:
     """`look` after each tick, `judged` at the end."""
 
-    def __init__(self, loop: Loop, horizons_s: tuple[float, ...] = (10.0, 60.0, 120.0), every_s: float = 30.0):
+    def __init__(
+        self, loop: Loop, horizons_s: tuple[float, ...] = (10.0, 60.0, 120.0), every_s: float = 30.0
+    ):
         self.loop, self.horizons_s, self.every_s = loop, horizons_s, every_s
         self.step_s = min(STEP * loop.ship.L_pp / loop.ship.U_0, 1.0)
         self._starts: list[Start] = []
@@ -71,9 +74,13 @@ class Foresight:
     def _sail(self, start: Start) -> dict[float, tuple[float, float]]:
         """(position error [m], heading error [deg]) after each horizon."""
         s, found = replace(start.situation), {}
-        course = [(t, si) for t, si in self._course if start.time_s <= t <= start.time_s + self.horizons_s[-1] + 2.0 * self.step_s]
+        course = [
+            (t, si)
+            for t, si in self._course
+            if start.time_s <= t <= start.time_s + self.horizons_s[-1] + 2.0 * self.step_s
+        ]
         left = list(self.horizons_s)
-        for (t, si), (t_next, si_next) in zip(course, course[1:], strict=False):
+        for (t, si), (t_next, si_next) in itertools.pairwise(course):
             for name in INPUTS:
                 if name in si:
                     setattr(s, name, si[name])
@@ -91,7 +98,9 @@ class Foresight:
         return found
 
 
-def _error(s: Situation, before: dict[str, float], after: dict[str, float], share: float) -> tuple[float, float] | None:
+def _error(
+    s: Situation, before: dict[str, float], after: dict[str, float], share: float
+) -> tuple[float, float] | None:
     """Against what was measured, on the line between two moments; None where it was not."""
     if not all(name in si for name in ("x", "y", "psi") for si in (before, after)):
         return None

@@ -4,7 +4,7 @@ A sample is refused when another source already speaks for the channel, when its
 changed faster than a ship can, or when the instrument is frozen. A step that lasts is believed after SETTLE_S, and announced.
 """
 
-from math import exp
+from math import exp, isfinite
 
 from twin.live.channels import Channel
 from twin.live.frozen import Frozen
@@ -23,7 +23,7 @@ class Gate:
         self.channel, self.floor = channel, floor  # `floor`: what noise may add to a change, border units
         self.chosen = source  # the only source that may speak, if the owner chose one
         self.value: float | None = None
-        self.time_s, self.received_s = -1e18, -1e18
+        self.time_s, self.received_s, self.expires_s = -1e18, -1e18, -1e18
         self.source = self.rival = ""
         self.rival_s = -1e18
         self.refused, self.refusal, self.refused_s = 0, Quality.OK, -1e18
@@ -55,7 +55,7 @@ class Gate:
         return min(max(10.0 * self.interval_s, 1.0), self.channel.stale_s)
 
     def lost(self, now_s: float) -> bool:
-        return now_s - self.time_s > self.stale_s()
+        return now_s > self.expires_s
 
     def quality(self, now_s: float) -> Quality:
         """May what the channel says now be used?"""
@@ -71,12 +71,14 @@ class Gate:
         """Whether less than 60 % of the usual samples arrive."""
         if self.samples < 3 * LEARN or not 0.0 < self.interval_s < 1.0:
             return False
-        return self._rate * exp(-(now_s - self._rate_s) / WINDOW_S) < 0.6 / self.interval_s
+        return self._rate / exp((now_s - self._rate_s) / WINDOW_S) < 0.6 / self.interval_s
 
     def _judge(self, reading: Reading, t: float, motion: float) -> Quality:
+        if not self.channel.low <= reading.value <= self.channel.high:
+            return Quality.OUT_OF_RANGE if isfinite(reading.value) else Quality.NOT_FINITE
         if self.chosen is not None and reading.source != self.chosen:
             return Quality.CONFLICT
-        if self.source and reading.source != self.source and not self.lost(reading.received_s):
+        if reading.source != self.source and self.source and not self.lost(reading.received_s):
             self.rival, self.rival_s = reading.source, reading.received_s
             return Quality.CONFLICT
         if reading.time_s == self._stamp:
@@ -86,8 +88,9 @@ class Gate:
         dt = t - self.time_s
         if dt <= 0.0:
             return Quality.OUT_OF_ORDER
-        if dt < 3.0 * self.stale_s() and self._jumped(reading.value, self.value, dt):
-            return self._settle(reading.value, t)
+        gap = abs(reading.value - self.value)
+        if gap > self.floor and dt < 3.0 * self.stale_s() and self._jumped(reading.value, self.value, dt):
+            return self._settle(reading.value, t, motion * dt)
         self._candidate = None
         if self._frozen is not None and self._frozen.stuck(reading.value, t, motion):
             self._stamp = reading.time_s
@@ -102,7 +105,7 @@ class Gate:
         period = self.channel.wraps
         return (value - before + 0.5 * period) % period - 0.5 * period if period else value - before
 
-    def _settle(self, value: float, t: float) -> Quality:
+    def _settle(self, value: float, t: float, way: float) -> Quality:
         """A jump: refused, until later samples have agreed with it for long enough."""
         before = self._candidate
         if before is None or self._jumped(value, before[0], max(t - before[1], 1e-3)):
@@ -111,17 +114,20 @@ class Gate:
         self._candidate = (value, t, before[2], before[3] + 1)
         if t - before[2] < SETTLE_S or before[3] + 1 < SETTLE_SAMPLES:
             return Quality.JUMP
-        self.step = self.difference(value, self.value)  # type: ignore[arg-type]
+        self.step = self.difference(value, self.value + way)  # type: ignore[operator]
         self._candidate = None
         return Quality.OK
 
     def _store(self, reading: Reading, t: float) -> None:
-        dt = t - self.time_s
-        if self.value is not None and dt < 60.0:
+        dt, received_s = t - self.time_s, reading.received_s
+        if dt < 60.0 and self.value is not None:
             self.samples += 1
-            weight = max(1.0 / self.samples, 0.002)
-            self.interval_s += weight * (min(dt, 3.0 * self.interval_s or dt) - self.interval_s)
-        self._rate = self._rate * exp(-max(reading.received_s - self._rate_s, 0.0) / WINDOW_S) + 1.0 / WINDOW_S
-        self._rate_s = reading.received_s
-        self.value, self.time_s, self.received_s = reading.value, t, reading.received_s
+            usual = self.interval_s
+            late = 3.0 * usual if 0.0 < 3.0 * usual < dt else dt
+            self.interval_s = usual + (late - usual) * (1.0 / self.samples if self.samples < 500 else 0.002)
+        gone = (received_s - self._rate_s) / WINDOW_S
+        self._rate = (self._rate / (1.0 + gone + 0.5 * gone * gone) if gone > 0.0 else self._rate) + 1.0 / WINDOW_S
+        self._rate_s = received_s
+        self.value, self.time_s, self.received_s = reading.value, t, received_s
         self.source, self._stamp = reading.source, reading.time_s
+        self.expires_s = t + self.stale_s()

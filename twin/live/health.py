@@ -19,8 +19,12 @@ SCHEMA_VERSION = 1
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--config", metavar="TWIN.toml", help="the settings the twin runs with (default: its defaults)")
-    parser.add_argument("--timeout", type=float, default=3.0, metavar="S", help="how long to listen at most (default: 3)")
+    parser.add_argument(
+        "--config", metavar="TWIN.toml", help="the settings the twin runs with (default: its defaults)"
+    )
+    parser.add_argument(
+        "--timeout", type=float, default=3.0, metavar="S", help="how long to listen at most (default: 3)"
+    )
     parser.add_argument("--json", metavar="FILE", help="write the answer as JSON, - for standard output")
 
 
@@ -49,7 +53,12 @@ def hear(settings: Settings, timeout_s: float) -> Any:
     router = settings["bus.router"]
     listen = settings["bus.listen"]
     where = BusSettings(
-        settings["bus.base"], settings["bus.entity"], "", () if router or not listen else (listen,), router, settings["bus.file"]
+        settings["bus.base"],
+        settings["bus.entity"],
+        "",
+        () if router or not listen else (listen,),
+        router,
+        settings["bus.file"],
     )
     try:
         session = zenoh.open(configuration(where))
@@ -83,9 +92,19 @@ def _tell(said: str, tick: Any, code: int, path: str | None) -> None:
     if path is None:
         print(said)
         return
-    table = {"schema_version": SCHEMA_VERSION, "healthy": code == 0, "mode": tick.mode if tick else "", "text": said}
+    table = {
+        "schema_version": SCHEMA_VERSION,
+        "healthy": code == 0,
+        "mode": tick.mode if tick else "",
+        "text": said,
+    }
     if tick:
-        table |= {"reasons": list(tick.reasons), "overruns": tick.overruns, "rejected": tick.rejected, "rate_hz": tick.rate_hz}
+        table |= {
+            "reasons": list(tick.reasons),
+            "overruns": tick.overruns,
+            "rejected": tick.rejected,
+            "rate_hz": tick.rate_hz,
+        }
     text = json.dumps(table, indent=2)
     if path == "-":
         print(text)

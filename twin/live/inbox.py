@@ -48,11 +48,13 @@ class Inbox:
 
 
 class Played:
-    """Ears for a replay or a test: each tick's results, made beforehand; an empty list when there are no more."""
+    """Ears for a replay or a test: results made beforehand, a list for each tick, or put into `next` one by one."""
 
     def __init__(self, ticks: Iterable[list[Result]], datum: Datum | None = None):
         self._ticks = iter(ticks)
+        self.next: list[Result] | None = None
         self.datum = datum
 
     def read(self, instant: Instant) -> list[Result]:
-        return next(self._ticks, [])
+        taken, self.next = self.next, None
+        return next(self._ticks, []) if taken is None else taken

@@ -5,17 +5,17 @@
 w is how far the features may be believed. Without a residual the force is zero, and says why.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import sqrt
 
 from twin.live.adapt import Adaptation
-from twin.live.evidence import Evidence, Filtered, Three
-from twin.live.dynamics import Known
-from twin.live.residual import Residual, dot
+from twin.live.dynamics import Forces, Known
+from twin.live.evidence import Evidence, Three
+from twin.live.residual import Residual
 from twin.physics.ship import Ship
-from twin.physics.state import Force, Rates, Situation
+from twin.physics.state import Force, Situation
 
+LEARN_S = 0.095  # learning is slow: ten times a second is enough
 ZERO = Force(0.0, 0.0, 0.0)
 
 
@@ -27,11 +27,11 @@ class Learned:
     shadow: Three = (0.0, 0.0, 0.0)
     trained: Three = (0.0, 0.0, 0.0)
     weight: float = 0.0
-    share: float = 0.0  # of all force, the known ones summed by their sizes
     bound_N: float = 0.0
     bound_Nm: float = 0.0
     clipped: bool = False
     why: str = ""
+    components: list[float] = field(default_factory=list)  # whitened, of the network's features
 
 
 class LearnedForce:
@@ -44,53 +44,61 @@ class LearnedForce:
         rows = residual.manifest.whitening[1] if residual and residual.manifest.whitening else ()
         self.adaptation = Adaptation(ship, self.scale, len(rows)) if residual and adapt else None
         self.evidence = Evidence(ship, self.scale)
-        self._trained = Filtered()
+        self.bound_N = self.bound * max(self.scale.X, self.scale.Y)
+        self.bound_Nm = self.bound * self.scale.N
+        self._waited_s = 0.0
 
-    def at(self, s: Situation, known: Mapping[str, Force], allowed: bool = True) -> tuple[Learned, list[list[float]]]:
-        """The learned force of one situation (s.u_r, s.v_r set), and the regressors behind it."""
+    def at(self, s: Situation, forces: Forces, allowed: bool = True) -> Learned:
+        """The learned force of one situation (s.u_r, s.v_r set) beside its known ones."""
         if self.residual is None:
-            return Learned(why=self.why_not), []
-        features = self.residual.features(s)
-        regressors = self.adaptation.regressors(features.components, known) if self.adaptation else []
-        if features.weight == 0.0:
-            return Learned(why=features.why, **self._bounds()), regressors
-        W, w = self.residual.manifest.W, features.weight
-        trained = tuple([w * dot(row, features.phi) for row in W])
-        more = self.adaptation.correction(regressors) if self.adaptation else (0.0, 0.0, 0.0)
-        f = [t + w * m for t, m in zip(trained, more, strict=True)]
-        size = sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2])
-        if not size < 1e9:
-            return Learned(why="the learned force is not finite or absurd", **self._bounds()), regressors
+            return Learned(why=self.why_not)
+        trained, components, w, why = self.residual.features(s)
+        if w == 0.0:
+            return Learned(why=why, bound_N=self.bound_N, bound_Nm=self.bound_Nm)
+        trained = x, y, n = w * trained[0], w * trained[1], w * trained[2]
+        adaptation = self.adaptation
+        if adaptation is not None and adaptation.open:
+            ax, ay, an = adaptation.correction(adaptation.regressors(components, forces))
+            x, y, n = x + w * ax, y + w * ay, n + w * an
+        size = sqrt(x * x + y * y + n * n)
         clipped = size > self.bound
-        shadow = tuple([x * self.bound / size for x in f]) if clipped else tuple(f)
-        force = Force(*[x * s_ for x, s_ in zip(shadow, self.scale, strict=True)]) if allowed else ZERO
-        share = self._share(shadow, known) if allowed else 0.0
-        learned = Learned(force, shadow, trained, w if allowed else 0.0, share, clipped=clipped, why=features.why, **self._bounds())  # type: ignore[arg-type]
-        return learned, regressors
+        if clipped:
+            x, y, n = x * self.bound / size, y * self.bound / size, n * self.bound / size
+        S = self.scale
+        force = Force(x * S[0], y * S[1], n * S[2]) if allowed else ZERO
+        return Learned(force, (x, y, n), trained, w if allowed else 0.0, self.bound_N, self.bound_Nm, clipped, why, components)
+
+    def share(self, learned: Learned, forces: Forces) -> float:
+        """The learned force's part of all force, each summed by its size."""
+        if learned.weight == 0.0:
+            return 0.0
+        x, y, n = learned.shadow
+        size = abs(x) + abs(y) + abs(n)
+        for X, Y, N in forces:
+            x, y, n = abs(x) + abs(X / self.scale[0]), abs(y) + abs(Y / self.scale[1]), abs(n) + abs(N / self.scale[2])
+        return size / (abs(x) + abs(y) + abs(n) or 1.0)
 
     def learn(
-        self, nu: Three | None, rates: Rates, learned: Learned, regressors: list[list[float]], physics: Known, dt: float, frozen: str
+        self, nu: Three | None, s: Situation, forces: Forces, learned: Learned, physics: Known, dt: float, frozen: str
     ) -> None:
         """Weigh the evidence of one tick (`nu` None: not measured), and adapt unless `frozen` says why not."""
+        self._waited_s += dt
+        if self.residual is None or (self._waited_s < LEARN_S and nu is not None):
+            return
+        dt, self._waited_s = self._waited_s, 0.0
         if nu is None or not 0.0 < dt < 1.0:
             self.evidence.pause()
             if self.adaptation:
                 self.adaptation.frozen = frozen or "speed, rate of turn or controls are not measured"
             return
         evidence = self.evidence
-        evidence.feed(nu, rates, learned.shadow, physics, dt)
-        if self.adaptation and regressors:
-            trained = self._trained.feed(learned.trained, min(evidence.lam * dt, 0.5))
+        regressors = self.adaptation.regressors(learned.components, forces) if self.adaptation else []
+        evidence.feed(nu, physics.rates_of(s, forces), learned.shadow, learned.trained, regressors, physics, dt)
+        if self.adaptation:
             frozen = frozen or ("" if evidence.ready else "has just begun")
-            self.adaptation.learn(evidence.unexplained, trained, regressors, evidence.lam, dt, frozen)
-
-    def _bounds(self) -> dict[str, float]:
-        return {"bound_N": self.bound * max(self.scale.X, self.scale.Y), "bound_Nm": self.bound * self.scale.N}
-
-    def _share(self, f: Three, known: Mapping[str, Force]) -> float:
-        learned = sum(abs(x) for x in f)
-        total = sum(abs(x / s) for force in known.values() for x, s in zip(force, self.scale, strict=True))
-        return learned / (learned + total) if learned else 0.0
+            dx, dy, dn = evidence.unexplained
+            tx, ty, tn = evidence.trained
+            self.adaptation.learn((dx - tx, dy - ty, dn - tn), evidence.regressors, dt, frozen)
 
 
 def scale_of(ship: Ship) -> Force:

@@ -5,23 +5,24 @@ a replay and in a test, and the same messages give the same states.
 """
 
 from collections.abc import Callable
-from typing import Any, Protocol
+from typing import Any, NamedTuple, Protocol
 
 from twin.live.clock import Instant
 from twin.live.decode import Result
 from twin.live.dynamics import Dynamics
-from twin.live.estimate import Observer
+from twin.live.estimate import Estimate, Observer
 from twin.live.geodesy import Datum
 from twin.live.guard import INVALID, Guard
 from twin.live.learned import LearnedForce
+from twin.live.measured import Measured
 from twin.live.outbox import Outbox
 from twin.live.parts import Parts
-from twin.live.predict import Predictor
+from twin.live.predict import LearnedAt, Predictor
 from twin.live.publish import Pace
-from twin.live.sensors import Measured, Sensors
+from twin.live.sensors import Sensors
 from twin.live.stabilizer import Stabilizer
 from twin.physics.ship import Ship
-from twin.physics.state import Force, Situation
+from twin.physics.state import Situation
 
 PARAMETERS_EVERY = 10  # ticks between two lists of adapted numbers
 
@@ -33,6 +34,14 @@ class Ears(Protocol):
     def datum(self) -> Datum | None: ...
 
     def read(self, instant: Instant) -> list[Result]: ...
+
+
+class Seen(NamedTuple):
+    """What the last tick knew, for those who look on."""
+
+    measured: Measured
+    estimate: Estimate
+    situation: Situation
 
 
 class Loop:
@@ -65,6 +74,7 @@ class Loop:
         self.notes: list[str] = []  # said once, at the start: files left out, rights not granted
         self.watched: Callable[[], list[str]] = list
         self.dropped: Callable[[], int] = int
+        self.last: Seen | None = None
         self._last_s: float | None = None
 
     def tick(self, instant: Instant) -> Any:
@@ -73,21 +83,22 @@ class Loop:
         arrived = self.ears.read(instant)
         measured = self.sensors.read(arrived, instant.time_s, instant.wall_s, self.observer.estimate)
         estimate = self.observer.correct(measured)
-        situation = self.dynamics.situation(estimate, measured)
-        known = self.dynamics.now.force(situation)
-        verdict = self.guard.judge(measured, estimate, self.sensors.reasons(instant.time_s), dt)
-        learned, regressors = self.learned.at(situation, known, verdict.use_learned)
+        situation, physics, forces = self.dynamics.known(estimate, measured)
+        verdict = self.guard.judge(measured, estimate, self.sensors.reasons(), dt)
+        learned = self.learned.at(situation, forces, verdict.use_learned)
         self.guard.note(learned, dt)
-        self.learned.learn(_nu(measured), self.dynamics.now.rates_of(situation, known), learned, regressors, self.dynamics.now, dt, verdict.frozen)
-        self.observer.steer(self.dynamics.now.mean_rates(situation, learned.force, self.period_s))
-        ahead = self.predictor.advance(instant.time_s, estimate, situation, self.dynamics.now, self._learned_at(verdict.use_learned), verdict.mode != INVALID)
+        self.learned.learn(_nu(measured), situation, forces, learned, physics, dt, verdict.frozen)
+        self.observer.steer(physics.mean_rates(situation, forces, learned.force, self.period_s))
+        ahead = self.predictor.advance(instant.time_s, estimate, situation, physics, self.learned_at(verdict.use_learned), verdict.mode != INVALID)
         certified = self.stabilizer.step(self.observer, measured, situation)
         tick = self.publisher.tick(
             instant, self.pace, verdict._replace(reasons=self._all_reasons(verdict.reasons, instant)), measured,
-            self.sensors.qualities(instant.time_s), estimate, known, learned, self._parameters(instant), ahead, certified,
+            self.sensors.codes, estimate, dict(zip(physics.names, forces, strict=True)), learned,
+            self.learned.share(learned, forces), self._parameters(instant), ahead, certified,
             self.sensors.rejected, self.dropped(),
         )  # fmt: skip
         self.voice.send(tick, self.ears.datum)
+        self.last = Seen(measured, estimate, situation)
         return tick
 
     def measure_parts(self) -> Parts:
@@ -95,7 +106,7 @@ class Loop:
         parts = Parts()
         for part, thing, method in (
             ("read", self.ears, "read"), ("sensors", self.sensors, "read"), ("correct", self.observer, "correct"),
-            ("known", self.dynamics, "situation"), ("guard", self.guard, "judge"), ("learned", self.learned, "at"),
+            ("known", self.dynamics, "known"), ("guard", self.guard, "judge"), ("learned", self.learned, "at"),
             ("adapt", self.learned, "learn"), ("predict", self.predictor, "advance"), ("certificate", self.stabilizer, "step"),
             ("publish", self.publisher, "tick"), ("record", self.voice, "send"), ("tick", self, "tick"),
         ):  # fmt: skip
@@ -109,9 +120,9 @@ class Loop:
         self.pace = self.pace._replace(overruns=self.overruns)
         return dt
 
-    def _learned_at(self, allowed: bool) -> Callable[[Situation, dict[str, Force]], Force]:
+    def learned_at(self, allowed: bool = True) -> LearnedAt:
         """The learned force as the predictor carries it ahead."""
-        return lambda s, known: self.learned.at(s, known, allowed)[0].force
+        return lambda s, forces: self.learned.at(s, forces, allowed).force
 
     def _parameters(self, instant: Instant) -> list[Any]:
         adaptation = self.learned.adaptation

@@ -94,7 +94,9 @@ def _input(entry: Any) -> Input:
 
 
 def _golden(table: dict[str, Any], inputs: int, features: int) -> tuple[Any, ...]:
-    asked, answers = _list(table, "inputs"), _list(table, "outputs")
+    asked, answers = table.get("inputs"), table.get("outputs")
+    if not isinstance(asked, list) or not isinstance(answers, list):
+        raise ManifestError("golden: lists of inputs and outputs are needed")
     if len(asked) != len(answers) or len(asked) < 2:
         raise ManifestError(f"golden: {len(asked)} inputs and {len(answers)} outputs; two or more pairs are needed")
     return tuple(

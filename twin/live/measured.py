@@ -28,11 +28,21 @@ class Measured:
     def at(self, now_s: float, fresh: Numbers, steps: Numbers, clock_step_s: float) -> "Measured":
         """A copy for one tick; `si` and `derived` are its own."""
         return Measured(
-            now_s, dict(self.si), fresh, steps, set(), self.time, self.heard, self.hold_s, self.border, self.taken, clock_step_s
+            now_s,
+            dict(self.si),
+            fresh,
+            steps,
+            set(),
+            self.time,
+            self.heard,
+            self.hold_s,
+            self.border,
+            self.taken,
+            clock_step_s,
         )
 
     def has(self, *attributes: str) -> bool:
-        return all([a in self.si for a in attributes])
+        return all(a in self.si for a in attributes)
 
     def age_s(self, attribute: str) -> float:
         return self.now_s - self.time[attribute]
@@ -51,6 +61,10 @@ class Measured:
             self.time, self.heard, self.hold_s = dict(self.time), dict(self.heard), dict(self.hold_s)
         self.si[attribute] = value
         self.derived.add(attribute)
-        self.time[attribute], self.heard[attribute], self.hold_s[attribute] = self.time[of], self.heard[of], self.hold_s[of]
+        self.time[attribute], self.heard[attribute], self.hold_s[attribute] = (
+            self.time[of],
+            self.heard[of],
+            self.hold_s[of],
+        )
         if of in self.fresh:
             self.fresh[attribute] = self.fresh[of]

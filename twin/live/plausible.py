@@ -6,13 +6,10 @@ Each pair is two slow sums, k = sum(a b)/sum(b b) over a few ship lengths; a fac
 """
 
 from math import sqrt
-from typing import TYPE_CHECKING
 
 from twin.live.derive import turn
+from twin.live.measured import Measured
 from twin.physics.ship import Ship
-
-if TYPE_CHECKING:
-    from twin.live.sensors import Measured
 
 FACTORS = (
     (-1.0, "has the wrong sign"), (57.2958, "is in degrees where radians were meant"), (0.0174533, "is in radians where degrees were meant"),
@@ -57,15 +54,15 @@ class Plausibility:
         self._rudder = 0.0
         self._last: dict[str, tuple[float, ...]] = {}
 
-    def feed(self, measured: "Measured", dt: float) -> None:
+    def feed(self, measured: Measured, dt: float) -> None:
         """One tick's measurements."""
         if not 0.0 < dt < 1.0 or measured.steps:
             return
         si = measured.si
         if "psi" in measured.fresh and "r" in si and "r" not in measured.derived:
-            self._compare_turn(si["psi"], si["r"], measured.now_s - measured.age_s["psi"])
+            self._compare_turn(si["psi"], si["r"], measured.now_s - measured.age_s("psi"))
         if "x" in measured.fresh and measured.has("y", "u", "v") and "u" not in measured.derived:
-            self._compare_speed(si["x"], si["y"], sqrt(si["u"] ** 2 + si["v"] ** 2), measured.now_s - measured.age_s["x"])
+            self._compare_speed(si["x"], si["y"], sqrt(si["u"] ** 2 + si["v"] ** 2), measured.now_s - measured.age_s("x"))
         if measured.has("delta", "r", "n") and si["n"] > 0.0 and si.get("u", 0.0) > 0.0:
             self._rudder += min(dt / self.time_s, 0.5) * (si["delta"] - self._rudder)
             self._helm.feed(si["r"] * self.time_s, self._rudder, dt)

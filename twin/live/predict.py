@@ -1,6 +1,6 @@
 """Where the ship will be in 10, 60 and 120 seconds if helm, engine and weather stay as they are, and how sure that is.
 
-The model is carried ahead by Runge-Kutta steps of 0.08 L/U_0, a few in each tick, so that no tick is long. How far
+The model is carried ahead by Runge-Kutta steps of 0.15 L/U_0, a few in each tick, so that no tick is long. How far
 predictions were off is learned for each horizon: the 68 % quantile of past errors,  log q += eta (1[error > q] - 0.32).
 """
 
@@ -11,25 +11,29 @@ from math import ceil, exp, hypot, log, pi
 from typing import NamedTuple
 
 from twin.live.derive import turn
-from twin.live.dynamics import Known
+from twin.live.dynamics import Forces, Known
 from twin.live.estimate import Estimate
 from twin.physics.maths import cos, sin
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 
-STEP = 0.08  # of L/U_0
+MOST_STEPS = 8.0  # in one tick
+STEP = 0.15  # of L/U_0
 RAYLEIGH = 1.51  # the 68 % quantile of a distance in the plane, in deviations along one axis
 LEARNED = 20  # errors seen before the uncertainty counts as learned
-LearnedAt = Callable[[Situation, dict[str, Force]], Force]
+LearnedAt = Callable[[Situation, Forces], Force]
 
 
 class Prediction(NamedTuple):
-    """eta and nu `horizon_s` after `made_s` [SI], one sigma of each; status: "prior" until past errors have taught it, then "learned"."""
+    """eta and nu `horizon_s` after the tick that says it [SI], one sigma of each, from an estimate `age_s` old.
+
+    status: "prior" until past errors have taught the uncertainty, then "learned".
+    """
 
     horizon_s: float
     state: tuple[float, ...]
     sigma: tuple[float, ...]
-    made_s: float
+    age_s: float
     status: str
 
 
@@ -40,8 +44,10 @@ class Predictor:
         self.horizons_s = tuple(sorted(horizons_s))
         first = self.horizons_s[0]
         self.step_s = first / ceil(first / (STEP * ship.L_pp / ship.U_0))
-        steps = ceil(self.horizons_s[-1] / self.step_s)
-        self.steps_a_tick = min(max(ceil(steps / (refresh_s * rate_hz)), 1), 8)
+        steps = ceil(self.horizons_s[-1] / self.step_s) + len(self.horizons_s) + 1
+        self.steps_a_tick = min(steps / (refresh_s * rate_hz), MOST_STEPS)  # not whole: some ticks have one more than others
+        self.lead_s = ceil(steps / self.steps_a_tick) / rate_hz  # what a round says is for when it is done
+        self._credit = 0.0
         self.sureness = {h: Sureness(ship, h) for h in self.horizons_s}
         self._round: Round | None = None
         self._due: dict[float, deque[tuple[float, tuple[float, ...]]]] = {h: deque(maxlen=1024) for h in self.horizons_s}
@@ -55,18 +61,21 @@ class Predictor:
             return []
         self._check(now_s, e)
         if self._round is None:
-            self._round = Round(now_s, e, replace(s), physics, self.step_s)
-        done = self._round.run(self.steps_a_tick, self.horizons_s, learned)
-        if len(done) < len(self.horizons_s):
+            self._round = Round(now_s, e, replace(s), physics, self.step_s, [h + self.lead_s for h in self.horizons_s])
+        self._credit += self.steps_a_tick
+        done = self._round.run(int(self._credit), learned)
+        self._credit %= 1.0
+        if len(done) < len(self.horizons_s) or now_s < self._round.start_s + self.lead_s - 1e-6:
             return []
         made = self._round
         self._round = None
-        return [self._finished(made, h, state, now_s) for h, state in done.items()]
+        return [self._finished(made, h, state, now_s) for h, state in zip(self.horizons_s, done, strict=True)]
 
     def _finished(self, made: "Round", horizon_s: float, state: tuple[float, ...], now_s: float) -> Prediction:
-        self._due[horizon_s].append((made.start_s + horizon_s, state))
+        due_s = made.start_s + self.lead_s + horizon_s
+        self._due[horizon_s].append((due_s, state))
         sure = self.sureness[horizon_s]
-        return Prediction(horizon_s, state, sure.sigma(made.sigma), made.start_s, sure.status)
+        return Prediction(round(due_s - now_s, 6), state, sure.sigma(made.sigma), now_s - made.start_s, sure.status)
 
     def _check(self, now_s: float, e: Estimate) -> None:
         """Predictions for this moment against the estimate."""
@@ -78,39 +87,38 @@ class Predictor:
 
 
 class Round:
-    """One prediction under way."""
+    """One prediction under way, to a few moments ahead of its start."""
 
-    def __init__(self, start_s: float, e: Estimate, s: Situation, physics: Known, step_s: float):
+    def __init__(self, start_s: float, e: Estimate, s: Situation, physics: Known, step_s: float, moments_s: list[float]):
         self.start_s, self.sigma, self.step_s = start_s, e.sigma, step_s
-        self._s, self._physics = s, physics
+        self._s, self._physics, self._moments_s = s, physics, moments_s
         self._ahead_s = 0.0
-        self._done: dict[float, tuple[float, ...]] = {}
+        self._done: list[tuple[float, ...]] = []
 
-    def run(self, steps: int, horizons_s: tuple[float, ...], learned: LearnedAt) -> dict[float, tuple[float, ...]]:
-        """A few steps on; the states at the horizons reached so far."""
+    def run(self, steps: int, learned: LearnedAt) -> list[tuple[float, ...]]:
+        """A few steps on; the states at the moments reached so far."""
         for _ in range(steps):
-            left = [h for h in horizons_s if h not in self._done]
-            if not left:
+            if len(self._done) == len(self._moments_s):
                 break
-            step = min(self.step_s, left[0] - self._ahead_s)
-            self._s = carried(self._s, self._physics, learned(self._s, self._physics.force(self._s)), step)
-            self._ahead_s += step
-            if self._ahead_s >= left[0] - 1e-9:
+            left_s = self._moments_s[len(self._done)] - self._ahead_s
+            step_s = min(self.step_s, left_s)
+            carry(self._s, self._physics, learned, step_s)
+            self._ahead_s += step_s
+            if left_s - step_s < 1e-9:
                 s = self._s
-                self._done[left[0]] = (s.x, s.y, s.psi % (2.0 * pi), s.u, s.v, s.r)
+                self._done.append((s.x, s.y, s.psi % (2.0 * pi), s.u, s.v, s.r))
         return self._done
 
 
-def carried(s: Situation, physics: Known, learned: Force, h: float) -> Situation:
-    """The situation h seconds on: nu by one Runge-Kutta step, eta along the mean of old and new nu."""
-    rates = physics.mean_rates(s, learned, h)
+def carry(s: Situation, physics: Known, learned: LearnedAt, h: float) -> None:
+    """Puts s h seconds on: nu by one Runge-Kutta step, eta along the mean of old and new nu; learned force held."""
+    forces = physics.forces(s)
+    rates = physics.far_rates(s, forces, learned(s, forces), h)
     u, v, r = s.u + h * rates.u, s.v + h * rates.v, s.r + h * rates.r
     psi = s.psi + 0.25 * h * (s.r + r)
     c, si, mean_u, mean_v = cos(psi), sin(psi), 0.5 * (s.u + u), 0.5 * (s.v + v)
-    return replace(
-        s, x=s.x + h * (mean_u * c - mean_v * si), y=s.y + h * (mean_u * si + mean_v * c),
-        psi=s.psi + 0.5 * h * (s.r + r), u=u, v=v, r=r, t=s.t + h,
-    )  # fmt: skip
+    s.x, s.y = s.x + h * (mean_u * c - mean_v * si), s.y + h * (mean_u * si + mean_v * c)
+    s.psi, s.u, s.v, s.r, s.t = s.psi + 0.5 * h * (s.r + r), u, v, r, s.t + h
 
 
 class Sureness:
@@ -142,10 +150,10 @@ class Sureness:
         return tuple([max(q, s) for q, s in zip((place, place, *rest), start, strict=True)])
 
 
-def ensemble(s: Situation, physics: Known, learned: Force, horizon_s: float, step_s: float) -> Situation:
+def ensemble(s: Situation, physics: Known, learned: LearnedAt, horizon_s: float, step_s: float) -> Situation:
     """Many ships at once (fields of s may be arrays), `horizon_s` ahead with a held learned force."""
-    steps = ceil(horizon_s / step_s)
+    s, steps = replace(s), ceil(horizon_s / step_s)
     for _ in range(steps):
-        s = carried(s, physics, learned, horizon_s / steps)
+        carry(s, physics, learned, horizon_s / steps)
     return s
 

@@ -14,10 +14,10 @@ from twin.live.estimate import Estimate
 from twin.live.geodesy import Datum, from_chart
 from twin.live.guard import Verdict
 from twin.live.learned import Learned
+from twin.live.measured import Measured
 from twin.live.predict import Prediction
-from twin.live.sensors import Measured
 from twin.live.topics import OUTPUTS, Output
-from twin.physics.state import Force
+from twin.physics.core import Tau
 
 
 class Pace(NamedTuple):
@@ -52,8 +52,9 @@ class Publisher:
         measured: Measured,
         codes: dict[str, int],
         estimate: Estimate,
-        known: dict[str, Force],
+        known: dict[str, Tau],
         learned: Learned,
+        share: float,
         parameters: Iterable[Parameter],
         predictions: Iterable[Prediction],
         certified: Certified,
@@ -61,28 +62,25 @@ class Publisher:
         log_dropped: int,
     ) -> Any:
         """The wide record."""
-        tick = messages.Tick(
+        finite = self._finite
+        ready = estimate.ready
+        return messages.Tick(
             index=instant.number, time_s=instant.time_s, wall_s=instant.wall_s, mode=verdict.mode, reasons=verdict.reasons,
-            rate_hz=pace.rate_hz, overruns=pace.overruns, rejected=rejected, log_dropped=log_dropped,
+            rate_hz=pace.rate_hz, slack_us=pace.slack_us, step_us=pace.step_us, overruns=pace.overruns, rejected=rejected,
+            log_dropped=log_dropped, measured=finite({**measured.border, "time_s": instant.wall_s}),
+            age_s=finite(measured.age_by_channel()), quality=codes,
+            estimate=finite(state_of(estimate)) if ready else None,
+            sigma=finite(border_sigma(estimate.sigma)) if ready else None,
+            known=[{"name": name, **finite(named(force))} for name, force in known.items()],
+            learned=finite(learned_of(learned, share)), parameters=[
+                {"name": p.name, "unit": p.unit, "status": p.status, **finite(p.numbers())} for p in parameters
+            ],
+            predictions=[
+                {"horizon_s": p.horizon_s, "state": finite(border_state(*p.state)), "sigma": finite(border_sigma(p.sigma)), **_about(p)}
+                for p in predictions
+            ],
+            certificate=finite(certified._asdict()),
         )  # fmt: skip
-        self._fill(tick, {"slack_us": pace.slack_us, "step_us": pace.step_us})
-        tick.measured.time_s = instant.wall_s
-        self._fill(tick.measured, measured.border)
-        self._fill(tick.age_s, measured.age_by_channel())
-        self._fill(tick.quality, codes)
-        if estimate.ready:
-            self._state(tick.estimate, estimate)
-            self._sigma(tick.sigma, estimate.sigma)
-        for name, force in known.items():
-            self._fill(tick.known.add(name=name), named(force))
-        self._learned(tick.learned, learned)
-        for parameter in parameters:
-            self._parameter(tick.parameters.add(), parameter)
-        for prediction in predictions:
-            self._prediction(tick.predictions.add(), prediction)
-        self._fill(tick.certificate, {"margin": certified.margin, "bound": certified.bound})
-        tick.certificate.inside = certified.inside
-        return tick
 
     def due(self, tick: Any, datum: Datum | None) -> list[tuple[Output, bytes]]:
         """The subjects whose time has come, encoded; `datum` is the origin of north and east."""
@@ -97,47 +95,52 @@ class Publisher:
                 self._next[output] = tick.time_s + output.every_s - 1e-6
         return said
 
-    def _fill(self, message: Any, values: dict[str, Any]) -> None:
-        for name, value in values.items():
-            if value is not None:
-                if isfinite(value):
-                    setattr(message, name, value)
-                else:
-                    self.withheld += 1
+    def _finite(self, values: dict[str, Any]) -> dict[str, Any]:
+        """The values without those that are not finite numbers."""
+        total = sum(values.values())
+        if total - total == 0.0:  # NaN or infinity anywhere makes this NaN
+            return values
+        kept = {name: x for name, x in values.items() if isfinite(x)}
+        self.withheld += len(values) - len(kept)
+        return kept
 
-    def _state(self, message: Any, e: Estimate) -> None:
-        self._fill(message, border_state(e.x, e.y, e.psi, e.u, e.v, e.r))
-        self._fill(message, {"current_north_mps": e.current_north, "current_east_mps": e.current_east})
 
-    def _sigma(self, message: Any, sigma: tuple[float, ...]) -> None:
-        self._fill(message, border_state(*sigma))
+def state_of(e: Estimate) -> dict[str, float]:
+    return border_state(e.x, e.y, e.psi, e.u, e.v, e.r) | {
+        "current_north_mps": e.current_north, "current_east_mps": e.current_east,
+    }  # fmt: skip
 
-    def _learned(self, message: Any, learned: Learned) -> None:
-        self._fill(message, named(learned.force))
-        bounds = {"bound_N": learned.bound_N, "bound_Nm": learned.bound_Nm}
-        self._fill(message, bounds | {"weight": learned.weight, "share": learned.share})
 
-    def _parameter(self, message: Any, p: Parameter) -> None:
-        message.name, message.unit, message.status = p.name, p.unit, p.status
-        self._fill(message, {"value": p.value, "low": p.low, "high": p.high, "sigma": p.sigma})
-
-    def _prediction(self, message: Any, p: Prediction) -> None:
-        message.horizon_s = p.horizon_s
-        if "made_s" in message.DESCRIPTOR.fields_by_name:
-            message.made_s, message.status = p.made_s, p.status
-        self._fill(message.state, border_state(*p.state))
-        self._fill(message.sigma, border_state(*p.sigma))
+def learned_of(learned: Learned, share: float) -> dict[str, float]:
+    bounds = {"bound_N": learned.bound_N, "bound_Nm": learned.bound_Nm}
+    return named(learned.force) | bounds | {"weight": learned.weight, "share": share}
 
 
 def border_state(x: float, y: float, psi: float, u: float, v: float, r: float) -> dict[str, float]:
-    """The six numbers of eta and nu by their names outside."""
+    """The six numbers of eta and nu by their names and units outside; the heading in [0, 360)."""
     return {
-        "north_m": x, "east_m": y, "heading_true_north_deg": degrees(psi) % 360.0 if isfinite(psi) else psi,
+        "north_m": x, "east_m": y, "heading_true_north_deg": degrees(psi) % 360.0,
         "surge_velocity_mps": u, "sway_velocity_mps": v, "yaw_rate_degps": degrees(r),
     }  # fmt: skip
 
 
-def named(force: Force) -> dict[str, float]:
+def border_sigma(sigma: tuple[float, ...]) -> dict[str, float]:
+    x, y, psi, u, v, r = sigma
+    return {
+        "north_m": x, "east_m": y, "heading_true_north_deg": degrees(psi),
+        "surge_velocity_mps": u, "sway_velocity_mps": v, "yaw_rate_degps": degrees(r),
+    }  # fmt: skip
+
+
+_PREDICTION = messages.Tick.DESCRIPTOR.fields_by_name["predictions"].message_type.fields_by_name
+
+
+def _about(p: Prediction) -> dict[str, Any]:
+    """Age and status of a prediction, as far as the message has a place for them."""
+    return {name: getattr(p, name) for name in ("age_s", "status") if name in _PREDICTION}
+
+
+def named(force: Tau) -> dict[str, float]:
     return {"X_N": force[0], "Y_N": force[1], "N_Nm": force[2]}
 
 

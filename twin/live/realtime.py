@@ -66,7 +66,9 @@ def _relocated(path: str, lines: list[str], line: str) -> bool:
         return False
     following = _MAPPING.match(lines[at + 1])
     mine = _MAPPING.match(line)
-    return bool(following and mine and following[1] == mine[2] and "w" in following[3] and following[5] in (path, ""))
+    return bool(
+        following and mine and following[1] == mine[2] and "w" in following[3] and following[5] in (path, "")
+    )
 
 
 def _affinity(cpu: int) -> list[str]:
@@ -85,7 +87,9 @@ def _fifo(priority: int) -> list[str]:
             return []
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
     except OSError as error:
-        return [f"no real-time priority ({error.strerror}): under load ticks may come late. Allow it with LimitRTPRIO, or CAP_SYS_NICE"]
+        return [
+            f"no real-time priority ({error.strerror}): under load ticks may come late. Allow it with LimitRTPRIO, or CAP_SYS_NICE"
+        ]
     return []
 
 
@@ -93,7 +97,9 @@ def _lock() -> list[str]:
     libc = _libc()
     if libc is None or libc.mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0:
         return []
-    return [f"memory is not locked ({os.strerror(ctypes.get_errno())}): a swap could delay a tick. Allow it with LimitMEMLOCK"]
+    return [
+        f"memory is not locked ({os.strerror(ctypes.get_errno())}): a swap could delay a tick. Allow it with LimitMEMLOCK"
+    ]
 
 
 def _libc() -> ctypes.CDLL | None:

@@ -8,7 +8,8 @@ operators, shapes, element types and opset, the ship, and that golden inputs sti
 
 import hashlib
 import json
-from math import isfinite
+from math import inf, isfinite, sqrt
+from operator import mul
 from pathlib import Path
 from typing import NamedTuple
 
@@ -16,11 +17,11 @@ from twin.errors import SettingsError
 from twin.live import manifest as manifests
 from twin.live.manifest import Manifest
 from twin.live.network import Network, NetworkError
-from twin.live.onnx_file import FLOAT, OnnxError, look
+from twin.live.onnx_file import FLOAT, OnnxError, look, with_rows
 from twin.physics import ship as ships
 from twin.physics.ship import Ship
 from twin.physics.state import Situation
-from twin.physics.zeta import inputs
+from twin.physics.zeta import ZETA
 
 OPERATORS = frozenset(
     ("Gemm", "MatMul", "Add", "Sub", "Mul", "Div", "Sigmoid", "Tanh", "Relu", "Clip", "Concat", "Identity", "Softplus", "Swish")
@@ -41,58 +42,54 @@ class WrongShip(ResidualError):
 
 
 class Features(NamedTuple):
-    """phi and the whitened components of it, how far they may be believed (0 to 1), and why not fully, in words."""
+    """W phi in units of the force scale, the whitened components of phi, how far to believe them (0 to 1), and why not fully."""
 
-    phi: list[float]
+    trained: list[float]
     components: list[float]
     weight: float
     why: str = ""
 
 
 class Residual:
-    """A checked trunk; `features(s)` never raises."""
+    """A checked trunk with its last layer; `features(s)` never raises."""
 
     def __init__(self, manifest: Manifest, network: Network, ship: Ship):
-        self.manifest, self.network, self.ship = manifest, network, ship
-        self._names = tuple(i.name for i in manifest.inputs)
-        self._mean, self._rows = manifest.whitening or ((), ())
+        self.manifest, self.network, self.ship = manifest, network, ship  # the network gives W phi and the components
+        self._inputs = [
+            (i.name, ZETA[i.name].of, ZETA[i.name].needs, i.low, i.high, i.offset, i.scale) for i in manifest.inputs
+        ]
 
     def features(self, s: Situation) -> Features:
-        """phi of this situation (s.u_r and s.v_r set)."""
+        """What the network says of this situation (s.u_r and s.v_r set)."""
         scaled, weight, why = self.scaled(s)
         if weight == 0.0:
             return Features([], [], 0.0, why)
         try:
-            phi = self.network.run(scaled)
+            out = self.network.run(scaled)
         except NetworkError as error:
             return Features([], [], 0.0, f"the network failed ({error})")
-        if not all(-ABSURD < x < ABSURD for x in phi):
+        if not (abs(sum(out)) < ABSURD and max(out) < ABSURD and min(out) > -ABSURD):  # the sum is NaN if one is
             return Features([], [], 0.0, "the network gives numbers that are not finite or absurd")
-        return Features(phi, self.components(phi), weight, why)
+        return Features(out[:3], [-3.0 if x < -3.0 else 3.0 if x > 3.0 else x for x in out[3:]], weight, why)
 
     def scaled(self, s: Situation) -> tuple[list[float], float, str]:
         """The network's inputs, the weight of what it will say, and the reason when that is not 1."""
-        values, weight, why = [], 1.0, ""
-        for entry, zeta in zip(self.manifest.inputs, inputs(self._names, s, self.ship), strict=True):
-            if zeta is None or not isfinite(zeta):
-                return [], 0.0, f"its input {entry.name} is not measured"
-            outside = max(entry.low - zeta, zeta - entry.high, 0.0) / (entry.high - entry.low)
-            if outside > 0.0:
-                weight *= max(1.0 - outside / MARGIN, 0.0) ** 2
-                why = f"{entry.name} = {zeta:.3g} is outside {entry.low:.3g} to {entry.high:.3g}, where it was trained"
-                zeta = min(max(zeta, entry.low), entry.high)
-            values.append((zeta - entry.offset) / entry.scale)
+        values, weight, why, ship = [], 1.0, "", self.ship
+        for name, of, needs, low, high, offset, scale in self._inputs:
+            zeta = None if needs and any([getattr(s, need) is None for need in needs]) else of(s, ship)
+            if zeta is None or not low <= zeta <= high:
+                if zeta is None or not isfinite(zeta):
+                    return [], 0.0, f"its input {name} is not measured"
+                weight *= max(1.0 - max(low - zeta, zeta - high) / (high - low) / MARGIN, 0.0) ** 2
+                why = f"{name} = {zeta:.3g} is outside {low:.3g} to {high:.3g}, where it was trained"
+                zeta = min(max(zeta, low), high)
+            values.append((zeta - offset) / scale)
         return values, weight, why
-
-    def components(self, phi: list[float]) -> list[float]:
-        """The few directions in which phi varies most, whitened, clipped at three deviations."""
-        centred = [p - m for p, m in zip(phi, self._mean, strict=False)]
-        return [min(max(dot(row, centred), -3.0), 3.0) for row in self._rows]
 
 
 def dot(a: "tuple[float, ...] | list[float]", b: "tuple[float, ...] | list[float]") -> float:
     """The inner product, summed from left to right: the same on every machine (BLAS is not)."""
-    return sum(map(float.__mul__, a, b))
+    return sum(map(mul, a, b))
 
 
 def load(path: str | Path, ship: Ship) -> Residual:
@@ -112,6 +109,9 @@ def check(model: bytes, text: bytes, ship: Ship, where: str = "residual") -> Res
     except manifests.ManifestError as error:
         raise ResidualError(f"{where}: its manifest is not usable: {error}") from None
     _same_ship(manifest, ship, where)
+    norm = sqrt(sum(w * w for row in manifest.W for w in row))
+    if norm > manifest.W_max:
+        raise ResidualError(f"{where}: its last layer has the norm {norm:.3g}, the manifest allows {manifest.W_max:.3g}")
     digest = hashlib.sha256(model).hexdigest()
     if digest != manifest.sha256:
         raise ResidualError(
@@ -119,12 +119,19 @@ def check(model: bytes, text: bytes, ship: Ship, where: str = "residual") -> Res
         )
     names = _structure(model, manifest, where)
     try:
-        network = Network(model, names[0], len(manifest.inputs), names[1], manifest.features)
+        _golden(Network(model, names[0], len(manifest.inputs), names[1], manifest.features), manifest, where)
+        return Residual(manifest, _with_last_layer(model, manifest, *names), ship)
     except NetworkError as error:
         raise ResidualError(f"{where}: ONNX Runtime refuses it: {error}") from None
-    residual = Residual(manifest, network, ship)
-    _golden(residual, where)
-    return residual
+
+
+def _with_last_layer(model: bytes, manifest: Manifest, source: str, phi: str) -> Network:
+    """The trunk, with the products W phi and components (phi - mean) worked out by ONNX Runtime as well."""
+    mean, components = manifest.whitening or ((), ())
+    rows = (*manifest.W, *components)
+    offsets = (0.0, 0.0, 0.0, *(-dot(row, mean) for row in components))
+    whole = with_rows(model, phi, rows, offsets, "shiptwin_rows")
+    return Network(whole, source, len(manifest.inputs), "shiptwin_rows", len(rows))
 
 
 def bundled(ship: Ship) -> Path | None:
@@ -184,13 +191,12 @@ def _structure(model: bytes, manifest: Manifest, where: str) -> tuple[str, str]:
     return found.inputs[0][0], found.outputs[0][0]
 
 
-def _golden(residual: Residual, where: str) -> None:
-    for zeta, wanted in residual.manifest.golden:
-        try:
-            phi = residual.network.run(list(zeta))
-        except NetworkError as error:
-            raise ResidualError(f"{where}: it does not run: {error}") from None
+def _golden(trunk: Network, manifest: Manifest, where: str) -> None:
+    """Golden inputs must give golden outputs; the trunk is closed afterwards."""
+    for zeta, wanted in manifest.golden:
+        phi = trunk.run(list(zeta))
         size = max(1.0, *(abs(w) for w in wanted))
-        worst = max(abs(p - w) if isfinite(p) else float("inf") for p, w in zip(phi, wanted, strict=True))
+        worst = max(abs(p - w) if isfinite(p) else inf for p, w in zip(phi, wanted, strict=True))
         if not worst <= GOLDEN * size:
             raise ResidualError(f"{where}: a golden input gives another output than in training (off by {worst:.3g})")
+    trunk.close()

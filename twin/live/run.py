@@ -31,10 +31,20 @@ STATUS_S = 1.0
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--config", metavar="TWIN.toml", help="settings (default: bundled KVLCC2, listening on this computer only)")
-    parser.add_argument("--ship", metavar="SHIP.toml", help="ship file or name of a bundled ship, instead of the settings' own")
+    parser.add_argument(
+        "--config",
+        metavar="TWIN.toml",
+        help="settings (default: bundled KVLCC2, listening on this computer only)",
+    )
+    parser.add_argument(
+        "--ship",
+        metavar="SHIP.toml",
+        help="ship file or name of a bundled ship, instead of the settings' own",
+    )
     parser.add_argument("--duration", type=float, metavar="S", help="stop by itself after so many seconds")
-    parser.add_argument("--example-config", action="store_true", help="print a settings file with every key, and stop")
+    parser.add_argument(
+        "--example-config", action="store_true", help="print a settings file with every key, and stop"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -73,7 +83,9 @@ class Stop:
         self.code = 130 if number == signal.SIGINT else 0
 
 
-def serve(settings: Settings, duration_s: float | None = None, on_tick: Callable[[Any], None] | None = None) -> int:
+def serve(
+    settings: Settings, duration_s: float | None = None, on_tick: Callable[[Any], None] | None = None
+) -> int:
     """Serve until told to stop; `on_tick` sees each tick (a test, a view)."""
     stop = Stop()
     os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
@@ -85,10 +97,15 @@ def serve(settings: Settings, duration_s: float | None = None, on_tick: Callable
             recorder.start()
             loop.notes += recorder.repaired
         loop.notes += realtime.settle(
-            settings["loop.priority"], settings["loop.cpu"], settings["loop.lock_memory"], settings["loop.drop_pages"]
+            settings["loop.priority"],
+            settings["loop.cpu"],
+            settings["loop.lock_memory"],
+            settings["loop.drop_pages"],
         )
         try:
-            Service(loop, bus, recorder, settings, MonotonicClock(loop.rate_hz)).run(stop, duration_s, on_tick)
+            Service(loop, bus, recorder, settings, MonotonicClock(loop.rate_hz)).run(
+                stop, duration_s, on_tick
+            )
         finally:
             if recorder:
                 recorder.close(1.0)
@@ -164,7 +181,9 @@ class Service:
 
     def _greeting(self) -> str:
         learned = "hybrid" if self.loop.learned.residual else f"physics only ({self.loop.learned.why_not})"
-        return f"{self.loop.ship.name}: {self.loop.rate_hz:g} Hz, {learned}. " + " ".join(f"[{note}]" for note in self.loop.notes)
+        return f"{self.loop.ship.name}: {self.loop.rate_hz:g} Hz, {learned}. " + " ".join(
+            f"[{note}]" for note in self.loop.notes
+        )
 
 
 def bus_of(settings: Settings) -> Bus:
@@ -178,7 +197,11 @@ def bus_of(settings: Settings) -> Bus:
 def recorder_of(settings: Settings) -> Recorder | None:
     if not settings["log.folder"]:
         return None
-    return Recorder(settings["log.folder"], max_bytes=int(settings["log.segment_mb"] * 1e6), max_seconds=settings["log.segment_s"])
+    return Recorder(
+        settings["log.folder"],
+        max_bytes=int(settings["log.segment_mb"] * 1e6),
+        max_seconds=settings["log.segment_s"],
+    )
 
 
 def _voice(settings: Settings, bus: Bus, log: Any) -> Outbox:

@@ -1,8 +1,8 @@
 """The certificate beside the loop: the live bound on the observer's error, and whether its assumptions hold now."""
 
 from twin.live.estimate import Observer
+from twin.live.measured import Measured
 from twin.live.publish import Certified
-from twin.live.sensors import Measured
 from twin.live.tube import Tube
 from twin.physics.state import Situation
 
@@ -36,4 +36,4 @@ class Stabilizer:
         """Measured by its own instrument, and not older than the certificate allows."""
         if attribute in measured.derived or attribute not in measured.si:
             return False
-        return measured.age_s[attribute] <= (tube.certificate.delay_samples + 0.5) * tube.certificate.h
+        return measured.age_s(attribute) <= (tube.certificate.delay_samples + 0.5) * tube.certificate.h

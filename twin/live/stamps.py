@@ -6,6 +6,8 @@ A wall clock may be stepped by an hour while the ship sails on (NTP, a leap seco
 from before a step beside the one after it, and each source may keep either: nothing is thrown away because a clock was set.
 """
 
+from math import isfinite
+
 from twin.live.readings import Quality, Reading
 
 STEP_S = 0.2  # a wall clock that moves by more against the monotonic one was set
@@ -38,6 +40,8 @@ class Stamps:
 
     def on_monotonic(self, reading: Reading) -> tuple[float, Quality]:
         """When it was measured [s, monotonic], and whether that may be."""
+        if not isfinite(reading.time_s):
+            return reading.received_s, Quality.NO_TIMESTAMP
         if self._offset is None:
             self._offset = reading.time_s - reading.received_s
         t = reading.time_s - self._offset
