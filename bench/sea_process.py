@@ -33,6 +33,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--hull", default="usv", help=f"one of {', '.join(HULLS)} (default: usv, 2 m long)")
     parser.add_argument("--manoeuvre", default="mixed", help="what the helmsman does (default: mixed)")
     parser.add_argument("--weather", default="TS-01", help=f"one of {', '.join(WEATHERS)} (default: TS-01)")
+    parser.add_argument(
+        "--hidden",
+        metavar="EFFECT",
+        action="append",
+        default=[],
+        help="what happens to her that nobody tells (repeat): HullFouling, ...",
+    )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--hz", type=float, default=10.0, help="how often the sea moves on (default: 10)")
     parser.add_argument(
@@ -129,7 +136,8 @@ def _case(args: argparse.Namespace) -> Case:
         value = getattr(args, what)
         if value not in known:
             raise SettingsError(f"--{what} {value}: the reference sea has none.{did_you_mean(value, known)}")
-    return Case(args.hull, args.manoeuvre, args.weather, seed=args.seed, duration_s=None)
+    hidden = tuple((name, 1.0) for name in args.hidden)
+    return Case(args.hull, args.manoeuvre, args.weather, hidden, seed=args.seed, duration_s=None)
 
 
 def main() -> int:

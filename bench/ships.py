@@ -43,11 +43,7 @@ def published(h: Hull) -> dict[str, float]:
     """The hull's polynomial, by name."""
     terms = ("v", "r", "vvv", "vvr", "vrr", "rrr")
     out = {f"X_{t}": value for t, value in zip(("vv", "vr", "rr", "vvvv"), h.X, strict=True)}
-    return (
-        out
-        | {f"{a}_{t}": x for a, row in (("Y", h.Y), ("N", h.N)) for t, x in zip(terms, row, strict=True)}
-        | {"R0": h.R0}
-    )
+    return out | {f"{a}_{t}": x for a, row in (("Y", h.Y), ("N", h.N)) for t, x in zip(terms, row, strict=True)} | {"R0": h.R0}
 
 
 def thrust_line(h: Hull) -> tuple[float, float]:
@@ -107,9 +103,7 @@ def ship(key: str) -> Ship:
     d = derivatives(h)
     sources = {
         "particulars": {k: {"value": values[k], "source": notes.get(k, source)} for k in values},
-        "derivatives": {
-            f.name: {"value": d.get(f.name, 0.0), "source": how(f.name, source)} for f in DERIVATIVES
-        },
+        "derivatives": {f.name: {"value": d.get(f.name, 0.0), "source": how(f.name, source)} for f in DERIVATIVES},
     }
     used = {"LSQ", "EST", source}
     sources["sources"] = {k: text for k, text in SOURCES.items() if k in used}

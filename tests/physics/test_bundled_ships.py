@@ -17,7 +17,9 @@ each = pytest.mark.parametrize("key", ships.NAMES)
 def test_the_file_is_what_its_program_makes(key):
     made, found = ships.ship(key), load(key)
     assert found == made, "run: python -m bench.ships"
-    assert found.notes["derivatives"] == {k: {**v, "unit": found.notes["derivatives"][k]["unit"]} for k, v in made.notes["derivatives"].items()}
+    assert found.notes["derivatives"] == {
+        k: {**v, "unit": found.notes["derivatives"][k]["unit"]} for k, v in made.notes["derivatives"].items()
+    }
 
 
 @each

@@ -64,7 +64,18 @@ def test_the_tutorial_runs(tmp_path):
     assert sum(bool(line.strip()) for line in code.splitlines()) <= 20, "the tutorial promises twenty lines"
     for name, content in files.items():
         (tmp_path / name).write_text(content)
-    pip = [sys.executable, "-m", "pip", "install", "-q", "--no-build-isolation", "--no-deps", "--no-index", "--target", str(tmp_path / "site")]
+    pip = [
+        sys.executable,
+        "-m",
+        "pip",
+        "install",
+        "-q",
+        "--no-build-isolation",
+        "--no-deps",
+        "--no-index",
+        "--target",
+        str(tmp_path / "site"),
+    ]
     done = subprocess.run([*pip, str(tmp_path)], capture_output=True, text=True)
     if done.returncode and "setuptools" in done.stderr:
         pytest.skip("no setuptools here to build a package with")

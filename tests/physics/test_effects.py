@@ -12,7 +12,32 @@ from twin.physics.effects import BUILT_IN
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
-ISSUE = ["Wind", "WaveDrift", "CrossFlowDrag", "HullFouling", "PropellerWear", "RudderWear", "RudderOffset", "Loading", "Bank", "TowForce", "ExternalForce", "PropellerWalk", "RollCoupling", "Current", "VaryingCurrent", "ShallowWater", "SteeringLag", "HeadingBias", "SpeedLogBias", "SpeedLogScale", "SpeedLogMisalignment", "AntennaOffset", "SensorDelay", "GyroBias"]
+ISSUE = [
+    "Wind",
+    "WaveDrift",
+    "CrossFlowDrag",
+    "HullFouling",
+    "PropellerWear",
+    "RudderWear",
+    "RudderOffset",
+    "Loading",
+    "Bank",
+    "TowForce",
+    "ExternalForce",
+    "PropellerWalk",
+    "RollCoupling",
+    "Current",
+    "VaryingCurrent",
+    "ShallowWater",
+    "SteeringLag",
+    "HeadingBias",
+    "SpeedLogBias",
+    "SpeedLogScale",
+    "SpeedLogMisalignment",
+    "AntennaOffset",
+    "SensorDelay",
+    "GyroBias",
+]
 READ = ("x", "y", "psi", "u", "v", "r", "u_r", "v_r", "wind_to")
 ATHWART = {"y", "psi", "v", "r", "v_r", "delta", "wind_to", "wave_to", "phi", "v_dot"}  # change sign in a mirror
 MIRRORED = {  # parameters that do so too

@@ -61,6 +61,8 @@ def test_physics_imports_nothing_beyond_the_standard_library():
         "tops = {m.partition('.')[0] for m in sys.modules}\n"
         "print(sorted(tops - set(sys.stdlib_module_names) - {'twin', '__main__', '__mp_main__'} - set(sys.argv[1:])))\n"
     )
-    bare = subprocess.run([sys.executable, "-c", "import sys; print(*{m.partition('.')[0] for m in sys.modules})"], capture_output=True, text=True)
+    bare = subprocess.run(
+        [sys.executable, "-c", "import sys; print(*{m.partition('.')[0] for m in sys.modules})"], capture_output=True, text=True
+    )
     out = subprocess.run([sys.executable, "-c", code, *bare.stdout.split()], capture_output=True, text=True)
     assert out.stdout.strip() == "[]", out.stdout + out.stderr

@@ -118,9 +118,7 @@ TRAPS = {
 
 
 def test_good_data_passes_every_check_in_silence(sail):
-    for seed, (length, speed, noise) in enumerate(
-        [(100.0, 7.0, 1.0), (320.0, 8.0, 1.0), (7.0, 1.2, 0.05), (2.0, 1.5, 0.05)]
-    ):
+    for seed, (length, speed, noise) in enumerate([(100.0, 7.0, 1.0), (320.0, 8.0, 1.0), (7.0, 1.2, 0.05), (2.0, 1.5, 0.05)]):
         columns = sail(900.0, length, speed, noise, seed)
         assert [c.text for c in answers(columns).values() if not c.ok] == []
 
@@ -132,9 +130,7 @@ def test_the_trap_is_named(sail, trap):
     assert not found.ok and words in found.text, found.text
 
 
-@pytest.mark.parametrize(
-    "trap", [name for name, (check, _, _) in TRAPS.items() if check in ("velocity_frame", "yaw_rate")]
-)
+@pytest.mark.parametrize("trap", [name for name, (check, _, _) in TRAPS.items() if check in ("velocity_frame", "yaw_rate")])
 def test_a_proved_mistake_makes_the_data_unusable_and_says_what_to_write_in_the_map(sail, trap):
     check, plant, _ = TRAPS[trap]
     found = answers(plant(sail()))[check]

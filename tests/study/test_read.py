@@ -79,9 +79,7 @@ def test_latitude_and_longitude_become_north_and_east_across_the_antimeridian(co
     longitude = 179.9995 + 7.0 * t / 111_000.0
     longitude = np.where(longitude > 180.0, longitude - 360.0, longitude)
     placed = {n: x for n, x in columns.items() if n not in ("north_m", "east_m")}
-    v = read_voyage(
-        write_csv(placed | {"latitude_deg": 0.001 + 0 * t, "longitude_deg": longitude}, digits=14)
-    )
+    v = read_voyage(write_csv(placed | {"latitude_deg": 0.001 + 0 * t, "longitude_deg": longitude}, digits=14))
     np.testing.assert_allclose(v["east_m"], 7.0 * t * 111_319.5 / 111_000.0, atol=0.02)
     np.testing.assert_allclose(v["north_m"], 0.0, atol=0.01)
     assert v.meta["datum"]["longitude_deg"] == pytest.approx(179.9995)
@@ -202,9 +200,7 @@ def test_a_duplicated_header(columns, write_csv, tmp_path):
 
 
 def test_a_header_of_numbers(tmp_path):
-    refused(
-        text(tmp_path, "0,1,2\n1,2,3\n"), "line 1 has numbers where column names should be", "header = false"
-    )
+    refused(text(tmp_path, "0,1,2\n1,2,3\n"), "line 1 has numbers where column names should be", "header = false")
 
 
 def test_a_word_in_a_column_of_numbers(columns, write_csv, tmp_path):
@@ -229,9 +225,7 @@ def test_a_short_line_in_the_middle_and_one_cut_off_at_the_end(columns, write_cs
 def test_time_that_goes_back_and_time_that_passes_midnight(columns, write_csv):
     back = columns["time_s"].copy()
     back[300:] -= 10.0
-    refused(
-        write_csv(columns | {"time_s": back}), "line 302: time goes back from 29.9 s to 20 s", "Split or sort"
-    )
+    refused(write_csv(columns | {"time_s": back}), "line 302: time goes back from 29.9 s to 20 s", "Split or sort")
     midnight = np.mod(columns["time_s"] + 86380.0, 86400.0)
     refused(write_csv(columns | {"time_s": midnight}, digits=14), "passes midnight")
 
@@ -274,17 +268,11 @@ MAP = {
 
 def test_a_map_names_columns_units_signs_frames_and_the_clock(tmp_path):
     rows = ["exported by somebody", "day;clock;lat;lon;hdg;sog;cog;RUD;n;w;wd"]
-    rows += [
-        f"17.05.2024;08:30:{s:02d}.5;5530,00;10,0;0,5;10,0;33,65;-4;1,5;36;{'-99' if s == 3 else '10'}"
-        for s in range(20)
-    ]
+    rows += [f"17.05.2024;08:30:{s:02d}.5;5530,00;10,0;0,5;10,0;33,65;-4;1,5;36;{'-99' if s == 3 else '10'}" for s in range(20)]
     v = read_voyage(text(tmp_path, "\n".join(rows)), parse_map(MAP, "my.toml"))
     assert v.meta["datum"] == {"latitude_deg": 55.5, "longitude_deg": 10.0} and v.meta["map"] == "my"
     assert v["heading_true_north_deg"][0] == pytest.approx(np.degrees(0.5) + 5.0)
-    assert (
-        v["surge_velocity_mps"][0] == pytest.approx(5.1444, abs=1e-3)
-        and abs(v["sway_velocity_mps"][0]) < 0.01
-    )
+    assert v["surge_velocity_mps"][0] == pytest.approx(5.1444, abs=1e-3) and abs(v["sway_velocity_mps"][0]) < 0.01
     assert v["rudder_angle_deg"][0] == 4.0 and v["propeller_rate_rpm"][0] == 90.0
     assert v["true_wind_speed_mps"][0] == pytest.approx(10.0) and v["true_wind_direction_deg"][0] == 190.0
     assert np.isnan(v["true_wind_direction_deg"][3]) and v["water_depth_m"][5] == 35.0

@@ -50,7 +50,16 @@ def param(
     """Declare a parameter: its plausible value when the effect is there, unit, box, prior width and meaning."""
     if of is not None and of not in SCALES:
         raise ValueError(f"of={of!r}: one of {SCALES}")
-    meta = {"default": default, "unit": unit, "lo": lo, "hi": hi, "sd": abs(default - null) if sd is None else sd, "null": null, "of": of, "doc": doc}
+    meta = {
+        "default": default,
+        "unit": unit,
+        "lo": lo,
+        "hi": hi,
+        "sd": abs(default - null) if sd is None else sd,
+        "null": null,
+        "of": of,
+        "doc": doc,
+    }
     return field(default=default if of is None else MISSING, metadata=meta, kw_only=True)
 
 
@@ -100,9 +109,7 @@ class Effect:
                 )
         for particular in self.needs_ship:
             if getattr(ship, particular, None) is None:
-                raise SettingsError(
-                    f"{where}effects.{name} needs {particular}. Add it under [particulars], or remove [effects.{name}]."
-                )
+                raise SettingsError(f"{where}effects.{name} needs {particular}. Add it under [particulars], or remove [effects.{name}].")
 
 
 class Force(Effect):

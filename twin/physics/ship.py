@@ -96,7 +96,7 @@ def _same_unit(entry: Any, unit: str, where: str) -> None:
 def _value(entry: Any, where: str) -> float:
     value = entry.get("value") if isinstance(entry, Mapping) else entry
     if isinstance(value, bool) or not isinstance(value, (int, float)) or value != value or abs(value) == float("inf"):
-        raise SettingsError(f"{where} = {value!r}: a finite number is needed, as {{ value = 1.0, unit = \"...\" }}.")
+        raise SettingsError(f'{where} = {value!r}: a finite number is needed, as {{ value = 1.0, unit = "..." }}.')
     return float(value)
 
 

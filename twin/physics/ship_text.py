@@ -28,9 +28,7 @@ def to_table(ship: Ship) -> dict[str, Any]:
 
     table: dict[str, Any] = {"schema_version": SCHEMA_VERSION, "name": ship.name}
     table["particulars"] = {
-        f.name: entry("particulars", f.metadata, f.name, getattr(ship, f.name))
-        for f in PARTICULARS
-        if getattr(ship, f.name) is not None
+        f.name: entry("particulars", f.metadata, f.name, getattr(ship, f.name)) for f in PARTICULARS if getattr(ship, f.name) is not None
     }
     table["derivatives"] = {f.name: entry("derivatives", f.metadata, f.name, getattr(ship.derivatives, f.name)) for f in DERIVATIVES}
     table["effects"] = {

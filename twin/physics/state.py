@@ -80,5 +80,14 @@ class Situation:
 
 
 WEATHER = (
-    "wind_speed", "wind_to", "depth", "H_s", "T_p", "wave_to", "draught", "bank_port", "bank_starboard", "phi",
+    "wind_speed",
+    "wind_to",
+    "depth",
+    "H_s",
+    "T_p",
+    "wave_to",
+    "draught",
+    "bank_port",
+    "bank_starboard",
+    "phi",
 )

@@ -1,7 +1,8 @@
-"""zeta: what the learned residual looks at, without dimensions, so that one network form serves every ship.
+"""zeta: what the learned residual looks at, without dimensions, so that one network form serves every
+ship.
 
-Each number is worked out from a situation and the ship's own scales, for floats, arrays and tensors alike; the live loop and the
-training use this one table. A number whose measurement is missing is None.
+Each number is worked out from a situation and the ship's own scales, for floats, arrays and tensors alike;
+the live loop and the training use this one table. A number whose measurement is missing is None.
 """
 
 from collections.abc import Callable
@@ -44,7 +45,8 @@ ZETA: dict[str, Zeta] = {
 
 
 def inputs(names: tuple[str, ...], s: Situation, ship: "Ship") -> list[Number]:
-    """The named inputs of one situation, in order; None for each whose measurement is missing. s.u_r, s.v_r must be set."""
+    """The named inputs of one situation, in order; None for each whose measurement is missing. s.u_r,
+    s.v_r must be set."""
     out = []
     for name in names:
         zeta = ZETA[name]

@@ -55,17 +55,13 @@ def add(
     for effect in effects:
         effect.plausible(ship).check(ship)
     can_be_judged(effects, [s.track for s in (*sailed, *held_out)])
-    used, held = (
-        ([s.track for s in sailed], [s.track for s in held_out]) if held_out else thirds([s.track for s in sailed])
-    )
+    used, held = ([s.track for s in sailed], [s.track for s in held_out]) if held_out else thirds([s.track for s in sailed])
     model, found = fitted(ship, effects, used)
     before, after = ahead(held, Model.of(ship), HORIZONS_S), ahead(held, model, HORIZONS_S)
     structural = floor_of(ship) is not None
     rows = ladder(before, after, HORIZONS_S, structural)
     if not rows:
-        raise DataError(
-            f"{', '.join(t.name for t in held)}: too short to judge by. Give another voyage with --held-out."
-        )
+        raise DataError(f"{', '.join(t.name for t in held)}: too short to judge by. Give another voyage with --held-out.")
     proof = fall(before, after, rows[-1]["horizon_s"])
     result = {
         "schema_version": SCHEMA_VERSION,
@@ -97,12 +93,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EPILOG
     parser.add_argument("effects", metavar="EFFECT", nargs="+", help="names from `twin effects`")
     parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the model it is added to")
-    parser.add_argument(
-        "--voyage", metavar="VOYAGE", nargs="+", action="extend", required=True, help="voyages to fit it on"
-    )
-    parser.add_argument(
-        "--held-out", metavar="VOYAGE", nargs="+", action="extend", default=[], help="voyages to judge it by"
-    )
+    parser.add_argument("--voyage", metavar="VOYAGE", nargs="+", action="extend", required=True, help="voyages to fit it on")
+    parser.add_argument("--held-out", metavar="VOYAGE", nargs="+", action="extend", default=[], help="voyages to judge it by")
     parser.add_argument("-o", "--output", metavar="SHIP2.toml", required=True, help="the better ship file")
     parser.add_argument("--force", action="store_true", help="write it although the held-out error does not fall")
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")

@@ -22,9 +22,7 @@ def verdict(result: dict[str, Any], proof: Fall) -> str:
     sizes = f"{proof.before:.3g} to {proof.after:.3g} {proof.unit}{noise}"
     if proof.proved:
         by = 100.0 * (1.0 - proof.after / proof.before)
-        return (
-            f"With {names} the {proof.measure} falls by {by:.0f} %, from {sizes}, on measurements not used to fit it."
-        )
+        return f"With {names} the {proof.measure} falls by {by:.0f} %, from {sizes}, on measurements not used to fit it."
     change = f"95 % of the change: {proof.low95:+.2g} to {proof.high95:+.2g}"
     head = f"With {names} the {proof.measure} does not fall beyond its noise"
     return f"{head}: {sizes} on measurements not used to fit it ({change})."
@@ -51,9 +49,7 @@ def _of_the_day(names: set[str], sailed: Sequence[Sailed], held_out: Sequence[Sa
     if not bound or len(sailed) + len(held_out) == 1 or (len(days[0] | days[1]) == 1 and "?" not in days[0]):
         return []
     when = "on another day, as far as the files tell" if "?" in days[0] | days[1] else "on another day"
-    return [
-        f"The numbers of {', '.join(bound)} belong to a voyage; some of these were sailed {when}, where they need not hold."
-    ]
+    return [f"The numbers of {', '.join(bound)} belong to a voyage; some of these were sailed {when}, where they need not hold."]
 
 
 def written(ship: Ship, model: Model, result: dict[str, Any]) -> Ship:
@@ -90,10 +86,7 @@ def told(result: dict[str, Any]) -> list[str]:
         )
     out += ["", "what was fitted (95 %)"]
     for effect, numbers in result["parameters"].items():
-        out += [
-            f"  {effect}.{n} = {p['value']:.4g} {p['unit']}   {p['low95']:.3g} to {p['high95']:.3g}"
-            for n, p in numbers.items()
-        ]
+        out += [f"  {effect}.{n} = {p['value']:.4g} {p['unit']}   {p['low95']:.3g} to {p['high95']:.3g}" for n, p in numbers.items()]
     out += ["", "by regime: before, after [m]"] + [
         f"  {w['before_m']:>8.3g}{w['after_m']:>9.3g}  {w['condition']}" for w in result["where"]
     ]

@@ -106,9 +106,7 @@ def _temper(ship: Ship) -> float:
     return float(ship.notes.get("structural", {}).get("temper", TEMPER))
 
 
-def _doubt(
-    found: Fit, tracks: Sequence[Track], floor: Floor, known: dict[str, type[Effect]], temper: float
-) -> np.ndarray:
+def _doubt(found: Fit, tracks: Sequence[Track], floor: Floor, known: dict[str, type[Effect]], temper: float) -> np.ndarray:
     """(P,) standard errors, the doubt about core and instruments included: it is wider than that of a fit with the core fixed."""
     own = {u.owner for u in found.unknowns}
     beside = tuple(u for u in nuisance_unknowns(found.model, known) if u.owner not in own)
@@ -139,9 +137,7 @@ def _found(u: Unknown, value: float, sd: float) -> Found:
 def thirds(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:
     """The first two thirds of every voyage, and the last."""
     cut = [round(2 * len(t) / 3) for t in tracks]
-    return [t.part(0, k) for t, k in zip(tracks, cut, strict=True)], [
-        t.part(k, len(t)) for t, k in zip(tracks, cut, strict=True)
-    ]
+    return [t.part(0, k) for t, k in zip(tracks, cut, strict=True)], [t.part(k, len(t)) for t, k in zip(tracks, cut, strict=True)]
 
 
 def ahead(tracks: Sequence[Track], model: Model, horizons_s: Sequence[float]) -> list[Windows]:

@@ -27,9 +27,7 @@ def stored_floor(ship: Ship) -> Floor | None:
     return Floor(**(dict(table) | {"share": tuple(table["share"])})) if table else None
 
 
-def assemble(
-    voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage] = (), progress: Progress = lambda text: None
-) -> Case:
+def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage] = (), progress: Progress = lambda text: None) -> Case:
     """Everything `search` needs; DataError when the voyages cannot be used at all."""
     if not voyages:
         raise DataError("no voyage given. Name at least one file with measurements.")

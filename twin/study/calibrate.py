@@ -15,10 +15,10 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 
 from .columns import Unknown, core_unknowns
-from .jsonable import plain
 from .fit import Fit, fit
 from .import_voyage import write_json
 from .innovations import Floor, linearise
+from .jsonable import plain
 from .nuisance import TEMPER, from_references, instruments, nuisance_unknowns, temper_of
 from .openloop import HORIZONS_S, predict
 from .sailed import Sailed, fed, read_all
@@ -26,6 +26,7 @@ from .structure import structural_floor
 from .track import Track
 
 SCHEMA_VERSION = 1
+LAST = "the last third of the voyages; the ship that is written was then fitted to all"
 UNEXCITED = 0.1  # a derivative of whose prior variance the voyages took away less than this keeps its prior
 EPILOG = """Reference voyages are ones on which nothing was wrong and the weather was calm: zigzags, circles, speed changes. Without --held-out
 the last third of the voyages (or of a single voyage) is held back to measure the error. The standard errors, and the structural
@@ -178,13 +179,21 @@ def _split(fitted: list[Sailed], held_out: list[Sailed]) -> tuple[list[Sailed], 
         return fitted, [(s.track, 0) for s in held_out], "the voyages given with --held-out"
     if len(fitted) > 2:
         keep = len(fitted) - max(1, len(fitted) // 3)
-        return fitted[:keep], [(s.track, 0) for s in fitted[keep:]], "the last " + ", ".join(s.track.name for s in fitted[keep:])
+        return fitted[:keep], [(s.track, 0) for s in fitted[keep:]], LAST
     parts, rest = [], []
     for s in fitted:
         cut = int(0.7 * len(s.track))
         parts.append(replace(s, track=s.track.part(0, cut)))
         rest.append((s.track, cut))
     return parts, rest, "the last 30 % of each voyage"
+
+
+def _with_all(measured: Calibrated, final: Calibrated) -> Calibrated:
+    """The ship that every voyage was used for, with the errors as they were measured before the last ones were."""
+    for key in ("held_out", "by_regime"):
+        final.result[key] = measured.result[key]
+        final.ship.notes["structural"][key] = measured.ship.notes["structural"][key]
+    return final
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -199,7 +208,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
     fitted, held_out, words = _split(read_all(args.voyages, ship), read_all(args.held_out, ship))
-    done = calibrate(fitted, held_out, ship, lambda text: print(f"{text} ...", file=sys.stderr))
+
+    def tell(text: str) -> None:
+        print(f"{text} ...", file=sys.stderr)
+
+    done = calibrate(fitted, held_out, ship, tell)
+    if words == LAST:
+        tell("once more, with every voyage")
+        done = _with_all(done, calibrate(read_all(args.voyages, ship), held_out, ship, tell))
     save(done.ship, args.output)
     result = done.result | {"held_out_is": words, "output": str(args.output)}
     if args.json:
@@ -219,7 +235,9 @@ def told(result: dict[str, Any]) -> list[str]:
                 f"  {e['horizon_s']:>4.0f} s   {e['before_m']:>8.3g} m -> {e['position_m']:<8.3g} m    "
                 f"{e['before_deg']:>7.3g} deg -> {e['heading_deg']:<7.3g} deg   ({e['windows']} windows)"
             )
-    lines += [f"  after {r['horizon_s']:.0f} s while {r['regime']}: {r['position_m']:.3g} m ({r['windows']} windows)" for r in result["by_regime"]]
+    lines += [
+        f"  after {r['horizon_s']:.0f} s while {r['regime']}: {r['position_m']:.3g} m ({r['windows']} windows)" for r in result["by_regime"]
+    ]
     share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [f"usual on this ship: {i['name']} {i['value']:.3g} +- {i['sd']:.1g} (kept in mind by diagnose)" for i in result["usual"]]

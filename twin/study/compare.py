@@ -44,10 +44,7 @@ def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] 
     """Predict every voyage open loop and judge the errors together."""
     ship, floor = model.ship, floor_of(model.ship)
     models = [fed(model, s.track)[0] for s in sailed]
-    windows = [
-        predict(s.track, m, horizons_s, floor=floor, seed=i)
-        for i, (s, m) in enumerate(zip(sailed, models, strict=True))
-    ]
+    windows = [predict(s.track, m, horizons_s, floor=floor, seed=i) for i, (s, m) in enumerate(zip(sailed, models, strict=True))]
     rows = score.horizons(windows, horizons_s, floor is not None)
     if not rows:
         raise DataError(
@@ -68,9 +65,7 @@ def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] 
     return Compared(plain(result), tuple(sailed), tuple(models), tuple(windows))
 
 
-def _result(
-    ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[str, Any]], judged: Energy
-) -> dict[str, Any]:
+def _result(ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[str, Any]], judged: Energy) -> dict[str, Any]:
     from twin.live.residual import ship_hash
 
     from .checks import run_checks
@@ -110,12 +105,7 @@ def verdict(result: dict[str, Any]) -> str:
         return f"{head}: no worse than {would}."
     tail = f", {times[0]:.2g} and {times[1]:.2g} times what {would}"
     where = result["where"][:1]
-    return (
-        head
-        + tail
-        + "".join(f"; it is {w['error_ratio']:.2g} times larger with {w['condition']} than elsewhere" for w in where)
-        + "."
-    )
+    return head + tail + "".join(f"; it is {w['error_ratio']:.2g} times larger with {w['condition']} than elsewhere" for w in where) + "."
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -126,9 +116,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         help="voyages: MCAP logs or CSV files with the contract's columns",
     )
-    parser.add_argument(
-        "--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name"
-    )
+    parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name")
     parser.add_argument(
         "--horizon",
         metavar="S",

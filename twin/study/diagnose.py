@@ -11,12 +11,12 @@ import numpy as np
 from twin.physics.ship import Ship, load
 
 from .assemble import assemble, unjudged_because
-from .jsonable import plain
 from .import_voyage import write_json
+from .jsonable import plain
 from .manoeuvres import next_manoeuvre
 from .read import read_voyage
 from .search import Case, Found, search
-from .tell_diagnosis import told
+from .tell_diagnosis import sentence, told
 from .verdict import alike, held_out_error, judge, parameters, typical_force, visible, weights
 from .voyage import Voyage
 
@@ -93,7 +93,9 @@ def _next(
 ) -> dict[str, Any] | None:  # fmt: skip
     """What to sail next, when two effects stand in each other's way or the voyages could not tell."""
     listed = [c for c in candidates if c]
-    rivals = next(((c["effect"], o) for c in listed for o in c["cannot_be_told_from"] if c["effect"] in missing or verdict != "missing"), None)
+    rivals = next(
+        ((c["effect"], o) for c in listed for o in c["cannot_be_told_from"] if c["effect"] in missing or verdict != "missing"), None
+    )
     if rivals is None and verdict == "undecided" and len(listed) > 1:
         rivals = (listed[0]["effect"], listed[1]["effect"])
     if rivals is None:
@@ -128,7 +130,11 @@ def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
     voyages, references = ([read_voyage(p) for p in paths] for paths in (args.voyages, args.reference))
     done = diagnose(voyages, ship, references, lambda text: print(f"{text} ...", file=sys.stderr))
-    result = done.result | {"command": f"twin diagnose {' '.join(args.voyages)} --ship {args.ship}"}
+    result = done.result | {
+        "command": f"twin diagnose {' '.join(args.voyages)} --ship {args.ship}",
+        "verdict_text": sentence(done.result),
+        "files": {"ship": args.ship, "voyages": args.voyages},
+    }
     page = sys.stderr if args.json == "-" else sys.stdout
     if args.identifiability:
         from .identifiability import report as identifiability

@@ -2,7 +2,7 @@
 
 A hypothesis is a set of effects (none, one, two) and a state of the world (how large the floor, how restless the water). Its
 evidence integrates out everything else: the core's derivatives and the instruments' usual errors as the reference voyages left
-them, and a small amount of every effect (a spike a tenth as wide as its plausible size), so that only what is clearly more than
+them, and a small amount of every effect (a spike far narrower than its plausible size), so that only what is clearly more than
 nothing counts. The parameters of its own effects are integrated over their priors (half-normal in a box with one side), so that a
 flexible effect pays for its freedom.
 
@@ -20,7 +20,7 @@ from scipy.special import log_ndtr
 from .columns import Unknown
 from .innovations import Normal
 
-SPIKE = 0.1  # width of "not there", in widths of "there"
+SPIKE = 0.04  # width of "not there", in widths of "there"
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ def weigh_all(reduced: Reduced, candidates: Sequence[str], most: int = 2) -> lis
     M, z = spikes.covariance, spikes.z - reduced.at
     rows = {name: reduced.rows((name,)) for name in candidates}
     open_up = 1.0 - 1.0 / SPIKE**2  # what a spike's precision loses when it becomes a slab
-    out = [((), spikes.log_evidence)]
+    out: list[tuple[tuple[str, ...], float]] = [((), spikes.log_evidence)]
     for size in range(1, most + 1):
         for chosen in combinations(candidates, size):
             at = np.concatenate([rows[name] for name in chosen])

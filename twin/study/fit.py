@@ -48,7 +48,7 @@ def fit(
     centre, sd = np.array([u.centre for u in unknowns]), np.array([u.sd for u in unknowns])
     value = np.array([_present(model, u) for u in unknowns])
     for last in range(rounds):
-        model = with_values(model, unknowns, value, catalogue)
+        model = with_values(model, unknowns, value.tolist(), catalogue)
         here = {u.label: float(v) for u, v in zip(unknowns, value, strict=True)}
         late = {label: v for label, v in here.items() if label.startswith(LATE)}
         lines = [linearise(t, model, [replace(u, centre=here[u.label]) for u in unknowns], catalogue, late) for t in tracks]
@@ -61,7 +61,7 @@ def fit(
         moved, value = np.max(np.abs(new - value) / sd), new
         if moved < 0.02 or last == rounds - 1:
             break
-    model = with_values(model, unknowns, value, catalogue)
+    model = with_values(model, unknowns, value.tolist(), catalogue)
     covariance = np.linalg.inv(H) * np.outer(sd, sd)
     return Fit(model, tuple(unknowns), value, covariance, tuple(lines), normal)
 

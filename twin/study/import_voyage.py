@@ -43,20 +43,14 @@ class Imported(NamedTuple):
             "step_s": v.step_s,
             "columns": [name for name in v.columns if v.has(name)],
             "absent": list(v.absent()),
-            **{
-                key: v.meta[key]
-                for key in ("source", "map", "ship", "datum", "start_time_utc")
-                if key in v.meta
-            },
+            **{key: v.meta[key] for key in ("source", "map", "ship", "datum", "start_time_utc") if key in v.meta},
             "derived": dict(v.meta.get("derived", {})),
             "notes": list(v.meta.get("notes", ())),
             "data_checks": [c.as_json() for c in self.checks],
         }
 
 
-def import_voyage(
-    path: str | Path, map_path: str | Path | None = None, ship_path: str | Path | None = None
-) -> Imported:
+def import_voyage(path: str | Path, map_path: str | Path | None = None, ship_path: str | Path | None = None) -> Imported:
     """Reads a file, through a map if it has its own columns, and checks it, with a ship if one is given."""
     ship = load(ship_path) if ship_path else None
     voyage = read_voyage(path, read_map(Path(map_path)) if map_path else None)
@@ -70,9 +64,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="measurements: CSV, text columns, or an MCAP log")
     parser.add_argument("--map", metavar="MAP.toml", help="the file's own columns, units, signs and clock")
     parser.add_argument("--ship", metavar="SHIP.toml", help="her particulars let the checks say more")
-    parser.add_argument(
-        "--accept", metavar="CHECK", action="append", default=[], help="import although CHECK refuses"
-    )
+    parser.add_argument("--accept", metavar="CHECK", action="append", default=[], help="import although CHECK refuses")
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
     parser.add_argument("-o", "--output", metavar="VOYAGE.mcap", required=True, help="the checked voyage")
 
@@ -140,6 +132,4 @@ def write_json(result: dict[str, Any], path: str) -> None:
         os.replace(aside, path)
     except OSError as error:
         aside.unlink(missing_ok=True)
-        raise TwinError(
-            f"{path}: cannot be written ({error.strerror}). Choose another place with --json."
-        ) from None
+        raise TwinError(f"{path}: cannot be written ({error.strerror}). Choose another place with --json.") from None

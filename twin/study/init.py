@@ -58,7 +58,9 @@ def run(args: argparse.Namespace) -> int:
     print(summary(ship, figures, warnings), file=out)
     print(f"\nwritten: {args.output}\nnext:    twin calibrate CALM.mcap --ship {args.output} -o {_next(args.output)}", file=out)
     if args.json:
-        text = json.dumps({"schema_version": 1, "ship": ship.name, "file": str(args.output), "trial": figures, "warnings": warnings}, indent=2)
+        text = json.dumps(
+            {"schema_version": 1, "ship": ship.name, "file": str(args.output), "trial": figures, "warnings": warnings}, indent=2
+        )
         print(text) if args.json == "-" else Path(args.json).write_text(text + "\n", encoding="utf-8")
     return 0
 
@@ -219,7 +221,9 @@ def doubts(figures: Mapping[str, Any]) -> list[str]:
     """In words, what is unusual about a trial."""
     out = []
     if not 1.8 <= figures["tactical_diameter_L"] <= 6.5:
-        out.append(f"tactical diameter {figures['tactical_diameter_L']:.1f} L is unusual (2 to 6 L): check rudder area and speed, and calibrate")
+        out.append(
+            f"tactical diameter {figures['tactical_diameter_L']:.1f} L is unusual (2 to 6 L): check rudder area and speed, and calibrate"
+        )
     if figures["speed_left"] < 0.2:
         out.append(f"only {figures['speed_left']:.0%} of the speed is left in the turn: check draught and propeller, and calibrate")
     if figures["overshoot_20_20_deg"] is None or figures["overshoot_20_20_deg"] > 40.0:

@@ -10,6 +10,7 @@ Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -43,8 +44,8 @@ class Floor:
     sensor: float = 1.3
 
     def scaled(self, factor: float = 1.0, white: float = 1.0, flow: float = 1.0) -> "Floor":
-        share = tuple(factor * s for s in self.share)
-        return replace(self, share=share, white=white * self.white, flow=flow * self.flow)
+        surge, sway, yaw = (factor * s for s in self.share)
+        return replace(self, share=(surge, sway, yaw), white=white * self.white, flow=flow * self.flow)
 
 
 @dataclass(frozen=True)
@@ -113,7 +114,9 @@ def busy(track: Track, model: Model) -> np.ndarray:
     width = max(3, int(model.ship.scale("time") / track.h))
     out = np.empty((len(track), 3))
     for i, axis in enumerate("XYN"):
-        square = sum(np.broadcast_to(getattr(forces[k], axis), track.t.shape) ** 2 for k in ("hull", "propeller", "rudder", "coriolis"))
+        square = np.zeros(track.t.shape)
+        for name in ("hull", "propeller", "rudder", "coriolis"):
+            square += np.broadcast_to(getattr(forces[name], axis), track.t.shape) ** 2
         mean = np.convolve(square, np.ones(width) / width, "same")
         out[:, i] = np.sqrt(mean) / (model.c.m_u, model.c.m_v, model.c.m_r)[i]
     return out
@@ -159,7 +162,7 @@ def segments(lines: Sequence[Linear]) -> list[tuple[int, int, int]]:
         for start, stop in zip(edges[::2], edges[1::2], strict=True):
             pieces = max(1, round((stop - start) / length))
             cuts = np.linspace(start, stop, pieces + 1).astype(int)
-            out += [(i, int(a), int(b)) for a, b in zip(cuts[:-1], cuts[1:], strict=True) if b - a >= 24]
+            out += [(i, int(a), int(b)) for a, b in pairwise(cuts) if b - a >= 24]
     return out
 
 

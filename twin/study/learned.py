@@ -16,11 +16,7 @@ def learned_force(path: str, ship: Ship) -> Callable[[Situation], Force]:
     learned = LearnedForce(ship, load(path, ship), adapt=False)
 
     def force(s: Situation) -> Force:
-        there = {
-            f.name: np.atleast_1d(np.asarray(x, float))
-            for f in fields(Situation)
-            if (x := getattr(s, f.name)) is not None
-        }
+        there = {f.name: np.atleast_1d(np.asarray(x, float)) for f in fields(Situation) if (x := getattr(s, f.name)) is not None}
         width = max(x.size for x in there.values())
         rows = zip(*(np.broadcast_to(x, width).tolist() for x in there.values()), strict=True)
         found = [learned.at(Situation(**dict(zip(there, row, strict=True))), ()).force for row in rows]

@@ -25,18 +25,14 @@ RATIO = 1.15  # an error less than this above elsewhere is not worth a sentence
 MOST = 8
 
 
-def sizes(
-    windows: Sequence[Windows], horizon_s: float, run: int = MODEL, like: np.ndarray | None = None
-) -> np.ndarray:
+def sizes(windows: Sequence[Windows], horizon_s: float, run: int = MODEL, like: np.ndarray | None = None) -> np.ndarray:
     """(W,) one error for each window: position and heading, each over its mean of the model's errors."""
     errors, model = pooled(windows, horizon_s, run), pooled(windows, horizon_s)
     scaled = [errors[n] / max(float(np.nanmean(model[n])), 1e-12) for n in ("position", "heading")]
     return 0.5 * (scaled[0] + scaled[1])
 
 
-def regimes(
-    windows: Sequence[Windows], horizon_s: float, ship: Ship, structural: bool = False
-) -> list[dict[str, Any]]:
+def regimes(windows: Sequence[Windows], horizon_s: float, ship: Ship, structural: bool = False) -> list[dict[str, Any]]:
     """[{condition, error_ratio, time_share, explains}], what explains most first.
 
     error_ratio: error inside over error elsewhere; explains: share of all error that stands above the level elsewhere.
@@ -76,21 +72,13 @@ def _beyond_chance(masks: np.ndarray, error: np.ndarray, voyage: np.ndarray) -> 
     seen, chance = _striking(masks, error[None]), _striking(masks, _shifted(error, voyage))
     middle, spread = chance.mean(1, keepdims=True), chance.std(1, keepdims=True)
     moves = spread > 1e-6  # a condition that is a whole voyage cannot be judged by sliding within it
-    limit = (
-        np.quantile(((chance - middle) / (spread + 1e-12))[moves[:, 0]].max(0), 1.0 - CHANCE)
-        if moves.any()
-        else np.inf
-    )
-    return np.where(
-        moves, (seen - middle) / (spread + 1e-12) > limit, _whole_voyages(masks, error, voyage)[:, None]
-    )[:, 0]
+    limit = np.quantile(((chance - middle) / (spread + 1e-12))[moves[:, 0]].max(0), 1.0 - CHANCE) if moves.any() else np.inf
+    return np.where(moves, (seen - middle) / (spread + 1e-12) > limit, _whole_voyages(masks, error, voyage)[:, None])[:, 0]
 
 
 def _whole_voyages(masks: np.ndarray, error: np.ndarray, voyage: np.ndarray) -> np.ndarray:
     """(C,) whether the error inside differs from that outside when only every tenth or so window counts as a new one."""
-    runs = max(
-        1, round(error.size / (12.0 * np.unique(voyage).size))
-    )  # windows of a twelfth of a voyage hang together
+    runs = max(1, round(error.size / (12.0 * np.unique(voyage).size)))  # windows of a twelfth of a voyage hang together
     return _striking(masks, error[None])[:, 0] / np.sqrt(runs) > 3.0
 
 

@@ -61,7 +61,7 @@ MANOEUVRES: dict[str, tuple[Order, str]] = {
     "reciprocal runs": (_steer(lambda s: pi * (s > LENGTHS / 2), lambda s: 1.0), "the same straight run there and back at constant power"),
     "square": (_steer(lambda s: 0.5 * pi * int(s / 10), lambda s: 1.0), "four straight legs at right angles at constant power"),
     "zigzag with speed changes": (
-        lambda h, z=_zigzag(20 * DEG): (z(h)[0], (1.0, 0.6, 1.0, 0.4)[int(h.lengths / 10) % 4]),  # type: ignore[misc]
+        lambda h: (_zigzag(20 * DEG)(h)[0], (1.0, 0.6, 1.0, 0.4)[int(h.lengths / 10) % 4]),
         "a 20/20 zigzag at 100, 60, 100 and 40 % of the usual shaft speed",
     ),
 }  # fmt: skip

@@ -62,9 +62,7 @@ def parse_map(data: Mapping[str, Any], where: str) -> Map:
     one_of(layout.separator, (None, *SEPARATORS), f"{where}: [file] separator")
     one_of(layout.decimal, (None, ".", ","), f"{where}: [file] decimal")
     if not number(scale, f"{where}: [scale] froude") > 0.0:
-        raise SettingsError(
-            f"{where}: [scale] froude = {scale} must be positive (ship length / model length)."
-        )
+        raise SettingsError(f"{where}: [scale] froude = {scale} must be positive (ship length / model length).")
     return Map(
         name=Path(where).stem,
         layout=layout,
@@ -102,9 +100,7 @@ def time_column(entry: Any, where: str) -> TimeColumn:
     out: TimeColumn = build(TimeColumn, entry, f"{where}: [time]")
     one_of(out.unit, (*UNITS["s"], "iso"), f"{where}: [time] unit")
     if not isinstance(out.rebuild, bool) and not out.rebuild > 0.0:
-        raise SettingsError(
-            f"{where}: [time] rebuild = {out.rebuild:g} must be true, false or a step in seconds."
-        )
+        raise SettingsError(f"{where}: [time] rebuild = {out.rebuild:g} must be true, false or a step in seconds.")
     return out
 
 

@@ -51,9 +51,7 @@ class Column:
     unit: str | None = None
     sign: int = 1
     offset: float = 0.0
-    frame: str = (
-        "body"  # velocities: body; earth (north, east); course (speed over ground, course over ground)
-    )
+    frame: str = "body"  # velocities: body; earth (north, east); course (speed over ground, course over ground)
     direction: str = "from"  # wind and waves: where they come from, or go "to"
     despike: bool = False
 

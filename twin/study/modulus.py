@@ -51,9 +51,7 @@ def error_share(published: Mapping[str, float], derivatives: Mapping[str, float]
     return shares[0], shares[1]
 
 
-def slipstream(
-    K_T0: float, K_T1: float, epsilon: float, kappa: float, eta: float, J: np.ndarray = WORKING_J
-) -> tuple[float, float]:
+def slipstream(K_T0: float, K_T1: float, epsilon: float, kappa: float, eta: float, J: np.ndarray = WORKING_J) -> tuple[float, float]:
     """epsilon and kappa for which eps^2 (J^2 + kappa 8 K_T/pi) is nearest to the MMG inflow at the rudder [YY15 eq. (26)].
 
     `eta`: propeller diameter over rudder height, the part of the rudder that the slipstream covers.

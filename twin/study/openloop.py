@@ -37,9 +37,7 @@ class Windows:
     track: Track
     start: np.ndarray  # (W,) grid step at which each begins
     lead: np.ndarray  # (K,) grid steps ahead
-    promised: (
-        np.ndarray
-    )  # (3, K, W, 8) readings; of the floors only the difference to the model's has a meaning
+    promised: np.ndarray  # (3, K, W, 8) readings; of the floors only the difference to the model's has a meaning
     valid: np.ndarray  # (K, W) controls known all the way, and the position measured at both ends
     seen: np.ndarray  # (N, 8) what was measured, with short holes bridged (see start.py)
 
@@ -85,9 +83,7 @@ def predict(
     begin = np.concatenate([state[start], state[start] + fuzz, state[start] + fuzz]).T
     run = _Run(track, model, start, wind_to, _slow(track, model, floor, start, rng))
     with np.errstate(all="ignore"):  # a bad model may run away: it is then as wrong as can be written down
-        kept = np.nan_to_num(
-            run.through(tuple(begin), lead), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY
-        ).clip(-RUNAWAY, RUNAWAY)
+        kept = np.nan_to_num(run.through(tuple(begin), lead), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)
     promised = kept.reshape(len(lead), 3, start.size, len(READINGS)).transpose(1, 0, 2, 3)
     promised[1:] += track.sd * rng.standard_normal(promised[1].shape)
     measured = seen(track)
@@ -136,9 +132,7 @@ class _Slow:
         )
 
 
-def _slow(
-    track: Track, model: Model, floor: Floor | None, start: np.ndarray, rng: np.random.Generator
-) -> _Slow | None:
+def _slow(track: Track, model: Model, floor: Floor | None, start: np.ndarray, rng: np.random.Generator) -> _Slow | None:
     """The disturbances that a floor describes (see innovations.py), drawn for every window."""
     if floor is None:
         return None
@@ -152,9 +146,7 @@ def _slow(
 class _Run:
     """All windows of a track, three times, stepped together."""
 
-    def __init__(
-        self, track: Track, model: Model, start: np.ndarray, wind_to: np.ndarray | None, slow: _Slow | None
-    ):
+    def __init__(self, track: Track, model: Model, start: np.ndarray, wind_to: np.ndarray | None, slow: _Slow | None):
         self.track, self.start, self.slow = track, start, slow
         self.known = replace(model, residual=None)
         self.learned = model.residual

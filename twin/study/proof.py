@@ -70,13 +70,10 @@ def _interval(means: np.ndarray, middle: float, independent: float) -> tuple[flo
     return middle + wider * (float(low) - middle), middle + wider * (float(high) - middle)
 
 
-def _judged(
-    before: Sequence[Windows], after: Sequence[Windows], horizon_s: float
-) -> tuple[str, str, list[tuple[np.ndarray, np.ndarray]]]:
+def _judged(before: Sequence[Windows], after: Sequence[Windows], horizon_s: float) -> tuple[str, str, list[tuple[np.ndarray, np.ndarray]]]:
     """The name and unit of the measure, and for each voyage the errors (W,) before and after."""
     moved = max(
-        float(np.nanmax(np.abs(a.promised[MODEL, ..., :3] - b.promised[MODEL, ..., :3])))
-        for b, a in zip(before, after, strict=True)
+        float(np.nanmax(np.abs(a.promised[MODEL, ..., :3] - b.promised[MODEL, ..., :3]))) for b, a in zip(before, after, strict=True)
     )
     rows = [w.at(horizon_s) for w in before]
     if moved > UNCHANGED:
@@ -84,18 +81,12 @@ def _judged(
         return (
             name,
             "m",
-            [
-                (b.errors()["position"][k], a.errors()["position"][k])
-                for b, a, k in zip(before, after, rows, strict=True)
-            ],
+            [(b.errors()["position"][k], a.errors()["position"][k]) for b, a, k in zip(before, after, rows, strict=True)],
         )
     touched = [
         i
         for i in range(3, len(MEASURED))
-        if any(
-            not np.allclose(a.promised[MODEL, ..., i], b.promised[MODEL, ..., i])
-            for b, a in zip(before, after, strict=True)
-        )
+        if any(not np.allclose(a.promised[MODEL, ..., i], b.promised[MODEL, ..., i]) for b, a in zip(before, after, strict=True))
     ]
     names = [list(MEASURED.values())[i] for i in touched] or ["no reading"]
     noise = [float(np.nanmean([np.nanmean(np.abs(w.off(SENSORS)[..., i])) for w in before])) for i in touched]
@@ -126,11 +117,7 @@ def _bootstrap(changes: Sequence[np.ndarray], blocks: Sequence[int]) -> np.ndarr
     for change, block in zip(changes, blocks, strict=True):
         if not change.size:
             continue
-        sums = np.cumsum(
-            np.concatenate(
-                [[0.0], change, change[: block - 1] if change.size >= block else np.resize(change, block - 1)]
-            )
-        )
+        sums = np.cumsum(np.concatenate([[0.0], change, change[: block - 1] if change.size >= block else np.resize(change, block - 1)]))
         runs = sums[block:] - sums[:-block]
         needed = int(np.ceil(change.size / block))
         total += runs[rng.integers(0, runs.size, (RESAMPLES, needed))].sum(1) / (needed * block) * change.size
@@ -138,9 +125,7 @@ def _bootstrap(changes: Sequence[np.ndarray], blocks: Sequence[int]) -> np.ndarr
     return total / count if count else np.array([])
 
 
-def ladder(
-    before: Sequence[Windows], after: Sequence[Windows], horizons_s: Sequence[float], structural: bool
-) -> list[dict[str, Any]]:
+def ladder(before: Sequence[Windows], after: Sequence[Windows], horizons_s: Sequence[float], structural: bool) -> list[dict[str, Any]]:
     """One row for each horizon: errors before and after, and the floor."""
     rows = zip(
         score.horizons(before, horizons_s, structural),
@@ -157,9 +142,7 @@ def ladder(
     ]  # fmt: skip
 
 
-def by_regime(
-    before: Sequence[Windows], after: Sequence[Windows], horizon_s: float, ship: Ship, structural: bool
-) -> list[dict[str, Any]]:
+def by_regime(before: Sequence[Windows], after: Sequence[Windows], horizon_s: float, ship: Ship, structural: bool) -> list[dict[str, Any]]:
     """Where the model failed before, and what became of it: mean position error [m] before and after."""
     b, a = score.pooled(before, horizon_s)["position"], score.pooled(after, horizon_s)["position"]
     everywhere = [{"condition": "everywhere", "time_share": 1.0, "mask": np.isfinite(b)}]

@@ -35,10 +35,7 @@ def means(windows: Sequence[Windows], horizon_s: float) -> Means:
     parts = [_of_track(w, horizon_s) for w in windows]
     names = sorted(set().union(*parts))
     sizes = [w.start.size for w in windows]
-    values = {
-        n: np.concatenate([p.get(n, np.full(size, np.nan)) for p, size in zip(parts, sizes, strict=True)])
-        for n in names
-    }
+    values = {n: np.concatenate([p.get(n, np.full(size, np.nan)) for p, size in zip(parts, sizes, strict=True)]) for n in names}
     return Means(values, np.repeat(np.arange(len(windows)), sizes), tuple(w.track.name for w in windows))
 
 

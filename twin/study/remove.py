@@ -31,9 +31,7 @@ def remove(ship: Ship, names: Sequence[str]) -> Ship:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("effects", metavar="EFFECT", nargs="+", help="effects of the ship file")
     parser.add_argument("--ship", metavar="SHIP.toml", required=True)
-    parser.add_argument(
-        "-o", "--output", metavar="SHIP2.toml", required=True, help="the ship file without them"
-    )
+    parser.add_argument("-o", "--output", metavar="SHIP2.toml", required=True, help="the ship file without them")
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
 
 

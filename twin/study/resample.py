@@ -18,9 +18,7 @@ def wrapped(values: np.ndarray, period: float) -> np.ndarray:
     return np.mod(values, period) if period > 0.0 else values
 
 
-def resampled(
-    time_s: np.ndarray, values: np.ndarray, grid: np.ndarray, step_s: float, max_gap_s: float, hold_s: float
-) -> np.ndarray:
+def resampled(time_s: np.ndarray, values: np.ndarray, grid: np.ndarray, step_s: float, max_gap_s: float, hold_s: float) -> np.ndarray:
     """`values` at `time_s` brought to the times `grid` (a multiple of `step_s` from grid[0]).
 
     Samples within half a step are averaged, and the mean stands at the mean of their times, so that a moving

@@ -28,9 +28,7 @@ class Sailed:
 
     def provenance(self) -> dict[str, Any]:
         start = self.voyage.meta.get("start_time_utc")
-        return {"name": self.track.name, "sha256": self.sha256} | (
-            {"start_time_utc": str(start)} if start else {}
-        )
+        return {"name": self.track.name, "sha256": self.sha256} | ({"start_time_utc": str(start)} if start else {})
 
 
 def read_all(paths: Sequence[str], ship: Ship) -> list[Sailed]:

@@ -19,9 +19,7 @@ def pooled(windows: Sequence[Windows], horizon_s: float, run: int = MODEL) -> di
     return {name: np.concatenate([p[name] for p in parts]) * DEGREES.get(name, 1.0) for name in NAMES}
 
 
-def horizons(
-    windows: Sequence[Windows], horizons_s: Sequence[float], structural: bool
-) -> list[dict[str, Any]]:
+def horizons(windows: Sequence[Windows], horizons_s: Sequence[float], structural: bool) -> list[dict[str, Any]]:
     """One row for each horizon that has windows; `noise_floor` is of sensors, and of structure when the ship knows it."""
     rows = []
     for horizon in horizons_s:
@@ -33,10 +31,7 @@ def horizons(
         rows.append(
             {"horizon_s": horizon, "windows": count}
             | {NAMES[name]: float(np.nanmean(e)) for name, e in errors.items()}
-            | {
-                "noise_floor": {NAMES[n]: float(np.nanmean(e)) for n, e in floor.items()}
-                | {"of": _of(structural)}
-            }
+            | {"noise_floor": {NAMES[n]: float(np.nanmean(e)) for n, e in floor.items()} | {"of": _of(structural)}}
         )
     return rows
 
@@ -56,13 +51,8 @@ def channels(windows: Sequence[Windows], structural: bool) -> dict[str, dict[str
         error = np.concatenate([w.off()[..., i].ravel() for w in windows]) * k
         if not np.isfinite(error).any():
             continue
-        noise = (
-            np.concatenate([w.off(STRUCTURE if structural else SENSORS)[..., i].ravel() for w in windows]) * k
-        )
-        told = (
-            np.concatenate([np.where(w.valid, w.seen[w.step, i], np.nan).ravel() for w in windows])
-            * k
-        )
+        noise = np.concatenate([w.off(STRUCTURE if structural else SENSORS)[..., i].ravel() for w in windows]) * k
+        told = np.concatenate([np.where(w.valid, w.seen[w.step, i], np.nan).ravel() for w in windows]) * k
         naive = np.concatenate([reckoned(w)[..., i].ravel() for w in windows]) * k
         out[column] = {
             "mae": float(np.nanmean(np.abs(error))),

@@ -13,7 +13,7 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 
-from .columns import Unknown, columns, with_values
+from .columns import Unknown, with_values
 from .evidence import Hypothesis, Nuisance, Posterior, Reduced, log_evidence, posterior, reduce, weigh_all
 from .innovations import Floor, Linear, innovate, linearise
 from .respond import respond
@@ -104,7 +104,7 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> t
     worlds = dict(zip(WORLDS, case.reduced(case.lines, case.worlds(list(WORLDS))), strict=True))
     first = _first_pass(case, worlds)
     best = next(h for h in first if not h.effects)
-    found = {(): Found(best, posterior(worlds[best.world], ()), case.model)}
+    found: dict[tuple[str, ...], Found] = {(): Found(best, posterior(worlds[best.world], ()), case.model)}
     weighed = {(h.effects, h.world): h for h in first}
     for chosen in _shortlist(first):
         progress("judging " + " + ".join(chosen) + " about its own size")
@@ -146,7 +146,8 @@ def _shortlist(first: Sequence[Hypothesis]) -> list[tuple[str, ...]]:
     """The best few sets that explain something their parts do not, and each member of a pair among them on its own: granted
     doubt, one may do what took two."""
     evidence = {(h.effects, h.world): h.log_evidence for h in first}
-    top, out = first[0].log_weight, {}
+    top = first[0].log_weight
+    out: dict[tuple[str, ...], None] = {}
     for h in first:
         if top - h.log_weight > FAR or len(out) >= SHORTLIST:
             break
@@ -188,7 +189,7 @@ def _boxed(case: Case, z: np.ndarray) -> np.ndarray:
     return np.clip(z, lo, hi)
 
 
-def _about(case: Case, z: np.ndarray, mine: Sequence[int]) -> tuple[Model, list[Linear]]:
+def _about(case: Case, z: np.ndarray, mine: np.ndarray) -> tuple[Model, list[Linear]]:
     """The model with these parameters in it, and the tracks linearised about it; other effects' columns stay as they were."""
     own = [case.effects[i] for i in mine]
     values = [u.centre + u.sd * z[i] for i, u in zip(mine, own, strict=True)]

@@ -7,8 +7,7 @@ import numpy as np
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
-from .track import STATE, Track
-from .track import _smooth_motion as smooth_motion
+from .track import STATE, Track, smooth_motion
 
 BRIDGE_S = 3.0  # instruments slower than the grid are joined by straight lines over no more than this
 ROUNDS = 6  # of the fixed point; each is smaller by the size of the fault
@@ -34,9 +33,7 @@ def true_motion(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray | No
 def _moved(track: Track, model: Model, wind_to: np.ndarray | None) -> bool:
     """Whether any fault touches place, heading or wind direction (most only touch a log or a gyro)."""
     read = _read(track, model, track.state, wind_to)
-    return read.wind_to is not wind_to or not np.array_equal(
-        np.column_stack([read.x, read.y, read.psi]), track.state[:, :3]
-    )
+    return read.wind_to is not wind_to or not np.array_equal(np.column_stack([read.x, read.y, read.psi]), track.state[:, :3])
 
 
 def kinematics(place: np.ndarray, h: float) -> np.ndarray:
@@ -60,9 +57,7 @@ def _read(track: Track, model: Model, state: np.ndarray, wind_to: np.ndarray | N
 def noisy(track: Track, model: Model, rng: np.random.Generator) -> np.ndarray:
     """(N, 6) one draw of how far the smooth motion is off, when the readings scatter as they do: smoothed like the readings."""
     exact = np.column_stack([track.state, track.measured[:, 6:]])
-    shaken = np.where(
-        np.isfinite(track.measured), exact + track.sd * rng.standard_normal(exact.shape), np.nan
-    )
+    shaken = np.where(np.isfinite(track.measured), exact + track.sd * rng.standard_normal(exact.shape), np.nan)
     return smooth_motion(shaken, track.h, model.ship)[0] - track.state
 
 

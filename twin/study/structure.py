@@ -1,7 +1,7 @@
 """The structural floor of a ship: how much a calibrated model of this kind still leaves unexplained, found on reference voyages.
 
-Each number of the Floor is the one under which the reference voyages are most probable, the core's own uncertainty integrated
-out (type-II maximum likelihood; Rasmussen & Williams 2006, sec. 5.4), climbed on a geometric grid.
+Each number of the Floor is the one under which every reference voyage is most probable given the others, the core's own
+uncertainty integrated out (cross-validated likelihood; Rasmussen & Williams 2006, sec. 5.4.2), climbed on a geometric grid.
 """
 
 from collections.abc import Callable, Sequence
@@ -10,16 +10,16 @@ import numpy as np
 
 from .columns import Unknown
 from .fit import evidence
-from .innovations import Floor, Linear, innovate
+from .innovations import Floor, Linear, Normal, innovate
 
 MOST_SEGMENTS = 40
-BOUNDS = {"share": (0.005, 0.5), "calm": (0.1, 4.0), "white": (0.002, 1.0), "flow": (0.0005, 0.05), "sensor": (0.7, 4.0)}
+BOUNDS = {"share": (0.01, 0.5), "calm": (0.1, 4.0), "white": (0.002, 1.0), "flow": (0.0005, 0.05), "sensor": (0.7, 4.0)}
 
 
-def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor = Floor()) -> Floor:
+def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor | None = None) -> Floor:
     """The most probable floor of these reference voyages (linearised about the fitted model)."""
     sd = np.array([u.sd for u in unknowns])
-    floor, step = start, 2.0
+    floor, step = start or Floor(), 2.0
     best = _scores(lines, [floor], sd)[0]
     while step > 1.2:
         trials = [(i, t) for i, change in enumerate(CHANGES) for k in (step, 1.0 / step) if _inside(t := change(floor, k))]
@@ -31,11 +31,12 @@ def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start
         moves = sorted(better.values(), key=lambda m: -m[0])
         together = [_together(floor, [m for _, m in moves[:n]]) for n in range(1, len(moves) + 1)]
         scores = [moves[0][0], *_scores(lines, together[1:], sd)] if moves else []
-        if moves and max(scores) > best + 0.5:
+        if moves and max(scores) > best + 0.2:
             best, floor = max(scores), together[int(np.argmax(scores))]
         else:
             step = step**0.5
-    return floor
+    few = 1.0 + 4.0 / max(len(lines), 1)  # the fewer voyages, the less they say of the next: a predictive, not a fitted scatter
+    return floor.scaled(few**0.5)
 
 
 def _together(floor: Floor, moves: Sequence[Floor]) -> Floor:
@@ -52,7 +53,21 @@ def _logs(floor: Floor) -> np.ndarray:
 
 
 def _scores(lines: Sequence[Linear], floors: Sequence[Floor], sd: np.ndarray) -> list[float]:
-    return [evidence(n, sd) for n in innovate(lines, floors, MOST_SEGMENTS)] if floors else []
+    return [predictive(n, sd) for n in innovate(lines, floors, MOST_SEGMENTS)] if floors else []
+
+
+def predictive(normal: Normal, sd: np.ndarray) -> float:
+    """Mean over the voyages of the log probability of each, given all the others (of one voyage: of each half, given the other).
+
+    A floor that only has to explain what the core was fitted to comes out too low, and the next manoeuvre then looks strange.
+    """
+    of = np.array([track for track, _, _ in normal.where])
+    if np.unique(of).size == 1:
+        of = (np.arange(of.size) * 2) // of.size
+    whole, groups = evidence(normal, sd), np.unique(of)
+    if groups.size < 2:
+        return whole
+    return float(np.mean([whole - evidence(normal.only(of != g), sd) for g in groups]))
 
 
 def _change(i: int) -> Callable[[Floor, float], Floor]:
@@ -69,8 +84,4 @@ CHANGES = tuple(_change(i) for i in range(7))
 
 
 def _inside(floor: Floor) -> bool:
-    return all(
-        lo <= v <= hi
-        for name, (lo, hi) in BOUNDS.items()
-        for v in (floor.share if name == "share" else (getattr(floor, name),))
-    )
+    return all(lo <= v <= hi for name, (lo, hi) in BOUNDS.items() for v in (floor.share if name == "share" else (getattr(floor, name),)))

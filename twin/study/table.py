@@ -64,9 +64,7 @@ def check_width(sheet: Sheet, piece: list[Row]) -> None:
     for line, row in piece:
         if len(row) > sheet.width and any(map(str.strip, row[sheet.width :])):
             hint = "Decimal commas? Export with points, or with ';' between the columns."
-            raise DataError(
-                f"{sheet.path}: line {line} has {len(row)} cells, the first line has {sheet.width}. {hint}"
-            )
+            raise DataError(f"{sheet.path}: line {line} has {len(row)} cells, the first line has {sheet.width}. {hint}")
 
 
 def with_decimal(layout: Layout, piece: list[Row], notes: list[str]) -> Layout:

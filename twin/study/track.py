@@ -21,6 +21,11 @@ MEASURED = {  # reading -> channel
     "r": "yaw_rate_degps", "u_r": "surge_velocity_through_water_mps", "v_r": "sway_velocity_through_water_mps",
 }  # fmt: skip
 READINGS = tuple(MEASURED)
+WEATHER_CHANNELS = (  # name in Situation, channel, what turns "from" into "to"
+    ("depth", "water_depth_m", 0.0), ("H_s", "wave_height_significant_m", 0.0), ("T_p", "wave_period_peak_s", 0.0),
+    ("wave_to", "wave_direction_deg", np.pi), ("draught", "draught_mean_m", 0.0), ("phi", "roll_deg", 0.0),
+    ("bank_port", "bank_distance_port_m", 0.0), ("bank_starboard", "bank_distance_starboard_m", 0.0),
+)  # fmt: skip
 STATE = ("x", "y", "psi", "u", "v", "r")
 STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail her own length
 JERK = 0.15  # rad in (L/U_0)^3: how suddenly a ship turns; what is faster is the sea's doing
@@ -48,7 +53,7 @@ class Track:
     def situation(self, **replaced: np.ndarray) -> Situation:
         """The whole track as one Situation of arrays."""
         values = dict(zip(STATE, self.state.T, strict=True))
-        return Situation(**(values | dict(delta=self.delta, n=self.n, t=self.t) | dict(self.weather) | replaced))
+        return Situation(**(values | {"delta": self.delta, "n": self.n, "t": self.t} | dict(self.weather) | replaced))
 
     def missing(self) -> set[str]:
         """Fields of Situation that were not measured: effects that need one are switched off."""
@@ -78,20 +83,25 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
     controls, whole = _controls(grid)
     if not whole.any():
         raise DataError(f"{voyage.name}: rudder_angle_deg and propeller_rate_rpm are never there together. Check the map.")
-    state, sd = _smooth_motion(measured, h, ship)
-    return Track(
-        voyage.name, grid.time_s - voyage.time_s[0], h, state, *controls, _weather(grid, measured, state), measured, sd, whole
-    )
+    state, sd = smooth_motion(measured, h, ship)
+    return Track(voyage.name, grid.time_s - voyage.time_s[0], h, state, *controls, _weather(grid, measured, state), measured, sd, whole)
 
 
 def _samples(voyage: Voyage, channel: str, steps: int, h: float) -> np.ndarray:
-    """(steps,) mean of the samples that fall nearest to each grid step; NaN where none does: nothing is interpolated."""
+    """(steps,) mean of the samples that fall nearest to each grid step, moved from their mean time to the step along the channel's
+    own slope; NaN where none falls: nothing is interpolated."""
     values = voyage.si(channel)
-    ok = np.isfinite(values)
-    k = np.rint((voyage.time_s[ok] - voyage.time_s[0]) / h).astype(int)
-    k, values = k[k < steps], values[ok][: np.count_nonzero(k < steps)]
+    at = (voyage.time_s - voyage.time_s[0]) / h
+    k = np.rint(at).astype(int)
+    ok = np.isfinite(values) & (k < steps)
+    k, at, values = k[ok], at[ok], values[ok]
     count = np.bincount(k, minlength=steps)
-    return np.where(count, np.bincount(k, values, steps) / np.maximum(count, 1), np.nan)
+    seen = np.flatnonzero(count)
+    mean, when = (np.bincount(k, x, steps)[seen] / count[seen] for x in (values, at))
+    out = np.full(steps, np.nan)
+    slope = np.gradient(mean, when) if seen.size > 1 else np.zeros(seen.size)
+    out[seen] = mean + slope * (seen - when)
+    return out
 
 
 def _controls(grid: Voyage) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
@@ -118,11 +128,11 @@ def _weather(grid: Voyage, measured: np.ndarray, state: np.ndarray) -> dict[str,
         if grid.has(channel):
             out[name] = _fill(grid.si(channel)) + turn
 
-    put("depth", "water_depth_m"), put("H_s", "wave_height_significant_m"), put("T_p", "wave_period_peak_s")
-    put("wave_to", "wave_direction_deg", np.pi), put("draught", "draught_mean_m"), put("phi", "roll_deg")
-    put("bank_port", "bank_distance_port_m"), put("bank_starboard", "bank_distance_starboard_m")
+    for name, channel, turn in WEATHER_CHANNELS:
+        put(name, channel, turn)
     if grid.has("true_wind_speed_mps", "true_wind_direction_deg"):
-        put("wind_speed", "true_wind_speed_mps"), put("wind_to", "true_wind_direction_deg", np.pi)
+        put("wind_speed", "true_wind_speed_mps")
+        put("wind_to", "true_wind_direction_deg", np.pi)
     elif grid.has("apparent_wind_speed_mps", "apparent_wind_angle_deg"):
         speed, angle = _fill(grid.si("apparent_wind_speed_mps")), _fill(grid.si("apparent_wind_angle_deg")) + np.pi
         ahead, aside = speed * np.cos(angle) + state[:, 3], speed * np.sin(angle) + state[:, 4]
@@ -137,13 +147,13 @@ def _fill(values: np.ndarray) -> np.ndarray:
     return np.interp(k, k[ok], values[ok])
 
 
-def _smooth_motion(measured: np.ndarray, h: float, ship: Ship) -> tuple[np.ndarray, np.ndarray]:
+def smooth_motion(measured: np.ndarray, h: float, ship: Ship) -> tuple[np.ndarray, np.ndarray]:
     """The path of least jerk through the readings (N, 6), and the scatter of the readings about it (8,)."""
     x, y, psi, u, v, r, u_r, v_r = measured.T
     time, speed = float(ship.scale("time")), float(ship.scale("speed"))
     turn = (JERK / time**3) ** 2 * time * h**5  # what third differences of heading do by themselves: (rad)^2
     sd = {name: _scatter(column) for name, column in zip(READINGS, measured.T, strict=True)}
-    floor = dict(x=1e-4 * ship.L_pp, y=1e-4 * ship.L_pp, psi=2e-4, r=1e-3 / time)
+    floor = {"x": 1e-4 * ship.L_pp, "y": 1e-4 * ship.L_pp, "psi": 2e-4, "r": 1e-3 / time}
     floor |= dict.fromkeys(("u", "v", "u_r", "v_r"), 1e-3 * speed)
     sd = {name: max(value if np.isfinite(value) else 0.0, floor[name]) for name, value in sd.items()}
     psi_s = _least_jerk(psi, sd["psi"], r, sd["r"], turn, h)

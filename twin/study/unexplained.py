@@ -54,17 +54,10 @@ def _energy(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray, np.ndar
     if model.residual is not None:
         learned = np.column_stack([np.broadcast_to(f, track.t.shape) for f in model.residual(s)])
     noise = noisy(track, model, np.random.default_rng(0))[:, 3:]
-    missing = _force(_slope(state[:, 3:], track.h, width) - _mean(rates, width), model) - _mean(
-        learned, width
-    )
+    missing = _force(_slope(state[:, 3:], track.h, width) - _mean(rates, width), model) - _mean(learned, width)
     shaken = _force(_slope(noise, track.h, width), model)
     whole = _mean(track.whole[:, None].astype(float), width) > 0.999
-    each = np.array(
-        [
-            sum(np.broadcast_to(np.square(f[i]), track.t.shape)[track.whole].sum() for f in known.values())
-            for i in range(3)
-        ]
-    )
+    each = np.array([sum(np.broadcast_to(np.square(f[i]), track.t.shape)[track.whole].sum() for f in known.values()) for i in range(3)])
     square = np.where(whole, np.square(missing) - np.square(shaken), 0.0)
     return square.sum(0), each, np.square(learned)[track.whole].sum(0)
 
@@ -82,6 +75,4 @@ def _mean(values: np.ndarray, width: int) -> np.ndarray:
 
 def _force(a: np.ndarray, model: Model) -> np.ndarray:
     c = model.c
-    return np.column_stack(
-        [c.m_u * a[:, 0], c.m_v * a[:, 1] + c.m_vr * a[:, 2], c.m_rv * a[:, 1] + c.m_r * a[:, 2]]
-    )
+    return np.column_stack([c.m_u * a[:, 0], c.m_v * a[:, 1] + c.m_vr * a[:, 2], c.m_rv * a[:, 1] + c.m_r * a[:, 2]])

@@ -71,9 +71,7 @@ def test_without_a_held_out_voyage_the_last_third_is_held_back_and_it_is_said(sa
     assert made.held[0].t[0] == pytest.approx(1000.0, abs=2.0)
 
 
-def test_an_effect_that_is_not_there_is_refused_with_the_numbers_and_nothing_is_written(
-    verb, on_disk, make, tmp_path, capsys
-):
+def test_an_effect_that_is_not_there_is_refused_with_the_numbers_and_nothing_is_written(verb, on_disk, make, tmp_path, capsys):
     out, result = tmp_path / "worse.toml", tmp_path / "r.json"
     words = ("--ship", "kvlcc2", "--voyage", on_disk(make()), "-o", out, "--json", result)
     assert verb("add", "PropellerWalk", *words) == 3
@@ -93,9 +91,7 @@ def test_a_fault_that_moves_no_track_is_judged_by_the_instrument_it_touches(sail
 
 def test_two_effects_are_fitted_together(sailed, make, kvlcc2):
     hidden = [find("Current").absent(kvlcc2).but(east=0.5), find("HullFouling").absent(kvlcc2).but(extra=0.4)]
-    made = add(
-        kvlcc2, [find("Current"), find("HullFouling")], [sailed(make(*hidden, seed=k, name=str(k))) for k in range(2)]
-    )
+    made = add(kvlcc2, [find("Current"), find("HullFouling")], [sailed(make(*hidden, seed=k, name=str(k))) for k in range(2)])
     found = made.result["parameters"]
     assert found["Current"]["east"]["value"] == pytest.approx(0.5, abs=0.06)
     assert found["HullFouling"]["extra"]["value"] == pytest.approx(0.4, abs=0.2)

@@ -71,9 +71,7 @@ def test_a_calibrated_ship_is_held_against_her_structural_floor(sailed, make, kv
     from dataclasses import replace
 
     notes = dict(kvlcc2.notes) | {"structural": {"floor": {"share": [0.05, 0.05, 0.05], "calm": 0.5}}}
-    rows = [
-        compare([sailed(make())], Model.of(s)).result["horizons"][-1] for s in (kvlcc2, replace(kvlcc2, notes=notes))
-    ]
+    rows = [compare([sailed(make())], Model.of(s)).result["horizons"][-1] for s in (kvlcc2, replace(kvlcc2, notes=notes))]
     assert [r["noise_floor"]["of"] for r in rows] == ["sensors", "sensors and structure"]
     assert rows[1]["noise_floor"]["position_mae_m"] > 3.0 * rows[0]["noise_floor"]["position_mae_m"]
 
@@ -132,9 +130,7 @@ def test_a_voyage_given_twice_is_refused(verb, on_disk, make, capsys):
     assert "same voyage" in capsys.readouterr().err
 
 
-def test_a_ship_file_with_an_unknown_effect_is_exit_code_5_and_names_the_nearest(
-    verb, on_disk, make, tmp_path, kvlcc2, capsys
-):
+def test_a_ship_file_with_an_unknown_effect_is_exit_code_5_and_names_the_nearest(verb, on_disk, make, tmp_path, kvlcc2, capsys):
     save(kvlcc2, tmp_path / "s.toml")
     (tmp_path / "s.toml").write_text((tmp_path / "s.toml").read_text() + "\n[effects.Wnid]\n")
     assert verb("compare", on_disk(make()), "--ship", tmp_path / "s.toml") == 5

@@ -87,9 +87,7 @@ def test_a_learned_force_acts_as_a_force_of_the_same_size_does(make, kvlcc2):
 
     t, push = track(make(), kvlcc2), 3e5
     learned = replace(Model.of(kvlcc2), residual=lambda s: Force(s.u * 0.0, s.u * 0.0 + push, s.u * 0.0))
-    known = with_effect(
-        kvlcc2, "TowForce", **{p.name: push for p in find("TowForce").params() if p.name in ("Y", "aside", "starboard")}
-    )
+    known = with_effect(kvlcc2, "TowForce", **{p.name: push for p in find("TowForce").params() if p.name in ("Y", "aside", "starboard")})
     a, b = predict(t, learned).promised[0], predict(t, known).promised[0]
     assert known.pushes[0] != find("TowForce").absent(kvlcc2)
     assert np.allclose(a[-1, :, :2], b[-1, :, :2], atol=0.05)

@@ -118,9 +118,7 @@ def test_an_hour_at_ten_hertz_is_a_page_of_a_few_megabytes_that_opens_in_two_sec
 
     t = np.arange(0.0, 3598.0, 0.1)
     dense = hour.with_rows(t, {k: np.interp(t, hour.time_s, x) for k, x in hour.columns.items()})
-    report.write(
-        tmp_path / "h.html", "compare", {"verdict": "an hour"}, [sailed(hour).track], Model.of(kvlcc2), voyages=[dense]
-    )
+    report.write(tmp_path / "h.html", "compare", {"verdict": "an hour"}, [sailed(hour).track], Model.of(kvlcc2), voyages=[dense])
     dom, complaints = opened(tmp_path / "h.html")
     ready = int(re.search(r'data-ready-ms="(\d+)"', dom).group(1))
     assert complaints == [] and (tmp_path / "h.html").stat().st_size < 8e6

@@ -1,8 +1,8 @@
 """Bank suction: the stream between hull and bank runs faster, and pulls the ship to the bank and her bow off it.
 
-    e = B/(B + 2 d_starboard) - B/(B + 2 d_port)
-    Y =  1/2 rho L T   u_r^2     suction  e
-    N = -1/2 rho L^2 T u_r|u_r|  bow_out  e
+e = B/(B + 2 d_starboard) - B/(B + 2 d_port)
+Y =  1/2 rho L T   u_r^2     suction  e
+N = -1/2 rho L^2 T u_r|u_r|  bow_out  e
 """
 
 from twin.physics.effect import Force, param

@@ -1,7 +1,7 @@
 """Extra quadratic cross-flow drag, integrated over strips along the hull.
 
-    Y = -1/2 rho T  c_d  int |v_r + x r| (v_r + x r) dx
-    N = -1/2 rho T  c_d  int |v_r + x r| (v_r + x r) x dx,      x from -L/2 to L/2, ten strips
+Y = -1/2 rho T  c_d  int |v_r + x r| (v_r + x r) dx
+N = -1/2 rho T  c_d  int |v_r + x r| (v_r + x r) x dx,      x from -L/2 to L/2, ten strips
 """
 
 from twin.physics.effect import Force, param

@@ -1,6 +1,6 @@
 """A steady current: the water moves over ground, and the ship with it.
 
-    u_c =  V_N cos(psi) + V_E sin(psi),  v_c = -V_N sin(psi) + V_E cos(psi)
+u_c =  V_N cos(psi) + V_E sin(psi),  v_c = -V_N sin(psi) + V_E cos(psi)
 """
 
 from twin.physics.effect import Flow, param

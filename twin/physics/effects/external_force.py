@@ -1,7 +1,7 @@
 """A force that keeps its direction over ground, and the moment of its lever about midship.
 
-    X =  F_N cos(psi) + F_E sin(psi),   Y = -F_N sin(psi) + F_E cos(psi)
-    N = -M_N sin(psi) + M_E cos(psi),   M = lever times F
+X =  F_N cos(psi) + F_E sin(psi),   Y = -F_N sin(psi) + F_E cos(psi)
+N = -M_N sin(psi) + M_E cos(psi),   M = lever times F
 """
 
 from twin.physics.effect import Force, param

@@ -1,6 +1,6 @@
 """The rate gyro is off by a constant.
 
-    r_m = r + bias
+r_m = r + bias
 """
 
 from dataclasses import replace

@@ -1,6 +1,6 @@
 """Fouling: a fraction of the calm-water resistance is added.
 
-    X = -extra R(u_r),   R = -(X_u + X_uu |u_r|) u_r
+X = -extra R(u_r),   R = -(X_u + X_uu |u_r|) u_r
 """
 
 from twin.physics.effect import Force, param

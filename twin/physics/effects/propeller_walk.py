@@ -1,6 +1,6 @@
 """Propeller walk: the blades push the stern sideways, with the square of the shaft speed.
 
-    Y = rho D^4   c_y n |n|,   N = rho D^4 L c_n n |n|
+Y = rho D^4   c_y n |n|,   N = rho D^4 L c_n n |n|
 """
 
 from twin.physics.effect import Force, param

@@ -1,6 +1,6 @@
 """A worn, bent or fouled propeller: a fraction of the thrust is lost, and with it part of the slipstream at the rudder.
 
-    X = -(1 - t) loss T(u_r, n)  +  X_rudder((1 - loss) T) - X_rudder(T),   Y, N likewise from the rudder
+X = -(1 - t) loss T(u_r, n)  +  X_rudder((1 - loss) T) - X_rudder(T),   Y, N likewise from the rudder
 """
 
 from twin.physics import core

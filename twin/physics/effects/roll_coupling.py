@@ -1,8 +1,8 @@
 """Heel makes the hull asymmetric: side force and yaw moment that grow with roll, and more so in a turn.
 
-    U^2 = u_r^2 + v_r^2
-    Y = 1/2 rho L T   (c_y U^2 + c_yr L^2 r^2) phi
-    N = 1/2 rho L^2 T (c_n U^2 + c_nr L^2 r^2) phi
+U^2 = u_r^2 + v_r^2
+Y = 1/2 rho L T   (c_y U^2 + c_yr L^2 r^2) phi
+N = 1/2 rho L^2 T (c_n U^2 + c_nr L^2 r^2) phi
 """
 
 from twin.physics.effect import Force, param

@@ -1,6 +1,6 @@
 """The neutral angle: the rudder stands at delta + offset where the indicator says delta.
 
-    (X, Y, N) = (X, Y, N)_rudder(delta + offset) - (X, Y, N)_rudder(delta)
+(X, Y, N) = (X, Y, N)_rudder(delta + offset) - (X, Y, N)_rudder(delta)
 """
 
 from twin.physics import core

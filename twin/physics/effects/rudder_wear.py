@@ -1,6 +1,6 @@
 """A worn, fouled or damaged rudder: a fraction of its force is lost.
 
-    (X, Y, N) = -loss (X, Y, N)_rudder
+(X, Y, N) = -loss (X, Y, N)_rudder
 """
 
 from twin.physics import core

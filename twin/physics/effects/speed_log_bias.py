@@ -1,6 +1,6 @@
 """The speed log is off by a constant ahead.
 
-    u_r,m = u_r + bias
+u_r,m = u_r + bias
 """
 
 from dataclasses import replace

@@ -1,6 +1,6 @@
 """The speed log is mounted askew: its axes are turned from the ship's.
 
-    u_r,m = u_r cos(angle) + v_r sin(angle),   v_r,m = v_r cos(angle) - u_r sin(angle)
+u_r,m = u_r cos(angle) + v_r sin(angle),   v_r,m = v_r cos(angle) - u_r sin(angle)
 """
 
 from dataclasses import replace

@@ -1,6 +1,6 @@
 """The speed log is off by a factor.
 
-    (u_r, v_r)_m = (1 + scale) (u_r, v_r)
+(u_r, v_r)_m = (1 + scale) (u_r, v_r)
 """
 
 from dataclasses import replace

@@ -1,6 +1,6 @@
 """The steering gear: after a dead time the rudder follows its order at no more than its greatest rate.
 
-    delta(t + h) = delta + clip(order(t - delay) - delta, -rate h, rate h),   rate = 65 deg / travel_time
+delta(t + h) = delta + clip(order(t - delay) - delta, -rate h, rate h),   rate = 65 deg / travel_time
 """
 
 from math import pi

@@ -1,6 +1,6 @@
 """A force that turns with the ship and does not change.
 
-    (X, Y, N) = constant, body axes
+(X, Y, N) = constant, body axes
 """
 
 from twin.physics.effect import Force, param

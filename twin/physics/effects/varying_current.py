@@ -1,4 +1,3 @@
-
 """A current that changes slowly: a mean and three harmonics of one hour, toward north and toward east.
 
     V(t) = V_0 + sum_k (a_k cos(w_k t) + b_k sin(w_k t)),   w_k = 2 pi k / 3600 s,  k = 1, 2, 3
@@ -48,7 +47,13 @@ class VaryingCurrent(Flow):
         c2, s2 = c * c - s * s, 2.0 * s * c
         c3, s3 = c2 * c - s2 * s, s2 * c + c2 * s
         return (
-            self.north + self.north_c1 * c + self.north_s1 * s + self.north_c2 * c2 + self.north_s2 * s2 + self.north_c3 * c3 + self.north_s3 * s3,
+            self.north
+            + self.north_c1 * c
+            + self.north_s1 * s
+            + self.north_c2 * c2
+            + self.north_s2 * s2
+            + self.north_c3 * c3
+            + self.north_s3 * s3,
             self.east + self.east_c1 * c + self.east_s1 * s + self.east_c2 * c2 + self.east_s2 * s2 + self.east_c3 * c3 + self.east_s3 * s3,
         )
 

@@ -21,9 +21,7 @@ class WaveDrift(Force):
     """The sea pushes the ship slowly along with the waves, slows her in head seas and turns her across them."""
 
     needs = ("H_s", "wave_to")  # T_p is used where it is known
-    source = (
-        "Faltinsen (1990) Sea Loads on Ships and Offshore Structures, ch. 5 (wall reflection); ITTC 7.5-04-01-01.2 STAWAVE-1 (c_x = 1)"
-    )
+    source = "Faltinsen (1990) Sea Loads on Ships and Offshore Structures, ch. 5 (wall reflection); ITTC 7.5-04-01-01.2 STAWAVE-1 (c_x = 1)"
 
     c_x: float = param(1.0, unit="-", lo=0.0, hi=6.0, sd=1.2, doc="added resistance in head sea, in units of STAWAVE-1")
     c_y: float = param(0.8, unit="-", lo=0.0, hi=2.0, sd=0.6, doc="beam drift, in units of a reflecting wall")

@@ -1,9 +1,9 @@
 """Wind on hull and superstructure, from the air past the ship in body axes.
 
-    u_rw = u - V_w cos(beta_w - psi),  v_rw = v - V_w sin(beta_w - psi),  V_rw = |(u_rw, v_rw)|
-    X = -1/2 rho_a A_F  c_x  V_rw u_rw
-    Y = -1/2 rho_a A_L  c_y  V_rw v_rw
-    N = -1/2 rho_a A_L L (2 c_n u_rw + c_m V_rw) v_rw
+u_rw = u - V_w cos(beta_w - psi),  v_rw = v - V_w sin(beta_w - psi),  V_rw = |(u_rw, v_rw)|
+X = -1/2 rho_a A_F  c_x  V_rw u_rw
+Y = -1/2 rho_a A_L  c_y  V_rw v_rw
+N = -1/2 rho_a A_L L (2 c_n u_rw + c_m V_rw) v_rw
 """
 
 from twin.physics.effect import Force, param
@@ -25,7 +25,9 @@ class Wind(Force):
     c_x: float = param(0.7, unit="-", lo=0.0, hi=1.6, sd=0.7, doc="head-wind drag on the frontal area A_F")
     c_y: float = param(0.85, unit="-", lo=0.0, hi=1.8, sd=0.8, doc="beam-wind drag on the lateral area A_L")
     c_n: float = param(0.08, unit="-", lo=-0.3, hi=0.4, sd=0.1, doc="yaw moment that bow and stern quartering winds add (sin 2 gamma)")
-    c_m: float = param(0.0, unit="-", lo=-0.3, hi=0.3, sd=0.05, doc="yaw moment of beam wind: c_y times the lever of the lateral area's centre, in L")
+    c_m: float = param(
+        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.05, doc="yaw moment of beam wind: c_y times the lever of the lateral area's centre, in L"
+    )
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:
         u_rw = s.u - s.wind_speed * cos(s.wind_to - s.psi)  # the ship through the air, body axes [m/s]

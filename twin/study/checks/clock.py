@@ -27,9 +27,7 @@ def time_stamps(view: View) -> Check:
         )
     if repeated.any():
         i = int(np.flatnonzero(repeated)[0])
-        return doubtful(
-            name, f"{repeated.sum()} time stamps repeat, the first at {t[i]:g} s; such samples are averaged."
-        )
+        return doubtful(name, f"{repeated.sum()} time stamps repeat, the first at {t[i]:g} s; such samples are averaged.")
     inside = steps[steps < GAP_STEPS * usual]
     scatter = float(np.std(inside) / usual)
     if scatter > UNEVEN:

@@ -18,9 +18,7 @@ def speed_log(view: View) -> Check:
     name = "speed_log"
     water = view.si("surge_velocity_through_water_mps")
     if not np.isfinite(water).any():
-        return cannot_tell(
-            name, "no speed through water was recorded, so a current cannot be told from a slow ship."
-        )
+        return cannot_tell(name, "no speed through water was recorded, so a current cannot be told from a slow ship.")
     if view.derived("surge_velocity_mps") and not view.voyage.has("north_m"):
         return cannot_tell(name, "no speed over ground was recorded.")
     ground = view.velocity.real
@@ -36,16 +34,12 @@ def speed_log(view: View) -> Check:
     if unit and (sure or apart > FASTEST_CURRENT_MPS):
         return wrong(name, f'{saw}: it is believed to be in {unit}. In the map: unit = "{unit}" for it.')
     if apart > FASTEST_CURRENT_MPS or (sure and abs(k - 1.0) > 0.3):
-        return doubtful(
-            name, f"{saw}, {apart:.2f} m/s apart: look at the log's unit, calibration and fouling."
-        )
+        return doubtful(name, f"{saw}, {apart:.2f} m/s apart: look at the log's unit, calibration and fouling.")
     doubt = f" In {unit}, or a current? A turn, or another speed, would tell." if unit else ""
     return good(name, f"{saw}.{doubt}")
 
 
-def factor(
-    ground: np.ndarray, water: np.ndarray, psi: np.ndarray, step_s: float
-) -> tuple[float, float, bool]:
+def factor(ground: np.ndarray, water: np.ndarray, psi: np.ndarray, step_s: float) -> tuple[float, float, bool]:
     """(k, size of the current [m/s], whether k stands by itself)."""
     x, error, _ = fit([ground, -np.cos(psi), -np.sin(psi)], water)
     shape = np.stack([ground, np.cos(psi), np.sin(psi)], axis=1)

@@ -35,16 +35,12 @@ def write(
     page = html(content(kind, result, tracks, model, before, voyages))
     path = Path(path)
     try:
-        with tempfile.NamedTemporaryFile(
-            "w", dir=path.parent, prefix=f".{path.name}.", delete=False, encoding="utf-8"
-        ) as file:
+        with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=f".{path.name}.", delete=False, encoding="utf-8") as file:
             file.write(page)
         os.chmod(file.name, 0o644)
         os.replace(file.name, path)
     except OSError as error:
-        raise TwinError(
-            f"{path}: cannot be written ({error.strerror}). Choose another place with --report."
-        ) from None
+        raise TwinError(f"{path}: cannot be written ({error.strerror}). Choose another place with --report.") from None
 
 
 def content(
@@ -99,11 +95,7 @@ def _whole(
 def html(content: dict[str, Any]) -> str:
     """One file: template, style, scripts and data."""
     here = resources.files(__package__)
-    data = (
-        json.dumps(content, separators=(",", ":"), allow_nan=False)
-        .replace("</", "<\\/")
-        .replace("<!--", "<\\u0021--")
-    )
+    data = json.dumps(content, separators=(",", ":"), allow_nan=False).replace("</", "<\\/").replace("<!--", "<\\u0021--")
     page = (here / "page.html").read_text(encoding="utf-8")
     script = "\n".join((here / name).read_text(encoding="utf-8") for name in SCRIPTS)
     for mark, text in (

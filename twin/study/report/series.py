@@ -34,9 +34,7 @@ def packed(values: np.ndarray) -> str:
 
 def stitched(track: Track, model: Model, longest_s: float) -> tuple[np.ndarray, np.ndarray]:
     """(N, 8) open-loop readings along the whole track, begun anew every `longest_s`, and the steps (W,) at which they begin."""
-    w = predict(
-        track, fed(model, track)[0], (min(SHORTEST_S, longest_s), longest_s), stride_s=longest_s, leads=EVERY
-    )
+    w = predict(track, fed(model, track)[0], (min(SHORTEST_S, longest_s), longest_s), stride_s=longest_s, leads=EVERY)
     ahead = w.start[1] - w.start[0] if w.start.size > 1 else len(track)
     line = np.full((len(track), len(READINGS)), np.nan)
     for j, start in enumerate(w.start):
@@ -59,11 +57,7 @@ def drawn(
     times, inputs = _Times(), []
     grid = times.place(track.t)
     begun = next(iter(lines.values()))[1]
-    channels = [
-        c
-        for i in range(len(READINGS))
-        if (c := _reading(i, track, lines, w, structural, voyage, times, grid))
-    ]
+    channels = [c for i in range(len(READINGS)) if (c := _reading(i, track, lines, w, structural, voyage, times, grid))]
     inputs = _inputs(track, voyage, times, grid)
     return {
         "name": track.name, "start_s": float(track.t[0]), "end_s": float(track.t[-1]), "grid": grid,
@@ -102,9 +96,7 @@ def _reading(
     measured = times.series(track.t, track.measured[:, i] * k)
     if voyage is not None and voyage.has(name):
         measured = times.series(*_raw(voyage, name, track))
-    noise = (
-        np.nanmean(np.abs(w.off(STRUCTURE if structural else SENSORS)[..., i])) if w.valid.any() else np.nan
-    )
+    noise = np.nanmean(np.abs(w.off(STRUCTURE if structural else SENSORS)[..., i])) if w.valid.any() else np.nan
     out: dict[str, Any] = {"name": name, "measured": measured, "noise": float(noise) * k, "lines": {}, "residuals": {}}
     for word, (line, _) in lines.items():
         out["lines"][word] = {"t": grid, "y": packed(line[:, i] * k)}
@@ -149,9 +141,7 @@ def _track(track: Track, lines: dict[str, tuple[np.ndarray, np.ndarray]], most: 
     """Positions, thinned."""
     every = max(1, len(track) // most)
     cut = slice(None, None, every)
-    lines_xy = {
-        name: {"x": packed(line[cut, 0]), "y": packed(line[cut, 1])} for name, (line, _) in lines.items()
-    }
+    lines_xy = {name: {"x": packed(line[cut, 0]), "y": packed(line[cut, 1])} for name, (line, _) in lines.items()}
     return {
         "t": packed(track.t[cut]),
         "x": packed(track.state[cut, 0]),
@@ -165,7 +155,4 @@ def shown(
     voyages: Sequence[Voyage | None],
 ) -> list[dict[str, Any]]:  # fmt: skip
     """All voyages."""
-    return [
-        drawn(t, w, models, longest_s, structural, v)
-        for t, w, v in zip(tracks, windows, voyages, strict=True)
-    ]
+    return [drawn(t, w, models, longest_s, structural, v) for t, w, v in zip(tracks, windows, voyages, strict=True)]
