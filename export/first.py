@@ -1,10 +1,13 @@
-"""A first residual for a ship, from calm-water voyages: what her core leaves over, learned without differentiating a sensor.
+"""A first residual for a ship, from calm-water voyages: what her core leaves over, learned without
+differentiating a sensor.
 
     python -m export.first VOYAGE.mcap... --ship kvlcc2 -o twin/ships/kvlcc2.residual.onnx
 
-The loss is the filtered regression the twin also uses on board (twin/live/evidence.py): with (.)_f a first-order low-pass,
+The loss is the filtered regression the twin also uses on board (twin/live/evidence.py): with (.)_f a
+first-order low-pass,
     d = S^-1 M [(d nu/dt)_f - (nu_dot_known)_f],   minimise |d - (W phi(zeta))_f|^2 + ridge |W phi|^2
-The full training, with roll-outs and its protocol, is `twin train`; this one gives the loop something honest to run on.
+The full training, with roll-outs and its protocol, is `twin train`; this one gives the loop something honest
+to run on.
 """
 
 import argparse
@@ -50,9 +53,7 @@ class Trunk(torch.nn.Module):
     def __init__(self, offset: np.ndarray, scale: np.ndarray):
         super().__init__()
         sizes = [len(NAMES)] + [FEATURES] * LAYERS
-        self.layers = torch.nn.ModuleList(
-            torch.nn.Linear(a, b) for a, b in itertools.pairwise(sizes)
-        )
+        self.layers = torch.nn.ModuleList(torch.nn.Linear(a, b) for a, b in itertools.pairwise(sizes))
         for layer in self.layers:
             torch.nn.init.xavier_uniform_(layer.weight)
             torch.nn.init.zeros_(layer.bias)
@@ -148,10 +149,7 @@ def _on(grid: np.ndarray, time_s: np.ndarray, values: np.ndarray) -> np.ndarray:
 def explained(trunk: Trunk, runs: list[Run]) -> list[float]:
     """Share of the mean square of d that the network takes away, by axis."""
     with torch.no_grad():
-        pairs = [
-            (low_passed(trunk(torch.tensor(run.zeta, dtype=torch.float32))).numpy()[KERNEL:], run.d[KERNEL:])
-            for run in runs
-        ]
+        pairs = [(low_passed(trunk(torch.tensor(run.zeta, dtype=torch.float32))).numpy()[KERNEL:], run.d[KERNEL:]) for run in runs]
     left = np.concatenate([d - f for f, d in pairs])
     whole = np.concatenate([d for _, d in pairs])
     return [float(x) for x in 1.0 - (left**2).mean(0) / (whole**2).mean(0)]
@@ -172,21 +170,14 @@ def trunk_onnx(trunk: Trunk) -> bytes:
             helper.make_node("Mul", [f"z{i}", f"s{i}"], [out]),
         ]
         source = out
-    ends = [
-        helper.make_tensor_value_info(n, TensorProto.FLOAT, [1, size])
-        for n, size in (("zeta", len(NAMES)), ("phi", FEATURES))
-    ]
+    ends = [helper.make_tensor_value_info(n, TensorProto.FLOAT, [1, size]) for n, size in (("zeta", len(NAMES)), ("phi", FEATURES))]
     graph = helper.make_graph(nodes, "trunk", ends[:1], ends[1:], weights)
-    model = helper.make_model(
-        graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=8, producer_name="shiptwin"
-    )
+    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=8, producer_name="shiptwin")
     checker.check_model(model)
     return bytes(model.SerializeToString())
 
 
-def manifest(
-    trunk: Trunk, model: bytes, ship: Ship, runs: list[Run], about: dict[str, Any]
-) -> dict[str, Any]:
+def manifest(trunk: Trunk, model: bytes, ship: Ship, runs: list[Run], about: dict[str, Any]) -> dict[str, Any]:
     """The manifest of docs/residual.md."""
     zeta = np.concatenate([run.zeta for run in runs])
     low, high = zeta.min(0), zeta.max(0)

@@ -1,4 +1,5 @@
-"""A ship that sails by her own equations, instruments that read her, and a loop that listens: no clock, no socket, no file."""
+"""A ship that sails by her own equations, instruments that read her, and a loop that listens: no clock, no
+socket, no file."""
 
 import random
 from collections.abc import Callable
@@ -66,11 +67,7 @@ class Sailing:
         said = []
         for name, value in self.true().items():
             value += self.noise * self.random.gauss(0.0, NOISE[name])
-            said.append(
-                Reading(
-                    name, value % 360.0 if "north_deg" in name else value, WALL + now_s, now_s, self.source
-                )
-            )
+            said.append(Reading(name, value % 360.0 if "north_deg" in name else value, WALL + now_s, now_s, self.source))
         return said
 
 
@@ -128,15 +125,13 @@ def make_bridge(kvlcc2):
 
 
 def every_number(message):
-    for field, value in message.ListFields():
-        many = (
-            value if not isinstance(value, (str, float, int, bool)) and hasattr(value, "__len__") else [value]
-        )
+    for about, value in message.ListFields():
+        many = value if not isinstance(value, (str, float, int, bool)) and hasattr(value, "__len__") else [value]
         for one in many:
             if hasattr(one, "ListFields"):
                 yield from every_number(one)
             elif isinstance(one, (float, int)):
-                yield field.name, one
+                yield about.name, one
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,5 @@
-"""Learning on board: it finds what is planted, it never leaves its bounds, and it stands still when it should."""
+"""Learning on board: it finds what is planted, it never leaves its bounds, and it stands still when it
+should."""
 
 import json
 import random
@@ -54,7 +55,8 @@ def test_with_nothing_to_find_the_gate_stays_shut(kvlcc2):
 
 
 def test_M12_whatever_it_is_fed_it_stays_finite_and_inside_its_bounds(kvlcc2):
-    """Test: hostile regressors and forces. Expected: every number in its box, the whole in the ball, nothing that is no number."""
+    """Test: hostile regressors and forces. Expected: every number in its box, the whole in the ball,
+    nothing that is no number."""
     adaptation = made(kvlcc2)
     dice = random.Random(7)
     for _ in range(4000):
@@ -98,9 +100,7 @@ def test_M12_saved_numbers_come_back_clamped_and_must_prove_themselves_again(kvl
     again = made(kvlcc2)
     again.restore(path, "mark")
     values = {p.name: p.value for p in again.parameters()}
-    assert values["sway hull"] == pytest.approx(
-        {p.name: p.value for p in adaptation.parameters()}["sway hull"]
-    )
+    assert values["sway hull"] == pytest.approx({p.name: p.value for p in adaptation.parameters()}["sway hull"])
     assert values["surge feature 1"] <= 0.5 and again.correction(rows) == (0.0, 0.0, 0.0)
 
 
@@ -133,7 +133,8 @@ def test_M12_numbers_of_another_network_are_left_out(kvlcc2, tmp_path):
 
 
 def test_it_learns_from_a_ship_whose_rudder_is_weaker_than_the_model_thinks(kvlcc2, make_bridge):
-    """Test: a rudder of 80 % in a zigzag, perfect instruments. Expected: the yaw error falls, the correction is small and named."""
+    """Test: a rudder of 80 % in a zigzag, perfect instruments. Expected: the yaw error falls, the
+    correction is small and named."""
     from dataclasses import replace
 
     from twin.physics.model import Model

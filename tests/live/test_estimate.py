@@ -1,4 +1,5 @@
-"""The observer on its own: gain, late samples, missing channels, the current, and what it says of its own doubt."""
+"""The observer on its own: gain, late samples, missing channels, the current, and what it says of its own
+doubt."""
 
 from math import hypot, pi, radians
 
@@ -132,3 +133,12 @@ def test_after_a_long_pause_it_begins_anew_from_what_is_measured(kvlcc2):
     observer.correct(measured(0.0, START))
     e = observer.correct(measured(20.0, {**START, "x": 90.0}))
     assert observer.restarts == 1 and e.x == 90.0
+
+
+def test_whatever_the_model_says_the_estimate_stays_within_what_a_ship_can_do(kvlcc2):
+    observer = Observer(kvlcc2)
+    observer.correct(measured(0.0, START))
+    for k in range(1, 100):
+        observer.steer(Rates(1e9, -1e9, 1e9))
+        e = observer.correct(measured(0.1 * k, {"psi": 0.0}))
+    assert abs(e.u) < 40.0 and abs(e.v) < 40.0 and abs(e.r) < 0.3

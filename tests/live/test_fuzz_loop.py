@@ -1,5 +1,5 @@
-"""A hundred thousand messages, true, mutated and made up, through decoder, gates and tick: no crash, nothing that is not finite,
-no bound broken."""
+"""A hundred thousand messages, true, mutated and made up, through decoder, gates and tick: no crash,
+nothing that is not finite, no bound broken."""
 
 import random
 from math import hypot, isfinite
@@ -38,17 +38,13 @@ def made_up(dice: random.Random, now_s: float) -> tuple[str, bytes]:
         )
     )
     if topic.subject == "location_fix":
-        data = encode_fix(
-            dice.choice((57.6, 57.6001, 91.0, -57.0)), dice.choice((11.6, 11.6001, 181.0)), stamp_ns
-        )
+        data = encode_fix(dice.choice((57.6, 57.6001, 91.0, -57.0)), dice.choice((11.6, 11.6001, 181.0)), stamp_ns)
     else:
         data = encode_float(value, stamp_ns)
     data = wrap(data, stamp_ns)
     if dice.random() < 0.2:
         data = mutated(dice, data)
-    return key(
-        "twin", "ship", dice.choice((topic.subject,) * 9 + ("unknown",)), dice.choice(("a", "a", "a", "b"))
-    ), data
+    return key("twin", "ship", dice.choice((topic.subject,) * 9 + ("unknown",)), dice.choice(("a", "a", "a", "b"))), data
 
 
 def mutated(dice: random.Random, data: bytes) -> bytes:

@@ -38,13 +38,12 @@ def test_with_a_good_residual_the_twin_is_hybrid(make_bridge, hybrid):
 
 
 def test_M10_a_residual_that_makes_it_worse_is_switched_off_and_says_so(kvlcc2, make_bridge):
-    """Test: the bundled last layer negated and tripled, on a ship that is exactly her model. Expected: physics only within the window."""
+    """Test: the bundled last layer negated and tripled, on a ship that is exactly her model. Expected:
+    physics only within the window."""
     learned = spoilt(kvlcc2, -6.0)
     ticks = make_bridge(loop={"learned": learned}, noise=0.3).run(260.0)
     assert ticks[600].mode == "hybrid"
-    assert ticks[-1].mode == "physics only" and any(
-        "worse than the physics alone" in r for r in ticks[-1].reasons
-    )
+    assert ticks[-1].mode == "physics only" and any("worse than the physics alone" in r for r in ticks[-1].reasons)
     assert ticks[-1].learned.N_Nm == 0.0 and ticks[-1].learned.weight == 0.0
 
 
@@ -58,9 +57,7 @@ def test_M7_in_a_state_it_was_not_trained_on_the_residual_has_no_say(make_bridge
     """Test: the engine astern. Expected: physics only, with the input and its range in words."""
     bridge = make_bridge(loop={"learned": hybrid}, shaft=-1.0)
     tick = bridge.run(10.0)[-1]
-    assert tick.mode == "physics only" and any(
-        "propeller" in r and "where it was trained" in r for r in tick.reasons
-    )
+    assert tick.mode == "physics only" and any("propeller" in r and "where it was trained" in r for r in tick.reasons)
     assert tick.learned.X_N == 0.0
 
 

@@ -1,4 +1,5 @@
-"""The whole tick on a ship that sails: it follows, it says known and learned apart, it never says a number that is none."""
+"""The whole tick on a ship that sails: it follows, it says known and learned apart, it never says a number
+that is none."""
 
 from math import isfinite
 
@@ -10,9 +11,7 @@ from twin.live.readings import Reading
 
 def test_the_estimate_follows_a_zigzag_closer_than_the_instruments_say(bridge):
     bridge.run(60.0)
-    errors = {
-        name: [] for name in ("north_m", "heading_true_north_deg", "surge_velocity_mps", "yaw_rate_degps")
-    }
+    errors = {name: [] for name in ("north_m", "heading_true_north_deg", "surge_velocity_mps", "yaw_rate_degps")}
     for _ in range(600):
         bridge.run(0.1)
         for name, found in errors.items():
@@ -87,9 +86,7 @@ def test_sources_whose_clock_steps_too_are_still_heard(make_bridge):
 
 def test_the_same_messages_give_the_same_bytes(make_bridge):
     one, other = make_bridge().run(30.0), make_bridge().run(30.0)
-    assert [t.SerializeToString(deterministic=True) for t in one] == [
-        t.SerializeToString(deterministic=True) for t in other
-    ]
+    assert [t.SerializeToString(deterministic=True) for t in one] == [t.SerializeToString(deterministic=True) for t in other]
 
 
 def test_nothing_that_is_not_finite_is_ever_said(bridge, numbers):

@@ -1,4 +1,5 @@
-"""What is said about the future: right for a ship that obeys her model, honest about doubt, a little in each tick."""
+"""What is said about the future: right for a ship that obeys her model, honest about doubt, a little in
+each tick."""
 
 from math import degrees, hypot, radians
 
@@ -45,9 +46,7 @@ def test_the_coarse_steps_of_a_prediction_agree_with_fine_ones(name):
 def test_a_round_is_spread_over_ticks(kvlcc2):
     e, s = start(kvlcc2)
     predictor = Predictor(kvlcc2, refresh_s=2.0, rate_hz=10.0)
-    rounds = [
-        bool(predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, True)) for k in range(60)
-    ]
+    rounds = [bool(predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, True)) for k in range(60)]
     assert 2 <= sum(rounds) <= 4 and predictor.steps_a_tick <= 4
 
 
@@ -74,7 +73,8 @@ def test_the_uncertainty_covers_two_errors_of_three(kvlcc2):
 
 
 def test_on_a_voyage_the_predictions_come_true_at_the_time_they_name(make_bridge):
-    """Test: a steady turn, so that the helm stays. Expected: each 10 s prediction lands where the ship then is, within three sigma."""
+    """Test: a steady turn, so that the helm stays. Expected: each 10 s prediction lands where the ship
+    then is, within three sigma."""
     bridge = make_bridge(helm_deg=lambda t: 10.0)
     said, truth = [], {}
     for tick in bridge.run(200.0):
@@ -95,9 +95,15 @@ def test_on_a_voyage_the_predictions_come_true_at_the_time_they_name(make_bridge
 def test_without_a_good_estimate_nothing_is_foretold(kvlcc2):
     e, s = start(kvlcc2)
     predictor = Predictor(kvlcc2)
-    assert all(
-        not predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, False) for k in range(100)
-    )
+    assert all(not predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, False) for k in range(100))
+
+
+def test_a_model_that_runs_away_foretells_nothing_and_does_no_harm(kvlcc2):
+    """Test: an engine a hundred times too strong. Expected: no prediction, no exception."""
+    e, s = start(kvlcc2)
+    s.n = 100.0
+    predictor = Predictor(kvlcc2)
+    assert all(not predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, True) for k in range(100))
 
 
 def test_an_ensemble_of_64_ships_sails_as_64_single_ones(kvlcc2):

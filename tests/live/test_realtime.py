@@ -29,7 +29,8 @@ def test_dropped_pages_come_back_by_themselves():
 
 
 def test_what_is_not_allowed_is_said_and_nothing_else_happens():
-    """Test: a process without rights asks for everything, and for a processor that does not exist. Expected: sentences."""
+    """Test: a process without rights asks for everything, and for a processor that does not exist.
+    Expected: sentences."""
     code = (
         "import os, resource\nfrom twin.live import realtime\n"
         "resource.setrlimit(resource.RLIMIT_MEMLOCK, (0, 0)); resource.setrlimit(resource.RLIMIT_RTPRIO, (0, 0))\n"
@@ -38,11 +39,7 @@ def test_what_is_not_allowed_is_said_and_nothing_else_happens():
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60, cwd="/")
     assert done.returncode == 0, done.stderr
-    assert (
-        "loop.cpu = 1000" in done.stdout
-        and "real-time priority" in done.stdout
-        and "not locked" in done.stdout
-    )
+    assert "loop.cpu = 1000" in done.stdout and "real-time priority" in done.stdout and "not locked" in done.stdout
 
 
 def test_a_writable_mapping_is_never_dropped():

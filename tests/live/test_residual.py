@@ -68,7 +68,8 @@ def test_M2_every_flipped_bit_of_the_model_is_caught(kvlcc2, parts):
 
 
 def test_M2_flipped_bits_of_the_manifest_are_caught_or_harmless(kvlcc2, parts):
-    """Expected: refused in one line, or a number that still passes the golden check; never another exception."""
+    """Expected: refused in one line, or a number that still passes the golden check; never another
+    exception."""
     model, text = parts
     dice = random.Random(2)
     refused = 0
@@ -105,9 +106,7 @@ def hand_made(make_nodes, inputs=((1, 5),), outputs=((1, 64),), kind=1, weights=
     ins = [helper.make_tensor_value_info(f"in{i}", kind, shape) for i, shape in enumerate(inputs)]
     outs = [helper.make_tensor_value_info(f"out{i}", kind, shape) for i, shape in enumerate(outputs)]
     graph = helper.make_graph(make_nodes(helper), "g", ins, outs, list(weights))
-    return helper.make_model(
-        graph, opset_imports=[helper.make_opsetid("", opset)], ir_version=8
-    ).SerializeToString()
+    return helper.make_model(graph, opset_imports=[helper.make_opsetid("", opset)], ir_version=8).SerializeToString()
 
 
 @pytest.mark.parametrize("what, words", (
@@ -162,9 +161,7 @@ def test_M5_a_network_that_gives_no_number_is_off_at_once_and_says_so(kvlcc2, pa
     assert "not finite" in residual.features(s).why and residual.features(s).weight == 0.0
 
 
-@pytest.mark.parametrize(
-    "data", (b"", b"\x00", b"\xff" * 64, b"not a model at all", b"\x3a\xff\xff\xff\xff\x0f")
-)
+@pytest.mark.parametrize("data", (b"", b"\x00", b"\xff" * 64, b"not a model at all", b"\x3a\xff\xff\xff\xff\x0f"))
 def test_M4_bytes_that_are_no_model_are_refused(kvlcc2, parts, data):
     assert "residual" in refusal(with_model(parts, data), kvlcc2)
 
@@ -191,9 +188,7 @@ def test_M7_outside_its_envelope_the_learned_force_shrinks_smoothly_to_nothing(k
     learned = LearnedForce(kvlcc2, load(PATH, kvlcc2))
     high = learned.residual.manifest.inputs[2].high  # yaw
     low = learned.residual.manifest.inputs[2].low
-    weights = [
-        learned.at(*ahead(kvlcc2, r=high + k / 20.0 * MARGIN * (high - low))).weight for k in range(25)
-    ]
+    weights = [learned.at(*ahead(kvlcc2, r=high + k / 20.0 * MARGIN * (high - low))).weight for k in range(25)]
     assert weights[0] == 1.0 and weights[20:] == [0.0] * 5
     assert all(a >= b for a, b in itertools.pairwise(weights)) and 0.2 < weights[10] < 0.3
     assert "yaw" in learned.at(*ahead(kvlcc2, r=2.0 * high)).why
@@ -221,11 +216,7 @@ def test_the_output_agrees_with_the_python_binding(kvlcc2, parts):
 
     residual = load(PATH, kvlcc2)
     zeta = [0.3, -0.2, 0.1, 0.4, 0.0]
-    phi = (
-        onnxruntime.InferenceSession(parts[0])
-        .run(None, {"zeta": np.array([zeta], np.float32)})[0][0]
-        .astype(float)
-    )
+    phi = onnxruntime.InferenceSession(parts[0]).run(None, {"zeta": np.array([zeta], np.float32)})[0][0].astype(float)
     m = residual.manifest
     wanted = [*(np.array(m.W) @ phi), *(np.array(m.whitening[1]) @ (phi - np.array(m.whitening[0])))]
     assert residual.network.run(zeta) == pytest.approx(wanted, abs=1e-5)

@@ -1,4 +1,5 @@
-"""The service as a process: it starts without a file, stops when told, and ends by itself when something breaks."""
+"""The service as a process: it starts without a file, stops when told, and ends by itself when something
+breaks."""
 
 import itertools
 import json
@@ -62,11 +63,7 @@ def ticks(place):
     from twin.live import messages
 
     path = max((place / "logs").glob("*.mcap"))
-    return [
-        messages.Tick.FromString(m.data)
-        for m in McapReader(path).messages()
-        if m.type_name == "shiptwin.Tick"
-    ]
+    return [messages.Tick.FromString(m.data) for m in McapReader(path).messages() if m.type_name == "shiptwin.Tick"]
 
 
 def test_C7_told_to_stop_it_finishes_cleanly_within_two_seconds(place):
@@ -100,7 +97,8 @@ def slowness():
 
 
 def test_C4_an_uncaught_exception_ends_the_process_and_does_not_hang(place):
-    """Test: a bug on the tenth tick, bus and log open. Expected: exit code not 0 within a second, traceback said."""
+    """Test: a bug on the tenth tick, bus and log open. Expected: exit code not 0 within a second,
+    traceback said."""
     hook = "if tick.index == 10: print('BROKEN', file=sys.stderr, flush=True); raise RuntimeError('planted')"
     process = subprocess.Popen(
         [sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml")],
@@ -132,7 +130,8 @@ def test_C2_a_stall_of_200_ms_is_counted_and_followed_by_no_burst(place):
 
 
 def test_C3_the_watchdog_is_fed_after_good_steps_and_not_while_the_loop_hangs(place, tmp_path):
-    """Test: a service manager's socket; the loop hangs at tick 20. Expected: READY, then WATCHDOG, then silence."""
+    """Test: a service manager's socket; the loop hangs at tick 20. Expected: READY, then WATCHDOG, then
+    silence."""
     address = str(tmp_path / "notify")
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
         manager.bind(address)
@@ -159,9 +158,7 @@ def test_C3_the_watchdog_is_fed_after_good_steps_and_not_while_the_loop_hangs(pl
     ('[residual]\nfile = "no.onnx"\nrequired = true\n', "no.onnx"),
 ))  # fmt: skip
 def test_F1_M1_settings_that_cannot_be_used_end_it_with_exit_code_5_and_one_line(place, text, words):
-    (place / "twin.toml").write_text(
-        text + f'[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n[log]\nfolder = ""\n'
-    )
+    (place / "twin.toml").write_text(text + f'[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n[log]\nfolder = ""\n')
     process = start(place)
     assert process.wait(30.0) == 5
     said = process.stderr.read()

@@ -10,7 +10,8 @@ HEADING, NORTH, SURGE, YAW = "heading_true_north_deg", "north_m", "surge_velocit
 
 
 def only(name, change):
-    """A fault of one channel: `change(reading, bridge)` gives what arrives instead (one reading, a list, or nothing)."""
+    """A fault of one channel: `change(reading, bridge)` gives what arrives instead (one reading, a list,
+    or nothing)."""
 
     def alter(readings, bridge):
         out = []
@@ -38,7 +39,8 @@ def said(ticks, text):
     ),
 )
 def test_I1_I2_I15_I16_I26_I27_a_refused_sample_is_counted_named_and_bridged(bridge, quality):
-    """Test: the decoder refuses every heading for 1 s. Expected: counted, coded, said in words; the heading is predicted."""
+    """Test: the decoder refuses every heading for 1 s. Expected: counted, coded, said in words; the
+    heading is predicted."""
     bridge.run(20.0)
     refused = lambda r, b: Rejected(r.channel, quality, "test", r.received_s, r.source)  # noqa: E731
     ticks = bridge.run(0.8, only(HEADING, refused))
@@ -80,7 +82,8 @@ def test_I4_a_step_that_lasts_is_refused_first_and_then_believed_and_announced(b
 
 @pytest.mark.parametrize("name", (HEADING, NORTH, SURGE, YAW))
 def test_I6_a_frozen_value_with_live_stamps_is_found_within_five_seconds(bridge, name):
-    """Test: the last value again and again in a turn. Expected: refused as frozen within 5 s; learning stands still."""
+    """Test: the last value again and again in a turn. Expected: refused as frozen within 5 s; learning
+    stands still."""
     bridge.run(60.0)
     value = {}
 
@@ -176,9 +179,7 @@ def test_I12_a_doubled_message_is_dropped_without_a_word(bridge):
     assert not said(ticks, HEADING)
 
 
-@pytest.mark.parametrize(
-    "shift, quality", ((-3.0, Quality.OLD), (3600.0, Quality.FUTURE), (-3600.0, Quality.OLD))
-)
+@pytest.mark.parametrize("shift, quality", ((-3.0, Quality.OLD), (3600.0, Quality.FUTURE), (-3600.0, Quality.OLD)))
 def test_I13_I14_stamps_far_from_now_are_refused(bridge, shift, quality):
     bridge.run(10.0)
     ticks = bridge.run(0.5, only(HEADING, lambda r, b: r._replace(time_s=r.time_s + shift)))
@@ -186,7 +187,8 @@ def test_I13_I14_stamps_far_from_now_are_refused(bridge, shift, quality):
 
 
 def test_I13_samples_older_than_their_channel_may_be_are_of_no_use_and_do_no_harm(bridge):
-    """Test: every channel suddenly 1.5 s late (its ten periods are 1 s). Expected: stale, dead reckoning, no crash; back again."""
+    """Test: every channel suddenly 1.5 s late (its ten periods are 1 s). Expected: stale, dead reckoning,
+    no crash; back again."""
     bridge.run(20.0)
     late = []
 
@@ -204,19 +206,17 @@ def test_I13_samples_older_than_their_channel_may_be_are_of_no_use_and_do_no_har
     ((57.2958, "degrees where radians"), (0.0174533, "radians where degrees"), (-1.0, "wrong sign")),
 )
 def test_I17_I18_a_yaw_rate_in_the_wrong_unit_or_sign_is_named(bridge, factor, word):
-    """Test: the rate of turn times 57.3, over 57.3, or negated. Expected: said within two ship lengths of turning."""
-    ticks = bridge.run(
-        160.0, only(YAW, lambda r, b: r._replace(value=max(min(r.value * factor, 89.0), -89.0)))
-    )
+    """Test: the rate of turn times 57.3, over 57.3, or negated. Expected: said within two ship lengths of
+    turning."""
+    ticks = bridge.run(160.0, only(YAW, lambda r, b: r._replace(value=max(min(r.value * factor, 89.0), -89.0))))
     assert said(ticks, word)
     assert all(isfinite(t.estimate.yaw_rate_degps) for t in ticks)
 
 
 def test_I17_a_speed_in_knots_is_named(bridge):
     def knots(readings, b):
-        return [
-            r._replace(value=r.value * 1.943844) if "velocity" in r.channel else r for r in readings
-        ]
+        return [r._replace(value=r.value * 1.943844) if "velocity" in r.channel else r for r in readings]
+
     assert said(bridge.run(150.0, knots), "is in knots")
 
 
@@ -240,9 +240,7 @@ def test_I19_the_heading_runs_through_north_without_a_jump(make_bridge):
 def test_I25_two_publishers_of_one_channel_are_named_and_the_first_is_used(bridge):
     """Test: a second heading source 5 deg off. Expected: both named within 2 s, the first believed."""
     bridge.run(10.0)
-    ticks = bridge.run(
-        2.0, only(HEADING, lambda r, b: [r, r._replace(value=(r.value + 5.0) % 360.0, source="other")])
-    )
+    ticks = bridge.run(2.0, only(HEADING, lambda r, b: [r, r._replace(value=(r.value + 5.0) % 360.0, source="other")]))
     assert said(ticks, "ship and other both publish it")
     assert abs(bridge.error(HEADING)) < 0.2
 
@@ -251,10 +249,7 @@ def test_I25_when_the_first_falls_silent_the_second_takes_over(bridge):
     bridge.run(10.0)
     bridge.run(3.0, only(HEADING, lambda r, b: r._replace(source="other")))
     tick = bridge.ticks[-1]
-    assert (
-        tick.quality.heading_true_north_deg == Quality.OK
-        and bridge.loop.sensors.gates[HEADING].source == "other"
-    )
+    assert tick.quality.heading_true_north_deg == Quality.OK and bridge.loop.sensors.gates[HEADING].source == "other"
 
 
 def test_the_owner_may_choose_who_speaks(kvlcc2, make_bridge):

@@ -1,11 +1,13 @@
-"""Slow learning on board: a few numbers on top of the trained last layer, kept small, unused when they do not help.
+"""Slow learning on board: a few numbers on top of the trained last layer, kept small, unused when they do
+not help.
 
     learned force_r = W_r phi + g_r a_r q_r         q_r = [whitened components of phi | known forces of row r | 1]
     e = clip(d_r - a_r q_f, +-3 s_r)                K = P q_f / (R s_r^2/h + q_f' P q_f)
     a_r <- (1 - h/T_leak) a_r + K e                 P <- (1 - 2h/T_leak) P + h Q I - K (P q_f)'
 
-each row a Kalman filter on the filtered regression (evidence.py), with saturation, leakage to the trained weights, projection
-on boxes and on ||A|| <= A_MAX. The evidence gate g opens only as far as the error with A is below the error without.
+each row a Kalman filter on the filtered regression (evidence.py), with saturation, leakage to the trained
+weights, projection on boxes and on ||A|| <= A_MAX. The evidence gate g opens only as far as the error with A
+is below the error without.
 """
 
 import json
@@ -93,7 +95,8 @@ class Adaptation:
         return tuple([row.gate * dot(row.a, self._of_row(r, regressors)) if row.gate else 0.0 for r, row in rows])  # type: ignore[return-value]
 
     def learn(self, wanted: Three, regressors: list[float], dt: float, frozen: str) -> None:
-        """What the rows should give (low-passed, like the regressors), the time since the last call, why not to learn, or ""."""
+        """What the rows should give (low-passed, like the regressors), the time since the last call, why
+        not to learn, or ""."""
         self._watch(regressors, dt)
         self.frozen = frozen or ("" if self._excited > EXCITED else "waits for a manoeuvre: nothing moves that could teach it")
         if self.frozen:

@@ -26,12 +26,12 @@ CERTIFY = "from twin.live.build import certify_aside; certify_aside({!r}, {!r}, 
 CERTIFY_S = 20.0  # the longest the start waits for a certificate
 
 
-def loop_of(
-    settings: Settings, ears: Ears, voice: Outbox, ship: Ship | None = None, certify: bool = True
-) -> Loop:
-    """The loop these settings describe; SettingsError when they cannot be used. `certify` False: no certificate is worked out.
+def loop_of(settings: Settings, ears: Ears, voice: Outbox, ship: Ship | None = None, certify: bool = True) -> Loop:
+    """The loop these settings describe; SettingsError when they cannot be used. `certify` False: no
+    certificate is worked out.
 
-    What loading a library leaves in memory is given back before the next one is loaded: their sum would be the peak.
+    What loading a library leaves in memory is given back before the next one is loaded: their sum would be
+    the peak.
     """
     breathe = realtime.drop_pages if settings["loop.drop_pages"] else int
     breathe()
@@ -60,7 +60,8 @@ def loop_of(
 
 
 def residual_of(settings: Settings, ship: Ship) -> tuple[Residual | None, str]:
-    """The residual, or None and why there is none. One made for another ship is passed over only if nobody asked for it."""
+    """The residual, or None and why there is none. One made for another ship is passed over only if nobody
+    asked for it."""
     asked = settings["residual.file"]
     if asked == "none":
         return None, "the settings want none"
@@ -92,7 +93,8 @@ def keep(adaptation: Adaptation, learned: LearnedForce) -> str:
 
 
 def stabilizer_of(settings: Settings, ship: Ship) -> Stabilizer:
-    """The certificate from its file; when there is none it is worked out by another process (it needs numpy, the loop does not)."""
+    """The certificate from its file; when there is none it is worked out by another process (it needs
+    numpy, the loop does not)."""
     import subprocess  # costs a megabyte, and only here
 
     h, K = 1.0 / settings["loop.rate_hz"], settings["observer.gain"] or gain_for(ship)

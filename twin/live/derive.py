@@ -1,7 +1,9 @@
-"""What follows from a measurement when its own instrument is missing: speed from positions, rate of turn from headings, wind.
+"""What follows from a measurement when its own instrument is missing: speed from positions, rate of turn
+from headings, wind.
 
-The filters are critically damped (fading memory): with theta = exp(-omega dt), alpha = 1 - theta^2, beta = (1 - theta)^2,
-they are stable for every sample interval. The speed is tracked in body axes, so that a steady turn leaves no lag.
+The filters are critically damped (fading memory): with theta = exp(-omega dt), alpha = 1 - theta^2, beta = (1
+- theta)^2, they are stable for every sample interval. The speed is tracked in body axes, so that a steady
+turn leaves no lag.
 """
 
 from math import atan2, cos, exp, hypot, pi, sin
@@ -71,12 +73,14 @@ def turn(angle: float) -> float:
 
 
 def true_wind(speed: float, angle_from: float, psi: float, u: float, v: float) -> tuple[float, float]:
-    """(speed [m/s], direction it blows to [rad]) over ground, from the wind felt on a ship that moves with (u, v)."""
+    """(speed [m/s], direction it blows to [rad]) over ground, from the wind felt on a ship that moves with
+    (u, v)."""
     ahead, starboard = u - speed * cos(angle_from), v - speed * sin(angle_from)  # the air over ground, body axes
     return hypot(ahead, starboard), (psi + atan2(starboard, ahead)) % (2.0 * pi)
 
 
 def apparent_wind(speed: float, wind_to: float, psi: float, u: float, v: float) -> tuple[float, float]:
-    """(speed [m/s], angle off the bow it comes from [rad], starboard positive) on a ship that moves with (u, v)."""
+    """(speed [m/s], angle off the bow it comes from [rad], starboard positive) on a ship that moves with
+    (u, v)."""
     ahead, starboard = speed * cos(wind_to - psi) - u, speed * sin(wind_to - psi) - v  # the air past the ship
     return hypot(ahead, starboard), turn(atan2(-starboard, -ahead))

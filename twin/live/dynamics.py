@@ -1,5 +1,5 @@
-"""What is known of the ship, kept true to the moment: her model with the current as it is now, the rudder where it is now,
-and without those effects whose inputs nobody measures.
+"""What is known of the ship, kept true to the moment: her model with the current as it is now, the rudder
+where it is now, and without those effects whose inputs nobody measures.
 
     nu_dot = M^-1 (sum of the known forces + the learned one) + r x nu_c
 """
@@ -23,7 +23,8 @@ INPUTS = ("delta", "n", *WEATHER)
 
 
 class Known:
-    """The known physics of one moment: a model and the current; the predictor carries it ahead while the loop goes on."""
+    """The known physics of one moment: a model and the current; the predictor carries it ahead while the
+    loop goes on."""
 
     def __init__(self, model: Model, current: tuple[Number, Number] = (0.0, 0.0)):
         self.model, self.current = model, current
@@ -61,7 +62,8 @@ class Known:
         return Rates(u_dot + r * (s.v - s.v_r), v_dot - r * (s.u - s.u_r), r_dot)
 
     def mean_rates(self, s: Situation, forces: Forces, learned: Force, h: float) -> Rates:
-        """What takes nu over the next h seconds: a Runge-Kutta step of second order (midpoint), learned force and inputs held."""
+        """What takes nu over the next h seconds: a Runge-Kutta step of second order (midpoint), learned
+        force and inputs held."""
         start = s.psi, s.u, s.v, s.r
         _along(s, start, s.r, self.rates_of(s, forces, learned), 0.5 * h)
         middle = self.rates(s, learned)
@@ -112,7 +114,8 @@ class Dynamics:
         return s, self.now, self.now.forces(s)
 
     def situation(self, e: Estimate, measured: Measured) -> Situation:
-        """The ship's state as estimated, with controls and weather as measured (rudder and shaft 0 when nobody says)."""
+        """The ship's state as estimated, with controls and weather as measured (rudder and shaft 0 when
+        nobody says)."""
         si = measured.si
         s = Situation(e.x, e.y, e.psi, e.u, e.v, e.r, t=measured.now_s)
         for name in INPUTS:

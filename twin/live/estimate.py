@@ -3,8 +3,9 @@
     nu_hat+  = nu_hat + h nu_dot(model) + h K (nu - nu_hat)         (compared at the time nu was measured)
     eta_hat+ = eta_hat + h R(psi_hat) nu_hat + h K (eta - eta_hat)
 
-K = 12 U_0/L unless the settings say otherwise (0.3 1/s for a 320 m ship), less for a sensor too slow or too late for that.
-A sample pulls until the next one is due. What is not measured is predicted, and its uncertainty grows.
+K = 12 U_0/L unless the settings say otherwise (0.3 1/s for a 320 m ship), less for a sensor too slow or too
+late for that. A sample pulls until the next one is due. What is not measured is predicted, and its
+uncertainty grows.
 """
 
 from collections import deque
@@ -27,7 +28,8 @@ HISTORY = 128  # ticks remembered, to compare a late sample with its own time
 
 @dataclass(slots=True)
 class Estimate:
-    """Where the ship is and how she moves [SI], `sigma` of each, and the current towards north and east [m/s]."""
+    """Where the ship is and how she moves [SI], `sigma` of each, and the current towards north and east
+    [m/s]."""
 
     x: float = 0.0
     y: float = 0.0
@@ -64,6 +66,8 @@ class Observer:
         self.sigma = Sigma(ship)
         self._rates = Rates(0.0, 0.0, 0.0)
         self._now_s: float | None = None
+        speed, turning = 4.0 * ship.U_0 + 5.0, 8.0 * ship.U_0 / ship.L_pp
+        self._most = (speed, speed, turning)  # no ship moves faster, whatever her instruments and her model say
         self._past: deque[tuple[float, tuple[float, ...]]] = deque(maxlen=HISTORY)
         self._current = CurrentFilter(ship, *current)
 
@@ -90,7 +94,8 @@ class Observer:
         return e
 
     def _begin(self, measured: Measured) -> None:
-        """Start, or start again after a pause: from what is measured now, as soon as heading and speed or place are."""
+        """Start, or start again after a pause: from what is measured now, as soon as heading and speed or
+        place are."""
         si, e = measured.si, self.estimate
         self.restarts += e.ready
         if "psi" not in si or not ("u" in si or "u_r" in si or "x" in si):
@@ -111,7 +116,8 @@ class Observer:
     def _move(self, dt: float) -> None:
         """Model: nu by the rates of the last tick, eta along the mean of old and new nu."""
         e, rates = self.estimate, self._rates
-        u, v, r = e.u + rates.u * dt, e.v + rates.v * dt, e.r + rates.r * dt
+        nu = e.u + rates.u * dt, e.v + rates.v * dt, e.r + rates.r * dt
+        u, v, r = [min(max(x, -most), most) for x, most in zip(nu, self._most, strict=True)]
         psi = e.psi + 0.25 * (e.r + r) * dt  # heading half way
         c, s, mean_u, mean_v = cos(psi), sin(psi), 0.5 * (e.u + u), 0.5 * (e.v + v)
         e.x += (mean_u * c - mean_v * s) * dt
@@ -121,7 +127,8 @@ class Observer:
         self.sigma.grow(dt, abs(u) + abs(v))
 
     def _compare(self, measured: Measured) -> None:
-        """The innovation of what is fresh, at the time it was measured; water speed stands in for a missing ground speed."""
+        """The innovation of what is fresh, at the time it was measured; water speed stands in for a
+        missing ground speed."""
         si, fresh = measured.si, measured.fresh
         for i, state in enumerate(STATES):
             if state in fresh and state in si:
@@ -162,7 +169,8 @@ class Observer:
         self.sigma.begin_one(state)
 
     def _pull(self, state: str, dt: float, measured: Measured) -> None:
-        """The last innovation pulls until the next is due; an outlier pulls as much as four usual deviations do."""
+        """The last innovation pulls until the next is due; an outlier pulls as much as four usual
+        deviations do."""
         gap = self.innovation.get(state)
         source = state if state in measured.si else WATER.get(state, state)
         self.received[state] = False
@@ -180,7 +188,8 @@ class Observer:
 
 
 class Sigma:
-    """One standard deviation for each state: it grows while the model runs alone and shrinks with every sample."""
+    """One standard deviation for each state: it grows while the model runs alone and shrinks with every
+    sample."""
 
     def __init__(self, ship: Ship):
         speed, rate, push = 0.03 * ship.U_0, 0.05 * ship.U_0 / ship.L_pp, 0.015 * ship.U_0**2 / ship.L_pp

@@ -1,4 +1,5 @@
-"""What force was missing? Measured accelerations without differentiating anything: the filtered regression.
+"""What force was missing? Measured accelerations without differentiating anything: the filtered
+regression.
 
     y_f' = lam (y - y_f),  F_f' = lam (nu_dot_known - F_f),  q_f' = lam (q - q_f)
     d = S^-1 M [lam (y - y_f) - F_f]   the force that the known ones do not explain, low-passed, in units of the force scale S
@@ -17,7 +18,8 @@ SETTLED = 3.0  # time constants of the filter until d may be used
 
 
 class Evidence:
-    """The unexplained force, and how well the learned one explains it: mean squares over three ship lengths."""
+    """The unexplained force, and how well the learned one explains it: mean squares over three ship
+    lengths."""
 
     def __init__(self, ship: Ship, scale: Force):
         self.time_s = ship.L_pp / ship.U_0
@@ -38,19 +40,16 @@ class Evidence:
     def regressors(self) -> list[float]:
         return self._low[12:]
 
-    def feed(
-        self, nu: Three, known: Rates, learned: Three, trained: Three, regressors: Sequence[float], physics: Known, dt: float
-    ) -> None:
-        """Measured nu, accelerations the known forces give, learned and trained force [S], seconds since the last time."""
+    def feed(self, nu: Three, known: Rates, learned: Three, trained: Three, regressors: Sequence[float], physics: Known, dt: float) -> None:
+        """Measured nu, accelerations the known forces give, learned and trained force [S], seconds since
+        the last time."""
         new = [*nu, *known, *learned, *trained, *regressors]
         a = min(self.lam * dt, 0.5)
         if len(self._low) != len(new):
             self._low, self._heard_s = new, 0.0
         self._low = low = [f + a * (x - f) for f, x in zip(self._low, new, strict=True)]
         lam = self.lam
-        X, Y, N = physics.force_for(
-            lam * (nu[0] - low[0]) - low[3], lam * (nu[1] - low[1]) - low[4], lam * (nu[2] - low[2]) - low[5]
-        )
+        X, Y, N = physics.force_for(lam * (nu[0] - low[0]) - low[3], lam * (nu[1] - low[1]) - low[4], lam * (nu[2] - low[2]) - low[5])
         self.unexplained = x, y, n = X / self.scale.X, Y / self.scale.Y, N / self.scale.N
         self._heard_s += dt
         self.ready = self._heard_s > SETTLED / lam

@@ -1,7 +1,9 @@
-"""How far ahead the twin sees, on a voyage that is over: from its own estimate, open loop, under the recorded helm, engine and weather.
+"""How far ahead the twin sees, on a voyage that is over: from its own estimate, open loop, under the
+recorded helm, engine and weather.
 
-Every `every_s` a ship is set off where the estimate was, with the current and the learned force as they were known then, and
-carried ahead; after each horizon she is compared with what was measured. Never a smoothed fit.
+Every `every_s` a ship is set off where the estimate was, with the current and the learned force as they were
+known then, and carried ahead; after each horizon she is compared with what was measured. Never a smoothed
+fit.
 """
 
 import itertools
@@ -35,9 +37,7 @@ class Start(NamedTuple):
 class Foresight:
     """`look` after each tick, `judged` at the end."""
 
-    def __init__(
-        self, loop: Loop, horizons_s: tuple[float, ...] = (10.0, 60.0, 120.0), every_s: float = 30.0
-    ):
+    def __init__(self, loop: Loop, horizons_s: tuple[float, ...] = (10.0, 60.0, 120.0), every_s: float = 30.0):
         self.loop, self.horizons_s, self.every_s = loop, horizons_s, every_s
         self.step_s = min(STEP * loop.ship.L_pp / loop.ship.U_0, 1.0)
         self._starts: list[Start] = []
@@ -56,7 +56,8 @@ class Foresight:
             self._next_start = now_s + self.every_s
         elif now_s >= self._next_start:
             self._next_start = now_s + self.every_s
-            start = Start(now_s, replace(seen.situation), self.loop.dynamics.now, self.loop.learned_at())
+            known_now = self.loop.learned.as_known_now()
+            start = Start(now_s, replace(seen.situation), self.loop.dynamics.now, lambda s, f: known_now.at(s, f).force)
             self._starts.append(start)
 
     def judged(self) -> list[Sight]:
@@ -66,19 +67,13 @@ class Foresight:
             for horizon_s, error in self._sail(start).items():
                 errors[horizon_s].append(error)
         return [
-            Sight(h, len(found), sum(p for p, _ in found) / len(found), sum(q for _, q in found) / len(found))
-            for h, found in errors.items()
-            if found
+            Sight(h, len(found), sum(p for p, _ in found) / len(found), sum(q for _, q in found) / len(found)) for h, found in errors.items() if found
         ]
 
     def _sail(self, start: Start) -> dict[float, tuple[float, float]]:
         """(position error [m], heading error [deg]) after each horizon."""
         s, found = replace(start.situation), {}
-        course = [
-            (t, si)
-            for t, si in self._course
-            if start.time_s <= t <= start.time_s + self.horizons_s[-1] + 2.0 * self.step_s
-        ]
+        course = [(t, si) for t, si in self._course if start.time_s <= t <= start.time_s + self.horizons_s[-1] + 2.0 * self.step_s]
         left = list(self.horizons_s)
         for (t, si), (t_next, si_next) in itertools.pairwise(course):
             for name in INPUTS:
@@ -98,9 +93,7 @@ class Foresight:
         return found
 
 
-def _error(
-    s: Situation, before: dict[str, float], after: dict[str, float], share: float
-) -> tuple[float, float] | None:
+def _error(s: Situation, before: dict[str, float], after: dict[str, float], share: float) -> tuple[float, float] | None:
     """Against what was measured, on the line between two moments; None where it was not."""
     if not all(name in si for name in ("x", "y", "psi") for si in (before, after)):
         return None

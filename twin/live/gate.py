@@ -1,7 +1,8 @@
 """One channel's gate: which of its samples may be used, by the memory of those before.
 
-A sample is refused when another source already speaks for the channel, when its stamp repeats or runs backwards, when it
-changed faster than a ship can, or when the instrument is frozen. A step that lasts is believed after SETTLE_S, and announced.
+A sample is refused when another source already speaks for the channel, when its stamp repeats or runs
+backwards, when it changed faster than a ship can, or when the instrument is frozen. A step that lasts is
+believed after SETTLE_S, and announced.
 """
 
 from math import exp, isfinite
@@ -17,11 +18,13 @@ WINDOW_S = 3.0  # memory of the sample rate
 
 
 class Gate:
-    """The last good sample of one channel (`value` in border units, at `time_s` on the monotonic clock) and its quality."""
+    """The last good sample of one channel (`value` in border units, at `time_s` on the monotonic clock)
+    and its quality."""
 
     def __init__(self, channel: Channel, floor: float, frozen: Frozen | None = None, source: str | None = None):
         self.channel, self.floor = channel, floor  # `floor`: what noise may add to a change, border units
         self.chosen = source  # the only source that may speak, if the owner chose one
+        self.low, self.high = channel.low, channel.high
         self.value: float | None = None
         self.time_s, self.received_s, self.expires_s = -1e18, -1e18, -1e18
         self.source = self.rival = ""
@@ -35,7 +38,8 @@ class Gate:
         self._rate, self._rate_s = 0.0, 0.0
 
     def accept(self, reading: Reading, t: float, motion: float = 0.0) -> Quality:
-        """Judge one sample measured at `t`; `motion` is how fast the ship's motion changes this channel [unit/s]."""
+        """Judge one sample measured at `t`; `motion` is how fast the ship's motion changes this channel
+        [unit/s]."""
         self.step = 0.0
         quality = self._judge(reading, t, motion)
         if quality is Quality.OK:
@@ -49,7 +53,8 @@ class Gate:
         self.refused, self.refusal, self.refused_s = self.refused + 1, quality, received_s
 
     def stale_s(self) -> float:
-        """The age after which the channel counts as lost: ten of its own periods, at least 1 s, at most the table's limit."""
+        """The age after which the channel counts as lost: ten of its own periods, at least 1 s, at most
+        the table's limit."""
         if self.samples < LEARN:
             return self.channel.stale_s
         return min(max(10.0 * self.interval_s, 1.0), self.channel.stale_s)
@@ -74,7 +79,7 @@ class Gate:
         return self._rate / exp((now_s - self._rate_s) / WINDOW_S) < 0.6 / self.interval_s
 
     def _judge(self, reading: Reading, t: float, motion: float) -> Quality:
-        if not self.channel.low <= reading.value <= self.channel.high:
+        if not self.low <= reading.value <= self.high:
             return Quality.OUT_OF_RANGE if isfinite(reading.value) else Quality.NOT_FINITE
         if self.chosen is not None and reading.source != self.chosen:
             return Quality.CONFLICT

@@ -1,4 +1,5 @@
-"""How much may be believed: the ladder of modes, each step down with its reasons in words, each step up only after a while.
+"""How much may be believed: the ladder of modes, each step down with its reasons in words, each step up
+only after a while.
 
     hybrid -> physics only -> dead reckoning -> invalid          ("starting" before the first estimate)
 """
@@ -18,7 +19,8 @@ CLIPPED_SHARE = 0.5
 
 
 class Verdict(NamedTuple):
-    """The mode, why it is not better, whether the learned force acts, and why learning stands still ("" when it does not)."""
+    """The mode, why it is not better, whether the learned force acts, and why learning stands still (""
+    when it does not)."""
 
     mode: str
     reasons: list[str]

@@ -19,12 +19,8 @@ SCHEMA_VERSION = 1
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--config", metavar="TWIN.toml", help="the settings the twin runs with (default: its defaults)"
-    )
-    parser.add_argument(
-        "--timeout", type=float, default=3.0, metavar="S", help="how long to listen at most (default: 3)"
-    )
+    parser.add_argument("--config", metavar="TWIN.toml", help="the settings the twin runs with (default: its defaults)")
+    parser.add_argument("--timeout", type=float, default=3.0, metavar="S", help="how long to listen at most (default: 3)")
     parser.add_argument("--json", metavar="FILE", help="write the answer as JSON, - for standard output")
 
 
@@ -64,7 +60,7 @@ def hear(settings: Settings, timeout_s: float) -> Any:
         session = zenoh.open(configuration(where))
     except zenoh.ZError:
         return None
-    ring = zenoh.handlers.RingChannel(1)
+    ring: Any = zenoh.handlers.RingChannel(1)
     topic = key(settings["bus.base"], settings["bus.entity"], "twin_tick", OWN_SOURCE)
     ears = session.declare_subscriber(topic, ring)
     until = time.monotonic() + timeout_s

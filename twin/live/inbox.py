@@ -48,7 +48,8 @@ class Inbox:
 
 
 class Played:
-    """Ears for a replay or a test: results made beforehand, a list for each tick, or put into `next` one by one."""
+    """Ears for a replay or a test: results made beforehand, a list for each tick, or put into `next` one
+    by one."""
 
     def __init__(self, ticks: Iterable[list[Result]], datum: Datum | None = None):
         self._ticks = iter(ticks)

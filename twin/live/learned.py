@@ -1,10 +1,12 @@
-"""The learned force: trained last layer and adapted part on the trunk's features, inside a ball it can never leave.
+"""The learned force: trained last layer and adapted part on the trunk's features, inside a ball it can
+never leave.
 
     f = w [W phi + g A q],  |f| <= bound (in units of the force scale S),  force = S f
 
 w is how far the features may be believed. Without a residual the force is zero, and says why.
 """
 
+from copy import copy, deepcopy
 from dataclasses import dataclass, field
 from math import sqrt
 
@@ -21,7 +23,8 @@ ZERO = Force(0.0, 0.0, 0.0)
 
 @dataclass(slots=True)
 class Learned:
-    """What the twin learned to add: `force` acts, `shadow` (in S) is what would, were it allowed to; `trained` is W phi alone."""
+    """What the twin learned to add: `force` acts, `shadow` (in S) is what would, were it allowed to;
+    `trained` is W phi alone."""
 
     force: Force = ZERO
     shadow: Three = (0.0, 0.0, 0.0)
@@ -52,21 +55,27 @@ class LearnedForce:
         """The learned force of one situation (s.u_r, s.v_r set) beside its known ones."""
         if self.residual is None:
             return Learned(why=self.why_not)
-        trained, components, w, why = self.residual.features(s)
+        said, components, w, why = self.residual.features(s)
         if w == 0.0:
             return Learned(why=why, bound_N=self.bound_N, bound_Nm=self.bound_Nm)
-        trained = x, y, n = w * trained[0], w * trained[1], w * trained[2]
+        trained = x, y, n = w * said[0], w * said[1], w * said[2]
+        clipped = x * x + y * y + n * n > self.bound * self.bound  # the network alone; adaptation may press
         adaptation = self.adaptation
         if adaptation is not None and adaptation.open:
             ax, ay, an = adaptation.correction(adaptation.regressors(components, forces))
             x, y, n = x + w * ax, y + w * ay, n + w * an
         size = sqrt(x * x + y * y + n * n)
-        clipped = size > self.bound
-        if clipped:
+        if size > self.bound:
             x, y, n = x * self.bound / size, y * self.bound / size, n * self.bound / size
         S = self.scale
         force = Force(x * S[0], y * S[1], n * S[2]) if allowed else ZERO
         return Learned(force, (x, y, n), trained, w if allowed else 0.0, self.bound_N, self.bound_Nm, clipped, why, components)
+
+    def as_known_now(self) -> "LearnedForce":
+        """A copy that does not learn on: what a prediction made now may use."""
+        kept = copy(self)
+        kept.adaptation = deepcopy(self.adaptation)
+        return kept
 
     def share(self, learned: Learned, forces: Forces) -> float:
         """The learned force's part of all force, each summed by its size."""
@@ -78,10 +87,9 @@ class LearnedForce:
             x, y, n = abs(x) + abs(X / self.scale[0]), abs(y) + abs(Y / self.scale[1]), abs(n) + abs(N / self.scale[2])
         return size / (abs(x) + abs(y) + abs(n) or 1.0)
 
-    def learn(
-        self, nu: Three | None, s: Situation, forces: Forces, learned: Learned, physics: Known, dt: float, frozen: str
-    ) -> None:
-        """Weigh the evidence of one tick (`nu` None: not measured), and adapt unless `frozen` says why not."""
+    def learn(self, nu: Three | None, s: Situation, forces: Forces, learned: Learned, physics: Known, dt: float, frozen: str) -> None:
+        """Weigh the evidence of one tick (`nu` None: not measured), and adapt unless `frozen` says why
+        not."""
         self._waited_s += dt
         if self.residual is None or (self._waited_s < LEARN_S and nu is not None):
             return
@@ -102,6 +110,7 @@ class LearnedForce:
 
 
 def scale_of(ship: Ship) -> Force:
-    """The usual size of what is left over: 1/2 rho L T U_0^2 by 1 % ahead, 3 % aside, 1 % of it times L turning."""
+    """The usual size of what is left over: 1/2 rho L T U_0^2 by 1 % ahead, 3 % aside, 1 % of it times L
+    turning."""
     force = ship.scale("force")
     return Force(force, 3.0 * force, force * ship.L_pp)

@@ -1,7 +1,7 @@
 """The page to read first: one tick of the twin, from what came in to what goes out.
 
-Each object takes messages and gives messages; none of them knows a clock, a file or a socket. So the same objects run live, in
-a replay and in a test, and the same messages give the same states.
+Each object takes messages and gives messages; none of them knows a clock, a file or a socket. So the same
+objects run live, in a replay and in a test, and the same messages give the same states.
 """
 
 from collections.abc import Callable
@@ -45,7 +45,8 @@ class Seen(NamedTuple):
 
 
 class Loop:
-    """A ship's twin between two ticks; `watched` adds alarms of bus and log to the reasons, `dropped` what the log lost."""
+    """A ship's twin between two ticks; `watched` adds alarms of bus and log to the reasons, `dropped` what
+    the log lost."""
 
     def __init__(
         self,
@@ -138,7 +139,8 @@ class Loop:
 
 
 def _nu(measured: Measured) -> tuple[float, float, float] | None:
-    """What the adaptation learns from: speed over ground and rate of turn, measured, with controls; else None."""
+    """What the adaptation learns from: speed over ground and rate of turn, measured, with controls; else
+    None."""
     si = measured.si
     if "u" in measured.derived or not measured.has("u", "v", "r", "delta", "n", "psi"):
         return None

@@ -1,6 +1,8 @@
-"""A residual's manifest: what its network is, for which ship, on which inputs it may be believed, and how to prove it is whole.
+"""A residual's manifest: what its network is, for which ship, on which inputs it may be believed, and how
+to prove it is whole.
 
-The format is described in docs/residual.md; `export` writes it, `residual.py` believes nothing that it has not checked.
+The format is described in docs/residual.md; `export` writes it, `residual.py` believes nothing that it has
+not checked.
 """
 
 import json
@@ -23,7 +25,8 @@ class ManifestError(SettingsError):
 
 @dataclass(frozen=True)
 class Input:
-    """One input: the network sees (zeta - offset)/scale; outside [low, high] (zeta's own unit) it was not trained."""
+    """One input: the network sees (zeta - offset)/scale; outside [low, high] (zeta's own unit) it was not
+    trained."""
 
     name: str
     scale: float
@@ -64,6 +67,7 @@ def parse(data: bytes) -> Manifest:
         raise ManifestError(f"schema_version is not {SCHEMA_VERSION}")
     features = _count(table, "features", MAX_FEATURES)
     inputs = tuple(_input(entry) for entry in _list(table, "inputs"))
+    training = table.get("training")
     scale, ship = _table(table, "force_scale"), _table(table, "ship")
     return Manifest(
         sha256=_word(table, "sha256"),
@@ -79,7 +83,7 @@ def parse(data: bytes) -> Manifest:
         golden=_golden(_table(table, "golden"), len(inputs), features),
         whitening=_whitening(table.get("whitening"), features),
         spectral_norms=_vector(table.get("spectral_norms", []), None, "spectral_norms"),
-        training=table.get("training") if isinstance(table.get("training"), dict) else {},
+        training=training if isinstance(training, dict) else {},
     )
 
 
@@ -99,10 +103,7 @@ def _golden(table: dict[str, Any], inputs: int, features: int) -> tuple[Any, ...
         raise ManifestError("golden: lists of inputs and outputs are needed")
     if len(asked) != len(answers) or len(asked) < 2:
         raise ManifestError(f"golden: {len(asked)} inputs and {len(answers)} outputs; two or more pairs are needed")
-    return tuple(
-        (_vector(z, inputs, "golden.inputs"), _vector(phi, features, "golden.outputs"))
-        for z, phi in zip(asked, answers, strict=True)
-    )
+    return tuple((_vector(z, inputs, "golden.inputs"), _vector(phi, features, "golden.outputs")) for z, phi in zip(asked, answers, strict=True))
 
 
 def _whitening(table: Any, features: int) -> tuple[tuple[float, ...], tuple[tuple[float, ...], ...]] | None:
@@ -132,7 +133,7 @@ def _vector(value: Any, size: int | None, name: str) -> tuple[float, ...]:
 
 
 def _number(table: dict[str, Any], key: str) -> float:
-    value = table.get(key)
+    value: Any = table.get(key)
     if type(value) not in (int, float) or not isfinite(value):
         raise ManifestError(f"{key} = {value!r}: a finite number is needed")
     return float(value)

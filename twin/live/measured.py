@@ -9,8 +9,8 @@ Numbers = dict[str, float]
 class Measured:
     """SI values by attribute of physics; an attribute that is not in `si` is not measured.
 
-    `fresh`: those with a new sample in this tick, and the time since the one before [s]; `steps`: those that were reset because
-    a step lasted, and by how much; `derived`: those that no instrument measured itself.
+    `fresh`: those with a new sample in this tick, and the time since the one before [s]; `steps`: those that
+    were reset because a step lasted, and by how much; `derived`: those that no instrument measured itself.
     """
 
     now_s: float

@@ -1,8 +1,8 @@
 """A small network through ONNX Runtime's C interface: floats in, floats out, buffers owned here, no numpy.
 
-The Python binding of ONNX Runtime imports numpy and costs 14 MB more; on board one vector goes in and one comes out. The
-C interface is a table of functions that is only ever appended to (its first 102 entries are those of version 1), so the
-indices below hold for every release. One thread, no arena, no telemetry.
+The Python binding of ONNX Runtime imports numpy and costs 14 MB more; on board one vector goes in and one
+comes out. The C interface is a table of functions that is only ever appended to (its first 102 entries are
+those of version 1), so the indices below hold for every release. One thread, no arena, no telemetry.
 """
 
 import ctypes
@@ -68,7 +68,8 @@ class _Runtime:
 
 
 class Network:
-    """One input vector, one output vector: `run(values) -> list[float]` writes and reads buffers that stay where they are."""
+    """One input vector, one output vector: `run(values) -> list[float]` writes and reads buffers that stay
+    where they are."""
 
     def __init__(self, model: bytes, input_name: str, inputs: int, output_name: str, outputs: int):
         self._runtime = _runtime()
@@ -84,7 +85,7 @@ class Network:
 
     def run(self, values: list[float]) -> list[float]:
         """The network's output; the caller has checked that the values are finite."""
-        self._in[self._slice_in] = values
+        self._in[self._slice_in] = values  # type: ignore[assignment]
         status = self._run(*self._arguments)
         if status:
             self._runtime.check(status)
@@ -122,7 +123,8 @@ class Network:
 
 
 def open_library(breathe: Callable[[], object]) -> None:
-    """Load ONNX Runtime now, if it is there; `breathe` is called between its steps (it may give memory back)."""
+    """Load ONNX Runtime now, if it is there; `breathe` is called between its steps (it may give memory
+    back)."""
     with suppress(NetworkError):
         _load()
         breathe()

@@ -1,7 +1,9 @@
-"""What systemd is told: ready, alive after a good step, and how it goes in words. Without systemd nothing happens."""
+"""What systemd is told: ready, alive after a good step, and how it goes in words. Without systemd nothing
+happens."""
 
 import os
 import socket
+from contextlib import suppress
 
 
 class Notifier:
@@ -10,9 +12,7 @@ class Notifier:
     def __init__(self, address: str | None = None):
         address = os.environ.get("NOTIFY_SOCKET", "") if address is None else address
         self._address = "\0" + address[1:] if address.startswith("@") else address
-        self._socket = (
-            socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC) if address else None
-        )
+        self._socket = socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM | socket.SOCK_CLOEXEC) if address else None
         if self._socket is not None:
             self._socket.setblocking(False)
 
@@ -32,10 +32,8 @@ class Notifier:
     def _send(self, text: str) -> None:
         if self._socket is None:
             return
-        try:
+        with suppress(OSError):  # a busy or missing service manager must not stop the loop
             self._socket.sendto(text.encode(), self._address)
-        except OSError:
-            pass  # a busy or missing service manager must not stop the loop
 
 
 def _line(text: str) -> str:

@@ -1,8 +1,9 @@
-"""What an ONNX file holds, read without running it: operators, opset, inputs, outputs, and anything that must not be there.
+"""What an ONNX file holds, read without running it: operators, opset, inputs, outputs, and anything that
+must not be there.
 
-ONNX Runtime loads most corrupted files without complaint, follows paths to other files, and a model of 91 bytes can ask for
-16 GiB. So the file is looked through before it is given to it. The wire format is protobuf's; the field numbers are those of
-onnx.proto3 (https://github.com/onnx/onnx, onnx/onnx.proto).
+ONNX Runtime loads most corrupted files without complaint, follows paths to other files, and a model of 91
+bytes can ask for 16 GiB. So the file is looked through before it is given to it. The wire format is
+protobuf's; the field numbers are those of onnx.proto3 (https://github.com/onnx/onnx, onnx/onnx.proto).
 """
 
 import struct
@@ -21,7 +22,8 @@ class OnnxError(ValueError):
 
 @dataclass
 class OnnxModel:
-    """The parts of a model that are checked. `inputs` and `outputs`: (name, element type, shape; 0 for a free dimension)."""
+    """The parts of a model that are checked. `inputs` and `outputs`: (name, element type, shape; 0 for a
+    free dimension)."""
 
     opsets: dict[str, int] = field(default_factory=dict)
     operators: list[str] = field(default_factory=list)
@@ -48,9 +50,11 @@ def look(data: bytes) -> OnnxModel:
 
 
 def with_rows(model: bytes, source: str, rows: Sequence[Sequence[float]], offsets: Sequence[float], output: str) -> bytes:
-    """The model with one more output, rows (R, n) times `source` (1, n) plus offsets (R): products that Python is slow at.
+    """The model with one more output, rows (R, n) times `source` (1, n) plus offsets (R): products that
+    Python is slow at.
 
-    Protobuf merges a message that is written in two pieces, so the new node, weights and output are simply written behind.
+    Protobuf merges a message that is written in two pieces, so the new node, weights and output are simply
+    written behind.
     """
     size, width = len(rows), len(rows[0])
     names = [f"{output}_weights", f"{output}_offsets"]
@@ -110,7 +114,8 @@ def _node(data: bytes, model: OnnxModel) -> None:
 
 
 def _value_info(data: bytes) -> tuple[str, int, list[int]]:
-    name, kind, shape = "", 0, []
+    name, kind = "", 0
+    shape: list[int] = []
     for number, _, value in _fields(data):
         if number == 1:
             name = _text(value)
@@ -122,7 +127,8 @@ def _value_info(data: bytes) -> tuple[str, int, list[int]]:
 
 
 def _tensor_type(data: bytes) -> tuple[int, list[int]]:
-    kind, shape = 0, []
+    kind = 0
+    shape: list[int] = []
     for number, _, value in _fields(data):
         if number == 1:
             kind = int(value)  # type: ignore[arg-type]

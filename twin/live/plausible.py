@@ -2,7 +2,8 @@
 
     yaw rate against the turning of the heading, speed over ground against the positions, yaw rate against the rudder
 
-Each pair is two slow sums, k = sum(a b)/sum(b b) over a few ship lengths; a factor near -1, 57.3 or 1.94 has a name.
+Each pair is two slow sums, k = sum(a b)/sum(b b) over a few ship lengths; a factor near -1, 57.3 or 1.94 has
+a name.
 """
 
 from math import sqrt
@@ -12,7 +13,8 @@ from twin.live.measured import Measured
 from twin.physics.ship import Ship
 
 FACTORS = (
-    (-1.0, "has the wrong sign"), (57.2958, "is in degrees where radians were meant"), (0.0174533, "is in radians where degrees were meant"),
+    (-1.0, "has the wrong sign"), (57.2958, "is in degrees where radians were meant"),
+    (0.0174533, "is in radians where degrees were meant"),
     (60.0, "is per minute"), (1.943844, "is in knots"), (0.514444, "was converted from knots twice"),
 )  # fmt: skip
 
@@ -87,7 +89,10 @@ class Plausibility:
 
     def reasons(self) -> list[str]:
         said = []
-        for pair, what in ((self._turn, "yaw_rate_degps against the turning heading"), (self._speed, "speed over ground against the positions")):
+        for pair, what in (
+            (self._turn, "yaw_rate_degps against the turning heading"),
+            (self._speed, "speed over ground against the positions"),
+        ):
             if pair.judged and (word := _word(pair.factor())):
                 said.append(f"{what}: it {word} (factor {pair.factor():.3g})")
         if self._helm.judged and self._helm.correlation() < -0.3:

@@ -1,7 +1,8 @@
 """A log as the loop met it: the instants of its ticks, and what came in before each.
 
-A log of the twin itself holds each sample in front of the tick that used it, so file order alone gives back every batch. An
-imported voyage (rows) or a foreign log of Keelson scalars has no ticks: there the ticks stand on a grid.
+A log of the twin itself holds each sample in front of the tick that used it, so file order alone gives back
+every batch. An imported voyage (rows) or a foreign log of Keelson scalars has no ticks: there the ticks stand
+on a grid.
 """
 
 from collections.abc import Iterator
@@ -59,9 +60,7 @@ class PlayedLog:
         if any(_topic_type(message.topic) for message in first):
             self.kind = "a log of Keelson scalars"
             return self._on_grid(self._scalars(whole))
-        raise DataError(
-            f"{self.path}: no measurements in it: no {TICK}, no {ROW}, no Keelson subject the twin knows."
-        )
+        raise DataError(f"{self.path}: no measurements in it: no {TICK}, no {ROW}, no Keelson subject the twin knows.")
 
     def _as_ticked(self, source: Iterator[Message]) -> Iterator[Batch]:
         raw: list[Message] = []
@@ -79,7 +78,8 @@ class PlayedLog:
             raw = []
 
     def _on_grid(self, source: Iterator[tuple[float, list[Result], Message]]) -> Iterator[Batch]:
-        """Ticks each period from the first sample to the last; a tick has what was measured up to its time."""
+        """Ticks each period from the first sample to the last; a tick has what was measured up to its
+        time."""
         results: list[Result] = []
         raw: list[Message] = []
         start_s: float | None = None

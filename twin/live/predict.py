@@ -1,7 +1,9 @@
-"""Where the ship will be in 10, 60 and 120 seconds if helm, engine and weather stay as they are, and how sure that is.
+"""Where the ship will be in 10, 60 and 120 seconds if helm, engine and weather stay as they are, and how
+sure that is.
 
-The model is carried ahead by Runge-Kutta steps of 0.15 L/U_0, a few in each tick, so that no tick is long. How far
-predictions were off is learned for each horizon: the 68 % quantile of past errors,  log q += eta (1[error > q] - 0.32).
+The model is carried ahead by Runge-Kutta steps of 0.15 L/U_0, a few in each tick, so that no tick is long.
+How far predictions were off is learned for each horizon: the 68 % quantile of past errors,  log q += eta
+(1[error > q] - 0.32).
 """
 
 from collections import deque
@@ -20,12 +22,14 @@ from twin.physics.state import Force, Situation
 MOST_STEPS = 8.0  # in one tick
 STEP = 0.15  # of L/U_0
 RAYLEIGH = 1.51  # the 68 % quantile of a distance in the plane, in deviations along one axis
+ABSURD_MPS, ABSURD_RADPS = 100.0, 10.0  # faster than any ship: a helm or engine signal that cannot be
 LEARNED = 20  # errors seen before the uncertainty counts as learned
 LearnedAt = Callable[[Situation, Forces], Force]
 
 
 class Prediction(NamedTuple):
-    """eta and nu `horizon_s` after the tick that says it [SI], one sigma of each, from an estimate `age_s` old.
+    """eta and nu `horizon_s` after the tick that says it [SI], one sigma of each, from an estimate `age_s`
+    old.
 
     status: "prior" until past errors have taught the uncertainty, then "learned".
     """
@@ -63,8 +67,13 @@ class Predictor:
         if self._round is None:
             self._round = Round(now_s, e, replace(s), physics, self.step_s, [h + self.lead_s for h in self.horizons_s])
         self._credit += self.steps_a_tick
-        done = self._round.run(int(self._credit), learned)
-        self._credit %= 1.0
+        try:
+            done = self._round.run(int(self._credit), learned)
+        except Lost:
+            self._round = None
+            return []
+        finally:
+            self._credit %= 1.0
         if len(done) < len(self.horizons_s) or now_s < self._round.start_s + self.lead_s - 1e-6:
             return []
         made = self._round
@@ -86,6 +95,10 @@ class Predictor:
                     self.sureness[horizon_s].feed(state, e.state())
 
 
+class Lost(Exception):
+    """The model ran away: nothing is foretold."""
+
+
 class Round:
     """One prediction under way, to a few moments ahead of its start."""
 
@@ -103,6 +116,8 @@ class Round:
             left_s = self._moments_s[len(self._done)] - self._ahead_s
             step_s = min(self.step_s, left_s)
             carry(self._s, self._physics, learned, step_s)
+            if not (abs(self._s.u) + abs(self._s.v) < ABSURD_MPS and abs(self._s.r) < ABSURD_RADPS):
+                raise Lost
             self._ahead_s += step_s
             if left_s - step_s < 1e-9:
                 s = self._s
@@ -111,7 +126,8 @@ class Round:
 
 
 def carry(s: Situation, physics: Known, learned: LearnedAt, h: float) -> None:
-    """Puts s h seconds on: nu by one Runge-Kutta step, eta along the mean of old and new nu; learned force held."""
+    """Puts s h seconds on: nu by one Runge-Kutta step, eta along the mean of old and new nu; learned force
+    held."""
     forces = physics.forces(s)
     rates = physics.far_rates(s, forces, learned(s, forces), h)
     u, v, r = s.u + h * rates.u, s.v + h * rates.v, s.r + h * rates.r
@@ -156,4 +172,3 @@ def ensemble(s: Situation, physics: Known, learned: LearnedAt, horizon_s: float,
     for _ in range(steps):
         carry(s, physics, learned, horizon_s / steps)
     return s
-

@@ -1,7 +1,8 @@
-"""Keeping time on a shared computer: scheduler, processor, memory, garbage. What is not allowed is said, and the twin goes on.
+"""Keeping time on a shared computer: scheduler, processor, memory, garbage. What is not allowed is said,
+and the twin goes on.
 
-Clean pages of libraries that the start needed and the loop does not are given back first, and only then is memory locked, with
-MCL_ONFAULT: a plain mlockall would fetch every page of every library (80 MB and not 46).
+Clean pages of libraries that the start needed and the loop does not are given back first, and only then is
+memory locked, with MCL_ONFAULT: a plain mlockall would fetch every page of every library (80 MB and not 46).
 """
 
 import ctypes
@@ -16,7 +17,8 @@ _MAPPING = re.compile(r"([0-9a-f]+)-([0-9a-f]+) (\S{4}) \S+ \S+ (\d+)\s*(.*)")
 
 
 def settle(priority: int = 0, cpu: int = -1, lock_memory: bool = True, drop: bool = True) -> list[str]:
-    """Make this process a real-time one as far as it is allowed; the sentences say what was refused, and what to do."""
+    """Make this process a real-time one as far as it is allowed; the sentences say what was refused, and
+    what to do."""
     said = []
     gc.collect()
     gc.freeze()
@@ -33,9 +35,11 @@ def settle(priority: int = 0, cpu: int = -1, lock_memory: bool = True, drop: boo
 
 
 def drop_pages() -> int:
-    """Give back clean, file-backed pages (read-only mappings of libraries); returns the bytes of the mappings given back.
+    """Give back clean, file-backed pages (read-only mappings of libraries); returns the bytes of the
+    mappings given back.
 
-    They come back by themselves when they are needed. Writable and once-writable (relocated) mappings are left alone.
+    They come back by themselves when they are needed. Writable and once-writable (relocated) mappings are
+    left alone.
     """
     libc = _libc()
     if libc is None:
@@ -60,15 +64,14 @@ def drop_pages() -> int:
 
 
 def _relocated(path: str, lines: list[str], line: str) -> bool:
-    """Whether a read-only mapping is the part of a library that the loader wrote to (RELRO): it lies right before a writable one."""
+    """Whether a read-only mapping is the part of a library that the loader wrote to (RELRO): it lies right
+    before a writable one."""
     at = lines.index(line)
     if at + 1 >= len(lines):
         return False
     following = _MAPPING.match(lines[at + 1])
     mine = _MAPPING.match(line)
-    return bool(
-        following and mine and following[1] == mine[2] and "w" in following[3] and following[5] in (path, "")
-    )
+    return bool(following and mine and following[1] == mine[2] and "w" in following[3] and following[5] in (path, ""))
 
 
 def _affinity(cpu: int) -> list[str]:
@@ -87,9 +90,7 @@ def _fifo(priority: int) -> list[str]:
             return []
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
     except OSError as error:
-        return [
-            f"no real-time priority ({error.strerror}): under load ticks may come late. Allow it with LimitRTPRIO, or CAP_SYS_NICE"
-        ]
+        return [f"no real-time priority ({error.strerror}): under load ticks may come late. Allow it with LimitRTPRIO, or CAP_SYS_NICE"]
     return []
 
 
@@ -97,9 +98,7 @@ def _lock() -> list[str]:
     libc = _libc()
     if libc is None or libc.mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0:
         return []
-    return [
-        f"memory is not locked ({os.strerror(ctypes.get_errno())}): a swap could delay a tick. Allow it with LimitMEMLOCK"
-    ]
+    return [f"memory is not locked ({os.strerror(ctypes.get_errno())}): a swap could delay a tick. Allow it with LimitMEMLOCK"]
 
 
 def _libc() -> ctypes.CDLL | None:

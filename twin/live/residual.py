@@ -1,9 +1,11 @@
-"""The learned residual's trunk: phi(zeta) by ONNX, believed only where it was trained, and only after it proved to be whole.
+"""The learned residual's trunk: phi(zeta) by ONNX, believed only where it was trained, and only after it
+proved to be whole.
 
     phi = trunk((zeta - offset)/scale),  zeta clamped to its envelope;  weight = prod_i (1 - d_i/MARGIN)^2 over inputs outside,
 
-d_i being how far input i is outside its envelope, in widths of the envelope. Loading checks the hash of the bytes, the
-operators, shapes, element types and opset, the ship, and that golden inputs still give golden outputs.
+d_i being how far input i is outside its envelope, in widths of the envelope. Loading checks the hash of the
+bytes, the operators, shapes, element types and opset, the ship, and that golden inputs still give golden
+outputs.
 """
 
 import hashlib
@@ -23,9 +25,7 @@ from twin.physics.ship import Ship
 from twin.physics.state import Situation
 from twin.physics.zeta import ZETA
 
-OPERATORS = frozenset(
-    ("Gemm", "MatMul", "Add", "Sub", "Mul", "Div", "Sigmoid", "Tanh", "Relu", "Clip", "Concat", "Identity", "Softplus", "Swish")
-)
+OPERATORS = frozenset(("Gemm", "MatMul", "Add", "Sub", "Mul", "Div", "Sigmoid", "Tanh", "Relu", "Clip", "Concat", "Identity", "Softplus", "Swish"))
 MAX_BYTES = 8_000_000
 OPSETS = range(13, 26)
 MARGIN = 0.25  # how far outside its envelope the residual is shrunk to nothing
@@ -38,11 +38,13 @@ class ResidualError(SettingsError):
 
 
 class WrongShip(ResidualError):
-    """A residual made for another ship, or for another state of her model: never used, and not passed over in silence."""
+    """A residual made for another ship, or for another state of her model: never used, and not passed over
+    in silence."""
 
 
 class Features(NamedTuple):
-    """W phi in units of the force scale, the whitened components of phi, how far to believe them (0 to 1), and why not fully."""
+    """W phi in units of the force scale, the whitened components of phi, how far to believe them (0 to 1),
+    and why not fully."""
 
     trained: list[float]
     components: list[float]
@@ -55,9 +57,7 @@ class Residual:
 
     def __init__(self, manifest: Manifest, network: Network, ship: Ship):
         self.manifest, self.network, self.ship = manifest, network, ship  # the network gives W phi and the components
-        self._inputs = [
-            (i.name, ZETA[i.name].of, ZETA[i.name].needs, i.low, i.high, i.offset, i.scale) for i in manifest.inputs
-        ]
+        self._inputs = [(i.name, ZETA[i.name].of, ZETA[i.name].needs, i.low, i.high, i.offset, i.scale) for i in manifest.inputs]
 
     def features(self, s: Situation) -> Features:
         """What the network says of this situation (s.u_r and s.v_r set)."""
@@ -76,7 +76,7 @@ class Residual:
         """The network's inputs, the weight of what it will say, and the reason when that is not 1."""
         values, weight, why, ship = [], 1.0, "", self.ship
         for name, of, needs, low, high, offset, scale in self._inputs:
-            zeta = None if needs and any([getattr(s, need) is None for need in needs]) else of(s, ship)
+            zeta = None if needs and any(getattr(s, need) is None for need in needs) else of(s, ship)
             if zeta is None or not low <= zeta <= high:
                 if zeta is None or not isfinite(zeta):
                     return [], 0.0, f"its input {name} is not measured"
@@ -93,7 +93,8 @@ def dot(a: "tuple[float, ...] | list[float]", b: "tuple[float, ...] | list[float
 
 
 def load(path: str | Path, ship: Ship) -> Residual:
-    """The residual at `path` (its manifest beside it, `.json` for `.onnx`); ResidualError when it must not be used."""
+    """The residual at `path` (its manifest beside it, `.json` for `.onnx`); ResidualError when it must not
+    be used."""
     path = Path(path)
     try:
         model, text = path.read_bytes(), path.with_suffix(".json").read_bytes()
@@ -114,9 +115,7 @@ def check(model: bytes, text: bytes, ship: Ship, where: str = "residual") -> Res
         raise ResidualError(f"{where}: its last layer has the norm {norm:.3g}, the manifest allows {manifest.W_max:.3g}")
     digest = hashlib.sha256(model).hexdigest()
     if digest != manifest.sha256:
-        raise ResidualError(
-            f"{where}: its bytes changed (sha256 {digest[:12]}..., the manifest says {manifest.sha256[:12]}...). Copy it again"
-        )
+        raise ResidualError(f"{where}: its bytes changed (sha256 {digest[:12]}..., the manifest says {manifest.sha256[:12]}...). Copy it again")
     names = _structure(model, manifest, where)
     try:
         _golden(Network(model, names[0], len(manifest.inputs), names[1], manifest.features), manifest, where)
@@ -147,11 +146,10 @@ def bundled(ship: Ship) -> Path | None:
 
 
 def ship_hash(ship: Ship) -> str:
-    """Identifies the model that a residual was trained on top of: every number of the ship and her effects."""
+    """Identifies the model that a residual was trained on top of: every number of the ship and her
+    effects."""
     table = ships.to_table(ship)
-    numbers = {
-        section: {name: entry["value"] for name, entry in table[section].items()} for section in ("particulars", "derivatives")
-    }
+    numbers = {section: {name: entry["value"] for name, entry in table[section].items()} for section in ("particulars", "derivatives")}
     effects = {name: {k: p["value"] for k, p in entry.items()} for name, entry in table["effects"].items()}
     text = json.dumps([ship.name, numbers, effects], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
@@ -163,7 +161,7 @@ def _same_ship(manifest: Manifest, ship: Ship, where: str) -> None:
     if manifest.ship_hash and manifest.ship_hash != ship_hash(ship):
         raise WrongShip(
             f"{where}: made for {ship.name!r} with another model (hash {manifest.ship_hash}, now {ship_hash(ship)}). "
-            "Train it again with `twin train`, or run without it (residual.file = \"none\")"
+            'Train it again with `twin train`, or run without it (residual.file = "none")'
         )
 
 

@@ -1,6 +1,8 @@
-"""`twin run`: the service. Opens bus and log, ticks on time until it is told to stop, and always ends the process itself.
+"""`twin run`: the service. Opens bus and log, ticks on time until it is told to stop, and always ends the
+process itself.
 
-An interpreter that ends with an open Zenoh session may hang for ever; so the outermost thing here is os._exit.
+An interpreter that ends with an open Zenoh session may hang for ever; so the outermost thing here is
+os._exit.
 """
 
 import argparse
@@ -42,9 +44,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="ship file or name of a bundled ship, instead of the settings' own",
     )
     parser.add_argument("--duration", type=float, metavar="S", help="stop by itself after so many seconds")
-    parser.add_argument(
-        "--example-config", action="store_true", help="print a settings file with every key, and stop"
-    )
+    parser.add_argument("--example-config", action="store_true", help="print a settings file with every key, and stop")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -83,9 +83,7 @@ class Stop:
         self.code = 130 if number == signal.SIGINT else 0
 
 
-def serve(
-    settings: Settings, duration_s: float | None = None, on_tick: Callable[[Any], None] | None = None
-) -> int:
+def serve(settings: Settings, duration_s: float | None = None, on_tick: Callable[[Any], None] | None = None) -> int:
     """Serve until told to stop; `on_tick` sees each tick (a test, a view)."""
     stop = Stop()
     os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
@@ -103,9 +101,7 @@ def serve(
             settings["loop.drop_pages"],
         )
         try:
-            Service(loop, bus, recorder, settings, MonotonicClock(loop.rate_hz)).run(
-                stop, duration_s, on_tick
-            )
+            Service(loop, bus, recorder, settings, MonotonicClock(loop.rate_hz)).run(stop, duration_s, on_tick)
         finally:
             if recorder:
                 recorder.close(1.0)
@@ -181,9 +177,7 @@ class Service:
 
     def _greeting(self) -> str:
         learned = "hybrid" if self.loop.learned.residual else f"physics only ({self.loop.learned.why_not})"
-        return f"{self.loop.ship.name}: {self.loop.rate_hz:g} Hz, {learned}. " + " ".join(
-            f"[{note}]" for note in self.loop.notes
-        )
+        return f"{self.loop.ship.name}: {self.loop.rate_hz:g} Hz, {learned}. " + " ".join(f"[{note}]" for note in self.loop.notes)
 
 
 def bus_of(settings: Settings) -> Bus:

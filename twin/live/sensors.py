@@ -1,6 +1,8 @@
-"""Readings in, one `Measured` out: what the ship's instruments say now, in SI, with its age, and why some of it is missing.
+"""Readings in, one `Measured` out: what the ship's instruments say now, in SI, with its age, and why some
+of it is missing.
 
-Every channel has its gate; what no instrument measures is derived where that is exact enough, and said to be derived.
+Every channel has its gate; what no instrument measures is derived where that is exact enough, and said to be
+derived.
 """
 
 from collections.abc import Sequence
@@ -23,6 +25,7 @@ NOISY = (
 )  # fmt: skip
 FROM = {"wind_from": "wind_to", "wave_from": "wave_to"}  # physics says where wind and waves go
 FAR = inf
+FASTEST_SHAFT = 5.0  # of U_0/D_P: three times what drives a ship at her service speed
 
 
 class Sensors:
@@ -31,9 +34,9 @@ class Sensors:
     def __init__(self, ship: Ship, sources: dict[str, str] | None = None, max_delay_s: float = 2.0):
         floors = noise_floors(ship)
         sources = sources or {}
-        self.gates = {
-            c.name: Gate(c, floors.get(c.name, FAR), _frozen(c.name, floors), sources.get(c.name)) for c in CHANNELS
-        }
+        self.gates = {c.name: Gate(c, floors.get(c.name, FAR), _frozen(c.name, floors), sources.get(c.name)) for c in CHANNELS}
+        shaft = self.gates["propeller_rate_rpm"]
+        shaft.low, shaft.high = -FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0, FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0
         self.stamps = Stamps(max_delay_s)
         self.rejected = 0
         self.codes: dict[str, int] = {name: int(Quality.NEVER_SEEN) for name in self.gates}
@@ -113,7 +116,8 @@ class Sensors:
         return attribute
 
     def _derive(self, measured: Measured, own: Estimate) -> None:
-        """Speed over ground, rate of turn and true wind, where no instrument gives them; the filters run along, ready to stand in."""
+        """Speed over ground, rate of turn and true wind, where no instrument gives them; the filters run
+        along, ready to stand in."""
         si, fresh = measured.si, measured.fresh
         if "psi" in fresh:
             ready = self._turn.feed(si["psi"], measured.time["psi"])
@@ -139,7 +143,8 @@ class Sensors:
                 self._derived.pop(attribute, None)
 
     def _judge(self, now_s: float) -> None:
-        """The codes of the channels that were touched or were not well, and one after the other which lose samples."""
+        """The codes of the channels that were touched or were not well, and one after the other which lose
+        samples."""
         for name in tuple(self._odd):
             quality = self.gates[name].quality(now_s)
             self.codes[name] = int(quality)
@@ -173,7 +178,8 @@ def motion_of(own: Estimate) -> dict[str, float]:
 
 
 def noise_floors(ship: Ship) -> dict[str, float]:
-    """What an instrument's noise may add to the change between two samples [border units], by the ship's own scale."""
+    """What an instrument's noise may add to the change between two samples [border units], by the ship's
+    own scale."""
     speed = max(0.15 * ship.U_0, 0.5)
     return {
         "north_m": 10.0, "east_m": 10.0, "heading_true_north_deg": 3.0,

@@ -1,4 +1,5 @@
-"""The certificate beside the loop: the live bound on the observer's error, and whether its assumptions hold now."""
+"""The certificate beside the loop: the live bound on the observer's error, and whether its assumptions
+hold now."""
 
 from twin.live.estimate import Observer
 from twin.live.measured import Measured
@@ -10,7 +11,8 @@ NU = ("u", "v", "r")
 
 
 class Stabilizer:
-    """Steps the tube once a tick; without a certificate it promises nothing, and says so by `inside` being false."""
+    """Steps the tube once a tick; without a certificate it promises nothing, and says so by `inside` being
+    false."""
 
     def __init__(self, tube: Tube | None = None, why_not: str = "no certificate"):
         self.tube, self.why_not = tube, why_not

@@ -2,8 +2,9 @@
 
     t = stamp - (wall - monotonic)
 
-A wall clock may be stepped by an hour while the ship sails on (NTP, a leap second, a hand). So the twin remembers the offset
-from before a step beside the one after it, and each source may keep either: nothing is thrown away because a clock was set.
+A wall clock may be stepped by an hour while the ship sails on (NTP, a leap second, a hand). So the twin
+remembers the offset from before a step beside the one after it, and each source may keep either: nothing is
+thrown away because a clock was set.
 """
 
 from math import isfinite
@@ -25,7 +26,8 @@ class Stamps:
         self._keeps_before: set[str] = set()  # sources whose clock did not take part in the step
 
     def observe(self, now_s: float, wall_s: float) -> float:
-        """Look at the twin's own two clocks; returns by how much the wall clock was just set (0.0: it was not) [s]."""
+        """Look at the twin's own two clocks; returns by how much the wall clock was just set (0.0: it was
+        not) [s]."""
         offset = wall_s - now_s
         if self._offset is None:
             self._offset = offset
