@@ -57,10 +57,7 @@ def samples(legs: Sequence[Leg], model: Model, names: Sequence[str]) -> Samples:
     """Every grid step with known controls and a step after it."""
     kept = [(leg, leg.starts(1, 1)) for leg in legs]
     fields = (
-        {
-            name: _tensor([leg.state[k, i] - (leg.state[k, i] if i < 2 else 0.0) for leg, k in kept])
-            for i, name in enumerate(STATE)
-        }
+        {name: _tensor([leg.state[k, i] - (leg.state[k, i] if i < 2 else 0.0) for leg, k in kept]) for i, name in enumerate(STATE)}
         | {name: _tensor([leg.inputs[name][k] for leg, k in kept]) for name in names}
         | {"t": _tensor([leg.t[k] for leg, k in kept])}
     )
@@ -71,14 +68,10 @@ def samples(legs: Sequence[Leg], model: Model, names: Sequence[str]) -> Samples:
     ahead = torch.tensor(np.concatenate([leg.state[k + 1, 3:] for leg, k in kept]))
     h = _tensor([np.full(k.size, leg.h) for leg, k in kept])
     fields |= {"u_r": exact.u_r, "v_r": exact.v_r}
-    return Samples(
-        {n: x.float() for n, x in fields.items()}, ahead.float(), h.float(), d.float(), columns.float()
-    )
+    return Samples({n: x.float() for n, x in fields.items()}, ahead.float(), h.float(), d.float(), columns.float())
 
 
-def windows(
-    legs: Sequence[Leg], names: Sequence[str], horizon_s: float, stride_s: float, block_s: float = 300.0
-) -> Windows:
+def windows(legs: Sequence[Leg], names: Sequence[str], horizon_s: float, stride_s: float, block_s: float = 300.0) -> Windows:
     """Free runs of `horizon_s` that begin every `stride_s`."""
     starts, wanted, h, group = [], [], [], []
     inputs: dict[str, list[np.ndarray]] = {name: [] for name in (*names, "t")}

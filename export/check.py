@@ -46,23 +46,17 @@ def agree(network: Residual, model: bytes) -> float:
     """The disagreement; TwinError when it is more than AGREE."""
     worst = disagreement(network, model)
     if not worst <= AGREE:
-        raise TwinError(
-            f"torch and ONNX Runtime disagree by {worst:.2g} (at most {AGREE:g}); nothing was written."
-        )
+        raise TwinError(f"torch and ONNX Runtime disagree by {worst:.2g} (at most {AGREE:g}); nothing was written.")
     return worst
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(
-        prog="python -m export.check", description="Would the twin take this residual for this ship?"
-    )
+    parser = argparse.ArgumentParser(prog="python -m export.check", description="Would the twin take this residual for this ship?")
     parser.add_argument("residual", metavar="RESIDUAL.onnx", type=Path)
     parser.add_argument("--ship", metavar="SHIP.toml", required=True)
     args = parser.parse_args()
     found = load_residual(args.residual, load(args.ship))
-    print(
-        f"{args.residual}: whole, and made for {found.manifest.ship_name}; inputs {', '.join(i.name for i in found.manifest.inputs)}"
-    )
+    print(f"{args.residual}: whole, and made for {found.manifest.ship_name}; inputs {', '.join(i.name for i in found.manifest.inputs)}")
     return 0
 
 

@@ -63,9 +63,7 @@ def model_of(ship: Ship, tracks: Sequence[Track]) -> Model:
     """The ship's model as all the voyages can feed it; her current effects are left to the frame when all have a log."""
     model = in_one(Model.of(ship), tracks)
     if all(_logged(t) for t in tracks):
-        model = replace(
-            model, effects=tuple(e for e in model.effects if not isinstance(e, (Current, VaryingCurrent)))
-        )
+        model = replace(model, effects=tuple(e for e in model.effects if not isinstance(e, (Current, VaryingCurrent))))
     return model
 
 
@@ -91,9 +89,7 @@ def afloat(state: np.ndarray, water: np.ndarray, h: float) -> np.ndarray:
     c, s = np.cos(psi), np.sin(psi)
     north, east = water.T
     drift = np.cumsum(water, axis=0) * h
-    return np.column_stack(
-        [x - drift[:, 0], y - drift[:, 1], psi, u - north * c - east * s, v - east * c + north * s, r]
-    )
+    return np.column_stack([x - drift[:, 0], y - drift[:, 1], psi, u - north * c - east * s, v - east * c + north * s, r])
 
 
 def current(track: Track, state: np.ndarray) -> np.ndarray:
@@ -142,7 +138,5 @@ def _borders(count: int) -> tuple[int, int]:
     first = max(1, round(SHARES[0] * count))
     second = max(first + 1, round((SHARES[0] + SHARES[1]) * count))
     if second >= count:
-        raise DataError(
-            f"{count} stretches cannot be split into train, validation and test. Give more or longer voyages."
-        )
+        raise DataError(f"{count} stretches cannot be split into train, validation and test. Give more or longer voyages.")
     return first, second

@@ -75,9 +75,7 @@ def _rms(x: torch.Tensor) -> float:
     return float((x.detach() ** 2).mean().sqrt())
 
 
-def free_run(
-    network: Residual | None, model: Model, start: torch.Tensor, inputs: Inputs, h: torch.Tensor
-) -> torch.Tensor:
+def free_run(network: Residual | None, model: Model, start: torch.Tensor, inputs: Inputs, h: torch.Tensor) -> torch.Tensor:
     """(T, B, 6) states after each step; `start` (B, 6), inputs (T + 1, B), the learned force held for a step."""
     held = Held()
     moving = replace(model, residual=held) if network is not None else model

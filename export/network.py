@@ -6,6 +6,7 @@
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 import torch
@@ -28,9 +29,7 @@ class Residual(torch.nn.Module):
         super().__init__()
         self.ship, self.names, self.S = ship, tuple(names), scale_of(ship)
         sizes = [len(self.names)] + [WIDTH] * LAYERS
-        self.layers = torch.nn.ModuleList(
-            torch.nn.Linear(a, b) for a, b in zip(sizes, sizes[1:], strict=False)
-        )
+        self.layers = torch.nn.ModuleList(torch.nn.Linear(a, b) for a, b in pairwise(sizes))
         self.last = torch.nn.Linear(WIDTH, 3, bias=False)
         for layer in (*self.layers, self.last):
             torch.nn.init.xavier_uniform_(layer.weight)

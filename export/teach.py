@@ -190,17 +190,11 @@ class Course:
     def _losses(self, stage: str, seed: int) -> Iterator[torch.Tensor]:
         """The loss of every batch of an epoch."""
         part = self.data["train"]
-        many, batch = (
-            (len(part.windows), self.settings.rollout_batch)
-            if stage == "rollout"
-            else (len(part.samples), self.settings.batch)
-        )
+        many, batch = (len(part.windows), self.settings.rollout_batch) if stage == "rollout" else (len(part.samples), self.settings.batch)
         for k in shuffled(many, batch, seed):
             value = self._loss(stage, "train", k)
             yield value + self._penalty(
-                torch.randint(
-                    len(part.samples), (self.settings.batch,), generator=torch.Generator().manual_seed(seed)
-                )
+                torch.randint(len(part.samples), (self.settings.batch,), generator=torch.Generator().manual_seed(seed))
             )
 
     def _loss(self, stage: str, part: str, k: torch.Tensor) -> torch.Tensor:

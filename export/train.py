@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from collections import Counter
 from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ from twin.physics.ship import Ship, load
 from twin.study.import_voyage import write_json
 from twin.study.jsonable import plain
 from twin.study.sailed import Sailed, read_all
+from twin.study.track import Track, track
 
 from .data import leg, model_of, split
 
@@ -61,18 +63,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="rollout",
         help="default: acceleration matching, then roll-outs",
     )
-    parser.add_argument(
-        "--epochs", metavar="N", type=int, default=150, help="of single moments, at most (150)"
-    )
-    parser.add_argument(
-        "--rollout-epochs", metavar="N", type=int, default=40, help="of roll-outs, at most (40)"
-    )
-    parser.add_argument(
-        "--lambda-data", metavar="X", type=float, default=1.0, help="weight of the data in --loss paper (1)"
-    )
-    parser.add_argument(
-        "--lambda-phys", metavar="X", type=float, default=0.1, help="weight of R in --loss paper (0.1)"
-    )
+    parser.add_argument("--epochs", metavar="N", type=int, default=150, help="of single moments, at most (150)")
+    parser.add_argument("--rollout-epochs", metavar="N", type=int, default=40, help="of roll-outs, at most (40)")
+    parser.add_argument("--lambda-data", metavar="X", type=float, default=1.0, help="weight of the data in --loss paper (1)")
+    parser.add_argument("--lambda-phys", metavar="X", type=float, default=0.1, help="weight of R in --loss paper (0.1)")
     parser.add_argument(
         "--orthogonality",
         metavar="X",
@@ -123,16 +117,14 @@ def settings_of(args: argparse.Namespace) -> Any:
     return Settings(**{name: value for name, value in vars(args).items() if name in named})
 
 
-def learn(
-    ship: Ship, sailed: list[Sailed], settings: Any, seeds: list[int], output: Path, force: bool = False
-) -> dict[str, Any]:
+def learn(ship: Ship, sailed: list[Sailed], settings: Any, seeds: list[int], output: Path, force: bool = False) -> dict[str, Any]:
     """Train for every seed, keep the best on validation, judge it on the test part, write it when it is worth having."""
     from . import check, to_onnx
     from .teach import teach, zeta_of
     from .worth import share, worth
 
     sailed = sorted(sailed, key=lambda s: str(s.voyage.meta.get("start_time_utc") or ""))
-    tracks = [s.track for s in sailed]
+    tracks = on_one_grid(sailed, ship)
     model = model_of(ship, tracks)
     parts = split([leg(t, model) for t in tracks])
     if not all(any(len(one) for one in legs) for legs in parts.values()):
@@ -148,7 +140,7 @@ def learn(
         "schema_version": SCHEMA_VERSION, "ship": ship.name, "loss": settings.loss, "seeds": seeds,
         "seed": seeds[taught.index(best)], "held_out": judged.told(), "verdict": judged.sentence(),
         "learned_share": share(best.network, model, samples.situation(slice(None))), "inputs": list(best.network.names),
-        "seconds": sum(t.seconds for t in taught), "epochs": {stage: sum(r[0] == stage for r in best.curve) for stage in dict.fromkeys(r[0] for r in best.curve)},
+        "seconds": sum(t.seconds for t in taught), "epochs": dict(Counter(stage for stage, *_ in best.curve)),
         "voyages": [s.provenance() for s in sailed], "parts": {part: [one.name for one in legs] for part, legs in parts.items()},
         "written": judged.proved or force, "forced": force and not judged.proved,
     }  # fmt: skip
@@ -163,6 +155,13 @@ def learn(
     for seed in seeds:
         output.with_name(f".{output.name}.{seed}.part.pt").unlink(missing_ok=True)
     return plain(result)
+
+
+def on_one_grid(sailed: list[Sailed], ship: Ship) -> list[Track]:
+    """The tracks, all with the step of the slowest recording, so that free runs of all can go side by side."""
+    h = max(s.track.h for s in sailed)
+    per_length = float(ship.scale("time")) / h
+    return [s.track if abs(s.track.h - h) < 1e-3 * h else track(s.voyage, ship, per_length) for s in sailed]
 
 
 def bar(label: str) -> Any:

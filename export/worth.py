@@ -42,7 +42,8 @@ class Worth:
         said = "is worth having" if self.proved else "is not worth having"
         return (
             f"the residual {said}: over {self.horizon_s:.0f} s on {self.windows} held-out free runs the place is off by {q:.3g} m "
-            f"with it, {p:.3g} m without (ratio {self.ratio_low95:.2f} to {self.ratio_high95:.2f}), the heading by {b:.3g} deg, {a:.3g} deg without"
+            f"with it, {p:.3g} m without (ratio {self.ratio_low95:.2f} to {self.ratio_high95:.2f}), "
+            f"the heading by {b:.3g} deg, {a:.3g} deg without"
         )
 
     def told(self) -> dict[str, Any]:
@@ -57,9 +58,7 @@ class Worth:
 def errors(network: Residual | None, model: Model, w: Windows) -> np.ndarray:
     """(W, 2) mean position error [m] and heading error [deg] along each free run."""
     with torch.no_grad():
-        off = torch.nan_to_num(
-            free_run(network, model, w.start, w.inputs, w.h) - w.wanted, nan=RUNAWAY
-        ).clamp(-RUNAWAY, RUNAWAY)
+        off = torch.nan_to_num(free_run(network, model, w.start, w.inputs, w.h) - w.wanted, nan=RUNAWAY).clamp(-RUNAWAY, RUNAWAY)
     place, heading = off[..., :2].norm(dim=-1), torch.rad2deg(off[..., 2].abs())
     return torch.stack([place.mean(0), heading.mean(0)], -1).double().numpy()
 
@@ -89,10 +88,7 @@ def ratio(before: np.ndarray, after: np.ndarray, group: np.ndarray, seed: int) -
 def share(network: Residual, model: Model, s: Situation) -> float:
     """How much of the force the network gives: rms of f over rms of f and the known forces, in units of the force scale."""
     with torch.no_grad():
-        known = [
-            torch.stack([torch.as_tensor(x) + torch.zeros_like(s.u) for x in f], -1)
-            for f in model.forces(s, model.water(s))
-        ]
+        known = [torch.stack([torch.as_tensor(x) + torch.zeros_like(s.u) for x in f], -1) for f in model.forces(s, model.water(s))]
         scale = torch.tensor(network.S)
         f = network.f(network.zeta(s)).abs().sum(-1).mean()
         total = sum((k / scale).abs().sum(-1).mean() for k in known)

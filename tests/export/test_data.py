@@ -1,5 +1,7 @@
 """What is learned from: the frame that drifts with the water, and a split through which nothing leaks."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -42,7 +44,7 @@ def test_no_moment_of_a_single_voyage_is_in_two_parts_and_a_block_lies_between(l
     parts = split(legs[:1])
     block = min(BLOCK_S, len(legs[0]) * legs[0].h / 12)
     ends = [(parts[p][0].t[0], parts[p][0].t[-1]) for p in PARTS]
-    for (_, end), (start, _) in zip(ends, ends[1:], strict=False):
+    for (_, end), (start, _) in pairwise(ends):
         assert start - end >= block
 
 

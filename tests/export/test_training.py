@@ -18,6 +18,8 @@ from twin.errors import ThresholdError  # noqa: E402
 from twin.live import residual as live  # noqa: E402
 from twin.live.learned import scale_of  # noqa: E402
 from twin.physics.state import Situation  # noqa: E402
+from twin.study.sailed import Sailed  # noqa: E402
+from twin.study.track import track  # noqa: E402
 
 FEW = Settings(epochs=3, rollout_epochs=2, rollout_lengths=0.75)
 
@@ -34,9 +36,7 @@ def learned(ship, sailed, tmp_path_factory):
     path = tmp_path_factory.mktemp("learned") / "residual.onnx"
     made = []
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(
-            to_onnx, "trunk", lambda network, trunk=to_onnx.trunk: (made.append(network), trunk(network))[1]
-        )
+        patched.setattr(to_onnx, "trunk", lambda network, trunk=to_onnx.trunk: (made.append(network), trunk(network))[1])
         return path, train.learn(ship, sailed, FEW, [42], path), made[0].state_dict()
 
 
@@ -67,9 +67,7 @@ def test_the_twin_says_what_the_training_says(learned, ship, parts):
     s = Situation(psi=0.5, u=6.5, v=0.1, r=0.001, delta=0.1, n=1.6)
     model.forces(s, model.water(s))
     on_board = live.load(learned[0], ship).features(s)
-    t = Situation(
-        **{n: torch.tensor([getattr(s, n)]) for n in ("psi", "u", "v", "r", "delta", "n", "u_r", "v_r")}
-    )
+    t = Situation(**{n: torch.tensor([getattr(s, n)]) for n in ("psi", "u", "v", "r", "delta", "n", "u_r", "v_r")})
     f = again.f(again.zeta(t))[0].tolist()
     assert on_board.weight == pytest.approx(float(again.weight(again.zeta(t))), abs=1e-6)
     assert on_board.trained == pytest.approx(f, abs=1e-5)
@@ -149,3 +147,11 @@ def test_golden_vectors_and_units_are_in_the_manifest(learned, parts):
     assert {entry["unit"] for entry in table["inputs"]} == {"-", "rad"}
     assert len(table["golden"]["inputs"]) >= 2 and len(table["golden"]["outputs"][0]) == 64
     assert table["training"]["voyages"] and table["training"]["held_out"]["windows"] > 0
+
+
+def test_voyages_recorded_at_other_rates_come_on_one_grid(ship, sailed):
+    """Test: one voyage with every second sample. Expected: all tracks get its step."""
+    v = sailed[0].voyage
+    slow = v.with_rows(v.time_s[::2], {name: x[::2] for name, x in v.columns.items()})
+    mixed = [sailed[1], Sailed(slow, track(slow, ship), "slow")]
+    assert [t.h for t in train.on_one_grid(mixed, ship)] == pytest.approx([4.0, 4.0])
