@@ -16,6 +16,8 @@ from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
 from twin.live.residual import bundled, load
 from twin.live.topics import INPUTS, key
+from twin.physics.effects import BUILT_IN
+from twin.physics.ship import load as load_ship
 
 MESSAGES, EACH_TICK = 100_000, 60
 WALL = 1.7e9
@@ -59,13 +61,12 @@ def mutated(dice: random.Random, data: bytes) -> bytes:
     return bytes(spoilt)
 
 
-def test_a_hundred_thousand_messages_do_no_harm(kvlcc2, numbers):
-    dice = random.Random(11)
+def sailed(ship, learned, count, numbers):
+    """The loop under `count` messages; every tick is looked through."""
+    dice, modes = random.Random(11), set()
     ears, decoder = Played([]), Decoder()
-    learned = LearnedForce(kvlcc2, load(bundled(kvlcc2), kvlcc2))
-    loop = Loop(kvlcc2, ears, Outbox(Publisher(), "twin", "ship"), learned)
-    modes = set()
-    for k in range(MESSAGES // EACH_TICK):
+    loop = Loop(ship, ears, Outbox(Publisher(), "twin", "ship"), learned)
+    for k in range(count // EACH_TICK):
         now_s = 100.0 + 0.1 * k
         ears.next = [r for _ in range(EACH_TICK) for r in decoder.decode(*made_up(dice, now_s), now_s)]
         tick = loop.tick(Instant(k, now_s, WALL + now_s))
@@ -73,7 +74,20 @@ def test_a_hundred_thousand_messages_do_no_harm(kvlcc2, numbers):
         assert all(isfinite(x) for _, x in numbers(tick))
         assert hypot(tick.learned.X_N, tick.learned.Y_N) <= 2.0 * tick.learned.bound_N + 1e-6
         assert abs(tick.learned.N_Nm) <= tick.learned.bound_Nm + 1e-6
-        assert learned.adaptation.norm() <= A_MAX + 1e-9
-        e = tick.estimate
-        assert hypot(e.current_north_mps, e.current_east_mps) <= 5.0 + 1e-9
-    assert loop.sensors.rejected > MESSAGES / 10 and len(modes) > 1
+        assert hypot(tick.estimate.current_north_mps, tick.estimate.current_east_mps) <= 5.0 + 1e-9
+    assert loop.sensors.rejected > count / 10 and len(modes) > 1
+    return loop
+
+
+def test_a_hundred_thousand_messages_do_no_harm(kvlcc2, numbers):
+    learned = LearnedForce(kvlcc2, load(bundled(kvlcc2), kvlcc2))
+    sailed(kvlcc2, learned, MESSAGES, numbers)
+    assert learned.adaptation.norm() <= A_MAX + 1e-9
+
+
+def test_nor_do_they_on_a_small_boat_with_every_effect_of_the_catalogue(numbers):
+    boat = load_ship("usv")
+    effects = [e.plausible(boat) for e in BUILT_IN if all(getattr(boat, p, None) is not None for p in e.needs_ship)]
+    assert len(effects) > 15
+    boat = boat.with_effects(*effects)
+    sailed(boat, LearnedForce(boat, None, "none in this test"), MESSAGES // 5, numbers)

@@ -1,7 +1,7 @@
 """The whole tick on a ship that sails: it follows, it says known and learned apart, it never says a number
 that is none."""
 
-from math import isfinite
+from math import hypot, isfinite, radians
 
 import pytest
 
@@ -121,3 +121,26 @@ def test_a_tick_holds_its_time_and_its_pace(bridge):
     tick = bridge.loop.tick(Instant(7, 50.0, 1.7e9 + 50.0))
     assert (tick.index, tick.time_s, tick.wall_s, tick.rate_hz) == (7, 50.0, 1.7e9 + 50.0, 10.0)
     assert not tick.HasField("slack_us")  # no clock measured it
+
+
+def test_a_known_fault_of_an_instrument_is_taken_off(kvlcc2, make_bridge):
+    """Test: a compass 3 deg off and a log 0.4 m/s off, both in the ship file. Expected: the estimate knows better; the log of what
+    was measured does not."""
+    from twin.physics.effects import find
+
+    ship = kvlcc2.with_effects(find("HeadingBias")(bias=radians(3.0)), find("SpeedLogBias")(bias=0.4))
+    bridge = make_bridge(ship=ship, noise=0.2)
+
+    def wrong(readings, b):
+        out = []
+        for r in readings:
+            out.append(r._replace(value=(r.value + 3.0) % 360.0) if r.channel == "heading_true_north_deg" else r)
+            if r.channel == "surge_velocity_mps":
+                out.append(r._replace(channel="surge_velocity_through_water_mps", value=r.value + 0.4))
+        return out
+
+    tick = bridge.run(60.0, wrong)[-1]
+    assert abs(bridge.error("heading_true_north_deg")) < 0.1
+    assert hypot(tick.estimate.current_north_mps, tick.estimate.current_east_mps) < 0.05
+    gap = tick.measured.heading_true_north_deg - bridge.truth["heading_true_north_deg"]
+    assert gap % 360.0 > 2.5

@@ -64,7 +64,7 @@ class Observer:
         self.received: dict[str, bool] = dict.fromkeys(STATES, False)  # which pulled in this tick, unclipped
         self.restarts = 0
         self.sigma = Sigma(ship)
-        self._rates = Rates(0.0, 0.0, 0.0)
+        self.rates = Rates(0.0, 0.0, 0.0)
         self._now_s: float | None = None
         speed, turning = 4.0 * ship.U_0 + 5.0, 8.0 * ship.U_0 / ship.L_pp
         self._most = (speed, speed, turning)  # no ship moves faster, whatever her instruments and her model say
@@ -73,7 +73,7 @@ class Observer:
 
     def steer(self, rates: Rates) -> None:
         """The model's accelerations from now on."""
-        self._rates = rates
+        self.rates = rates
 
     def correct(self, measured: Measured) -> Estimate:
         """The model carried to now, then pulled by what is measured."""
@@ -110,12 +110,12 @@ class Observer:
         self.innovation.clear()
         self._past.clear()
         self._past.append((measured.now_s, e.state()))
-        self._rates = Rates(0.0, 0.0, 0.0)
+        self.rates = Rates(0.0, 0.0, 0.0)
         e.sigma, e.ready = self.sigma.all(), True
 
     def _move(self, dt: float) -> None:
         """Model: nu by the rates of the last tick, eta along the mean of old and new nu."""
-        e, rates = self.estimate, self._rates
+        e, rates = self.estimate, self.rates
         nu = e.u + rates.u * dt, e.v + rates.v * dt, e.r + rates.r * dt
         u, v, r = [min(max(x, -most), most) for x, most in zip(nu, self._most, strict=True)]
         psi = e.psi + 0.25 * (e.r + r) * dt  # heading half way

@@ -11,6 +11,7 @@ from twin.live.clock import Instant
 from twin.live.decode import Result
 from twin.live.dynamics import Dynamics
 from twin.live.estimate import Estimate, Observer
+from twin.live.faults import KnownFaults
 from twin.live.geodesy import Datum
 from twin.live.guard import INVALID, Guard
 from twin.live.learned import LearnedForce
@@ -64,7 +65,7 @@ class Loop:
         self.ship, self.rate_hz, self.period_s = ship, rate_hz, 1.0 / rate_hz
         self.ears, self.voice, self.learned = ears, voice, learned
         self.sensors = sensors or Sensors(ship)
-        self.dynamics = Dynamics(ship)
+        self.dynamics, self.faults = Dynamics(ship), KnownFaults(ship)
         self.observer = Observer(ship, gain, self.dynamics.first_current)
         self.guard = guard or Guard(ship, learned)
         self.predictor = predictor or Predictor(ship, rate_hz=rate_hz)
@@ -83,7 +84,7 @@ class Loop:
         dt = self._elapsed(instant)
         arrived = self.ears.read(instant)
         measured = self.sensors.read(arrived, instant.time_s, instant.wall_s, self.observer.estimate)
-        estimate = self.observer.correct(measured)
+        estimate = self.observer.correct(self.faults.undo(measured, self.observer.estimate, self.observer.rates))
         situation, physics, forces = self.dynamics.known(estimate, measured)
         verdict = self.guard.judge(measured, estimate, self.sensors.reasons(), dt)
         learned = self.learned.at(situation, forces, verdict.use_learned)

@@ -1,0 +1,45 @@
+"""Instruments whose faults are known: what the ship file says is wrong with them is taken off before anybody uses it.
+
+measured' = measured - (read(s) - s), read being what the instruments would say of the ship where she is believed to be.
+"""
+
+from dataclasses import fields
+
+from twin.live.derive import turn
+from twin.live.estimate import Estimate
+from twin.live.measured import Measured
+from twin.physics.effect import SensorFault
+from twin.physics.model import Model
+from twin.physics.ship import Ship
+from twin.physics.state import Rates, Situation
+
+FIELDS = tuple(f.name for f in fields(Situation) if f.name not in ("t", "u_dot", "v_dot"))
+
+
+class KnownFaults:
+    """The sensor faults of a ship; a ship without any costs nothing."""
+
+    def __init__(self, ship: Ship):
+        model = Model.of(ship)
+        self.ship: Ship = model.loaded
+        self.faults: tuple[SensorFault, ...] = model.faults
+
+    def undo(self, measured: Measured, e: Estimate, rates: Rates) -> Measured:
+        """Takes the faults off `measured.si`; what is logged and shown as measured stays as it came."""
+        if not self.faults or not e.ready:
+            return measured
+        si = measured.si
+        drift = e.current_body()
+        true = Situation(e.x, e.y, e.psi, e.u, e.v, e.r, e.u - drift[0], e.v - drift[1], u_dot=rates.u, v_dot=rates.v)
+        for name in FIELDS[8:]:
+            if name in si:
+                setattr(true, name, si[name])
+        read = true
+        for fault in self.faults:
+            if all(need in si for need in fault.needs):
+                read = fault.read(read, self.ship)
+        for name in FIELDS:
+            said, is_so = getattr(read, name), getattr(true, name)
+            if name in si and said != is_so:
+                si[name] -= turn(said - is_so) if name == "psi" else said - is_so
+        return measured
