@@ -1,0 +1,73 @@
+"""`twin-bench paper`: the paper's Tables 3 to 8 on open voyages, the paper's number beside ours."""
+
+import argparse
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any
+
+from bench import paper_sea as sea
+from twin.study.import_voyage import write_json
+
+EPILOG = """example: twin-bench paper --quick
+
+--quick takes minutes and few runs; --full is the paper's 18 hours of voyages, 90 zigzags and five seeds, and takes hours. Both keep
+what is done in --work DIR and go on from there. Exit code 0: the tables are written, whatever they say.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EPILOG
+    size = parser.add_mutually_exclusive_group()
+    size.add_argument("--quick", action="store_true", help="few runs, one seed (the default)")
+    size.add_argument("--full", action="store_true", help="the paper's own amount, resumable")
+    parser.add_argument(
+        "--work", metavar="DIR", type=Path, help="where voyages and checkpoints are kept (default: nowhere; --full: .paper)"
+    )
+    parser.add_argument("--markdown", metavar="FILE.md", type=Path, help="the tables as a page")
+    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+
+
+def run(args: argparse.Namespace) -> int:
+    from bench.paper_page import page
+
+    with tempfile.TemporaryDirectory() as nowhere:
+        work = args.work or (Path(".paper") if args.full else Path(nowhere))
+        result = reproduce(sea.FULL if args.full else sea.QUICK, work, not args.full)
+    text = "\n".join(page(result))
+    print(text, file=sys.stderr if args.json == "-" else sys.stdout)
+    if args.markdown:
+        args.markdown.write_text(text + "\n")
+    if args.json:
+        write_json(result, args.json)
+    return 0
+
+
+def reproduce(plan: sea.Plan, work: Path, quick: bool) -> dict[str, Any]:
+    """Sail, train, tune, predict, and count."""
+    from bench import paper_models, paper_tables
+    from bench.paper_lab import course
+    from bench.paper_ship import nominal
+    from export.teach import SEEDS, Settings
+
+    began, wall = time.process_time(), time.monotonic()
+    work.mkdir(parents=True, exist_ok=True)
+    ship, tell = nominal(), _tell
+    changed, speeds = sea.changed(plan), sea.by_speed(plan)
+    groups = {"lessons": sea.lessons(plan), "zigzags": sea.zigzags(plan.zigzags, 9001), **changed, **speeds}
+    sailed = iter(sea.sail([c for cases in groups.values() for c in cases], work / "voyages", tell))
+    courses = {name: [course(next(sailed), ship) for _ in cases] for name, cases in groups.items()}
+    settings = Settings(epochs=25, rollout_epochs=12) if quick else Settings()
+    models = paper_models.build(courses["lessons"], settings, 30 if quick else 150, SEEDS[:1] if quick else SEEDS, work, tell)
+    tell("predicting")
+    tables = paper_tables.all_tables(models, courses, list(changed), list(speeds), 10_000, 5_000)
+    return {
+        "schema_version": 1, "quick": quick, "tables": tables, "ratios": paper_tables.ratios(tables["3"]), "models": models.told,
+        "counts": {name: len(some) for name, some in courses.items()}, "scenarios": list(sea.SCENARIOS),
+        "cpu_seconds": round(time.process_time() - began, 1), "seconds": round(time.monotonic() - wall, 1),
+    }  # fmt: skip
+
+
+def _tell(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)

@@ -1,0 +1,128 @@
+"""The paper's voyages, sailed on the reference sea: TS-01 to TS-03 (Table 2), and zigzags that no model has seen.
+
+72 runs of 900 s are the paper's 18 h at 10 Hz (648 000 samples). Scenarios take turns, so that each part of the split has all.
+"""
+
+import hashlib
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from bench.reference import HULLS, Case, Recording, simulate
+from twin.study.voyage import Voyage
+
+SCENARIOS = ("TS-01", "TS-02", "TS-03")
+RUN_S = 900.0
+TRUE = ("north", "east", "psi")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """How much is sailed: runs to learn from, zigzags for each scenario and angle, for each changed ship, for each speed."""
+
+    runs: int
+    zigzags: int
+    changed: int
+    speeds: int
+    angles: tuple[int, ...] = (10, 20)  # of the zigzags of changed ships and other speeds
+
+
+QUICK, FULL = Plan(15, 2, 1, 1, (20,)), Plan(72, 15, 5, 5)
+SPEEDS = {
+    "Maneuvering": 0.333,
+    "Cruising": 0.677,
+    "Full speed": 0.935,
+}  # 5, 10.5 and 14.5 kn of 15.5: she has no 20 kn
+
+
+@dataclass(frozen=True)
+class Sailed:
+    """A voyage as measured, and where she truly was (N, 3) at its samples."""
+
+    voyage: Voyage
+    truth: np.ndarray
+
+
+def lessons(plan: Plan) -> list[Case]:
+    """What is learned from, in the order of time."""
+    manoeuvres = ("mixed", "mixed", "mixed", "zigzag_20", "mixed", "zigzag_10")
+    return [
+        Case(
+            "kvlcc2",
+            manoeuvres[(i // 3) % len(manoeuvres)],
+            SCENARIOS[i % 3],
+            seed=1000 + i,
+            duration_s=RUN_S,
+        )
+        for i in range(plan.runs)
+    ]
+
+
+def zigzags(count: int, seed: int, scenarios: Sequence[str] = SCENARIOS, **changes: object) -> list[Case]:
+    """`count` zigzags of each of `angles` (10/10 and 20/20) in each scenario."""
+    angles = changes.pop("angles", (10, 20))
+    return [
+        replace(
+            Case("kvlcc2", f"zigzag_{angle}", ts, seed=seed + 100 * i + 10 * j + 1, duration_s=RUN_S),
+            **changes,
+        )  # type: ignore[arg-type]
+        for i in range(count)
+        for j, ts in enumerate(scenarios)
+        for angle in angles  # type: ignore[attr-defined]
+    ]
+
+
+def changed(plan: Plan) -> dict[str, list[Case]]:
+    """Table 7: the ship as the models know her, and two that are not."""
+    hull = HULLS["kvlcc2"]
+    heavy = replace(hull, name="kvlcc2", m=1.05 * hull.m)
+    held = replace(hull, R0=1.1 * hull.R0, X=_more(hull.X, 1.1), Y=_more(hull.Y, 1.1), N=_more(hull.N, 1.1))
+    return {
+        "as she is": zigzags(plan.changed, 50_000, angles=plan.angles),
+        "Mass error M (+5%)": zigzags(plan.changed, 50_000, angles=plan.angles, hull=heavy),
+        "Damping error D (+10%)": zigzags(plan.changed, 50_000, angles=plan.angles, hull=held),
+    }
+
+
+def _more(derivatives: tuple[float, ...], by: float) -> tuple[float, ...]:
+    return tuple(by * d for d in derivatives)
+
+
+def by_speed(plan: Plan) -> dict[str, list[Case]]:
+    """Table 8."""
+    return {name: zigzags(plan.speeds, 60_000, angles=plan.angles, speed_fraction=share) for name, share in SPEEDS.items()}
+
+
+def sail(cases: Sequence[Case], folder: Path, tell: Callable[[str], None], tick_s: float = 0.1) -> list[Sailed]:
+    """These voyages, from the folder where they were sailed before."""
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / f"{_key(case)}.npz" for case in cases]
+    due = [(c, p) for c, p in zip(cases, paths, strict=True) if not p.exists()]
+    if due:
+        tell(f"sailing {len(due)} voyages of {cases[0].duration_s:g} s")
+    for k in range(0, len(due), 48):
+        some = due[k : k + 48]
+        for recording, (_, path) in zip(simulate([c for c, _ in some], tick_s), some, strict=True):
+            _write(recording, path)
+    return [_read(case, path) for case, path in zip(cases, paths, strict=True)]
+
+
+def _key(case: Case) -> str:
+    return f"{case.manoeuvre}-{case.weather}-{case.seed}-{hashlib.sha256(repr(case).encode()).hexdigest()[:10]}"
+
+
+def _write(recording: Recording, path: Path) -> None:
+    truth = np.column_stack([recording.truth[name] for name in TRUE])
+    with open(aside := path.with_suffix(".part"), "wb") as out:
+        np.savez(out, truth=truth, **recording.columns)
+    os.replace(aside, path)
+
+
+def _read(case: Case, path: Path) -> Sailed:
+    with np.load(path) as held:
+        columns = {name: held[name].astype(float) for name in held.files}
+    truth = columns.pop("truth")
+    return Sailed(Voyage(f"{case.weather} {case.manoeuvre} {case.seed}", columns.pop("time_s"), columns), truth)
