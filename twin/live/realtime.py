@@ -13,6 +13,7 @@ import sys
 
 MCL_CURRENT, MCL_FUTURE, MCL_ONFAULT = 1, 2, 4
 MADV_DONTNEED = 4
+M_TRIM_THRESHOLD, M_ARENA_MAX = -1, -8
 _MAPPING = re.compile(r"([0-9a-f]+)-([0-9a-f]+) (\S{4}) \S+ \S+ (\d+)\s*(.*)")
 
 
@@ -32,6 +33,14 @@ def settle(priority: int = 0, cpu: int = -1, lock_memory: bool = True, drop: boo
     if priority > 0:
         said += _fifo(priority)
     return said
+
+
+def save_memory() -> None:
+    """One heap for all threads, and what is freed goes back to the kernel; call it before the first thread starts."""
+    libc = _libc()
+    if libc is not None and hasattr(libc, "mallopt"):
+        libc.mallopt(M_ARENA_MAX, 1)
+        libc.mallopt(M_TRIM_THRESHOLD, 128 * 1024)
 
 
 def drop_pages() -> int:

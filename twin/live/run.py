@@ -86,6 +86,7 @@ class Stop:
 def serve(settings: Settings, duration_s: float | None = None, on_tick: Callable[[Any], None] | None = None) -> int:
     """Serve until told to stop; `on_tick` sees each tick (a test, a view)."""
     stop = Stop()
+    realtime.save_memory()
     os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
     recorder = recorder_of(settings)
     with bus_of(settings) as bus:
