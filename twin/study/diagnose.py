@@ -17,7 +17,7 @@ from .manoeuvres import next_manoeuvre
 from .read import read_voyage
 from .search import Case, Found, search
 from .tell_diagnosis import sentence, told
-from .verdict import alike, held_out_error, judge, parameters, typical_force, visible, weights
+from .verdict import alike, held_out_error, judge, parameters, typical_force, weights
 from .voyage import Voyage
 
 SCHEMA_VERSION = 1
@@ -44,8 +44,8 @@ def diagnose(
 ) -> Diagnosis:
     """Judge all candidates jointly on these voyages."""
     case = assemble(voyages, ship, references, progress)
-    weighed, found = search(case, progress)
-    w, seen = weights(case, weighed), visible(case)
+    weighed, found, seen = search(case, progress)
+    w = weights(case, weighed)
     verdict, missing = judge(case, weighed, w, seen)
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
@@ -93,9 +93,7 @@ def _next(
 ) -> dict[str, Any] | None:  # fmt: skip
     """What to sail next, when two effects stand in each other's way or the voyages could not tell."""
     listed = [c for c in candidates if c]
-    rivals = next(
-        ((c["effect"], o) for c in listed for o in c["cannot_be_told_from"] if c["effect"] in missing or verdict != "missing"), None
-    )
+    rivals = next(((c["effect"], o) for c in listed for o in c["cannot_be_told_from"] if c["effect"] in missing or verdict != "missing"), None)
     if rivals is None and verdict == "undecided" and len(listed) > 1:
         rivals = (listed[0]["effect"], listed[1]["effect"])
     if rivals is None:

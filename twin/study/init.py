@@ -117,10 +117,8 @@ def _particulars(given: Given) -> Numbers:
         )
     if by_mass is not None and C_b is not None and abs(by_mass / C_b - 1.0) > 0.05:
         raise SettingsError(f"--mass-kg gives C_b = {by_mass:.3f}, but --block-coefficient is {C_b:g}. Leave one of them out.")
-    if by_mass is not None:
-        fullness = (by_mass, "given")
-    else:
-        fullness = (C_b, "given") if C_b is not None else reg.typical_block_coefficient(L, speed)
+    given_fullness = by_mass if by_mass is not None else C_b
+    fullness = (given_fullness, "given") if given_fullness is not None else reg.typical_block_coefficient(L, speed)
     C = fullness[0]
     x_G = given["x-g-m"] or 0.0
     if abs(x_G) > 0.1 * L:

@@ -56,8 +56,8 @@ def _steer(course: Callable[[float], float], power: Callable[[float], float]) ->
 MANOEUVRES: dict[str, tuple[Order, str]] = {
     "zigzag 10/10": (_zigzag(10 * DEG), "10 deg of rudder to each side whenever the heading has changed by 10 deg, at constant power"),
     "zigzag 20/20": (_zigzag(20 * DEG), "20 deg of rudder to each side whenever the heading has changed by 20 deg, at constant power"),
-    "turning circles": (lambda h: (25 * DEG if h.lengths < LENGTHS / 2 else -25 * DEG, 1.0), "a full circle to each side with 25 deg of rudder"),
-    "speed changes": (_steer(lambda s: 0.0, lambda s: (1.0, 0.6, 1.0, 0.4)[int(s / 10) % 4]), "a straight course at 100, 60, 100 and 40 % of the usual shaft speed"),
+    "turning circles": (lambda h: (25 * DEG if h.lengths < LENGTHS / 2 else -25 * DEG, 1.0), "a circle to each side at 25 deg"),
+    "speed changes": (_steer(lambda s: 0.0, lambda s: (1.0, 0.6, 1.0, 0.4)[int(s / 10) % 4]), "straight, at 100, 60, 100, 40 % of the shaft speed"),
     "reciprocal runs": (_steer(lambda s: pi * (s > LENGTHS / 2), lambda s: 1.0), "the same straight run there and back at constant power"),
     "square": (_steer(lambda s: 0.5 * pi * int(s / 10), lambda s: 1.0), "four straight legs at right angles at constant power"),
     "zigzag with speed changes": (

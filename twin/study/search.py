@@ -24,6 +24,7 @@ MOST_SEGMENTS = 20  # of 16 ship lengths each; a small boat's hour holds more, a
 SHORTLIST = 6
 SINGLES = 4
 FAR = 12.0  # log odds beyond which a hypothesis is not looked at again
+VISIBLE = 4.0  # log odds that an effect of plausible size would have to show, or the data could not have seen it
 EARNED = 1.5  # log evidence that an effect must add to be looked at again
 
 
@@ -46,6 +47,7 @@ WORLDS: dict[str, World] = {
     "stranger": World(8.0, 4.0, 0.005, unknown=True),
 }
 ODDS = 0.03  # of an effect about which nothing is known
+ODDS_WEAK = 0.002  # when it needs a cause that was measured to be too weak to show
 ODDS_MEASURED = 0.25  # when its cause was measured to be strong
 
 
@@ -98,10 +100,17 @@ def settle(case: Case) -> Case:
     return replace(case, floor=floors[int(np.argmax(scores))])
 
 
-def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> tuple[list[Hypothesis], dict[tuple[str, ...], Found]]:
-    """All hypotheses with their weights, the best few judged about their own values; and what those few found."""
+Searched = tuple[list[Hypothesis], dict[tuple[str, ...], Found], dict[str, bool]]
+
+
+def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> Searched:
+    """All hypotheses with their weights, the best few judged about their own values; what those few found; and whether each
+    candidate, had it its plausible size, would have shown."""
     progress("every effect and every pair")
     worlds = dict(zip(WORLDS, case.reduced(case.lines, case.worlds(list(WORLDS))), strict=True))
+    seen = {name: visible(worlds["usual"], name) for name in case.candidates}
+    weak = [name for name, can in seen.items() if not can and case.catalogue[name].needs]
+    case = replace(case, odds=dict(case.odds) | dict.fromkeys(weak, ODDS_WEAK))
     first = _first_pass(case, worlds)
     best = next(h for h in first if not h.effects)
     found: dict[tuple[str, ...], Found] = {(): Found(best, posterior(worlds[best.world], ()), case.model)}
@@ -114,7 +123,14 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> t
             weighed.pop((chosen, name), None)
         weighed |= {(h.effects, h.world): h for h, _, _ in refined}
         found[chosen] = Found(*max(refined, key=lambda item: item[0].log_weight))
-    return sorted(_level(weighed, first, found), key=lambda h: -h.log_weight), found
+    return sorted(_level(weighed, first, found), key=lambda h: -h.log_weight), found, seen
+
+
+def visible(reduced: Reduced, name: str) -> bool:
+    """Whether this effect, had it its plausible size, would have shown in these voyages."""
+    rows = reduced.rows((name,))
+    A = reduced.A[np.ix_(rows, rows)]
+    return 0.5 * float(np.max(np.diag(A))) - 0.5 * float(np.linalg.slogdet(A + np.eye(rows.size))[1]) > VISIBLE
 
 
 def _level(

@@ -17,7 +17,6 @@ from .search import MOST_SEGMENTS, WORLDS, Case, Found
 
 SURE = 0.5  # an effect is named when it is more likely there than not
 ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
-VISIBLE = 4.0  # log odds that an effect of plausible size would have to show, or the data could not have seen it
 HORIZON_S = 120.0
 
 
@@ -41,18 +40,6 @@ def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
         unknown += float(share) * WORLDS[h.world].unknown
         nothing += float(share) * (not h.effects and not WORLDS[h.world].unknown)
     return Weights(nothing, unknown, effects, weighed[0])
-
-
-def visible(case: Case) -> dict[str, bool]:
-    """Whether each candidate, had it its plausible size, would have shown in these voyages."""
-    reduced = case.reduced(case.lines, [case.floor])[0]
-    out = {}
-    for name in case.candidates:
-        rows = reduced.rows((name,))
-        A = reduced.A[np.ix_(rows, rows)]
-        gain = 0.5 * float(np.max(np.diag(A))) - 0.5 * float(np.linalg.slogdet(A + np.eye(rows.size))[1])
-        out[name] = gain > VISIBLE
-    return out
 
 
 def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:

@@ -15,7 +15,10 @@ class Bank(Force):
     """A bank close by sucks the ship toward it and pushes her bow away, with the square of her speed."""
 
     needs = ("bank_port", "bank_starboard")
-    source = "Norrbin (1974) Bank effects on a ship moving through a short dredged channel, 10th Symp. Naval Hydrodynamics; Ch'ng, Doctors & Renilson (1993) ISP 40"
+    source = (
+        "Norrbin (1974) Bank effects on a ship moving through a short dredged channel, 10th Symp. Naval Hydrodynamics; "
+        "Ch'ng, Doctors & Renilson (1993) ISP 40"
+    )
 
     suction: float = param(0.03, unit="-", lo=0.0, hi=0.5, sd=0.05, doc="side force toward the nearer bank")
     bow_out: float = param(0.008, unit="-", lo=0.0, hi=0.15, sd=0.015, doc="moment that turns the bow from the nearer bank")
