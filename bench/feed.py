@@ -71,10 +71,8 @@ class Feed:
     def _say(self, row: Row) -> None:
         wall_ns = int((self.start_s + row.time_s) * 1e9)
         for subject, value in row.said:
-            if isinstance(value, tuple):
-                data = encode_fix(*geodesy.from_chart(self.datum, *value), wall_ns)
-            else:
-                data = encode_float(value, wall_ns)
+            place = isinstance(value, tuple)
+            data = encode_fix(*geodesy.from_chart(self.datum, *value), wall_ns) if place else encode_float(value, wall_ns)
             self.put[subject](wrap(data, wall_ns))
 
 
