@@ -88,7 +88,7 @@ def test_a_voyage_too_short_to_judge_exits_with_4_and_one_line(tanker, voyages, 
     write_voyage(voyages["nothing"].between(0.0, 60.0), tmp_path / "short.mcap")
     assert cli.main(["diagnose", str(tmp_path / "short.mcap"), "--ship", str(SHIP)]) == 4
     said = capsys.readouterr().err.strip().splitlines()[-1]
-    assert "short" in said and "ship lengths" in said
+    assert "nothing: 59 s" in said and "ship lengths" in said
 
 
 def test_references_given_on_the_command_count_like_a_calibration(tanker, voyages):
