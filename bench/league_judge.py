@@ -9,7 +9,8 @@ import numpy as np
 
 from bench.league_peer import peer
 from bench.league_plan import Question
-from bench.league_sea import kept, ships_of
+from bench.league_sea import kept
+from bench.league_ships import ships_of
 from bench.league_truth import beside
 from twin.physics.effects import find
 from twin.physics.model import Model

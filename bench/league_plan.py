@@ -12,7 +12,6 @@ HULLS = ("kvlcc2", "usv", "container")
 KINDS = ("effect", "none", "decoy", "pair", "outside", "straight")
 STRENGTHS = (1.0, 0.5)
 MANOEUVRES = ("mixed", "zigzag_20", "course_changes", "speed_changes")
-REFERENCES = ("zigzag_20", "turning_circle", "speed_changes", "course_changes", "zigzag_10", "mixed")
 DURATION_S = {"usv": 300.0}  # 230 lengths of a 2 m boat; the others sail half an hour
 HALF_HOUR = 1800.0
 STRAIGHT = ("Wind", "HullFouling", "RudderOffset", "SpeedLogBias", "Current", "TowForce")
@@ -20,7 +19,6 @@ WEATHERS = {"Wind": "wind", "WaveDrift": "waves"}
 QUICK = (
     "Wind", "Current", "HullFouling", "PropellerWear", "RudderWear", "SteeringLag", "SpeedLogBias", "SensorDelay",
 )  # fmt: skip
-REFERENCE_SEED, WEATHER_SEED = 100, 200
 
 
 @dataclass(frozen=True)
@@ -66,6 +64,11 @@ class Question:
         return Case(self.hull, other, "calm", self.hidden, self.decoys, self.seed, self.duration_s)
 
 
+def lasts(hull: str, duration_s: float | None) -> float:
+    """How long a voyage of this hull is [s]."""
+    return duration_s or DURATION_S.get(hull, HALF_HOUR)
+
+
 def questions(
     hulls: Sequence[str], seeds: int, strengths: Sequence[float], effects: Sequence[str] = (), quick: bool = False,
     duration_s: float | None = None,
@@ -73,7 +76,7 @@ def questions(
     """A round of questions for each seed."""
     return [
         [
-            Question(h, *rest, duration_s=duration_s or DURATION_S.get(h, HALF_HOUR))
+            Question(h, *rest, duration_s=lasts(h, duration_s))
             for rest in _shuffled(_round(seed, strengths, effects, quick), seed)
             for h in hulls
         ]
@@ -112,18 +115,3 @@ def pairs(seed: int, count: int) -> list[tuple[tuple[str, float], ...]]:
 def _shuffled(items: list[tuple], seed: int) -> list[tuple]:
     """In a fixed random order: whatever part of it is run is a sample of the whole."""
     return [items[i] for i in np.random.default_rng([seed, 78]).permutation(len(items))]
-
-
-def references(hull: str, duration_s: float | None = None) -> list[Case]:
-    """Calm voyages with nothing hidden; the last is held back to measure the calibrated ship."""
-    seconds = duration_s or DURATION_S.get(hull, HALF_HOUR)
-    return [Case(hull, m, seed=REFERENCE_SEED + i, duration_s=seconds) for i, m in enumerate((*REFERENCES, "mixed"))]
-
-
-def weather_references(hull: str, effect: str, duration_s: float | None = None) -> list[Case]:
-    """Voyages on which the ship that knows this effect has learned it."""
-    seconds = duration_s or DURATION_S.get(hull, HALF_HOUR)
-    return [
-        Case(hull, m, hidden=((effect, 1.0),), seed=WEATHER_SEED + i, duration_s=seconds)
-        for i, m in enumerate(("mixed", "zigzag_20"))
-    ]

@@ -1,22 +1,14 @@
-"""Voyages for the league: sailed many at a time, kept in a folder until they are judged; and the ships that judge them."""
+"""Voyages for the league: sailed many at a time, kept in a folder until they are judged."""
 
 import json
 import os
-import pickle
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from bench import league_plan as plan
 from bench.reference import Case, Recording, simulate
-from twin.physics.effects import find
-from twin.physics.ship import Ship, load
-from twin.study.adding import fitted
-from twin.study.calibrate import calibrate
-from twin.study.sailed import Sailed
-from twin.study.track import track
 from twin.study.voyage import Voyage
 
 BATCH = 96  # ships that sail side by side
@@ -57,37 +49,3 @@ def kept(case: Case, folder: Path) -> tuple[Voyage, dict[str, Any]]:
 def forget(cases: Sequence[Case], folder: Path) -> None:
     for case in cases:
         (folder / f"{name_of(case)}.npz").unlink(missing_ok=True)
-
-
-def fleet_cases(hull: str, duration_s: float | None, few: bool) -> list[Case]:
-    """Every voyage from which the ships of a hull are made."""
-    weather = [] if few else [c for n in plan.WEATHERS for c in plan.weather_references(hull, n, duration_s)]
-    return plan.references(hull, duration_s) + weather
-
-
-def ships(hull: str, folder: Path, duration_s: float | None = None, few: bool = False) -> dict[str, Any]:
-    """{"": the ship calibrated on the reference voyages, "Wind": the same with that effect fitted ..., "calibration": how well}."""
-    start = load(hull)
-    sailed = [_sailed(kept(c, folder)[0], start) for c in plan.references(hull, duration_s)]
-    done = calibrate(sailed[:-1], [(sailed[-1].track, 0)], start)
-    out: dict[str, Any] = {"": done.ship, "calibration": done.result}
-    for effect in () if few else plan.WEATHERS:
-        tracks = [track(kept(c, folder)[0], done.ship) for c in plan.weather_references(hull, effect, duration_s)]
-        out[effect] = done.ship.with_effects(*fitted(done.ship, [find(effect)], tracks)[0].effects)
-    return out
-
-
-def _sailed(v: Voyage, ship: Ship) -> Sailed:
-    return Sailed(v, track(v, ship), v.name)
-
-
-def make_ships(hull: str, folder: Path, duration_s: float | None, few: bool) -> None:
-    """Calibrate a hull's ships and keep them beside the voyages."""
-    path = folder / f"{hull}.ship"
-    if not path.exists():
-        path.write_bytes(pickle.dumps(ships(hull, folder, duration_s, few)))
-
-
-def ships_of(hull: str, folder: Path) -> dict[str, Any]:
-    found: dict[str, Any] = pickle.loads((folder / f"{hull}.ship").read_bytes())
-    return found
