@@ -1,6 +1,8 @@
 """The certificate beside the loop: the live bound on the observer's error, and whether its assumptions
 hold now."""
 
+from math import hypot
+
 from twin.live.estimate import Observer
 from twin.live.measured import Measured
 from twin.live.publish import Certified
@@ -8,6 +10,8 @@ from twin.live.tube import Tube
 from twin.physics.state import Situation
 
 NU = ("u", "v", "r")
+
+USELESS = 1e3  # m/s: a bound above every speed at sea
 
 
 class Stabilizer:
@@ -31,7 +35,10 @@ class Stabilizer:
         beta = tube.step(got, measured.si.get("H_s", 0.0))  # type: ignore[arg-type]
         self.outside = tube.outside(s)
         certificate = tube.certificate
-        bound = (beta[0] ** 2 + beta[1] ** 2) ** 0.5
+        bound = hypot(beta[0], beta[1])
+        if not bound < USELESS:  # a tube that no gain holds widens for ever: it says nothing, and begins anew
+            tube.reset()
+            return Certified(certificate.margin, USELESS, False)
         return Certified(certificate.margin, bound, certificate.ok and self.outside is None)
 
     def _in_time(self, attribute: str, measured: Measured, tube: Tube) -> bool:
