@@ -17,11 +17,8 @@ from typing import Any
 from bench.mark import Mark
 from bench.memory import Memory, memory
 from bench.timing import quantiles
-from twin.live import build, config, realtime, run
+from twin.live import config, run
 from twin.live.clock import Clock, Instant, MonotonicClock
-from twin.live.inbox import Inbox
-from twin.live.outbox import Outbox
-from twin.live.publish import Publisher
 
 WARM_UP = 300  # ticks before anything is counted: gates open, the first prediction is made, the log is open
 CONNECT_S = 20.0
@@ -102,39 +99,31 @@ class Measured:
         self.settings, self.mark = config.load(path), Mark(mark)
         self.modes: dict[str, int] = {}
         self.steps, self.parts, self.paced = steps, parts, paced
-        self.notes: list[str] = []
         self.seen: list[tuple[Memory, int, int, float]] = []  # memory, messages, overruns, processor time
         self.watches: Any = None
         self.last: Any = None
 
     def run(self) -> dict[str, Any]:
-        settings, recorder = self.settings, run.recorder_of(self.settings)
-        with run.bus_of(settings) as self.bus:
-            names = settings["bus.base"], settings["bus.entity"]
-            voice = Outbox(Publisher(), *names, self.bus, recorder.write)
-            self.loop = build.loop_of(settings, Inbox(self.bus, recorder.write), voice)
-            recorder.start()
-            rate = self.loop.rate_hz
-            clock: Clock = MonotonicClock(rate) if self.paced else FastClock(rate, self.mark)
-            self.watch = StopWatch(clock, self.steps, self.parts)
+        with run.opened(self.settings, self._clock) as service:
+            self.loop, self.bus = service.loop, service.bus
             end = WARM_UP + self.steps
-            self.watch.at = {WARM_UP: self._settle, WARM_UP + self.steps // 10: self._look, end: self._finish}
+            self.watch.at = {WARM_UP: self._look, WARM_UP + self.steps // 10: self._look, end: self._finish}
             _connect(self.bus)
-            run.Service(self.loop, self.bus, recorder, settings, self.watch).run(run.Stop(), None, self._keep)
+            service.run(run.Stop(), None, self._keep)
             if not self.parts:
                 self._look()
-            return self._result() | {"log": recorder.close(2.0)._asdict()}
+        assert service.recorder is not None
+        return self._result() | {"log": service.recorder.state._asdict()}
+
+    def _clock(self, rate_hz: float) -> Clock:
+        clock: Clock = MonotonicClock(rate_hz) if self.paced else FastClock(rate_hz, self.mark)
+        self.watch = StopWatch(clock, self.steps, self.parts)
+        return self.watch
 
     def _keep(self, tick: Any) -> None:
         self.last = tick
         if self.watch.index > WARM_UP:
             self.modes[tick.mode] = self.modes.get(tick.mode, 0) + 1
-
-    def _settle(self) -> None:
-        s = self.settings
-        names = ("priority", "cpu", "lock_memory", "drop_pages")
-        self.notes = realtime.settle(*(s[f"loop.{name}"] for name in names))
-        self._look()
 
     def _look(self) -> None:
         clock = self.watch.clock
@@ -161,7 +150,7 @@ class Measured:
             "modes": self.modes,
             "reasons": list(self.last.reasons),
             "learned_weight": self.last.learned.weight,
-            "notes": [*self.loop.notes, *self.notes],
+            "notes": self.loop.notes,
             "parts_us": self._parts(),
         }
 

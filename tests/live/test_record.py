@@ -4,6 +4,7 @@ import io
 import os
 import subprocess
 import sys
+import tracemalloc
 from pathlib import Path
 from time import monotonic, sleep
 
@@ -136,7 +137,7 @@ def test_files_rotate_by_size_and_by_time(tmp_path: Path) -> None:
         assert sum(len(list(read(file))) for file in files) == 80
 
 
-def test_a_chunk_is_a_quarter_of_a_mebibyte() -> None:
+def test_a_burst_is_written_in_small_chunks() -> None:
     chunks: list[int] = []
     writer = McapWriter(lambda data: chunks.append(len(data)), compress=bytes)
     writer.start()
@@ -144,6 +145,34 @@ def test_a_chunk_is_a_quarter_of_a_mebibyte() -> None:
     for i in range(2000):
         writer.add(channel, bytes(500), i, i)
     assert max(chunks) < CHUNK_BYTES * 1.1
+
+
+def test_four_chunks_a_second_for_a_quarter_of_an_hour_do_not_fill_the_memory() -> None:
+    """Expected: what is remembered for the index is what will be written of it, 200 bytes a chunk and no objects."""
+    writer = McapWriter(lambda data: None, compress=bytes)
+    writer.start()
+    channels = [writer.channel(f"{TOPIC}{i}", SCALAR, messages.schema_bytes) for i in range(10)]
+
+    def write(chunks: int) -> None:
+        for k in range(chunks):
+            for channel in channels:
+                writer.add(channel, b"12345678", k, k)
+            writer.flush()
+
+    write(100)
+    tracemalloc.start()
+    write(3600)
+    grown, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert writer.summary.chunks == 3700 and grown < 3600 * 300
+
+
+def test_a_flood_does_not_wait_for_the_next_period(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Test: a thread that would write once an hour, and 300 messages. Expected: it writes as soon as 256 wait."""
+    monkeypatch.setattr("twin.live.record.PERIOD_S", 3600.0)
+    with Recorder(tmp_path) as recorder:
+        put(recorder, 300, 0)
+        until(lambda: recorder.state.written >= 256)
 
 
 def test_a_message_no_log_can_hold_stops_nothing_but_itself(tmp_path: Path) -> None:

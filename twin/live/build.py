@@ -6,7 +6,6 @@ from pathlib import Path
 from twin.errors import SettingsError
 from twin.live import network, realtime
 from twin.live import residual as residuals
-from twin.live.adapt import Adaptation
 from twin.live.certificate import Certificate, Tube, kept
 from twin.live.config import Settings
 from twin.live.estimate import gain_for
@@ -87,38 +86,34 @@ def learned_file(settings: Settings) -> Path | None:
     return Path(folder) / "adaptation.json" if folder else None
 
 
-def keep(adaptation: Adaptation, learned: LearnedForce) -> str:
-    """What is to be kept of the adapted numbers."""
-    return adaptation.saved(mark_of(learned))
-
-
 def stabilizer_of(settings: Settings, ship: Ship) -> Stabilizer:
     """The certificate from its file; when there is none it is worked out by another process (it needs
     numpy, the loop does not)."""
-    import subprocess  # costs a megabyte, and only here
-
     h, K = 1.0 / settings["loop.rate_hz"], settings["observer.gain"] or gain_for(ship)
     oldest_s = settings["observer.oldest_s"] or min(max(0.0125 * ship.L_pp / ship.U_0, 2.0 * h), 1.2)
     delay = max(round(oldest_s / h), 1)
     path = certificate_file(settings)
     try:
         certificate = _on_file(path, ship, K, h, delay)
-        if certificate is None:
-            command = CERTIFY.format(settings["ship.file"], str(path), K, h, delay)
-            done = subprocess.run(
-                [sys.executable, "-c", command],
-                capture_output=True,
-                text=True,
-                timeout=CERTIFY_S,
-                check=False,
-            )
-            certificate = _on_file(path, ship, K, h, delay)
-            if certificate is None:
-                said = done.stderr.strip().splitlines()[-1:] or ["no reason given"]
-                return Stabilizer(None, f"not worked out ({said[0]})")
-    except (OSError, subprocess.TimeoutExpired, SettingsError) as error:
-        return Stabilizer(None, f"not worked out ({error})")
+        said = "" if certificate else _worked_out(settings["ship.file"], str(path), K, h, delay)
+        certificate = certificate or _on_file(path, ship, K, h, delay)
+    except (OSError, SettingsError) as error:
+        certificate, said = None, str(error)
+    if certificate is None:
+        return Stabilizer(None, f"not worked out ({said})")
     return Stabilizer(Tube(certificate), "" if certificate.ok else certificate.reason)
+
+
+def _worked_out(*arguments: object) -> str:
+    """Lets another process put the certificate on file; returns what it said when it could not."""
+    import subprocess  # here and not above: only the first start needs it
+
+    command = [sys.executable, "-c", CERTIFY.format(*arguments)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=CERTIFY_S, check=False)
+    except subprocess.TimeoutExpired as error:
+        return str(error)
+    return (done.stderr.strip().splitlines() or ["no reason given"])[-1]
 
 
 def certificate_file(settings: Settings) -> Path:

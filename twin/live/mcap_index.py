@@ -52,9 +52,18 @@ class Summary:
     def __init__(self) -> None:
         self.schemas: dict[int, bytes] = {}  # id -> whole record
         self.channels: dict[int, bytes] = {}
-        self.chunks: list[ChunkInfo] = []
+        self.chunks = 0
+        self.first_ns = self.last_ns = 0
+        self._chunk_index = bytearray()  # records as they will be written: four chunks a second must not fill the memory
         self.counts: dict[int, int] = {}
         self.metadata: list[tuple[int, int, str]] = []  # offset, length, name
+
+    def add(self, chunk: ChunkInfo) -> None:
+        """One more chunk is in the file."""
+        self._chunk_index += _chunk_index(chunk)
+        self.first_ns = min(self.first_ns, chunk.start_ns) if self.chunks else chunk.start_ns
+        self.last_ns = max(self.last_ns, chunk.end_ns)
+        self.chunks += 1
 
     def tail(self, offset: int) -> bytes:
         """DataEnd, summary, footer and magic, for a data section that ends at `offset`."""
@@ -75,16 +84,14 @@ class Summary:
             (SCHEMA, b"".join(self.schemas.values())),
             (CHANNEL, b"".join(self.channels.values())),
             (STATISTICS, self._statistics()),
-            (CHUNK_INDEX, b"".join(_chunk_index(chunk) for chunk in self.chunks)),
+            (CHUNK_INDEX, bytes(self._chunk_index)),
             (METADATA_INDEX, b"".join(_metadata_index(*entry) for entry in self.metadata)),
         ]
 
     def _statistics(self) -> bytes:
-        first = min((chunk.start_ns for chunk in self.chunks), default=0)
-        last = max((chunk.end_ns for chunk in self.chunks), default=0)
-        sizes = (len(self.schemas), len(self.channels), 0, len(self.metadata), len(self.chunks))
+        sizes = (len(self.schemas), len(self.channels), 0, len(self.metadata), self.chunks)
         total = sum(self.counts.values())
-        return record(STATISTICS, pack("<QHIIIIQQ", total, *sizes, first, last), number_map(self.counts))
+        return record(STATISTICS, pack("<QHIIIIQQ", total, *sizes, self.first_ns, self.last_ns), number_map(self.counts))
 
 
 def message_indexes(entries: dict[int, list[tuple[int, int]]], offset: int) -> tuple[bytes, dict[int, int]]:

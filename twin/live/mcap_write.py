@@ -28,7 +28,7 @@ from twin.live.mcap_index import (
 
 LIBRARY = "shiptwin"
 MESSAGE_HEAD = Struct("<BQHIQQ")  # opcode, length, channel, sequence, log time, publish time
-CHUNK_BYTES = 256 * 1024
+CHUNK_BYTES = 64 * 1024
 Compress = Callable[[bytes], bytes]
 
 
@@ -148,7 +148,7 @@ class McapWriter:
 
     def _commit(self, info: ChunkInfo) -> None:
         chunk, summary = self._chunk, self.summary
-        summary.chunks.append(info)
+        summary.add(info)
         summary.schemas.update(chunk.schemas)
         for channel, rows in chunk.index.items():
             summary.channels.setdefault(channel, self._channels[channel][1])
@@ -168,4 +168,5 @@ def zstd() -> Compress:
     """The compressor; its library is loaded here and not before (2 MB)."""
     import zstandard
 
-    return zstandard.ZstdCompressor(level=1, threads=0).compress
+    parameters = zstandard.ZstdCompressionParameters.from_level(1, source_size=CHUNK_BYTES)
+    return zstandard.ZstdCompressor(compression_params=parameters).compress

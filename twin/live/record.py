@@ -1,7 +1,7 @@
 """The log: a thread that writes MCAP files and never holds up the loop.
 
-`Recorder.write` only puts a message in a queue. The thread writes a chunk each `PERIOD_S` and calls
-fdatasync, so a kill or a power cut loses at most half a second. When the disk is full, read-only or gone, the
+`Recorder.write` only puts a message in a queue. The thread writes a chunk each `PERIOD_S`, or when `FULL`
+messages wait, and calls fdatasync, so a kill or a power cut loses at most half a second. When the disk is full, read-only or gone, the
 log stops, says so in words and counts what it could not keep; the twin goes on, and the log resumes by
 itself.
 """
@@ -25,6 +25,7 @@ __all__ = ["LogFile", "LogState", "Recorder", "read", "read_rows"]
 PERIOD_S = 0.25  # between two writes: half of what may be lost
 RETRY_S = 1.0  # between two tries on a disk that fails
 NOTICE_S = 10.0  # how long a loss that is over is still said
+FULL = 256  # messages that wait no longer: a flood must not pile up in memory
 QUEUE = 4096  # messages the loop may be ahead of the disk (4 s at 50 Hz with 20 sensors); the oldest go first
 Item = tuple[str, str, bytes, int, int]  # topic, type name, payload, log and publish time [ns since 1970]
 
@@ -48,7 +49,7 @@ class Recorder:
         folder: str | Path,
         name: str = "twin",
         max_bytes: int = 256 * 1024 * 1024,
-        max_seconds: float = 3600.0,
+        max_seconds: float = 900.0,
         sync: Callable[[int], None] = os.fdatasync,
     ):
         self.folder, self.name = Path(folder), name
@@ -57,7 +58,8 @@ class Recorder:
         self._sync = sync
         self._compress = zstd()
         self._queue: deque[Item] = deque(maxlen=QUEUE)
-        self._stop = Event()
+        self._closing = False
+        self._wake = Event()
         self._thread = Thread(target=self._run, name="recorder", daemon=True)
         self._segment: Segment | None = None
         self._retry_at = 0.0
@@ -78,14 +80,14 @@ class Recorder:
         self.repaired = recover_folder(self.folder)
         self._thread.start()
 
-    def write(
-        self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int | None = None
-    ) -> None:
+    def write(self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int | None = None) -> None:
         """Queues one message (no envelope); never waits. Times are nanoseconds since 1970."""
         if len(self._queue) == QUEUE:
             self._dropped += 1
             self._say(f"log: the disk at {self.folder} is too slow, messages are dropped")
         self._queue.append((topic, type_name, payload, log_ns, log_ns if publish_ns is None else publish_ns))
+        if len(self._queue) == FULL:
+            self._wake.set()
 
     @property
     def state(self) -> LogState:
@@ -95,7 +97,8 @@ class Recorder:
 
     def close(self, timeout_s: float = 2.0) -> LogState:
         """Writes what is queued, finishes the file and stops; gives up waiting after `timeout_s`."""
-        self._stop.set()
+        self._closing = True
+        self._wake.set()
         if self._thread.is_alive():
             self._thread.join(timeout_s)
         return self.state
@@ -105,7 +108,9 @@ class Recorder:
         self._notice, self._notice_until = notice, time.monotonic() + NOTICE_S
 
     def _run(self) -> None:
-        while not self._stop.wait(PERIOD_S):
+        while not self._closing:
+            self._wake.wait(PERIOD_S)
+            self._wake.clear()
             self._cycle(time.monotonic())
         self._retry_at = 0.0
         self._cycle(time.monotonic())
@@ -162,7 +167,4 @@ class Recorder:
             self._segment.give_up()
             if self._segment.broken:
                 self._close_segment(finish=False)
-        self._alarm = (
-            f"log stopped: {self.folder}: {why}. Free or remount the disk: the log resumes by itself, "
-            "the twin goes on without it"
-        )
+        self._alarm = f"log stopped: {self.folder}: {why}. Free or remount the disk: the log resumes by itself, the twin goes on without it"

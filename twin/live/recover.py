@@ -116,7 +116,7 @@ def _chunk(summary: Summary, offset: int, content: bytes) -> bytes:
     length = 9 + len(content)
     indexes, places = message_indexes(rows, offset + length)
     packed = len(content) - 40 - len(string(content, 28)[0])
-    summary.chunks.append(ChunkInfo(start_ns, end_ns, offset, length, places, len(indexes), packed, len(raw)))
+    summary.add(ChunkInfo(start_ns, end_ns, offset, length, places, len(indexes), packed, len(raw)))
     for channel, entries in rows.items():
         summary.counts[channel] = summary.counts.get(channel, 0) + len(entries)
     return indexes

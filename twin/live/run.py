@@ -10,7 +10,8 @@ import os
 import signal
 import sys
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from time import perf_counter_ns
 from typing import Any
 
@@ -86,8 +87,15 @@ class Stop:
 def serve(settings: Settings, duration_s: float | None = None, on_tick: Callable[[Any], None] | None = None) -> int:
     """Serve until told to stop; `on_tick` sees each tick (a test, a view)."""
     stop = Stop()
+    with opened(settings) as service:
+        service.run(stop, duration_s, on_tick)
+    return stop.code
+
+
+@contextmanager
+def opened(settings: Settings, clock_of: Callable[[float], Clock] = MonotonicClock) -> Iterator["Service"]:
+    """The service of these settings, ready to tick by the clock that `clock_of(rate_hz)` gives."""
     realtime.save_memory()
-    os.environ.setdefault("ORT_DISABLE_TELEMETRY", "1")
     recorder = recorder_of(settings)
     with bus_of(settings) as bus:
         log = recorder.write if recorder else None
@@ -95,18 +103,14 @@ def serve(settings: Settings, duration_s: float | None = None, on_tick: Callable
         if recorder:
             recorder.start()
             loop.notes += recorder.repaired
-        loop.notes += realtime.settle(
-            settings["loop.priority"],
-            settings["loop.cpu"],
-            settings["loop.lock_memory"],
-            settings["loop.drop_pages"],
-        )
+        service = Service(loop, bus, recorder, settings, clock_of(loop.rate_hz))
+        names = ("priority", "cpu", "lock_memory", "drop_pages")
+        loop.notes += realtime.settle(*(settings[f"loop.{name}"] for name in names))
         try:
-            Service(loop, bus, recorder, settings, MonotonicClock(loop.rate_hz)).run(stop, duration_s, on_tick)
+            yield service
         finally:
             if recorder:
                 recorder.close(1.0)
-    return stop.code
 
 
 class Service:
@@ -117,6 +121,7 @@ class Service:
         self.notifier = Notifier()
         path = build.learned_file(settings)
         self.keeper = Keeper(path) if path and loop.learned.adaptation else None
+        self.mark = build.mark_of(loop.learned) if self.keeper else ""
         self.save_s = settings["adaptation.save_s"]
         self._alarms: list[str] = []
         self._dropped = 0
@@ -174,7 +179,7 @@ class Service:
     def _save(self) -> None:
         adaptation = self.loop.learned.adaptation
         if self.keeper and adaptation:
-            self.keeper.put(build.keep(adaptation, self.loop.learned))
+            self.keeper.put(adaptation.saved(self.mark))
 
     def _greeting(self) -> str:
         learned = "hybrid" if self.loop.learned.residual else f"physics only ({self.loop.learned.why_not})"

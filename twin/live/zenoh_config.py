@@ -25,6 +25,8 @@ LOCKED: dict[str, Any] = {
     "transport/unicast/accept_pending": 20,
     "transport/unicast/max_sessions": 32,
     "transport/link/tx/lease": 2000,
+    "transport/link/tx/batch_size": 16384,
+    "transport/link/rx/buffer_size": 16384,
     "transport/link/rx/max_message_size": 262144,
     "connect/retry": RETRY,
     "connect/exit_on_failure": False,
