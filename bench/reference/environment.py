@@ -89,12 +89,13 @@ class Environment:
         v = s[4] + self.current[1] * cos - self.current[0] * sin
         ua, va = self.apparent(u, v, cos, sin)
         there = 1 - self.f.windless
-        out = {"wind": [there * c for c in wind.force(self.h, self.tables, ua, va)]}
+        steady = wind.force(self.h, self.tables, ua, va)
+        out = {"wind": [there * c for c in steady]}
         if self.has_squall:
             gust = flaws.squall(self.f, self.t)
             ahead, aside = gust * np.cos(self.f.squall_from), gust * np.sin(self.f.squall_from)
             blown = wind.force(
                 self.h, self.tables, ua + ahead * cos + aside * sin, va + aside * cos - ahead * sin
             )
-            out["hidden"] = [a - b for a, b in zip(blown, out["wind"], strict=True)]
+            out["hidden"] = [a - b for a, b in zip(blown, steady, strict=True)]
         return out

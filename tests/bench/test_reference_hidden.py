@@ -146,3 +146,12 @@ def test_strength_scales_an_effect():
 def test_two_effects_can_be_hidden_at_once():
     case = Case("usv", "mixed", hidden=(("HullFouling", 1.0), ("Current", 0.5)), duration_s=5.0)
     assert set(simulate([case])[0].hidden) == {"HullFouling", "Current"}
+
+
+def test_a_voyage_is_the_same_whoever_sails_beside_it(voyages):
+    """All voyages are sailed side by side; a squall over one ship once let the wind blow on another that was to feel none."""
+    for name in ("wind_no_force", "waves_no_force"):
+        alone = simulate([Case("usv", "mixed", decoys=(name,), seed=11, duration_s=40.0)])[0]
+        assert np.array_equal(alone.truth["v"], voyages[1][name].truth["v"]), name
+    alone = simulate([Case("usv", "mixed", hidden=(("ExternalForce", 1.0),), seed=11, duration_s=40.0)])[0]
+    assert np.array_equal(alone.truth["v"], voyages[1]["ExternalForce"].truth["v"])

@@ -10,10 +10,10 @@ from twin.physics.effects import catalogue as known_effects
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
+from .case import ODDS, ODDS_MEASURED, Case, settle
 from .columns import Unknown, effect_unknowns, lateness_unknowns
 from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, temper_of
-from .search import ODDS, ODDS_MEASURED, Case, settle
 from .structure import structural_floor
 from .track import Track, track
 from .voyage import Voyage

@@ -11,11 +11,13 @@ import numpy as np
 from twin.physics.ship import Ship, load
 
 from .assemble import assemble, unjudged_because
+from .case import Case
 from .import_voyage import write_json
 from .jsonable import plain
 from .manoeuvres import next_manoeuvre
 from .read import read_voyage
-from .search import Case, Found, search
+from .refine import Found
+from .search import search
 from .tell_diagnosis import sentence, told
 from .verdict import alike, held_out_error, judge, parameters, typical_force, weights
 from .voyage import Voyage

@@ -130,19 +130,35 @@ def _log_mass(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
 def weigh_all(reduced: Reduced, candidates: Sequence[str], most: int = 2) -> list[tuple[tuple[str, ...], float]]:
     """Log evidence of every set of up to `most` candidates: from the one in which every effect is a spike, low-rank steps away."""
     spikes = posterior(reduced, ())
-    M, z = spikes.covariance, spikes.z - reduced.at
-    rows = {name: reduced.rows((name,)) for name in candidates}
+    sets = [chosen for size in range(1, most + 1) for chosen in combinations(candidates, size)]
+    return [((), spikes.log_evidence), *_opened(reduced, spikes, (), sets)]
+
+
+def weigh_with(reduced: Reduced, held: Sequence[str], candidates: Sequence[str]) -> list[tuple[str, float]]:
+    """Log evidence of the set `held` with each of the candidates beside it."""
+    found = posterior(reduced, held)
+    return [(chosen[0], e) for chosen, e in _opened(reduced, found, held, [(n,) for n in candidates if n not in held])]
+
+
+def _opened(
+    reduced: Reduced, start: Posterior, held: Sequence[str], sets: Sequence[tuple[str, ...]]
+) -> list[tuple[tuple[str, ...], float]]:
+    """Log evidence when the spikes of each of `sets` become slabs beside those of `held` (`start`: the posterior under `held`)."""
+    rows = {name: reduced.rows((name,)) for name in {n for chosen in sets for n in chosen}}
+    own = reduced.rows(held)
     open_up = 1.0 - 1.0 / SPIKE**2  # what a spike's precision loses when it becomes a slab
-    out: list[tuple[tuple[str, ...], float]] = [((), spikes.log_evidence)]
-    for size in range(1, most + 1):
-        for chosen in combinations(candidates, size):
-            at = np.concatenate([rows[name] for name in chosen])
-            inner = M[np.ix_(at, at)]
-            K = np.eye(at.size) + open_up * inner
-            wide = np.linalg.solve(K, inner)
-            mean = np.linalg.solve(K, z[at])
-            change = -0.5 * open_up * float(z[at] @ mean) - 0.5 * float(np.linalg.slogdet(K)[1]) + at.size * np.log(SPIKE)
-            out.append((chosen, spikes.log_evidence + change + _inside(reduced, at, mean, wide)))
+    out = []
+    for chosen in sets:
+        at = np.concatenate([rows[name] for name in chosen])
+        inner = start.covariance[np.ix_(at, at)]
+        K = np.eye(at.size) + open_up * inner
+        mean = np.linalg.solve(K, start.z[at])
+        change = -0.5 * open_up * float(start.z[at] @ mean) - 0.5 * float(np.linalg.slogdet(K)[1]) + at.size * np.log(SPIKE)
+        both = np.concatenate([at, own])
+        cross = start.covariance[np.ix_(both, at)]
+        wide = start.covariance[np.ix_(both, both)] - open_up * cross @ np.linalg.solve(K, cross.T)
+        where = start.z[both] - open_up * cross @ mean
+        out.append((chosen, start.log_evidence + change + _inside(reduced, both, where, wide)))
     return out
 
 

@@ -12,8 +12,8 @@ import numpy as np
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
+from .case import Case
 from .innovations import linearise
-from .search import Case
 from .track import READINGS, Track
 
 LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of her lengths

@@ -13,7 +13,7 @@ from .fit import evidence
 from .innovations import Floor, Linear, Normal, innovate
 
 MOST_SEGMENTS = 40
-BOUNDS = {"share": (0.01, 0.5), "calm": (0.1, 4.0), "white": (0.002, 1.0), "flow": (0.0005, 0.05), "sensor": (0.7, 4.0)}
+BOUNDS = {"share": (0.01, 0.5), "calm": (0.1, 4.0), "white": (0.002, 1.0), "flow": (0.002, 0.05), "sensor": (0.7, 4.0)}
 
 
 def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor | None = None) -> Floor:

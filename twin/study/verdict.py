@@ -7,13 +7,14 @@ import numpy as np
 
 from twin.physics.model import Model
 
+from .case import MOST_SEGMENTS, WORLDS, Case
 from .columns import with_values
 from .evidence import Hypothesis, Posterior, posterior, probabilities, reduce
 from .innovations import innovate
 from .nuisance import SURROUNDINGS
 from .openloop import predict
+from .refine import Found
 from .respond import respond
-from .search import MOST_SEGMENTS, WORLDS, Case, Found
 
 SURE = 0.5  # an effect is named when it is more likely there than not
 ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
@@ -57,14 +58,16 @@ def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
 
 
 def judge(case: Case, weighed: Sequence[Hypothesis], w: Weights, seen: dict[str, bool]) -> tuple[str, list[str]]:
-    """The verdict, and the effects to add, first the one that explains most."""
+    """The verdict, and the effects to add, first the one that explains most; voyages that excite too little decide nothing."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
     named = [n for n in w.best.effects if w.effects[n] >= SURE]
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
+    if not _enough(seen):
+        return "undecided", []
     if w.unknown >= SURE:
         return "unknown", []
     if w.nothing >= SURE:
-        return ("nothing_missing" if _enough(seen) else "undecided"), []
+        return "nothing_missing", []
     return ("missing", named) if named else ("undecided", [])
 
 

@@ -1,0 +1,79 @@
+"""A case: voyages to be judged, linearised about the ship's model, and everything that is known beforehand."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from twin.physics.effect import Effect
+from twin.physics.model import Model
+
+from .columns import Unknown
+from .evidence import Nuisance, Reduced, posterior, reduce
+from .innovations import Floor, Linear, innovate
+from .track import Track
+
+MOST_SEGMENTS = 20  # of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
+
+
+@dataclass(frozen=True)
+class World:
+    """One state of the world: factors on the floor's slow acceleration error and on the water's own motion, and its odds."""
+
+    share: float
+    flow: float
+    probability: float
+    unknown: bool = False  # so restless that something must be at work which nobody named
+
+
+WORLDS: dict[str, World] = {
+    "usual": World(1.0, 1.0, 0.85),
+    "rough": World(2.0, 1.0, 0.08),
+    "streaming": World(1.0, 4.0, 0.04),
+    "flooding": World(1.0, 16.0, 0.01),  # only a varying current explains it
+    "strange": World(4.0, 1.0, 0.015, unknown=True),
+    "stranger": World(8.0, 4.0, 0.005, unknown=True),
+}
+ODDS = 0.03  # of an effect about which nothing is known
+ODDS_WEAK = 0.002  # when it needs a cause that was measured to be too weak to show
+ODDS_MEASURED = 0.25  # when its cause was measured to be strong
+
+
+@dataclass(frozen=True)
+class Case:
+    """Voyages to be judged, linearised about the ship's model, and everything that is known beforehand."""
+
+    tracks: tuple[Track, ...]
+    model: Model
+    catalogue: dict[str, type[Effect]]
+    candidates: tuple[str, ...]
+    unknowns: tuple[Unknown, ...]  # core, then the parameters of the candidates and of all instruments
+    effects: tuple[Unknown, ...]  # parameters of the candidates
+    nuisance: Nuisance
+    floor: Floor
+    temper: float
+    odds: Mapping[str, float]
+    lines: tuple[Linear, ...]
+
+    def reduced(self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None) -> list[Reduced]:
+        normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))
+        return [reduce(n, self.nuisance, self.unknowns, self.effects, self.temper, at) for n in normals]
+
+    def worlds(self, names: Sequence[str]) -> list[Floor]:
+        return [self.floor.scaled(WORLDS[n].share, flow=WORLDS[n].flow) for n in names]
+
+    def log_prior(self, chosen: Sequence[str], world: str) -> float:
+        if world == "flooding" and "VaryingCurrent" not in chosen:
+            return -np.inf
+        return float(np.log(WORLDS[world].probability) + sum(np.log(self.odds[name]) for name in chosen))
+
+
+def settle(case: Case) -> Case:
+    """The same case with the fast part of the floor and the readings' scatter as these voyages show them (waves, a worn sensor).
+
+    Judged with every effect allowed, so that no cause is mistaken for noise.
+    """
+    grid = [(white, sensor) for sensor in (1.0, 3.0) for white in (1.0, 2.0, 4.0, 8.0, 32.0)]
+    floors = [replace(case.floor, white=w * case.floor.white, sensor=s * case.floor.sensor) for w, s in grid]
+    scores = [posterior(r, case.candidates).log_evidence for r in case.reduced(case.lines, floors)]
+    return replace(case, floor=floors[int(np.argmax(scores))])

@@ -1,0 +1,81 @@
+"""A hypothesis judged about its own size: linearised anew where its effects stand, so that what is not linear counts in full.
+
+An effect is granted that its form is only roughly right: a share DOUBT of its own force may be something else.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from twin.physics.model import Model
+
+from .case import WORLDS, Case
+from .columns import with_values
+from .evidence import Hypothesis, Posterior, Reduced, log_evidence, posterior, weigh_with
+from .innovations import Linear, linearise
+from .respond import respond
+
+DOUBT = 0.2
+NEWTON = 3  # steps, at most
+STANDS = 0.25  # prior widths that a step may still move
+
+
+@dataclass(frozen=True)
+class Found:
+    """A hypothesis with the parameters it would need."""
+
+    hypothesis: Hypothesis
+    posterior: Posterior
+    model: Model
+
+
+def refine(case: Case, chosen: tuple[str, ...], world: str, z: np.ndarray, wider: Sequence[str]) -> tuple[Found, list[Hypothesis]]:
+    """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand. What was found; and, about
+    it, the hypothesis in every world, and every one that has one of `wider` beside it."""
+    mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
+    names = [n for n in WORLDS if np.isfinite(case.log_prior(chosen, n))]
+    for _ in range(NEWTON):
+        at = np.zeros_like(z)
+        at[mine] = _boxed(case, z)[mine]
+        model, lines = about(case, at, mine)
+        z = posterior(case.reduced(lines, case.worlds([world]), at)[0], chosen).z
+        if np.max(np.abs(_boxed(case, z)[mine] - at[mine])) < STANDS:
+            break
+    reduced = dict(zip(names, case.reduced(lines, case.worlds(names), at), strict=True))
+    own = {n: posterior(r, chosen) for n, r in reduced.items()}
+    judged = [Hypothesis(chosen, n, log_evidence(r, chosen, own[n]), case.log_prior(chosen, n)) for n, r in reduced.items()]
+    best = max(judged, key=lambda h: h.log_weight)
+    return Found(best, own[best.world], model), [*judged, *_beside(case, chosen, reduced, wider)]
+
+
+def _beside(case: Case, chosen: tuple[str, ...], reduced: dict[str, Reduced], wider: Sequence[str]) -> list[Hypothesis]:
+    out = []
+    for world, r in reduced.items():
+        for name, evidence in weigh_with(r, chosen, wider):
+            both = tuple(n for n in case.candidates if n in (*chosen, name))
+            out.append(Hypothesis(both, world, evidence, case.log_prior(both, world)))
+    return out
+
+
+def _boxed(case: Case, z: np.ndarray) -> np.ndarray:
+    """Parameters kept inside their boxes, in prior widths."""
+    lo = np.array([(u.lo - u.centre) / u.sd for u in case.effects])
+    hi = np.array([(u.hi - u.centre) / u.sd for u in case.effects])
+    return np.clip(z, lo, hi)
+
+
+def about(case: Case, z: np.ndarray, mine: np.ndarray) -> tuple[Model, list[Linear]]:
+    """The model with these parameters in it, and the tracks linearised about it, doubt included."""
+    own = [case.effects[i] for i in mine]
+    values = [u.centre + u.sd * z[i] for i, u in zip(mine, own, strict=True)]
+    model = with_values(case.model, own, values, case.catalogue)
+    at = {u.label: v for u, v in zip(own, values, strict=True)}
+    lines = []
+    for line in case.lines:
+        here, _ = model.without_inputs(line.track.missing())
+        fresh = linearise(line.track, here, case.unknowns, case.catalogue, at)
+        moved = np.abs(respond(line.track, here)[0] - respond(line.track, line.model)[0])
+        lines.append(replace(fresh, doubt=DOUBT * moved))
+    return model, lines
+
