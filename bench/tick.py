@@ -69,7 +69,7 @@ def measure(args: argparse.Namespace) -> dict[str, Any]:
         if paced_steps:
             _say(f"the loop on time, {paced_steps} steps at {args.rate:g} Hz ...")
         paced = place.loop(paced_steps, 0, "paced") if paced_steps else None
-        peers = {"peers": {}, "look_ahead_ms": {}}
+        peers = {"peers": {}, "look_ahead": {}}
         if not args.no_peers:
             _say("the peers ...")
             peers = _json_of([sys.executable, "-m", "bench.peers"], "the peers")

@@ -116,10 +116,12 @@ def _peers(r: dict[str, Any]) -> str:
 
 
 def _ahead(r: dict[str, Any]) -> str:
-    if not r["look_ahead_ms"]:
+    if not r["look_ahead"]:
         return ""
-    lines = [_title("Look-ahead of 120 s, 1200 steps of the equations, outside the tick [ms]")]
-    lines += [f"  {name.replace('_', ' '):<22}{ms:>14,.0f}" for name, ms in r["look_ahead_ms"].items()]
+    lines = [_title("Look-ahead of 120 s by the equations, outside the tick [ms]")]
+    for who, found in r["look_ahead"].items():
+        times = "   ".join(f"{name.split('_')[1]} steps {ms:,.0f}" for name, ms in found.items() if name.endswith("_ms"))
+        lines.append(f"  {who:<12}{times}   ends {100.0 * found['apart_m']:.1f} cm apart")
     return "\n".join(lines)
 
 

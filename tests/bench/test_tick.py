@@ -76,7 +76,7 @@ def judge(target="here", **numbers):
     from argparse import Namespace
 
     args = Namespace(steps=1000, rate=50.0, target=target, budget_ms=12.0, budget_mb=48.0)
-    peers = {"peers": {"ekf": {"median_us": 20.0}}, "look_ahead_ms": {}}
+    peers = {"peers": {"ekf": {"median_us": 20.0}}, "look_ahead": {}}
     return judged(args, measured(**numbers), None, peers, {}, "bundled")
 
 

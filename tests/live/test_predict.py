@@ -54,6 +54,7 @@ def test_until_past_errors_have_taught_it_the_uncertainty_is_a_prior_and_wide(ma
     ticks = make_bridge().run(10.0)
     first = next(t.predictions for t in ticks if t.predictions)
     assert [p.horizon_s for p in first] == [10.0, 60.0, 120.0]
+    assert {p.status for p in first} == {"prior"}
     assert first[2].sigma.north_m > 10.0 > first[0].sigma.north_m
 
 
@@ -88,6 +89,8 @@ def test_on_a_voyage_the_predictions_come_true_at_the_time_they_name(make_bridge
         )
         for t, p in late
     ]
+    assert late[-1][1].status == "learned"  # by then thirty have come due
+    assert all(0.0 < p.age_s < 3.0 for _, p in said)  # the estimate it started from is one round old
     assert len(gaps) > 20 and all(gap < 0.5 for gap, _ in gaps)
     assert sum(gap < 1.51 * 3.0 * sigma for gap, sigma in gaps) > 0.9 * len(gaps)
 

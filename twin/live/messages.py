@@ -43,7 +43,11 @@ TABLE: dict[str, list[Field]] = {
         ("name", "string"), ("value", "double"), ("low", "double"), ("high", "double"), ("sigma", "double?"),
         ("unit", "string"), ("status", "string"),  # unestimated | estimated | invalid
     ],
-    "Prediction": [("horizon_s", "double"), ("state", "State"), ("sigma", "State")],
+    "Prediction": [
+        ("horizon_s", "double"), ("state", "State"), ("sigma", "State"),
+        ("age_s", "double"),  # of the estimate it started from
+        ("status", "string"),  # of sigma: prior | learned
+    ],
     "Certificate": [("margin", "double"), ("bound", "double"), ("inside", "bool")],
     "Tick": [
         ("index", "int64"),

@@ -77,7 +77,10 @@ class Publisher:
                 {"name": p.name, "unit": p.unit, "status": p.status, **finite(p.numbers())} for p in parameters
             ],
             predictions=[
-                {"horizon_s": p.horizon_s, "state": finite(border_state(*p.state)), "sigma": finite(border_sigma(p.sigma)), **_about(p)}
+                {
+                    "horizon_s": p.horizon_s, "state": finite(border_state(*p.state)), "sigma": finite(border_sigma(p.sigma)),
+                    "age_s": p.age_s, "status": p.status,
+                }
                 for p in predictions
             ],
             certificate=finite(certified._asdict()),
@@ -131,14 +134,6 @@ def border_sigma(sigma: tuple[float, ...]) -> dict[str, float]:
         "north_m": x, "east_m": y, "heading_true_north_deg": degrees(psi),
         "surge_velocity_mps": u, "sway_velocity_mps": v, "yaw_rate_degps": degrees(r),
     }  # fmt: skip
-
-
-_PREDICTION = messages.Tick.DESCRIPTOR.fields_by_name["predictions"].message_type.fields_by_name
-
-
-def _about(p: Prediction) -> dict[str, Any]:
-    """Age and status of a prediction, as far as the message has a place for them."""
-    return {name: getattr(p, name) for name in ("age_s", "status") if name in _PREDICTION}
 
 
 def named(force: Tau) -> dict[str, float]:
