@@ -10,6 +10,7 @@ DOC = {
     "known": "known force: core and effects",
     "guard": "may the learned force act?",
     "learned": "learned force: network and last layer",
+    "step": "the model to the next tick",
     "adapt": "learn slowly, inside bounds",
     "predict": "10, 60 and 120 s ahead, a few steps a tick",
     "certificate": "stability by numbers",
@@ -108,10 +109,11 @@ def _peers(r: dict[str, Any]) -> str:
     if not r["peers"]:
         return ""
     lines = [_title("Computing of one step, beside the peers [us]", "median   twin/peer")]
-    lines.append(f"  {'twin':<14}{'sensors to predict, means of the above':<42}{r['computing_us']:>10,.0f}")
+    lines.append(f"  {'twin':<14}{'correct, known, learned, step, adapt (means)':<44}{r['computing_us']:>8,.0f}")
+    lines.append(f"  {'':<14}{'and, as no peer does, gates and 120 s ahead':<44}{r['more_us']:>8,.0f}")
     for name, doc in PEERS.items():
         ratio = r["ratios"][f"hybrid_over_{name}"]
-        lines.append(f"  {name:<14}{doc:<42}{r['peers'][name]['median_us']:>10,.0f}{ratio:>10.2f}")
+        lines.append(f"  {name:<14}{doc:<44}{r['peers'][name]['median_us']:>8,.0f}{ratio:>10.2f}")
     return "\n".join(lines)
 
 

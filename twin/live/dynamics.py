@@ -113,6 +113,10 @@ class Dynamics:
         s = self.situation(e, measured)
         return s, self.now, self.now.forces(s)
 
+    def ahead(self, s: Situation, forces: Forces, learned: Force, h: float) -> Rates:
+        """What takes nu over the next h seconds."""
+        return self.now.mean_rates(s, forces, learned, h)
+
     def situation(self, e: Estimate, measured: Measured) -> Situation:
         """The ship's state as estimated, with controls and weather as measured (rudder and shaft 0 when
         nobody says)."""

@@ -67,7 +67,7 @@ class Observer:
         self.rates = Rates(0.0, 0.0, 0.0)
         self._now_s: float | None = None
         speed, turning = 4.0 * ship.U_0 + 5.0, 8.0 * ship.U_0 / ship.L_pp
-        self._most = (speed, speed, turning)  # no ship moves faster, whatever her instruments and her model say
+        self._most = speed, turning  # no ship moves faster, whatever her instruments and her model say
         self._past: deque[tuple[float, tuple[float, ...]]] = deque(maxlen=HISTORY)
         self._current = CurrentFilter(ship, *current)
 
@@ -116,8 +116,10 @@ class Observer:
     def _move(self, dt: float) -> None:
         """Model: nu by the rates of the last tick, eta along the mean of old and new nu."""
         e, rates = self.estimate, self.rates
-        nu = e.u + rates.u * dt, e.v + rates.v * dt, e.r + rates.r * dt
-        u, v, r = [min(max(x, -most), most) for x, most in zip(nu, self._most, strict=True)]
+        speed, turning = self._most
+        u = min(max(e.u + rates.u * dt, -speed), speed)
+        v = min(max(e.v + rates.v * dt, -speed), speed)
+        r = min(max(e.r + rates.r * dt, -turning), turning)
         psi = e.psi + 0.25 * (e.r + r) * dt  # heading half way
         c, s, mean_u, mean_v = cos(psi), sin(psi), 0.5 * (e.u + u), 0.5 * (e.v + v)
         e.x += (mean_u * c - mean_v * s) * dt
@@ -171,63 +173,81 @@ class Observer:
     def _pull(self, state: str, dt: float, measured: Measured) -> None:
         """The last innovation pulls until the next is due; an outlier pulls as much as four usual
         deviations do."""
-        gap = self.innovation.get(state)
-        source = state if state in measured.si else WATER.get(state, state)
+        gap, si = self.innovation.get(state), measured.si
+        source = state if state in si else WATER.get(state, state)
         self.received[state] = False
-        if gap is None or source not in measured.si:
+        if gap is None or source not in si:
             return
         heard_s, hold_s = measured.heard[source], measured.hold_s[source]
         if measured.now_s - heard_s > hold_s + 1e-9:
             return
-        limit = self.sigma.limit(state)
+        doubt = self.sigma.of[state]
+        limit = doubt.limit()
         waits_s = hold_s + heard_s - measured.time[source] + dt
-        a = min(min(self.gain, DELAYED / waits_s) * dt, A_MAX)
-        setattr(self.estimate, state, getattr(self.estimate, state) + a * min(max(gap, -limit), limit))
-        self.received[state] = abs(gap) <= limit
-        self.sigma.shrink(state, gap, a, source in measured.fresh)
+        a = min(self.gain * dt, DELAYED * dt / waits_s, A_MAX)
+        self.received[state] = usual = -limit <= gap <= limit
+        pull = gap if usual else limit if gap > 0.0 else -limit
+        e = self.estimate
+        setattr(e, state, getattr(e, state) + a * pull)
+        if source in measured.fresh:
+            doubt.learn(pull)
+        doubt.shrink(a)
+
+
+class Doubt:
+    """How sure one state is: `sigma` grows while the model runs alone and shrinks with every sample."""
+
+    __slots__ = ("floor", "sigma", "spread", "usual")
+
+    def __init__(self, usual: float):
+        self.usual, self.floor = usual, 0.01 * usual * usual
+        self.sigma = 0.0
+        self.spread = usual * usual  # mean squared innovation
+
+    def limit(self) -> float:
+        """Beyond this an innovation is an outlier."""
+        return OUTLIER * sqrt(self.spread + self.sigma * self.sigma)
+
+    def learn(self, gap: float) -> None:
+        """What innovations are usual, from one that is within the limit."""
+        self.spread += 0.02 * (1.2 * gap * gap + self.floor - self.spread)
+
+    def shrink(self, a: float) -> None:
+        """A sample pulled by the share a."""
+        kept, noise = (1.0 - a) * self.sigma, max(self.spread - self.sigma * self.sigma, self.floor)
+        self.sigma = sqrt(kept * kept + a * a * noise)
 
 
 class Sigma:
-    """One standard deviation for each state: it grows while the model runs alone and shrinks with every
-    sample."""
+    """The doubt of all states."""
 
     def __init__(self, ship: Ship):
         speed, rate, push = 0.03 * ship.U_0, 0.05 * ship.U_0 / ship.L_pp, 0.015 * ship.U_0**2 / ship.L_pp
-        self._usual = {"x": 3.0, "y": 3.0, "psi": 0.01, "u": speed, "v": speed, "r": rate}  # an innovation, to begin with
-        self._astray = {"u": push, "v": push, "r": 1.5 * push / ship.L_pp}  # how fast the model alone goes astray
-        self._now = dict.fromkeys(STATES, 0.0)
-        self._spread = {s: self._usual[s] ** 2 for s in STATES}  # mean squared innovation
+        usual = {"x": 3.0, "y": 3.0, "psi": 0.01, "u": speed, "v": speed, "r": rate}  # an innovation, to begin with
+        self.of = {state: Doubt(usual[state]) for state in STATES}
+        self._astray = push, 1.5 * push / ship.L_pp  # how fast the model alone goes astray in speed and in turning
 
     def all(self) -> tuple[float, ...]:
-        return tuple([self._now[s] for s in STATES])
+        return tuple([doubt.sigma for doubt in self.of.values()])
 
-    def begin(self, measured: "dict[str, float]") -> None:
-        self._now = {s: self._usual[s] * (1.0 if s in measured else 10.0) for s in STATES}
+    def begin(self, measured: dict[str, float]) -> None:
+        for state, doubt in self.of.items():
+            doubt.sigma = doubt.usual * (1.0 if state in measured else 10.0)
 
     def begin_one(self, state: str) -> None:
-        self._now[state] = self._usual[state]
-
-    def limit(self, state: str) -> float:
-        """Beyond this an innovation is an outlier."""
-        return OUTLIER * sqrt(self._spread[state] + self._now[state] ** 2)
+        self.of[state].sigma = self.of[state].usual
 
     def grow(self, dt: float, speed: float) -> None:
         """The model alone for dt seconds at this speed."""
-        now, astray = self._now, self._astray
-        moving = (now["u"] + now["v"] + speed * now["psi"]) * dt
-        now["x"] += moving
-        now["y"] += moving
-        now["psi"] += now["r"] * dt
-        for state in ("u", "v", "r"):
-            now[state] += astray[state] * dt
-
-    def shrink(self, state: str, gap: float, a: float, fresh: bool) -> None:
-        floor = 0.01 * self._usual[state] ** 2
-        if fresh:
-            bounded = min(gap * gap, self.limit(state) ** 2)
-            self._spread[state] += 0.02 * (1.2 * bounded + floor - self._spread[state])
-        noise = max(self._spread[state] - self._now[state] ** 2, floor)
-        self._now[state] = sqrt(((1.0 - a) * self._now[state]) ** 2 + a * a * noise)
+        x, y, psi, u, v, r = self.of.values()
+        moving = (u.sigma + v.sigma + speed * psi.sigma) * dt
+        push, twist = self._astray
+        x.sigma += moving
+        y.sigma += moving
+        psi.sigma += r.sigma * dt
+        u.sigma += push * dt
+        v.sigma += push * dt
+        r.sigma += twist * dt
 
 
 class CurrentFilter:

@@ -90,7 +90,7 @@ class Loop:
         learned = self.learned.at(situation, forces, verdict.use_learned)
         self.guard.note(learned, dt)
         self.learned.learn(_nu(measured), situation, forces, learned, physics, dt, verdict.frozen)
-        self.observer.steer(physics.mean_rates(situation, forces, learned.force, self.period_s))
+        self.observer.steer(self.dynamics.ahead(situation, forces, learned.force, self.period_s))
         ahead = self.predictor.advance(instant.time_s, estimate, situation, physics, self.learned_at(verdict.use_learned), verdict.mode != INVALID)
         certified = self.stabilizer.step(self.observer, measured, situation)
         tick = self.publisher.tick(
@@ -108,7 +108,7 @@ class Loop:
         parts = Parts()
         for part, thing, method in (
             ("read", self.ears, "read"), ("sensors", self.sensors, "read"), ("correct", self.observer, "correct"),
-            ("known", self.dynamics, "known"), ("guard", self.guard, "judge"), ("learned", self.learned, "at"),
+            ("known", self.dynamics, "known"), ("guard", self.guard, "judge"), ("learned", self.learned, "at"), ("step", self.dynamics, "ahead"),
             ("adapt", self.learned, "learn"), ("predict", self.predictor, "advance"), ("certificate", self.stabilizer, "step"),
             ("publish", self.publisher, "tick"), ("record", self.voice, "send"), ("tick", self, "tick"),
         ):  # fmt: skip
