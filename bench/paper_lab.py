@@ -24,10 +24,11 @@ STARTS_S, HORIZON_S = (290.0, 350.0, 410.0, 470.0, 530.0), 120.0
 
 @dataclass(frozen=True)
 class Course:
-    """A voyage for judging: seen from the water, seen from the earth, and the truth (N, 3) north, east, psi on the grid."""
+    """A voyage for judging: as tracked, seen from the water, seen from the earth, and the truth (N, 3) north, east, psi on the grid."""
 
     name: str
     scenario: str
+    track: Track
     floating: Track
     water: Leg
     earth: Leg
@@ -54,7 +55,7 @@ def course(sailed: Sailed, ship: Ship) -> Course:
     blind[:, list(LOG.values())] = np.nan
     time_s = sailed.voyage.time_s - sailed.voyage.time_s[0]
     truth = np.column_stack([np.interp(t.t, time_s, column) for column in sailed.truth.T])
-    return Course(t.name, t.name.split()[0], floating(t, ship), leg(t, model), leg(replace(t, measured=blind), model), truth)
+    return Course(t.name, t.name.split()[0], t, floating(t, ship), leg(t, model), leg(replace(t, measured=blind), model), truth)
 
 
 def floating(t: Track, ship: Ship) -> Track:

@@ -16,17 +16,20 @@ from .network import Residual
 
 STRIDE = 2  # grid steps in one step of a roll-out: a sixteenth of the time the ship takes to sail her length
 STATE = ("x", "y", "psi", "u", "v", "r")
+BLOCKS = 1000  # numbers of blocks kept for each voyage
 
 
 @dataclass(frozen=True)
 class Samples:
-    """Single moments (N, ...): `d` is what physics leaves, `columns` the core's forces, both in units of the force scale."""
+    """Single moments (N, ...): `d` is what physics leaves, `columns` the core's forces, both in units of the force scale;
+    `voyage` (N,) is where each comes from."""
 
     fields: Inputs
     ahead: torch.Tensor  # (N, 3) speeds one grid step later
     h: torch.Tensor
     d: torch.Tensor
     columns: torch.Tensor
+    voyage: torch.Tensor
 
     def __len__(self) -> int:
         return self.h.numel()
@@ -48,6 +51,11 @@ class Windows:
     def __len__(self) -> int:
         return self.h.numel()
 
+    @property
+    def voyage(self) -> torch.Tensor:
+        """(W,) where each comes from."""
+        return torch.tensor(self.group // BLOCKS)
+
     def some(self, k: torch.Tensor) -> "Windows":
         inputs = {name: x[:, k] for name, x in self.inputs.items()}
         return Windows(self.start[k], inputs, self.wanted[:, k], self.h[k], self.group[k.numpy()])
@@ -68,7 +76,8 @@ def samples(legs: Sequence[Leg], model: Model, names: Sequence[str]) -> Samples:
     ahead = torch.tensor(np.concatenate([leg.state[k + 1, 3:] for leg, k in kept]))
     h = _tensor([np.full(k.size, leg.h) for leg, k in kept])
     fields |= {"u_r": exact.u_r, "v_r": exact.v_r}
-    return Samples({n: x.float() for n, x in fields.items()}, ahead.float(), h.float(), d.float(), columns.float())
+    voyage = torch.tensor(np.concatenate([np.full(k.size, i) for i, (_, k) in enumerate(kept)]))
+    return Samples({n: x.float() for n, x in fields.items()}, ahead.float(), h.float(), d.float(), columns.float(), voyage)
 
 
 def windows(legs: Sequence[Leg], names: Sequence[str], horizon_s: float, stride_s: float, block_s: float = 300.0) -> Windows:
@@ -81,7 +90,7 @@ def windows(legs: Sequence[Leg], names: Sequence[str], horizon_s: float, stride_
         at = k + STRIDE * np.arange(steps + 1)[:, None]
         state = leg.state[at] - np.where(np.arange(6) < 2, leg.state[k], 0.0)
         starts.append(state[0]), wanted.append(state[1:]), h.append(np.full(k.size, STRIDE * leg.h))
-        group.append(1000 * i + (leg.t[k] // block_s).astype(int))
+        group.append(BLOCKS * i + (leg.t[k] // block_s).astype(int))
         for name in names:
             inputs[name].append(leg.inputs[name][at])
         inputs["t"].append(leg.t[at])

@@ -22,7 +22,7 @@ Inputs = dict[str, torch.Tensor]  # fields of Situation, each (..., B)
 
 
 class Held:
-    """A learned force that stays the same within a step."""
+    """A learned force that is the same in the whole of a step."""
 
     force = Force()
 
@@ -49,7 +49,8 @@ def left_over(model: Model, s: Situation, rate: torch.Tensor, scale: torch.Tenso
 
 
 def acceleration(network: Residual, zeta: torch.Tensor, d: torch.Tensor, size: torch.Tensor) -> torch.Tensor:
-    return (((network.f(zeta) - d) / size) ** 2).mean()
+    """(B,) of each moment."""
+    return (((network.f(zeta) - d) / size) ** 2).mean(-1)
 
 
 def paper(
@@ -76,16 +77,18 @@ def _rms(x: torch.Tensor) -> float:
 
 
 def free_run(network: Residual | None, model: Model, start: torch.Tensor, inputs: Inputs, h: torch.Tensor) -> torch.Tensor:
-    """(T, B, 6) states after each step; `start` (B, 6), inputs (T + 1, B), the learned force held for a step."""
+    """(T, B, 6) states after each step; `start` (B, 6), inputs (T + 1, B). The learned force of a step is that of its middle, by a
+    line through this step's and the last one's beginnings (Adams-Bashforth): as good as asking the network twice."""
     held = Held()
     moving = replace(model, residual=held) if network is not None else model
-    state, kept = tuple(start.unbind(-1)), []
+    state, kept, last = tuple(start.unbind(-1)), [], None
     for k in range(next(iter(inputs.values())).shape[0] - 1):
         now = {name: x[k] for name, x in inputs.items()}
         if network is not None:
             s = Situation(*state, **now)
             model.forces(s, model.water(s))
-            held.force = network(s)
+            force = network(s)
+            held.force, last = Force(*[1.5 * a - 0.5 * b for a, b in zip(force, last or force, strict=True)]), force
         middle = {name: 0.5 * (x[k] + x[k + 1]) for name, x in inputs.items()}
         state = moving.step(state, Situation(**middle), h)
         kept.append(torch.stack(state, -1))
@@ -106,10 +109,10 @@ def rollout(
     wanted: torch.Tensor,
     h: torch.Tensor,
 ) -> torch.Tensor:
-    """Huber loss along the run; a ship that runs away counts as much as can be."""
+    """(B,) Huber loss along each run; a ship that runs away counts as much as can be."""
     off = (free_run(network, model, start, inputs, h) - wanted) / allowed(model)
     off = torch.nan_to_num(off, nan=1e3, posinf=1e3, neginf=-1e3).clamp(-1e3, 1e3)
-    return torch.nn.functional.huber_loss(off, torch.zeros_like(off), delta=2.0)
+    return torch.nn.functional.huber_loss(off, torch.zeros_like(off), delta=2.0, reduction="none").mean((0, 2))
 
 
 def orthogonal(f: torch.Tensor, columns: torch.Tensor) -> torch.Tensor:

@@ -1,6 +1,5 @@
 """The training itself: Table 1's protocol on single moments, then roll-outs; resumable, and the same for the same seed."""
 
-import contextlib
 import hashlib
 import json
 import os
@@ -49,6 +48,8 @@ class Settings:
 
 
 DECAY_EPOCHS = 10
+MOST = 4096  # windows or moments that a validation looks at
+EVEN = 10.0
 
 
 @dataclass
@@ -151,6 +152,7 @@ class Course:
         self.key = _key(settings, data)
         self.kept = self._kept()
         self.best = float("inf")
+        self.weight = torch.ones(1)  # of each training voyage, while a stage runs
 
     def run(self, stage: str) -> None:
         """All epochs of a stage; the weights of the best validation loss stay."""
@@ -179,6 +181,7 @@ class Course:
 
     def _epoch(self, stage: str, epoch: int) -> float:
         total, count = 0.0, 0
+        self.weight = self._weights(stage)
         for value in self._losses(stage, 100_003 * self.settings.seed + epoch):
             self.optimiser.zero_grad()
             value.backward()
@@ -198,24 +201,48 @@ class Course:
             )
 
     def _loss(self, stage: str, part: str, k: torch.Tensor) -> torch.Tensor:
-        data, c = self.data[part], self.settings
+        """The loss of a batch; in training each voyage counts by its weight."""
+        if stage == "paper":
+            return self._literal(part, k)
+        each = self._each(stage, part, k)
+        return (self.weight[self._voyage(stage, part)[k]] * each).mean()
+
+    def _each(self, stage: str, part: str, k: torch.Tensor) -> torch.Tensor:
+        """(B,) the loss of each window or moment."""
+        data = self.data[part]
         if stage == "rollout":
             w = data.windows.some(k)
             return losses.rollout(self.network, self.model, w.start, w.inputs, w.wanted, w.h)
-        if stage == "acceleration":
-            return losses.acceleration(self.network, self.zeta[part][k], data.samples.d[k], self.size)
-        one = data.samples
+        return losses.acceleration(self.network, self.zeta[part][k], data.samples.d[k], self.size)
+
+    def _literal(self, part: str, k: torch.Tensor) -> torch.Tensor:
+        one, c = self.data[part].samples, self.settings
         value, self.diagnostics = losses.paper(
-            self.network,
-            self.model,
-            one.situation(k),
-            one.ahead[k],
-            one.h[k],
-            self.jump,
-            c.lambda_data,
-            c.lambda_phys,
+            self.network, self.model, one.situation(k), one.ahead[k], one.h[k], self.jump, c.lambda_data, c.lambda_phys
         )
         return value
+
+    def _voyage(self, stage: str, part: str) -> torch.Tensor:
+        return self.data[part].windows.voyage if stage == "rollout" else self.data[part].samples.voyage
+
+    def _by_voyage(self, stage: str, part: str) -> torch.Tensor:
+        """The mean loss of every voyage of a part (over at most MOST windows or moments)."""
+        voyage = self._voyage(stage, part)
+        k = torch.arange(0, voyage.numel(), max(1, voyage.numel() // MOST))
+        with torch.no_grad():
+            each = torch.cat([self._each(stage, part, some) for some in k.split(1024)])
+        total = torch.zeros(int(voyage.max()) + 1).index_add(0, voyage[k], each)
+        return total / torch.bincount(voyage[k], minlength=total.numel()).clamp(min=1)
+
+    def _weights(self, stage: str) -> torch.Tensor:
+        """The gradient of the geometric mean of the voyages' losses: a voyage in heavy sea, whose errors are mostly
+        waves, counts no more than a calm one. No weight is more than EVEN times another."""
+        if stage == "paper":
+            return torch.ones(1)
+        scatter = self._by_voyage(stage, "train")
+        inverse = scatter.clamp(min=1e-12).pow(-1.0)
+        inverse = inverse.clamp(max=EVEN * float(inverse.min()))
+        return inverse / inverse.mean()
 
     def _penalty(self, k: torch.Tensor) -> torch.Tensor:
         c, zeta, total = self.settings, self.zeta["train"][k], torch.zeros(())
@@ -227,13 +254,11 @@ class Course:
         return total
 
     def validation(self, stage: str) -> float:
-        """The loss of the stage on the validation part, in one piece (of at most 4096)."""
-        data = self.data["validation"]
-        many = len(data.windows) if stage == "rollout" else len(data.samples)
-        k = torch.arange(0, many, max(1, many // 4096))
-        grad = contextlib.nullcontext() if stage == "paper" else torch.no_grad()
-        with grad:
-            return float(self._loss(stage, "validation", k).detach())
+        """The loss of the stage on the validation part: the geometric mean over its voyages."""
+        if stage == "paper":
+            many = len(self.data["validation"].samples)
+            return float(self._literal("validation", torch.arange(0, many, max(1, many // MOST))).detach())
+        return float(self._by_voyage(stage, "validation").clamp(min=1e-12).log().mean().exp())
 
     def _copy(self) -> dict[str, Any]:
         return {name: x.detach().clone() for name, x in self.network.state_dict().items()}

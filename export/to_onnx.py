@@ -56,7 +56,7 @@ def manifest(network: Residual, model: bytes, zeta: torch.Tensor, training: dict
         "W_max": 1.5 * float(np.linalg.norm(W)) + 1e-6,
         "force_scale": {"X_N": float(network.S.X), "Y_N": float(network.S.Y), "N_Nm": float(network.S.N)},
         "output_bound": float(network.bound),
-        "whitening": _whitening(phi),
+        "whitening": whitening(phi),
         "spectral_norms": [float(np.linalg.norm(layer.weight.detach().numpy(), 2)) for layer in network.layers],
         "golden": {"inputs": x.tolist(), "outputs": answers.tolist()},
         "training": training,
@@ -83,7 +83,7 @@ def _unit(name: str) -> str:
     return "rad" if "[rad]" in ZETA[name].formula else "-"
 
 
-def _whitening(phi: np.ndarray) -> dict[str, Any]:
+def whitening(phi: np.ndarray) -> dict[str, Any]:
     """The features' mean and their strongest directions, each of deviation one."""
     mean = phi.mean(0)
     centred = phi - mean

@@ -2,17 +2,17 @@
 not help.
 
     learned force_r = W_r phi + g_r a_r q_r         q_r = [whitened components of phi | known forces of row r | 1]
-    e = clip(d_r - a_r q_f, +-3 s_r)                K = P q_f / (R s_r^2/h + q_f' P q_f)
-    a_r <- (1 - h/T_leak) a_r + K e                 P <- (1 - 2h/T_leak) P + h Q I - K (P q_f)'
+    a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - a_r q_f)^2/(NOISE_S s_r^2) + |a_r|^2/USUAL^2
 
-each row a Kalman filter on the filtered regression (evidence.py), with saturation, leakage to the trained
-weights, projection on boxes and on ||A|| <= A_MAX. The evidence gate g opens only as far as the error with A
-is below the error without.
+each row a ridge regression on fading evidence (evidence.py): what nothing teaches fades back to the trained
+weights. d_r is cut at three usual errors s_r from what is expected; A is projected on boxes and on ||A|| <=
+A_MAX. The gate g opens only as far as the numbers of a while ago explain the present better than none.
 """
 
 import json
 from dataclasses import dataclass
 from math import isfinite, sqrt
+from operator import mul
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -28,10 +28,10 @@ COLUMNS = (("hull", "propeller"), ("hull", "rudder"), ("hull", "rudder"))  # kno
 HULL, PROPELLER, RUDDER = CORE.index("hull"), CORE.index("propeller"), CORE.index("rudder")
 A_MAX = 1.0  # norm of all numbers together
 BOX_COMPONENT, BOX_KNOWN, BOX_CONSTANT = 0.5, 0.3, 0.5
-P_FIRST, P_TRACE = 0.05, 1.0
+USUAL = 0.1  # how far a number is usually off: the prior's deviation
 NOISE_S = 0.75  # time over which noise hangs together, in L/U_0
-LEAK, SPREAD, GATE = 60.0, 1.5, 3.0  # time constants, in L/U_0
-WALK = 8e-4  # Q: how fast the truth may wander, per L/U_0
+MEMORY, SPREAD, GATE = 20.0, 1.5, 3.0  # time constants, in L/U_0
+HINDSIGHT = 1.5  # the gate asks numbers at least as old as this, in L/U_0
 EXCITED = 0.02  # rms of the regressors' motion below which there is nothing to learn from
 
 
@@ -55,7 +55,12 @@ class Row:
     """One row's numbers, their covariance, and the evidence for and against them."""
 
     a: list[float]
-    P: list[list[float]]
+    I: list[list[float]]  # information: what was seen, over its noise
+    b: list[float]
+    L: list[list[float]]  # its factor, with the prior
+    then: list[float]  # a of HINDSIGHT to twice that ago, which the gate asks
+    next: list[float]
+    age: float = 0.0
     spread: float = 0.05  # s_r^2
     without: float = 0.0  # mean squared error without and with A
     with_a: float = 0.0
@@ -128,30 +133,34 @@ class Adaptation:
             return
         self.updates += 1
         row.spread += min(h / SPREAD, 0.2) * (error * error + 1e-5 - row.spread)
-        g = min(h / GATE, 0.2)
-        row.without += g * (min(wanted * wanted, 9.0) - row.without)
-        row.with_a += g * (error * error - row.with_a)
-        Pq = [dot(p, q) for p in row.P]
-        gain = 1.0 / (NOISE_S * row.spread / h + dot(q, Pq))
-        leak, pull = 1.0 - h / LEAK, gain * error
-        row.a = [leak * x + pull * p for x, p in zip(row.a, Pq, strict=True)]
-        self._covariance(row, Pq, gain, h)
+        self._judge(row, wanted, q, h)
+        self._fit(row, q, error, h)
         self._project(row)
+
+    def _judge(self, row: Row, wanted: float, q: list[float], h: float) -> None:
+        """Would the numbers of a while ago explain what is wanted now? Today's would: they were fitted to it."""
+        limit, g = 3.0 * sqrt(row.without + row.spread), min(h / GATE, 0.2)
+        without = min(max(wanted, -limit), limit)
+        with_a = min(max(wanted - dot(row.then, q), -limit), limit)
+        row.without += g * (without * without - row.without)
+        row.with_a += g * (with_a * with_a - row.with_a)
         ratio = row.with_a / row.without if row.without > 0.0 else 1.0
         row.gate = min(max((1.0 - ratio - 0.02) / 0.15, 0.0), 1.0)
+        row.age += h
+        if row.age > HINDSIGHT:
+            row.then, row.next, row.age = row.next, list(row.a), 0.0
 
-    def _covariance(self, row: Row, Pq: list[float], gain: float, h: float) -> None:
-        keep, walk = 1.0 - 2.0 * h / LEAK, h * WALK
-        row.P = [
-            [keep * p - gx * y for p, y in zip(line, Pq)]  # noqa: B905 (the inner loop of the tick)
-            for line, gx in zip(row.P, [gain * x for x in Pq], strict=True)
+    def _fit(self, row: Row, q: list[float], error: float, h: float) -> None:
+        """The ridge regression on evidence that fades over MEMORY."""
+        keep, weight = 1.0 - min(h / MEMORY, 0.5), h / (NOISE_S * row.spread)
+        y = weight * (dot(row.a, q) + error)
+        row.I = [
+            [keep * i + wx * x for i, x in zip(line, q)]  # noqa: B905 (the inner loop of the tick)
+            for line, wx in zip(row.I, [weight * x for x in q], strict=True)
         ]
-        for i in range(self.width):
-            row.P[i][i] = max(row.P[i][i] + walk, 1e-9)
-        trace = sum(row.P[i][i] for i in range(self.width))
-        if not trace < P_TRACE:
-            shrink = P_TRACE / trace if isfinite(trace) else 0.0
-            row.P = [[shrink * p for p in line] for line in row.P] if shrink else self._blank().P
+        row.b = [keep * b + y * x for b, x in zip(row.b, q, strict=True)]
+        row.L = factor(row.I, USUAL**-2)
+        row.a = solve(row.L, row.b)
 
     def _project(self, row: Row) -> None:
         """On the boxes, then on the ball of all three rows."""
@@ -164,18 +173,21 @@ class Adaptation:
             for other in self._rows:
                 other.a = [x * A_MAX / norm for x in other.a]
 
+    def numbers(self) -> list[list[float]]:
+        """g a of each row: what acts."""
+        return [[row.gate * x for x in row.a] for row in self._rows]
+
     def norm(self) -> float:
         return sqrt(sum(dot(row.a, row.a) for row in self._rows))
 
     def parameters(self) -> list[Parameter]:
         """All numbers with their bounds and status."""
-        out = []
+        out, pressed = [], self.norm() > 0.999 * A_MAX
         for r, row in enumerate(self._rows):
             names = [*(f"feature {i + 1}" for i in range(self.components)), *COLUMNS[r], "constant"]
-            for i, (name, value, box) in enumerate(zip(names, row.a, self._boxes, strict=True)):
-                sigma = sqrt(row.P[i][i])
-                known = sigma < 0.7 * sqrt(P_FIRST) and row.gate > 0.3
-                status = "invalid" if abs(value) >= box else "estimated" if known else "unestimated"
+            for name, value, box, sigma in zip(names, row.a, self._boxes, deviations(row.L), strict=True):
+                known = sigma < 0.7 * USUAL and row.gate > 0.3
+                status = "invalid" if pressed or abs(value) >= box else "estimated" if known else "unestimated"
                 out.append(Parameter(f"{ROWS[r]} {name}", value, -box, box, sigma, "-", status))
         return out
 
@@ -206,7 +218,38 @@ class Adaptation:
         for row, values in zip(self._rows, fresh, strict=True):
             row.a = values  # the gate stays shut: old numbers must prove themselves again
             self._project(row)
+            row.b = [x * USUAL**-2 for x in row.a]
+            row.then, row.next = list(row.a), list(row.a)
 
     def _blank(self) -> Row:
-        P = [[P_FIRST if i == j else 0.0 for j in range(self.width)] for i in range(self.width)]
-        return Row([0.0] * self.width, P)
+        n = self.width
+        blank = [[0.0] * n for _ in range(n)]
+        return Row([0.0] * n, blank, [0.0] * n, factor(blank, USUAL**-2), [0.0] * n, [0.0] * n)
+
+
+def factor(information: list[list[float]], prior: float) -> list[list[float]]:
+    """L of I + prior 1 = L L' (Cholesky), in plain floats: the same on every machine."""
+    L: list[list[float]] = []
+    for i, line in enumerate(information):
+        row: list[float] = []
+        for j in range(i):
+            row.append((line[j] - sum(map(mul, row, L[j]))) / L[j][j])
+        row.append(sqrt(line[i] + prior - sum(map(mul, row, row))))
+        L.append(row)
+    return L
+
+
+def solve(L: list[list[float]], b: list[float]) -> list[float]:
+    """x of L L' x = b."""
+    x: list[float] = []
+    for row, y in zip(L, b, strict=True):
+        x.append((y - sum(map(mul, row, x))) / row[-1])
+    for i in range(len(b) - 1, -1, -1):
+        x[i] = (x[i] - sum([L[k][i] * x[k] for k in range(i + 1, len(b))])) / L[i][i]
+    return x
+
+
+def deviations(L: list[list[float]]) -> list[float]:
+    """Square roots of the diagonal of (L L')^-1."""
+    n = len(L)
+    return [sqrt(solve(L, [1.0 if i == j else 0.0 for j in range(n)])[i]) for i in range(n)]

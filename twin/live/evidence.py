@@ -48,11 +48,11 @@ class Evidence:
         if len(self._low) != len(new):
             self._low, self._heard_s = new, 0.0
         self._low = low = [f + a * (x - f) for f, x in zip(self._low, new, strict=True)]
-        lam = self.lam
+        lam = self.lam / (1.0 - a)  # exact for steps of dt: the low-pass has already taken in a share a of the newest nu
         X, Y, N = physics.force_for(lam * (nu[0] - low[0]) - low[3], lam * (nu[1] - low[1]) - low[4], lam * (nu[2] - low[2]) - low[5])
         self.unexplained = x, y, n = X / self.scale.X, Y / self.scale.Y, N / self.scale.N
         self._heard_s += dt
-        self.ready = self._heard_s > SETTLED / lam
+        self.ready = self._heard_s > SETTLED / self.lam
         if self.ready:
             b = min(dt / (3.0 * self.time_s), 0.5)
             self.without += b * (x * x + y * y + n * n - self.without)

@@ -1,0 +1,92 @@
+"""Laws of adaptation that are compared with the one on board; all share its saturation, gate, boxes and ball (twin/live/adapt.py).
+
+    gradient    a' = G q e/(1 + q'q) - sigma a                        sigma-modification [Ioannou & Kokotovic 1984]
+    e-mod       a' = G q e/(1 + q'q) - mu |e| a                       e-modification [Narendra & Annaswamy 1987]
+    dead zone   the same gradient, not below one usual error
+    RLS         P' = P/M - P q q' P/R,  a' = P q e/R                  forgetting over M, P bounded from above
+    Kalman      P' = Q - P q q' P/R - 2 P/T,  a' = P q e/R - a/T      a random walk, leaking to the trained weights
+"""
+
+from math import sqrt
+
+from twin.live.adapt import NOISE_S, Adaptation, Row
+from twin.live.residual import dot
+
+GAIN, SIGMA, MU = 1.0, 1.0 / 60.0, 0.5  # per L/U_0
+MEMORY = 20.0  # of RLS, in L/U_0
+P_FIRST, P_MOST = 0.05, 0.05
+LEAK, WALK = 60.0, 8e-4
+
+
+class Gradient(Adaptation):
+    """Normalised gradient with sigma-modification."""
+
+    def _fit(self, row: Row, q: list[float], error: float, h: float) -> None:
+        pull, leak = self._pull(row, q, error, h), 1.0 - h * self._leak(row, error)
+        row.a = [leak * x + pull * y for x, y in zip(row.a, q, strict=True)]
+
+    def _pull(self, row: Row, q: list[float], error: float, h: float) -> float:
+        return GAIN * h * error / (1.0 + dot(q, q))
+
+    def _leak(self, row: Row, error: float) -> float:
+        return SIGMA
+
+
+class EModified(Gradient):
+    """It leaks as much as it errs."""
+
+    def _leak(self, row: Row, error: float) -> float:
+        return MU * abs(error)
+
+
+class DeadZone(Gradient):
+    """Errors that are usual teach nothing."""
+
+    def _pull(self, row: Row, q: list[float], error: float, h: float) -> float:
+        edge = sqrt(row.spread)
+        beyond = max(abs(error) - edge, 0.0)
+        return super()._pull(row, q, beyond if error > 0.0 else -beyond, h)
+
+
+class Covariant(Adaptation):
+    """What RLS and the Kalman filter share: a covariance P of each row."""
+
+    def __init__(self, *args: object) -> None:
+        super().__init__(*args)  # type: ignore[arg-type]
+        self._P = {id(row): [[P_FIRST if i == j else 0.0 for j in range(self.width)] for i in range(self.width)] for row in self._rows}
+
+    def _fit(self, row: Row, q: list[float], error: float, h: float) -> None:
+        P = self._P[id(row)]
+        Pq = [dot(line, q) for line in P]
+        gain = 1.0 / (NOISE_S * row.spread / h + dot(q, Pq))
+        leak = self._leak(h)
+        row.a = [leak * x + gain * error * y for x, y in zip(row.a, Pq, strict=True)]
+        left = [[p - gain * x * y for p, y in zip(line, Pq, strict=True)] for line, x in zip(P, Pq, strict=True)]
+        self._P[id(row)] = self._later(left, h)
+
+    def _leak(self, h: float) -> float:
+        return 1.0
+
+    def _later(self, P: list[list[float]], h: float) -> list[list[float]]:
+        raise NotImplementedError
+
+
+class Recursive(Covariant):
+    """RLS: old evidence fades, so that P grows where nothing teaches; bounded by its trace."""
+
+    def _later(self, P: list[list[float]], h: float) -> list[list[float]]:
+        grown = [[p / (1.0 - h / MEMORY) for p in line] for line in P]
+        trace = sum(grown[i][i] for i in range(self.width))
+        most = P_MOST * self.width
+        return grown if trace <= most else [[p * most / trace for p in line] for line in grown]
+
+
+class Kalman(Covariant):
+    """A random walk that leaks."""
+
+    def _leak(self, h: float) -> float:
+        return 1.0 - h / LEAK
+
+    def _later(self, P: list[list[float]], h: float) -> list[list[float]]:
+        keep, walk = 1.0 - 2.0 * h / LEAK, h * WALK
+        return [[keep * p + (walk if i == j else 0.0) for j, p in enumerate(line)] for i, line in enumerate(P)]
