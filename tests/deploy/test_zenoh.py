@@ -1,5 +1,6 @@
 """Sessions over TLS with the settings in deploy/: who may speak, who may look, who does not get in."""
 
+import json
 import re
 import shutil
 import socket
@@ -75,3 +76,20 @@ def test_a_viewer_cannot_speak(settings):
 
 def test_a_certificate_of_another_authority_does_not_get_in(settings):
     assert said(settings, "sensors", HEADING, folder="other")[0] == []
+
+
+def test_health_hears_a_twin_that_speaks_over_tls(settings, tmp_path):
+    """Test: the service with the Zenoh file of deploy/. Expected: heard, though nobody measures yet."""
+    (tmp_path / "twin.toml").write_text(
+        f'[loop]\nrate_hz = 20.0\npriority = 0\nlock_memory = false\n[log]\nfolder = ""\n[bus]\nfile = "{settings("twin", "zenoh.json5")}"\n'
+    )
+    twin = [sys.executable, "-m", "twin.cli"]
+    process = subprocess.Popen([*twin, "run", "--config", str(tmp_path / "twin.toml")], stderr=subprocess.PIPE, text=True)
+    try:
+        assert "KVLCC2" in process.stderr.readline()
+        health = [*twin, "health", "--config", str(tmp_path / "twin.toml"), "--timeout", "10", "--json", "-"]
+        done = subprocess.run(health, capture_output=True, text=True, timeout=60)
+    finally:
+        process.terminate()
+        process.wait(10)
+    assert json.loads(done.stdout)["mode"] == "starting", done.stdout + done.stderr

@@ -44,20 +44,10 @@ def hear(settings: Settings, timeout_s: float) -> Any:
     """The newest tick that comes within the time, None when none does."""
     import zenoh
 
-    from twin.live.zenoh_config import BusSettings, configuration
+    from twin.live.zenoh_config import BusSettings, beside
 
-    router = settings["bus.router"]
-    listen = settings["bus.listen"]
-    where = BusSettings(
-        settings["bus.base"],
-        settings["bus.entity"],
-        "",
-        () if router or not listen else (listen,),
-        router,
-        settings["bus.file"],
-    )
     try:
-        session = zenoh.open(configuration(where))
+        session = zenoh.open(beside(BusSettings.of(settings)))
     except zenoh.ZError:
         return None
     ring: Any = zenoh.handlers.RingChannel(1)

@@ -189,9 +189,7 @@ class Service:
 def bus_of(settings: Settings) -> Bus:
     from twin.live.zenoh_bus import ZenohBus
 
-    names = ("base", "entity", "listen", "connect", "router", "file")
-    values = {name: settings[f"bus.{name}"] for name in names}
-    return ZenohBus(BusSettings(**values | {"connect": tuple(values["connect"])}))
+    return ZenohBus(BusSettings.of(settings))
 
 
 def recorder_of(settings: Settings) -> Recorder | None:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from twin.errors import SettingsError
+from twin.live.config import Settings
 from twin.live.topics import subjects
 
 MAX_HZ = 200.0  # of each subject
@@ -44,6 +45,12 @@ class BusSettings(NamedTuple):
     file: str = ""
     depth: int = 16  # newest samples kept for each subject between two drains
 
+    @classmethod
+    def of(cls, settings: Settings) -> "BusSettings":
+        """What the section [bus] says."""
+        values = {name: settings[f"bus.{name}"] for name in ("base", "entity", "listen", "connect", "router", "file")}
+        return cls(**values | {"connect": tuple(values["connect"])})
+
 
 def configuration(settings: BusSettings) -> Any:
     """The zenoh.Config for these settings; what a Zenoh file sets stays, the rest is locked down."""
@@ -55,6 +62,23 @@ def configuration(settings: BusSettings) -> Any:
         if config.get_json(key) == plain.get_json(key):
             config.insert_json5(key, json.dumps(value))
     return config
+
+
+def beside(settings: BusSettings) -> Any:
+    """The zenoh.Config of another session on this computer that reaches the twin of these settings: it
+    connects where the twin listens, by the same certificates, and listens nowhere."""
+    config = configuration(settings)
+    places = json.loads(config.get_json("listen/endpoints"))
+    if places and not is_client(config):
+        config.insert_json5("connect/endpoints", json.dumps([_here(place) for place in places]))
+        config.insert_json5("listen/endpoints", "[]")
+    config.insert_json5("access_control/enabled", "false")  # who may come in is the twin's to say
+    return config
+
+
+def _here(endpoint: str) -> str:
+    """Where one reaches what listens on every address."""
+    return endpoint.replace("/0.0.0.0:", "/127.0.0.1:").replace("/[::]:", "/[::1]:")
 
 
 def is_client(config: Any) -> bool:
