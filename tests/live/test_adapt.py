@@ -72,7 +72,7 @@ def test_M12_whatever_it_is_fed_it_stays_finite_and_inside_its_bounds(kvlcc2):
 
 def test_a_number_at_its_bound_is_called_invalid(kvlcc2):
     adaptation = made(kvlcc2)
-    teach(adaptation, kvlcc2, lambda r, q: 3.0 * q[2], noise=0.01)
+    teach(adaptation, kvlcc2, lambda r, q: 0.6 * q[2], noise=0.01)
     assert "invalid" in {p.status for p in adaptation.parameters()}
 
 

@@ -65,7 +65,6 @@ class Row:
     without: float = 0.0  # mean squared error without and with A
     with_a: float = 0.0
     gate: float = 0.0
-    at_bound: bool = False
 
 
 class Adaptation:
@@ -165,11 +164,9 @@ class Adaptation:
     def _project(self, row: Row) -> None:
         """On the boxes, then on the ball of all three rows."""
         inside = [min(max(x, -b), b) if isfinite(x) else 0.0 for x, b in zip(row.a, self._boxes, strict=True)]
-        row.at_bound = inside != row.a
         row.a = inside
         norm = sqrt(sum(dot(other.a, other.a) for other in self._rows))
         if norm > A_MAX:
-            row.at_bound = True
             for other in self._rows:
                 other.a = [x * A_MAX / norm for x in other.a]
 
