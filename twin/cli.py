@@ -4,8 +4,8 @@ import argparse
 import importlib
 import os
 import sys
-from collections.abc import Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
 
 from twin.errors import DataError, TwinError
 
@@ -48,9 +48,16 @@ VERBS: dict[str, Verb] = {
 }
 
 
+EXTRAS = {"scipy": "study", "torch": "train", "onnx": "train"}  # package -> the extra that brings it
+ASIDE = ("export", "bench")  # packages of the source folder that an installation may lack
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one verb; a problem is one line on standard error and an exit code (see twin/errors.py)."""
-    argv = sys.argv[1:] if argv is None else list(argv)
+    return guarded(lambda: _verb(sys.argv[1:] if argv is None else list(argv)))
+
+
+def _verb(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="twin", description="A digital twin of a ship's motion that its owner can correct.")
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     for name, verb in VERBS.items():
@@ -62,15 +69,28 @@ def main(argv: Sequence[str] | None = None) -> int:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         if name in argv[:1]:
-            importlib.import_module(verb.module).add_arguments(sub)
+            _module(name).add_arguments(sub)
     args = parser.parse_args(argv)
-    return guarded(lambda: importlib.import_module(VERBS[args.verb].module).run(args))
+    return _module(args.verb).run(args)  # type: ignore[no-any-return]
 
 
-def guarded(action: "object") -> int:
+def _module(verb: str) -> Any:
+    """The verb's module, or a word on what must be installed."""
+    try:
+        return importlib.import_module(VERBS[verb].module)
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if package in EXTRAS:
+            raise TwinError(f"`twin {verb}` needs the package {package}. Run: pip install 'shiptwin[{EXTRAS[package]}]'") from None
+        if package in ASIDE or error.name == VERBS[verb].module:
+            raise TwinError(f"`twin {verb}` is not in this installation ({error.name}). Run it in the source folder.") from None
+        raise
+
+
+def guarded(action: Callable[[], int | None]) -> int:
     """Call it, and turn what went wrong into one line and an exit code."""
     try:
-        return action() or 0  # type: ignore[operator]
+        return action() or 0
     except TwinError as error:
         print(f"{type(error).__name__}: {error}", file=sys.stderr)
         return error.exit_code
@@ -80,8 +100,11 @@ def guarded(action: "object") -> int:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
-    except FileNotFoundError as error:
-        print(f"{DataError.__name__}: {error.filename}: no such file. Check the path.", file=sys.stderr)
+    except OSError as error:
+        if error.filename is None:
+            raise
+        said = "no such file" if isinstance(error, FileNotFoundError) else error.strerror
+        print(f"{DataError.__name__}: {error.filename}: {said}. Check the path.", file=sys.stderr)
         return DataError.exit_code
 
 
