@@ -79,7 +79,7 @@ def sailed(ship, learned, count, numbers):
     return loop
 
 
-def test_a_hundred_thousand_messages_do_no_harm(kvlcc2, numbers):
+def test_I27_a_hundred_thousand_messages_do_no_harm(kvlcc2, numbers):
     learned = LearnedForce(kvlcc2, load(bundled(kvlcc2), kvlcc2))
     sailed(kvlcc2, learned, MESSAGES, numbers)
     assert learned.adaptation.norm() <= A_MAX + 1e-9

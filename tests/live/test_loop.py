@@ -41,7 +41,7 @@ def test_before_anything_is_measured_the_twin_says_what_it_waits_for(make_bridge
     assert not tick.estimate.HasField("north_m")
 
 
-def test_a_stall_of_200_ms_is_counted_and_not_made_up(bridge):
+def test_C2_a_stall_of_200_ms_is_counted_and_not_made_up(bridge):
     bridge.run(20.0)
     bridge.now_s += 0.2
     for _ in range(2):
@@ -52,7 +52,7 @@ def test_a_stall_of_200_ms_is_counted_and_not_made_up(bridge):
     assert abs(bridge.error("heading_true_north_deg")) < 0.2 and abs(bridge.error("north_m")) < 1.0
 
 
-def test_after_ten_seconds_of_suspension_the_estimate_begins_anew(bridge):
+def test_C10_after_ten_seconds_of_suspension_the_estimate_begins_anew(bridge):
     bridge.run(20.0)
     bridge.now_s += 10.0
     for _ in range(100):
@@ -64,7 +64,7 @@ def test_after_ten_seconds_of_suspension_the_estimate_begins_anew(bridge):
 
 
 @pytest.mark.parametrize("step_s", (3600.0, -7200.0))
-def test_the_wall_clock_may_be_set_without_touching_the_state(make_bridge, step_s):
+def test_C9_the_wall_clock_may_be_set_without_touching_the_state(make_bridge, step_s):
     plain, stepped = make_bridge(), make_bridge()
     for bridge in (plain, stepped):
         bridge.run(30.0)

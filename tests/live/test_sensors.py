@@ -259,3 +259,14 @@ def test_the_owner_may_choose_who_speaks(kvlcc2, make_bridge):
     both = only(HEADING, lambda r, b: [r._replace(value=0.0, source="bad"), r._replace(source="good")])
     ticks = bridge.run(5.0, both)
     assert abs(bridge.error(HEADING)) < 0.2 and not said(ticks, "both publish")
+
+
+def test_F3_a_source_that_nobody_is_is_named_after_ten_seconds(kvlcc2, make_bridge):
+    """Test: the owner names a compass that does not exist. Expected: said within 10 s, and no more once it speaks."""
+    from twin.live.sensors import Sensors
+
+    bridge = make_bridge(loop={"sensors": Sensors(kvlcc2, {HEADING: "gyro 2"})})
+    assert not said(bridge.run(9.9), "never been heard")
+    assert said(bridge.run(0.4), f"{HEADING}: its source 'gyro 2' has never been heard")
+    bridge.run(1.0, only(HEADING, lambda r, b: r._replace(source="gyro 2")))
+    assert not said(bridge.run(1.0, only(HEADING, lambda r, b: r._replace(source="gyro 2"))), "never been heard")

@@ -25,6 +25,7 @@ NOISY = (
 )  # fmt: skip
 FROM = {"wind_from": "wind_to", "wave_from": "wave_to"}  # physics says where wind and waves go
 FAR = inf
+SILENT_S = 10.0  # a source that the owner named and that has not spoken for so long since the start is named
 FASTEST_SHAFT = 5.0  # of U_0/D_P: three times what drives a ship at her service speed
 
 
@@ -33,13 +34,15 @@ class Sensors:
 
     def __init__(self, ship: Ship, sources: dict[str, str] | None = None, max_delay_s: float = 2.0):
         floors = noise_floors(ship)
-        sources = sources or {}
+        self._awaited = sources = dict(sources or {})  # channel: the source that should speak and has not yet
         self.gates = {c.name: Gate(c, floors.get(c.name, FAR), _frozen(c.name, floors), sources.get(c.name)) for c in CHANNELS}
         shaft = self.gates["propeller_rate_rpm"]
         shaft.low, shaft.high = -FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0, FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0
         self.stamps = Stamps(max_delay_s)
         self.rejected = 0
         self.codes: dict[str, int] = {name: int(Quality.NEVER_SEEN) for name in self.gates}
+        self._began_s: float | None = None
+        self._waited_s = 0.0
         self._live: dict[str, Gate] = {}  # channels whose value may be used
         self._odd: set[str] = set()  # channels that were not well when last looked at
         self._losing: set[str] = set()
@@ -55,6 +58,8 @@ class Sensors:
     def read(self, arrived: Sequence[Reading | Rejected], now_s: float, wall_s: float, own: Estimate) -> Measured:
         """Takes what arrived since the last tick; `own` is where the twin believes the ship to be."""
         step_s = self.stamps.observe(now_s, wall_s)
+        self._began_s = now_s if self._began_s is None else self._began_s
+        self._waited_s = now_s - self._began_s
         self._motion = motion_of(own)
         fresh: dict[str, float] = {}
         steps: dict[str, float] = {}
@@ -100,6 +105,8 @@ class Sensors:
         channel, value, now = gate.channel, gate.value or 0.0, self._now
         attribute = channel.attribute
         self._live[name] = gate
+        if self._awaited:
+            self._awaited.pop(name, None)
         now.border[name], now.taken[name] = value, gate.time_s
         now.si[attribute] = value * channel.to_si
         now.time[attribute], now.heard[attribute] = gate.time_s, gate.received_s
@@ -155,8 +162,11 @@ class Sensors:
         (self._losing.add if self.gates[name].losing(now_s) else self._losing.discard)(name)
 
     def reasons(self) -> list[str]:
-        """What is wrong with the channels that were ever heard of, in words."""
-        said = []
+        """What is wrong with the channels that were ever heard of, or should have been, in words."""
+        said = [
+            f"{name}: its source {source!r} has never been heard. Correct [sources], or start it"
+            for name, source in (self._awaited.items() if self._waited_s > SILENT_S else ())
+        ]
         for name in self._names if self._odd or self._losing else ():
             quality = self.codes[name]
             gate = self.gates[name]
