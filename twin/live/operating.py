@@ -7,7 +7,8 @@ certificate says nothing, and the twin says that.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import hypot, isfinite, pi
+from functools import cached_property
+from math import hypot, inf, isfinite, pi
 
 from twin.errors import SettingsError
 from twin.physics import core
@@ -16,6 +17,8 @@ from twin.physics.model import Model
 from twin.physics.state import Rates, Situation
 
 NU = ("u", "v", "r")
+MOTION = (*NU, "stream")
+EVERYTHING = (-inf, inf)
 WORDS = {
     "u": "surge speed through water", "v": "sway speed through water", "r": "rate of turn",
     "stream": "current", "delta": "rudder angle", "n": "propeller rate", "wind_speed": "wind",
@@ -46,18 +49,28 @@ class OperatingSet:
 
         `within` widens the motion by its bound.
         """
-        margin = dict(zip(NU, within, strict=True))
-        at = {"u": s.u_r, "v": s.v_r, "stream": hypot(s.u - s.u_r, s.v - s.v_r)}
-        for name in WORDS:
-            value = at[name] if name in at else getattr(s, name)
-            if value is None or name not in self.ranges:
-                continue
-            lo, hi = self.ranges[name]
-            b = margin.get(name, 0.0)
+        values = s.u_r, s.v_r, s.r, hypot(s.u - s.u_r, s.v - s.v_r)
+        for (name, lo, hi), value, b in zip(self._motion, values, (*within, 0.0), strict=True):
             if not lo + b <= value <= hi - b:
-                how = f" (+-{b:.3g})" if b else ""
-                return f"{WORDS[name]} {value:.3g}{how} outside [{lo:.3g}, {hi:.3g}]"
+                return _said(name, value, b, lo, hi)
+        for name, lo, hi in self._inputs:
+            value = getattr(s, name)
+            if value is not None and not lo <= value <= hi:
+                return _said(name, value, 0.0, lo, hi)
         return None
+
+    @cached_property
+    def _motion(self) -> list[tuple[str, float, float]]:
+        return [(name, *self.ranges.get(name, EVERYTHING)) for name in MOTION]
+
+    @cached_property
+    def _inputs(self) -> list[tuple[str, float, float]]:
+        return [(name, *self.ranges[name]) for name in WORDS if name in self.ranges and name not in MOTION]
+
+
+def _said(name: str, value: float, bound: float, lo: float, hi: float) -> str:
+    how = f" (+-{bound:.3g})" if bound else ""
+    return f"{WORDS[name]} {value:.3g}{how} outside [{lo:.3g}, {hi:.3g}]"
 
 
 @dataclass(frozen=True)
