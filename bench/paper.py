@@ -57,7 +57,9 @@ def reproduce(plan: sea.Plan, work: Path, quick: bool) -> dict[str, Any]:
     changed, speeds = sea.changed(plan), sea.by_speed(plan)
     groups = {"lessons": sea.lessons(plan), "zigzags": sea.zigzags(plan.zigzags, 9001), **changed, **speeds}
     sailed = iter(sea.sail([c for cases in groups.values() for c in cases], work / "voyages", tell))
-    courses = {name: [course(next(sailed), ship) for _ in cases] for name, cases in groups.items()}
+    voyages = {name: [next(sailed) for _ in cases] for name, cases in groups.items()}
+    voyages[paper_tables.EXACT] = [sea.without_gnss_noise(one) for one in voyages[next(iter(changed))]]
+    courses = {name: [course(one, ship) for one in some] for name, some in voyages.items()}
     settings = Settings(epochs=25, rollout_epochs=12) if quick else Settings(rollout_epochs=30, rollout_batch=256)
     models = paper_models.build(courses["lessons"], settings, 30 if quick else 150, SEEDS[:1] if quick else SEEDS, work, tell)
     tell("predicting")

@@ -77,7 +77,7 @@ class Learning(Filter):
 
     def __init__(self, courses: Sequence[Course], model: Model, acting: Acting, tuning: Tuning, law: Law = Adaptation):
         self.acting = acting
-        super().__init__(courses, model, lambda s: self.acting(s), tuning)
+        super().__init__(courses, model, lambda s: self.acting(s), [tuning] * len(courses))
         ship, S, components = model.ship, acting.network.S, len(acting.rows)
         self.laws = [law(ship, S, components) for _ in courses]
         self.evidence = [Evidence(ship, S) for _ in courses]

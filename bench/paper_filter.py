@@ -37,22 +37,22 @@ class Tuning:
     noise: float = 4.0
 
 
-TRIED = tuple(Tuning(*x) for x in product((1e-6, 1e-5), (1e-6, 1e-5), (1.0, 4.0)))
+TRIED = tuple(Tuning(*x) for x in product((1e-6, 1e-5, 1e-4), (1e-6, 1e-5), (1.0, 4.0)))
 
 
 class Filter:
     """The filters of many voyages; `tick(k)` takes grid step k in, `x` (V, 11) and `P` (V, 11, 11) are where they stand."""
 
-    def __init__(self, courses: Sequence[Course], model: Model, push: Push | None, tuning: Tuning):
+    def __init__(self, courses: Sequence[Course], model: Model, push: Push | None, tunings: Sequence[Tuning]):
         self.courses, self.model, self.push, self.h = courses, model, push, courses[0].water.h
         ship = model.ship
         speed, time = float(ship.U_0), float(ship.scale("time"))
         self.a = np.array([speed / time, speed / time, 1.0 / time**2])
         self.measured = np.stack([c.track.measured for c in courses], 1)
         self.sd = np.stack([c.track.sd for c in courses])
-        self.noise = tuning.noise * self.sd**2
-        walk = self.h * tuning.walk * self.a**2
-        self.Q = np.diag([*[1e-4 * self.h] * 2, 1e-10, *(3e-4 * self.h * self.a) ** 2, *[tuning.current * self.h] * 2, *walk])
+        self.noise = np.array([t.noise for t in tunings])[:, None] * self.sd**2
+        steady = [*[1e-4 * self.h] * 2, 1e-10, *(3e-4 * self.h * self.a) ** 2]
+        self.Q = np.stack([np.diag([*steady, *[t.current * self.h] * 2, *(self.h * t.walk * self.a**2)]) for t in tunings])
         names = set.intersection(*(set(c.water.inputs) for c in courses))
         self.inputs = {n: np.stack([c.water.inputs[n] for c in courses], 1) for n in names}
         self._begin()
@@ -149,7 +149,11 @@ def _single(s: Situation) -> Situation:
 
 def predict(courses: Sequence[Course], model: Model, push: Push | None, tuning: Tuning) -> list[np.ndarray]:
     """(T, W, 3) for each course: filtered up to each start, then free."""
-    states = Filter(courses, model, push, tuning).run(int(max(c.starts[-1] for c in courses)))
+    return _predict(courses, model, push, [tuning] * len(courses))
+
+
+def _predict(courses: Sequence[Course], model: Model, push: Push | None, tunings: Sequence[Tuning]) -> list[np.ndarray]:
+    states = Filter(courses, model, push, tunings).run(int(max(c.starts[-1] for c in courses)))
     return from_states(courses, model, push, [states[c.starts, i] for i, c in enumerate(courses)])
 
 
@@ -172,8 +176,10 @@ def _over_ground(run: np.ndarray, state: np.ndarray, h: float) -> np.ndarray:
 
 
 def tuned(courses: Sequence[Course], model: Model, push: Push | None) -> Tuning:
-    """What predicts validation voyages best (heading and lateral errors, each over its least)."""
-    found = {t: judge(predict(courses, model, push, t), courses) for t in TRIED}
+    """What predicts validation voyages best (heading and lateral errors, each over its least); all are tried side by side."""
+    many = len(courses)
+    runs = _predict(list(courses) * len(TRIED), model, push, [t for t in TRIED for _ in courses])
+    found = {t: judge(runs[i * many : (i + 1) * many], courses) for i, t in enumerate(TRIED)}
     heading = {t: e.heading_deg.mean() for t, e in found.items()}
     lateral = {t: e.lateral_m.mean() for t, e in found.items()}
     return min(TRIED, key=lambda t: heading[t] / min(heading.values()) + lateral[t] / min(lateral.values()))

@@ -1,6 +1,7 @@
 """The paper's LSTM: told the kinematics, 30 s to warm up, then free; trained by free runs on the same parts as the hybrid."""
 
 from collections.abc import Sequence
+from pathlib import Path
 
 import numpy as np
 import torch
@@ -19,6 +20,7 @@ class Lstm(torch.nn.Module):
         super().__init__()
         self.cell = torch.nn.LSTMCell(mean.numel(), HIDDEN)
         self.out = torch.nn.Linear(HIDDEN, 3)
+        self.curve: list[float] = []  # validation loss by epoch
         for name, value in (("mean", mean), ("sd", sd), ("jump", jump)):
             self.register_buffer(name, value)
 
@@ -68,8 +70,10 @@ def _late(leg: Leg) -> np.ndarray:
     return k[k >= STRIDE * WARM]
 
 
-def train(train_legs: Sequence[Leg], validation: Sequence[Leg], epochs: int, seed: int = 42, patience: int = 20) -> Lstm:
-    """Adam at 3e-3, Huber of heading and speeds in deviations; the best on validation stays."""
+def train(
+    train_legs: Sequence[Leg], validation: Sequence[Leg], epochs: int, seed: int = 42, patience: int = 20, keep: Path | None = None
+) -> Lstm:
+    """Adam at 3e-3, Huber of heading and speeds in deviations; the best on validation stays. `keep`: a file of a finished training."""
     torch.manual_seed(seed)
     torch.set_num_threads(1)
     data, held = _all(train_legs), _all(validation)
@@ -81,6 +85,11 @@ def train(train_legs: Sequence[Leg], validation: Sequence[Leg], epochs: int, see
     model = Lstm(torch.cat([state.mean(0), controls.mean(0), torch.zeros(2)]), torch.cat([state.std(0), controls.std(0) + 1e-3, air]), jump)
     size = torch.cat([torch.tensor([0.02]), state.std(0) * 0.2])
     optimiser = torch.optim.Adam(model.parameters(), lr=3e-3)
+    if keep and keep.exists():
+        kept = torch.load(keep, weights_only=True)
+        model.load_state_dict(kept["network"])
+        model.curve = kept["curve"]
+        return model
     best, since = (float("inf"), model.state_dict()), 0
     for epoch in range(epochs):
         for k in shuffled(data[1].numel(), BATCH, 7919 * seed + epoch):
@@ -91,10 +100,13 @@ def train(train_legs: Sequence[Leg], validation: Sequence[Leg], epochs: int, see
             optimiser.step()
         with torch.no_grad():
             value = float(_loss(model, held, h, size))
+        model.curve.append(value)
         best, since = ((value, {n: x.clone() for n, x in model.state_dict().items()}), 0) if value < best[0] else (best, since + 1)
         if since >= patience:
             break
     model.load_state_dict(best[1])
+    if keep:
+        torch.save({"network": best[1], "curve": model.curve}, keep)
     return model
 
 

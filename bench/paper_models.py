@@ -1,15 +1,20 @@
 """The models that are compared, each made from the same training and validation runs and tuned on those alone."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import torch
 
-from bench import paper_ekf, paper_lstm
-from bench.paper_lab import Course, free
+from bench import paper_adapted, paper_ekf, paper_filter, paper_lstm
+from bench.paper_adapted import Acting
+from bench.paper_filter import Push, Tuning
+from bench.paper_lab import Course, free, judge
 from bench.paper_ship import nominal
+from bench.paper_stats import summary
+from export.batches import zeta_of
 from export.data import Leg, split
 from export.network import Residual
 from export.teach import Settings, Taught, teach
@@ -28,72 +33,116 @@ ROWS = {
     "analytic_current": "nominal analytic, told the current",
     "ekf": "EKF (filterpy), told the current",
     "lstm": "LSTM",
-    "hybrid": "hybrid: nominal + network",
-    "calibrated": "core calibrated on the TS-01 training runs, no network",
-    "physics_added": "calibrated + Wind + WaveDrift, no network",
-    "physics_added_hybrid": "calibrated + Wind + WaveDrift + network",
+    "hybrid_smooth": "hybrid, begun in the smooth motion",
+    "hybrid": "**hybrid: nominal + network**, begun in its own filter",
+    "hybrid_adapted": "the same, learning on (twin/live/adapt.py)",
+    "calibrated": "core calibrated on the TS-01 training runs, own filter, no network",
+    "physics_added": "calibrated + Wind + WaveDrift, own filter, no network",
+    "physics_added_hybrid": "calibrated + Wind + WaveDrift + network, own filter",
 }
 
 
 @dataclass
 class Models:
-    """Every model as a function of a course, and what is to be told of how it came about."""
+    """Every model as a function of courses, and what is to be told of how it came about."""
 
     predict: dict[str, Predict] = field(default_factory=dict)
-    told: dict[str, object] = field(default_factory=dict)
+    told: dict[str, Any] = field(default_factory=dict)
     seeds: dict[int, Predict] = field(default_factory=dict)  # the hybrid of every seed
+    curves: dict[str, list[list[float]]] = field(default_factory=dict)  # validation loss by epoch, of every seed
+    acting: Acting | None = None  # the first seed's network, for adaptation
+    tuning: Tuning = field(default_factory=Tuning)
+
+
+@dataclass(frozen=True)
+class Workshop:
+    """Where models are made: the voyages by parts, the settings, and where what is done is kept."""
+
+    parts: dict[str, list[Course]]
+    legs: dict[str, list[Leg]]
+    settings: Settings
+    work: Path
+    tell: Callable[[str], None]
+
+    def taught(self, model: Model, seed: int, name: str) -> Taught:
+        """The trained network; the checkpoint stays, so that a run that was stopped goes on."""
+        self.tell(f"training {name}-{seed}")
+
+        def show(stage: str, epoch: int, epochs: int, loss: float, validation: float) -> None:
+            if epoch % 10 == 0:
+                self.tell(f"  {stage} {epoch}/{epochs}: loss {loss:.4g}, validation {validation:.4g}")
+
+        return teach(self.legs, model, replace(self.settings, seed=seed), show, self.work / f"{name}-{seed}.pt")
+
+    def tuned(self, model: Model, push: Push | None) -> Tuning:
+        return paper_filter.tuned(self.parts["validation"], model, push)
 
 
 def build(
     lessons: Sequence[Course], settings: Settings, lstm_epochs: int, seeds: Sequence[int], work: Path, tell: Callable[[str], None]
 ) -> Models:
     """Train, fit and tune everything."""
-    ship, out = nominal(), Models()
-    plain = Model(ship)
-    legs = split([c.water for c in lessons])
-    parts = split(lessons)  # type: ignore[type-var]
-    used = {name: [c.name for c in some] for name, some in parts.items()}
-    out.told["parts"] = {name: len(some) for name, some in used.items()}
+    out, parts = Models(), split(lessons)  # type: ignore[type-var]
+    shop = Workshop(parts, split([c.water for c in lessons]), settings, work, tell)  # type: ignore[arg-type]
+    plain = Model(nominal())
+    out.told["parts"] = {name: len(some) for name, some in parts.items()}
     out.predict["analytic"] = lambda cs: free(plain, None, cs, "earth")
     out.predict["analytic_current"] = lambda cs: free(plain, None, cs)
-    tell("tuning the EKF")
-    walk, keep = paper_ekf.tuned(parts["validation"], plain)
-    out.told["ekf"] = {"walk": walk, "disturbance_kept_in_prediction": keep}
-    out.predict["ekf"] = lambda cs: paper_ekf.predict(cs, plain, walk, keep)
-    tell("training the LSTM")
-    lstm = paper_lstm.train(legs["train"], legs["validation"], lstm_epochs)
-    out.predict["lstm"] = lambda cs: [paper_lstm.predict(lstm, c) for c in cs]
-    for seed in seeds:
-        taught = _taught(legs, plain, replace(settings, seed=seed), work / f"hybrid-{seed}.pt", tell)
-        out.seeds[seed] = _hybrid(plain, taught.network)
-        out.told.setdefault("hybrid", _about(plain, taught))
-    out.predict["hybrid"] = out.seeds[seeds[0]]
-    tell("calibrating the core, then adding " + ", ".join(NAMED))
-    calm = [c for c in parts["train"] if c.scenario == "TS-01"]
-    core = _fitted(plain, calm, [])
-    out.predict["calibrated"] = lambda cs: free(core, None, cs)
-    added = _fitted(core, [c for c in parts["train"] if c.scenario != "TS-01"], NAMED)
-    out.told["added"] = {type(e).__name__: {p.name: float(getattr(e, p.name)) for p in e.params()} for e in added.effects}
-    out.predict["physics_added"] = lambda cs: free(added, None, cs)
-    taught = _taught(legs, added, replace(settings, seed=seeds[0]), work / f"added-{seeds[0]}.pt", tell)
-    out.predict["physics_added_hybrid"] = _hybrid(added, taught.network)
-    out.told["physics_added_hybrid"] = _about(added, taught)
+    _filtered(out, shop, plain)
+    _sequence(out, shop, lstm_epochs, seeds[0])
+    _hybrids(out, shop, plain, seeds)
+    _named(out, shop, plain, seeds[0])
     return out
 
 
-def _hybrid(model: Model, network: Residual) -> Predict:
-    return lambda cs: free(model, network, cs)
+def _filtered(out: Models, shop: Workshop, plain: Model) -> None:
+    """The EKF of the paper's comparison."""
+    shop.tell("tuning the EKF")
+    walk, keep = paper_ekf.tuned(shop.parts["validation"], plain)  # type: ignore[arg-type]
+    out.told["ekf"] = {"walk": walk, "disturbance_kept_in_prediction": keep}
+    out.predict["ekf"] = lambda cs: paper_ekf.predict(cs, plain, walk, keep)
 
 
-def _taught(legs: dict[str, list[Leg]], model: Model, settings: Settings, keep: Path, tell: Callable[[str], None]) -> Taught:
-    """The trained network; the checkpoint stays, so that a run that was stopped goes on."""
-    tell(f"training {keep.stem}")
+def _sequence(out: Models, shop: Workshop, epochs: int, seed: int) -> None:
+    shop.tell("training the LSTM")
+    lstm = paper_lstm.train(shop.legs["train"], shop.legs["validation"], epochs, seed, keep=shop.work / f"lstm-{epochs}-{seed}.pt")
+    out.curves["lstm"] = [lstm.curve]
+    out.told["lstm"] = {"epochs": len(lstm.curve)}
+    out.predict["lstm"] = lambda cs: [paper_lstm.predict(lstm, c) for c in cs]
 
-    def show(stage: str, epoch: int, epochs: int, loss: float, validation: float) -> None:
-        if epoch % 10 == 0:
-            tell(f"  {stage} {epoch}/{epochs}: loss {loss:.4g}, validation {validation:.4g}")
 
-    return teach(legs, model, settings, show, keep)
+def _hybrids(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) -> None:
+    """One network for each seed; the filter is tuned once, with the first."""
+    taught = {seed: shop.taught(plain, seed, "hybrid") for seed in seeds}
+    first = taught[seeds[0]]
+    shop.tell("tuning the hybrid's filter")
+    out.tuning = shop.tuned(plain, first.network)
+    for seed, one in taught.items():
+        out.seeds[seed] = _started(plain, one.network, out.tuning)
+    out.curves["hybrid"] = [[row[3] for row in t.curve if row[0] == "rollout"] for t in taught.values()]
+    out.acting = Acting(first.network, plain, zeta_of(first.network, first.samples))
+    out.told["hybrid"] = _about(plain, first) | {"filter": asdict(out.tuning)}
+    out.told["gap"] = {part: summary(judge(out.seeds[seeds[0]](shop.parts[part]), shop.parts[part])) for part in ("validation", "test")}
+    out.predict["hybrid_smooth"] = lambda cs: free(plain, first.network, cs)
+    out.predict["hybrid"] = out.seeds[seeds[0]]
+    out.predict["hybrid_adapted"] = lambda cs: paper_adapted.predict(cs, plain, out.acting, out.tuning)  # type: ignore[arg-type]
+
+
+def _named(out: Models, shop: Workshop, plain: Model, seed: int) -> None:
+    """What has a name first, then a network on top."""
+    shop.tell("calibrating the core, then adding " + ", ".join(NAMED))
+    train = shop.parts["train"]
+    core = _fitted(plain, [c for c in train if c.scenario == "TS-01"], [])
+    added = _fitted(core, [c for c in train if c.scenario != "TS-01"], NAMED)
+    out.told["added"] = {type(e).__name__: {p.name: float(getattr(e, p.name)) for p in e.params()} for e in added.effects}
+    taught = shop.taught(added, seed, "added")
+    out.told["physics_added_hybrid"] = _about(added, taught)
+    for name, model, network in (("calibrated", core, None), ("physics_added", added, None), ("physics_added_hybrid", added, taught.network)):
+        out.predict[name] = _started(model, network, shop.tuned(model, network))
+
+
+def _started(model: Model, network: Residual | None, tuning: Tuning) -> Predict:
+    return lambda cs: paper_filter.predict(cs, model, network, tuning)
 
 
 def _about(model: Model, taught: Taught) -> dict[str, object]:

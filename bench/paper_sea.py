@@ -16,6 +16,7 @@ from twin.study.voyage import Voyage
 
 SCENARIOS = ("TS-01", "TS-02", "TS-03")
 RUN_S = 900.0
+GNSS_LATE_S = 0.1
 TRUE = ("north", "east", "psi")
 
 
@@ -89,6 +90,14 @@ def changed(plan: Plan) -> dict[str, list[Case]]:
 
 def _more(derivatives: tuple[float, ...], by: float) -> tuple[float, ...]:
     return tuple(by * d for d in derivatives)
+
+
+def without_gnss_noise(sailed: Sailed) -> Sailed:
+    """The same voyage with places as they were, 0.1 s late as the receiver is."""
+    v = sailed.voyage
+    exact = {name: np.interp(v.time_s - GNSS_LATE_S, v.time_s, sailed.truth[:, i]) for i, name in enumerate(("north_m", "east_m"))}
+    seen = {name: np.where(np.isfinite(v.columns[name]), x, np.nan) for name, x in exact.items()}
+    return Sailed(v.with_rows(v.time_s, dict(v.columns) | seen), sailed.truth)
 
 
 def by_speed(plan: Plan) -> dict[str, list[Case]]:

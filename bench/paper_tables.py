@@ -19,6 +19,9 @@ PAPER_4 = {"analytic": [142.5, 138.2, 147.9], "lstm": [34.7, 32.9, 36.8], "hybri
 PAPER_5 = {"analytic": 0.91, "lstm": 0.78}
 PAPER_6 = {"analytic": [0.72, 0.69, 0.75], "hybrid": [0.96, 0.95, 0.97]}
 PAPER_7 = {"Mass error M (+5%)": [12.4, 1.2], "Damping error D (+10%)": [18.7, 2.5], "GNSS sensor noise (0.5 m)": [4.2, 0.8]}
+EXACT = "GNSS without noise"
+GNSS = "GNSS sensor noise (0.5 m)"
+COMPARED = ("analytic", "hybrid", "hybrid_adapted", "physics_added_hybrid")  # in Table 7
 PAPER_8 = {"Maneuvering": [32.4, 8.2], "Cruising": [18.1, 4.5], "Full speed": [25.6, 6.1]}
 
 
@@ -46,7 +49,7 @@ def table3(errors: dict[str, Errors], seeds: Sequence[Errors]) -> dict[str, Any]
     """Mean errors of every model; by scenario; over the seeds of the hybrid."""
     every = {n: stats.summary(e) for n, e in errors.items()}
     out: dict[str, Any] = {
-        measure: {n: s[measure] for n, s in every.items()} | {"hybrid_adapted": None, "paper": PAPER_3[measure]} for measure in PAPER_3
+        measure: {n: s[measure] for n, s in every.items()} | {"paper": PAPER_3[measure]} for measure in PAPER_3
     }
     out["r2"] = out["r2_lateral"]  # the smaller of the two
     out["by_scenario"] = {
@@ -63,7 +66,7 @@ def table3(errors: dict[str, Errors], seeds: Sequence[Errors]) -> dict[str, Any]
 
 def ratios(table: dict[str, Any]) -> dict[str, float]:
     """How many times better the hybrid is; and what is left of that once the physics is named and calibrated."""
-    out = {}
+    out: dict[str, float] = {}
     for short, measure in (("heading", "heading_mae_deg"), ("lateral", "lateral_mae_m")):
         for name in ("analytic", "ekf", "lstm", "calibrated", "physics_added"):
             out[f"{short}_vs_{name}"] = table[measure][name] / table[measure]["hybrid"]
@@ -95,25 +98,28 @@ def _r2(e: Errors, resamples: int) -> dict[str, Any]:
 
 
 def table7(models: Models, courses: dict[str, list[Course]], changed: Sequence[str]) -> dict[str, Any]:
-    """Other ships, the models unchanged: own change in %, change in % of the nominal analytic error, and absolute errors."""
+    """Other ships and another receiver, the models unchanged."""
     base, *others = changed
-    found = {
-        case: {
-            n: stats.summary(judge(models.predict[n](courses[case]), courses[case])) for n in ("analytic", "hybrid", "physics_added_hybrid")
-        }
-        for case in changed
-    }
-    whole = found[base]["analytic"]["lateral_mae_m"]
+    found = {case: {n: stats.summary(judge(models.predict[n](courses[case]), courses[case])) for n in COMPARED} for case in (*changed, EXACT)}
     out: dict[str, Any] = {base: {"absolute": found[base]}}
     for case in others:
-        moved = {n: found[case][n]["lateral_mae_m"] - found[base][n]["lateral_mae_m"] for n in found[case]}
-        out[case] = {
-            "absolute": found[case],
-            "own_change_percent": {n: 100 * m / found[base][n]["lateral_mae_m"] for n, m in moved.items()},
-            "change_percent_of_analytic": {n: 100 * m / whole for n, m in moved.items()},
-            "paper": dict(zip(("analytic", "hybrid"), PAPER_7[case], strict=True)),
-        }
+        out[case] = _change(found[base], found[case], found[base]["analytic"]) | _said(case)
+    out[GNSS] = _change(found[EXACT], found[base], found[base]["analytic"]) | _said(GNSS)
     return out
+
+
+def _change(before: dict[str, Any], after: dict[str, Any], nominal: dict[str, float]) -> dict[str, Any]:
+    """Absolute errors after a change, the change in % of each model's own error, and in % of the nominal analytic error."""
+    out: dict[str, Any] = {"absolute": after}
+    for short, measure in (("lateral", "lateral_mae_m"), ("heading", "heading_mae_deg")):
+        moved = {n: after[n][measure] - before[n][measure] for n in after}
+        out[f"{short}_own_change_percent"] = {n: 100 * m / before[n][measure] for n, m in moved.items()}
+        out[f"{short}_change_percent_of_analytic"] = {n: 100 * m / nominal[measure] for n, m in moved.items()}
+    return out
+
+
+def _said(case: str) -> dict[str, Any]:
+    return {"paper": dict(zip(("analytic", "hybrid"), PAPER_7[case], strict=True))}
 
 
 def table8(predict: dict[str, Predict], courses: list[Course]) -> dict[str, Any]:

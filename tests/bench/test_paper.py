@@ -10,7 +10,6 @@ pytest.importorskip("filterpy", reason="filterpy is not installed: pip install '
 
 from bench import paper_ekf, paper_sea, paper_stats  # noqa: E402
 from bench.paper_lab import course, free, judge  # noqa: E402
-from bench.paper_page import NOT_DONE  # noqa: E402
 from bench.paper_ship import OFF, nominal  # noqa: E402
 from twin.physics.model import Model  # noqa: E402
 
@@ -68,7 +67,3 @@ def test_blocks_widen_an_interval_that_single_errors_make_too_narrow():
 def test_cliffs_delta_by_hand():
     """(1, 2) against (2, 3): of four pairs three are greater and one is a tie."""
     assert paper_stats.cliff(np.array([1.0, 2.0]), np.array([2.0, 3.0])) == 0.75
-
-
-def test_the_page_names_what_is_not_done():
-    assert any("adaptation" in line for line in NOT_DONE)
