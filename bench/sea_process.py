@@ -45,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--duration", type=float, default=math.inf, metavar="S", help="how long (default: until stopped)"
     )
+    parser.add_argument("--after", type=float, default=0.0, metavar="S", help="let her sail so long before anybody hears her")
     parser.add_argument("--csv", metavar="FILE", help="write the voyage there at once, and speak to nobody")
     parser.add_argument(
         "--latitude-deg", type=float, default=57.62, help="of the chart's origin (default: off Vinga)"
@@ -56,11 +57,14 @@ def run(args: argparse.Namespace) -> int:
     if args.csv:
         return _write(args)
     sea = Sea(_case(args), 1.0 / args.hz)
+    for _ in range(round(args.after * args.hz)):
+        sea.step()
     signal.signal(signal.SIGTERM, lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
     place = BusSettings(args.base, args.entity, args.listen, (args.connect,) if args.connect else ())
     session = zenoh.open(configuration(place))
     try:
         voice = Voice(session, args)
+        print("under way", flush=True)
         voice.wait_for_twin()
         _sail(sea, voice, args)
     except KeyboardInterrupt:

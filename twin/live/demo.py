@@ -7,6 +7,7 @@ estimates, speaks and logs; the log is then replayed, and the replay held agains
 import argparse
 import importlib.util
 import math
+import os
 import shlex
 import socket
 import subprocess
@@ -16,7 +17,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from twin.errors import TwinError
 from twin.live import messages, replay
@@ -27,6 +28,8 @@ from twin.live.view import View
 from twin.physics.ship import load
 
 SEA = "bench.sea_process"  # the reference sea: a program beside the twin, not a part of it
+UNDER_WAY, START_S = "under way", 60.0  # what the sea says when it is ready, and the longest wait for it
+RUN_IN = 2.0  # ship lengths that she sails straight before a manoeuvre begins
 SEEN = (
     "north_m",
     "east_m",
@@ -36,14 +39,11 @@ SEEN = (
     "yaw_rate_degps",
 )
 
+
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, default=40.0, help="how long she sails (default: 40)")
-    parser.add_argument(
-        "--ship", default="usv", help="a bundled ship: usv (2 m, lively; the default), kvlcc2, ..."
-    )
-    parser.add_argument(
-        "--manoeuvre", default="zigzag_20", help="what the helmsman does (default: zigzag_20)"
-    )
+    parser.add_argument("--ship", default="kvlcc2", help="a bundled ship: kvlcc2 (320 m; the default), usv (2 m, lively), ...")
+    parser.add_argument("--manoeuvre", default="zigzag_20", help="what the helmsman does (default: zigzag_20)")
     parser.add_argument("--logs", default="logs", metavar="FOLDER", help="where the log goes (default: logs)")
 
 
@@ -54,10 +54,8 @@ def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
     folder = Path(args.logs) / time.strftime("demo-%Y%m%d-%H%M%S")
     settings = settings_for(args.ship, folder)
-    print(
-        f"{ship.name} sails a {args.manoeuvre} in the reference sea for {args.seconds:g} s; her twin listens."
-    )
-    with reference_sea(settings, args):
+    print(f"{ship.name} sails a {args.manoeuvre} in the reference sea for {args.seconds:g} s; her twin listens.")
+    with reference_sea(settings, args, RUN_IN * ship.L_pp / ship.U_0):
         view = View(sys.stdout, f"shiptwin demo: {ship.name}", args.seconds, str(folder))
         code = service.serve(settings, args.seconds, view.show)
     if code:
@@ -80,32 +78,32 @@ def settings_for(ship: str, folder: Path) -> Settings:
 
 
 @contextmanager
-def reference_sea(settings: Settings, args: argparse.Namespace) -> Iterator[None]:
-    """The ship and her instruments, in a process of its own, until the demo is over."""
+def reference_sea(settings: Settings, args: argparse.Namespace, after_s: float) -> Iterator[None]:
+    """The ship and her instruments, in a process of its own, until the demo is over; she is under way for `after_s`."""
     if importlib.util.find_spec("bench") is None:
-        raise TwinError(
-            "The reference sea (package `bench`) is not installed here. Run `make demo` in the source folder."
-        )
+        raise TwinError("The reference sea (package `bench`) is not installed here. Run `make demo` in the source folder.")
     command = [sys.executable, "-m", SEA, "--connect", settings["bus.listen"], "--hull", args.ship]
-    command += [
-        "--manoeuvre",
-        args.manoeuvre,
-        "--base",
-        settings["bus.base"],
-        "--entity",
-        settings["bus.entity"],
-    ]
+    command += ["--manoeuvre", args.manoeuvre, "--after", f"{after_s:.0f}"]
+    command += ["--base", settings["bus.base"], "--entity", settings["bus.entity"]]
     with tempfile.TemporaryFile("w+") as said:
         sea = subprocess.Popen(command, stdout=said, stderr=said)
         try:
-            time.sleep(0.5)
-            if sea.poll() is not None:
-                said.seek(0)
-                raise TwinError(f"The reference sea did not start: {said.read().strip().splitlines()[-1:]}")
+            _wait_for(sea, said)
             yield
         finally:
             sea.terminate()
             sea.wait(10)
+
+
+def _wait_for(sea: "subprocess.Popen[bytes]", said: IO[str]) -> None:
+    """Until she is under way."""
+    until = time.monotonic() + START_S
+    text = ""
+    while UNDER_WAY not in text:
+        if sea.poll() is not None or time.monotonic() > until:
+            raise TwinError(f"The reference sea did not start: {text.strip().splitlines()[-1:]}")
+        time.sleep(0.05)
+        text = os.pread(said.fileno(), 10_000, 0).decode(errors="replace")  # its place is the sea's too
 
 
 def tell(log: Path, ticks: int, settings: Settings) -> None:
@@ -123,18 +121,10 @@ def compared(log: Path, again: Path) -> str:
     """How far the replay's estimates are from those said live."""
     live, replayed = ({t.index: t.estimate for t in ticks_of(path)} for path in (log, again))
     worst = max(
-        (
-            abs(getattr(live[i], name) - getattr(replayed[i], name))
-            for i in live.keys() & replayed.keys()
-            for name in SEEN
-        ),
+        (abs(getattr(live[i], name) - getattr(replayed[i], name)) for i in live.keys() & replayed.keys() for name in SEEN),
         default=math.nan,
     )
-    return (
-        "the same estimates as live, bit for bit"
-        if worst == 0.0
-        else f"estimates differ from live by {worst:.2g} at most"
-    )
+    return "the same estimates as live, bit for bit" if worst == 0.0 else f"estimates differ from live by {worst:.2g} at most"
 
 
 def ticks_of(path: Path) -> Iterator[Any]:
