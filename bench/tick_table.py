@@ -88,7 +88,7 @@ def _parts(r: dict[str, Any]) -> str:
         bar = "█" * round(14 * times["mean"] / total)
         lines.append(
             f"  {name:<12}{times['median']:>8,.0f}{times['p99']:>8,.0f}{times['mean']:>8,.0f}"
-            f"  {DOC.get(name, ''):<42}{bar}"
+            f"  {DOC.get(name, ''):<44}{bar}"
         )
     return "\n".join(lines)
 
