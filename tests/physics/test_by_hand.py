@@ -4,6 +4,7 @@ from math import radians, sqrt
 
 import pytest
 
+from twin.physics import core
 from twin.physics.effects import find
 from twin.physics.state import Situation
 
@@ -120,10 +121,18 @@ def test_current_and_tide_by_hand(ship):
 
 def test_shallow_water_by_hand(ship):
     # T/h = 5/7.5 = 2/3: g = (4/9)/(1/3) = 4/3
-    water = find("ShallowWater")(surge=0.09, sway=0.75, yaw=0.3).water(Situation(depth=7.5), ship)
-    assert water == (0.0, 0.0, pytest.approx(0.12), pytest.approx(1.0), pytest.approx(0.4))
-    aground = find("ShallowWater")(surge=0.09, sway=0.75, yaw=0.3).water(Situation(depth=1.0), ship)
+    water = find("ShallowWater")(surge=0.09, sway=0.75, yaw=0.3, heavier=0.6).water(Situation(depth=7.5), ship)
+    assert water == (0.0, 0.0, pytest.approx(0.12), pytest.approx(1.0), pytest.approx(0.4), pytest.approx(0.8))
+    aground = find("ShallowWater")(surge=0.09, sway=0.75, yaw=0.3, heavier=0.6).water(Situation(depth=1.0), ship)
     assert aground.k_v == pytest.approx(0.75 * (1 / 1.05) ** 2 / (1 - 1 / 1.05))
+
+
+def test_heavier_water_slows_every_answer_by_the_mass_it_adds(ship):
+    c = ship.c
+    light, heavy = (core.accelerations(1e4, 2e4, 3e5, c, k) for k in (0.0, 0.8))
+    m_v, m_r = c.m_v + 0.8 * -c.Y_vdot, c.m_r + 0.8 * -c.N_rdot
+    assert m_v * heavy[1] + c.m_vr * heavy[2] == pytest.approx(2e4) and c.m_rv * heavy[1] + m_r * heavy[2] == pytest.approx(3e5)
+    assert heavy[0] == light[0]
 
 
 def test_steering_gear_by_hand():

@@ -37,7 +37,7 @@ class Known:
         if not self.model.flows:
             return Water(u, v)
         w = self.model.water(s)
-        return Water(w.u + u, w.v + v, w.k_u, w.k_v, w.k_r)
+        return w._replace(u=w.u + u, v=w.v + v)
 
     def forces(self, s: Situation) -> Forces:
         """Every known force, in the order of `names`. Sets the speeds through water of s."""
@@ -57,7 +57,7 @@ class Known:
         X, Y, N = learned
         for x, y, n in forces:
             X, Y, N = X + x, Y + y, N + n
-        u_dot, v_dot, r_dot = core.accelerations(X, Y, N, self.model.c)
+        u_dot, v_dot, r_dot = core.accelerations(X, Y, N, self.model.c, s.k_m)
         r = s.r
         return Rates(u_dot + r * (s.v - s.v_r), v_dot - r * (s.u - s.u_r), r_dot)
 

@@ -30,12 +30,12 @@ class Coefficients:
     Y_vdot: Number
     Y_rdot: Number
     N_vdot: Number
+    N_rdot: Number
     m_u: Number  # m - X_udot
     m_v: Number  # m - Y_vdot
     m_vr: Number  # m x_G - Y_rdot
     m_rv: Number  # m x_G - N_vdot
     m_r: Number  # I_z - N_rdot
-    det: Number  # m_v m_r - m_vr m_rv
     X_u: Number
     X_uu: Number
     X_vv: Number
@@ -83,7 +83,7 @@ def coefficients(ship: "Ship") -> Coefficients:
     return Coefficients(
         m=ship.m, mx_G=mx_G,
         X_udot=d.X_udot * m_, Y_vdot=d.Y_vdot * m_, Y_rdot=d.Y_rdot * m_ * L, N_vdot=d.N_vdot * m_ * L,
-        m_u=m_u, m_v=m_v, m_vr=m_vr, m_rv=m_rv, m_r=m_r, det=m_v * m_r - m_vr * m_rv,
+        N_rdot=d.N_rdot * m_ * L**2, m_u=m_u, m_v=m_v, m_vr=m_vr, m_rv=m_rv, m_r=m_r,
         X_u=d.X_u * slow, X_uu=d.X_uu * f, X_vv=d.X_vv * f, X_vr=d.X_vr * f * L, X_rr=d.X_rr * f * L**2,
         Y_v=d.Y_v * slow, Y_uv=d.Y_uv * f, Y_ur=d.Y_ur * f * L,
         Y_vv=d.Y_vv * f, Y_vr=d.Y_vr * f * L, Y_rv=d.Y_rv * f * L, Y_rr=d.Y_rr * f * L**2,
@@ -141,6 +141,8 @@ def rudder(u: Number, v: Number, r: Number, delta: Number, thrust: Number, c: Co
     return -c.drag_R * normal * si, c.side_R * athwart, c.lever_R * athwart
 
 
-def accelerations(X: Number, Y: Number, N: Number, c: Coefficients) -> Tau:
-    """M^-1 tau by components: surge stands alone, sway and yaw are a 2 x 2 system."""
-    return X / c.m_u, (c.m_r * Y - c.m_vr * N) / c.det, (c.m_v * N - c.m_rv * Y) / c.det
+def accelerations(X: Number, Y: Number, N: Number, c: Coefficients, k_m: Number = 0.0) -> Tau:
+    """M^-1 tau by components: surge stands alone, sway and yaw are a 2 x 2 system. k_m: growth of their added mass, as a share."""
+    m_v, m_r = c.m_v - k_m * c.Y_vdot, c.m_r - k_m * c.N_rdot
+    det = m_v * m_r - c.m_vr * c.m_rv
+    return X / c.m_u, (m_r * Y - c.m_vr * N) / det, (m_v * N - c.m_rv * Y) / det

@@ -66,14 +66,17 @@ class Model:
         return total
 
     def forces(self, s: Situation, w: Water) -> list[core.Tau]:
-        """Every known force, in the order of `names`. Sets s.u_r and s.v_r."""
+        """Every known force, in the order of `names`. Sets s.u_r, s.v_r and s.k_m."""
         s.u_r, s.v_r = u, v = s.u - w.u, s.v - w.v
+        s.k_m = w.k_m
         c, r, ship = self.c, s.r, self.loaded
         thrust = core.thrust(u, s.n, c)
         X, Y, N = core.damping(u, v, r, c)
+        turning = core.coriolis(u, v, r, c)
+        munk = turning[2] + c.mx_G * u * r
         return [
-            (X * (1.0 + w.k_u), Y * (1.0 + w.k_v), N * (1.0 + w.k_r)),
-            core.coriolis(u, v, r, c),
+            (X * (1.0 + w.k_u), Y * (1.0 + w.k_v), N + w.k_r * (N + munk)),
+            turning,
             core.propeller(thrust, c),
             core.rudder(u, v, r, s.delta, thrust, c),
             *[push.force(s, ship) for push in self.pushes],
@@ -93,7 +96,7 @@ class Model:
         X = Y = N = 0.0
         for x, y, n in forces:
             X, Y, N = X + x, Y + y, N + n
-        u_dot, v_dot, r_dot = core.accelerations(X, Y, N, self.c)
+        u_dot, v_dot, r_dot = core.accelerations(X, Y, N, self.c, w.k_m)
         return Rates(u_dot + s.r * w.v, v_dot - s.r * w.u, r_dot)  # the ship turns in a current that does not
 
     def derivative(self, state: Eta_nu, s: Situation) -> Eta_nu:

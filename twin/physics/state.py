@@ -25,7 +25,8 @@ class Water(NamedTuple):
     """The water an effect makes the ship feel.
 
     (u, v): its velocity in body axes [m/s]. (k_u, k_v, k_r): by how much it holds the hull harder in surge, sway and yaw, as
-    shares of the hull's damping (a bottom squeezes the stream past her; propeller and rudder, in the wake, do not feel it).
+    shares of the hull's damping, in yaw of the whole moment, Munk's included (a bottom squeezes the stream past her; propeller
+    and rudder, in the wake, do not feel it). k_m: by how much more of it sways and turns with her, as a share of the added mass.
     """
 
     u: Number = 0.0
@@ -33,6 +34,7 @@ class Water(NamedTuple):
     k_u: Number = 0.0
     k_v: Number = 0.0
     k_r: Number = 0.0
+    k_m: Number = 0.0
 
 
 STILL = Water()
@@ -62,6 +64,7 @@ class Situation:
     r: Number = 0.0
     u_r: Number = 0.0
     v_r: Number = 0.0
+    k_m: Number = 0.0  # by how much the added mass in sway and yaw has grown, as a share of it
     delta: Number = 0.0  # rudder [rad], positive turns to starboard
     n: Number = 0.0  # propeller [1/s], positive ahead
     t: Number = 0.0  # time since the voyage began [s]

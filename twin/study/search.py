@@ -80,7 +80,7 @@ class _Book:
         if ranked[0].effects == () and ranked[0].world == "usual":
             return []
         plain = {h.world: h.log_evidence for h in ranked if not h.effects}
-        singles = [h.effects for h in ranked if len(h.effects) == 1 and h.log_evidence > plain.get(h.world, -np.inf) + EARNED]
+        singles: list[Sets] = [h.effects for h in ranked if len(h.effects) == 1 and h.log_evidence > plain.get(h.world, -np.inf) + EARNED]
         return list(dict.fromkeys(singles))[:SINGLES]
 
     def next(self) -> Sets | None:
