@@ -31,6 +31,24 @@ finally:
 """
 
 
+STARTED: list[subprocess.Popen] = []
+
+
+@pytest.fixture(autouse=True)
+def no_process_is_left():
+    yield
+    for process in STARTED:
+        if process.poll() is None:
+            process.kill()
+            process.wait()
+    STARTED.clear()
+
+
+def popen(*words, **how):
+    STARTED.append(subprocess.Popen(words, text=True, **how))
+    return STARTED[-1]
+
+
 def free_port():
     with socket.socket() as s:
         s.bind(("127.0.0.1", 0))
@@ -49,7 +67,7 @@ def place(tmp_path):
 
 def start(place, *more, **env):
     command = [sys.executable, "-m", "twin.cli", "run", "--config", str(place / "twin.toml"), *more]
-    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=os.environ | env)
+    return popen(*command, stderr=subprocess.PIPE, env=os.environ | env)
 
 
 def started(process):
@@ -100,11 +118,7 @@ def test_C4_an_uncaught_exception_ends_the_process_and_does_not_hang(place):
     """Test: a bug on the tenth tick, bus and log open. Expected: exit code not 0 within a second,
     traceback said."""
     hook = "if tick.index == 10: print('BROKEN', file=sys.stderr, flush=True); raise RuntimeError('planted')"
-    process = subprocess.Popen(
-        [sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml")],
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    process = popen(sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml"), stderr=subprocess.PIPE)
     while "BROKEN" not in process.stderr.readline():
         pass
     broke = time.monotonic()
@@ -137,18 +151,14 @@ def test_C3_the_watchdog_is_fed_after_good_steps_and_not_while_the_loop_hangs(pl
         manager.bind(address)
         manager.settimeout(20.0)
         hook = "import time; time.sleep(60) if tick.index == 20 else None"
-        process = subprocess.Popen(
-            [sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml")],
-            stderr=subprocess.DEVNULL, env=os.environ | {"NOTIFY_SOCKET": address},
-        )  # fmt: skip
+        command = sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml")
+        popen(*command, stderr=subprocess.DEVNULL, env=os.environ | {"NOTIFY_SOCKET": address})
         heard = [manager.recv(1000).decode()]
         assert heard[0].startswith("READY=1\nSTATUS=")
         manager.settimeout(3.0)
         with pytest.raises(TimeoutError):
             while True:
                 heard.append(manager.recv(1000).decode())
-        process.kill()
-        process.wait()
     assert sum(word == "WATCHDOG=1" for word in heard) >= 2
     assert any(word.startswith("STATUS=starting") for word in heard)
 

@@ -81,7 +81,7 @@ class Residual:
                 if zeta is None or not isfinite(zeta):
                     return [], 0.0, f"its input {name} is not measured"
                 weight *= max(1.0 - max(low - zeta, zeta - high) / (high - low) / MARGIN, 0.0) ** 2
-                why = f"{name} = {zeta:.3g} is outside {low:.3g} to {high:.3g}, where it was trained"
+                why = f"{name} = {zeta:.4g} is outside {low:.4g} to {high:.4g}, where it was trained"
                 zeta = min(max(zeta, low), high)
             values.append((zeta - offset) / scale)
         return values, weight, why
