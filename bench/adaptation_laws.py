@@ -8,6 +8,7 @@
 """
 
 from math import sqrt
+from typing import Any
 
 from twin.live.adapt import NOISE_S, Adaptation, Row
 from twin.live.residual import dot
@@ -51,8 +52,8 @@ class DeadZone(Gradient):
 class Covariant(Adaptation):
     """What RLS and the Kalman filter share: a covariance P of each row."""
 
-    def __init__(self, *args: object) -> None:
-        super().__init__(*args)  # type: ignore[arg-type]
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
         self._P = {id(row): [[P_FIRST if i == j else 0.0 for j in range(self.width)] for i in range(self.width)] for row in self._rows}
 
     def _fit(self, row: Row, q: list[float], error: float, h: float) -> None:
@@ -90,3 +91,14 @@ class Kalman(Covariant):
     def _later(self, P: list[list[float]], h: float) -> list[list[float]]:
         keep, walk = 1.0 - 2.0 * h / LEAK, h * WALK
         return [[keep * p + (walk if i == j else 0.0) for j, p in enumerate(line)] for i, line in enumerate(P)]
+
+
+class Writes(Adaptation):
+    """Learns nothing, and writes down what it is told."""
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        self.heard: list[tuple[Any, list[float], float, str]] = []
+
+    def learn(self, wanted: Any, regressors: list[float], dt: float, frozen: str) -> None:
+        self.heard.append((wanted, list(regressors), dt, frozen))

@@ -30,6 +30,12 @@ BENCHES: dict[str, Bench] = {
     "paper": Bench(
         "bench.paper", "the paper's tables beside the paper's numbers", "twin-bench paper --quick"
     ),
+    "adaptation": Bench(
+        "bench.adaptation", "laws of adaptation on ships that changed", "twin-bench adaptation --work .paper"
+    ),
+    "stability": Bench(
+        "bench.stability", "ten thousand runs against the certificate", "twin-bench stability --runs 1000"
+    ),
     "hidden-effects": Bench(
         "bench.hidden_effects",
         "the hidden-effect league: is what is missing named?",

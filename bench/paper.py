@@ -1,6 +1,7 @@
 """`twin-bench paper`: the paper's Tables 3 to 8 on open voyages, the paper's number beside ours."""
 
 import argparse
+import json
 import sys
 import tempfile
 import time
@@ -25,6 +26,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--work", metavar="DIR", type=Path, help="where voyages and checkpoints are kept (default: nowhere; --full: .paper)"
     )
+    parser.add_argument("--figures", metavar="DIR", type=Path, help="Figures 2 to 6 as PNG files (needs matplotlib)")
+    parser.add_argument("--tick", metavar="FILE.json", type=Path, help="what `twin-bench --json` wrote, for Table 9")
     parser.add_argument("--markdown", metavar="FILE.md", type=Path, help="the tables as a page")
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
 
@@ -34,7 +37,9 @@ def run(args: argparse.Namespace) -> int:
 
     with tempfile.TemporaryDirectory() as nowhere:
         work = args.work or (Path(".paper") if args.full else Path(nowhere))
-        result = reproduce(sea.FULL if args.full else sea.QUICK, work, not args.full)
+        result = reproduce(sea.FULL if args.full else sea.QUICK, work, not args.full, args.figures)
+    if args.tick:
+        result["tables"]["9"] = json.loads(args.tick.read_text())
     text = "\n".join(page(result))
     print(text, file=sys.stderr if args.json == "-" else sys.stdout)
     if args.markdown:
@@ -44,13 +49,12 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def reproduce(plan: sea.Plan, work: Path, quick: bool) -> dict[str, Any]:
+def reproduce(plan: sea.Plan, work: Path, quick: bool, figures: Path | None = None) -> dict[str, Any]:
     """Sail, train, tune, predict, and count."""
-    from bench import paper_models, paper_tables
+    from bench import paper_closed, paper_models, paper_tables
+    from bench.paper_curve import curve
     from bench.paper_lab import course
     from bench.paper_ship import nominal
-    from export.teach import SEEDS, Settings
-
     began, wall = time.process_time(), time.monotonic()
     work.mkdir(parents=True, exist_ok=True)
     ship, tell = nominal(), _tell
@@ -60,15 +64,47 @@ def reproduce(plan: sea.Plan, work: Path, quick: bool) -> dict[str, Any]:
     voyages = {name: [next(sailed) for _ in cases] for name, cases in groups.items()}
     voyages[paper_tables.EXACT] = [sea.without_gnss_noise(one) for one in voyages[next(iter(changed))]]
     courses = {name: [course(one, ship) for one in some] for name, some in voyages.items()}
-    settings = Settings(epochs=25, rollout_epochs=12) if quick else Settings(rollout_epochs=30, rollout_batch=256)
-    models = paper_models.build(courses["lessons"], settings, 30 if quick else 150, SEEDS[:1] if quick else SEEDS, work, tell)
+    models = paper_models.build(courses["lessons"], settings_for(plan), plan.lstm_epochs, plan.seeds, work, tell)
     tell("predicting")
-    tables = paper_tables.all_tables(models, courses, list(changed), list(speeds), 10_000, 5_000)
+    tables = paper_tables.all_tables(models, courses, list(changed), list(speeds), plan.resamples, plan.resamples // 2)
+    tell("closed loop")
+    closed = paper_closed.sail(models.plain, models.network, plan.closed)
+    tables["fig5"] = paper_closed.table(closed)
+    tell("less data")
+    tables["data"] = curve(models.shop, models.tuning, courses["zigzags"], plan.curve, plan.lstm_epochs, plan.seeds[0])
+    if figures:
+        tables["fig6_ms"] = _draw(figures, models, courses["zigzags"], closed, tables)
     return {
         "schema_version": 1, "quick": quick, "tables": tables, "ratios": paper_tables.ratios(tables["3"]), "models": models.told,
         "counts": {name: len(some) for name, some in courses.items()}, "scenarios": list(sea.SCENARIOS),
         "cpu_seconds": round(time.process_time() - began, 1), "seconds": round(time.monotonic() - wall, 1),
     }  # fmt: skip
+
+
+def _draw(folder: Path, models: Any, zigzags: list[Any], closed: Any, tables: dict[str, Any]) -> dict[str, list[float]]:
+    """All figures; gives the times behind Fig. 6."""
+    from bench import paper_figures as draw
+
+    folder.mkdir(parents=True, exist_ok=True)
+    draw.learning(folder, models.curves)
+    draw.zigzag(folder, models, next(c for c in zigzags if c.scenario == "TS-03"))
+    draw.histogram(folder, models, zigzags)
+    draw.closed_loop(folder, closed)
+    three = tables["3"]
+    whole = {
+        "hours": sum(c.water.t[-1] for c in models.shop.parts["train"]) / 3600,
+        "hybrid": {m: three[m]["hybrid"] for m in ("heading_mae_deg", "lateral_mae_m")},
+        "lstm": {m: three[m]["lstm"] for m in ("heading_mae_deg", "lateral_mae_m")},
+    }
+    draw.data(folder, [*tables["data"], whole])
+    return draw.horizons(folder)
+
+
+def settings_for(plan: sea.Plan) -> Any:
+    """Of the training."""
+    from export.teach import Settings
+
+    return Settings(epochs=plan.epochs, rollout_epochs=plan.rollout_epochs, rollout_batch=plan.rollout_batch)
 
 
 def _tell(text: str) -> None:

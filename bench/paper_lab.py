@@ -33,6 +33,7 @@ class Course:
     water: Leg
     earth: Leg
     truth: np.ndarray
+    starts_s: tuple[float, ...] = STARTS_S
 
     @property
     def steps(self) -> int:
@@ -40,7 +41,7 @@ class Course:
 
     @property
     def starts(self) -> np.ndarray:
-        return np.array([round(t / self.water.h) for t in STARTS_S])
+        return np.array([round(t / self.water.h) for t in self.starts_s])
 
     @property
     def at(self) -> np.ndarray:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import torch
 
-from bench import paper_adapted, paper_ekf, paper_filter, paper_lstm
+from bench import paper_adapted, paper_ekf, paper_filter, paper_lstm, paper_lstm_onnx
 from bench.paper_adapted import Acting
 from bench.paper_filter import Push, Tuning
 from bench.paper_lab import Course, free, judge
@@ -52,6 +52,9 @@ class Models:
     curves: dict[str, list[list[float]]] = field(default_factory=dict)  # validation loss by epoch, of every seed
     acting: Acting | None = None  # the first seed's network, for adaptation
     tuning: Tuning = field(default_factory=Tuning)
+    network: Any = None  # the first seed's
+    plain: Any = None  # the nominal model
+    shop: Any = None
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,7 @@ def build(
     out, parts = Models(), split(lessons)  # type: ignore[type-var]
     shop = Workshop(parts, split([c.water for c in lessons]), settings, work, tell)  # type: ignore[arg-type]
     plain = Model(nominal())
+    out.shop, out.plain = shop, plain
     out.told["parts"] = {name: len(some) for name, some in parts.items()}
     out.predict["analytic"] = lambda cs: free(plain, None, cs, "earth")
     out.predict["analytic_current"] = lambda cs: free(plain, None, cs)
@@ -107,7 +111,9 @@ def _sequence(out: Models, shop: Workshop, epochs: int, seed: int) -> None:
     shop.tell("training the LSTM")
     lstm = paper_lstm.train(shop.legs["train"], shop.legs["validation"], epochs, seed, keep=shop.work / f"lstm-{epochs}-{seed}.pt")
     out.curves["lstm"] = [lstm.curve]
-    out.told["lstm"] = {"epochs": len(lstm.curve)}
+    file = paper_lstm_onnx.to_onnx(lstm)
+    (shop.work / "lstm.onnx").write_bytes(file)
+    out.told["lstm"] = {"epochs": len(lstm.curve), "torch_onnx_difference": paper_lstm_onnx.disagreement(lstm, file)}
     out.predict["lstm"] = lambda cs: [paper_lstm.predict(lstm, c) for c in cs]
 
 
@@ -120,6 +126,7 @@ def _hybrids(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) ->
     for seed, one in taught.items():
         out.seeds[seed] = _started(plain, one.network, out.tuning)
     out.curves["hybrid"] = [[row[3] for row in t.curve if row[0] == "rollout"] for t in taught.values()]
+    out.network = first.network
     out.acting = Acting(first.network, plain, zeta_of(first.network, first.samples))
     out.told["hybrid"] = _about(plain, first) | {"filter": asdict(out.tuning)}
     out.told["gap"] = {part: summary(judge(out.seeds[seeds[0]](shop.parts[part]), shop.parts[part])) for part in ("validation", "test")}

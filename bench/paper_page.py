@@ -28,7 +28,8 @@ def page(r: dict[str, Any]) -> list[str]:
             f"{b:.2f} +- {sb:.2f} m ({100 * sb / b:.1f} %).",
         ]
     return (
-        lines + _ratios(r) + _scenarios(three) + _four_to_six(r["tables"]) + _seven(r["tables"]["7"]) + _eight(r["tables"]["8"]) + _end(r)
+        lines + _ratios(r) + _scenarios(three) + _four_to_six(r["tables"]) + _seven(r["tables"]["7"]) + _eight(r["tables"]["8"])
+        + _nine(r["tables"]) + _five(r["tables"]["fig5"]) + _data(r["tables"]) + _end(r)
     )
 
 
@@ -133,6 +134,59 @@ def _eight(t: dict[str, Any]) -> list[str]:
     ]
 
 
+PAPER_9 = {"analytic": (8.0, 12), "lstm": (34.0, 215)}  # ms, MB
+
+
+def _nine(t: dict[str, Any]) -> list[str]:
+    """Table 9, from `twin-bench --json`."""
+    lines = ["", "## Table 9: cost of a step", ""]
+    if "9" not in t:
+        return [*lines, "`twin-bench` measures it: [tick.md](tick.md); `--tick FILE.json` brings its figures here."]
+    r, board = t["9"], t["9"]["cortex_a72"]
+    lines += [
+        "From `twin-bench --json` on this machine; the paper's are a Cortex-A72's. The loop's step holds everything on board (sensors, observer, "
+        "guard, certificate, log), the others one step of the model.", "", "| | here us, median | paper ms | paper MB |", "|---|---|---|---|",
+    ]  # fmt: skip
+    for name, (ms, mb) in PAPER_9.items():
+        lines.append(f"| {name} | {r['peers'][name]['median_us']:.0f} | {ms:g} | {mb} |")
+    loop, peak = r["step_us"], r["rss_peak_mb"]
+    return [
+        *lines, f"| EKF | {r['peers']['ekf']['median_us']:.0f} | | |",
+        f"| the whole loop | {loop['median']:.0f} (p99.9 {loop['p999']:.0f}) | 12 | 48 (here {peak:.1f} at the peak) |",
+        "", f"On a Cortex-A72, by published ratios and not measured: {board['step_ms_median']:.2f} ms, p99.9 {board['step_ms_p999']:.1f} ms.",
+    ]  # fmt: skip
+
+
+def _five(rows: list[dict[str, Any]]) -> list[str]:
+    lines = [
+        "", "## Fig. 5: the closed loop", "",
+        "+15 deg through a reference of third order, gust of 10 m/s from abeam at 7 L/U for one L/U, rudder by the inverse of the model "
+        "with tau_corr (bench/paper_closed.py). Worst of the seeds unless it says mean. Goals: settled within 5 L/U, overshoot at most "
+        "8 %, steady error at most 0.02 of the step, rudder short of 35 deg. The paper settles in 20 to 25 s: at a Froude scale of 1:64, "
+        "not with a ship of 320 m.", "",
+        "| controller | sea | runs | settled L/U, mean (worst) | full scale s | 1:64 s (paper 20-25) | overshoot % (8) | steady error (0.02) "
+        "| gust deg | rudder deg | deg/s | met |", "|---" * 12 + "|",
+    ]  # fmt: skip
+    return lines + [
+        f"| {x['mode']} | {x['scenario']} | {x['runs']} | {x['settle_lengths_mean']:.2f} ({x['settle_lengths_max']:.2f}) "
+        f"| {x['settle_s_full_scale']:.0f} | {x['settle_s_model_1_64']:.1f} | {x['overshoot_percent']:.1f} | {x['steady_error_max']:.4f} "
+        f"| {x['gust_deg']:.2f} | {x['rudder_deg']:.1f} | {x['rudder_degps']:.2f} | {'yes' if x['met'] else 'no'} |"
+        for x in rows
+    ]
+
+
+def _data(t: dict[str, Any]) -> list[str]:
+    three = t["3"]
+    lines = ["", "## Error over amount of data", "", "| runs of 900 s that teach | hybrid deg / m | LSTM deg / m |", "|---|---|---|"]
+    for x in t["data"]:
+        h, s = x["hybrid"], x["lstm"]
+        lines.append(
+            f"| {x['runs']} | {h['heading_mae_deg']:.3f} / {h['lateral_mae_m']:.2f} | {s['heading_mae_deg']:.3f} / {s['lateral_mae_m']:.2f} |"
+        )
+    both = [f"{three['heading_mae_deg'][n]:.3f} / {three['lateral_mae_m'][n]:.2f}" for n in ("hybrid", "lstm")]
+    return [*lines, f"| all | {both[0]} | {both[1]} |"]
+
+
 def _end(r: dict[str, Any]) -> list[str]:
     ekf = r["models"]["ekf"]
     kept = "kept" if ekf["disturbance_kept_in_prediction"] else "dropped"
@@ -142,7 +196,8 @@ def _end(r: dict[str, Any]) -> list[str]:
         "* Nominal: literature coefficients, off by 4 to 20 % (bench/paper_ship.py), fixed before any result was seen.",
         "* EKF: three sizes of the disturbance's walk, disturbance kept or dropped in the prediction; best on the validation runs: "
         f"walk {ekf['walk']:g}, {kept}.",
-        "* LSTM: one layer of 64, 30 s to warm up, trained by 60 s free runs, early stop on the validation runs.",
+        "* LSTM: one layer of 64, 30 s to warm up, trained by 60 s free runs, early stop on the validation runs; as ONNX it says the "
+        f"same to {r['models']['lstm']['torch_onnx_difference']:.0e}.",
         f"* Hybrid: docs/training.md's settings, {r['models']['hybrid']['epochs']} epochs; early stop on the validation runs.",
         f"* Its filter (bench/paper_filter.py): walks {f['walk']:g} and {f['current']:g}, noise x {f['noise']:g}, best on the validation "
         "runs; the same search for every row that begins in its own filter.",

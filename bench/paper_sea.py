@@ -29,9 +29,18 @@ class Plan:
     changed: int
     speeds: int
     angles: tuple[int, ...] = (10, 20)  # of the zigzags of changed ships and other speeds
+    curve: tuple[int, ...] = (1, 2, 4, 9)  # runs that teach, for the curve of error over data
+    closed: int = 20  # seeds of the closed loop
+    seeds: tuple[int, ...] = (42, 123, 256, 512, 1024)  # of the hybrid
+    epochs: int = 150  # at most, of single moments
+    rollout_epochs: int = 30
+    rollout_batch: int = 256
+    lstm_epochs: int = 150
+    resamples: int = 10_000  # of Table 4; half as many of Table 6
 
 
-QUICK, FULL = Plan(15, 2, 1, 1, (20,)), Plan(72, 15, 5, 5)
+QUICK = Plan(15, 2, 1, 1, (20,), (3,), 2, (42,), 25, 12, 64, 30)
+FULL = Plan(72, 15, 5, 5)
 SPEEDS = {
     "Maneuvering": 0.333,
     "Cruising": 0.677,

@@ -29,20 +29,25 @@ def all_tables(
     models: Models, courses: dict[str, list[Course]], changed: Sequence[str], speeds: Sequence[str], resamples: int, r2_resamples: int
 ) -> dict[str, Any]:
     """Every table that was worked out."""
+    found = {name: by_group(f, courses) for name, f in models.predict.items()}
+    errors = {name: e["zigzags"] for name, e in found.items()}
     zigzags = courses["zigzags"]
-    errors = {name: judge(f(zigzags), zigzags) for name, f in models.predict.items()}
-    seeds = [judge(f(zigzags), zigzags) for f in models.seeds.values()]
+    others = [judge(f(zigzags), zigzags) for f in list(models.seeds.values())[1:]]
     return {
-        "3": table3(errors, seeds),
+        "3": table3(errors, [errors["hybrid"], *others]),
         "4": {n: _interval(e, resamples) | {"paper": PAPER_4.get(n)} for n, e in errors.items()},
         "5": {n: _against(errors["hybrid"], e) | {"paper": PAPER_5.get(n)} for n, e in errors.items() if n != "hybrid"},
         "6": {n: _r2(e, r2_resamples) | {"paper": PAPER_6.get(n)} for n, e in errors.items()},
-        "7": table7(models, courses, changed),
-        "8": {
-            name: table8(models.predict, courses[name]) | {"paper": dict(zip(("ekf", "hybrid"), PAPER_8[name], strict=True))}
-            for name in speeds
-        },
+        "7": table7(found, changed),
+        "8": {name: table8(found, name) | {"paper": dict(zip(("ekf", "hybrid"), PAPER_8[name], strict=True))} for name in speeds},
     }
+
+
+def by_group(predict: Predict, courses: dict[str, list[Course]]) -> dict[str, Errors]:
+    """One model's errors on every group that is judged, predicted side by side."""
+    groups = {name: some for name, some in courses.items() if name != "lessons"}
+    runs = iter(predict([c for some in groups.values() for c in some]))
+    return {name: judge([next(runs) for _ in some], some) for name, some in groups.items()}
 
 
 def table3(errors: dict[str, Errors], seeds: Sequence[Errors]) -> dict[str, Any]:
@@ -97,10 +102,10 @@ def _r2(e: Errors, resamples: int) -> dict[str, Any]:
     }
 
 
-def table7(models: Models, courses: dict[str, list[Course]], changed: Sequence[str]) -> dict[str, Any]:
+def table7(errors: dict[str, dict[str, Errors]], changed: Sequence[str]) -> dict[str, Any]:
     """Other ships and another receiver, the models unchanged."""
     base, *others = changed
-    found = {case: {n: stats.summary(judge(models.predict[n](courses[case]), courses[case])) for n in COMPARED} for case in (*changed, EXACT)}
+    found = {case: {n: stats.summary(errors[n][case]) for n in COMPARED} for case in (*changed, EXACT)}
     out: dict[str, Any] = {base: {"absolute": found[base]}}
     for case in others:
         out[case] = _change(found[base], found[case], found[base]["analytic"]) | _said(case)
@@ -122,7 +127,7 @@ def _said(case: str) -> dict[str, Any]:
     return {"paper": dict(zip(("analytic", "hybrid"), PAPER_7[case], strict=True))}
 
 
-def table8(predict: dict[str, Predict], courses: list[Course]) -> dict[str, Any]:
-    """One speed: lateral error of filter and hybrid."""
-    found = {n: stats.summary(judge(predict[n](courses), courses)) for n in ("analytic", "ekf", "hybrid", "physics_added_hybrid")}
+def table8(errors: dict[str, dict[str, Errors]], regime: str) -> dict[str, Any]:
+    """One speed: lateral and heading errors."""
+    found = {n: stats.summary(errors[n][regime]) for n in ("analytic", "ekf", "hybrid", "physics_added_hybrid")}
     return {n: s["lateral_mae_m"] for n, s in found.items()} | {"heading_deg": {n: s["heading_mae_deg"] for n, s in found.items()}}

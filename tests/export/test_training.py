@@ -14,6 +14,7 @@ from export.batches import input_names, samples  # noqa: E402
 from export.data import leg, model_of, split  # noqa: E402
 from export.network import Residual  # noqa: E402
 from export.teach import Settings, teach  # noqa: E402
+from twin.cli import main  # noqa: E402
 from twin.errors import ThresholdError  # noqa: E402
 from twin.live import residual as live  # noqa: E402
 from twin.live.learned import scale_of  # noqa: E402
@@ -155,3 +156,19 @@ def test_voyages_recorded_at_other_rates_come_on_one_grid(ship, sailed):
     slow = v.with_rows(v.time_s[::2], {name: x[::2] for name, x in v.columns.items()})
     mixed = [sailed[1], Sailed(slow, track(slow, ship), "slow")]
     assert [t.h for t in train.on_one_grid(mixed, ship)] == pytest.approx([4.0, 4.0])
+
+
+def test_it_learns_from_voyages_that_came_through_twin_import(ship, sailed, tmp_path, capsys):
+    """Test: five CSV files -> twin import -> twin train. Expected: exit code 0, and two files that the twin takes."""
+    paths = []
+    for one in sailed[:5]:
+        csv, out = tmp_path / f"{one.voyage.name}.csv", tmp_path / f"{one.voyage.name}.mcap"
+        columns = {"time_s": one.voyage.time_s} | dict(one.voyage.columns)
+        rows = [",".join(columns), *(",".join(f"{x:.9g}" for x in row) for row in zip(*columns.values(), strict=True))]
+        csv.write_text("\n".join(rows) + "\n")
+        assert main(["import", str(csv), "--ship", "kvlcc2", "-o", str(out)]) == 0
+        paths.append(str(out))
+    output = tmp_path / "r.onnx"
+    assert main(["train", *paths, "--ship", "kvlcc2", "-o", str(output), "--loss", "acceleration", "--epochs", "30"]) == 0
+    assert "is worth having" in capsys.readouterr().out
+    assert live.load(output, ship).manifest.training["voyages"]

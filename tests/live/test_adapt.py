@@ -146,3 +146,18 @@ def test_it_learns_from_a_ship_whose_rudder_is_weaker_than_the_model_thinks(kvlc
     values = {p.name: p.value for p in learned.adaptation.parameters()}
     assert values["yaw rudder"] < -0.02
     assert learned.adaptation.updates > 1000
+
+
+def test_what_only_follows_the_moment_stays_behind_the_gate(kvlcc2):
+    """Test: an unexplained force that wanders by itself within half a ship length, and tells nothing of the next. Expected: the gate
+    asks the numbers of a while ago, and they do not help: hardly anything acts, at any time."""
+    adaptation, dice, wander = made(kvlcc2), random.Random(3), [0.0, 0.0, 0.0]
+    acted = []
+    for k in range(6000):
+        t = 0.5 * k
+        wander = [0.975 * x + 0.05 * dice.gauss(0.0, 1.0) for x in wander]
+        forces = known(kvlcc2, hull=(0.5, 0.6 * sin(t / 35.0), 0.5 * sin(t / 30.0)), rudder=(0, sin(t / 50.0), sin(t / 45.0)))
+        q = adaptation.regressors([sin(t / 40.0), sin(t / 27.0 + 1.0)], forces)
+        adaptation.learn(tuple(wander), q, 0.5, "")
+        acted.append(sum(x * x for x in adaptation.correction(q)))
+    assert sum(acted[1000:]) / len(acted[1000:]) < 0.15 * 3 * 0.05**2 / (1 - 0.975**2)

@@ -1,0 +1,206 @@
+"""`twin-bench adaptation`: laws of adaptation side by side on ships that changed, and under measurements that lie.
+
+The change has just happened when a voyage begins: the twin still has what she learned on the ship as she was. All laws see the same
+stream of unexplained force and regressors (from the hybrid's own filter, which does not use what they learn), and are judged by the
+free runs of 120 s that follow. Boxes, ball and gate are those of twin/live/adapt.py for all of them.
+"""
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from twin.study.import_voyage import write_json
+
+EPILOG = """example: twin-bench adaptation --work .paper --markdown docs/results/adaptation.md
+
+Trains the hybrid first where DIR holds none from `twin-bench paper` (--full: that of its full plan). Exit code 0: the tables are made.
+"""
+STARTS_S = (60.0, 120.0, 180.0, 240.0, 300.0, 360.0, 420.0, 480.0, 540.0)
+EARLY, LATE = slice(0, 3), slice(4, 9)  # windows while it learns, and after
+Stream = list[tuple[tuple[float, ...], list[float], float, str]]  # what a law is told at each step: wanted, regressors, dt, frozen
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = EPILOG
+    parser.add_argument("--full", action="store_true", help="the network of `twin-bench paper --full`")
+    parser.add_argument("--seeds", metavar="N", type=int, default=2, help="seeds for each scenario and zigzag (%(default)s)")
+    parser.add_argument("--work", metavar="DIR", type=Path, default=Path(".paper"), help="voyages and checkpoints (%(default)s)")
+    parser.add_argument("--markdown", metavar="FILE.md", type=Path, help="the tables as a page")
+    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+
+
+def run(args: argparse.Namespace) -> int:
+    from bench.adaptation_page import page
+
+    result = compare(args.work, args.full, args.seeds)
+    text = "\n".join(page(result))
+    print(text, file=sys.stderr if args.json == "-" else sys.stdout)
+    if args.markdown:
+        args.markdown.write_text(text + "\n")
+    if args.json:
+        write_json(result, args.json)
+    return 0
+
+
+def compare(work: Path, full: bool, seeds: int) -> dict[str, Any]:
+    """Every law on every ship and every lie."""
+    bench = Bench.of(work, full)
+    out: dict[str, Any] = {"schema_version": 1, "seeds": seeds, "full": full, "changed": {}, "lies": {}}
+    streams = {name: bench.heard(cases) for name, cases in ships(seeds).items()}
+    for law in laws():
+        _tell(f"law: {law}")
+        out["changed"][law] = {name: bench.judged(law, heard) for name, heard in streams.items()}
+        clean = streams["as she is"]
+        out["lies"][law] = {name: bench.judged(law, replace(clean, streams=lie(clean.streams))) for name, lie in LIES.items()}
+    out["voyages"] = len(streams["as she is"].courses)
+    return out
+
+
+def laws() -> dict[str, Any]:
+    """None first, the one on board last."""
+    from bench import adaptation_laws as peers
+    from twin.live.adapt import Adaptation
+
+    return {
+        "none": None, "gradient, sigma": peers.Gradient, "gradient, e-modification": peers.EModified, "gradient, dead zone": peers.DeadZone,
+        "RLS, forgetting": peers.Recursive, "Kalman, walk and leak": peers.Kalman, "ridge on fading evidence": Adaptation,
+    }  # fmt: skip
+
+
+def ships(seeds: int) -> dict[str, list[Any]]:
+    """The ship as the models know her, and changed ones; the same seas for all."""
+    from bench.paper_sea import FULL, changed, zigzags
+    from bench.reference import HULLS
+
+    hull = HULLS["kvlcc2"]
+    heavy, held = (changed(FULL)[name][0].hull for name in ("Mass error M (+5%)", "Damping error D (+10%)"))
+    altered = {
+        "as she is": hull, "mass +5 %": heavy, "damping +10 %": held, "fouling: resistance +30 %": replace(hull, R0=1.3 * hull.R0),
+        "windage +50 %": replace(hull, A_L=1.5 * hull.A_L, A_F=1.5 * hull.A_F), "rudder area -20 %": replace(hull, A_R=0.8 * hull.A_R),
+    }  # fmt: skip
+    return {name: zigzags(seeds, 80_000, hull=h) for name, h in altered.items()}
+
+
+@dataclass(frozen=True)
+class Heard:
+    """What the laws of each voyage are told, and where its filter stood after each step (K, V, 11)."""
+
+    courses: Sequence[Any]
+    states: np.ndarray
+    streams: Sequence[Stream]
+
+
+@dataclass(frozen=True)
+class Bench:
+    """The hybrid whose last layer is adapted."""
+
+    model: Any
+    acting: Any
+    tuning: Any
+    work: Path
+
+    @classmethod
+    def of(cls, work: Path, full: bool) -> "Bench":
+        from bench import paper_sea as sea
+        from bench.paper import settings_for
+        from bench.paper_adapted import Acting
+        from bench.paper_lab import course
+        from bench.paper_models import Workshop
+        from bench.paper_ship import nominal
+        from export.batches import zeta_of
+        from export.data import split
+        from twin.physics.model import Model
+
+        ship, plan = nominal(), sea.FULL if full else sea.QUICK
+        courses = [course(one, ship) for one in sea.sail(sea.lessons(plan), work / "voyages", _tell)]
+        legs = split([c.water for c in courses])
+        shop = Workshop(split(courses), legs, settings_for(plan), work, _tell)  # type: ignore[type-var]
+        model = Model(ship)
+        taught = shop.taught(model, plan.seeds[0], "hybrid")
+        return cls(model, Acting(taught.network, model, zeta_of(taught.network, taught.samples)), shop.tuned(model, taught.network), work)
+
+    def heard(self, cases: list[Any]) -> Heard:
+        """Sail, filter, and write down what a law would be told."""
+        from bench.adaptation_laws import Writes
+        from bench.paper_adapted import Learning
+        from bench.paper_lab import course
+        from bench.paper_sea import sail
+
+        courses = [replace(course(one, self.model.ship), starts_s=STARTS_S) for one in sail(cases, self.work / "voyages", _tell)]
+        learning = Learning(courses, self.model, self.acting, self.tuning, Writes)
+        states = learning.run(int(courses[0].starts[-1]))
+        return Heard(courses, states, [law.heard for law in learning.laws])  # type: ignore[attr-defined]
+
+    def judged(self, law: str, heard: Heard) -> dict[str, Any]:
+        """Free runs with what the law had learned by their starts: heading deg and lateral m, early and late; and the greatest |A|."""
+        from bench.paper_filter import from_states
+        from bench.paper_lab import judge
+
+        made = laws()[law]
+        learned = [self._numbers(made, stream, len(heard.states)) for stream in heard.streams]
+        held = np.concatenate([x[c.starts] for x, c in zip(learned, heard.courses, strict=True)])
+        starts = [heard.states[c.starts, i] for i, c in enumerate(heard.courses)]
+        e = judge(from_states(heard.courses, self.model, self.acting.holding(held), starts), heard.courses)
+        heading, lateral = (x.reshape(len(heard.courses), -1) for x in (e.heading_deg, e.lateral_m))
+        return {
+            "heading_deg": float(heading[:, LATE].mean()), "lateral_m": float(lateral[:, LATE].mean()),
+            "heading_early_deg": float(heading[:, EARLY].mean()), "lateral_early_m": float(lateral[:, EARLY].mean()),
+            "by_start_deg": heading.mean(0).tolist(), "largest_A": float(np.sqrt((np.array(learned) ** 2).sum((2, 3))).max()),
+        }  # fmt: skip
+
+    def _numbers(self, made: Any, stream: Stream, steps: int) -> np.ndarray:
+        """(K, 3, width) what acts after each step; steps without a measurement change nothing."""
+        width = len(self.acting.rows) + 3
+        out = np.zeros((steps, 3, width))
+        if made is None:
+            return out
+        law = made(self.model.ship, self.acting.network.S, len(self.acting.rows))
+        for k, (wanted, regressors, dt, frozen) in enumerate(stream, start=steps - len(stream)):
+            law.learn(wanted, regressors, dt, frozen)
+            out[k:] = law.numbers()
+        return out
+
+
+def _noisy(streams: Sequence[Stream]) -> list[Stream]:
+    """White noise as large as three times what is usual there."""
+    rng = np.random.default_rng(1)
+    return [_changed(s, lambda k, w: w + 0.15 * rng.standard_normal(3)) for s in streams]
+
+
+def _outliers(streams: Sequence[Stream]) -> list[Stream]:
+    """Three in a hundred are ten units of the force scale off."""
+    rng = np.random.default_rng(2)
+    return [_changed(s, lambda k, w: w + 10.0 * rng.standard_normal(3) * (rng.random(3) < 0.03)) for s in streams]
+
+
+def _dropouts(streams: Sequence[Stream]) -> list[Stream]:
+    """Nothing to learn from in two of every three minutes."""
+    return [[(w, q, dt, "out" if k * dt % 180.0 < 120.0 else frozen) for k, (w, q, dt, frozen) in enumerate(s)] for s in streams]
+
+
+def _adversary(streams: Sequence[Stream]) -> list[Stream]:
+    """Square waves of one unit in each row, slow enough to be believed."""
+    return [_changed(s, lambda k, w: w + np.sign(np.sin(2 * np.pi * k / np.array([40.0, 55.0, 70.0])))) for s in streams]
+
+
+def _stuck(streams: Sequence[Stream]) -> list[Stream]:
+    """From the middle on every reading stays where it was."""
+    return [s[: len(s) // 2] + [s[len(s) // 2]] * (len(s) - len(s) // 2) for s in streams]
+
+
+def _changed(stream: Stream, change: Callable[[int, np.ndarray], np.ndarray]) -> Stream:
+    return [(tuple(change(k, np.array(w)).tolist()), q, dt, frozen) for k, (w, q, dt, frozen) in enumerate(stream)]
+
+
+LIES: dict[str, Callable[[Sequence[Stream]], list[Stream]]] = {
+    "noise 0.15": _noisy, "3 % outliers of 10": _outliers, "drop-outs": _dropouts, "square waves of 1": _adversary, "stuck": _stuck,
+}  # fmt: skip
+
+
+def _tell(text: str) -> None:
+    print(text, file=sys.stderr, flush=True)

@@ -1,0 +1,40 @@
+"""Error over amount of data: the hybrid and the LSTM on the first runs alone, judged on the same unseen zigzags.
+
+For every `n` runs that teach there is a third of that, at least one, that says when to stop.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from bench import paper_filter, paper_lstm
+from bench.paper_lab import Course, judge
+from bench.paper_models import Workshop
+from bench.paper_ship import nominal
+from bench.paper_stats import summary
+from twin.physics.model import Model
+
+
+def curve(
+    shop: Workshop, tuning: paper_filter.Tuning, judged_on: Sequence[Course], sizes: Sequence[int], epochs: int, seed: int
+) -> list[dict[str, Any]]:
+    """A row for each size; errors as in Table 3."""
+    rows, plain = [], Model(nominal())
+    for n in sizes:
+        small = less(shop, n)
+        taught = small.taught(plain, seed, f"hybrid-of-{n}")
+        lstm = paper_lstm.train(small.legs["train"], small.legs["validation"], epochs, seed, keep=shop.work / f"lstm-of-{n}-{epochs}-{seed}.pt")
+        hybrid = judge(paper_filter.predict(judged_on, plain, taught.network, tuning), judged_on)
+        rows.append(
+            {"runs": n, "hours": sum(c.water.t[-1] for c in small.parts["train"]) / 3600.0, "hybrid": summary(hybrid),
+             "lstm": summary(judge([paper_lstm.predict(lstm, c) for c in judged_on], judged_on))}
+        )  # fmt: skip
+    return rows
+
+
+def less(shop: Workshop, n: int) -> Workshop:
+    """The workshop of who has only n runs to learn from; roll-outs go on for about as many batches."""
+    count = {"train": n, "validation": max(1, n // 3), "test": 1}
+    settings = replace(shop.settings, rollout_batch=64, rollout_epochs=min(shop.settings.rollout_epochs * 4, 100, max(40, 240 // n)))
+    legs = {part: some[: count[part]] for part, some in shop.legs.items()}
+    return replace(shop, settings=settings, legs=legs, parts={part: some[: count[part]] for part, some in shop.parts.items()})
