@@ -58,6 +58,7 @@ class Row:
     I: list[list[float]]  # information: what was seen, over its noise
     b: list[float]
     L: list[list[float]]  # its factor, with the prior
+    sigma: list[float]  # of a, at that time
     then: list[float]  # a of HINDSIGHT to twice that ago, which the gate asks
     next: list[float]
     age: float = 0.0
@@ -148,6 +149,7 @@ class Adaptation:
         row.age += h
         if row.age > HINDSIGHT:
             row.then, row.next, row.age = row.next, list(row.a), 0.0
+            row.sigma = deviations(row.L)
 
     def _fit(self, row: Row, q: list[float], error: float, h: float) -> None:
         """The ridge regression on evidence that fades over MEMORY."""
@@ -182,7 +184,7 @@ class Adaptation:
         out, pressed = [], self.norm() > 0.999 * A_MAX
         for r, row in enumerate(self._rows):
             names = [*(f"feature {i + 1}" for i in range(self.components)), *COLUMNS[r], "constant"]
-            for name, value, box, sigma in zip(names, row.a, self._boxes, deviations(row.L), strict=True):
+            for name, value, box, sigma in zip(names, row.a, self._boxes, row.sigma, strict=True):
                 known = sigma < 0.7 * USUAL and row.gate > 0.3
                 status = "invalid" if pressed or abs(value) >= box else "estimated" if known else "unestimated"
                 out.append(Parameter(f"{ROWS[r]} {name}", value, -box, box, sigma, "-", status))
@@ -221,7 +223,7 @@ class Adaptation:
     def _blank(self) -> Row:
         n = self.width
         blank = [[0.0] * n for _ in range(n)]
-        return Row([0.0] * n, blank, [0.0] * n, factor(blank, USUAL**-2), [0.0] * n, [0.0] * n)
+        return Row([0.0] * n, blank, [0.0] * n, factor(blank, USUAL**-2), [USUAL] * n, [0.0] * n, [0.0] * n)
 
 
 def factor(information: list[list[float]], prior: float) -> list[list[float]]:
@@ -247,6 +249,10 @@ def solve(L: list[list[float]], b: list[float]) -> list[float]:
 
 
 def deviations(L: list[list[float]]) -> list[float]:
-    """Square roots of the diagonal of (L L')^-1."""
-    n = len(L)
-    return [sqrt(solve(L, [1.0 if i == j else 0.0 for j in range(n)])[i]) for i in range(n)]
+    """Square roots of the diagonal of (L L')^-1: the columns of L^-1 by their lengths."""
+    n, inverse = len(L), [[0.0] * len(L) for _ in L]
+    for i, row in enumerate(L):
+        for j in range(i):
+            inverse[i][j] = -sum([row[k] * inverse[k][j] for k in range(j, i)]) / row[i]
+        inverse[i][i] = 1.0 / row[i]
+    return [sqrt(sum([inverse[k][i] ** 2 for k in range(i, n)])) for i in range(n)]
