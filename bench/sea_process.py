@@ -7,7 +7,9 @@ import argparse
 import math
 import os
 import signal
+import sys
 import time
+import traceback
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +17,8 @@ import zenoh
 
 from bench.reference import HULLS, WEATHERS, Case, Sea, simulate
 from bench.reference.manoeuvres import MANOEUVRES
-from twin.errors import SettingsError, did_you_mean
+from twin.cli import guarded
+from twin.errors import SettingsError, UsageError, did_you_mean
 from twin.live import geodesy
 from twin.live.messages import encode_fix, encode_float, wrap
 from twin.live.topics import INPUTS, OWN_SOURCE, key
@@ -123,8 +126,10 @@ def _sail(sea: Sea, voice: Voice, args: argparse.Namespace) -> None:
 def _write(args: argparse.Namespace) -> int:
     """The voyage as a file of measurements, as fast as it can be sailed."""
     if not math.isfinite(args.duration):
-        raise SettingsError("--csv needs an end: add --duration with the seconds to sail.")
+        raise UsageError("--csv needs an end: add --duration with the seconds to sail.")
     path = Path(args.csv)
+    if not path.parent.is_dir():
+        raise UsageError(f"--csv {path}: there is no folder {path.parent}.")
     aside = path.with_name(f".{path.name}.part")
     (voyage,) = simulate([replace(_case(args), duration_s=args.duration)], 1.0 / args.hz)
     voyage.write_csv(aside)
@@ -153,6 +158,10 @@ def main() -> int:
 if __name__ == "__main__":
     code = 1
     try:
-        code = main()
+        code = guarded(main)
+    except BaseException:
+        traceback.print_exc()
     finally:
+        sys.stdout.flush()
+        sys.stderr.flush()
         os._exit(code)  # an open session must never hold up the end

@@ -15,7 +15,7 @@ from typing import Any
 
 from bench import cortex, feed, instructions, mark, tick_table
 from bench.tick_process import WARM_UP
-from twin.errors import TwinError
+from twin.errors import TwinError, UsageError
 from twin.live.residual import bundled
 from twin.physics.ship import load
 
@@ -47,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Measure, print, and say by the exit code whether the budgets are kept (3 when not)."""
     if args.steps < 10:
-        raise TwinError(f"--steps {args.steps}: at least 10 are needed for a median and a tail.")
+        raise UsageError(f"--steps {args.steps}: at least 10 are needed for a median and a tail.")
     result = measure(args)
     if args.json == "-":
         print(json.dumps(result, indent=1))

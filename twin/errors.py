@@ -13,6 +13,12 @@ class TwinError(Exception):
     exit_code = 1
 
 
+class UsageError(TwinError):
+    """A command that cannot be meant so."""
+
+    exit_code = 2
+
+
 class ThresholdError(TwinError):
     """A threshold that was asked for is not met (a budget, an error that should have fallen)."""
 

@@ -112,5 +112,5 @@ def test_a_missed_budget_is_exit_code_3():
 
 def test_too_few_steps_are_refused_in_one_line():
     done = bench("--steps", "3")
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert done.stderr.count("\n") == 1 and "--steps 3" in done.stderr

@@ -67,11 +67,16 @@ def test_an_interrupt_ends_the_demo_and_the_sea(tmp_path):
     assert children and not [pid for pid in children if os.path.exists(f"/proc/{pid}/cmdline")]
 
 
-@pytest.mark.parametrize(("words", "code"), [(["--seconds", "1"], 1), (["--ship", "usw"], 5)])
+@pytest.mark.parametrize(("words", "code"), [(["--seconds", "1"], 2), (["--ship", "usw"], 5)])
 def test_what_cannot_be_shown_is_refused_in_one_line(words, code, tmp_path):
     refused = subprocess.run([*DEMO, *words], cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert refused.returncode == code
     assert refused.stderr.count("\n") == 1 and words[1] in refused.stderr
+
+
+def test_why_the_sea_did_not_start_is_said(tmp_path):
+    refused = subprocess.run([*DEMO, "--manoeuvre", "zigzack"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert refused.returncode == 1 and "zigzack" in refused.stderr and "zigzag_20" in refused.stderr
 
 
 def tick(time_s=0.0):

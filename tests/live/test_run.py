@@ -208,3 +208,9 @@ def test_health_hears_the_twin_and_says_when_it_does_not(place):
     process.wait(10.0)
     done = subprocess.run([*health[:-2], "--timeout", "0.5"], capture_output=True, text=True, timeout=60)
     assert done.returncode == 1 and "not heard" in done.stdout
+
+
+@pytest.mark.parametrize("words", (["run", "--duration", "-3"], ["health", "--timeout", "0"], ["health", "--timeout", "0.2", "--json", "nowhere/x.json"]))
+def test_what_cannot_be_meant_is_one_line(words, tmp_path):
+    done = subprocess.run([sys.executable, "-m", "twin.cli", *words], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    assert done.returncode in (2, 4) and done.stderr.count("\n") == 1 and words[-1] in done.stderr

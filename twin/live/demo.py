@@ -19,7 +19,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
-from twin.errors import TwinError
+from twin.errors import TwinError, UsageError
 from twin.live import messages, replay
 from twin.live import run as service
 from twin.live.config import Settings
@@ -50,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Sail, look, log, replay, and say what to do next."""
     if not 5.0 <= args.seconds <= 3600.0:
-        raise TwinError(f"--seconds {args.seconds:g}: 5 to 3600 can be shown.")
+        raise UsageError(f"--seconds {args.seconds:g}: 5 to 3600 can be shown.")
     ship = load(args.ship)
     folder = Path(args.logs) / time.strftime("demo-%Y%m%d-%H%M%S")
     settings = settings_for(args.ship, folder)
@@ -97,13 +97,13 @@ def reference_sea(settings: Settings, args: argparse.Namespace, after_s: float) 
 
 def _wait_for(sea: "subprocess.Popen[bytes]", said: IO[str]) -> None:
     """Until she is under way."""
-    until = time.monotonic() + START_S
-    text = ""
+    until, text = time.monotonic() + START_S, ""
     while UNDER_WAY not in text:
-        if sea.poll() is not None or time.monotonic() > until:
-            raise TwinError(f"The reference sea did not start: {text.strip().splitlines()[-1:]}")
+        ended = sea.poll() is not None or time.monotonic() > until
+        text = os.pread(said.fileno(), 10_000, 0).decode(errors="replace")  # its place in the file is the sea's too
+        if ended and UNDER_WAY not in text:
+            raise TwinError(f"The reference sea did not start: {text.strip() or 'it said nothing'}")
         time.sleep(0.05)
-        text = os.pread(said.fileno(), 10_000, 0).decode(errors="replace")  # its place is the sea's too
 
 
 def tell(log: Path, ticks: int, settings: Settings) -> None:

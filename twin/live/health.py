@@ -5,11 +5,13 @@ import json
 import os
 import sys
 import time
+import traceback
 from typing import Any
 
 from google.protobuf.message import DecodeError
 
-from twin.errors import TwinError
+from twin.cli import guarded
+from twin.errors import UsageError
 from twin.live import config, messages
 from twin.live.config import Settings
 from twin.live.guard import HYBRID, PHYSICS
@@ -28,16 +30,23 @@ def run(args: argparse.Namespace) -> int:
     """Ends the process itself (an open Zenoh session may hold up its end)."""
     code = 1
     try:
-        tick = hear(config.load(args.config), args.timeout)
-        code, said = judged(tick)
-        _tell(said, tick, code, args.json)
-    except TwinError as error:
-        print(f"{type(error).__name__}: {error}", file=sys.stderr)
-        code = error.exit_code
+        code = guarded(lambda: ask(args))
+    except BaseException:
+        traceback.print_exc()
     finally:
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(code)
+
+
+def ask(args: argparse.Namespace) -> int:
+    """Listen, judge, tell; the exit code."""
+    if not 0.0 < args.timeout <= 3600.0:
+        raise UsageError(f"--timeout {args.timeout:g}: more than 0 and at most 3600 s.")
+    tick = hear(config.load(args.config), args.timeout)
+    code, said = judged(tick)
+    _tell(said, tick, code, args.json)
+    return code
 
 
 def hear(settings: Settings, timeout_s: float) -> Any:

@@ -15,7 +15,7 @@ from contextlib import contextmanager
 from time import perf_counter_ns
 from typing import Any
 
-from twin.errors import TwinError
+from twin.errors import TwinError, UsageError
 from twin.live import build, config, realtime
 from twin.live.bus import Bus
 from twin.live.clock import Clock, MonotonicClock
@@ -55,6 +55,8 @@ def run(args: argparse.Namespace) -> int:
         return 0
     code = 1
     try:
+        if args.duration is not None and not args.duration > 0.0:
+            raise UsageError(f"--duration {args.duration:g}: more than 0 s.")
         settings = config.load(args.config)
         if args.ship:
             settings = settings.but("ship.file", args.ship)
