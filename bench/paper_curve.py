@@ -33,8 +33,8 @@ def curve(
 
 
 def less(shop: Workshop, n: int) -> Workshop:
-    """The workshop of who has only n runs to learn from; roll-outs go on for about as many batches."""
+    """The workshop of who has only n runs to learn from."""
     count = {"train": n, "validation": max(1, n // 3), "test": 1}
-    settings = replace(shop.settings, rollout_batch=64, rollout_epochs=min(shop.settings.rollout_epochs * 4, 100, max(40, 240 // n)))
+    settings = replace(shop.settings, rollout_batch=64, rollout_epochs=min(40, 4 * shop.settings.rollout_epochs))
     legs = {part: some[: count[part]] for part, some in shop.legs.items()}
     return replace(shop, settings=settings, legs=legs, parts={part: some[: count[part]] for part, some in shop.parts.items()})

@@ -1,5 +1,6 @@
 """The paper's tables: voyages, filters, intervals and the page, in small."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -8,8 +9,9 @@ import pytest
 torch = pytest.importorskip("torch", reason="torch is not installed: pip install 'shiptwin[train]'")
 pytest.importorskip("filterpy", reason="filterpy is not installed: pip install 'shiptwin[dev]'")
 
-from bench import paper_ekf, paper_sea, paper_stats  # noqa: E402
+from bench import paper, paper_ekf, paper_filter, paper_sea, paper_stats  # noqa: E402
 from bench.paper_lab import course, free, judge  # noqa: E402
+from bench.paper_page import page  # noqa: E402
 from bench.paper_ship import OFF, nominal  # noqa: E402
 from twin.physics.model import Model  # noqa: E402
 
@@ -67,3 +69,78 @@ def test_blocks_widen_an_interval_that_single_errors_make_too_narrow():
 def test_cliffs_delta_by_hand():
     """(1, 2) against (2, 3): of four pairs three are greater and one is a tie."""
     assert paper_stats.cliff(np.array([1.0, 2.0]), np.array([2.0, 3.0])) == 0.75
+
+
+def test_the_hybrids_filter_knows_where_she_is_and_where_the_water_goes(calm):
+    """Test: the nominal ship in TS-01, a current of 0.1 m/s. Expected: place within two metres at every start, current within 0.1 m/s,
+    heading within half a degree, and uncertainties that are neither nothing nor boundless."""
+    one = paper_filter.Filter([calm], Model(nominal()), None, [paper_filter.Tuning()])
+    state = one.run(int(calm.starts[-1]))[calm.starts, 0]
+    truth = calm.truth[calm.starts]
+    assert np.abs(state[:, :2] - truth[:, :2]).max() < 2.0 and np.degrees(np.abs(state[:, 2] - truth[:, 2])).max() < 0.5
+    assert np.abs(state[:, 6:8] - calm.water.water[calm.starts]).max() < 0.1
+    sigma = np.sqrt(np.diagonal(one.P[0]))
+    assert (sigma > 0).all() and sigma[0] < 1.0 and sigma[3] < 0.1
+
+
+def test_many_filters_side_by_side_say_what_each_says_alone(calm):
+    model, tunings = Model(nominal()), [paper_filter.Tuning(), paper_filter.Tuning(1e-4, 1e-6, 1.0)]
+    both = paper_filter.Filter([calm, calm], model, None, tunings).run(60)
+    for i, t in enumerate(tunings):
+        alone = paper_filter.Filter([calm], model, None, [t]).run(60)
+        assert np.allclose(both[:, i], alone[:, 0], atol=1e-9)
+
+
+def test_free_runs_over_ground_begin_where_the_filter_is(calm):
+    """Test: a filter's state that is the truth, but for a current that is 1 m/s too far north. Expected: a metre north for each second."""
+    state = np.concatenate([calm.water.state[calm.starts], calm.water.water[calm.starts], np.zeros((5, 3))], 1)
+    state[:, :2] = calm.earth.state[calm.starts, :2]
+    model = Model(nominal())
+    (there,) = paper_filter.from_states([calm], model, None, [state])
+    state[:, paper_filter.NORTH] += 1.0
+    (north,) = paper_filter.from_states([calm], model, None, [state])
+    seconds = calm.water.t[calm.at[-1, 0]] - calm.water.t[calm.at[0, 0]]
+    assert np.allclose(north[-1, :, 0] - there[-1, :, 0], seconds, atol=1e-3) and np.allclose(north[..., 1:], there[..., 1:])
+    assert np.allclose(there, free(model, None, [calm])[0], atol=1e-3)
+
+
+def test_without_gnss_noise_the_place_is_the_truth_of_a_moment_ago(tmp_path):
+    (sailed,) = paper_sea.sail([replace(paper_sea.zigzags(1, 5, ("TS-02",))[0], duration_s=60.0)], tmp_path, lambda text: None)
+    exact = paper_sea.without_gnss_noise(sailed).voyage
+    seen = np.isfinite(sailed.voyage.columns["north_m"])
+    assert np.array_equal(np.isfinite(exact.columns["north_m"]), seen)
+    off = exact.columns["north_m"][seen][1:] - sailed.truth[np.flatnonzero(seen)[1:] - 1, 0]
+    assert np.abs(off).max() < 1e-6
+    assert 0.2 < np.std(exact.columns["north_m"][seen] - sailed.voyage.columns["north_m"][seen]) < 1.0
+
+
+@pytest.fixture(scope="module")
+def tiny(tmp_path_factory):
+    """The whole bench with the least of everything: it learns next to nothing, but every table is made."""
+    plan = paper_sea.Plan(5, 1, 1, 1, (20,), (1,), 1, (42, 123), 2, 1, 64, 1, 200)
+    folder = tmp_path_factory.mktemp("tiny")
+    return paper.reproduce(plan, folder / "work", True, folder / "figures"), folder
+
+
+def test_every_table_is_made_and_keeps_the_contract(tiny):
+    result, _ = tiny
+    assert set(result["tables"]) >= {"3", "4", "5", "6", "7", "8", "fig5", "data", "fig6_ms"}
+    three = result["tables"]["3"]
+    for measure in ("heading_mae_deg", "lateral_mae_m"):
+        assert {"analytic", "ekf", "lstm", "hybrid", "hybrid_adapted", "physics_added", "paper"} <= set(three[measure])
+    assert set(three["r2"]) >= {"analytic", "hybrid"} and three["seeds"]["count"] == 2
+    assert {"heading_vs_analytic", "lateral_vs_analytic", "heading_vs_ekf", "lateral_vs_ekf"} <= set(result["ratios"])
+    json.dumps(result, allow_nan=False)
+
+
+def test_the_lstm_says_the_same_as_onnx(tiny):
+    assert tiny[0]["models"]["lstm"]["torch_onnx_difference"] < 1e-6
+
+
+def test_the_page_has_the_papers_numbers_and_the_figures_are_small(tiny):
+    result, folder = tiny
+    text = "\n".join(page(result))
+    assert all(word in text for word in ("(paper 142.5)", "Table 7", "Table 8", "Fig. 5", "learning on", "Error over amount of data"))
+    drawn = sorted(path.name for path in (folder / "figures").iterdir())
+    assert [name[:5] for name in drawn] == [f"fig-{k}" for k in range(2, 8)]
+    assert all(path.stat().st_size < 150_000 for path in (folder / "figures").iterdir())

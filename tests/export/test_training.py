@@ -4,6 +4,7 @@ import hashlib
 import json
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 torch = pytest.importorskip("torch", reason="torch is not installed: pip install 'shiptwin[train]'")
@@ -13,12 +14,13 @@ from export import loss, to_onnx, train  # noqa: E402
 from export.batches import input_names, samples  # noqa: E402
 from export.data import leg, model_of, split  # noqa: E402
 from export.network import Residual  # noqa: E402
-from export.teach import Settings, teach  # noqa: E402
+from export.teach import Course, Settings, prepared, teach  # noqa: E402
 from twin.cli import main  # noqa: E402
 from twin.errors import ThresholdError  # noqa: E402
 from twin.live import residual as live  # noqa: E402
 from twin.live.learned import scale_of  # noqa: E402
-from twin.physics.state import Situation  # noqa: E402
+from twin.physics.model import Model  # noqa: E402
+from twin.physics.state import Force, Situation  # noqa: E402
 from twin.study.sailed import Sailed  # noqa: E402
 from twin.study.track import track  # noqa: E402
 
@@ -172,3 +174,39 @@ def test_it_learns_from_voyages_that_came_through_twin_import(ship, sailed, tmp_
     assert main(["train", *paths, "--ship", "kvlcc2", "-o", str(output), "--loss", "acceleration", "--epochs", "30"]) == 0
     assert "is worth having" in capsys.readouterr().out
     assert live.load(output, ship).manifest.training["voyages"]
+
+
+def test_a_voyage_in_heavy_sea_counts_no_more_than_a_calm_one(parts):
+    """Test: one of four teaching voyages shaken three times as hard as its neighbours scatter. Expected: its weight falls, the mean of
+    all weights stays one, and no weight is more than ten times another."""
+    split_parts, model = parts
+    first, *others = split_parts["train"]
+    rng = np.random.default_rng(2)
+    shaken = replace(first, rate=first.rate + 3.0 * first.rate.std(0) * rng.standard_normal(first.rate.shape))
+
+    def weights(legs):
+        data = prepared({"train": legs, "validation": split_parts["validation"]}, model, FEW)
+        torch.manual_seed(1)
+        probe = Residual(model.ship, ("surge", "sway", "yaw", "rudder", "propeller"), np.ones((3, 5)) * [[0.0], [0.5], [1.0]])
+        return Course(probe, model, FEW, data, lambda *_: None, None)._weights("acceleration")
+
+    calm, rough = weights([first, *others]), weights([shaken, *others])
+    assert float(rough.mean()) == pytest.approx(1.0, abs=1e-5)
+    assert rough[0] < 0.5 * calm[0] and rough.max() / rough.min() < 10.01
+
+
+def test_a_learned_force_is_that_of_the_middle_of_its_step(ship):
+    """Test: a moment that follows the rudder, which swings; steps of 4, 2 and 0.125 s. Expected: half the step, a quarter of the error
+    (a force held from each step's beginning gives a half)."""
+    model, seconds = Model.of(ship), 60.0
+
+    def heading(h):
+        t = torch.arange(0.0, seconds + h / 2, h, dtype=torch.float64)
+        inputs = {"delta": 0.3 * torch.sin(t / 8.0)[:, None], "n": torch.full((len(t), 1), 1.6, dtype=torch.float64)}
+        start = torch.tensor([[0.0, 0.0, 0.0, 7.0, 0.0, 0.0]], dtype=torch.float64)
+        run = loss.free_run(lambda s: Force(0.0 * s.u, 0.0 * s.u, 3e9 * s.delta), model, start, inputs, torch.tensor([h], dtype=torch.float64))
+        return float(run[-1, 0, 2])
+
+    fine = heading(0.125)
+    coarse, half = abs(heading(4.0) - fine), abs(heading(2.0) - fine)
+    assert coarse / half > 3.0
