@@ -21,7 +21,8 @@ from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation
 
-SHIP, RATE_HZ, WALL_S = "kvlcc2", 10.0, 1.7e9
+SHIP, RATE_HZ, WALL_S = "kvlcc2", 50.0, 1.7e9
+EVERY = 5  # ticks: the instruments speak ten times a second
 MOST = 100  # ticks for which there are messages
 Step = Callable[[], object]
 
@@ -43,12 +44,12 @@ def network() -> Step:
 
 
 def tick() -> Step:
-    """One whole tick: decode, gates, observer, forces, adaptation, prediction, certificate, records."""
+    """One whole tick at 50 Hz: decode, gates, observer, forces, adaptation, prediction, certificate, records."""
     settings = Settings().but("ship.file", SHIP).but("loop.rate_hz", RATE_HZ)
     bus, count = MemoryBus(), iter(range(MOST))
     voice = Outbox(Publisher(), settings["bus.base"], settings["bus.entity"], bus, _forget)
     loop = loop_of(settings, Inbox(bus, _forget), voice)
-    said = [_messages(i / RATE_HZ) for i in range(MOST)]
+    said = [_messages(i / RATE_HZ) if i % EVERY == 0 else [] for i in range(MOST)]
 
     def step() -> object:
         i = next(count)

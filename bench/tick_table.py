@@ -26,7 +26,7 @@ PEERS = {
 COUNTED = {
     "analytic": "one Runge-Kutta step of the equations",
     "network": "one run of the residual's network",
-    "tick": "one whole tick, without bus and disk",
+    "tick": "one whole tick at 50 Hz, without bus and disk",
 }
 
 
