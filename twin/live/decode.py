@@ -7,7 +7,7 @@ are in `sensors.py`.
 """
 
 from math import hypot, isfinite
-from typing import Any
+from typing import Any, NamedTuple
 
 from google.protobuf.message import DecodeError
 from google.protobuf.unknown_fields import UnknownFieldSet
@@ -26,6 +26,14 @@ NEAR_M = 1000.0  # two positions this near confirm each other
 MAX_KEYS = 512  # how many keys are remembered: a hostile sender cannot fill the memory
 
 Result = Reading | Rejected
+
+
+class Taken(NamedTuple):
+    """What a message gave, and its payload for the log (no type: there is nothing to keep)."""
+
+    results: list[Result]
+    type_name: str = ""
+    payload: bytes = b""
 
 
 class Refuse(Exception):
@@ -50,19 +58,22 @@ class Decoder:
 
     def decode(self, key: str, envelope: bytes, received_s: float) -> list[Result]:
         """What one message from the bus holds; the twin's own voice gives nothing."""
+        return self.take(key, envelope, received_s).results
+
+    def take(self, key: str, envelope: bytes, received_s: float) -> Taken:
+        """The same, with what is to be logged of it."""
         topic, source = self._topic(key)
         if topic is None:
-            if is_own(source):
-                return []
-            return [Rejected("", Quality.UNKNOWN_KEY, f"key {key[:120]!r}", received_s, source)]
+            unknown = Rejected("", Quality.UNKNOWN_KEY, f"key {key[:120]!r}", received_s, source)
+            return Taken([] if is_own(source) else [unknown])
         if len(envelope) > MAX_BYTES:
             why = f"{len(envelope)} bytes, at most {MAX_BYTES} expected"
-            return _reject(topic, Quality.GARBAGE, why, received_s, source)
+            return Taken(_reject(topic, Quality.GARBAGE, why, received_s, source))
         try:
             payload = messages.Envelope.FromString(envelope).payload
         except DecodeError as error:
-            return _reject(topic, Quality.GARBAGE, f"no envelope: {error}", received_s, source)
-        return self._payload(topic, source, payload, received_s)
+            return Taken(_reject(topic, Quality.GARBAGE, f"no envelope: {error}", received_s, source))
+        return Taken(self._payload(topic, source, payload, received_s), topic.type_name, payload)
 
     def decode_stripped(self, key: str, payload: bytes, received_s: float) -> list[Result]:
         """The same for a logged message, which has no envelope."""

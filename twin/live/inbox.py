@@ -2,14 +2,10 @@
 
 from collections.abc import Callable, Iterable
 
-from google.protobuf.message import DecodeError
-
-from twin.live import messages
 from twin.live.bus import Bus
 from twin.live.clock import Instant
 from twin.live.decode import Decoder, Result
 from twin.live.geodesy import Datum
-from twin.live.topics import BY_SUBJECT, address, is_own
 
 Log = Callable[[str, str, bytes, int], None]  # topic, type name, payload, time [ns since 1970]
 
@@ -29,22 +25,13 @@ class Inbox:
     def read(self, instant: Instant) -> list[Result]:
         """Never waits."""
         results: list[Result] = []
+        wall_ns = round(instant.wall_s * 1e9)
         for key, envelope, received_s in self.bus.drain(instant.time_s):
-            results += self.decoder.decode(key, envelope, received_s)
-            if self.log is not None:
-                self._keep(key, envelope, instant)
+            taken = self.decoder.take(key, envelope, received_s)
+            results += taken.results
+            if self.log is not None and taken.type_name:
+                self.log(key, taken.type_name, taken.payload, wall_ns)
         return results
-
-    def _keep(self, key: str, envelope: bytes, instant: Instant) -> None:
-        place = address(key)
-        topic = BY_SUBJECT.get(place.subject) if place else None
-        if topic is None or place is None or is_own(place.source) or self.log is None:
-            return
-        try:
-            payload = messages.unwrap(envelope)[1]
-        except (DecodeError, OverflowError):
-            return
-        self.log(key, topic.type_name, payload, round(instant.wall_s * 1e9))
 
 
 class Played:
