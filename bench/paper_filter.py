@@ -103,17 +103,15 @@ class Filter:
         return out[0], F
 
     def _step(self, start: np.ndarray, now: dict[str, np.ndarray]) -> np.ndarray:
-        state = tuple(torch.tensor(start.T, dtype=torch.float64))
-        s = Situation(**{n: torch.tensor(x) for n, x in now.items()})
-        moving = self.model
+        state, s, moving = tuple(start.T), Situation(**now), self.model
         if self.push is not None:
             s.x, s.y, s.psi, s.u, s.v, s.r = state
             self.model.forces(s, self.model.water(s))
             held = Held()
             with torch.no_grad():
-                held.force = self.push(_single(s))
+                held.force = Force(*[f.double().numpy() for f in self.push(_tensors(s))])
             moving = Model(self.model.ship, self.model.effects, held)
-        return torch.stack(moving.step(state, s, self.h), -1).numpy()  # type: ignore[arg-type]
+        return np.stack(moving.step(state, s, self.h), -1)
 
     def _correct(self, measured: np.ndarray) -> None:
         """All readings at once; one that is missing says nothing."""
@@ -142,9 +140,9 @@ class Filter:
         return H, expected
 
 
-def _single(s: Situation) -> Situation:
-    """The same in float32, as the network wants it."""
-    return Situation(**{n: v.float() for n in s.__slots__ if isinstance(v := getattr(s, n), torch.Tensor)})
+def _tensors(s: Situation) -> Situation:
+    """The same as the network wants it."""
+    return Situation(**{n: torch.tensor(v, dtype=torch.float32) for n in s.__slots__ if isinstance(v := getattr(s, n), np.ndarray)})
 
 
 def predict(courses: Sequence[Course], model: Model, push: Push | None, tuning: Tuning) -> list[np.ndarray]:
