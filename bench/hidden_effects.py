@@ -33,8 +33,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seeds", type=int, help="rounds; each is a fair sample (default 5)")
     parser.add_argument("--strength", nargs="+", type=float, help="default: 1 and 0.5")
     parser.add_argument("--effect", nargs="+", default=[], help="hide only these of the catalogue")
+    parser.add_argument("--every", type=int, default=1, metavar="N", help="one question in N, in turn over effects, hulls and seeds (default 1)")
     parser.add_argument("--kind", nargs="+", choices=plan.KINDS, default=plan.KINDS, help="only these questions")
-    parser.add_argument("--duration", type=float, metavar="S", help="of a voyage (default 1800, usv 300)")
+    parser.add_argument("--duration", type=float, metavar="S", help="of a voyage (default 1800, usv 1200)")
     parser.add_argument("--references", type=int, default=6, metavar="N", help="calm voyages that calibrate a ship (default 6)")
     parser.add_argument("--minutes", type=float, help="begin no voyage after so many minutes")
     parser.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
@@ -63,6 +64,7 @@ def command(args: argparse.Namespace) -> str:
     for name in ("hull", "strength", "effect"):
         said += [f"--{name} {' '.join(map(str, getattr(args, name)))}"] if getattr(args, name) else []
     said += [f"--seeds {args.seeds}"] if args.seeds else []
+    said += [f"--every {args.every}"] if args.every > 1 else []
     said += [f"--kind {' '.join(args.kind)}"] if args.kind is not plan.KINDS else []
     said += [f"--duration {args.duration:g}"] if args.duration else []
     said += [f"--out {args.out}"] if args.out else []

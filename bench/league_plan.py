@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -12,7 +13,7 @@ HULLS = ("kvlcc2", "usv", "container")
 KINDS = ("effect", "none", "decoy", "pair", "outside", "straight")
 STRENGTHS = (1.0, 0.5)
 MANOEUVRES = ("mixed", "zigzag_20", "course_changes", "speed_changes")
-DURATION_S = {"usv": 300.0}  # 230 lengths of a 2 m boat; the others sail half an hour
+DURATION_S = {"usv": 1200.0}  # 900 lengths of a 2 m boat; the others sail half an hour
 HALF_HOUR = 1800.0
 STRAIGHT = ("Wind", "HullFouling", "RudderOffset", "SpeedLogBias", "Current", "TowForce")
 WEATHERS = {"Wind": "wind", "WaveDrift": "waves"}
@@ -71,14 +72,15 @@ def lasts(hull: str, duration_s: float | None) -> float:
 
 def questions(
     hulls: Sequence[str], seeds: int, strengths: Sequence[float], effects: Sequence[str] = (), quick: bool = False,
-    duration_s: float | None = None,
+    duration_s: float | None = None, every: int = 1,
 ) -> list[list[Question]]:  # fmt: skip
-    """A round of questions for each seed."""
+    """A round of questions for each seed; of all of them one in `every`, in turn over questions, hulls and seeds."""
     return [
         [
             Question(h, *rest, duration_s=lasts(h, duration_s))
-            for rest in _shuffled(_round(seed, strengths, effects, quick), seed)
-            for h in hulls
+            for i, rest in _shuffled(list(enumerate(_round(seed, strengths, effects, quick))), seed)
+            for j, h in enumerate(hulls)
+            if (i + j + seed) % every == 0
         ]
         for seed in range(1, seeds + 1)
     ]
@@ -112,6 +114,6 @@ def pairs(seed: int, count: int) -> list[tuple[tuple[str, float], ...]]:
     return [tuple((names[i], 1.0) for i in rng.choice(len(names), 2, replace=False)) for _ in range(count)]
 
 
-def _shuffled(items: list[tuple], seed: int) -> list[tuple]:
+def _shuffled(items: list[Any], seed: int) -> list[Any]:
     """In a fixed random order: whatever part of it is run is a sample of the whole."""
     return [items[i] for i in np.random.default_rng([seed, 78]).permutation(len(items))]

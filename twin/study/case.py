@@ -25,6 +25,11 @@ class World:
     probability: float
     unknown: bool = False  # so restless that something must be at work which nobody named
 
+    @property
+    def plain(self) -> bool:
+        """Whether the model errs no more than it did on the reference voyages."""
+        return self.share == 1.0
+
 
 WORLDS: dict[str, World] = {
     "usual": World(1.0, 1.0, 0.85),

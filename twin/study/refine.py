@@ -17,7 +17,9 @@ from .innovations import Linear, linearise
 from .respond import respond
 
 DOUBT = 0.2
-NEWTON = 3  # steps, at most
+Sets = tuple[str, ...]
+NEWTON = 4  # steps, at most
+FARTHER = (2.0, 4.0)  # times the linear guess, where Newton begins again when it ended in no plain world
 STANDS = 0.25  # prior widths that a step may still move
 
 
@@ -30,9 +32,20 @@ class Found:
     model: Model
 
 
-def refine(case: Case, chosen: tuple[str, ...], world: str, z: np.ndarray, wider: Sequence[str]) -> tuple[Found, list[Hypothesis]]:
-    """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand. What was found; and, about
-    it, the hypothesis in every world, and every one that has one of `wider` beside it."""
+def refine(case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[str]) -> tuple[Found, list[Hypothesis]]:
+    """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand; begun again farther out
+    when that explains nothing plainly. What was found; and, about it, the hypothesis in every world, and every one that has one
+    of `wider` beside it."""
+    best = _climb(case, chosen, world, z)
+    for factor in FARTHER:
+        if WORLDS[best[0].hypothesis.world].plain:
+            break
+        best = max(best, _climb(case, chosen, "usual", factor * z), key=lambda found: found[0].hypothesis.log_weight)
+    found, judged, reduced = best
+    return found, [*judged, *_beside(case, chosen, reduced, wider)]
+
+
+def _climb(case: Case, chosen: Sets, world: str, z: np.ndarray) -> tuple[Found, list[Hypothesis], dict[str, Reduced]]:
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     names = [n for n in WORLDS if np.isfinite(case.log_prior(chosen, n))]
     for _ in range(NEWTON):
@@ -46,10 +59,10 @@ def refine(case: Case, chosen: tuple[str, ...], world: str, z: np.ndarray, wider
     own = {n: posterior(r, chosen) for n, r in reduced.items()}
     judged = [Hypothesis(chosen, n, log_evidence(r, chosen, own[n]), case.log_prior(chosen, n)) for n, r in reduced.items()]
     best = max(judged, key=lambda h: h.log_weight)
-    return Found(best, own[best.world], model), [*judged, *_beside(case, chosen, reduced, wider)]
+    return Found(best, own[best.world], model), judged, reduced
 
 
-def _beside(case: Case, chosen: tuple[str, ...], reduced: dict[str, Reduced], wider: Sequence[str]) -> list[Hypothesis]:
+def _beside(case: Case, chosen: Sets, reduced: dict[str, Reduced], wider: Sequence[str]) -> list[Hypothesis]:
     out = []
     for world, r in reduced.items():
         for name, evidence in weigh_with(r, chosen, wider):

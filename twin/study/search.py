@@ -11,16 +11,16 @@ import numpy as np
 
 from .case import ODDS_WEAK, WORLDS, Case
 from .evidence import Hypothesis, Reduced, posterior, weigh_all
-from .refine import Found, refine
+from .refine import Found, Sets, refine
 
 MOST = 2  # effects at once
-ROUNDS = 14  # hypotheses judged about their own size, at most
-SINGLES = 3  # of which so many single effects first, when nothing plain explains the voyages
+ROUNDS = 20  # hypotheses judged about their own size, at most
+SINGLES = 3  # of which so many single effects first, unless nothing at all explains the voyages
+LAST = 6  # and so many more single effects, when nothing plain was found
 CLOSE = 3.0  # log odds behind the best within which a hypothesis is judged about its own size
 VISIBLE = 4.0  # log odds that an effect of plausible size would have to show, or the data could not have seen it
 EARNED = 1.5  # log evidence that an effect must add to deserve a second look
 
-Sets = tuple[str, ...]
 Searched = tuple[list[Hypothesis], dict[Sets, Found], dict[str, bool]]
 
 
@@ -60,7 +60,8 @@ class _Book:
                 self._enter(Hypothesis(chosen, world, evidence, case.log_prior(chosen, world)))
         nothing = max((h for h in self.entries.values() if not h.effects), key=lambda h: h.log_weight)
         self.found: dict[Sets, Found] = {(): Found(nothing, posterior(worlds[nothing.world], ()), case.model)}
-        self.first = self._promising()
+        singles = self._promising()
+        self.first, self.last = singles[:SINGLES], singles[SINGLES : SINGLES + LAST]
 
     def _enter(self, h: Hypothesis) -> None:
         if np.isfinite(h.log_weight):
@@ -75,26 +76,28 @@ class _Book:
         return [h for h in self.weighed() if h.effects in self.found or h.log_weight <= best]
 
     def _promising(self) -> list[Sets]:
-        """The best single effects, unless the plain answer is that nothing is there."""
+        """The single effects that explain something, best first; none when the plain answer is that nothing is there."""
         ranked = self.weighed()
-        if ranked[0].effects == () and ranked[0].world == "usual":
+        if ranked[0].effects == () and WORLDS[ranked[0].world].plain:
             return []
-        plain = {h.world: h.log_evidence for h in ranked if not h.effects}
-        singles: list[Sets] = [h.effects for h in ranked if len(h.effects) == 1 and h.log_evidence > plain.get(h.world, -np.inf) + EARNED]
-        return list(dict.fromkeys(singles))[:SINGLES]
+        nothing = {h.world: h.log_evidence for h in ranked if not h.effects}
+        singles: list[Sets] = [h.effects for h in ranked if len(h.effects) == 1 and h.log_evidence > nothing.get(h.world, -np.inf) + EARNED]
+        return list(dict.fromkeys(singles))
 
     def next(self) -> Sets | None:
         """What to judge about its own size next; each effect of a pair alone before the pair: it may do what took two."""
         while self.first:
             if (chosen := self.first.pop(0)) not in self.found:
                 return chosen
-        top = None
-        for h in self.weighed():
-            top = h.log_weight if top is None else top
-            if top - h.log_weight > CLOSE:
-                return None
+        ranked = self.weighed()
+        for h in ranked:
+            if ranked[0].log_weight - h.log_weight > CLOSE:
+                break
             if h.effects not in self.found:
                 return next(((name,) for name in h.effects if (name,) not in self.found), h.effects)
+        while self.last and not WORLDS[ranked[0].world].plain:
+            if (chosen := self.last.pop(0)) not in self.found:
+                return chosen
         return None
 
     def judge(self, chosen: Sets) -> None:
@@ -103,7 +106,7 @@ class _Book:
         start = max((self.found[s] for s in self.found if set(s) < set(chosen)), key=lambda f: len(f.hypothesis.effects))
         z = posterior(self.worlds[mine[0].world], chosen).z
         known = [i for i, u in enumerate(self.case.effects) if u.owner in start.hypothesis.effects]
-        z[known] = start.posterior.z[known]
+        z[known] = start.posterior.z[known]  # where a part of the set was found to stand
         wider = self.case.candidates if len(chosen) < MOST else ()
         self.found[chosen], judged = refine(self.case, chosen, mine[0].world, z, wider)
         for h in judged:

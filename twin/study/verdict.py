@@ -17,6 +17,8 @@ from .refine import Found
 from .respond import respond
 
 SURE = 0.5  # an effect is named when it is more likely there than not
+SURE_TOO = 0.9  # another beside it when that is nearly certain: of two forms that are only roughly right, one may mend the other
+ACQUITTED = 0.8  # probability from which nothing is said to be missing
 ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
 HORIZON_S = 120.0
 
@@ -62,11 +64,12 @@ def judge(case: Case, weighed: Sequence[Hypothesis], w: Weights, seen: dict[str,
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
     named = [n for n in w.best.effects if w.effects[n] >= SURE]
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
+    named = [n for i, n in enumerate(named) if i == 0 or w.effects[n] >= SURE_TOO]
     if not _enough(seen):
         return "undecided", []
     if w.unknown >= SURE:
         return "unknown", []
-    if w.nothing >= SURE:
+    if w.nothing >= ACQUITTED:
         return "nothing_missing", []
     return ("missing", named) if named else ("undecided", [])
 
