@@ -4,6 +4,7 @@ Each function prepares its program and gives the step that is repeated; nothing 
 """
 
 from collections.abc import Callable
+from copy import deepcopy
 from math import cos, sin
 
 from twin.live.build import loop_of
@@ -11,6 +12,7 @@ from twin.live.bus import MemoryBus
 from twin.live.clock import Instant
 from twin.live.config import Settings
 from twin.live.inbox import Inbox
+from twin.live.loop import Loop, measured_nu
 from twin.live.messages import encode_fix, encode_float, wrap
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
@@ -45,11 +47,37 @@ def network() -> Step:
 
 def tick() -> Step:
     """One whole tick at 50 Hz: decode, gates, observer, forces, adaptation, prediction, certificate, records."""
+    return _ticks(MOST)[1]
+
+
+def hybrid(most: int = MOST) -> Step:
+    """What a peer does too, on the measurements of `most` such ticks: correct, known force, learned force, adapt, one step on."""
+    (before, step), (loop, _) = _ticks(most), _ticks(0)
+    taken = []
+    for _ in range(most):
+        step()
+        taken.append(deepcopy(before.last.measured))
+    seen, period_s = iter(taken), loop.period_s
+
+    def compute() -> object:
+        measured = next(seen)
+        e = loop.observer.correct(measured)
+        s, physics, forces = loop.dynamics.known(e, measured)
+        learned = loop.learned.at(s, forces)
+        loop.learned.learn(measured_nu(measured), s, forces, learned, physics, period_s, "")
+        loop.observer.steer(loop.dynamics.ahead(s, forces, learned.force, period_s))
+        return e
+
+    return compute
+
+
+def _ticks(most: int) -> tuple[Loop, Step]:
+    """A loop, and what ticks it with the next messages."""
     settings = Settings().but("ship.file", SHIP).but("loop.rate_hz", RATE_HZ)
-    bus, count = MemoryBus(), iter(range(MOST))
+    bus, count = MemoryBus(), iter(range(most))
     voice = Outbox(Publisher(), settings["bus.base"], settings["bus.entity"], bus, _forget)
     loop = loop_of(settings, Inbox(bus, _forget), voice)
-    said = [_messages(i / RATE_HZ) if i % EVERY == 0 else [] for i in range(MOST)]
+    said = [_messages(i / RATE_HZ) if i % EVERY == 0 else [] for i in range(most)]
 
     def step() -> object:
         i = next(count)
@@ -57,10 +85,10 @@ def tick() -> Step:
             bus.put(topic, data)
         return loop.tick(Instant(i, i / RATE_HZ, WALL_S + i / RATE_HZ))
 
-    return step
+    return loop, step
 
 
-PROGRAMS: dict[str, Callable[[], Step]] = {"analytic": analytic, "network": network, "tick": tick}
+PROGRAMS: dict[str, Callable[[], Step]] = {"analytic": analytic, "network": network, "hybrid": hybrid, "tick": tick}
 
 
 def _messages(t: float) -> list[tuple[str, bytes]]:

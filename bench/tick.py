@@ -70,7 +70,7 @@ def measure(args: argparse.Namespace) -> dict[str, Any]:
         if paced_steps:
             _say(f"the loop on time, {paced_steps} steps at {args.rate:g} Hz ...")
         paced = place.loop(paced_steps, 0, "paced") if paced_steps else None
-        peers = {"peers": {}, "look_ahead": {}}
+        peers = {"hybrid": {}, "peers": {}, "look_ahead": {}}
         if not args.no_peers:
             _say("the peers ...")
             peers = _json_of([sys.executable, "-m", "bench.peers"], "the peers")
@@ -106,7 +106,7 @@ def judged(
         "rss_growth_mb": fast["growth_mb"],
         "rss_growth_anon_mb": fast["growth_anon_mb"], "mode": fast["mode"],
         "modes": fast["modes"], "reasons": fast["reasons"],
-        "notes": fast["notes"], "log": fast["log"], **peers, "ratios": _ratios(computing, peers["peers"]),
+        "notes": fast["notes"], "log": fast["log"], **peers, "ratios": _ratios(peers),
         "instructions": counted, "cortex_a72": estimate,
         "budget": {"step_ms": args.budget_ms, "rss_mb": args.budget_mb}, "over_budget": over,
         "within_budget": not over,
@@ -195,9 +195,9 @@ def _paced(paced: Any) -> dict[str, Any] | None:
     return {name: paced[name] for name in names} if paced else None
 
 
-def _ratios(computing_us: float, peers: dict[str, Any]) -> dict[str, float]:
-    """The twin's computing over each peer's step: below 1 the twin is quicker."""
-    return {f"hybrid_over_{name}": round(computing_us / p["median_us"], 2) for name, p in peers.items()}
+def _ratios(found: dict[str, Any]) -> dict[str, float]:
+    """The twin's step over each peer's, all hot: below 1 the twin is quicker."""
+    return {f"hybrid_over_{name}": round(found["hybrid"]["mean_us"] / p["median_us"], 2) for name, p in found["peers"].items()}
 
 
 def _write(path: Path, result: dict[str, Any]) -> None:

@@ -8,6 +8,7 @@ from bench.ekf import ShipFilter
 from bench.memory import memory
 from bench.ort import session
 from bench.timing import hot_us, quantiles
+from twin.live.loop import Loop
 from twin.physics.model import Model
 from twin.physics.ship import load
 
@@ -118,3 +119,19 @@ def test_what_is_counted_runs_as_a_whole():
     ticks = [step() for _ in range(30)]
     assert ticks[-1].mode in ("hybrid", "physics only")
     assert len(counted.network()()) > 0
+
+
+def test_the_twins_step_beside_the_peers_does_all_the_work():
+    """Test: 20 s of it. Expected: the estimate follows the measurements, the network acts, and she learns."""
+    step = counted.hybrid(1000)
+    e = [step() for _ in range(1000)][-1]
+    loop = next(c.cell_contents for c in step.__closure__ if isinstance(c.cell_contents, Loop))
+    assert e.ready and e.u == pytest.approx(7.0, abs=0.1) and e.r == pytest.approx(0.002, abs=3e-4)
+    assert loop.learned.evidence.ready or loop.learned._waited_s < 0.1
+    assert any(loop.learned.at(*_situation(loop, e)).shadow)
+
+
+def _situation(loop, e):
+    s, _, forces = loop.dynamics.known(e, loop.sensors.read([], 20.0, 1.7e9 + 20.0, e))
+    s.delta, s.n = 0.087, 1.417
+    return s, forces

@@ -76,7 +76,7 @@ def judge(target="here", **numbers):
     from argparse import Namespace
 
     args = Namespace(steps=1000, rate=50.0, target=target, budget_ms=12.0, budget_mb=48.0)
-    peers = {"peers": {"ekf": {"median_us": 20.0}}, "look_ahead": {}}
+    peers = {"hybrid": {"mean_us": 10.0}, "peers": {"ekf": {"median_us": 20.0}}, "look_ahead": {}}
     return judged(args, measured(**numbers), None, peers, {}, "bundled")
 
 
@@ -100,7 +100,7 @@ def test_the_target_scales_the_time():
     assert judge("cortex-a72", step_p999_us=4000.0)["within_budget"] is False
 
 
-def test_the_ratio_to_a_peer_is_computing_over_its_step():
+def test_the_ratio_to_a_peer_is_the_twins_step_over_its_step():
     assert judge()["ratios"]["hybrid_over_ekf"] == 0.5
 
 

@@ -89,7 +89,7 @@ class Loop:
         verdict = self.guard.judge(measured, estimate, self.sensors.reasons(), dt)
         learned = self.learned.at(situation, forces, verdict.use_learned)
         self.guard.note(learned, dt)
-        self.learned.learn(_nu(measured), situation, forces, learned, physics, dt, verdict.frozen)
+        self.learned.learn(measured_nu(measured), situation, forces, learned, physics, dt, verdict.frozen)
         self.observer.steer(self.dynamics.ahead(situation, forces, learned.force, self.period_s))
         ahead = self.predictor.advance(instant.time_s, estimate, situation, physics, self.learned_at(verdict.use_learned), verdict.mode != INVALID)
         certified = self.stabilizer.step(self.observer, measured, situation)
@@ -139,7 +139,7 @@ class Loop:
         return said
 
 
-def _nu(measured: Measured) -> tuple[float, float, float] | None:
+def measured_nu(measured: Measured) -> tuple[float, float, float] | None:
     """What the adaptation learns from: speed over ground and rate of turn, measured, with controls; else
     None."""
     si = measured.si
