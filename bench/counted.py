@@ -5,7 +5,7 @@ Each function prepares its program and gives the step that is repeated; nothing 
 
 from collections.abc import Callable
 from copy import deepcopy
-from math import cos, sin
+from math import cos, degrees, sin
 
 from twin.live.build import loop_of
 from twin.live.bus import MemoryBus
@@ -88,18 +88,20 @@ def _ticks(most: int) -> tuple[Loop, Step]:
     return loop, step
 
 
-PROGRAMS: dict[str, Callable[[], Step]] = {"analytic": analytic, "network": network, "hybrid": hybrid, "tick": tick}
+PROGRAMS: dict[str, Callable[[], Step]] = {"analytic": analytic, "network": network, "tick": tick}
 
 
 def _messages(t: float) -> list[tuple[str, bytes]]:
-    """What the instruments of a ship say that sails a wide circle, with a little waver on it."""
-    r, speed, ns = 0.002, 7.0, int((WALL_S + t) * 1e9)
+    """What the instruments of a ship say that weaves her way north, with a little waver on it."""
+    speed, swing, pace, ns = 7.0, 0.1, 0.06, int((WALL_S + t) * 1e9)  # heading swing sin(pace t) [rad]
     waver = sin(7.0 * t) + 0.3 * cos(31.0 * t)
-    north, east = speed / r * sin(r * t), speed / r * (1.0 - cos(r * t))
+    psi, r = swing * sin(pace * t), swing * pace * cos(pace * t)
+    north = speed * (t * (1.0 - 0.25 * swing**2) + 0.125 * swing**2 / pace * sin(2.0 * pace * t))
+    east = speed * swing / pace * (1.0 - cos(pace * t))
     values = {
-        "heading_true_north_deg": 0.1146 * t + 0.05 * waver, "yaw_rate_degps": 0.1146 + 0.003 * waver,
-        "surge_velocity_mps": speed + 0.02 * waver, "sway_velocity_mps": -0.1 + 0.02 * waver,
-        "rudder_angle_deg": 5.0 + 0.05 * waver, "propeller_rate_rpm": 85.0 + 0.1 * waver,
+        "heading_true_north_deg": (degrees(psi) + 0.05 * waver) % 360.0, "yaw_rate_degps": degrees(r) + 0.003 * waver,
+        "surge_velocity_mps": speed + 0.02 * waver, "sway_velocity_mps": -40.0 * r + 0.02 * waver,
+        "rudder_angle_deg": 10.0 * cos(pace * t + 0.5) + 0.05 * waver, "propeller_rate_rpm": 85.0 + 0.1 * waver,
     }  # fmt: skip
     fix = encode_fix(57.62 + north / 111e3, 11.58 + east / 59e3, ns)
     said = {"location_fix": fix} | {name: encode_float(value, ns) for name, value in values.items()}

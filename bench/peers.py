@@ -27,7 +27,7 @@ from twin.physics.ship import load
 from twin.physics.state import Situation
 
 WINDOW = 50
-SETTLE = 400  # steps of the twin until her filters have settled and she learns
+SETTLE = 4000  # steps of the twin, 80 s, until her filters have settled and she learns
 ROUNDS, HOT = 20, 10
 STEP_S = 0.1
 AHEAD_S, FINE_S, COARSE_S, ENSEMBLE = 120.0, 0.1, 1.0, 64

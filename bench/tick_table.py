@@ -26,7 +26,6 @@ PEERS = {
 COUNTED = {
     "analytic": "one Runge-Kutta step of the equations",
     "network": "one run of the residual's network",
-    "hybrid": "the twin's step beside the peers",
     "tick": "one whole tick at 50 Hz, without bus and disk",
 }
 

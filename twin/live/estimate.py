@@ -132,6 +132,8 @@ class Observer:
         """The innovation of what is fresh, at the time it was measured; water speed stands in for a
         missing ground speed."""
         si, fresh = measured.si, measured.fresh
+        if not fresh:
+            return
         for i, state in enumerate(STATES):
             if state in fresh and state in si:
                 if state in measured.steps:
@@ -261,6 +263,8 @@ class CurrentFilter:
     def feed(self, measured: Measured, e: Estimate) -> tuple[float, float]:
         """Only along those axes of the ship on which both speeds are measured."""
         si, fresh = measured.si, measured.fresh
+        if "u_r" not in fresh and "v_r" not in fresh:
+            return self.north, self.east
         c, s = cos(e.psi), sin(e.psi)
         for ground, water, axis_north, axis_east in (("u", "u_r", c, s), ("v", "v_r", -s, c)):
             if water in fresh and ground in si:
