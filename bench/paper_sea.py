@@ -37,6 +37,7 @@ class Plan:
     rollout_batch: int = 256
     lstm_epochs: int = 150
     resamples: int = 10_000  # of Table 4; half as many of Table 6
+    tick_s: float = 0.1  # of the sea
 
 
 QUICK = Plan(15, 2, 1, 1, (20,), (3,), 2, (42,), 25, 12, 64, 30)

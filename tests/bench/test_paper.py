@@ -117,7 +117,7 @@ def test_without_gnss_noise_the_place_is_the_truth_of_a_moment_ago(tmp_path):
 @pytest.fixture(scope="module")
 def tiny(tmp_path_factory):
     """The whole bench with the least of everything: it learns next to nothing, but every table is made."""
-    plan = paper_sea.Plan(5, 1, 1, 1, (20,), (1,), 1, (42, 123), 2, 1, 64, 1, 200)
+    plan = paper_sea.Plan(5, 1, 1, 1, (20,), (1,), 1, (42, 123), 2, 1, 64, 1, 200, 0.5)
     folder = tmp_path_factory.mktemp("tiny")
     return paper.reproduce(plan, folder / "work", True, folder / "figures"), folder
 
