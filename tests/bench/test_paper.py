@@ -144,3 +144,14 @@ def test_the_page_has_the_papers_numbers_and_the_figures_are_small(tiny):
     drawn = sorted(path.name for path in (folder / "figures").iterdir())
     assert [name[:5] for name in drawn] == [f"fig-{k}" for k in range(2, 8)]
     assert all(path.stat().st_size < 150_000 for path in (folder / "figures").iterdir())
+
+
+def test_the_loop_closed_over_the_reference_sea_settles_and_a_hostile_residual_stays_bounded(tiny):
+    """Expected: without a residual, settled within six lengths with hardly any overshoot and the rudder far from its stop; a hostile
+    one, as strong as its bound allows, cannot turn her round."""
+    rows = {(x["mode"], x["scenario"]): x for x in tiny[0]["tables"]["fig5"]}
+    assert len(rows) == 9
+    for scenario in paper_sea.SCENARIOS:
+        alone = rows["analytic alone", scenario]
+        assert alone["settle_lengths_max"] < 6.0 and alone["overshoot_percent"] < 8.0 and alone["rudder_deg"] < 20.0
+        assert rows["with a hostile residual", scenario]["gust_deg"] < 60.0
