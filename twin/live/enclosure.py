@@ -17,8 +17,6 @@ import numpy as np
 from twin.physics import core
 from twin.physics.dual import Dual
 from twin.physics.effect import Effect
-from twin.physics.effects.current import Current
-from twin.physics.effects.varying_current import VaryingCurrent
 from twin.physics.interval import Interval, hull, of
 from twin.physics.model import CORE, Model
 from twin.physics.state import Situation
@@ -133,7 +131,7 @@ def contribution(model: Model, s: Situation, names: frozenset[str]) -> tuple[Any
 
 def _seen_from_the_water(model: Model, ranges: Ranges) -> tuple[Model, Ranges]:
     """The model without its currents, and a wind that may have the current on top."""
-    calm = Model(model.ship, tuple(e for e in model.effects if not isinstance(e, (Current, VaryingCurrent))))
+    calm = Model(model.ship, tuple(e for e in model.effects if not getattr(e, "stream", False)))
     lo, hi = ranges["wind_speed"]
     stream = ranges["stream"][1]
     return calm, {**ranges, "wind_speed": (max(lo - stream, 0.0), hi + stream)}

@@ -130,6 +130,7 @@ class Flow(Effect):
     """Changes the water that hull, propeller and rudder feel: nu_r = nu - nu_c."""
 
     kind = "Flow"
+    stream: ClassVar[bool] = False  # whether it is nothing but moving water, which carries the ship along
 
     def water(self, s: Situation, ship: "Ship") -> Water:
         raise NotImplementedError

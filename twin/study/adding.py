@@ -20,6 +20,7 @@ from .jsonable import short
 from .nuisance import TEMPER, from_ship, nuisance_unknowns
 from .openloop import Windows, predict
 from .sailed import fed, floor_of
+from .seaway import calmed
 from .track import Track
 
 OF_THE_DAY = (
@@ -84,6 +85,7 @@ def fitted(ship: Ship, effects: Sequence[type[Effect]], tracks: Sequence[Track])
     unknowns = [u for e in effects for u in effect_unknowns(e, base)]
     floor = floor_of(ship) or Floor()
     usable = in_one(base, tracks)
+    tracks = [calmed(t, usable) for t in tracks]
     found = fit(tracks, usable, unknowns, known, floor, temper=_temper(ship))
     sd = _doubt(found, tracks, floor, known, _temper(ship))
     names = {e.__name__ for e in effects}

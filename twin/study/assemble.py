@@ -14,6 +14,7 @@ from .case import ODDS, ODDS_MEASURED, Case, settle
 from .columns import Unknown, effect_unknowns, lateness_unknowns
 from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, temper_of
+from .seaway import calmed
 from .structure import structural_floor
 from .track import Track, track
 from .voyage import Voyage
@@ -76,7 +77,7 @@ def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue
 
 def _line(t: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]]) -> Linear:
     here, _ = model.without_inputs(t.missing())
-    return linearise(t, here, unknowns, catalogue)
+    return linearise(calmed(t, here), here, unknowns, catalogue)
 
 
 def _odds(tracks: Sequence[Track], candidates: Sequence[str], ship: Ship) -> dict[str, float]:

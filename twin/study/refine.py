@@ -1,6 +1,7 @@
 """A hypothesis judged about its own size: linearised anew where its effects stand, so that what is not linear counts in full.
 
-An effect is granted that its form is only roughly right: a share DOUBT of its own force may be something else.
+An effect is granted that its form is only roughly right: a share of its own force may be something else, the one of DOUBTS under
+which the voyages are most probable (no share of what the ship meets because a stream carries her: that is the hull's own force).
 """
 
 from collections.abc import Sequence
@@ -16,7 +17,7 @@ from .evidence import Hypothesis, Posterior, Reduced, log_evidence, posterior, w
 from .innovations import Linear, linearise
 from .respond import respond
 
-DOUBT = 0.2
+DOUBTS = (0.2, 0.1, 0.05)
 Sets = tuple[str, ...]
 NEWTON = 4  # steps, at most
 FARTHER = (2.0, 4.0)  # times the linear guess, where Newton begins again when it ended in no plain world
@@ -52,14 +53,24 @@ def _climb(case: Case, chosen: Sets, world: str, z: np.ndarray) -> tuple[Found, 
         at = np.zeros_like(z)
         at[mine] = _boxed(case, z)[mine]
         model, lines = about(case, at, mine)
-        z = posterior(case.reduced(lines, case.worlds([world]), at)[0], chosen).z
+        z = posterior(case.reduced(doubting(lines, DOUBTS[0]), case.worlds([world]), at)[0], chosen).z
         if np.max(np.abs(_boxed(case, z)[mine] - at[mine])) < STANDS:
             break
+    lines = max((doubting(lines, share) for share in DOUBTS), key=lambda x: _evidence(case, chosen, x, world, at))
     reduced = dict(zip(names, case.reduced(lines, case.worlds(names), at), strict=True))
     own = {n: posterior(r, chosen) for n, r in reduced.items()}
     judged = [Hypothesis(chosen, n, log_evidence(r, chosen, own[n]), case.log_prior(chosen, n)) for n, r in reduced.items()]
     best = max(judged, key=lambda h: h.log_weight)
     return Found(best, own[best.world], model), judged, reduced
+
+
+def doubting(lines: Sequence[Linear], share: float) -> list[Linear]:
+    """The tracks, when so large a share of the effects' own force may be something else."""
+    return [replace(line, doubt=share * line.doubt) for line in lines]
+
+
+def _evidence(case: Case, chosen: Sets, lines: Sequence[Linear], world: str, at: np.ndarray) -> float:
+    return posterior(case.reduced(lines, case.worlds([world]), at)[0], chosen).log_evidence
 
 
 def _beside(case: Case, chosen: Sets, reduced: dict[str, Reduced], wider: Sequence[str]) -> list[Hypothesis]:
@@ -79,7 +90,7 @@ def _boxed(case: Case, z: np.ndarray) -> np.ndarray:
 
 
 def about(case: Case, z: np.ndarray, mine: np.ndarray) -> tuple[Model, list[Linear]]:
-    """The model with these parameters in it, and the tracks linearised about it, doubt included."""
+    """The model with these parameters in it, and the tracks linearised about it; their doubt is the effects' whole force."""
     own = [case.effects[i] for i in mine]
     values = [u.centre + u.sd * z[i] for i, u in zip(mine, own, strict=True)]
     model = with_values(case.model, own, values, case.catalogue)
@@ -88,7 +99,8 @@ def about(case: Case, z: np.ndarray, mine: np.ndarray) -> tuple[Model, list[Line
     for line in case.lines:
         here, _ = model.without_inputs(line.track.missing())
         fresh = linearise(line.track, here, case.unknowns, case.catalogue, at)
-        moved = np.abs(respond(line.track, here)[0] - respond(line.track, line.model)[0])
-        lines.append(replace(fresh, doubt=DOUBT * moved))
+        sure = line.model.but(*(flow for flow in here.flows if flow.stream))
+        moved = np.abs(respond(line.track, here)[0] - respond(line.track, sure)[0])
+        lines.append(replace(fresh, doubt=moved))
     return model, lines
 

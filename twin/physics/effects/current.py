@@ -12,6 +12,7 @@ from twin.physics.state import Situation, Water
 class Current(Flow):
     """A steady current carries the ship over ground; hull, propeller and rudder feel only the motion through the water."""
 
+    stream = True
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.3"
 
     north: float = param(0.0, unit="m/s", lo=-0.6, hi=0.6, sd=0.08, of="speed", doc="current toward north")

@@ -23,6 +23,7 @@ def _wave(k: int, toward: str, of_time: str) -> float:
 class VaryingCurrent(Flow):
     """A current that changes in the course of the voyage, as a tide does or a stream the ship sails into and out of."""
 
+    stream = True
     needs = ("t",)
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.3; harmonic form as in tidal analysis (Foreman 1977)"
 

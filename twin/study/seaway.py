@@ -1,0 +1,71 @@
+"""Waves taken out of a track before it is judged: what swings faster than the ship manoeuvres is the sea's doing, not hers.
+
+The motion of first order in a seaway is large and swings about zero. A filter that takes it for noise that forgets itself from one
+reading to the next believes far too much, or trusts nothing. So when the sea is seen to work (the acceleration that the model leaves
+over is mostly faster than the ship), the path is averaged over one period of the waves, and the readings over stretches as long.
+Separation of wave-frequency and low-frequency motion: Fossen (2021), sec. 13.2.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from twin.physics.model import Model
+
+from .respond import respond
+from .track import READINGS, Track
+
+SLOW = 0.6  # of L/U_0: what swings with a longer period may be the ship's own doing
+WORKING = 10.0  # energy of the swift part over that of the slow part from which the sea is seen to work
+PATH = [READINGS.index(name) for name in ("x", "y", "psi", "u", "v", "r", "u", "v")]  # what of the path each reading follows
+
+
+def calmed(track: Track, model: Model) -> Track:
+    """The track without the waves' motion; the same track when no waves are seen. `model` must have its inputs on this track."""
+    steps = wave_steps(track, model)
+    if steps < 2:
+        return track
+    state = np.column_stack([_mean(column, steps) for column in track.state.T])
+    off = track.measured - state[:, PATH]
+    off[:, 2] = (off[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
+    whole = len(track) // steps * steps
+    blocks = off[:whole].reshape(-1, steps, off.shape[1])
+    some = np.isfinite(blocks).any(1)
+    mean = np.where(some, np.nansum(blocks, 1) / np.maximum(np.isfinite(blocks).sum(1), 1), np.nan)
+    middle = np.arange(steps // 2, whole, steps)
+    measured = np.full_like(track.measured, np.nan)
+    measured[middle] = state[middle][:, PATH] + mean
+    weather = {name: _mean(values, steps) if name == "phi" else values for name, values in track.weather.items()}
+    return replace(track, state=state, measured=measured, sd=_scatter(mean, track.sd), weather=weather)
+
+
+def wave_steps(track: Track, model: Model) -> int:
+    """The waves' mean period in grid steps, when most of the sway and yaw acceleration that the model leaves over is faster than the
+    ship; else 0."""
+    if not track.whole.any():
+        return 0
+    rates = np.gradient(track.state[:, 4:6], track.h, axis=0) - respond(track, model)[0][:, 1:]
+    left = np.where(track.whole[:, None], rates, 0.0)
+    left -= left.mean(0)
+    power = (np.abs(np.fft.rfft(left * np.hanning(len(track))[:, None], axis=0)) ** 2 / np.maximum(left.var(0), 1e-30)).sum(1)
+    frequency = np.fft.rfftfreq(len(track), track.h)
+    swift = frequency > 1.0 / (SLOW * float(model.ship.scale("time")))
+    if not swift.any() or power[swift].sum() < WORKING * power[~swift].sum():
+        return 0
+    return round(power[swift].sum() / float(power[swift] @ frequency[swift]) / track.h)
+
+
+def _mean(values: np.ndarray, steps: int) -> np.ndarray:
+    """Mean over the `steps` about each point; fewer at the ends."""
+    window = np.ones(steps)
+    return np.convolve(values, window, "same") / np.convolve(np.ones(values.size), window, "same")
+
+
+def _scatter(mean: np.ndarray, before: np.ndarray) -> np.ndarray:
+    """(8,) scatter of the averaged readings from one to the next; where there are none, as it was."""
+    out = before.copy()
+    for j, column in enumerate(mean.T):
+        seen = column[np.isfinite(column)]
+        if seen.size > 8:
+            out[j] = max(1.4826 * float(np.median(np.abs(np.diff(seen)))) / np.sqrt(2.0), 1e-9)
+    return out
