@@ -149,7 +149,7 @@ def test_C3_the_watchdog_is_fed_after_good_steps_and_not_while_the_loop_hangs(pl
     address = str(tmp_path / "notify")
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:
         manager.bind(address)
-        manager.settimeout(20.0)
+        manager.settimeout(60.0)
         hook = "import time; time.sleep(60) if tick.index == 20 else None"
         command = sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml")
         popen(*command, stderr=subprocess.DEVNULL, env=os.environ | {"NOTIFY_SOCKET": address})
