@@ -41,7 +41,7 @@ SEEN = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--seconds", type=float, default=40.0, help="how long she sails (default: 40)")
+    parser.add_argument("--seconds", type=float, default=30.0, help="how long she sails (default: 30)")
     parser.add_argument("--ship", default="kvlcc2", help="a bundled ship: kvlcc2 (320 m; the default), usv (2 m, lively), ...")
     parser.add_argument("--manoeuvre", default="zigzag_20", help="what the helmsman does (default: zigzag_20)")
     parser.add_argument("--logs", default="logs", metavar="FOLDER", help="where the log goes (default: logs)")
