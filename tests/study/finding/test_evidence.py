@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from twin.study.columns import Unknown
-from twin.study.evidence import Reduced, log_evidence, posterior, weigh_all
+from twin.study.evidence import Reduced, log_evidence, posterior, weigh_all, weigh_with
 
 
 def unknowns():
@@ -49,3 +49,12 @@ def test_an_effect_of_the_wrong_sign_is_not_believed(reduced):
     wrong = Reduced(reduced.A, np.array([0.0, 0.0, 0.0, -60.0]), reduced.base, unknowns(), np.zeros(4))
     found = dict(weigh_all(wrong, ["A", "B", "C"]))
     assert found[("C",)] < found[()] + 1.0
+
+
+def test_one_effect_more_beside_those_found_gives_the_evidence_of_the_whole_posterior(reduced):
+    at = np.array([0.0, 1.2, -0.3, 0.0])
+    moved = Reduced(reduced.A, reduced.b - reduced.A @ at, reduced.base, unknowns(), at)
+    for name, value in weigh_with(moved, ("B",), ["A", "B", "C"]):
+        both = tuple(sorted(("B", name)))
+        assert value == pytest.approx(log_evidence(moved, both, posterior(moved, both)), abs=1e-8), name
+    assert [name for name, _ in weigh_with(moved, ("B",), ["A", "B", "C"])] == ["A", "C"]

@@ -1,0 +1,45 @@
+"""From weights to words: when something is named, when the ship is acquitted, and when the answer is that nobody can tell."""
+
+import pytest
+
+from twin.study.evidence import Hypothesis
+from twin.study.verdict import Weights, judge
+
+LASTING = ("HullFouling", "RudderWear", "GyroBias", "Loading")
+SEEN = dict.fromkeys(LASTING, True)
+
+
+def verdict(effects=(), nothing=0.0, unknown=0.0, seen=SEEN, **sure):
+    best = Hypothesis(tuple(effects), "usual", 0.0, 0.0)
+    singles = [Hypothesis((name,), "usual", -float(i), 0.0) for i, name in enumerate(effects)]
+    return judge(None, [best, *singles], Weights(nothing, unknown, sure, best), seen)
+
+
+def test_what_is_more_likely_there_than_not_is_named():
+    assert verdict(["HullFouling"], nothing=0.3, HullFouling=0.6) == ("missing", ["HullFouling"])
+
+
+def test_a_second_effect_is_named_only_when_it_is_nearly_certain():
+    """Of two forms that are only roughly right, one may mend the other."""
+    assert verdict(["HullFouling", "RudderWear"], HullFouling=1.0, RudderWear=0.85) == ("missing", ["HullFouling"])
+    assert verdict(["HullFouling", "RudderWear"], HullFouling=1.0, RudderWear=0.95) == ("missing", ["HullFouling", "RudderWear"])
+
+
+def test_the_one_that_explains_more_alone_comes_first():
+    assert verdict(["RudderWear", "HullFouling"], HullFouling=1.0, RudderWear=1.0)[1] == ["RudderWear", "HullFouling"]
+
+
+@pytest.mark.parametrize("nothing, word", [(0.9, "nothing_missing"), (0.7, "undecided")])
+def test_a_ship_is_acquitted_only_when_that_is_clear(nothing, word):
+    assert verdict(nothing=nothing) == (word, [])
+
+
+def test_a_restless_world_is_unknown():
+    assert verdict(["Loading"], unknown=0.8, Loading=1.0) == ("unknown", [])
+
+
+def test_voyages_that_would_not_have_shown_most_effects_decide_nothing():
+    blind = SEEN | {"RudderWear": False, "GyroBias": False}
+    assert verdict(["HullFouling"], HullFouling=1.0, seen=blind) == ("undecided", [])
+    assert verdict(nothing=0.99, seen=blind) == ("undecided", [])
+    assert verdict(unknown=0.99, seen=blind) == ("undecided", [])
