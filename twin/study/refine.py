@@ -12,7 +12,7 @@ import numpy as np
 from twin.physics.model import Model
 
 from .case import WORLDS, Case
-from .columns import with_values
+from .columns import Unknown, with_values
 from .evidence import Hypothesis, Posterior, Reduced, log_evidence, posterior, weigh_with
 from .innovations import Linear, linearise
 from .respond import respond
@@ -52,10 +52,11 @@ def _climb(case: Case, chosen: Sets, world: str, z: np.ndarray) -> tuple[Found, 
     for _ in range(NEWTON):
         at = np.zeros_like(z)
         at[mine] = _boxed(case, z)[mine]
-        model, lines = about(case, at, mine)
+        model, lines = about(case, at, mine, [case.effects[i] for i in mine])
         z = posterior(case.reduced(doubting(lines, DOUBTS[0]), case.worlds([world]), at)[0], chosen).z
         if np.max(np.abs(_boxed(case, z)[mine] - at[mine])) < STANDS:
             break
+    model, lines = about(case, at, mine, case.unknowns)
     lines = max((doubting(lines, share) for share in DOUBTS), key=lambda x: _evidence(case, chosen, x, world, at))
     reduced = dict(zip(names, case.reduced(lines, case.worlds(names), at), strict=True))
     own = {n: posterior(r, chosen) for n, r in reduced.items()}
@@ -89,18 +90,23 @@ def _boxed(case: Case, z: np.ndarray) -> np.ndarray:
     return np.clip(z, lo, hi)
 
 
-def about(case: Case, z: np.ndarray, mine: np.ndarray) -> tuple[Model, list[Linear]]:
-    """The model with these parameters in it, and the tracks linearised about it; their doubt is the effects' whole force."""
+def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown]) -> tuple[Model, list[Linear]]:
+    """The model with the parameters `mine` in it, and the tracks linearised about it (columns of other unknowns than `fresh` stay
+    what they were); their doubt is the effects' whole force."""
     own = [case.effects[i] for i in mine]
     values = [u.centre + u.sd * z[i] for i, u in zip(mine, own, strict=True)]
     model = with_values(case.model, own, values, case.catalogue)
     at = {u.label: v for u, v in zip(own, values, strict=True)}
+    column = {u.label: i for i, u in enumerate(case.unknowns)}
+    place = [column[u.label] for u in fresh]
     lines = []
     for line in case.lines:
         here, _ = model.without_inputs(line.track.missing())
-        fresh = linearise(line.track, here, case.unknowns, case.catalogue, at)
+        new = linearise(line.track, here, fresh, case.catalogue, at)
+        A, R = line.A.copy(), line.R.copy()
+        A[:, :, place], R[:, :, place] = new.A, new.R
         sure = line.model.but(*(flow for flow in here.flows if flow.stream))
         moved = np.abs(respond(line.track, here)[0] - respond(line.track, sure)[0])
-        lines.append(replace(fresh, doubt=moved))
+        lines.append(replace(new, A=A, R=R, doubt=moved))
     return model, lines
 
