@@ -1,6 +1,7 @@
 """From voyages and a ship file to a case that can be judged: tracks, candidates, what is known beforehand."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -14,12 +15,14 @@ from .case import ODDS, ODDS_MEASURED, Case, settle
 from .columns import Unknown, effect_unknowns, lateness_unknowns
 from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, temper_of
-from .seaway import calmed
+from .respond import respond
+from .seaway import calmed, tossed
 from .structure import structural_floor
 from .track import Track, track
 from .voyage import Voyage
 
 Progress = Callable[[str], None]
+KNOWN = 0.1  # share of the force of an effect in the model that may be something else
 
 
 def stored_floor(ship: Ship) -> Floor | None:
@@ -77,7 +80,17 @@ def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue
 
 def _line(t: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]]) -> Linear:
     here, _ = model.without_inputs(t.missing())
-    return linearise(calmed(t, here), here, unknowns, catalogue)
+    t = calmed(t, here)
+    return replace(linearise(t, here, unknowns, catalogue), slack=np.hypot(_roughly_known(t, here), tossed(t, here)))
+
+
+def _roughly_known(t: Track, model: Model) -> np.ndarray:
+    """(N, 3) acceleration error of the effects that the model has: their forms, too, are only roughly right."""
+    out = np.zeros((len(t), 3))
+    for effect in (e for e in model.effects if not getattr(e, "stream", False)):
+        without = Model(model.ship, tuple(e for e in model.effects if e is not effect))
+        out += np.square(KNOWN * (respond(t, model)[0] - respond(t, without)[0]))
+    return np.sqrt(out)
 
 
 def _odds(tracks: Sequence[Track], candidates: Sequence[str], ship: Ship) -> dict[str, float]:

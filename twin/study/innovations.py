@@ -62,6 +62,7 @@ class Linear:
     busy: np.ndarray  # (N, 3): acceleration that hull, rudder and propeller cause
     model: Model = field(repr=False)
     doubt: np.ndarray | float = 0.0  # (N, 3): further slow acceleration error, of an effect whose form is only roughly known
+    slack: np.ndarray | float = 0.0  # (N, 3): and one that no hypothesis takes away, of effects in the model and of the sea
 
 
 def linearise(
@@ -269,7 +270,7 @@ def _turn(line: Linear) -> np.ndarray:
 def _slow(line: Linear, floor: Floor) -> np.ndarray:
     """(N, 3) variance of the slowly varying acceleration error."""
     calm = floor.calm * standard(line.model)
-    return (np.array(floor.share) ** 2) * (line.busy**2 + calm**2) + np.square(line.doubt)
+    return (np.array(floor.share) ** 2) * (line.busy**2 + calm**2) + np.square(line.doubt) + np.square(line.slack)
 
 
 def _start(model: Model, slow: np.ndarray, flow: np.ndarray) -> np.ndarray:

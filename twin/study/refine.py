@@ -107,6 +107,6 @@ def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown])
         A[:, :, place], R[:, :, place] = new.A, new.R
         sure = line.model.but(*(flow for flow in here.flows if flow.stream))
         moved = np.abs(respond(line.track, here)[0] - respond(line.track, sure)[0])
-        lines.append(replace(new, A=A, R=R, doubt=moved))
+        lines.append(replace(new, A=A, R=R, doubt=moved, slack=line.slack))
     return model, lines
 

@@ -3,6 +3,7 @@
 The motion of first order in a seaway is large and swings about zero. A filter that takes it for noise that forgets itself from one
 reading to the next believes far too much, or trusts nothing. So when the sea is seen to work (the acceleration that the model leaves
 over is mostly faster than the ship), the path is averaged over one period of the waves, and the readings over stretches as long.
+A boat that is quicker than the waves follows them: what they do to her cannot be averaged away and counts as doubt instead.
 Separation of wave-frequency and low-frequency motion: Fossen (2021), sec. 13.2.
 """
 
@@ -10,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from twin.physics.core import GRAVITY
 from twin.physics.model import Model
 
 from .respond import respond
@@ -37,6 +39,18 @@ def calmed(track: Track, model: Model) -> Track:
     measured[middle] = state[middle][:, PATH] + mean
     weather = {name: _mean(values, steps) if name == "phi" else values for name, values in track.weather.items()}
     return replace(track, state=state, measured=measured, sd=_scatter(mean, track.sd), weather=weather)
+
+
+def tossed(track: Track, model: Model) -> np.ndarray:
+    """(N, 3) acceleration that waves give a boat so small that she follows them [m/s2, m/s2, rad/s2], where they were measured:
+    H_s/4 omega^2 aside and ahead, and its change along the hull (or along the wave, k = omega^2/g, when that is longer)."""
+    out = np.zeros((len(track), 3))
+    if "H_s" in track.weather and "T_p" in track.weather:
+        omega = 2.0 * np.pi / np.maximum(track.weather["T_p"], 0.1)
+        slow = omega < 2.0 * np.pi / (SLOW * float(model.ship.scale("time")))
+        rms = np.nan_to_num(np.where(slow, track.weather["H_s"] / 4.0 * omega**2, 0.0))
+        out = np.column_stack([rms, rms, rms * np.minimum(omega**2 / GRAVITY, 1.0 / float(model.ship.L_pp))])
+    return out
 
 
 def wave_steps(track: Track, model: Model) -> int:

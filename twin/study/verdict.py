@@ -20,7 +20,7 @@ SURE = 0.5  # an effect is named when it is more likely there than not
 SURE_TOO = 0.9  # another beside it when that is nearly certain: of two forms that are only roughly right, one may mend the other
 ACQUITTED = 0.8  # probability from which nothing is said to be missing
 ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
-HORIZON_S = 120.0
+HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
 
 
 @dataclass(frozen=True)
@@ -107,8 +107,8 @@ def typical_force(case: Case, model: Model, name: str) -> dict[str, float]:
 
 
 def held_out_error(case: Case, found: Found) -> tuple[float, float]:
-    """Mean position error [m] after HORIZON_S without and with the effects, each half of the segments predicted with the
-    parameters that the other half asks for."""
+    """Mean position error [m] after HORIZON_S (a small boat: HORIZON_LENGTHS) without and with the effects, each half of the
+    segments predicted with the parameters that the other half asks for."""
     lines = case.lines
     chosen = found.hypothesis.effects
     mine = [i for i, u in enumerate(case.effects) if u.owner in chosen]
@@ -130,7 +130,8 @@ def held_out_error(case: Case, found: Found) -> tuple[float, float]:
 
 def _error(track: "object", model: Model, stretches: list[tuple[int, int]]) -> tuple[float, int]:
     """Sum of position errors over windows that start in these stretches, and their number."""
-    horizon = min(HORIZON_S, 0.25 * float(track.t[-1]))  # type: ignore[attr-defined]
+    lengths = HORIZON_LENGTHS * float(model.ship.scale("time"))
+    horizon = min(HORIZON_S, lengths, 0.25 * float(track.t[-1]))  # type: ignore[attr-defined]
     windows = predict(track, model, [horizon], leads=1)  # type: ignore[arg-type]
     k = windows.at(horizon)
     inside = np.zeros(windows.start.size, bool)
