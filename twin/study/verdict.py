@@ -18,6 +18,7 @@ from .respond import respond
 
 SURE = 0.5  # an effect is named when it is more likely there than not
 SURE_TOO = 0.9  # another beside it when that is nearly certain: of two forms that are only roughly right, one may mend the other
+FORM = 0.1  # how far from the truth a size may be because nature writes the effect otherwise, as a share of it
 ACQUITTED = 0.8  # probability from which nothing is said to be missing
 ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
@@ -81,11 +82,12 @@ def _enough(seen: dict[str, bool]) -> bool:
 
 
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:
-    """Each parameter of one effect with its 95 % interval, inside its box."""
+    """Each parameter of one effect with its 95 % interval, inside its box; that the form is only roughly right is part of it."""
     out = []
     for i, u in enumerate(case.effects):
         if u.owner == name:
-            value, sd = u.centre + u.sd * found.z[i], u.sd * float(np.sqrt(found.covariance[i, i]))
+            value = u.centre + u.sd * found.z[i]
+            sd = u.sd * float(np.hypot(np.sqrt(found.covariance[i, i]), FORM * found.z[i]))
             low, high = value - 1.96 * sd, value + 1.96 * sd
             out.append(
                 {"name": u.name, "value": float(np.clip(value, u.lo, u.hi)), "low95": float(np.clip(low, u.lo, u.hi)),
