@@ -108,8 +108,8 @@ def _diagnosis(d: dict[str, Any]) -> str:
         )
         force = ", ".join(f"{k.replace('_', ' ')} {v:.2g}" for k, v in c["typical_force"].items())
         alike = f"; cannot be told from {', '.join(c['cannot_be_told_from'])}" if c["cannot_be_told_from"] else ""
-        error = f"{c['error_without']:.3g} m -> {c['error_with']:.3g} m"
-        lines.append(f"* {c['effect']} {c['probability']:.2f}: {sizes}. Typical force {force}. 120 s error {error}{alike}.")
+        error = f"Error after {c['error_horizon_s']:.0f} s {c['error_without']:.3g} m -> {c['error_with']:.3g} m"
+        lines.append(f"* {c['effect']} {c['probability']:.2f}: {sizes}. Typical force {force}. {error}{alike}.")
     if d["not_judged"]:
         lines.append(f"* Not judged, for want of what was not recorded: {', '.join(n['effect'] for n in d['not_judged'])}.")
     if d["next_manoeuvre"]:

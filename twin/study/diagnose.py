@@ -19,7 +19,7 @@ from .read import read_voyage
 from .refine import Found
 from .search import search
 from .tell_diagnosis import sentence, told
-from .verdict import alike, held_out_error, judge, parameters, typical_force, weights
+from .verdict import alike, held_out_error, horizon_s, judge, parameters, typical_force, weights
 from .voyage import Voyage
 
 SCHEMA_VERSION = 1
@@ -81,6 +81,7 @@ def _candidate(case: Case, weighed: Sequence[Any], found: dict[tuple[str, ...], 
         "probability": probability,
         "parameters": parameters(case, best.posterior, name),
         "typical_force": typical_force(case, best.model, name),
+        "error_horizon_s": horizon_s(case.tracks[0], case.model),
         "error_without": without,
         "error_with": with_,
         "together_with": [n for n in best.hypothesis.effects if n != name],

@@ -48,7 +48,8 @@ def _candidate(c: dict[str, Any]) -> list[str]:
     if _force(force):
         lines.append(f"          typically    {_force(force)}")
     lines.append(
-        f"          120 s error  {c['error_without']:.3g} m without, {c['error_with']:.3g} m with it, on parts not used for the fit"
+        f"          {c['error_horizon_s']:.0f} s error  {c['error_without']:.3g} m without, {c['error_with']:.3g} m with it, "
+        "on parts not used for the fit"
     )
     if c["cannot_be_told_from"]:
         lines.append(f"          not told from {', '.join(c['cannot_be_told_from'])}")

@@ -15,6 +15,7 @@ from .nuisance import SURROUNDINGS
 from .openloop import predict
 from .refine import Found
 from .respond import respond
+from .track import Track
 
 SURE = 0.5  # an effect is named when it is more likely there than not
 SURE_TOO = 0.9  # another beside it when that is nearly certain: of two forms that are only roughly right, one may mend the other
@@ -130,11 +131,15 @@ def held_out_error(case: Case, found: Found) -> tuple[float, float]:
     return float(sums[0, 0] / max(sums[0, 1], 1)), float(sums[1, 0] / max(sums[1, 1], 1))
 
 
-def _error(track: "object", model: Model, stretches: list[tuple[int, int]]) -> tuple[float, int]:
+def horizon_s(track: Track, model: Model) -> float:
+    """How far ahead a held-out part of this track is predicted [s]."""
+    return min(HORIZON_S, HORIZON_LENGTHS * float(model.ship.scale("time")), 0.25 * float(track.t[-1]))
+
+
+def _error(track: Track, model: Model, stretches: list[tuple[int, int]]) -> tuple[float, int]:
     """Sum of position errors over windows that start in these stretches, and their number."""
-    lengths = HORIZON_LENGTHS * float(model.ship.scale("time"))
-    horizon = min(HORIZON_S, lengths, 0.25 * float(track.t[-1]))  # type: ignore[attr-defined]
-    windows = predict(track, model, [horizon], leads=1)  # type: ignore[arg-type]
+    horizon = horizon_s(track, model)
+    windows = predict(track, model, [horizon], leads=1)
     k = windows.at(horizon)
     inside = np.zeros(windows.start.size, bool)
     for a, b in stretches:
