@@ -22,7 +22,7 @@ COLOURS = ("0.5", "tab:blue", "tab:red")
 
 def save(folder: Path, name: str, fig: Any) -> None:
     fig.tight_layout()
-    fig.savefig(folder / name, dpi=80)
+    fig.savefig(folder / name, dpi=72)
     plt.close(fig)
 
 
