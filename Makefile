@@ -31,7 +31,7 @@ clean:  ## takes away .venv and what the tools left
 	rm -rf $(VENV) .pytest_cache .ruff_cache .mypy_cache .hypothesis *.egg-info
 
 $(VENV)/.on-board: pyproject.toml | $(BIN)/python
-	$(PIP) --editable '.[study]'
+	$(PIP) --editable '.[bench]'
 	@touch $@
 
 $(VENV)/.development: pyproject.toml | $(BIN)/python
