@@ -1,5 +1,7 @@
 """Deadlines that are kept, counted when missed, never made up by a burst (C2, C9, C10); a replay's clock."""
 
+import itertools
+
 import pytest
 
 from twin.live.clock import ManualClock, MonotonicClock, ReplayClock
@@ -45,6 +47,20 @@ def test_C2_a_stall_of_200_ms_skips_periods_and_makes_no_burst() -> None:
     assert late.late_s == pytest.approx(0.007)
     after = clock.wait()
     assert after.skipped == 0 and after.time_s == pytest.approx(100.22)
+
+
+@pytest.mark.parametrize("stall_s", [0.2, 0.2192, 0.211, 0.2001, 0.209])
+def test_C2_after_a_stall_in_its_sleep_no_two_ticks_are_closer_than_half_a_period(stall_s: float) -> None:
+    world = World()
+
+    def stalled(seconds: float) -> None:
+        world.pass_by(seconds + (stall_s if world.mono < 100.01 else 0.0))
+
+    clock = MonotonicClock(50.0, world.monotonic, world.wall, stalled)
+    times = [clock.wait().time_s for _ in range(6)]
+    gaps = [b - a for a, b in itertools.pairwise(times)]
+    assert max(gaps) > stall_s and min(gaps) >= 0.01 - 1e-9
+    assert clock.overruns >= 9 and times[-1] - 100.0 == pytest.approx(round((times[-1] - 100.0) / 0.02) * 0.02)
 
 
 def test_a_step_that_is_merely_late_skips_nothing() -> None:

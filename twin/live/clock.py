@@ -4,6 +4,7 @@ Every clock has one verb, `wait()`, which gives the next `Instant` or None when 
 depends on the monotonic time alone; the wall clock is only written down, and a step of it is announced.
 """
 
+import math
 import time
 from collections.abc import Callable, Iterable
 from typing import NamedTuple, Protocol
@@ -35,7 +36,8 @@ class Clock(Protocol):
 
 
 class MonotonicClock:
-    """A tick each 1/rate_hz [s]; a tick that comes too late skips whole periods and keeps the grid."""
+    """A tick each 1/rate_hz [s] on a fixed grid. A tick that comes too late skips whole periods; one that woke
+    more than half a period late skips the next as well, so no two are closer than half a period."""
 
     def __init__(
         self,
@@ -50,6 +52,7 @@ class MonotonicClock:
         self._start_s = monotonic()
         self._period = 0  # whole periods from the start to the next deadline
         self._index = 0
+        self._woke_s = self._start_s - self.period_s
         self._offset_s = wall() - self._start_s
 
     def wait(self) -> Instant:
@@ -64,14 +67,18 @@ class MonotonicClock:
         )
         self._index += 1
         self._period += 1
+        self._woke_s = now_s
         return instant
 
     def slack_s(self) -> float:
         return self._start_s + self._period * self.period_s - self._monotonic()
 
     def _skip(self) -> int:
-        """Moves the next deadline past every whole period that is over; merely late is not skipped."""
-        behind = int((self._monotonic() - self._start_s) / self.period_s) - self._period
+        """Moves the next deadline past every whole period that is over, and half a period from the last tick;
+        merely late is not skipped."""
+        over = math.floor((self._monotonic() - self._start_s) / self.period_s)
+        apart = math.ceil((self._woke_s - self._start_s) / self.period_s + 0.5)
+        behind = max(over, apart) - self._period
         if behind <= 0:
             return 0
         self._period += behind
