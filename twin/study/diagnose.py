@@ -19,7 +19,7 @@ from .read import read_voyage
 from .refine import Found
 from .search import search
 from .tell_diagnosis import sentence, told
-from .verdict import alike, held_out_error, horizon_s, judge, parameters, typical_force, weights
+from .verdict import alike, excites, held_out_error, horizon_s, judge, parameters, typical_force, weights
 from .voyage import Voyage
 
 SCHEMA_VERSION = 1
@@ -48,7 +48,7 @@ def diagnose(
     case = assemble(voyages, ship, references, progress)
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed)
-    verdict, missing = judge(case, weighed, w, seen)
+    verdict, missing = judge(weighed, w, excites(case, seen))
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
@@ -60,7 +60,7 @@ def diagnose(
         "missing": missing,
         "probabilities": {"nothing_missing": w.nothing, "unknown": w.unknown},
         "candidates": [c for c in candidates if c],
-        "next_manoeuvre": _next(case, found, verdict, missing, candidates, progress),
+        "next_manoeuvre": _next(case, found, verdict, missing, candidates, w.effects, progress),
         "not_judged": _not_judged(case),
         "not_visible": [n for n, can in seen.items() if not can and n not in missing],
         "floor": {"share_surge_sway_yaw": case.floor.share, "sensor_factor": case.floor.sensor, "temper": case.temper},
@@ -92,13 +92,14 @@ def _candidate(case: Case, weighed: Sequence[Any], found: dict[tuple[str, ...], 
 
 def _next(
     case: Case, found: dict[tuple[str, ...], Found], verdict: str, missing: Sequence[str], candidates: Sequence[dict[str, Any]],
-    progress: Callable[[str], None],
+    likely: dict[str, float], progress: Callable[[str], None],
 ) -> dict[str, Any] | None:  # fmt: skip
     """What to sail next, when two effects stand in each other's way or the voyages could not tell."""
     listed = [c for c in candidates if c]
     rivals = next(((c["effect"], o) for c in listed for o in c["cannot_be_told_from"] if c["effect"] in missing or verdict != "missing"), None)
-    if rivals is None and verdict == "undecided" and len(listed) > 1:
-        rivals = (listed[0]["effect"], listed[1]["effect"])
+    if rivals is None and verdict == "undecided" and len(likely) > 1:
+        first, second, *_ = sorted(likely, key=lambda n: -likely[n])
+        rivals = (first, second)
     if rivals is None:
         return None
     progress(f"sailing manoeuvres that would tell {rivals[0]} from {rivals[1]}")

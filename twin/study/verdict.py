@@ -10,6 +10,7 @@ from twin.physics.model import Model
 from .case import MOST_SEGMENTS, WORLDS, Case
 from .columns import with_values
 from .evidence import Hypothesis, Posterior, posterior, probabilities, reduce
+from .excitation import manoeuvred
 from .innovations import innovate
 from .nuisance import SURROUNDINGS
 from .openloop import predict
@@ -61,13 +62,13 @@ def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
     return out
 
 
-def judge(case: Case, weighed: Sequence[Hypothesis], w: Weights, seen: dict[str, bool]) -> tuple[str, list[str]]:
+def judge(weighed: Sequence[Hypothesis], w: Weights, excited: bool) -> tuple[str, list[str]]:
     """The verdict, and the effects to add, first the one that explains most; voyages that excite too little decide nothing."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
     named = [n for n in w.best.effects if w.effects[n] >= SURE]
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
     named = [n for i, n in enumerate(named) if i == 0 or w.effects[n] >= SURE_TOO]
-    if not _enough(seen):
+    if not excited:
         return "undecided", []
     if w.unknown >= SURE:
         return "unknown", []
@@ -76,10 +77,11 @@ def judge(case: Case, weighed: Sequence[Hypothesis], w: Weights, seen: dict[str,
     return ("missing", named) if named else ("undecided", [])
 
 
-def _enough(seen: dict[str, bool]) -> bool:
-    """Whether the voyages would have shown three in four of the effects that do not depend on the day's weather and water."""
+def excites(case: Case, seen: dict[str, bool]) -> bool:
+    """Whether a voyage holds a manoeuvre, and all together would have shown three in four of the effects that do not depend on the
+    day's weather and water."""
     lasting = [can for name, can in seen.items() if name not in SURROUNDINGS]
-    return sum(lasting) >= 0.75 * len(lasting)
+    return any(manoeuvred(line.track, case.model.ship) for line in case.lines) and sum(lasting) >= 0.75 * len(lasting)
 
 
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:

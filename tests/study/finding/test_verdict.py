@@ -5,14 +5,11 @@ import pytest
 from twin.study.evidence import Hypothesis
 from twin.study.verdict import Weights, judge
 
-LASTING = ("HullFouling", "RudderWear", "GyroBias", "Loading")
-SEEN = dict.fromkeys(LASTING, True)
 
-
-def verdict(effects=(), nothing=0.0, unknown=0.0, seen=SEEN, **sure):
+def verdict(effects=(), nothing=0.0, unknown=0.0, excited=True, **sure):
     best = Hypothesis(tuple(effects), "usual", 0.0, 0.0)
     singles = [Hypothesis((name,), "usual", -float(i), 0.0) for i, name in enumerate(effects)]
-    return judge(None, [best, *singles], Weights(nothing, unknown, sure, best), seen)
+    return judge([best, *singles], Weights(nothing, unknown, sure, best), excited)
 
 
 def test_what_is_more_likely_there_than_not_is_named():
@@ -38,8 +35,7 @@ def test_a_restless_world_is_unknown():
     assert verdict(["Loading"], unknown=0.8, Loading=1.0) == ("unknown", [])
 
 
-def test_voyages_that_would_not_have_shown_most_effects_decide_nothing():
-    blind = SEEN | {"RudderWear": False, "GyroBias": False}
-    assert verdict(["HullFouling"], HullFouling=1.0, seen=blind) == ("undecided", [])
-    assert verdict(nothing=0.99, seen=blind) == ("undecided", [])
-    assert verdict(unknown=0.99, seen=blind) == ("undecided", [])
+def test_voyages_that_excite_too_little_decide_nothing():
+    assert verdict(["HullFouling"], HullFouling=1.0, excited=False) == ("undecided", [])
+    assert verdict(nothing=0.99, excited=False) == ("undecided", [])
+    assert verdict(unknown=0.99, excited=False) == ("undecided", [])

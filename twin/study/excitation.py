@@ -1,0 +1,39 @@
+"""Whether a voyage holds a manoeuvre at all: a ship that only holds her course and speed tells one cause from no other.
+
+Asked of what helm and engine did, never of how much the noise would let one see: a long straight run shows an autopilot's
+corrections to any precision, and what they seem to say is the model's own error.
+"""
+
+import numpy as np
+
+from twin.physics.ship import Ship
+
+from .track import Track
+
+TURN = np.radians(10.0)  # a change of heading within STRETCH ship lengths that no autopilot makes to hold its course
+STRETCH = 5.0
+SHAFT = 0.1  # a change of the shaft's speed, as a share of its usual one
+
+
+def manoeuvred(track: Track, ship: Ship) -> bool:
+    """Whether the ship turned, or changed her shaft's speed, by more than it takes to hold course and speed."""
+    return bool(_turned(track, ship) >= TURN or _throttled(track) >= SHAFT)
+
+
+def _turned(track: Track, ship: Ship) -> float:
+    """The greatest change of heading over STRETCH lengths [rad]."""
+    steps = max(1, int(STRETCH * float(ship.scale("time")) / track.h))
+    psi, whole = track.state[:, 2], track.whole
+    if len(track) <= steps:
+        return float(np.ptp(psi[whole])) if whole.any() else 0.0
+    change = np.abs(psi[steps:] - psi[:-steps])[whole[steps:] & whole[:-steps]]
+    return float(change.max(initial=0.0))
+
+
+def _throttled(track: Track) -> float:
+    """How far the shaft's speed moved, as a share of its median."""
+    n = track.n[track.whole]
+    if not n.size:
+        return 0.0
+    low, high = np.quantile(n, [0.02, 0.98])
+    return float((high - low) / max(abs(float(np.median(n))), 1e-9))
