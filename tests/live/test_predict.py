@@ -7,7 +7,7 @@ import pytest
 
 from twin.live.dynamics import Known
 from twin.live.estimate import Estimate
-from twin.live.predict import LEARNED, Predictor, Sureness, ensemble
+from twin.live.predict import LEARNED, Middle, Predictor, Sureness, ensemble
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Force, Situation
@@ -131,3 +131,11 @@ def test_an_ensemble_of_64_ships_sails_as_64_single_ones(kvlcc2):
         )
         assert many.x[k] == pytest.approx(one.x, abs=1e-6) and many.psi[k] == pytest.approx(one.psi, abs=1e-9)
     assert radians(5.0) < abs(many.psi[0] - s.psi)
+
+
+def test_the_learned_force_of_a_step_is_that_of_its_middle():
+    """Test: a force that grows by 2 N each second, steps of 5, 5 and 3 s. Expected: the first is held at its beginning, the others
+    are exact: 2 x 7.5 and 2 x 11.5 N."""
+    middle = Middle()
+    said = [middle.of(Force(2.0 * t, 0.0, 0.0), h).X for t, h in ((0.0, 5.0), (5.0, 5.0), (10.0, 3.0))]
+    assert said == pytest.approx([0.0, 15.0, 23.0])

@@ -7,6 +7,7 @@ fit.
 """
 
 import itertools
+from copy import copy
 from dataclasses import replace
 from math import ceil, degrees, hypot
 from typing import NamedTuple
@@ -14,7 +15,7 @@ from typing import NamedTuple
 from twin.live.derive import turn
 from twin.live.dynamics import INPUTS, Known
 from twin.live.loop import Loop
-from twin.live.predict import STEP, LearnedAt, carry
+from twin.live.predict import STEP, LearnedAt, Middle, carry
 from twin.physics.state import Situation
 
 
@@ -72,7 +73,7 @@ class Foresight:
 
     def _sail(self, start: Start) -> dict[float, tuple[float, float]]:
         """(position error [m], heading error [deg]) after each horizon."""
-        s, found = replace(start.situation), {}
+        s, found, middle = replace(start.situation), {}, Middle()
         course = [(t, si) for t, si in self._course if start.time_s <= t <= start.time_s + self.horizons_s[-1] + 2.0 * self.step_s]
         left = list(self.horizons_s)
         for (t, si), (t_next, si_next) in itertools.pairwise(course):
@@ -83,13 +84,13 @@ class Foresight:
                 break
             while left and start.time_s + left[0] <= t_next + 1e-6:
                 there = replace(s)
-                carry(there, start.physics, start.learned, start.time_s + left[0] - t)
+                carry(there, start.physics, start.learned, start.time_s + left[0] - t, copy(middle))
                 if error := _error(there, si, si_next, (start.time_s + left[0] - t) / (t_next - t)):
                     found[left[0]] = error
                 left.pop(0)
             steps = ceil((t_next - t) / self.step_s)
             for _ in range(steps):
-                carry(s, start.physics, start.learned, (t_next - t) / steps)
+                carry(s, start.physics, start.learned, (t_next - t) / steps, middle)
         return found
 
 

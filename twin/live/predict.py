@@ -106,6 +106,7 @@ class Round:
         self.start_s, self.sigma, self.step_s = start_s, e.sigma, step_s
         self._s, self._physics, self._moments_s = s, physics, moments_s
         self._ahead_s = 0.0
+        self._middle = Middle()
         self._done: list[tuple[float, ...]] = []
 
     def run(self, steps: int, learned: LearnedAt) -> list[tuple[float, ...]]:
@@ -115,7 +116,7 @@ class Round:
                 break
             left_s = self._moments_s[len(self._done)] - self._ahead_s
             step_s = min(self.step_s, left_s)
-            carry(self._s, self._physics, learned, step_s)
+            carry(self._s, self._physics, learned, step_s, self._middle)
             if not (abs(self._s.u) + abs(self._s.v) < ABSURD_MPS and abs(self._s.r) < ABSURD_RADPS):
                 raise Lost
             self._ahead_s += step_s
@@ -125,11 +126,25 @@ class Round:
         return self._done
 
 
-def carry(s: Situation, physics: Known, learned: LearnedAt, h: float) -> None:
+class Middle:
+    """The learned force of a step's middle, by a line through its beginning and that of the step before
+    (Adams-Bashforth): the network is asked once a step."""
+
+    def __init__(self) -> None:
+        self._last: tuple[Force, float] | None = None
+
+    def of(self, force: Force, h: float) -> Force:
+        """From the force at the beginning of a step of h seconds."""
+        before, length = self._last or (force, h)
+        self._last, by = (force, h), 0.5 * h / length
+        return Force(*[f + by * (f - b) for f, b in zip(force, before, strict=True)])
+
+
+def carry(s: Situation, physics: Known, learned: LearnedAt, h: float, middle: Middle) -> None:
     """Puts s h seconds on: nu by one Runge-Kutta step, eta along the mean of old and new nu; learned force
-    held."""
+    that of the step's middle."""
     forces = physics.forces(s)
-    rates = physics.far_rates(s, forces, learned(s, forces), h)
+    rates = physics.far_rates(s, forces, middle.of(learned(s, forces), h), h)
     u, v, r = s.u + h * rates.u, s.v + h * rates.v, s.r + h * rates.r
     psi = s.psi + 0.25 * h * (s.r + r)
     c, si, mean_u, mean_v = cos(psi), sin(psi), 0.5 * (s.u + u), 0.5 * (s.v + v)
@@ -167,8 +182,8 @@ class Sureness:
 
 
 def ensemble(s: Situation, physics: Known, learned: LearnedAt, horizon_s: float, step_s: float) -> Situation:
-    """Many ships at once (fields of s may be arrays), `horizon_s` ahead with a held learned force."""
-    s, steps = replace(s), ceil(horizon_s / step_s)
+    """Many ships at once (fields of s may be arrays), `horizon_s` ahead."""
+    s, steps, middle = replace(s), ceil(horizon_s / step_s), Middle()
     for _ in range(steps):
-        carry(s, physics, learned, horizon_s / steps)
+        carry(s, physics, learned, horizon_s / steps, middle)
     return s
