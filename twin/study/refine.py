@@ -37,32 +37,42 @@ def refine(case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[
     """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand; begun again farther out
     when that explains nothing plainly. What was found; and, about it, the hypothesis in every world, and every one that has one
     of `wider` beside it."""
-    best = _climb(case, chosen, world, z)
-    for factor in FARTHER:
-        if WORLDS[best[0].hypothesis.world].plain:
-            break
-        best = max(best, _climb(case, chosen, "usual", factor * z), key=lambda found: found[0].hypothesis.log_weight)
-    found, judged, reduced = best
-    return found, [*judged, *_beside(case, chosen, reduced, wider)]
-
-
-def _climb(case: Case, chosen: Sets, world: str, z: np.ndarray) -> tuple[Found, list[Hypothesis], dict[str, Reduced]]:
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
-    names = [n for n in WORLDS if np.isfinite(case.log_prior(chosen, n))]
+    best, at = _climb(case, chosen, mine, world, z)
+    for factor in FARTHER:
+        if WORLDS[best.world].plain:
+            break
+        best, at = max((best, at), _climb(case, chosen, mine, "usual", factor * z), key=lambda end: end[0].log_weight)
+    model, lines = about(case, at, mine, case.unknowns)
+    lines = max((doubting(lines, share) for share in DOUBTS), key=lambda x: _evidence(case, chosen, x, best.world, at))
+    reduced = _everywhere(case, chosen, lines, at)
+    judged, own = _judged(case, chosen, reduced)
+    best = max(judged, key=lambda h: h.log_weight)
+    return Found(best, own[best.world], model), [*judged, *_beside(case, chosen, reduced, wider)]
+
+
+def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray) -> tuple[Hypothesis, np.ndarray]:
+    """Where the effects' parameters come to stand, and the hypothesis there in its best world (by columns of its own alone)."""
     for _ in range(NEWTON):
         at = np.zeros_like(z)
         at[mine] = _boxed(case, z)[mine]
-        model, lines = about(case, at, mine, [case.effects[i] for i in mine])
-        z = posterior(case.reduced(doubting(lines, DOUBTS[0]), case.worlds([world]), at)[0], chosen).z
+        lines = doubting(about(case, at, mine, [case.effects[i] for i in mine])[1], DOUBTS[0])
+        z = posterior(case.reduced(lines, case.worlds([world]), at)[0], chosen).z
         if np.max(np.abs(_boxed(case, z)[mine] - at[mine])) < STANDS:
             break
-    model, lines = about(case, at, mine, case.unknowns)
-    lines = max((doubting(lines, share) for share in DOUBTS), key=lambda x: _evidence(case, chosen, x, world, at))
-    reduced = dict(zip(names, case.reduced(lines, case.worlds(names), at), strict=True))
+    judged, _ = _judged(case, chosen, _everywhere(case, chosen, lines, at))
+    return max(judged, key=lambda h: h.log_weight), at
+
+
+def _everywhere(case: Case, chosen: Sets, lines: Sequence[Linear], at: np.ndarray) -> dict[str, Reduced]:
+    """In every world in which this set may be."""
+    names = [n for n in WORLDS if np.isfinite(case.log_prior(chosen, n))]
+    return dict(zip(names, case.reduced(lines, case.worlds(names), at), strict=True))
+
+
+def _judged(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> tuple[list[Hypothesis], dict[str, Posterior]]:
     own = {n: posterior(r, chosen) for n, r in reduced.items()}
-    judged = [Hypothesis(chosen, n, log_evidence(r, chosen, own[n]), case.log_prior(chosen, n)) for n, r in reduced.items()]
-    best = max(judged, key=lambda h: h.log_weight)
-    return Found(best, own[best.world], model), judged, reduced
+    return [Hypothesis(chosen, n, log_evidence(r, chosen, own[n]), case.log_prior(chosen, n)) for n, r in reduced.items()], own
 
 
 def doubting(lines: Sequence[Linear], share: float) -> list[Linear]:

@@ -1,9 +1,11 @@
 """What a model says along a track: the accelerations it would give the ship there, and what the instruments would read."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
+from twin.physics.effect import Lag
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
@@ -24,15 +26,27 @@ def readings(s: Situation, model: Model) -> np.ndarray:
     return np.column_stack([np.broadcast_to(getattr(s, name), np.shape(s.psi)) for name in READINGS])
 
 
+GEARS = 16  # steering gears whose rudder a track remembers
+
+
 def lagged(track: Track, model: Model) -> np.ndarray:
     """(N,) the rudder as it truly stands [rad], when the track holds its order and the model has a lag."""
+    gears = model.lags
+    if gears not in track.rudder:
+        if len(track.rudder) >= GEARS:
+            track.rudder.clear()
+        track.rudder[gears] = _behind(track, gears)
+    return track.rudder[gears]
+
+
+def _behind(track: Track, gears: Sequence[Lag]) -> np.ndarray:
     delta = track.delta
-    for lag in model.lags:
-        order = np.interp(track.t - lag.dead_time(), track.t, delta)
+    for gear in gears:
+        order = np.interp(track.t - gear.dead_time(), track.t, delta)
         out = np.empty_like(order)
         actual, h = float(order[0]), track.h
         for k, wanted in enumerate(order.tolist()):
-            out[k] = actual = lag.step(actual, wanted, h)
+            out[k] = actual = gear.step(actual, wanted, h)
         delta = out
     return delta
 

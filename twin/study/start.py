@@ -10,20 +10,22 @@ from twin.physics.state import Situation
 from .track import STATE, Track, smooth_motion
 
 BRIDGE_S = 3.0  # instruments slower than the grid are joined by straight lines over no more than this
-ROUNDS = 6  # of the fixed point; each is smaller by the size of the fault
+ROUNDS = 3  # of the fixed point: faults of place, heading and wind together
 
 
 def true_motion(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray | None]:
     """(N, 6) the smooth motion as it would be without the model's sensor faults, and the wind's direction (N,) likewise.
 
-    Place and heading are corrected until the faulty instruments would show what they showed; speeds follow from them.
+    Place and heading are corrected until the faulty instruments would show what they showed; speeds follow from them. What a fault
+    depends on beyond them (a late receiver, on the speed) is taken from the motion shown: differences of differences would blow
+    up whatever is faster than the delay.
     """
     wind_to = track.weather.get("wind_to")
     if not _moved(track, model, wind_to):
         return track.state, wind_to
     place, shown = track.state[:, :3].copy(), track.state[:, :3]
     for _ in range(ROUNDS):
-        read = _read(track, model, kinematics(place, track.h), wind_to)
+        read = _read(track, model, _turned(track.state, place), wind_to)
         place += shown - np.column_stack([read.x, read.y, read.psi])
         if wind_to is not None:
             wind_to = wind_to + track.weather["wind_to"] - read.wind_to
@@ -34,6 +36,13 @@ def _moved(track: Track, model: Model, wind_to: np.ndarray | None) -> bool:
     """Whether any fault touches place, heading or wind direction (most only touch a log or a gyro)."""
     read = _read(track, model, track.state, wind_to)
     return read.wind_to is not wind_to or not np.array_equal(np.column_stack([read.x, read.y, read.psi]), track.state[:, :3])
+
+
+def _turned(shown: np.ndarray, place: np.ndarray) -> np.ndarray:
+    """(N, 6) the motion shown, with this place and heading: the same speed over ground, in the axes of that heading."""
+    c, s = np.cos(shown[:, 2] - place[:, 2]), np.sin(shown[:, 2] - place[:, 2])
+    u, v = shown[:, 3], shown[:, 4]
+    return np.column_stack([place, u * c - v * s, u * s + v * c, shown[:, 5]])
 
 
 def kinematics(place: np.ndarray, h: float) -> np.ndarray:

@@ -5,7 +5,8 @@ agrees with the measured positions, headings and rates. The study linearises alo
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from scipy.linalg import solveh_banded
@@ -21,6 +22,7 @@ MEASURED = {  # reading -> channel
     "r": "yaw_rate_degps", "u_r": "surge_velocity_through_water_mps", "v_r": "sway_velocity_through_water_mps",
 }  # fmt: skip
 READINGS = tuple(MEASURED)
+PLACE = ("north_m", "east_m")
 WEATHER_CHANNELS = (  # name in Situation, channel, what turns "from" into "to"
     ("depth", "water_depth_m", 0.0), ("H_s", "wave_height_significant_m", 0.0), ("T_p", "wave_period_peak_s", 0.0),
     ("wave_to", "wave_direction_deg", np.pi), ("draught", "draught_mean_m", 0.0), ("phi", "roll_deg", 0.0),
@@ -46,6 +48,7 @@ class Track:
     measured: np.ndarray  # (N, 8): READINGS, NaN where there was none
     sd: np.ndarray  # (8,): scatter of each reading about the smooth motion
     whole: np.ndarray  # (N,) bool: controls known, so that the model can be run through
+    rudder: dict[Any, np.ndarray] = field(init=False, repr=False, compare=False, default_factory=dict)  # behind each steering gear
 
     def __len__(self) -> int:
         return self.t.size
@@ -89,7 +92,9 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
 
 def _samples(voyage: Voyage, channel: str, steps: int, h: float) -> np.ndarray:
     """(steps,) mean of the samples that fall nearest to each grid step, moved from their mean time to the step along the channel's
-    own slope; NaN where none falls: nothing is interpolated."""
+    own slope; NaN where none falls: nothing is interpolated. A rate that was derived is no second reading of what it came from."""
+    if channel in voyage.meta.get("derived", {}) and channel not in PLACE:
+        return np.full(steps, np.nan)
     values = voyage.si(channel)
     at = (voyage.time_s - voyage.time_s[0]) / h
     k = np.rint(at).astype(int)
@@ -168,7 +173,7 @@ def smooth_motion(measured: np.ndarray, h: float, ship: Ship) -> tuple[np.ndarra
     log = [(u_r - u_s) - _running_mean(u_r - u_s, 41), (v_r - v_s) - _running_mean(v_r - v_s, 41)]
     residuals = [*(measured[:, :6] - state).T, *log]
     found = [
-        max(1.4826 * np.nanmedian(np.abs(e)) if np.isfinite(e).any() else np.nan, floor[name])
+        max(1.4826 * np.nanmedian(np.abs(e)), floor[name]) if np.isfinite(e).any() else np.nan
         for name, e in zip(READINGS, residuals, strict=True)
     ]
     return state, np.array(found)
