@@ -190,3 +190,14 @@ def test_every_check_answers_under_its_own_name_with_a_sentence(sail):
     for check, answer in zip(CHECKS, run_checks(voyage(sail(60.0))), strict=True):
         assert answer.name == check.__name__ and len(answer.text) > 10
         assert set(answer.as_json()) == {"check", "ok", "text"}
+
+
+def test_a_gap_is_no_sensor_that_hangs(sail):
+    """Test: the log shows the same value on both sides of a gap of 40 s. Expected: the gap is named, no frozen sensor."""
+    columns = sail()
+    t = columns["time_s"]
+    keep = (t < 300.0) | (t > 340.0)
+    columns[SURGE] = np.where((t > 299.5) & (t < 340.5), 6.9, columns[SURGE])
+    found = answers({n: x[keep] for n, x in columns.items()})
+    assert not found["time_gaps"].ok
+    assert found["frozen"].ok, found["frozen"].text

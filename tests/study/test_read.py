@@ -6,8 +6,11 @@ import numpy as np
 import pytest
 
 from twin.errors import DataError, SettingsError
+from twin.physics.effects import find
+from twin.physics.ship import load
 from twin.study.map_file import parse_map
 from twin.study.read import read_voyage
+from twin.study.track import READINGS, track
 from twin.study.write import write_voyage
 
 REQUIRED = ("time_s", "north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg", "propeller_rate_rpm",
@@ -97,6 +100,39 @@ def test_velocities_alone_are_integrated_and_positions_alone_are_differentiated(
     np.testing.assert_allclose(v["surge_velocity_mps"], full["surge_velocity_mps"], atol=0.05)
     np.testing.assert_allclose(v["sway_velocity_mps"][20:-20], full["sway_velocity_mps"][20:-20], atol=0.05)
     np.testing.assert_allclose(v["yaw_rate_degps"][20:-20], full["yaw_rate_degps"][20:-20], atol=0.1)
+
+
+@pytest.mark.parametrize("positions", ["alone", "beside velocities"])
+def test_a_row_for_each_instrument_gives_the_same_motion(sail, write_csv, tmp_path, positions):
+    """An export of messages: time, course and heading never stand in one row."""
+    full = {n: x[::10] for n, x in sail(120.0, noise=0.0).items()}
+    psi = np.radians(full["heading_true_north_deg"])
+    over_ground = (full["surge_velocity_mps"] + 1j * full["sway_velocity_mps"]) * np.exp(1j * psi)
+    columns = {n: full[n] for n in ("north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg", "propeller_rate_rpm")}
+    if positions != "alone":
+        columns |= {"SOG": np.abs(over_ground), "COG": np.mod(np.degrees(np.angle(over_ground)), 360.0)}
+    rows = np.full((full["time_s"].size, len(columns), 1 + len(columns)), np.nan)
+    for j, x in enumerate(columns.values()):
+        rows[:, j, 0], rows[:, j, 1 + j] = full["time_s"] + 0.05 * j, x
+    path = write_csv(dict(zip(("time_s", *columns), rows.reshape(-1, 1 + len(columns)).T, strict=True)), digits=12)
+    course = {"surge_velocity_mps": {"column": "SOG", "frame": "course"}, "sway_velocity_mps": {"column": "COG", "frame": "course"}}
+    own = {n: n for n in columns if n not in ("SOG", "COG")}
+    v = read_voyage(path, parse_map({"columns": own | (course if positions != "alone" else {})}, "m.toml")).on_grid(1.0)
+    for name, size in (("surge_velocity_mps", 0.15), ("sway_velocity_mps", 0.25)):
+        assert np.isfinite(v[name]).sum() > 110
+        np.testing.assert_allclose(v[name][5:-5], full[name][5 : len(v) - 5], atol=size)
+
+
+def test_a_derived_rate_is_no_second_reading(sail, write_csv):
+    """Test: positions and headings alone. Expected: velocities and yaw rate are shown, but the study does not take them for
+    instruments of their own, and no effect of a gyro is judged."""
+    full = sail(400.0)
+    v = read_voyage(write_csv({n: full[n] for n in REQUIRED if "velocity" not in n and "rate_degps" not in n}))
+    t = track(v, load("container"))
+    there = np.isfinite(t.measured).any(0)
+    assert [n for n, seen in zip(READINGS, there, strict=True) if seen] == ["x", "y", "psi"]
+    assert {"u", "v", "r"} <= t.missing() and set(find("GyroBias").needs) <= t.missing()
+    np.testing.assert_allclose(np.median(t.state[:, 3]), np.median(full["surge_velocity_mps"]), rtol=0.02)
 
 
 def test_empty_cells_and_words_for_nothing_are_missing_samples(columns, write_csv, tmp_path):

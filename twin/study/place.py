@@ -5,62 +5,77 @@ from typing import Any
 
 import numpy as np
 
+from twin.live.channels import BY_NAME
 from twin.study.frames import SMOOTH_S, body_from_earth, chart, earth_from_body, integral, slope
 from twin.study.mapping import FRAMED, PLACES, Map
-from twin.study.resample import continuous
+from twin.study.resample import beside, continuous
 from twin.study.samples import from_zero
 from twin.study.units import froude
 
 Columns = dict[str, np.ndarray]
 CHART = ("north_m", "east_m")
+HEADING = "heading_true_north_deg"
 SLOWEST_MPS = 1e-3  # below this a ship has no course
 
 
-def placed(columns: Columns, by: Map) -> tuple[Columns, dict[str, Any], list[str]]:
+def placed(time_s: np.ndarray, columns: Columns, by: Map) -> tuple[Columns, dict[str, Any], list[str]]:
     """Columns with north/east and body velocities in place of latitude/longitude, earth or course velocities.
 
+    Numbers that belong together may stand in rows of their own: the others are brought to the time of the first.
     Second: what is known of the place (`datum`). Third: sentences.
     """
     facts: dict[str, Any] = {}
     notes: list[str] = []
     if set(PLACES) <= set(columns):
-        north, east, facts["datum"] = chart(*(columns.pop(name) for name in PLACES))
+        latitude, longitude = (columns.pop(name) for name in PLACES)
+        north, east, facts["datum"] = chart(latitude, _with(time_s, longitude, latitude, CHART[1], 360.0))
         if set(CHART).isdisjoint(columns):
             columns |= dict(zip(CHART, (north, east), strict=True))
     for name in CHART:
         if name in columns:
             columns[name], said = from_zero(name, columns[name])
             notes += said
-    return turned(columns, by), facts, notes
+    return turned(time_s, columns, by), facts, notes
 
 
-def turned(columns: Columns, by: Map) -> Columns:
+def _with(time_s: np.ndarray, values: np.ndarray, partner: np.ndarray, name: str, period: float | None = None) -> np.ndarray:
+    """`values` of channel `name` wherever its partner was measured, NaN elsewhere."""
+    ch, rows = BY_NAME[name], np.isfinite(partner)
+    near = beside(time_s, values, rows, ch.stale_s, ch.wraps if period is None else period)
+    return np.where(rows, near, np.nan)
+
+
+def turned(time_s: np.ndarray, columns: Columns, by: Map) -> Columns:
     """Velocities by the earth or by the course, in the ship's own axes; they need the heading."""
     frame = by.columns[FRAMED[0]].frame if FRAMED[0] in by.columns else "body"
-    if frame == "body" or "heading_true_north_deg" not in columns:
+    if frame == "body" or HEADING not in columns:
         return columns
-    north, east = (columns[name] for name in FRAMED)
+    first, second = (columns[name] for name in FRAMED)
+    second = _with(time_s, second, first, FRAMED[1], 360.0 if frame == "course" else None)
+    north, east = first, second
     if frame == "course":
-        speed, course = north, np.radians(east)
-        north, east = speed * np.cos(course), speed * np.sin(course)
-    psi = np.radians(columns["heading_true_north_deg"])
+        north, east = first * np.cos(np.radians(second)), first * np.sin(np.radians(second))
+    psi = np.radians(_with(time_s, columns[HEADING], first, HEADING))
     return columns | dict(zip(FRAMED, body_from_earth(north, east, psi), strict=True))
 
 
 def derive(time_s: np.ndarray, columns: Columns) -> tuple[Columns, dict[str, str]]:
     """Position from velocity, velocity from position, yaw rate from heading; second: what was made how."""
     columns, how = dict(columns), dict[str, str]()
-    psi = np.radians(continuous(columns["heading_true_north_deg"], 360.0))
+    heading = continuous(columns[HEADING], 360.0)
     if not present(columns, *CHART):
-        north, east = earth_from_body(columns[FRAMED[0]], columns[FRAMED[1]], psi)
+        u = columns[FRAMED[0]]
+        v, psi = _with(time_s, columns[FRAMED[1]], u, FRAMED[1]), np.radians(_with(time_s, heading, u, HEADING))
+        north, east = earth_from_body(u, v, psi)
         columns |= {"north_m": integral(time_s, north), "east_m": integral(time_s, east)}
         how |= dict.fromkeys(CHART, "integrated from the velocities and the heading")
     elif not present(columns, *FRAMED):
         north, east = (slope(time_s, columns[name]) for name in CHART)
+        east, psi = _with(time_s, east, north, CHART[1]), np.radians(_with(time_s, heading, north, HEADING))
         columns |= dict(zip(FRAMED, body_from_earth(north, east, psi), strict=True))
         how |= dict.fromkeys(FRAMED, f"slope of the position over {SMOOTH_S:g} s, turned by the heading")
     if not present(columns, "yaw_rate_degps"):
-        columns["yaw_rate_degps"] = np.degrees(slope(time_s, psi))
+        columns["yaw_rate_degps"] = slope(time_s, heading)
         how["yaw_rate_degps"] = f"slope of the heading over {SMOOTH_S:g} s"
     return columns, how
 

@@ -90,7 +90,7 @@ def from_text(path: Path, by: Map | None) -> Raw:
     notes = [*table.notes, *unused]
     columns = {name: converted(name, table, c, by.name, notes) for name, c in by.columns.items()}
     columns |= {name: np.full(table.lines.shape, x) for name, x in by.constant.items()}
-    columns, facts, said = placed(scaled(columns, by), by)
+    columns, facts, said = placed(clock.time_s, scaled(columns, by), by)
     slower = froude("time_s", by.froude_scale)
     step = spec.rebuild if isinstance(spec.rebuild, bool) else spec.rebuild * slower
     meta = about(path, clock) | {"map": by.name} | facts
@@ -159,7 +159,8 @@ def require(raw: Raw) -> None:
     if missing:
         empty = [n for n in raw.columns if not present(raw.columns, n)]
         said = [f"{', '.join(empty)}: no usable sample"] * bool(empty) + raw.notes
+        steady = " A shaft that kept one speed may stand under [constant]." * (CONTROLS[1] in missing)
         raise DataError(
             f"{raw.path}: needs {', '.join(missing)}. {'; '.join(said)}{'. ' if said else ''}Add the "
-            "column, or say in a map which one it is (--map)."
+            f"column, or say in a map which one it is (--map).{steady}"
         )

@@ -33,6 +33,23 @@ def resampled(time_s: np.ndarray, values: np.ndarray, grid: np.ndarray, step_s: 
     return np.where(reachable(grid, t, max_gap_s, hold_s, 1e-6 * step_s), out, np.nan)
 
 
+def beside(time_s: np.ndarray, values: np.ndarray, rows: np.ndarray, max_gap_s: float, period: float = 0.0) -> np.ndarray:
+    """`values` with a number in these `rows` (bool) too, from a line between its own neighbours no more than `max_gap_s` apart.
+
+    For two quantities that belong together and were logged in rows of their own; where both stand in one row nothing is made up.
+    """
+    there = np.isfinite(values) & np.isfinite(time_s)
+    fill = rows & ~there & np.isfinite(time_s)
+    if not there.any() or not fill.any():
+        return values
+    order = np.argsort(time_s[there], kind="stable")
+    t, x = time_s[there][order], continuous(values[there][order], period)
+    out = np.array(values, dtype=float)
+    near = reachable(time_s[fill], t, max_gap_s, 0.0, 0.0)
+    out[fill] = np.where(near, np.interp(time_s[fill], t, x), np.nan)
+    return out
+
+
 def nodes(t: np.ndarray, x: np.ndarray, start: float, step_s: float) -> tuple[np.ndarray, np.ndarray]:
     """(times, values): each step's mean at the mean of its times, and both ends as they are."""
     cell = np.floor((t - start) / step_s + 0.5).astype(np.int64)

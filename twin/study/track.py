@@ -173,7 +173,7 @@ def smooth_motion(measured: np.ndarray, h: float, ship: Ship) -> tuple[np.ndarra
     log = [(u_r - u_s) - _running_mean(u_r - u_s, 41), (v_r - v_s) - _running_mean(v_r - v_s, 41)]
     residuals = [*(measured[:, :6] - state).T, *log]
     found = [
-        max(1.4826 * np.nanmedian(np.abs(e)), floor[name]) if np.isfinite(e).any() else np.nan
+        max(1.4826 * np.nanmedian(np.abs(e)) if np.isfinite(e).any() else np.nan, floor[name])
         for name, e in zip(READINGS, residuals, strict=True)
     ]
     return state, np.array(found)

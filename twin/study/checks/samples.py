@@ -106,7 +106,8 @@ def standing(view: View, name: str, other: np.ndarray | None, far: float, text: 
     if other is None or x.size < 20:
         return ""
     with np.errstate(invalid="ignore"):
-        starts = np.flatnonzero(np.r_[True, np.abs(np.diff(x)) > 1e-9 * np.nanmax(np.abs(x))])
+        moves = np.abs(np.diff(x)) > 1e-9 * np.nanmax(np.abs(x))
+    starts = np.flatnonzero(np.r_[True, moves | np.diff(np.isfinite(x))])  # what is not there does not stand still
     ends = np.r_[starts[1:], x.size] - 1
     long = (ends - starts >= 10) & np.isfinite(x[starts])
     moved = [spread(other[a : b + 1]) if ok else 0.0 for a, b, ok in zip(starts, ends, long, strict=True)]
