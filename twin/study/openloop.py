@@ -76,7 +76,8 @@ def predict(
     Effects whose inputs the track lacks must have been left out (Model.without_inputs).
     """
     lead = _leads(track, horizons_s, leads)
-    start = _starts(track, round(min(horizons_s) / track.h), stride_s)
+    measured = seen(track)
+    start = _starts(track, np.isfinite(measured[:, :3]).all(1), round(min(horizons_s) / track.h), stride_s)
     rng = np.random.default_rng(seed)
     state, wind_to = true_motion(track, model)
     fuzz = noisy(track, model, rng)[start]
@@ -86,7 +87,6 @@ def predict(
         kept = np.nan_to_num(run.through(tuple(begin), lead), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)
     promised = kept.reshape(len(lead), 3, start.size, len(READINGS)).transpose(1, 0, 2, 3)
     promised[1:] += track.sd * rng.standard_normal(promised[1].shape)
-    measured = seen(track)
     return Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
 
 
@@ -96,10 +96,16 @@ def _leads(track: Track, horizons_s: Sequence[float], count: int) -> np.ndarray:
     return np.unique([*steps, *np.linspace(1, max(steps), min(count, max(steps))).round().astype(int)])
 
 
-def _starts(track: Track, shortest: int, stride_s: float) -> np.ndarray:
+def _starts(track: Track, placed: np.ndarray, shortest: int, stride_s: float) -> np.ndarray:
+    """Evenly along the track; where it was logged more slowly than it is stepped, from the next step at which she was placed."""
     last = max(len(track) - max(shortest, 1), 1)
     stride = max(1, round(stride_s / track.h), int(np.ceil(last / MOST_WINDOWS)))
-    return np.arange(0, last, stride)
+    start = np.arange(0, last, stride)
+    there = np.flatnonzero(placed[:last])
+    if there.size:
+        near = there[np.searchsorted(there, start).clip(0, there.size - 1)]
+        start = np.unique(np.where(np.abs(near - start) < stride, near, start))
+    return start
 
 
 def _valid(track: Track, measured: np.ndarray, start: np.ndarray, lead: np.ndarray) -> np.ndarray:

@@ -30,6 +30,7 @@ WEATHER_CHANNELS = (  # name in Situation, channel, what turns "from" into "to"
 )  # fmt: skip
 STATE = ("x", "y", "psi", "u", "v", "r")
 STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail her own length
+FEWEST_PER_LENGTH = 8  # and no fewer, however slowly she was logged: with longer steps a ship cannot be stepped at all
 JERK = 0.15  # rad in (L/U_0)^3: how suddenly a ship turns; what is faster is the sea's doing
 LONGEST_HOLD_S = 5.0  # a control that is missing for longer breaks the track
 
@@ -75,7 +76,7 @@ class Track:
 def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH) -> Track:
     """Put a voyage on the ship's own grid and find the smooth motion under it; DataError when that cannot be done."""
     length_s = float(ship.scale("time"))
-    h = max(voyage.step_s, length_s / steps_per_length)
+    h = _step(max(voyage.step_s, length_s / steps_per_length), length_s / FEWEST_PER_LENGTH)
     if voyage.duration_s < 3.0 * length_s:
         raise DataError(
             f"{voyage.name}: {voyage.duration_s:.0f} s is less than three ship lengths of sailing ({3 * length_s:.0f} s): "
@@ -83,11 +84,16 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
         )
     grid = voyage.on_grid(h)
     measured = np.column_stack([_samples(voyage, channel, len(grid), h) for channel in MEASURED.values()])
-    controls, whole = _controls(grid)
+    controls, whole = _controls(voyage, h)
     if not whole.any():
         raise DataError(f"{voyage.name}: rudder_angle_deg and propeller_rate_rpm are never there together. Check the map.")
     state, sd = smooth_motion(measured, h, ship)
     return Track(voyage.name, grid.time_s - voyage.time_s[0], h, state, *controls, _weather(grid, measured, state), measured, sd, whole)
+
+
+def _step(usual: float, longest: float) -> float:
+    """The usual step [s], or the part of it that is short enough: samples of a slow log then fall on steps still."""
+    return usual / int(np.ceil(usual / longest - 1e-9))
 
 
 def _samples(voyage: Voyage, channel: str, steps: int, h: float) -> np.ndarray:
@@ -109,9 +115,13 @@ def _samples(voyage: Voyage, channel: str, steps: int, h: float) -> np.ndarray:
     return out
 
 
-def _controls(grid: Voyage) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """Rudder and propeller, short holes bridged, and where both are known."""
-    bridged = [_bridge(grid.si(name), LONGEST_HOLD_S, grid.step_s) for name in ("rudder_angle_deg", "propeller_rate_rpm")]
+def _controls(voyage: Voyage, h: float) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Rudder and propeller, short holes (or the usual wait for the next sample) bridged, and where both are known."""
+    bridged = []
+    for name in ("rudder_angle_deg", "propeller_rate_rpm"):
+        waits = np.diff(voyage.time_s[np.isfinite(voyage[name])])
+        hold = max(LONGEST_HOLD_S, 1.5 * float(np.median(waits)) if waits.size else 0.0)
+        bridged.append(_bridge(voyage.on_grid(h, hold).si(name), hold, h))
     whole = np.isfinite(bridged[0]) & np.isfinite(bridged[1])
     return (np.nan_to_num(bridged[0]), np.nan_to_num(bridged[1])), whole
 

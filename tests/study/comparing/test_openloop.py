@@ -25,6 +25,20 @@ def test_the_model_that_made_a_voyage_without_noise_predicts_it_within_centimetr
     assert mean(w, "position", 120.0) < 0.5 and np.degrees(mean(w, "heading", 120.0)) < 0.05
 
 
+@pytest.mark.parametrize("lengths", [0.75, 1.5])
+def test_a_log_slower_than_the_ship_is_stepped_finer_and_stays_in_the_world(make, kvlcc2, lengths):
+    """Test: one row while she sails so many lengths. Expected: the model that made the voyage is off by what the rudder did in
+    between, not by what steps too long for her make of it (before: 1e6 m)."""
+    full = make(noise=0.0)
+    rows = slice(None, None, round(32 * lengths))
+    slow = full.with_rows(full.time_s[rows], {n: x[rows] for n, x in full.columns.items()})
+    t = track(slow, kvlcc2)
+    assert t.h < 1.001 * kvlcc2.scale("time") / 8 and t.whole.all()
+    w = predict(t, Model.of(kvlcc2))
+    assert np.isfinite(w.errors()["position"][w.at(120.0)]).sum() > 10
+    assert mean(w, "position", 120.0) < 0.1 * kvlcc2.L_pp
+
+
 @pytest.mark.parametrize("horizon", HORIZONS_S)
 @pytest.mark.parametrize("name", ["position", "lateral", "heading"])
 def test_a_perfect_model_errs_as_much_as_the_noise_floor_says(make, kvlcc2, name, horizon):
