@@ -79,7 +79,7 @@ def test_what_was_not_recorded_cannot_be_judged_and_the_answer_says_so(tanker, v
     blind = Voyage("blind", whole.time_s, {n: x for n, x in whole.columns.items() if "wind" not in n})
     result = diagnose([blind], tanker).result
     assert {"effect": "Wind", "lacks": ["wind_speed", "wind_to"]} in result["not_judged"]
-    assert any("Wind cannot be judged" in line for line in told(result))
+    assert any("Wind cannot be judged: no true_wind_speed_mps and no" in line for line in told(result))
 
 
 def test_a_voyage_too_short_to_judge_exits_with_4_and_one_line(tanker, voyages, tmp_path, capsys):
