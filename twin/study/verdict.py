@@ -18,7 +18,8 @@ from .refine import Found
 from .respond import respond
 from .track import Track
 
-SURE = 0.5  # an effect is named when it is more likely there than not
+SURE = 0.8  # probability from which an effect is named
+LOST = 0.5  # probability of something unknown from which no name is given
 SURE_TOO = 0.9  # another beside it when that is nearly certain: of two forms that are only roughly right, one may mend the other
 FORM = 0.1  # how far from the truth a size may be because nature writes the effect otherwise, as a share of it
 ACQUITTED = 0.8  # probability from which nothing is said to be missing
@@ -70,7 +71,7 @@ def judge(weighed: Sequence[Hypothesis], w: Weights, excited: bool) -> tuple[str
     named = [n for i, n in enumerate(named) if i == 0 or w.effects[n] >= SURE_TOO]
     if not excited:
         return "undecided", []
-    if w.unknown >= SURE:
+    if w.unknown >= LOST:
         return "unknown", []
     if w.nothing >= ACQUITTED:
         return "nothing_missing", []

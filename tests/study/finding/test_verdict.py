@@ -12,8 +12,9 @@ def verdict(effects=(), nothing=0.0, unknown=0.0, excited=True, **sure):
     return judge([best, *singles], Weights(nothing, unknown, sure, best), excited)
 
 
-def test_what_is_more_likely_there_than_not_is_named():
-    assert verdict(["HullFouling"], nothing=0.3, HullFouling=0.6) == ("missing", ["HullFouling"])
+def test_what_is_there_with_odds_of_four_to_one_is_named_and_what_is_less_likely_is_not():
+    assert verdict(["HullFouling"], nothing=0.15, HullFouling=0.85) == ("missing", ["HullFouling"])
+    assert verdict(["HullFouling"], nothing=0.4, HullFouling=0.6) == ("undecided", [])
 
 
 def test_a_second_effect_is_named_only_when_it_is_nearly_certain():
