@@ -15,6 +15,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 
 from .columns import Unknown, core_unknowns
+from .doubts import doubts
 from .fit import Fit, fit
 from .import_voyage import write_json
 from .innovations import Floor, linearise
@@ -217,7 +218,8 @@ def run(args: argparse.Namespace) -> int:
         tell("once more, with every voyage")
         done = _with_all(done, calibrate(read_all(args.voyages, ship), held_out, ship, tell))
     save(done.ship, args.output)
-    result = done.result | {"held_out_is": words, "output": str(args.output)}
+    r = done.result
+    result = r | {"held_out_is": words, "output": str(args.output), "doubts": doubts(r["derivatives"], r["held_out"], r["floor"]["share"])}
     if args.json:
         write_json(result, args.json)
     page = sys.stderr if args.json == "-" else sys.stdout
@@ -245,4 +247,4 @@ def told(result: dict[str, Any]) -> list[str]:
     lines += [f"{d['name']:<10}{d['before']:>11.4g}{d['value']:>11.4g}{d['sd']:>9.2g}" for d in result["derivatives"] if d["excited"]]
     if result["unexcited"]:
         lines.append(f"not excited by these voyages, prior kept: {', '.join(result['unexcited'])}")
-    return lines
+    return lines + [f"careful: {text}" for text in result["doubts"]]

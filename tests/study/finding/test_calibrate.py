@@ -6,6 +6,7 @@ import pytest
 
 from twin import cli
 from twin.physics.ship import load
+from twin.study.doubts import doubts
 from twin.study.write import write_voyage
 
 
@@ -53,6 +54,21 @@ def test_calibrating_again_starts_from_the_prior_and_not_from_its_own_answer(cal
     entry = ship.notes["derivatives"]["N_ur"]
     assert entry["prior_value"] == load("kvlcc2").derivatives.N_ur
     assert entry["prior_value"] != entry["value"]
+
+
+def test_a_calibration_that_ended_badly_says_so_and_a_good_one_does_not(calibrated):
+    _, said = calibrated
+    assert said["doubts"] == []
+    fell = {"horizon_s": 120.0, "windows": 9, "position_m": 4.0, "before_m": 9.0, "heading_deg": 1.0, "before_deg": 2.0}
+    at_its_end = [{"name": "N_rr", "value": -0.6, "excited": True}, {"name": "X_u", "value": 0.0, "excited": True}]
+    assert doubts(at_its_end, [fell], (0.1, 0.1, 0.1))[0].startswith("N_rr stopped")
+    (rose,) = doubts([], [fell | {"position_m": 12.0}], (0.1, 0.1, 0.1))
+    assert "9 -> 12 m" in rose and "twin compare" in rose
+    (turned,) = doubts([], [fell | {"heading_deg": 5.0}], (0.1, 0.1, 0.1))
+    assert "(2 -> 5 deg)" in turned
+    (coarse,) = doubts([], [fell], (0.1, 0.4, 0.1))
+    assert "40 % in sway" in coarse
+    assert "--held-out" in doubts([], [fell | {"windows": 0}], (0.1, 0.1, 0.1))[0]
 
 
 def test_a_file_that_is_no_voyage_leaves_no_ship_file(tmp_path, capsys):

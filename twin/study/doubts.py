@@ -1,0 +1,59 @@
+"""What is doubtful about a calibration, in words an owner can act on."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from twin.physics.ship import DERIVATIVES
+
+EDGE = 1e-6  # of the box: a value nearer than this to its end was stopped by it
+LARGE = 0.25  # share of the forces at work that is much to leave unexplained
+AXES = ("surge", "sway", "yaw")
+
+
+def doubts(derivatives: Sequence[Mapping[str, Any]], held_out: Sequence[Mapping[str, Any]], share: Sequence[float]) -> list[str]:
+    """Sentences; none when the calibration is as it should be."""
+    return [*_stopped(derivatives), *_no_better(held_out), *_coarse(share)]
+
+
+def _stopped(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
+    box = {f.name: (f.metadata["lo"], f.metadata["hi"]) for f in DERIVATIVES}
+    names = [d["name"] for d in derivatives if d["excited"] and _at_an_end(d["value"], *box[d["name"]])]
+    if not names:
+        return []
+    return [
+        f"{', '.join(names)} stopped at the end of what ships have: check mass, draught, rudder and propeller in the ship file, "
+        "and that nothing was wrong on the reference voyages"
+    ]
+
+
+def _at_an_end(value: float, lo: float, hi: float) -> bool:
+    """Whether a box stopped this value; at zero a term is only not there."""
+    return any(end != 0.0 and abs(value - end) < EDGE * (hi - lo) for end in (lo, hi))
+
+
+def _no_better(held_out: Sequence[Mapping[str, Any]]) -> list[str]:
+    """At the longest horizon that could be judged."""
+    judged = [e for e in held_out if e["windows"]]
+    if not judged:
+        return ["no voyage was left to judge by: give one with --held-out"]
+    last = judged[-1]
+    rose = [
+        f"{last[before]:.3g} -> {last[after]:.3g} {unit}"
+        for before, after, unit in (("before_m", "position_m", "m"), ("before_deg", "heading_deg", "deg"))
+        if last[after] >= last[before]
+    ]
+    if not rose:
+        return []
+    return [
+        f"the error after {last['horizon_s']:.0f} s did not fall ({', '.join(rose)}): current, wind or a fault on a reference voyage, or too few "
+        "of them? Look at each with twin compare, leave out one that stands apart, and give more"
+    ]
+
+
+def _coarse(share: Sequence[float]) -> list[str]:
+    large = [f"{100 * s:.0f} % in {axis}" for s, axis in zip(share, AXES, strict=True) if s > LARGE]
+    if not large:
+        return []
+    return [
+        f"{', '.join(large)} of the forces at work stays unexplained, and no smaller effect will be named: more, or calmer, reference voyages help"
+    ]
