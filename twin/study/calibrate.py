@@ -128,12 +128,14 @@ def _usual(ship: Ship, tracks: Sequence[Track], known: dict[str, type[Effect]], 
 
 
 def _told_usual(ship: Ship, usual: dict[str, Any]) -> list[dict[str, Any]]:
-    """What this ship clearly shows of lasting effects: not wrong, but part of her."""
+    """What this ship clearly shows of lasting effects: not wrong, but part of her. What no ship can show (a rudder ahead of its order)
+    stands in for something else, and is kept in mind without being told."""
+    can = {u.label: (u.lo - u.centre, u.hi - u.centre) for u in nuisance_unknowns(Model.of(ship), catalogue())}
     sd = np.sqrt(np.diag(np.array(usual["covariance"])))
     return [
         {"name": label, "value": float(v), "sd": float(s)}
         for label, v, s in zip(usual["labels"], usual["offset"], sd, strict=True)
-        if not label.startswith("core.") and abs(v) > 4.0 * s
+        if not label.startswith("core.") and abs(v) > 4.0 * s and can[label][0] <= v <= can[label][1]
     ]
 
 

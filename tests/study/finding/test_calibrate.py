@@ -6,6 +6,7 @@ import pytest
 
 from twin import cli
 from twin.physics.ship import load
+from twin.study.calibrate import _told_usual
 from twin.study.doubts import doubts
 from twin.study.write import write_voyage
 
@@ -54,6 +55,13 @@ def test_calibrating_again_starts_from_the_prior_and_not_from_its_own_answer(cal
     entry = ship.notes["derivatives"]["N_ur"]
     assert entry["prior_value"] == load("kvlcc2").derivatives.N_ur
     assert entry["prior_value"] != entry["value"]
+
+
+def test_what_no_ship_can_show_is_not_told_as_usual(calibrated):
+    ship, _ = calibrated
+    labels = ["SteeringLag.delay", "HeadingBias.bias"]
+    told = _told_usual(ship, {"labels": labels, "offset": [-0.4, 0.02], "covariance": [[1e-4, 0.0], [0.0, 1e-6]]})
+    assert [t["name"] for t in told] == ["HeadingBias.bias"]
 
 
 def test_a_calibration_that_ended_badly_says_so_and_a_good_one_does_not(calibrated):
