@@ -58,7 +58,7 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     progress("linearising")
     case = Case(
         tracks, model, catalogue, candidates, unknowns, effects, known, floor, temper, _odds(tracks, candidates, ship),
-        tuple(_line(t, model, unknowns, catalogue) for t in tracks),
+        tuple(_line(t, model, unknowns, catalogue) for t in tracks), floor.white,
     )  # fmt: skip
     return settle(case)
 

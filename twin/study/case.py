@@ -59,13 +59,14 @@ class Case:
     temper: float
     odds: Mapping[str, float]
     lines: tuple[Linear, ...]
+    white: float  # fast part of the floor on the reference voyages, before `settle`
 
     def reduced(self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None) -> list[Reduced]:
         normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))
         return [reduce(n, self.nuisance, self.unknowns, self.effects, self.temper, at) for n in normals]
 
-    def worlds(self, names: Sequence[str]) -> list[Floor]:
-        return [self.floor.scaled(WORLDS[n].share, flow=WORLDS[n].flow) for n in names]
+    def worlds(self, names: Sequence[str], doubt: float = 0.0) -> list[Floor]:
+        return [replace(self.floor.scaled(WORLDS[n].share, flow=WORLDS[n].flow), doubt=doubt) for n in names]
 
     def log_prior(self, chosen: Sequence[str], world: str) -> float:
         if world == "flooding" and "VaryingCurrent" not in chosen:

@@ -14,6 +14,7 @@ from .assemble import assemble, unjudged_because
 from .case import Case
 from .import_voyage import write_json
 from .jsonable import plain
+from .leftover import quiet
 from .manoeuvres import next_manoeuvre
 from .read import read_voyage
 from .refine import Found
@@ -48,7 +49,8 @@ def diagnose(
     case = assemble(voyages, ship, references, progress)
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed)
-    verdict, missing = judge(weighed, w, excites(case, seen))
+    pair = found.get(w.best.effects) if len(w.best.effects) > 1 else None
+    verdict, missing = judge(weighed, w, excites(case, seen), pair is None or quiet(case, pair))
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")

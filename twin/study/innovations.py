@@ -34,7 +34,8 @@ class Floor:
 
     `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller cause at that moment,
     in surge, sway, yaw; `calm`: the same share of a standard acceleration, there even when nothing happens; `white`: fast
-    part; `flow`: scatter of the water's own motion, as a share of U_0; `sensor`: factor on the readings' scatter.
+    part; `flow`: scatter of the water's own motion, as a share of U_0; `sensor`: factor on the readings' scatter; `doubt`: share of
+    the force of the effects under judgement that may be something else (none on a reference voyage).
     """
 
     share: tuple[float, float, float] = (0.05, 0.05, 0.05)
@@ -42,6 +43,7 @@ class Floor:
     white: float = 0.05
     flow: float = 0.004
     sensor: float = 1.3
+    doubt: float = 0.0
 
     def scaled(self, factor: float = 1.0, white: float = 1.0, flow: float = 1.0) -> "Floor":
         surge, sway, yaw = (factor * s for s in self.share)
@@ -61,7 +63,7 @@ class Linear:
     R: np.ndarray  # (N, 8, P) float32
     busy: np.ndarray  # (N, 3): acceleration that hull, rudder and propeller cause
     model: Model = field(repr=False)
-    doubt: np.ndarray | float = 0.0  # (N, 3): further slow acceleration error, of an effect whose form is only roughly known
+    doubted: np.ndarray | float = 0.0  # (N, 3): acceleration by the effects under judgement, whose forms are only roughly right
     slack: np.ndarray | float = 0.0  # (N, 3): and one that no hypothesis takes away, of effects in the model and of the sea
 
 
@@ -270,7 +272,7 @@ def _turn(line: Linear) -> np.ndarray:
 def _slow(line: Linear, floor: Floor) -> np.ndarray:
     """(N, 3) variance of the slowly varying acceleration error."""
     calm = floor.calm * standard(line.model)
-    return (np.array(floor.share) ** 2) * (line.busy**2 + calm**2) + np.square(line.doubt) + np.square(line.slack)
+    return (np.array(floor.share) ** 2) * (line.busy**2 + calm**2) + np.square(floor.doubt * line.doubted) + np.square(line.slack)
 
 
 def _start(model: Model, slow: np.ndarray, flow: np.ndarray) -> np.ndarray:

@@ -31,6 +31,7 @@ class Found:
     hypothesis: Hypothesis
     posterior: Posterior
     model: Model
+    doubt: float = 0.0  # share of its own force that may be something else
 
 
 def refine(case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[str]) -> tuple[Found, list[Hypothesis]]:
@@ -44,11 +45,11 @@ def refine(case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[
             break
         best, at = max((best, at), _climb(case, chosen, mine, "usual", factor * z), key=lambda end: end[0].log_weight)
     model, lines = about(case, at, mine, case.unknowns)
-    lines = max((doubting(lines, share) for share in DOUBTS), key=lambda x: _evidence(case, chosen, x, best.world, at))
-    reduced = _everywhere(case, chosen, lines, at)
+    doubt = _doubt(case, chosen, lines, best.world, at)
+    reduced = _everywhere(case, chosen, lines, at, doubt)
     judged, own = _judged(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
-    return Found(best, own[best.world], model), [*judged, *_beside(case, chosen, reduced, wider)]
+    return Found(best, own[best.world], model, doubt), [*judged, *_beside(case, chosen, reduced, wider)]
 
 
 def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray) -> tuple[Hypothesis, np.ndarray]:
@@ -56,18 +57,18 @@ def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray
     for _ in range(NEWTON):
         at = np.zeros_like(z)
         at[mine] = _boxed(case, z)[mine]
-        lines = doubting(about(case, at, mine, [case.effects[i] for i in mine])[1], DOUBTS[0])
-        z = posterior(case.reduced(lines, case.worlds([world]), at)[0], chosen).z
+        lines = about(case, at, mine, [case.effects[i] for i in mine])[1]
+        z = posterior(case.reduced(lines, case.worlds([world], DOUBTS[0]), at)[0], chosen).z
         if np.max(np.abs(_boxed(case, z)[mine] - at[mine])) < STANDS:
             break
-    judged, _ = _judged(case, chosen, _everywhere(case, chosen, lines, at))
+    judged, _ = _judged(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0]))
     return max(judged, key=lambda h: h.log_weight), at
 
 
-def _everywhere(case: Case, chosen: Sets, lines: Sequence[Linear], at: np.ndarray) -> dict[str, Reduced]:
+def _everywhere(case: Case, chosen: Sets, lines: Sequence[Linear], at: np.ndarray, doubt: float) -> dict[str, Reduced]:
     """In every world in which this set may be."""
     names = [n for n in WORLDS if np.isfinite(case.log_prior(chosen, n))]
-    return dict(zip(names, case.reduced(lines, case.worlds(names), at), strict=True))
+    return dict(zip(names, case.reduced(lines, case.worlds(names, doubt), at), strict=True))
 
 
 def _judged(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> tuple[list[Hypothesis], dict[str, Posterior]]:
@@ -75,13 +76,10 @@ def _judged(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> tuple[list
     return [Hypothesis(chosen, n, log_evidence(r, chosen, own[n]), case.log_prior(chosen, n)) for n, r in reduced.items()], own
 
 
-def doubting(lines: Sequence[Linear], share: float) -> list[Linear]:
-    """The tracks, when so large a share of the effects' own force may be something else."""
-    return [replace(line, doubt=share * line.doubt) for line in lines]
-
-
-def _evidence(case: Case, chosen: Sets, lines: Sequence[Linear], world: str, at: np.ndarray) -> float:
-    return posterior(case.reduced(lines, case.worlds([world]), at)[0], chosen).log_evidence
+def _doubt(case: Case, chosen: Sets, lines: Sequence[Linear], world: str, at: np.ndarray) -> float:
+    """The share of DOUBTS under which the voyages are most probable."""
+    reduced = case.reduced(lines, [case.worlds([world], share)[0] for share in DOUBTS], at)
+    return DOUBTS[int(np.argmax([posterior(r, chosen).log_evidence for r in reduced]))]
 
 
 def _beside(case: Case, chosen: Sets, reduced: dict[str, Reduced], wider: Sequence[str]) -> list[Hypothesis]:
@@ -102,7 +100,7 @@ def _boxed(case: Case, z: np.ndarray) -> np.ndarray:
 
 def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown]) -> tuple[Model, list[Linear]]:
     """The model with the parameters `mine` in it, and the tracks linearised about it (columns of other unknowns than `fresh` stay
-    what they were); their doubt is the effects' whole force."""
+    what they were)."""
     own = [case.effects[i] for i in mine]
     values = [u.centre + u.sd * z[i] for i, u in zip(mine, own, strict=True)]
     model = with_values(case.model, own, values, case.catalogue)
@@ -117,6 +115,6 @@ def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown])
         A[:, :, place], R[:, :, place] = new.A, new.R
         sure = line.model.but(*(flow for flow in here.flows if flow.stream))
         moved = np.abs(respond(line.track, here)[0] - respond(line.track, sure)[0])
-        lines.append(replace(new, A=A, R=R, doubt=moved, slack=line.slack))
+        lines.append(replace(new, A=A, R=R, doubted=moved, slack=line.slack))
     return model, lines
 

@@ -63,15 +63,16 @@ def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
     return out
 
 
-def judge(weighed: Sequence[Hypothesis], w: Weights, excited: bool) -> tuple[str, list[str]]:
-    """The verdict, and the effects to add, first the one that explains most; voyages that excite too little decide nothing."""
+def judge(weighed: Sequence[Hypothesis], w: Weights, excited: bool, explained: bool = True) -> tuple[str, list[str]]:
+    """The verdict, and the effects to add, first the one that explains most; voyages that excite too little decide nothing, and
+    what the best hypothesis does not explain is unknown."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
     named = [n for n in w.best.effects if w.effects[n] >= SURE]
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
     named = [n for i, n in enumerate(named) if i == 0 or w.effects[n] >= SURE_TOO]
     if not excited:
         return "undecided", []
-    if w.unknown >= LOST:
+    if w.unknown >= LOST or not explained:
         return "unknown", []
     if w.nothing >= ACQUITTED:
         return "nothing_missing", []
