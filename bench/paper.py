@@ -35,11 +35,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     from bench.paper_page import page
 
+    tick = json.loads(args.tick.read_text()) if args.tick else None  # before the hours, not after them
     with tempfile.TemporaryDirectory() as nowhere:
         work = args.work or (Path(".paper") if args.full else Path(nowhere))
         result = reproduce(sea.FULL if args.full else sea.QUICK, work, not args.full, args.figures)
-    if args.tick:
-        result["tables"]["9"] = json.loads(args.tick.read_text())
+    if tick:
+        result["tables"]["9"] = tick
     text = "\n".join(page(result))
     print(text, file=sys.stderr if args.json == "-" else sys.stdout)
     if args.markdown:
@@ -59,16 +60,16 @@ def reproduce(plan: sea.Plan, work: Path, quick: bool, figures: Path | None = No
     work.mkdir(parents=True, exist_ok=True)
     ship, tell = nominal(), _tell
     changed, speeds = sea.changed(plan), sea.by_speed(plan)
-    groups = {"lessons": sea.lessons(plan), "zigzags": sea.zigzags(plan.zigzags, 9001), **changed, **speeds}
+    groups = {"lessons": sea.lessons(plan), "zigzags": sea.unseen(plan), **changed, **speeds}
     sailed = iter(sea.sail([c for cases in groups.values() for c in cases], work / "voyages", tell, plan.tick_s))
     voyages = {name: [next(sailed) for _ in cases] for name, cases in groups.items()}
     voyages[paper_tables.EXACT] = [sea.without_gnss_noise(one) for one in voyages[next(iter(changed))]]
-    courses = {name: [course(one, ship) for one in some] for name, some in voyages.items()}
+    courses = {name: [course(one, ship, plan.starts_s) for one in some] for name, some in voyages.items()}
     models = paper_models.build(courses["lessons"], settings_for(plan), plan.lstm_epochs, plan.seeds, work, tell)
     tell("predicting")
     tables = paper_tables.all_tables(models, courses, list(changed), list(speeds), plan.resamples, plan.resamples // 2)
     tell("closed loop")
-    closed = paper_closed.sail(models.plain, models.network, plan.closed)
+    closed = paper_closed.sail(models.plain, models.network, plan.closed, plan.tick_s)
     tables["fig5"] = paper_closed.table(closed)
     tell("less data")
     tables["data"] = curve(models.shop, models.tuning, courses["zigzags"], plan.curve, plan.lstm_epochs, plan.seeds[0])
@@ -91,10 +92,8 @@ def _draw(folder: Path, models: Any, zigzags: list[Any], closed: Any, tables: di
     draw.histogram(folder, models, zigzags)
     draw.closed_loop(folder, closed)
     three = tables["3"]
-    whole = {
-        "hours": sum(c.water.t[-1] for c in models.shop.parts["train"]) / 3600,
-        "hybrid": {m: three[m]["hybrid"] for m in ("heading_mae_deg", "lateral_mae_m")},
-        "lstm": {m: three[m]["lstm"] for m in ("heading_mae_deg", "lateral_mae_m")},
+    whole = {"hours": sum(c.water.t[-1] for c in models.shop.parts["train"]) / 3600} | {
+        n: {m: three[m][n] for m in ("heading_mae_deg", "lateral_mae_m")} for n in draw.CURVES
     }
     draw.data(folder, [*tables["data"], whole])
     return draw.horizons(folder)
@@ -108,4 +107,4 @@ def settings_for(plan: sea.Plan) -> Any:
 
 
 def _tell(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)
+    print(time.strftime("%H:%M:%S"), text, file=sys.stderr, flush=True)

@@ -25,7 +25,7 @@ STEP_DEG, GUST_MPS = 15.0, 10.0
 BEFORE, GUST_AT, GUST_LONG, END = 3.0, 7.0, 1.0, 12.0  # in L/U, of the step
 REFERENCE, CONTROL, INTEGRAL, K = 1.4, 2.0, 0.25, 12.0  # w_r, w_c, k_i/w_c^2 and the observer's gain, in U/L
 HARD_OVER = np.radians(35.0)
-EVERY, TICK_S = 5, 0.1  # ticks between two orders
+ORDER_S = 0.5  # between two orders
 SETTLED, STEADY = 0.05, 0.02  # of the step
 MODES = ("analytic alone", "with the residual", "with a hostile residual")
 SPEEDS = ("surge_velocity_through_water_mps", "sway_velocity_through_water_mps")
@@ -34,9 +34,9 @@ SPEEDS = ("surge_velocity_through_water_mps", "sway_velocity_through_water_mps")
 class Steered(Sea):
     """The reference sea with another helmsman, and a gust from starboard abeam."""
 
-    def __init__(self, cases: Sequence[Case], helm: "Helm"):
+    def __init__(self, cases: Sequence[Case], helm: "Helm", tick_s: float):
         self.helm = helm
-        super().__init__(list(cases), TICK_S)
+        super().__init__(list(cases), tick_s)
 
     def _build(self) -> None:
         super()._build()
@@ -78,8 +78,8 @@ class Helm:
         """Rudder order and propeller rate; truth is only kept for judging, the instruments of the last tick are what counts."""
         if self.tick:
             self._listen()
-        if self.tick % EVERY == 0:
-            self._decide(t, EVERY * dt)
+        if self.tick % round(ORDER_S / dt) == 0:
+            self._decide(t, ORDER_S)
             self.kept.append(np.stack([np.full(psi.size, t), psi, r, self.sea.gear, self._error(psi), self.wanted[1]]))
         self.tick += 1
         return self.delta, self.n
@@ -151,7 +151,7 @@ class Helm:
         with torch.no_grad():
             f = self.network.f(self.network.zeta(t)).double().numpy()
         against = np.sign(self._error(self.last["psi"]))[:, None] * np.ones(3)
-        square = self.corner * np.sign(np.sin(2 * np.pi * self.tick * TICK_S / self.period))[:, None]
+        square = self.corner * np.sign(np.sin(2 * np.pi * self.sea.dt * self.tick / self.period))[:, None]
         hostile = float(self.network.bound) / np.sqrt(3.0) * np.where((np.arange(self.mode.size) % 2 == 0)[:, None], against, square)
         return np.where((self.mode == 0)[:, None], 0.0, np.where((self.mode == 1)[:, None], f, hostile))
 
@@ -171,7 +171,7 @@ class Closed:
     hard_over_deg: float
 
 
-def sail(model: Model, network: Residual, seeds: int) -> Closed:
+def sail(model: Model, network: Residual, seeds: int, tick_s: float = 0.1) -> Closed:
     """Every scenario, mode and seed side by side; a seed's sea is the same in all modes."""
     cases = [
         Case("kvlcc2", "straight", ts, seed=70_000 + 10 * k + j, duration_s=None)
@@ -181,8 +181,8 @@ def sail(model: Model, network: Residual, seeds: int) -> Closed:
     ]
     mode = np.repeat(np.arange(len(MODES)), len(SCENARIOS) * seeds)
     helm = Helm(model, network, mode)
-    sea = Steered(cases, helm)
-    for _ in range(round((BEFORE + END) * float(sea.unit[0]) / TICK_S)):
+    sea = Steered(cases, helm, tick_s)
+    for _ in range(round((BEFORE + END) * float(sea.unit[0]) / tick_s)):
         sea.step()
     t, psi, r, rudder, _, _ = np.array(helm.kept).transpose(1, 0, 2)
     heading = np.degrees((psi - sea.heading + np.pi) % (2 * np.pi) - np.pi)
@@ -210,7 +210,7 @@ def _row(c: Closed, k: np.ndarray) -> dict[str, Any]:
     late = (x >= GUST_AT - 2.0) & (x < GUST_AT)
     gust = (x >= GUST_AT) & (x < GUST_AT + 3.0)
     steady = np.abs(error[late].mean(0)) / STEP_DEG
-    rate = np.abs(np.diff(c.rudder[:, k], axis=0)).max() / (EVERY * TICK_S)
+    rate = np.abs(np.diff(c.rudder[:, k], axis=0)).max() / ORDER_S
     row = {
         "runs": int(k.size), "settle_lengths_mean": float(settle.mean()), "settle_lengths_max": float(settle.max()),
         "overshoot_percent": float(100 * np.maximum(error[calm].max(0), 0.0).max() / STEP_DEG), "steady_error_max": float(steady.max()),

@@ -9,7 +9,7 @@ from typing import Any
 
 from bench import paper_filter, paper_lstm
 from bench.paper_lab import Course, judge
-from bench.paper_models import Workshop
+from bench.paper_models import Workshop, named
 from bench.paper_ship import nominal
 from bench.paper_stats import summary
 from twin.physics.model import Model
@@ -24,9 +24,13 @@ def curve(
         small = less(shop, n)
         taught = small.taught(plain, seed, f"hybrid-of-{n}")
         lstm = paper_lstm.train(small.legs["train"], small.legs["validation"], epochs, seed, keep=shop.work / f"lstm-of-{n}-{epochs}-{seed}.pt")
+        _, added = named(small.parts["train"], plain)
+        on_top = small.taught(added, seed, f"added-of-{n}")
         hybrid = judge(paper_filter.predict(judged_on, plain, taught.network, tuning), judged_on)
+        both = judge(paper_filter.predict(judged_on, added, on_top.network, tuning), judged_on)
         rows.append(
             {"runs": n, "hours": sum(c.water.t[-1] for c in small.parts["train"]) / 3600.0, "hybrid": summary(hybrid),
+             "physics_added_hybrid": summary(both),
              "lstm": summary(judge([paper_lstm.predict(lstm, c) for c in judged_on], judged_on))}
         )  # fmt: skip
     return rows
@@ -35,6 +39,6 @@ def curve(
 def less(shop: Workshop, n: int) -> Workshop:
     """The workshop of who has only n runs to learn from."""
     count = {"train": n, "validation": max(1, n // 3), "test": 1}
-    settings = replace(shop.settings, rollout_batch=64, rollout_epochs=min(40, 4 * shop.settings.rollout_epochs))
+    settings = replace(shop.settings, rollout_batch=64, rollout_epochs=min(100, 4 * shop.settings.rollout_epochs))
     legs = {part: some[: count[part]] for part, some in shop.legs.items()}
     return replace(shop, settings=settings, legs=legs, parts={part: some[: count[part]] for part, some in shop.parts.items()})

@@ -141,12 +141,19 @@ def _predictors() -> dict[str, Callable[[], object]]:
     return {"analytic": peers.analytic(ship), "hybrid": hybrid, "LSTM over its window": peers.lstm(ship)}
 
 
+CURVES = {
+    "hybrid": ("hybrid", "tab:blue"),
+    "physics_added_hybrid": ("calibrated + named + network", "tab:purple"),
+    "lstm": ("LSTM", "tab:green"),
+}
+
+
 def data(folder: Path, rows: Sequence[dict[str, Any]]) -> None:
     """Error over amount of data."""
     fig, axes = plt.subplots(1, 2, figsize=(9, 3.5))
     for ax, measure, unit in zip(axes, ("heading_mae_deg", "lateral_mae_m"), ("heading, deg", "lateral, m"), strict=True):
-        for name, colour in (("hybrid", "tab:blue"), ("lstm", "tab:green")):
-            ax.loglog([r["hours"] for r in rows], [r[name][measure] for r in rows], "o-", color=colour, label=name)
+        for name, (words, colour) in CURVES.items():
+            ax.loglog([r["hours"] for r in rows], [r[name][measure] for r in rows], "o-", color=colour, label=words)
         ax.set(xlabel="hours that teach", ylabel=f"MAE {unit}")
     axes[0].set_title("Error over amount of data")
     axes[0].legend()

@@ -1,6 +1,6 @@
 """One harness for all models: the same windows, the same controls and weather, the same truth.
 
-A window is a free run of 120 s in a zigzag, begun at 290, 350, 410, 470 or 530 s. Models that keep no filter begin in the smooth
+A window is a free run of 120 s in a zigzag, begun at 290, 350, 410, 470 or 530 s (paper_sea.STARTS_S). Models that keep no filter begin in the smooth
 motion under the readings (it sees a few seconds ahead; the filter and the LSTM do not).
 """
 
@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 
-from bench.paper_sea import Sailed
+from bench.paper_sea import STARTS_S, Sailed
 from export.batches import STRIDE
 from export.data import LOG, Leg, afloat, current, leg
 from export.loss import free_run
@@ -19,7 +19,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.study.track import READINGS, Track, track
 
-STARTS_S, HORIZON_S = (290.0, 350.0, 410.0, 470.0, 530.0), 120.0
+HORIZON_S = 120.0
 
 
 @dataclass(frozen=True)
@@ -49,14 +49,14 @@ class Course:
         return self.starts + STRIDE * np.arange(self.steps + 1)[:, None]
 
 
-def course(sailed: Sailed, ship: Ship) -> Course:
+def course(sailed: Sailed, ship: Ship, starts_s: tuple[float, ...] = STARTS_S) -> Course:
     t = track(sailed.voyage, ship)
     model = Model(ship)
     blind = t.measured.copy()
     blind[:, list(LOG.values())] = np.nan
     time_s = sailed.voyage.time_s - sailed.voyage.time_s[0]
     truth = np.column_stack([np.interp(t.t, time_s, column) for column in sailed.truth.T])
-    return Course(t.name, t.name.split()[0], t, floating(t, ship), leg(t, model), leg(replace(t, measured=blind), model), truth)
+    return Course(t.name, t.name.split()[0], t, floating(t, ship), leg(t, model), leg(replace(t, measured=blind), model), truth, starts_s)
 
 
 def floating(t: Track, ship: Ship) -> Track:

@@ -11,9 +11,9 @@ import torch
 from bench import paper_adapted, paper_ekf, paper_filter, paper_lstm, paper_lstm_onnx
 from bench.paper_adapted import Acting
 from bench.paper_filter import Push, Tuning
-from bench.paper_lab import Course, free, judge
+from bench.paper_gap import gap
+from bench.paper_lab import Course, free
 from bench.paper_ship import nominal
-from bench.paper_stats import summary
 from export.batches import zeta_of
 from export.data import Leg, split
 from export.network import Residual
@@ -129,7 +129,8 @@ def _hybrids(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) ->
     out.network = first.network
     out.acting = Acting(first.network, plain, zeta_of(first.network, first.samples))
     out.told["hybrid"] = _about(plain, first) | {"filter": asdict(out.tuning)}
-    out.told["gap"] = {part: summary(judge(out.seeds[seeds[0]](shop.parts[part]), shop.parts[part])) for part in ("validation", "test")}
+    told = {"hybrid": out.seeds[seeds[0]], "analytic_current": out.predict["analytic_current"]}
+    out.told["gap"] = gap(told, shop.parts["validation"], shop.parts["test"])
     out.predict["hybrid_smooth"] = lambda cs: free(plain, first.network, cs)
     out.predict["hybrid"] = out.seeds[seeds[0]]
     out.predict["hybrid_adapted"] = lambda cs: paper_adapted.predict(cs, plain, out.acting, out.tuning)  # type: ignore[arg-type]
@@ -138,14 +139,19 @@ def _hybrids(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) ->
 def _named(out: Models, shop: Workshop, plain: Model, seed: int) -> None:
     """What has a name first, then a network on top."""
     shop.tell("calibrating the core, then adding " + ", ".join(NAMED))
-    train = shop.parts["train"]
-    core = _fitted(plain, [c for c in train if c.scenario == "TS-01"], [])
-    added = _fitted(core, [c for c in train if c.scenario != "TS-01"], NAMED)
+    core, added = named(shop.parts["train"], plain)
     out.told["added"] = {type(e).__name__: {p.name: float(getattr(e, p.name)) for p in e.params()} for e in added.effects}
     taught = shop.taught(added, seed, "added")
     out.told["physics_added_hybrid"] = _about(added, taught)
     for name, model, network in (("calibrated", core, None), ("physics_added", added, None), ("physics_added_hybrid", added, taught.network)):
         out.predict[name] = _started(model, network, shop.tuned(model, network))
+
+
+def named(train: Sequence[Course], plain: Model) -> tuple[Model, Model]:
+    """The core calibrated on the calm runs, then with what `twin add` would name on the others; as far as there are such runs."""
+    calm, windy = ([c for c in train if (c.scenario == "TS-01") is still] for still in (True, False))
+    core = _fitted(plain, calm, []) if calm else plain
+    return core, _fitted(core, windy, NAMED) if windy else core
 
 
 def _started(model: Model, network: Residual | None, tuning: Tuning) -> Predict:

@@ -22,6 +22,7 @@ PAPER_7 = {"Mass error M (+5%)": [12.4, 1.2], "Damping error D (+10%)": [18.7, 2
 EXACT = "GNSS without noise"
 GNSS = "GNSS sensor noise (0.5 m)"
 COMPARED = ("analytic", "hybrid", "hybrid_adapted", "physics_added_hybrid")  # in Table 7
+BY_SPEED = ("analytic", "ekf", "hybrid", "physics_added_hybrid")  # in Table 8
 PAPER_8 = {"Maneuvering": [32.4, 8.2], "Cruising": [18.1, 4.5], "Full speed": [25.6, 6.1]}
 
 
@@ -29,7 +30,8 @@ def all_tables(
     models: Models, courses: dict[str, list[Course]], changed: Sequence[str], speeds: Sequence[str], resamples: int, r2_resamples: int
 ) -> dict[str, Any]:
     """Every table that was worked out."""
-    found = {name: by_group(f, courses) for name, f in models.predict.items()}
+    wanted = {name: ["zigzags", *_also(name, changed, speeds)] for name in models.predict}
+    found = {name: by_group(f, {group: courses[group] for group in wanted[name]}) for name, f in models.predict.items()}
     errors = {name: e["zigzags"] for name, e in found.items()}
     zigzags = courses["zigzags"]
     others = [judge(f(zigzags), zigzags) for f in list(models.seeds.values())[1:]]
@@ -43,9 +45,13 @@ def all_tables(
     }
 
 
-def by_group(predict: Predict, courses: dict[str, list[Course]]) -> dict[str, Errors]:
-    """One model's errors on every group that is judged, predicted side by side."""
-    groups = {name: some for name, some in courses.items() if name != "lessons"}
+def _also(model: str, changed: Sequence[str], speeds: Sequence[str]) -> list[str]:
+    """The groups beside the zigzags that the tables ask this model about."""
+    return [*([*changed, EXACT] if model in COMPARED else []), *(speeds if model in BY_SPEED else [])]
+
+
+def by_group(predict: Predict, groups: dict[str, list[Course]]) -> dict[str, Errors]:
+    """One model's errors on every group, predicted side by side."""
     runs = iter(predict([c for some in groups.values() for c in some]))
     return {name: judge([next(runs) for _ in some], some) for name, some in groups.items()}
 
@@ -129,5 +135,5 @@ def _said(case: str) -> dict[str, Any]:
 
 def table8(errors: dict[str, dict[str, Errors]], regime: str) -> dict[str, Any]:
     """One speed: lateral and heading errors."""
-    found = {n: stats.summary(errors[n][regime]) for n in ("analytic", "ekf", "hybrid", "physics_added_hybrid")}
+    found = {n: stats.summary(errors[n][regime]) for n in BY_SPEED}
     return {n: s["lateral_mae_m"] for n, s in found.items()} | {"heading_deg": {n: s["heading_mae_deg"] for n, s in found.items()}}

@@ -90,9 +90,15 @@ def free_run(network: Residual | None, model: Model, start: torch.Tensor, inputs
             force = network(s)
             held.force, last = Force(*[1.5 * a - 0.5 * b for a, b in zip(force, last or force, strict=True)]), force
         middle = {name: 0.5 * (x[k] + x[k + 1]) for name, x in inputs.items()}
-        state = moving.step(state, Situation(**middle), h)
+        state = _onward(moving, state, Situation(**middle), h)
         kept.append(torch.stack(state, -1))
     return torch.stack(kept)
+
+
+def _onward(model: Model, state: tuple[torch.Tensor, ...], s: Situation, h: torch.Tensor) -> tuple[torch.Tensor, ...]:
+    """One step by the midpoint rule: half the work of Model.step, and at STRIDE steps as near to the truth as the model is."""
+    half = [x + 0.5 * h * k for x, k in zip(state, model.derivative(state, s), strict=True)]
+    return tuple([x + h * k for x, k in zip(state, model.derivative(tuple(half), s), strict=True)])  # type: ignore[arg-type]
 
 
 def allowed(model: Model) -> torch.Tensor:

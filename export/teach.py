@@ -6,6 +6,7 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
+from math import cos, pi
 from pathlib import Path
 from typing import Any
 
@@ -166,10 +167,10 @@ class Course:
         elif self.kept and stage in self.kept["done"]:
             return
         for epoch in range(first, epochs):
-            if since >= c.patience:
+            if since >= c.patience and stage != "rollout":  # a rate that falls to nothing is worth its whole fall
                 break
             for group in self.optimiser.param_groups:
-                group["lr"] = rate * c.decay ** (epoch // DECAY_EPOCHS)
+                group["lr"] = rate * (0.5 + 0.5 * cos(pi * epoch / epochs) if stage == "rollout" else c.decay ** (epoch // DECAY_EPOCHS))
             value = self._epoch(stage, epoch)
             validation = self.validation(stage)
             self.curve.append((stage, epoch, value, validation))

@@ -1,6 +1,7 @@
 """The paper's tables: voyages, filters, intervals and the page, in small."""
 
 import json
+from collections import Counter
 from dataclasses import replace
 
 import numpy as np
@@ -9,10 +10,11 @@ import pytest
 torch = pytest.importorskip("torch", reason="torch is not installed: pip install 'shiptwin[train]'")
 pytest.importorskip("filterpy", reason="filterpy is not installed: pip install 'shiptwin[dev]'")
 
-from bench import paper, paper_ekf, paper_filter, paper_sea, paper_stats  # noqa: E402
+from bench import paper, paper_ekf, paper_filter, paper_gap, paper_sea, paper_stats  # noqa: E402
 from bench.paper_lab import course, free, judge  # noqa: E402
 from bench.paper_page import page  # noqa: E402
 from bench.paper_ship import OFF, nominal  # noqa: E402
+from export.data import split  # noqa: E402
 from twin.physics.model import Model  # noqa: E402
 
 
@@ -32,7 +34,7 @@ def test_the_paper_sails_648_000_samples():
 def test_what_is_learned_from_and_what_is_judged_on_have_no_seed_in_common():
     plan = paper_sea.FULL
     judged = [c for cases in (paper_sea.changed(plan) | paper_sea.by_speed(plan)).values() for c in cases]
-    judged += paper_sea.zigzags(plan.zigzags, 9001)
+    judged += paper_sea.unseen(plan)
     assert not {c.seed for c in paper_sea.lessons(plan)} & {c.seed for c in judged}
 
 
@@ -114,10 +116,25 @@ def test_without_gnss_noise_the_place_is_the_truth_of_a_moment_ago(tmp_path):
     assert 0.2 < np.std(exact.columns["north_m"][seen] - sailed.voyage.columns["north_m"][seen]) < 1.0
 
 
+def test_validation_and_test_are_as_hard_as_each_other_by_their_plan():
+    """Expected: the same manoeuvres, seas and speeds among the runs that say when to stop and those that never did, but for the one
+    run more that 72 leave over."""
+    parts = split(paper_sea.lessons(paper_sea.FULL))
+    kinds = {n: Counter(x for c in cases for x in (c.manoeuvre, c.weather, c.speed_fraction)) for n, cases in parts.items()}
+    assert sum(kinds["validation"].values()) - sum(kinds["test"].values()) == 3
+    assert all(0 <= kinds["validation"][kind] - kinds["test"][kind] <= 1 for kind in kinds["train"])
+
+
+def test_a_gap_between_equal_parts_is_nothing(calm):
+    model = Model(nominal())
+    found = paper_gap.gap({"nominal": lambda some: free(model, None, some)}, [calm], [calm], 100)["nominal"]["heading"]
+    assert found["change_percent"] == 0.0 and found["by_voyage_95"] == [0.0, 0.0] and found["validation"] > 0.1
+
+
 @pytest.fixture(scope="module")
 def tiny(tmp_path_factory):
     """The whole bench with the least of everything: it learns next to nothing, but every table is made."""
-    plan = paper_sea.Plan(5, 1, 1, 1, (20,), (1,), 1, (42, 123), 2, 1, 64, 1, 200, 0.5)
+    plan = paper_sea.Plan(5, 1, 1, 1, (20,), (1,), 1, (42, 123), 2, 1, 64, 1, 200, 0.5, 320.0, (110.0, 150.0, 190.0))
     folder = tmp_path_factory.mktemp("tiny")
     return paper.reproduce(plan, folder / "work", True, folder / "figures"), folder
 
