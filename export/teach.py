@@ -167,7 +167,7 @@ class Course:
         elif self.kept and stage in self.kept["done"]:
             return
         for epoch in range(first, epochs):
-            if since >= c.patience and stage != "rollout":  # a rate that falls to nothing is worth its whole fall
+            if since >= c.patience:
                 break
             for group in self.optimiser.param_groups:
                 group["lr"] = rate * (0.5 + 0.5 * cos(pi * epoch / epochs) if stage == "rollout" else c.decay ** (epoch // DECAY_EPOCHS))
