@@ -22,11 +22,14 @@ from .innovations import Floor, linearise
 from .jsonable import plain
 from .nuisance import TEMPER, from_references, instruments, nuisance_unknowns, temper_of
 from .openloop import HORIZONS_S, predict
+from .rollout import rolled_out
 from .sailed import Sailed, fed, read_all
 from .structure import structural_floor
 from .track import Track
 
 SCHEMA_VERSION = 1
+FITTED_BY = ("steps", "paths")  # one step ahead through a filter, or several lengths ahead without (rollout.py)
+BETTER = 0.05  # share by which paths must be better than steps: a diagnosis judges by steps
 LAST = "the last third of the voyages; the ship that is written was then fitted to all"
 UNEXCITED = 0.1  # a derivative of whose prior variance the voyages took away less than this keeps its prior
 EPILOG = """Reference voyages are ones on which nothing was wrong and the weather was calm: zigzags, circles, speed changes. Without --held-out
@@ -45,9 +48,11 @@ class Calibrated:
 
 
 def calibrate(
-    fitted: Sequence[Sailed], held_out: Sequence[tuple[Track, int]], ship: Ship, progress: Callable[[str], None] = lambda text: None
-) -> Calibrated:
-    """Fit the core to the tracks; `held_out`: tracks with the first grid step that was not used for the fit."""
+    fitted: Sequence[Sailed], held_out: Sequence[tuple[Track, int]], ship: Ship, progress: Callable[[str], None] = lambda text: None,
+    by: str | None = None,
+) -> Calibrated:  # fmt: skip
+    """Fit the core to the tracks; `held_out`: tracks with the first grid step that was not used for the fit. `by`: one of FITTED_BY;
+    None: the one that predicts what was held out better."""
     model, known = Model.of(ship), catalogue()
     unknowns = tuple(_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
     tracks = [s.track for s in fitted]
@@ -58,11 +63,17 @@ def calibrate(
     temper = temper_of(found.normal, unknowns)
     progress("fitting again above the floor")
     found = fit(tracks, found.model, unknowns, known, floor, temper=temper, rounds=4)
-    after = _calibrated(ship, found, floor, temper, [s.provenance() for s in fitted])
+    ships = {"steps": _calibrated(ship, found, floor, temper, [s.provenance() for s in fitted])}
+    excited = [u for u, g in zip(unknowns, found.gained, strict=True) if u.owner == "core" and g >= UNEXCITED]
+    if by != "steps" and excited:
+        progress("fitting to where she went")
+        ships["paths"] = _led(ships["steps"], rolled_out(tracks, Model.of(ships["steps"]), excited, known).ship)
+    errors = {name: _errors(Model.of(s), held_out) for name, s in ships.items()}
+    by = by if by in ships else min(ships, key=lambda name: _size(errors[name]) - BETTER * (name == "steps"))
+    after, behind, before = ships[by], errors[by], _errors(model, held_out)
     progress("learning what is usual on this ship")
     usual = _usual(after, tracks, known, floor, temper)
     after.notes["structural"].update(usual)  # type: ignore[attr-defined]
-    before, behind = (_errors(m, held_out) for m in (model, Model.of(after)))
     regimes = _by_regime(Model.of(after), held_out)
     after.notes["structural"]["held_out"] = behind  # type: ignore[index]
     after.notes["structural"]["by_regime"] = regimes  # type: ignore[index]
@@ -76,6 +87,7 @@ def calibrate(
             for u, s, g in zip(unknowns, found.sd, found.gained, strict=True) if u.owner == "core"
         ],
         "unexcited": unexcited,
+        "fitted_by": by,
         "usual": _told_usual(after, usual),
         "floor": asdict(floor), "temper": temper, "by_regime": regimes,
         "held_out": [b | {"before_m": a["position_m"], "before_deg": a["heading_deg"]} for a, b in zip(before, behind, strict=True)],
@@ -109,6 +121,19 @@ def _calibrated(ship: Ship, found: Fit, floor: Floor, temper: float, voyages: li
         "floor": plain(asdict(floor)), "temper": temper, "date": today, "voyages": voyages,
     }  # fmt: skip
     return replace(after, notes=notes)
+
+
+def _led(ship: Ship, core: Ship) -> Ship:
+    """The calibrated ship with the derivatives of another core."""
+    values = {name: float(getattr(core.derivatives, name)) for name in ship.notes["derivatives"] if hasattr(core.derivatives, name)}
+    notes = {name: entry | {"value": values[name]} if name in values else entry for name, entry in ship.notes["derivatives"].items()}
+    return replace(ship.with_derivatives(**values), notes=dict(ship.notes) | {"derivatives": notes, "structural": dict(ship.notes["structural"])})
+
+
+def _size(errors: Sequence[dict[str, float]]) -> float:
+    """Held-out errors in place and heading over all horizons, as one number to compare: their mean logarithm."""
+    numbers = [e[name] for e in errors if e["windows"] for name in ("position_m", "heading_deg")]
+    return float(np.log(np.maximum(numbers, 1e-9)).mean()) if numbers else 0.0
 
 
 def _usual(ship: Ship, tracks: Sequence[Track], known: dict[str, type[Effect]], floor: Floor, temper: float) -> dict[str, Any]:
@@ -218,7 +243,7 @@ def run(args: argparse.Namespace) -> int:
     done = calibrate(fitted, held_out, ship, tell)
     if words == LAST:
         tell("once more, with every voyage")
-        done = _with_all(done, calibrate(read_all(args.voyages, ship), held_out, ship, tell))
+        done = _with_all(done, calibrate(read_all(args.voyages, ship), held_out, ship, tell, done.result["fitted_by"]))
     save(done.ship, args.output)
     r = done.result
     result = r | {"held_out_is": words, "output": str(args.output), "doubts": doubts(r["derivatives"], r["held_out"], r["floor"]["share"])}
@@ -242,6 +267,7 @@ def told(result: dict[str, Any]) -> list[str]:
     lines += [
         f"  after {r['horizon_s']:.0f} s while {r['regime']}: {r['position_m']:.3g} m ({r['windows']} windows)" for r in result["by_regime"]
     ]
+    lines.append("  fitted to " + ("where she went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading"))
     share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [f"usual on this ship: {i['name']} {i['value']:.3g} +- {i['sd']:.1g} (kept in mind by diagnose)" for i in result["usual"]]

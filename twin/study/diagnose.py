@@ -20,7 +20,7 @@ from .read import read_voyage
 from .refine import Found
 from .search import search
 from .tell_diagnosis import sentence, told
-from .verdict import alike, excites, held_out_error, horizon_s, judge, parameters, typical_force, weights
+from .verdict import alike, excites, held_out_error, horizon_s, judge, parameters, shows, typical_force, weights
 from .voyage import Voyage
 
 SCHEMA_VERSION = 1
@@ -50,7 +50,8 @@ def diagnose(
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed)
     pair = found.get(w.best.effects) if len(w.best.effects) > 1 else None
-    verdict, missing = judge(weighed, w, excites(case, seen), pair is None or quiet(case, pair))
+    explained = pair is None or quiet(case, pair)
+    verdict, missing = judge(weighed, w, excited=excites(case), sharp=shows(seen), explained=explained)
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")

@@ -26,6 +26,7 @@ HORIZONS_S = (10.0, 60.0, 120.0)
 STRIDE_S = 10.0  # a window begins this often
 MOST_WINDOWS = 400  # of one track; longer voyages are sampled more sparsely
 RUNAWAY = 1e6  # m, or whatever the unit is
+COARSE = 8
 LEADS = 24  # moments within a window at which the prediction is kept
 MODEL, SENSORS, STRUCTURE = range(3)  # the three runs of each window
 
@@ -90,6 +91,20 @@ def predict(
     return Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
 
 
+def misses(track: Track, model: Model, horizon_s: float, leads: int, stride_s: float) -> np.ndarray:
+    """(K, W, 8) promise minus measurement of the model alone, NaN where not valid: `predict` without its noise floors, and
+    in steps of L/U_0 over COARSE, as a fit asks for thousands of them."""
+    steps = max(1, int(float(model.ship.scale("time")) / COARSE / track.h))
+    lead = steps * np.unique(np.linspace(0.0, horizon_s / track.h / steps, leads + 1)[1:].round().clip(1).astype(int))
+    measured = seen(track)
+    start = _starts(track, np.isfinite(measured[:, :3]).all(1), int(lead[-1]), stride_s)
+    state, wind_to = true_motion(track, model)
+    with np.errstate(all="ignore"):
+        kept = _Run(track, model, start, wind_to, None).through(tuple(state[start].T), lead, steps)
+    promised = np.nan_to_num(kept, nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)
+    return Windows(track, start, lead, promised[None], _valid(track, measured, start, lead), measured).off()
+
+
 def _leads(track: Track, horizons_s: Sequence[float], count: int) -> np.ndarray:
     """Grid steps ahead: every horizon, and an even spread of `count` up to the longest."""
     steps = [max(1, round(h / track.h)) for h in horizons_s]
@@ -150,10 +165,11 @@ def _slow(track: Track, model: Model, floor: Floor | None, start: np.ndarray, rn
 
 
 class _Run:
-    """All windows of a track, three times, stepped together."""
+    """All windows of a track, once or three times each, stepped together."""
 
     def __init__(self, track: Track, model: Model, start: np.ndarray, wind_to: np.ndarray | None, slow: _Slow | None):
         self.track, self.start, self.slow = track, start, slow
+        self.runs = 1  # of every window, side by side
         self.known = replace(model, residual=None)
         self.learned = model.residual
         self.inputs = dict(track.weather) | {"delta": lagged(track, model), "n": track.n}
@@ -164,12 +180,14 @@ class _Run:
                 self.known, effects=(*model.effects, Current.absent(model.ship).but(north=slow.water[0], east=slow.water[1]))
             )
 
-    def through(self, state: tuple, lead: np.ndarray) -> np.ndarray:
-        """(K, 3 W, 8) readings at each lead."""
+    def through(self, state: tuple, lead: np.ndarray, steps: int = 1) -> np.ndarray:
+        """(K, runs W, 8) readings at each lead, a multiple of `steps`: grid steps that are taken at once."""
+        self.runs = state[0].size // self.start.size
         kept = []
-        for k in range(int(lead[-1]) + 1):
+        for k in range(0, int(lead[-1]) + 1, steps):
             if k:
-                state = self._model(k - 1, state).step(state, self._situation(k - 1, 0.5), self.track.h)
+                middle = self._situation(k - steps + steps // 2, 0.5 * (steps % 2))
+                state = self._model(k - steps, state).step(state, middle, steps * self.track.h)
             if k in lead:
                 kept.append(self._read(k, state))
         return np.stack(kept)
@@ -178,10 +196,10 @@ class _Run:
         """Inputs of every window k steps on; controls `ahead` of a step later."""
         step = np.minimum(self.start + k, len(self.track) - 1)
         after = np.minimum(step + 1, len(self.track) - 1)
-        values = {name: np.tile(w[step], 3) for name, w in self.inputs.items()}
+        values = {name: np.tile(w[step], self.runs) for name, w in self.inputs.items()}
         for name in ("delta", "n"):
-            values[name] = values[name] + ahead * (np.tile(self.inputs[name][after], 3) - values[name])
-        return Situation(**values, t=np.tile(self.track.t[step], 3) + ahead * self.track.h)
+            values[name] = values[name] + ahead * (np.tile(self.inputs[name][after], self.runs) - values[name])
+        return Situation(**values, t=np.tile(self.track.t[step], self.runs) + ahead * self.track.h)
 
     def _model(self, k: int, state: tuple) -> Model:
         """The model with what is learned and what is slow held for one step."""
@@ -202,7 +220,7 @@ class _Run:
         self.known.forces(s, self.known.water(s))
         W = self.start.size
         own = {name: getattr(s, name)[:W] for name in (*STATE, "u_r", "v_r", "t", *self.inputs)}
-        return Force(*(np.tile(f, 3) for f in self.learned(Situation(**own))))  # type: ignore[misc]
+        return Force(*(np.tile(f, self.runs) for f in self.learned(Situation(**own))))  # type: ignore[misc]
 
     def _read(self, k: int, state: tuple) -> np.ndarray:
         s = self._situation(k)

@@ -63,9 +63,12 @@ def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
     return out
 
 
-def judge(weighed: Sequence[Hypothesis], w: Weights, excited: bool, explained: bool = True) -> tuple[str, list[str]]:
-    """The verdict, and the effects to add, first the one that explains most; voyages that excite too little decide nothing, and
-    what the best hypothesis does not explain is unknown."""
+def judge(
+    weighed: Sequence[Hypothesis], w: Weights, *, excited: bool = True, sharp: bool = True, explained: bool = True
+) -> tuple[str, list[str]]:
+    """The verdict, and the effects to add, first the one that explains most. Voyages without a manoeuvre decide nothing (`excited`);
+    those that would not have shown most effects acquit nobody (`sharp`); what the best hypothesis leaves over is unknown
+    (`explained`)."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
     named = [n for n in w.best.effects if w.effects[n] >= SURE]
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
@@ -74,16 +77,20 @@ def judge(weighed: Sequence[Hypothesis], w: Weights, excited: bool, explained: b
         return "undecided", []
     if w.unknown >= LOST or not explained:
         return "unknown", []
-    if w.nothing >= ACQUITTED:
+    if w.nothing >= ACQUITTED and sharp:
         return "nothing_missing", []
     return ("missing", named) if named else ("undecided", [])
 
 
-def excites(case: Case, seen: dict[str, bool]) -> bool:
-    """Whether a voyage holds a manoeuvre, and all together would have shown three in four of the effects that do not depend on the
-    day's weather and water."""
+def excites(case: Case) -> bool:
+    """Whether one of the voyages holds a manoeuvre."""
+    return any(manoeuvred(line.track, case.model.ship) for line in case.lines)
+
+
+def shows(seen: dict[str, bool]) -> bool:
+    """Whether the voyages would have shown three in four of the effects that do not depend on the day's weather and water."""
     lasting = [can for name, can in seen.items() if name not in SURROUNDINGS]
-    return any(manoeuvred(line.track, case.model.ship) for line in case.lines) and sum(lasting) >= 0.75 * len(lasting)
+    return sum(lasting) >= 0.75 * len(lasting)
 
 
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:

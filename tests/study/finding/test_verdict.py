@@ -6,10 +6,10 @@ from twin.study.evidence import Hypothesis
 from twin.study.verdict import Weights, judge
 
 
-def verdict(effects=(), nothing=0.0, unknown=0.0, excited=True, **sure):
+def verdict(effects=(), nothing=0.0, unknown=0.0, how=(), **sure):
     best = Hypothesis(tuple(effects), "usual", 0.0, 0.0)
     singles = [Hypothesis((name,), "usual", -float(i), 0.0) for i, name in enumerate(effects)]
-    return judge([best, *singles], Weights(nothing, unknown, sure, best), excited)
+    return judge([best, *singles], Weights(nothing, unknown, sure, best), **dict.fromkeys(how, False))
 
 
 def test_what_is_there_with_odds_of_four_to_one_is_named_and_what_is_less_likely_is_not():
@@ -36,7 +36,17 @@ def test_a_restless_world_is_unknown():
     assert verdict(["Loading"], unknown=0.8, Loading=1.0) == ("unknown", [])
 
 
-def test_voyages_that_excite_too_little_decide_nothing():
-    assert verdict(["HullFouling"], HullFouling=1.0, excited=False) == ("undecided", [])
-    assert verdict(nothing=0.99, excited=False) == ("undecided", [])
-    assert verdict(unknown=0.99, excited=False) == ("undecided", [])
+def test_voyages_without_a_manoeuvre_decide_nothing():
+    without = ("excited",)
+    assert verdict(["HullFouling"], HullFouling=1.0, how=without) == ("undecided", [])
+    assert verdict(nothing=0.99, how=without) == ("undecided", [])
+    assert verdict(unknown=0.99, how=without) == ("undecided", [])
+
+
+def test_voyages_that_would_not_have_shown_most_effects_acquit_nobody_but_name_what_they_show():
+    assert verdict(["Current"], Current=1.0, how=("sharp",)) == ("missing", ["Current"])
+    assert verdict(nothing=0.99, how=("sharp",)) == ("undecided", [])
+
+
+def test_two_effects_that_leave_her_restless_are_unknown():
+    assert verdict(["TowForce", "PropellerWear"], TowForce=1.0, PropellerWear=1.0, how=("explained",)) == ("unknown", [])

@@ -1,0 +1,61 @@
+"""The core is led to where the ship went: from a wrong one it finds its way, and stays inside what ships have."""
+
+import numpy as np
+import pytest
+
+from twin.physics.model import Model
+from twin.physics.ship import load
+from twin.physics.state import Situation
+from twin.study.columns import core_unknowns
+from twin.study.openloop import misses
+from twin.study.rollout import HORIZON, rolled_out
+from twin.study.track import READINGS, Track
+from twin.study.trial import shaft_speed
+
+NAMES = ("N_ur", "N_vr", "X_uu", "a_H", "Y_uv")
+
+
+def sailed(model: Model, lengths: float = 40.0) -> Track:
+    """A zigzag of this model, measured without a fault."""
+    time = float(model.ship.scale("time"))
+    h, steps = time / 12.0, int(lengths * 12)
+    state, side, states, rudder = (0.0, 0.0, 0.0, 0.9 * float(model.ship.U_0), 0.0, 0.0), 1.0, [], []
+    n = shaft_speed(model, float(model.ship.U_0))
+    for _ in range(steps):
+        side = -side if side * state[2] > 0.35 else side
+        states.append(state)
+        rudder.append(0.35 * side)
+        state = model.step(state, Situation(delta=0.35 * side, n=n), h)
+    path = np.array(states)
+    measured = np.full((steps, len(READINGS)), np.nan)
+    measured[:, :6] = path
+    return Track("z", h * np.arange(steps), h, path, np.array(rudder), np.full(steps, n), {}, measured, np.full(8, 0.01), np.ones(steps, bool))
+
+
+def miss(track: Track, model: Model) -> float:
+    time = float(model.ship.scale("time"))
+    return float(np.nanmean(np.hypot(*misses(track, model, HORIZON * time, 1, time)[-1, :, :2].T)))
+
+
+@pytest.fixture(scope="module")
+def true():
+    return Model.of(load("kvlcc2"))
+
+
+def test_a_core_that_is_15_percent_off_is_led_back_to_the_path(true):
+    track = sailed(true)
+    off = {name: getattr(true.ship.derivatives, name) * factor for name, factor in zip(NAMES, (0.85, 1.15, 1.15, 0.85, 0.85), strict=True)}
+    wrong = Model(true.ship.with_derivatives(**off))
+    unknowns = [u for u in core_unknowns(wrong) if u.name in NAMES]
+    found = rolled_out([track], wrong, unknowns, {})
+    assert miss(track, found) < 0.25 * miss(track, wrong)
+    for u in unknowns:
+        assert u.lo <= getattr(found.ship.derivatives, u.name) <= u.hi
+
+
+def test_a_core_that_predicts_well_stays_where_it_is(true):
+    track = sailed(true)
+    unknowns = [u for u in core_unknowns(true) if u.name in NAMES]
+    found = rolled_out([track], true, unknowns, {})
+    moved = [abs(getattr(found.ship.derivatives, u.name) - u.centre) / u.sd for u in unknowns]
+    assert max(moved) < 0.3 and miss(track, found) <= 1.05 * miss(track, true) + 0.05

@@ -1,0 +1,103 @@
+"""The core fitted to where the ship really went: open-loop predictions over a few lengths, begun again and again along the voyages.
+
+A filter's innovations tell the fast part of a motion from the noise to any precision, and believe it: where a sensor's timing or the
+form of a force is a little off, the derivatives that explain it best one step ahead need not be the ones that lead the ship to the
+right place. What the twin promises is the place. So from the innovations' answer, or from the first model where that predicts
+better, Gauss-Newton goes on with the errors after HORIZON ship lengths, under the same priors (output error, multiple shooting;
+Ljung 1999, sec. 7.2; Bock 1983).
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.physics.model import Model
+
+from .columns import Unknown, with_values
+from .fit import Catalogue
+from .openloop import misses
+from .track import Track
+
+HORIZON, LEADS = 3.0, 3  # ship lengths ahead, looked at so often on the way
+STRIDE = 1.0  # ship lengths between the beginnings of two predictions
+ROUNDS, TRIES = 2, 4
+SEEN = [0, 1, 2, 3]  # x, y, psi, u: what a prediction is judged by
+STEP = 0.1  # prior widths by which a derivative is changed to see what it does
+LEAST = 0.02  # share by which the cost must fall for another round
+
+
+@dataclass
+class _Problem:
+    """The unknowns in prior widths from their centres, and what the tracks say of them."""
+
+    tracks: Sequence[Track]
+    model: Model
+    unknowns: Sequence[Unknown]
+    catalogue: Catalogue
+
+    def __post_init__(self) -> None:
+        self.centre, self.sd = np.array([u.centre for u in self.unknowns]), np.array([u.sd for u in self.unknowns])
+        self.box = (np.array([[u.lo, u.hi] for u in self.unknowns]).T - self.centre) / self.sd
+        self.scale = np.ones(1)
+
+    def values(self, z: np.ndarray) -> list[float]:
+        return list((self.centre + self.sd * z).tolist())
+
+    def off(self, z: np.ndarray) -> np.ndarray:
+        """(W, K, 4) errors of all predictions, zero where nothing was measured."""
+        time = float(self.model.ship.scale("time"))
+        model = with_values(self.model, self.unknowns, self.values(z), self.catalogue)
+        parts = []
+        for t in self.tracks:
+            off = misses(t, model.without_inputs(t.missing())[0], HORIZON * time, LEADS, STRIDE * time)
+            parts.append(np.nan_to_num(off[..., SEEN]).transpose(1, 0, 2))
+        return np.concatenate(parts)
+
+    def weigh(self, z: np.ndarray) -> np.ndarray:
+        """Sets the usual size of an error, by lead and channel, as it is at z; neighbouring predictions share most of theirs."""
+        off = np.abs(self.off(z))
+        usual = 1.4826 * np.median(off, axis=0)
+        self.scale = np.maximum(usual, 1e-9) * np.sqrt(len(SEEN) * LEADS * HORIZON / STRIDE)
+        return off
+
+    def residual(self, z: np.ndarray) -> np.ndarray:
+        """One error in units of its usual size; what is far off counts as eight times that, no more."""
+        return (self.off(z) / self.scale).clip(-8.0, 8.0).ravel()
+
+    def cost(self, residual: np.ndarray, z: np.ndarray) -> float:
+        return 0.5 * float(residual @ residual) + 0.5 * float(z @ z)
+
+
+def rolled_out(tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue) -> Model:
+    """The model whose core leads the ship most nearly where she went, begun from `model` or from the unknowns' centres."""
+    problem = _Problem(tracks, model, unknowns, catalogue)
+    here = (np.array([float(getattr(model.ship.derivatives, u.name)) for u in unknowns]) - problem.centre) / problem.sd
+    starts = [here, np.zeros_like(here)]
+    problem.weigh(starts[0])
+    z = min(starts, key=lambda start: problem.cost(problem.residual(start), start))
+    for _ in range(ROUNDS):
+        problem.weigh(z)
+        before = problem.cost(problem.residual(z), z)
+        z, after = _descend(problem, z)
+        if after > (1.0 - LEAST) * before:
+            break
+    return with_values(model, unknowns, problem.values(z), catalogue)
+
+
+def _descend(problem: _Problem, z: np.ndarray) -> tuple[np.ndarray, float]:
+    """One step of Levenberg and Marquardt, inside the boxes; z itself when no step is better."""
+    r = problem.residual(z)
+    best = problem.cost(r, z)
+    J = np.empty((r.size, z.size))
+    for j in range(z.size):
+        step = np.zeros_like(z)
+        step[j] = STEP if z[j] + STEP <= problem.box[1, j] else -STEP
+        J[:, j] = (problem.residual(z + step) - r) / step[j]
+    JJ, pull = J.T @ J + np.eye(z.size), J.T @ r + z
+    for damping in np.geomspace(0.01, 100.0, TRIES):
+        new = np.clip(z - np.linalg.solve(JJ + damping * np.diag(np.diag(JJ)), pull), *problem.box)
+        cost = problem.cost(problem.residual(new), new)
+        if cost < best:
+            return new, cost
+    return z, best
