@@ -16,6 +16,7 @@ from .import_voyage import write_json
 from .jsonable import plain
 from .leftover import quiet
 from .manoeuvres import next_manoeuvre
+from .overtime import over_time
 from .read import read_voyage
 from .refine import Found
 from .search import search
@@ -56,6 +57,12 @@ def diagnose(
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
     candidates = [_candidate(case, weighed, found, name, w.effects[name]) for name in likely]
+    if w.best.effects and w.best.effects in found:
+        progress("asking each part of the voyages")
+        parts = over_time(case, found[w.best.effects], w.best.effects)
+        for c in candidates:
+            if c.get("effect") in parts:
+                c["over_time"] = parts[c["effect"]]
     result = {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,

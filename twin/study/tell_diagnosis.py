@@ -3,6 +3,7 @@
 from typing import Any
 
 from .effects import INPUTS
+from .overtime import changes
 
 
 def told(result: dict[str, Any]) -> list[str]:
@@ -53,6 +54,9 @@ def _candidate(c: dict[str, Any]) -> list[str]:
         f"          {c['error_horizon_s']:.0f} s error  {c['error_without']:.3g} m without, {c['error_with']:.3g} m with it, "
         "on parts not used for the fit"
     )
+    if changes(c.get("over_time", ())):
+        lines.append("          not the same all the time (1 = the size above):")
+        lines += [_part(p) for p in c["over_time"]]
     if c["cannot_be_told_from"]:
         lines.append(f"          not told from {', '.join(c['cannot_be_told_from'])}")
     return lines
@@ -61,6 +65,14 @@ def _candidate(c: dict[str, Any]) -> list[str]:
 def _channel(name: str) -> str:
     """What an owner calls it: the column he would record."""
     return INPUTS.get(name, name)
+
+
+def _part(p: dict[str, Any]) -> str:
+    return f"            {p['voyage']} {_clock(p['start_s'])} to {_clock(p['end_s'])}  {p['share']:>6.2f} +- {p['sd']:.2f}"
+
+
+def _clock(seconds: float) -> str:
+    return f"{int(seconds) // 60:>4d}:{int(seconds) % 60:02d}"
 
 
 def _force(force: dict[str, float]) -> str:

@@ -1,0 +1,58 @@
+"""Whether a named effect was there all the time: how strong each part of the voyages says it is, as a share of what all say together.
+
+A rope in the propeller, a ballast tank that was filled, a gear that failed under way: the effect is named rightly, and its size over the
+whole voyage is an average that it never had. Each part has its own core and instruments (the reference voyages' knowledge of them),
+so a part in which the effect does not show says little and does so with a wide interval.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from .case import Case
+from .evidence import reduce
+from .innovations import innovate
+from .refine import Found, about
+
+PARTS = 4  # at most; a part holds whole segments of the filter
+FORM = 0.25  # a share that differs by so much is the form of the effect, not its time
+CLEAR = 4.0  # standard deviations by which two parts must differ
+
+
+def over_time(case: Case, found: Found, names: Sequence[str]) -> dict[str, list[dict[str, Any]]]:
+    """For each of these effects of the hypothesis: voyage, start_s, end_s, share and its standard deviation, part by part."""
+    mine = np.array([i for i, u in enumerate(case.effects) if u.owner in found.hypothesis.effects], dtype=int)
+    at = np.zeros(len(case.effects))
+    at[mine] = found.posterior.z[mine]
+    lines = about(case, at, mine, [case.effects[i] for i in mine])[1]
+    normal = innovate(lines, case.worlds([found.hypothesis.world], found.doubt))[0]
+    directions = np.array([np.where([u.owner == name for u in case.effects], at, 0.0) for name in names])
+    out: dict[str, list[dict[str, Any]]] = {name: [] for name in names}
+    for rows in _parts([track for track, _, _ in normal.where]):
+        keep = np.isin(np.arange(len(normal.where)), rows)
+        part = reduce(normal.only(keep), case.nuisance, case.unknowns, case.effects, case.temper, at)
+        A = directions @ part.A @ directions.T + 1e-6 * np.eye(len(names))
+        share, sd = 1.0 + np.linalg.solve(A, directions @ part.b), np.sqrt(np.diag(np.linalg.inv(A)))
+        (i, a, _), (_, _, b) = normal.where[rows[0]], normal.where[rows[-1]]
+        track = case.tracks[i]
+        place = {"voyage": track.name, "start_s": float(track.t[a]), "end_s": float(track.t[b - 1])}
+        for name, s, e in zip(names, share, sd, strict=True):
+            out[name].append(place | {"share": float(s), "sd": float(e)})
+    return out
+
+
+def _parts(voyage: Sequence[int]) -> list[np.ndarray]:
+    """Segments in groups that follow each other, of one voyage each."""
+    of, most = np.array(voyage), max(1, PARTS // len(set(voyage)))
+    rows = [np.flatnonzero(of == i) for i in dict.fromkeys(voyage)]
+    return [part for r in rows for part in np.array_split(r, min(most, r.size))]
+
+
+def changes(parts: Sequence[dict[str, Any]]) -> bool:
+    """Whether the parts clearly disagree about the effect's size."""
+    if len(parts) < 2:
+        return False
+    share, sd = (np.array([p[key] for p in parts]) for key in ("share", "sd"))
+    apart = np.abs(share[:, None] - share) - FORM
+    return bool((apart > CLEAR * np.hypot(sd[:, None], sd)).any())
