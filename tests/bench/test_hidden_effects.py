@@ -99,6 +99,8 @@ def test_three_short_voyages_go_through_the_whole_league(tmp_path, capsys):
         "Current",
         "--duration",
         "450",
+        "--references",
+        "3",
         "--jobs",
         "1",
         "--kind",

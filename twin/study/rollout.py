@@ -54,12 +54,10 @@ class _Problem:
             parts.append(np.nan_to_num(off[..., SEEN]).transpose(1, 0, 2))
         return np.concatenate(parts)
 
-    def weigh(self, z: np.ndarray) -> np.ndarray:
+    def weigh(self, z: np.ndarray) -> None:
         """Sets the usual size of an error, by lead and channel, as it is at z; neighbouring predictions share most of theirs."""
-        off = np.abs(self.off(z))
-        usual = 1.4826 * np.median(off, axis=0)
+        usual = 1.4826 * np.median(np.abs(self.off(z)), axis=0)
         self.scale = np.maximum(usual, 1e-9) * np.sqrt(len(SEEN) * LEADS * HORIZON / STRIDE)
-        return off
 
     def residual(self, z: np.ndarray) -> np.ndarray:
         """One error in units of its usual size; what is far off counts as eight times that, no more."""
