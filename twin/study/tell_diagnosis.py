@@ -6,6 +6,9 @@ from .effects import INPUTS
 from .overtime import changes
 
 
+NEAR = 0.5  # probability from which an effect is told as the nearest one when none explains the voyages
+
+
 def told(result: dict[str, Any]) -> list[str]:
     """Lines for the terminal."""
     lines = [sentence(result), ""]
@@ -36,7 +39,9 @@ def sentence(result: dict[str, Any]) -> str:
     if result["verdict"] == "nothing_missing":
         return "Nothing is missing: what the model cannot explain is no more than it left unexplained on good voyages."
     if result["verdict"] == "unknown":
-        return "Something is missing, but none of the effects I know explains it."
+        near = [c["effect"] for c in result["candidates"] if c["probability"] >= NEAR]
+        nearest = f" Nearest, but not enough: {' with '.join(near)}." if near else ""
+        return f"Something is missing, but none of the effects I know explains it.{nearest}"
     return "Undecided: these voyages cannot tell what, if anything, is missing."
 
 
