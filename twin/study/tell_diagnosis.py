@@ -5,7 +5,6 @@ from typing import Any
 from .effects import INPUTS
 from .overtime import changes
 
-
 NEAR = 0.5  # probability from which an effect is told as the nearest one when none explains the voyages
 
 
