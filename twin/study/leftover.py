@@ -11,7 +11,7 @@ import numpy as np
 
 from .case import WORLDS, Case
 from .evidence import posterior
-from .refine import Found, about
+from .refine import Found, standing
 
 RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
@@ -27,10 +27,7 @@ def quiet(case: Case, found: Found) -> bool:
         return False
     if world.flow > 1.0 or any(np.nanmedian(t.weather["H_s"]) > SEA * case.model.ship.L_pp for t in case.tracks if "H_s" in t.weather):
         return True
-    mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen], dtype=int)
-    at = np.zeros(len(case.effects))
-    at[mine] = found.posterior.z[mine]
-    lines = about(case, at, mine, [case.effects[i] for i in mine])[1]
+    lines, at = standing(case, found)
     floors = [replace(case.floor, white=float(k) * case.white, doubt=found.doubt) for k in FACTORS]
     says = np.array([posterior(r, chosen).log_evidence for r in case.reduced(lines, floors, at)])
     return bool(says[FACTORS >= RESTLESS].max() < says[FACTORS < RESTLESS].max() + CLEAR)

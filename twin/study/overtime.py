@@ -13,7 +13,7 @@ import numpy as np
 from .case import Case
 from .evidence import reduce
 from .innovations import innovate
-from .refine import Found, about
+from .refine import Found, standing
 
 PARTS = 4  # at most; a part holds whole segments of the filter
 FORM = 0.25  # a share that differs by so much is the form of the effect, not its time
@@ -22,10 +22,7 @@ CLEAR = 4.0  # standard deviations by which two parts must differ
 
 def over_time(case: Case, found: Found, names: Sequence[str]) -> dict[str, list[dict[str, Any]]]:
     """For each of these effects of the hypothesis: voyage, start_s, end_s, share and its standard deviation, part by part."""
-    mine = np.array([i for i, u in enumerate(case.effects) if u.owner in found.hypothesis.effects], dtype=int)
-    at = np.zeros(len(case.effects))
-    at[mine] = found.posterior.z[mine]
-    lines = about(case, at, mine, [case.effects[i] for i in mine])[1]
+    lines, at = standing(case, found)
     normal = innovate(lines, case.worlds([found.hypothesis.world], found.doubt))[0]
     directions = np.array([np.where([u.owner == name for u in case.effects], at, 0.0) for name in names])
     out: dict[str, list[dict[str, Any]]] = {name: [] for name in names}

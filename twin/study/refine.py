@@ -118,3 +118,10 @@ def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown])
         lines.append(replace(new, A=A, R=R, doubted=moved, slack=line.slack))
     return model, lines
 
+
+def standing(case: Case, found: Found) -> tuple[list[Linear], np.ndarray]:
+    """The tracks linearised where a hypothesis was found to stand, and that place, in prior widths."""
+    mine = np.array([i for i, u in enumerate(case.effects) if u.owner in found.hypothesis.effects], dtype=int)
+    at = np.zeros(len(case.effects))
+    at[mine] = _boxed(case, found.posterior.z)[mine]
+    return about(case, at, mine, [case.effects[i] for i in mine])[1], at

@@ -1,0 +1,24 @@
+"""What is left under the best explanation, beside what the reference voyages left."""
+
+from dataclasses import replace
+
+import pytest
+
+from twin.study.assemble import assemble
+from twin.study.leftover import quiet
+from twin.study.search import search
+
+
+@pytest.fixture(scope="module")
+def judged(tanker, voyages):
+    case = assemble([voyages["RudderWear"]], tanker)
+    return case, search(case)[1][("RudderWear",)]
+
+
+def test_under_its_true_cause_a_ship_is_as_quiet_as_on_her_reference_voyages(judged):
+    assert quiet(*judged)
+
+
+def test_a_world_with_a_larger_floor_is_no_explanation(judged):
+    case, found = judged
+    assert not quiet(case, replace(found, hypothesis=replace(found.hypothesis, world="rough")))
