@@ -89,6 +89,14 @@ def test_a_fault_that_moves_no_track_is_judged_by_the_instrument_it_touches(sail
     assert made.result["parameters"]["SpeedLogScale"]["scale"]["value"] == pytest.approx(-0.08, abs=0.01)
 
 
+def test_a_log_of_one_axis_is_judged_by_the_axis_it_has(sailed, make, kvlcc2):
+    """The scale of a log touches the drift through the water too, which most ships do not measure."""
+    whole = make(find("SpeedLogScale").absent(kvlcc2).but(scale=-0.08))
+    one = whole.with_rows(whole.time_s, {k: x for k, x in whole.columns.items() if k != "sway_velocity_through_water_mps"})
+    made = add(kvlcc2, [find("SpeedLogScale")], [sailed(one)])
+    assert made.fall.proved and "sway_velocity_through_water_mps" not in made.fall.measure
+
+
 def test_two_effects_are_fitted_together(sailed, make, kvlcc2):
     hidden = [find("Current").absent(kvlcc2).but(east=0.5), find("HullFouling").absent(kvlcc2).but(extra=0.4)]
     made = add(kvlcc2, [find("Current"), find("HullFouling")], [sailed(make(*hidden, seed=k, name=str(k))) for k in range(2)])
