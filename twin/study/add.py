@@ -18,7 +18,7 @@ from .adding import ahead, can_be_judged, fitted, thirds
 from .import_voyage import write_json
 from .jsonable import plain
 from .openloop import HORIZONS_S
-from .proof import Fall, by_regime, fall, ladder
+from .proof import Fall, by_regime, fall, judged_at, ladder
 from .sailed import Sailed, floor_of, read_all
 from .track import Track
 
@@ -62,7 +62,8 @@ def add(
     rows = ladder(before, after, HORIZONS_S, structural)
     if not rows:
         raise DataError(f"{', '.join(t.name for t in held)}: too short to judge by. Give another voyage with --held-out.")
-    proof = fall(before, after, rows[-1]["horizon_s"])
+    horizon_s = judged_at(before, [row["horizon_s"] for row in rows], ship)
+    proof = fall(before, after, horizon_s)
     result = {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
@@ -79,7 +80,7 @@ def add(
             "high95": proof.high95,
         },
         "horizons": rows,
-        "where": by_regime(before, after, rows[-1]["horizon_s"], ship, structural),
+        "where": by_regime(before, after, horizon_s, ship, structural),
         "voyages": [s.provenance() for s in sailed],
         "held_out": [s.provenance() for s in held_out] or [s.provenance() | {"part": "last third"} for s in sailed],
         "notes": notes(ship, found, sailed, held_out),

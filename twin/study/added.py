@@ -16,8 +16,8 @@ from .sailed import Sailed
 
 def verdict(result: dict[str, Any], proof: Fall) -> str:
     """The first sentence: did it fall, from what to what."""
-    names, row = " and ".join(result["added"]), result["horizons"][-1]
-    floor = row["noise_floor"]["position_mae_m"]
+    names = " and ".join(result["added"])
+    floor = next(row["noise_floor"]["position_mae_m"] for row in result["horizons"] if row["horizon_s"] == proof.horizon_s)
     noise = f" (noise: {floor:.2g} m)" if proof.unit == "m" else ""
     sizes = f"{proof.before:.3g} to {proof.after:.3g} {proof.unit}{noise}"
     if proof.proved:

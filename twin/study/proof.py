@@ -18,13 +18,14 @@ from .openloop import MODEL, SENSORS, Windows
 from .track import MEASURED
 
 FEWEST = 2.0  # windows that do not overlap, below which nothing can be proved
+ENOUGH, LENGTHS = 10.0, 3.0  # windows from which a horizon can prove something; and it sails so many ship lengths
 RESAMPLES = 2000
 UNCHANGED = 1e-6  # [m, rad] predictions of the position nearer than this are the same
 
 
 @dataclass(frozen=True)
 class Fall:
-    """`measure`: what was judged, in `unit`; mean error at the longest horizon; low95, high95: interval of after - before."""
+    """`measure`: what was judged, in `unit`; mean error at the horizon; low95, high95: interval of after - before."""
 
     measure: str
     unit: str
@@ -33,6 +34,7 @@ class Fall:
     low95: float
     high95: float
     windows: int
+    horizon_s: float
 
     @property
     def proved(self) -> bool:
@@ -42,6 +44,15 @@ class Fall:
         change = f"{self.after - self.before:+.3g} ({self.low95:+.2g} to {self.high95:+.2g})"
         sizes = f"{self.before:.4g} -> {self.after:.4g} {self.unit}"
         return f"{self.measure} {sizes}, change {change} on {self.windows} held-out windows"
+
+
+def judged_at(before: Sequence[Windows], horizons_s: Sequence[float], ship: Ship) -> float:
+    """The longest horizon of which the voyages hold enough windows that do not overlap, but none so short that she hardly moves;
+    the longest of all where none has. Two minutes are three lengths of a tanker and 20 lengths of a boat, whose voyage may hold
+    five of them."""
+    least = LENGTHS * float(ship.scale("time"))
+    enough = [h for h in horizons_s if h >= least and sum(w.valid[w.at(h)].sum() / _block(w, h) for w in before) >= ENOUGH]
+    return max(enough, default=max(horizons_s))
 
 
 def fall(before: Sequence[Windows], after: Sequence[Windows], horizon_s: float) -> Fall:
@@ -60,7 +71,7 @@ def fall(before: Sequence[Windows], after: Sequence[Windows], horizon_s: float) 
             f"at least {FEWEST:g} are needed. Give a longer voyage, or another one with --held-out."
         )
     low, high = _interval(_bootstrap(changes, blocks), float((a - b).mean()), independent)
-    return Fall(measure, unit, float(b.mean()), float(a.mean()), float(low), float(high), b.size)
+    return Fall(measure, unit, float(b.mean()), float(a.mean()), float(low), float(high), b.size, horizon_s)
 
 
 def _interval(means: np.ndarray, middle: float, independent: float) -> tuple[float, float]:

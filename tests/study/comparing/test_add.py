@@ -11,8 +11,8 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load, to_table
 from twin.study.add import add
-from twin.study.openloop import predict
-from twin.study.proof import fall
+from twin.study.openloop import HORIZONS_S, predict
+from twin.study.proof import fall, judged_at
 from twin.study.track import track
 from twin.study.write import write_voyage
 
@@ -152,6 +152,13 @@ def test_five_minutes_are_too_short_to_prove_anything(verb, on_disk, make, tmp_p
     words = ("--ship", "kvlcc2", "--voyage", on_disk(make(seconds=300.0)), "-o", tmp_path / "s.toml")
     assert verb("add", "Current", *words) == 4
     assert "--held-out" in capsys.readouterr().err and not (tmp_path / "s.toml").exists()
+
+
+def test_a_short_voyage_is_judged_nearer_ahead_when_the_ship_is_small(make, kvlcc2):
+    """700 s hold six times two minutes, of which a boat sails 90 lengths and a tanker three; and eleven times one minute."""
+    windows = [predict(track(make(seconds=700.0), kvlcc2), Model.of(kvlcc2), HORIZONS_S)]
+    assert judged_at(windows, HORIZONS_S, load("usv")) == 60.0
+    assert judged_at(windows, HORIZONS_S, kvlcc2) == 120.0
 
 
 def test_few_windows_make_a_wide_interval():
