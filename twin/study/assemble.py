@@ -12,7 +12,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 
 from .case import ODDS, ODDS_MEASURED, Case, settle
-from .columns import Unknown, effect_unknowns, lateness_unknowns
+from .columns import FORM, Unknown, effect_unknowns, lateness_unknowns
 from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, temper_of
 from .respond import respond
@@ -41,7 +41,7 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     candidates = judgeable(tracks, model, catalogue)
     effects = tuple(u for name in candidates for u in effect_unknowns(catalogue[name], model))
     nuisance = nuisance_unknowns(model, catalogue)
-    core = [u for u in nuisance if u.owner == "core"]
+    core = [u for u in nuisance if u.owner in ("core", FORM)]
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
     floor, temper = stored_floor(ship) or Floor(), float(ship.notes.get("structural", {}).get("temper", TEMPER))
@@ -52,7 +52,7 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
             progress("finding the structural floor")
             floor = structural_floor(lines, nuisance)
         temper = temper_of(innovate(lines, [floor])[0], nuisance)
-        known = from_references(lines, nuisance, floor, temper)
+        known, _ = from_references(lines, nuisance, floor, temper)
     else:
         known = from_ship(model, nuisance)
     progress("linearising")

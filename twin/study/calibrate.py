@@ -142,13 +142,14 @@ def _usual(ship: Ship, tracks: Sequence[Track], known: dict[str, type[Effect]], 
     model = Model.of(ship)
     unknowns = nuisance_unknowns(model, known)
     lines = [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
-    nuisance = from_references(lines, unknowns, floor, temper, np.array([_prior(u, ship).centre for u in unknowns]))
+    nuisance, between = from_references(lines, unknowns, floor, temper, np.array([_prior(u, ship).centre for u in unknowns]))
     sd = np.array([u.sd for u in unknowns])
     covariance = np.linalg.inv(nuisance.information)
     return {
         "labels": [u.label for u in unknowns],
         "offset": [float(v) for v in sd * (covariance @ nuisance.pull)],
         "covariance": [[float(c) for c in row] for row in covariance * np.outer(sd, sd)],
+        "between_voyages": between,
     }
 
 
@@ -160,7 +161,7 @@ def _told_usual(ship: Ship, usual: dict[str, Any]) -> list[dict[str, Any]]:
     return [
         {"name": label, "value": float(v), "sd": float(s)}
         for label, v, s in zip(usual["labels"], usual["offset"], sd, strict=True)
-        if not label.startswith("core.") and abs(v) > 4.0 * s and can[label][0] <= v <= can[label][1]
+        if not label.startswith(("core.", "form.")) and abs(v) > 4.0 * s and can[label][0] <= v <= can[label][1]
     ]
 
 

@@ -13,6 +13,7 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES
 
+from . import form
 from .respond import respond
 from .track import Track
 
@@ -38,12 +39,18 @@ FIXED = ("t", "w", "C_L", "x_R", "epsilon")  # scale other derivatives one for o
 
 
 LATE = "late"  # owner of the instruments' usual lateness: a column, but no part of any model
+FORM = "form"  # owner of what the core leaves out of calm water (form.py): the same
 LATENESS = {"log": [6, 7], "compass": [2], "gyro": [5]}  # instrument -> its readings
 
 
 def lateness_unknowns() -> list[Unknown]:
     """How late each instrument usually is [s]; satellite positions have SensorDelay."""
     return [Unknown(LATE, name, "s", 0.0, 0.15, -1.0, 3.0) for name in LATENESS]
+
+
+def form_unknowns() -> list[Unknown]:
+    """How much of each term that the core does not have a ship may have [prime units]."""
+    return [Unknown(FORM, name, "", 0.0, sd, -10.0 * sd, 10.0 * sd) for name, sd in form.TERMS.items()]
 
 
 def core_unknowns(model: Model) -> list[Unknown]:
@@ -83,6 +90,9 @@ def columns(
             late = LATENESS[unknown.name]
             R[:, late, j] = -np.gradient(reading[:, late], track.h, axis=0)
             continue
+        if unknown.owner == FORM:
+            A[:, :, j], R[:, :, j] = form.accelerations(track, model, unknown.name), form.readings(track, model, unknown.name)
+            continue
         if unknown.owner != "core" and missing.intersection(catalogue[unknown.owner].needs):
             continue  # without its input the effect does nothing on this track
         here = (at or {}).get(unknown.label)
@@ -101,7 +111,7 @@ def _step(unknown: Unknown, here: float | None) -> float:
 
 def changed(model: Model, unknown: Unknown, value: float, catalogue: dict[str, type[Effect]]) -> Model:
     """The model with one number changed; an effect that is not in it yet is put in at null first."""
-    if unknown.owner == LATE:
+    if unknown.owner in (LATE, FORM):
         return model
     if unknown.owner == "core":
         return Model(model.ship.with_derivatives(**{unknown.name: value}), model.effects)

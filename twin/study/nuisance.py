@@ -8,7 +8,8 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 
-from .columns import Unknown, core_unknowns, effect_unknowns, lateness_unknowns
+from .between import scattered, ship_of, voyages
+from .columns import Unknown, core_unknowns, effect_unknowns, form_unknowns, lateness_unknowns
 from .evidence import Nuisance
 from .innovations import Floor, Linear, Normal, innovate
 
@@ -30,22 +31,27 @@ def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknow
 
 
 def nuisance_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
-    """Core derivatives, what a healthy ship usually shows of every lasting effect, and how late her instruments are."""
+    """Core derivatives and what they leave out, what a healthy ship usually shows of every lasting effect, and how late her instruments are."""
     usual = (replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue))
-    return (*core_unknowns(model), *usual, *lateness_unknowns())
+    return (*core_unknowns(model), *form_unknowns(), *usual, *lateness_unknowns())
 
 
 def from_references(
     lines: Sequence[Linear], unknowns: tuple[Unknown, ...], floor: Floor, temper: float, prior: np.ndarray | None = None
-) -> Nuisance:
-    """Prior and reference voyages together (`lines` linearised with exactly these unknowns, in this order).
+) -> tuple[Nuisance, dict[str, float]]:
+    """Prior and reference voyages together (`lines` linearised with exactly these unknowns, in this order), as they concern the next
+    voyage; and by what share of their priors' widths numbers differ from one voyage to another.
 
     `prior` (C,): prior means where they are not the unknowns' centres.
     """
-    A, b, _ = innovate(lines, [floor])[0].total()
     sd = np.array([u.sd for u in unknowns])
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
-    return Nuisance(unknowns, A * np.outer(sd, sd) / temper + np.eye(sd.size), b * sd / temper + pull)
+    told = voyages(innovate(lines, [floor])[0], sd, temper)
+    scatter = scattered(told, pull)
+    mean, covariance = ship_of(told, scatter, pull)
+    information = np.linalg.inv(covariance + np.diag(scatter))
+    between = {u.label: float(np.sqrt(s)) for u, s in zip(unknowns, scatter, strict=True) if s}
+    return Nuisance(unknowns, information, information @ mean), between
 
 
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:

@@ -1,0 +1,69 @@
+"""What differs from voyage to voyage, on voyages that are drawn from known ships."""
+
+import numpy as np
+import pytest
+
+from twin.study.between import Told, scattered, ship_of
+
+P, SAID = 6, 400.0  # numbers, and how much a voyage says of each (in priors)
+
+
+def fleet(scatter, voyages, seed):
+    """Voyages of one ship whose numbers are scattered about hers by `scatter` (P,) prior widths."""
+    rng = np.random.default_rng(seed)
+    hers, out = rng.standard_normal(P), []
+    for _ in range(voyages):
+        root = rng.standard_normal((3 * P, P)) * np.sqrt(SAID / (3 * P))
+        e = root @ (hers + scatter * rng.standard_normal(P)) + rng.standard_normal(3 * P)
+        out.append(Told(root.T @ root, root.T @ e, float(e @ e)))
+    return hers, out
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_voyages_of_one_ship_do_not_differ(seed):
+    _, told = fleet(np.zeros(P), 6, seed)
+    assert not scattered(told, np.zeros(P)).any()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_the_number_that_differs_is_found_and_no_other(seed):
+    scatter = np.zeros(P)
+    scatter[2] = 0.8
+    found = scattered(fleet(scatter, 8, seed)[1], np.zeros(P))
+    assert np.flatnonzero(found).tolist() == [2]
+    assert 0.3 < np.sqrt(found[2]) < 1.7
+
+
+def test_a_single_voyage_says_nothing_of_the_next():
+    assert not scattered(fleet(np.ones(P), 1, 0)[1], np.zeros(P)).any()
+
+
+def test_the_ships_own_numbers_are_known_no_better_than_their_scatter_over_the_voyages():
+    scatter = np.full(P, 0.5)
+    hers, told = fleet(scatter, 8, 1)
+    mean, covariance = ship_of(told, scatter**2, np.zeros(P))
+    sd = np.sqrt(np.diag(covariance))
+    assert (sd > 0.4 * 0.5 / np.sqrt(8)).all() and (np.abs(mean - hers) < 3.5 * sd).all()
+    sure = np.sqrt(np.diag(ship_of(told, np.zeros(P), np.zeros(P))[1]))
+    assert (sd > 4.0 * sure).all()
+
+
+def test_log_probability_is_that_of_the_readings_with_the_numbers_integrated_out():
+    rng = np.random.default_rng(3)
+    root, e = rng.standard_normal((9, P)), rng.standard_normal(9)
+    mean, square = rng.standard_normal(P), rng.standard_normal((P, P))
+    covariance = square @ square.T
+    spread = root @ covariance @ root.T + np.eye(9)
+    off = e - root @ mean
+    straight = -0.5 * (off @ np.linalg.solve(spread, off) + np.linalg.slogdet(spread)[1])
+    assert Told(root.T @ root, root.T @ e, float(e @ e)).log_probability(mean, covariance) == pytest.approx(straight)
+
+
+def test_its_slope_by_each_variance_is_the_difference_quotient():
+    rng = np.random.default_rng(4)
+    root, e = rng.standard_normal((9, P)), rng.standard_normal(9)
+    told, mean, covariance = Told(root.T @ root, root.T @ e, float(e @ e)), rng.standard_normal(P), 0.3 * np.eye(P)
+    slope, _ = told.score(mean, covariance)
+    for i in range(P):
+        up, down = (covariance + s * 1e-5 * np.diag(np.eye(P)[i]) for s in (1.0, -1.0))
+        assert (told.log_probability(mean, up) - told.log_probability(mean, down)) / 2e-5 == pytest.approx(slope[i], rel=1e-4)

@@ -1,0 +1,70 @@
+"""What the core leaves out of calm water, as columns."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from twin.physics.model import Model
+from twin.study import form
+from twin.study.columns import columns, form_unknowns
+from twin.study.nuisance import nuisance_unknowns
+from twin.study.track import track
+
+MIRROR = np.array([1.0, -1.0, -1.0])  # X, Y, N of a ship seen in a mirror
+
+
+@pytest.fixture(scope="module")
+def sailed(tanker, voyages):
+    return track(voyages["calm"], tanker), Model.of(tanker)
+
+
+def mirrored(t):
+    state = t.state * np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
+    return replace(t, state=state, delta=-t.delta, weather=dict(t.weather) | {"phi": -t.weather["phi"]})
+
+
+@pytest.mark.parametrize("name", [n for n in form.TERMS if n != form.HEIGHT])
+def test_every_term_pushes_a_mirrored_ship_the_mirrored_way(sailed, name):
+    t, model = sailed
+    here = form.accelerations(t, model, name)
+    assert np.abs(here).max() > 0.0
+    assert form.accelerations(mirrored(t), model, name) == pytest.approx(here * MIRROR)
+
+
+def test_a_receiver_high_above_the_axis_of_roll_is_carried_aside(sailed):
+    t, model = sailed
+    phi = 0.1 * np.sin(0.02 * t.t)
+    rolling = replace(t, weather=dict(t.weather) | {"phi": phi})
+    x, y, *_, v = form.readings(rolling, model, form.HEIGHT)[5:-5, :5].T
+    heading = t.state[5:-5, 2]
+    assert np.cos(heading) * y - np.sin(heading) * x == pytest.approx(phi[5:-5] * model.ship.B, abs=1e-3 * model.ship.B)
+    assert v == pytest.approx(0.002 * np.cos(0.02 * t.t[5:-5]) * model.ship.B, rel=0.02, abs=1e-4)
+
+
+def test_without_a_measured_heel_its_terms_are_nothing(sailed):
+    t, model = sailed
+    blind = replace(t, weather={k: w for k, w in t.weather.items() if k != "phi"})
+    for name in ("Y_phi", "N_p", "N_pdot"):
+        assert not form.accelerations(blind, model, name).any()
+    assert not form.readings(blind, model, form.HEIGHT).any()
+
+
+def test_the_cubic_terms_are_what_a_published_polynomial_has_and_the_modulus_form_has_not():
+    """KVLCC2 by Yasukawa & Yoshimura (2015): sway and yaw of the hull, fitted with the core's terms and with these beside them."""
+    v, r = (a.ravel() for a in np.meshgrid(np.linspace(-0.4, 0.4, 21), np.linspace(-0.7, 0.7, 21)))
+    u = np.sqrt(1.0 - v * v)
+    Y = -0.315 * v + 0.083 * r - 1.607 * v**3 + 0.379 * v * v * r - 0.391 * v * r * r + 0.008 * r**3
+    modulus = np.stack([v, u * v, u * r, abs(v) * v, abs(v) * r, abs(r) * v, abs(r) * r], 1)
+    a = form.Along(v, r, 0 * v, 0 * v, 0 * v)
+    cubic = np.stack([term(a) for axis, _, term in form.HULL.values() if axis == "Y"], 1)
+    left = [np.linalg.norm(Y - c @ np.linalg.lstsq(c, Y, rcond=None)[0]) for c in (modulus, np.hstack([modulus, cubic]))]
+    assert left[1] < 0.01 * left[0]
+
+
+def test_they_are_nuisance_and_change_no_model(sailed):
+    t, model = sailed
+    mine = [u for u in nuisance_unknowns(model, {}) if u.owner == "form"]
+    assert mine == form_unknowns()
+    A, R = columns(t, model, mine, {})
+    assert A.shape == (len(t), 3, len(form.TERMS)) and R.shape == (len(t), 8, len(form.TERMS))

@@ -1,0 +1,103 @@
+"""What the core leaves out of calm water: terms of higher order, and of the heel, each a column of its own and no part of any model.
+
+A hull in Norrbin's modulus form is a good one to predict with, and not the truth. What it leaves out has the same sign all through
+a voyage, so that a diagnosis would sooner or later take it for an effect. Reference voyages tell how much of each term this ship
+has; what they leave open is kept in mind when another voyage is judged.
+
+Forms: cubic hull and its scale, Yasukawa & Yoshimura (2015); wake that thins with drift, ibid.; heel, Son & Nomoto (1981).
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.physics import core
+from twin.physics.model import Model
+
+from .respond import lagged
+from .track import READINGS, Track
+
+SLOWEST = 0.01  # of U_0: a speed to divide by, however slow the ship
+ROLLED = 0.15  # of L/U_0: window over which the measured heel is smoothed before its rates are taken
+
+
+@dataclass(frozen=True)
+class Along:
+    """One track in prime units: what the terms are made of, each (N,)."""
+
+    v: np.ndarray  # v/U
+    r: np.ndarray  # r L/U
+    phi: np.ndarray  # rad; zero where heel was not measured
+    p: np.ndarray  # its rate, by L/U_0
+    p_dot: np.ndarray
+
+
+Term = Callable[[Along], np.ndarray]
+
+HULL: dict[str, tuple[str, float, Term]] = {  # name: axis, prior width, times 1/2 rho L T U^2 (and L)
+    "X_vvvv": ("X", 0.5, lambda a: a.v**4),
+    "Y_vvv": ("Y", 0.8, lambda a: a.v**3),
+    "Y_vvr": ("Y", 0.4, lambda a: a.v**2 * a.r),
+    "Y_vrr": ("Y", 0.4, lambda a: a.v * a.r**2),
+    "Y_rrr": ("Y", 0.05, lambda a: a.r**3),
+    "N_vvv": ("N", 0.15, lambda a: a.v**3),
+    "N_vvr": ("N", 0.3, lambda a: a.v**2 * a.r),
+    "N_vrr": ("N", 0.15, lambda a: a.v * a.r**2),
+    "N_rrr": ("N", 0.03, lambda a: a.r**3),
+    "Y_phi": ("Y", 0.05, lambda a: a.phi),
+    "Y_p": ("Y", 0.05, lambda a: a.p),
+    "Y_pdot": ("Y", 0.05, lambda a: a.p_dot),
+    "N_phi": ("N", 0.02, lambda a: a.phi),
+    "N_p": ("N", 0.02, lambda a: a.p),
+    "N_pdot": ("N", 0.02, lambda a: a.p_dot),
+}
+RUDDER: dict[str, tuple[float, Term]] = {  # name: prior width, times the rudder's force by its angle alone
+    "q_vv": (1.0, lambda a: a.v**2),
+    "q_rr": (1.0, lambda a: a.r**2),
+}
+HEIGHT = "z_antenna"  # of the satellite receiver above the axis of roll [B]
+TERMS = {name: width for name, (_, width, _) in HULL.items()} | {name: width for name, (width, _) in RUDDER.items()} | {HEIGHT: 0.5}
+
+
+def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
+    """(N, 3) [m/s2, m/s2, rad/s2] of one unit of a term."""
+    ship, a, zero = model.ship, _along(track, model), np.zeros(len(track))
+    if name in HULL:
+        axis, _, term = HULL[name]
+        force = 0.5 * ship.rho * ship.L_pp * ship.T * _speed(track, model) ** 2 * term(a)
+        tau = {"X": (force, zero, zero), "Y": (zero, force, zero), "N": (zero, zero, force * ship.L_pp)}[axis]
+    elif name in RUDDER:
+        u, delta = track.state[:, 3], lagged(track, model)
+        alone = core.rudder(u, zero, zero, delta, core.thrust(u, track.n, model.c), model.c)
+        tau = tuple(part * RUDDER[name][1](a) for part in alone)  # type: ignore[assignment]
+    else:
+        return np.zeros((len(track), 3))
+    return np.column_stack([np.broadcast_to(x, zero.shape) for x in core.accelerations(*tau, model.c)])
+
+
+def readings(track: Track, model: Model, name: str) -> np.ndarray:
+    """(N, 8) of one unit of a term: a receiver above the axis of roll is carried aside by heel."""
+    out = np.zeros((len(track), 8))
+    if name == HEIGHT:
+        a, B, psi = _along(track, model), float(model.ship.B), track.state[:, 2]
+        out[:, READINGS.index("x")], out[:, READINGS.index("y")] = -np.sin(psi) * a.phi * B, np.cos(psi) * a.phi * B
+        out[:, READINGS.index("v")] = a.p / float(model.ship.scale("time")) * B
+    return out
+
+
+def _speed(track: Track, model: Model) -> np.ndarray:
+    return np.sqrt(track.state[:, 3] ** 2 + track.state[:, 4] ** 2 + (SLOWEST * model.ship.U_0) ** 2)
+
+
+def _along(track: Track, model: Model) -> Along:
+    U, time = _speed(track, model), float(model.ship.scale("time"))
+    phi = _smooth(track.weather["phi"], ROLLED * time / track.h) if "phi" in track.weather else np.zeros(len(track))
+    p = np.gradient(phi, track.h) * time
+    return Along(track.state[:, 4] / U, track.state[:, 5] * model.ship.L_pp / U, phi, p, np.gradient(p, track.h) * time)
+
+
+def _smooth(values: np.ndarray, steps: float) -> np.ndarray:
+    """Under a Hann window about so many steps wide at half its height."""
+    window = np.hanning(2 * max(1, round(steps)) + 1)
+    return np.convolve(values, window, "same") / np.convolve(np.ones(values.size), window, "same")
