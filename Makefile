@@ -21,8 +21,8 @@ lint: $(VENV)/.development  ## ruff
 types: $(VENV)/.development  ## mypy on public signatures
 	$(BIN)/mypy
 
-tests: $(VENV)/.development  ## pytest
-	$(BIN)/python -m pytest
+tests: $(VENV)/.development  ## pytest, on all cores (at most four: what tests share is made once in each process)
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile
 
 bench: $(VENV)/.development  ## the budget: 12 ms and 48 MB
 	$(BIN)/twin-bench --steps 10000

@@ -1,6 +1,51 @@
-"""For all rooms: what hypothesis draws is the same in every run, and how long it takes is no verdict."""
+"""For all rooms: what hypothesis draws is the same in every run, and how long it takes is no verdict; and who works beside whom
+when several processes share the tests (`make tests`).
 
+A file is the work of one process, so what its tests share is made once; the long work begins first, so that all processes end
+together. The mark `xdist_group` would say the same beside the tests, but pytest 9.2 does not hear it.
+"""
+
+import pytest
 from hypothesis import settings
 
 settings.register_profile("shiptwin", deadline=None, derandomize=True)
 settings.load_profile("shiptwin")
+
+# They measure time, run the loop at its real-time priority or listen at the default port: one process has them all, one after the other.
+BY_THE_CLOCK = (
+    "bench/test_tick.py", "deploy/test_zenoh.py", "live/test_bus.py", "live/test_clock.py", "live/test_demo.py", "live/test_realtime.py",
+    "live/test_record.py", "live/test_record_faults.py", "live/test_recover.py", "live/test_run.py", "test_house.py", "test_readme.py",
+)  # fmt: skip
+SAME_VOYAGES = "study/finding/"  # sailed once for the folder: half a minute
+LONG = ("study/test_first_hour.py", "bench/test_paper.py", "bench/test_hidden_effects.py", "deploy/test_install.py")
+FIRST = ("by the clock", SAME_VOYAGES, *LONG)
+
+
+def work(nodeid):
+    """Which piece of work a test belongs to; a process takes whole pieces."""
+    name = nodeid.partition("::")[0].removeprefix("tests/")
+    return "by the clock" if name in BY_THE_CLOCK else SAME_VOYAGES if name.startswith(SAME_VOYAGES) else name
+
+
+def pytest_collection_modifyitems(config, items):
+    if hasattr(config, "workerinput"):  # alone, the order is pytest's own
+        place = {name: i for i, name in enumerate(FIRST)}
+        items.sort(key=lambda item: place.get(work(item.nodeid), len(FIRST)))
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config, log):
+    if config.getvalue("dist") != "loadfile":
+        return None
+    from xdist.scheduler import LoadFileScheduling
+
+    gone = [name for name in (*BY_THE_CLOCK, SAME_VOYAGES, *LONG) if not (config.rootpath / "tests" / name).exists()]
+    if gone:
+        raise pytest.UsageError(f"tests/conftest.py names what is not there: {', '.join(gone)}")
+
+    class Scheduling(LoadFileScheduling):
+        def _split_scope(self, nodeid):
+            return work(nodeid)
+
+    config.option.loadscopereorder = False  # which would begin with the files that have the most tests
+    return Scheduling(config, log)
