@@ -56,7 +56,7 @@ class Derivatives:
     w: Number = number(0.35, "-", 0.0, 0.6, "wake fraction at the propeller")
     epsilon: Number = number(1.05, "-", 0.4, 2.5, "rudder inflow over propeller inflow", sd=0.1)
     kappa: Number = number(0.5, "-", 0.0, 1.5, "share of the slipstream's gain that the rudder feels", sd=0.15)
-    C_L: Number = number(2.6, "-", 0.5, 6.5, "slope of the rudder's normal force [1/rad]")
+    C_L: Number = number(2.6, "-", 0.5, 10.0, "slope of the rudder's normal force [1/rad], on the area that is known", sd=0.8)
     t_R: Number = number(0.35, "-", -0.5, 0.9, "steering resistance deduction", sd=0.15)
     a_H: Number = number(0.3, "-", -0.2, 1.2, "increase of the side force by the hull", sd=0.1)
     x_R: Number = number(-0.5, "L", -0.65, 0.65, "rudder ahead of midship")

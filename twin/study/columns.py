@@ -35,7 +35,7 @@ class Unknown:
         return f"{self.owner}.{self.name}"
 
 
-FIXED = ("t", "w", "C_L", "x_R", "epsilon")  # scale other derivatives one for one: the data cannot tell them apart
+FIXED = ("t", "w", "x_R", "epsilon")  # scale other derivatives one for one: the data cannot tell them apart
 
 
 LATE = "late"  # owner of the instruments' usual lateness: a column, but no part of any model

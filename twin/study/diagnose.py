@@ -14,6 +14,7 @@ from .assemble import assemble, unjudged_because
 from .case import Case
 from .import_voyage import write_json
 from .jsonable import plain
+from .led import held_out_error, horizon_s
 from .leftover import quiet
 from .manoeuvres import next_manoeuvre
 from .overtime import over_time
@@ -21,7 +22,7 @@ from .read import read_voyage
 from .refine import Found
 from .search import search
 from .tell_diagnosis import sentence, told
-from .verdict import alike, excites, held_out_error, horizon_s, judge, parameters, shows, typical_force, weights
+from .verdict import alike, excites, judge, parameters, shows, typical_force, weights
 from .voyage import Voyage
 
 SCHEMA_VERSION = 1
@@ -85,15 +86,14 @@ def _candidate(case: Case, weighed: Sequence[Any], found: dict[tuple[str, ...], 
     if not sets:
         return {}
     best = found[sets[0]]
-    without, with_ = held_out_error(case, best)
     return {
         "effect": name,
         "probability": probability,
         "parameters": parameters(case, best.posterior, name),
         "typical_force": typical_force(case, best.model, name),
         "error_horizon_s": horizon_s(case.tracks[0], case.model),
-        "error_without": without,
-        "error_with": with_,
+        "error_without": found[()].off_m,
+        "error_with": held_out_error(case, best) if np.isnan(best.off_m) else best.off_m,
         "together_with": [n for n in best.hypothesis.effects if n != name],
         "cannot_be_told_from": alike(case, weighed, name),
         "says": (case.catalogue[name].__doc__ or "").strip().splitlines()[0],

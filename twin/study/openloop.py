@@ -91,9 +91,8 @@ def predict(
     return Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
 
 
-def misses(track: Track, model: Model, horizon_s: float, leads: int, stride_s: float) -> np.ndarray:
-    """(K, W, 8) promise minus measurement of the model alone, NaN where not valid: `predict` without its noise floors, and
-    in steps of L/U_0 over COARSE, as a fit asks for thousands of them."""
+def coarse(track: Track, model: Model, horizon_s: float, leads: int, stride_s: float = STRIDE_S) -> Windows:
+    """Run the model alone: `predict` without its noise floors, and in steps of L/U_0 over COARSE, as a fit asks for thousands."""
     steps = max(1, int(float(model.ship.scale("time")) / COARSE / track.h))
     lead = steps * np.unique(np.linspace(0.0, horizon_s / track.h / steps, leads + 1)[1:].round().clip(1).astype(int))
     measured = seen(track)
@@ -102,7 +101,7 @@ def misses(track: Track, model: Model, horizon_s: float, leads: int, stride_s: f
     with np.errstate(all="ignore"):
         kept = _Run(track, model, start, wind_to, None).through(tuple(state[start].T), lead, steps)
     promised = np.nan_to_num(kept, nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)
-    return Windows(track, start, lead, promised[None], _valid(track, measured, start, lead), measured).off()
+    return Windows(track, start, lead, promised[None], _valid(track, measured, start, lead), measured)
 
 
 def _leads(track: Track, horizons_s: Sequence[float], count: int) -> np.ndarray:

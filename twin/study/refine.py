@@ -32,6 +32,7 @@ class Found:
     posterior: Posterior
     model: Model
     doubt: float = 0.0  # share of its own force that may be something else
+    off_m: float = float("nan")  # held-out position error, when it was asked (led.py)
 
 
 def refine(case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[str]) -> tuple[Found, list[Hypothesis]]:

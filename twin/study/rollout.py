@@ -16,7 +16,7 @@ from twin.physics.model import Model
 
 from .columns import Unknown, with_values
 from .fit import Catalogue
-from .openloop import misses
+from .openloop import coarse
 from .track import Track
 
 HORIZON, LEADS = 3.0, 3  # ship lengths ahead, looked at so often on the way
@@ -50,7 +50,7 @@ class _Problem:
         model = with_values(self.model, self.unknowns, self.values(z), self.catalogue)
         parts = []
         for t in self.tracks:
-            off = misses(t, model.without_inputs(t.missing())[0], HORIZON * time, LEADS, STRIDE * time)
+            off = coarse(t, model.without_inputs(t.missing())[0], HORIZON * time, LEADS, STRIDE * time).off()
             parts.append(np.nan_to_num(off[..., SEEN]).transpose(1, 0, 2))
         return np.concatenate(parts)
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from .case import ODDS_WEAK, WORLDS, Case
 from .evidence import Hypothesis, Reduced, posterior, weigh_all
+from .led import Led, led
 from .refine import Found, Sets, refine
 
 MOST = 2  # effects at once
@@ -39,7 +40,9 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
             break
         progress("judging " + " + ".join(chosen) + " about its own size")
         book.judge(chosen)
-    return book.proved(), book.found, seen
+    progress("asking where each would have led her")
+    asked = led(case, book.found)
+    return book.proved(asked), book.found | dict(asked.found), seen
 
 
 def visible(reduced: Reduced, name: str) -> bool:
@@ -70,10 +73,11 @@ class _Book:
     def weighed(self) -> list[Hypothesis]:
         return sorted(self.entries.values(), key=lambda h: -h.log_weight)
 
-    def proved(self) -> list[Hypothesis]:
-        """The same without those that would win unjudged, when the rounds did not suffice."""
-        best = max(f.hypothesis.log_weight for f in self.found.values())
-        return [h for h in self.weighed() if h.effects in self.found or h.log_weight <= best]
+    def proved(self, asked: Led) -> list[Hypothesis]:
+        """The same with the evidence of the path, and without those that would win unjudged."""
+        weighed = asked.weigh(self.weighed())
+        best = max(h.log_weight for h in weighed if h.effects in self.found)
+        return [h for h in weighed if h.effects in self.found or h.log_weight <= best]
 
     def _promising(self) -> list[Sets]:
         """The single effects that explain something, best first; none when the plain answer is that nothing is there."""

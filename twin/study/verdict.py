@@ -7,16 +7,11 @@ import numpy as np
 
 from twin.physics.model import Model
 
-from .case import MOST_SEGMENTS, WORLDS, Case
-from .columns import with_values
-from .evidence import Hypothesis, Posterior, posterior, probabilities, reduce
+from .case import WORLDS, Case
+from .evidence import Hypothesis, Posterior, probabilities
 from .excitation import manoeuvred
-from .innovations import innovate
 from .nuisance import SURROUNDINGS
-from .openloop import predict
-from .refine import Found
 from .respond import respond
-from .track import Track
 
 SURE = 0.8  # probability from which an effect is named
 LOST = 0.5  # probability of something unknown from which no name is given
@@ -24,7 +19,6 @@ SURE_TOO = 0.9  # another beside it when that is nearly certain: of two forms th
 FORM = 0.1  # how far from the truth a size may be because nature writes the effect otherwise, as a share of it
 ACQUITTED = 0.8  # probability from which nothing is said to be missing
 ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
-HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
 
 
 @dataclass(frozen=True)
@@ -118,42 +112,3 @@ def typical_force(case: Case, model: Model, name: str) -> dict[str, float]:
     c = model.c
     X, Y, N = np.sqrt(total / max(count, 1)) * (float(c.m_u), float(c.m_v), float(c.m_r))
     return {"X_N": float(X), "Y_N": float(Y), "N_Nm": float(N)}
-
-
-def held_out_error(case: Case, found: Found) -> tuple[float, float]:
-    """Mean position error [m] after HORIZON_S (a small boat: HORIZON_LENGTHS) without and with the effects, each half of the
-    segments predicted with the parameters that the other half asks for."""
-    lines = case.lines
-    chosen = found.hypothesis.effects
-    mine = [i for i, u in enumerate(case.effects) if u.owner in chosen]
-    normal = innovate(lines, case.worlds([found.hypothesis.world]), MOST_SEGMENTS)[0]
-    half = np.arange(len(normal.where)) % 2
-    sums = np.zeros((2, 2))
-    for side in (0, 1):
-        part = reduce(normal.only(half != side), case.nuisance, case.unknowns, case.effects, case.temper) if half.any() else None
-        z = posterior(part, chosen).z if part is not None else found.posterior.z
-        values = [case.effects[i].centre + case.effects[i].sd * z[i] for i in mine]
-        model = with_values(case.model, [case.effects[i] for i in mine], values, case.catalogue)
-        for i, track in enumerate(case.tracks):
-            mine_here = [(a, b) for (t, a, b), s in zip(normal.where, half, strict=True) if t == i and s == side]
-            for k, m in enumerate((case.model, model)):
-                error, n = _error(track, m.without_inputs(track.missing())[0], mine_here)
-                sums[k] += error, n
-    return float(sums[0, 0] / max(sums[0, 1], 1)), float(sums[1, 0] / max(sums[1, 1], 1))
-
-
-def horizon_s(track: Track, model: Model) -> float:
-    """How far ahead a held-out part of this track is predicted [s]."""
-    return min(HORIZON_S, HORIZON_LENGTHS * float(model.ship.scale("time")), 0.25 * float(track.t[-1]))
-
-
-def _error(track: Track, model: Model, stretches: list[tuple[int, int]]) -> tuple[float, int]:
-    """Sum of position errors over windows that start in these stretches, and their number."""
-    horizon = horizon_s(track, model)
-    windows = predict(track, model, [horizon], leads=1)
-    k = windows.at(horizon)
-    inside = np.zeros(windows.start.size, bool)
-    for a, b in stretches:
-        inside |= (windows.start >= a) & (windows.start < b)
-    ok = inside & windows.valid[k]
-    return float(windows.errors()["position"][k][ok].sum()), int(ok.sum())

@@ -7,7 +7,7 @@ from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation
 from twin.study.columns import core_unknowns
-from twin.study.openloop import misses
+from twin.study.openloop import coarse
 from twin.study.rollout import HORIZON, rolled_out
 from twin.study.track import READINGS, Track
 from twin.study.trial import shaft_speed
@@ -34,7 +34,7 @@ def sailed(model: Model, lengths: float = 40.0) -> Track:
 
 def miss(track: Track, model: Model) -> float:
     time = float(model.ship.scale("time"))
-    return float(np.nanmean(np.hypot(*misses(track, model, HORIZON * time, 1, time)[-1, :, :2].T)))
+    return float(np.nanmean(np.hypot(*coarse(track, model, HORIZON * time, 1, time).off()[-1, :, :2].T)))
 
 
 @pytest.fixture(scope="module")

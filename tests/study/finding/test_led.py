@@ -1,0 +1,70 @@
+"""Where a hypothesis leads the ship, beside where she went."""
+
+import numpy as np
+import pytest
+
+from twin.study.assemble import assemble
+from twin.study.evidence import Hypothesis
+from twin.study.led import LUXURY, Led, held_out_error, horizon_s, led
+from twin.study.refine import Found
+from twin.study.search import search
+from twin.study.verdict import weights
+
+TEN = 10.0  # windows that do not overlap
+
+
+def asked(**off_m):
+    """What a few hypotheses were off by [m] at a floor of 8 m in the usual world and of 16 m in a rough one."""
+    sets = {tuple(n for n in name.split("_") if n != "nothing"): off for name, off in off_m.items()}
+    found = {s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off) for s, off in sets.items()}
+    return Led(found, {"usual": 8.0, "rough": 16.0}, TEN)
+
+
+def says(*effects, world="usual"):
+    return Hypothesis(effects, world, -100.0, -1.0)
+
+
+def test_what_is_no_farther_off_than_noise_and_structure_would_be_is_not_judged_by_it():
+    path = asked(nothing=20.0, Wind=7.9, Bank=3.0)
+    assert path.log_probability(says("Wind")) == path.log_probability(says("Bank")) == 0.0
+
+
+def test_what_goes_astray_loses_by_how_far_and_how_often():
+    path = asked(nothing=20.0, Wind=16.0)
+    assert path.log_probability(says("Wind")) == pytest.approx(-2.0 * TEN * np.log(2.0))
+    assert path.log_probability(says("Wind", world="rough")) == 0.0
+    assert path.log_probability(says()) < path.log_probability(says("Wind"))
+
+
+def test_a_hypothesis_that_was_not_asked_leads_as_well_as_the_best_part_of_it():
+    path = asked(nothing=20.0, Wind=12.0, Bank=40.0)
+    assert path.log_probability(says("Wind", "Bank")) == path.log_probability(says("Wind"))
+    assert path.log_probability(says("Loading")) == path.log_probability(says())
+
+
+def test_a_pair_that_was_asked_is_not_excused_by_its_better_half():
+    path = asked(nothing=20.0, Wind=7.0, Wind_Bank=20.0)
+    assert path.log_probability(says("Wind", "Bank")) == path.log_probability(says())
+
+
+def test_a_second_effect_costs_more_where_one_leads_her_there_and_nothing_where_none_does():
+    pair, none = says("Wind", "Bank"), says()
+    for path, cost in ((asked(nothing=20.0, Wind=7.0, Wind_Bank=7.0), LUXURY), (asked(nothing=20.0, Wind=15.0, Wind_Bank=7.0), 0.0)):
+        weighed = {h.effects: h.log_evidence for h in path.weigh([none, pair])}
+        assert weighed["Wind", "Bank"] == pytest.approx(pair.log_evidence - cost)
+
+
+def test_the_best_come_first():
+    order = [h.effects for h in asked(nothing=30.0, Wind=8.0).weigh([says(), says("Wind")])]
+    assert order == [("Wind",), ()]
+
+
+def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker, voyages):
+    case = assemble([voyages["RudderWear"]], tanker)
+    weighed, found, _ = search(case)
+    assert weights(case, weighed).best.effects == ("RudderWear",)
+    assert found["RudderWear",].off_m < 0.7 * found[()].off_m
+    path = led(case, found)
+    assert path.windows == pytest.approx(case.tracks[0].t[-1] / horizon_s(case.tracks[0], case.model))
+    assert path.log_probability(found["RudderWear",].hypothesis) > path.log_probability(found[()].hypothesis)
+    assert held_out_error(case, found[()]) == pytest.approx(found[()].off_m)

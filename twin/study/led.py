@@ -1,0 +1,98 @@
+"""Whether a hypothesis would also have led the ship where she went: a second witness beside the readings one step ahead.
+
+One step ahead, a hypothesis is judged by what is fast; a little misfit of the core, repeated at every step, may then decide between
+two causes that explain the voyages nearly alike. Run free from measured states over parts it was not fitted to, a wrong cause goes
+astray where the true one does not. What noise and structure would do to a true model anyway says nothing.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from twin.physics.model import Model
+
+from .case import MOST_SEGMENTS, WORLDS, Case
+from .columns import with_values
+from .evidence import Hypothesis, posterior, reduce
+from .innovations import Floor, innovate
+from .openloop import MODEL, STRUCTURE, Windows, coarse, predict
+from .refine import Found, Sets, standing
+from .track import Track
+
+HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
+LUXURY = 10.0  # log odds against a second effect that the path does not ask for: of two forms that are only roughly right, one mends the other
+REACH = 60.0  # log odds behind the best up to which a hypothesis is asked
+
+
+@dataclass(frozen=True)
+class Led:
+    """How far from the measured path each hypothesis ended, and what noise and structure alone would have made of it."""
+
+    found: Mapping[Sets, Found]  # with `off_m`; "nothing" is among them
+    floor: Mapping[str, float]  # [m], by world
+    windows: float  # that do not overlap
+
+    def log_probability(self, h: Hypothesis) -> float:
+        """Of the path under a hypothesis; one that was not asked leads no worse than the best part of it that was."""
+        own, floor = self.found.get(h.effects), self.floor[h.world]
+        error = own.off_m if own else min(f.off_m for s, f in self.found.items() if set(s) <= set(h.effects))
+        return -2.0 * self.windows * float(np.log(max(error, floor) / floor))  # two directions, a normal error of unknown size
+
+    def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
+        """The same hypotheses with this evidence too, best first. Where one effect leads her there, two are a luxury."""
+        one = any(len(s) == 1 and f.off_m <= self.floor[f.hypothesis.world] for s, f in self.found.items())
+        extra = (self.log_probability(h) - LUXURY * (one and len(h.effects) > 1) for h in weighed)
+        return sorted((replace(h, log_evidence=h.log_evidence + e) for h, e in zip(weighed, extra, strict=True)), key=lambda h: -h.log_weight)
+
+
+def led(case: Case, found: Mapping[Sets, Found]) -> Led:
+    """Run nothing and every hypothesis that could still be the answer over the held-out parts."""
+    best = max(f.hypothesis.log_weight for f in found.values())
+    asked = {s: replace(f, off_m=held_out_error(case, f)) for s, f in found.items() if not s or f.hypothesis.log_weight > best - REACH}
+    by_share = {share: _usual(case, case.floor.scaled(share)) for share in {w.share for w in WORLDS.values()}}
+    windows = sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks)
+    return Led(asked, {name: by_share[w.share] for name, w in WORLDS.items()}, windows)
+
+
+def horizon_s(track: Track, model: Model) -> float:
+    """How far ahead a held-out part of this track is predicted [s]."""
+    return min(HORIZON_S, HORIZON_LENGTHS * float(model.ship.scale("time")), 0.25 * float(track.t[-1]))
+
+
+def held_out_error(case: Case, found: Found) -> float:
+    """Mean position error [m] with the effects of a hypothesis, each half of the segments predicted with the parameters that the
+    other half asks for, about where the hypothesis stands."""
+    chosen = found.hypothesis.effects
+    lines, at = standing(case, found)
+    mine = [i for i, u in enumerate(case.effects) if u.owner in chosen]
+    normal = innovate(lines, case.worlds([found.hypothesis.world], found.doubt), MOST_SEGMENTS)[0]
+    half = np.arange(len(normal.where)) % 2
+    total, count = 0.0, 0
+    for side in (0, 1):
+        part = reduce(normal.only(half != side), case.nuisance, case.unknowns, case.effects, case.temper, at) if half.any() else None
+        z = posterior(part, chosen).z if part is not None else found.posterior.z
+        values = [case.effects[i].centre + case.effects[i].sd * z[i] for i in mine]
+        model = with_values(case.model, [case.effects[i] for i in mine], values, case.catalogue)
+        for i, track in enumerate(case.tracks):
+            windows = coarse(track, model.without_inputs(track.missing())[0], horizon_s(track, case.model), leads=1)
+            inside = np.zeros(windows.start.size, bool)
+            for t, a, b in (w for w, s in zip(normal.where, half, strict=True) if s == side):
+                inside |= (t == i) & (windows.start >= a) & (windows.start < b)
+            errors = _errors(windows, MODEL)[inside]
+            total, count = total + float(np.nansum(errors)), count + int(np.isfinite(errors).sum())
+    return total / max(count, 1)
+
+
+def _usual(case: Case, floor: Floor) -> float:
+    """Mean position error [m] of a model that is as good as this floor."""
+    errors = []
+    for track in case.tracks:
+        model = case.model.without_inputs(track.missing())[0]
+        errors.append(_errors(predict(track, model, [horizon_s(track, case.model)], leads=1, floor=floor), STRUCTURE))
+    return max(float(np.nanmean(np.concatenate(errors))), 1e-9)
+
+
+def _errors(windows: Windows, run: int) -> np.ndarray:
+    """(W,) position errors at the end of each window, NaN where there is none."""
+    return np.where(windows.valid[-1], windows.errors(run)["position"][-1], np.nan)
