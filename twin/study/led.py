@@ -22,6 +22,7 @@ from .track import Track
 
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
 LUXURY = 10.0  # log odds against a second effect that the path does not ask for: of two forms that are only roughly right, one mends the other
+MOST = 40.0  # windows that count: what the core misses is the same in all of them, and more of the same tells no more
 REACH = 60.0  # log odds behind the best up to which a hypothesis is asked
 
 
@@ -31,7 +32,7 @@ class Led:
 
     found: Mapping[Sets, Found]  # with `off_m`; "nothing" is among them
     floor: Mapping[str, float]  # [m], by world
-    windows: float  # that do not overlap
+    windows: float  # that do not overlap, and no more than MOST
 
     def log_probability(self, h: Hypothesis) -> float:
         """Of the path under a hypothesis; one that was not asked leads no worse than the best part of it that was."""
@@ -50,9 +51,9 @@ def led(case: Case, found: Mapping[Sets, Found]) -> Led:
     """Run nothing and every hypothesis that could still be the answer over the held-out parts."""
     best = max(f.hypothesis.log_weight for f in found.values())
     asked = {s: replace(f, off_m=held_out_error(case, f)) for s, f in found.items() if not s or f.hypothesis.log_weight > best - REACH}
-    by_share = {share: _usual(case, case.floor.scaled(share)) for share in {w.share for w in WORLDS.values()}}
-    windows = sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks)
-    return Led(asked, {name: by_share[w.share] for name, w in WORLDS.items()}, windows)
+    floors = zip(WORLDS, case.worlds(list(WORLDS)), strict=True)
+    windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
+    return Led(asked, {name: _usual(case, floor) for name, floor in floors}, windows)
 
 
 def horizon_s(track: Track, model: Model) -> float:
