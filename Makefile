@@ -21,8 +21,9 @@ lint: $(VENV)/.development  ## ruff
 types: $(VENV)/.development  ## mypy on public signatures
 	$(BIN)/mypy
 
-tests: $(VENV)/.development  ## pytest, on all cores (at most four: what tests share is made once in each process)
-	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile
+tests: $(VENV)/.development  ## pytest: what is inside its budget, alone; then the rest on all cores, four at most
+	$(BIN)/python -m pytest tests/bench/test_tick.py
+	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile --ignore tests/bench/test_tick.py
 
 bench: $(VENV)/.development  ## the budget: 12 ms and 48 MB
 	$(BIN)/twin-bench --steps 10000
