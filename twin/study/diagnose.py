@@ -53,7 +53,8 @@ def diagnose(
     w = weights(case, weighed)
     pair = found.get(w.best.effects) if len(w.best.effects) > 1 else None
     explained = pair is None or quiet(case, pair)
-    verdict, missing = judge(weighed, w, excited=excites(case), sharp=shows(seen), explained=explained)
+    like = {name: alike(case, weighed, name) for name in w.best.effects}
+    verdict, missing = judge(weighed, w, like, excited=excites(case), sharp=shows(seen), explained=explained)
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
@@ -165,8 +166,10 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _next_command(args: argparse.Namespace, result: dict[str, Any]) -> str:
-    if result["missing"]:
-        return f"twin add {' '.join(result['missing'])} --ship {args.ship} --voyage {' '.join(args.voyages)} -o better.toml"
+    voyages, sail = " ".join(args.voyages), ""
     if result["next_manoeuvre"]:
-        return f"sail {result['next_manoeuvre']['manoeuvre']}, then twin diagnose with that voyage too"
-    return f"twin compare {' '.join(args.voyages)} --ship {args.ship} --report compare.html"
+        sail = f"sail {result['next_manoeuvre']['manoeuvre']}, then twin diagnose with that voyage too"
+    if result["missing"]:
+        add = f"twin add {' '.join(result['missing'])} --ship {args.ship} --voyage {voyages} -o better.toml"
+        return f"{sail}; or now: {add}" if sail else add
+    return sail or f"twin compare {voyages} --ship {args.ship} --report compare.html"

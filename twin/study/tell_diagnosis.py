@@ -29,11 +29,11 @@ def sentence(result: dict[str, Any]) -> str:
     by_name = {c["effect"]: c for c in result["candidates"]}
     if result["verdict"] == "missing":
         first = by_name[result["missing"][0]]
-        names = " and ".join(f"{n} ({by_name[n]['probability']:.0%})" for n in result["missing"])
+        names = " and ".join(_likely(by_name, n) for n in result["missing"])
         force = first["typical_force"]
         size = f" Typically {_force(force)}." if _force(force) else ""
-        rivals = first["cannot_be_told_from"]
-        doubt = f" These voyages cannot tell it from {', '.join(rivals)}." if rivals else ""
+        rivals = [_likely(by_name, n) for n in first["cannot_be_told_from"]]
+        doubt = f" These voyages cannot tell it from {' or '.join(rivals)}." if rivals else ""
         return f"Missing: {names}. {first['says']}{size}{doubt}"
     if result["verdict"] == "nothing_missing":
         return "Nothing is missing: what the model cannot explain is no more than it left unexplained on good voyages."
@@ -42,6 +42,11 @@ def sentence(result: dict[str, Any]) -> str:
         nearest = f" Nearest, but not enough: {' with '.join(near)}." if near else ""
         return f"Something is missing, but none of the effects I know explains it.{nearest}"
     return "Undecided: these voyages cannot tell what, if anything, is missing."
+
+
+def _likely(by_name: dict[str, Any], name: str) -> str:
+    """A name with its probability, where that is known."""
+    return f"{name} ({by_name[name]['probability']:.0%})" if name in by_name else name
 
 
 def _candidate(c: dict[str, Any]) -> list[str]:

@@ -1,6 +1,6 @@
 """From weighed hypotheses to an answer: missing, nothing missing, unknown or undecided, with numbers an engineer can check."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ from .nuisance import SURROUNDINGS
 from .respond import respond
 
 SURE = 0.8  # probability from which an effect is named
+SURE_GROUP = 0.95  # and from which one is named with those that these voyages cannot tell it from: one of them is there
 LOST = 0.5  # probability of something unknown from which no name is given
 SURE_TOO = 0.9  # another beside it when that is nearly certain: of two forms that are only roughly right, one may mend the other
 FORM = 0.1  # how far from the truth a size may be because nature writes the effect otherwise, as a share of it
@@ -57,14 +58,20 @@ def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
     return out
 
 
+def one_of(weighed: Sequence[Hypothesis], names: Sequence[str]) -> float:
+    """Probability that at least one of these effects is there."""
+    return float(sum(p for h, p in zip(weighed, probabilities(weighed), strict=True) if set(names) & set(h.effects)))
+
+
 def judge(
-    weighed: Sequence[Hypothesis], w: Weights, *, excited: bool = True, sharp: bool = True, explained: bool = True
-) -> tuple[str, list[str]]:
-    """The verdict, and the effects to add, first the one that explains most. Voyages without a manoeuvre decide nothing (`excited`);
-    those that would not have shown most effects acquit nobody (`sharp`); what the best hypothesis leaves over is unknown
-    (`explained`)."""
+    weighed: Sequence[Hypothesis], w: Weights, like: Mapping[str, Sequence[str]], *, excited: bool = True, sharp: bool = True,
+    explained: bool = True,
+) -> tuple[str, list[str]]:  # fmt: skip
+    """The verdict, and the effects to add, first the one that explains most. One that others could stand in for (`like`) is named
+    when one of them is surely there. Voyages without a manoeuvre decide nothing (`excited`); those that would not have shown most
+    effects acquit nobody (`sharp`); what the best hypothesis leaves over is unknown (`explained`)."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
-    named = [n for n in w.best.effects if w.effects[n] >= SURE]
+    named = [n for n in w.best.effects if w.effects[n] >= SURE or one_of(weighed, [n, *like[n]]) >= SURE_GROUP]
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
     named = [n for i, n in enumerate(named) if i == 0 or w.effects[n] >= SURE_TOO]
     if not excited:

@@ -1,5 +1,7 @@
 """From weights to words: when something is named, when the ship is acquitted, and when the answer is that nobody can tell."""
 
+import math
+
 import pytest
 
 from twin.study.evidence import Hypothesis
@@ -9,12 +11,22 @@ from twin.study.verdict import Weights, judge
 def verdict(effects=(), nothing=0.0, unknown=0.0, how=(), **sure):
     best = Hypothesis(tuple(effects), "usual", 0.0, 0.0)
     singles = [Hypothesis((name,), "usual", -float(i), 0.0) for i, name in enumerate(effects)]
-    return judge([best, *singles], Weights(nothing, unknown, sure, best), **dict.fromkeys(how, False))
+    nobody = Hypothesis((), "usual", 0.0, 0.0)  # alone is never sure: it is there with the probability of `best`
+    return judge([best, *singles, nobody], Weights(nothing, unknown, sure, best), dict.fromkeys(effects, ()), **dict.fromkeys(how, False))
 
 
 def test_what_is_there_with_odds_of_four_to_one_is_named_and_what_is_less_likely_is_not():
     assert verdict(["HullFouling"], nothing=0.15, HullFouling=0.85) == ("missing", ["HullFouling"])
     assert verdict(["HullFouling"], nothing=0.4, HullFouling=0.6) == ("undecided", [])
+
+
+@pytest.mark.parametrize("nothing, answer", [(0.01, ("missing", ["RudderOffset"])), (0.2, ("undecided", []))])
+def test_one_of_two_that_cannot_be_told_apart_is_named_when_one_of_them_is_surely_there(nothing, answer):
+    chances = {("RudderOffset",): 0.55 - nothing, ("PropellerWalk",): 0.45, (): nothing}
+    weighed = [Hypothesis(effects, "usual", math.log(p), 0.0) for effects, p in chances.items()]
+    w = Weights(nothing, 0.0, {"RudderOffset": 0.55 - nothing, "PropellerWalk": 0.45}, weighed[0])
+    assert judge(weighed, w, {"RudderOffset": ["PropellerWalk"]}) == answer
+    assert judge(weighed, w, {"RudderOffset": []}) == ("undecided", [])
 
 
 def test_a_second_effect_is_named_only_when_it_is_nearly_certain():
