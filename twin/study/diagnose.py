@@ -15,7 +15,7 @@ from .case import Case
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import quiet
+from .leftover import explains
 from .manoeuvres import next_manoeuvre
 from .overtime import over_time
 from .read import read_voyage
@@ -51,8 +51,7 @@ def diagnose(
     case = assemble(voyages, ship, references, progress)
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed)
-    pair = found.get(w.best.effects) if len(w.best.effects) > 1 else None
-    explained = pair is None or quiet(case, pair)
+    explained = not w.best.effects or explains(case, found[w.best.effects])
     like = {name: alike(case, weighed, name) for name in w.best.effects}
     verdict, missing = judge(weighed, w, like, excited=excites(case), sharp=shows(seen), explained=explained)
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]

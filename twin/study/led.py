@@ -23,6 +23,7 @@ from .track import Track
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
 LUXURY = 10.0  # log odds against a second effect that the path does not ask for: of two forms that are only roughly right, one mends the other
 MOST = 40.0  # windows that count: what the core misses is the same in all of them, and more of the same tells no more
+FORM = 0.1  # share of what an effect does to the path that its form may miss
 REACH = 60.0  # log odds behind the best up to which a hypothesis is asked
 
 
@@ -36,13 +37,13 @@ class Led:
 
     def log_probability(self, h: Hypothesis) -> float:
         """Of the path under a hypothesis; one that was not asked leads no worse than the best part of it that was."""
-        own, floor = self.found.get(h.effects), self.floor[h.world]
+        own, floor = self.found.get(h.effects), _floor(h, self.floor, self.found[()].off_m)
         error = own.off_m if own else min(f.off_m for s, f in self.found.items() if set(s) <= set(h.effects))
         return -2.0 * self.windows * float(np.log(max(error, floor) / floor))  # two directions, a normal error of unknown size
 
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The same hypotheses with this evidence too, best first. Where one effect leads her there, two are a luxury."""
-        one = any(len(s) == 1 and f.off_m <= self.floor[f.hypothesis.world] for s, f in self.found.items())
+        one = any(len(s) == 1 and f.off_m <= f.floor_m for s, f in self.found.items())
         extra = (self.log_probability(h) - LUXURY * (one and len(h.effects) > 1) for h in weighed)
         return sorted((replace(h, log_evidence=h.log_evidence + e) for h, e in zip(weighed, extra, strict=True)), key=lambda h: -h.log_weight)
 
@@ -50,10 +51,17 @@ class Led:
 def led(case: Case, found: Mapping[Sets, Found]) -> Led:
     """Run nothing and every hypothesis that could still be the answer over the held-out parts."""
     best = max(f.hypothesis.log_weight for f in found.values())
-    asked = {s: replace(f, off_m=held_out_error(case, f)) for s, f in found.items() if not s or f.hypothesis.log_weight > best - REACH}
+    off = {s: held_out_error(case, f) for s, f in found.items() if not s or f.hypothesis.log_weight > best - REACH}
     floors = zip(WORLDS, case.worlds(list(WORLDS)), strict=True)
+    floor = {name: _usual(case, floor) for name, floor in floors}
+    asked = {s: replace(found[s], off_m=m, floor_m=_floor(found[s].hypothesis, floor, off[()])) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
-    return Led(asked, {name: _usual(case, floor) for name, floor in floors}, windows)
+    return Led(asked, floor, windows)
+
+
+def _floor(h: Hypothesis, floor: Mapping[str, float], nothing_m: float) -> float:
+    """How far off a true hypothesis may be [m]: nature writes an effect otherwise, so a part of what it does is left."""
+    return float(np.hypot(floor[h.world], FORM * nothing_m if h.effects else 0.0))
 
 
 def horizon_s(track: Track, model: Model) -> float:

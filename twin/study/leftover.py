@@ -1,8 +1,8 @@
-"""What is left when the best explanation holds: as quiet as the reference voyages, or restless, so that something else is at work.
+"""What is left when the best explanation holds: as little as on the reference voyages, or more, so that something else is at work.
 
-Two effects that nobody sailed with explain almost any third: they have six or more numbers between them. When they are the truth,
-what remains is what remained on the reference voyages; when they only look like it, the ship stays restless. Asked of pairs alone:
-a single effect whose form is only roughly right leaves something over too, and its name is still the one that helps.
+Of all hypotheses one is the best, also when none is true: two effects that nobody sailed with explain almost any third. When it is
+the truth, what remains is what remained on the reference voyages. When it only looks like it, the ship stays restless, or does not
+go where it leads her.
 """
 
 from dataclasses import replace
@@ -13,10 +13,16 @@ from .case import WORLDS, Case
 from .evidence import posterior
 from .refine import Found, standing
 
+ASTRAY = 1.5  # times the floor that the best explanation may end away from where she went
 RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
 CLEAR = 3.0  # log evidence by which the voyages must be restless
 SEA = 0.003  # wave height in ship lengths from which a measured sea may be the reason
+
+
+def explains(case: Case, found: Found) -> bool:
+    """Whether no more is left under this hypothesis than a true one would leave."""
+    return not found.off_m > ASTRAY * found.floor_m and quiet(case, found)
 
 
 def quiet(case: Case, found: Found) -> bool:

@@ -5,18 +5,19 @@ import pytest
 
 from twin.study.assemble import assemble
 from twin.study.evidence import Hypothesis
-from twin.study.led import LUXURY, Led, held_out_error, horizon_s, led
+from twin.study.led import FORM, LUXURY, Led, held_out_error, horizon_s, led
 from twin.study.refine import Found
 from twin.study.search import search
 from twin.study.verdict import weights
 
 TEN = 10.0  # windows that do not overlap
+FLOOR_M = float(np.hypot(8.0, FORM * 20.0))  # where nothing is off by 20 m
 
 
 def asked(**off_m):
     """What a few hypotheses were off by [m] at a floor of 8 m in the usual world and of 16 m in a rough one."""
     sets = {tuple(n for n in name.split("_") if n != "nothing"): off for name, off in off_m.items()}
-    found = {s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off) for s, off in sets.items()}
+    found = {s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off, FLOOR_M) for s, off in sets.items()}
     return Led(found, {"usual": 8.0, "rough": 16.0}, TEN)
 
 
@@ -31,20 +32,27 @@ def test_what_is_no_farther_off_than_noise_and_structure_would_be_is_not_judged_
 
 def test_what_goes_astray_loses_by_how_far_and_how_often():
     path = asked(nothing=20.0, Wind=16.0)
-    assert path.log_probability(says("Wind")) == pytest.approx(-2.0 * TEN * np.log(2.0))
+    assert path.log_probability(says("Wind")) == pytest.approx(-2.0 * TEN * np.log(16.0 / FLOOR_M))
     assert path.log_probability(says("Wind", world="rough")) == 0.0
     assert path.log_probability(says()) < path.log_probability(says("Wind"))
+
+
+def test_the_form_of_an_effect_may_miss_a_part_of_what_it_does_to_the_path():
+    for nothing, floor in ((20.0, FLOOR_M), (100.0, np.hypot(8.0, 10.0))):
+        path = asked(nothing=nothing, Wind=floor)
+        assert path.log_probability(says("Wind")) == pytest.approx(0.0)
+        assert path.log_probability(says()) == pytest.approx(-2.0 * TEN * np.log(nothing / 8.0))
 
 
 def test_a_hypothesis_that_was_not_asked_leads_as_well_as_the_best_part_of_it():
     path = asked(nothing=20.0, Wind=12.0, Bank=40.0)
     assert path.log_probability(says("Wind", "Bank")) == path.log_probability(says("Wind"))
-    assert path.log_probability(says("Loading")) == path.log_probability(says())
+    assert path.log_probability(says("Loading")) == pytest.approx(-2.0 * TEN * np.log(20.0 / FLOOR_M))
 
 
 def test_a_pair_that_was_asked_is_not_excused_by_its_better_half():
     path = asked(nothing=20.0, Wind=7.0, Wind_Bank=20.0)
-    assert path.log_probability(says("Wind", "Bank")) == path.log_probability(says())
+    assert path.log_probability(says("Wind", "Bank")) == pytest.approx(-2.0 * TEN * np.log(20.0 / FLOOR_M))
 
 
 def test_a_second_effect_costs_more_where_one_leads_her_there_and_nothing_where_none_does():

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.leftover import quiet
+from twin.study.leftover import ASTRAY, explains, quiet
 from twin.study.search import search
 
 
@@ -22,3 +22,10 @@ def test_under_its_true_cause_a_ship_is_as_quiet_as_on_her_reference_voyages(jud
 def test_a_world_with_a_larger_floor_is_no_explanation(judged):
     case, found = judged
     assert not quiet(case, replace(found, hypothesis=replace(found.hypothesis, world="rough")))
+
+
+def test_what_leads_her_elsewhere_explains_nothing_however_quiet_it_leaves_her(judged):
+    case, found = judged
+    assert explains(case, replace(found, off_m=1.4, floor_m=1.0))
+    assert not explains(case, replace(found, off_m=(ASTRAY + 0.1), floor_m=1.0))
+    assert not explains(case, replace(found, off_m=1.0, floor_m=1.0, hypothesis=replace(found.hypothesis, world="rough")))
