@@ -15,7 +15,7 @@ from .case import Case
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import explains
+from .leftover import explains, helps
 from .manoeuvres import next_manoeuvre
 from .overtime import over_time
 from .read import read_voyage
@@ -51,16 +51,17 @@ def diagnose(
     case = assemble(voyages, ship, references, progress)
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed)
-    explained = not w.best.effects or explains(case, found[w.best.effects])
+    best = found[w.best.effects]
+    explained, helpful = not w.best.effects or explains(case, best), not w.best.effects or helps(case, best, found[()])
     like = {name: alike(case, weighed, name) for name in w.best.effects}
-    verdict, missing = judge(weighed, w, like, excited=excites(case), sharp=shows(seen), explained=explained)
+    verdict, missing = judge(weighed, w, like, excited=excites(case), sharp=shows(seen), explained=explained, helpful=helpful)
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
     candidates = [_candidate(case, weighed, found, name, w.effects[name]) for name in likely]
-    if w.best.effects and w.best.effects in found:
+    if w.best.effects:
         progress("asking each part of the voyages")
-        parts = over_time(case, found[w.best.effects], w.best.effects)
+        parts = over_time(case, best, w.best.effects)
         for c in candidates:
             if c.get("effect") in parts:
                 c["over_time"] = parts[c["effect"]]

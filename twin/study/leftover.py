@@ -14,6 +14,7 @@ from .evidence import posterior
 from .refine import Found, standing
 
 ASTRAY = 1.5  # times the floor that the best explanation may end away from where she went
+BETTER = 0.05  # share by which a force must bring her nearer to where she went
 RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
 CLEAR = 3.0  # log evidence by which the voyages must be restless
@@ -23,6 +24,13 @@ SEA = 0.003  # wave height in ship lengths from which a measured sea may be the 
 def explains(case: Case, found: Found) -> bool:
     """Whether no more is left under this hypothesis than a true one would leave."""
     return not found.off_m > ASTRAY * found.floor_m and quiet(case, found)
+
+
+def helps(case: Case, found: Found, nothing: Found) -> bool:
+    """Whether she is led better with the effects of this hypothesis than without, as `twin add` will ask; one that only changes what
+    the instruments read need not."""
+    moves = any(case.catalogue[name].kind != "SensorFault" for name in found.hypothesis.effects)
+    return not moves or not found.off_m > (1.0 - BETTER) * nothing.off_m
 
 
 def quiet(case: Case, found: Found) -> bool:

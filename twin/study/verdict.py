@@ -65,11 +65,12 @@ def one_of(weighed: Sequence[Hypothesis], names: Sequence[str]) -> float:
 
 def judge(
     weighed: Sequence[Hypothesis], w: Weights, like: Mapping[str, Sequence[str]], *, excited: bool = True, sharp: bool = True,
-    explained: bool = True,
+    explained: bool = True, helpful: bool = True,
 ) -> tuple[str, list[str]]:  # fmt: skip
     """The verdict, and the effects to add, first the one that explains most. One that others could stand in for (`like`) is named
     when one of them is surely there. Voyages without a manoeuvre decide nothing (`excited`); those that would not have shown most
-    effects acquit nobody (`sharp`); what the best hypothesis leaves over is unknown (`explained`)."""
+    effects acquit nobody (`sharp`); what the best hypothesis leaves over is unknown (`explained`);
+    what does not lead her better is not named (`helpful`)."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
     named = [n for n in w.best.effects if w.effects[n] >= SURE or one_of(weighed, [n, *like[n]]) >= SURE_GROUP]
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
@@ -80,7 +81,7 @@ def judge(
         return "unknown", []
     if w.nothing >= ACQUITTED and sharp:
         return "nothing_missing", []
-    return ("missing", named) if named else ("undecided", [])
+    return ("missing", named) if named and helpful else ("undecided", [])
 
 
 def excites(case: Case) -> bool:

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.leftover import ASTRAY, explains, quiet
+from twin.study.leftover import ASTRAY, explains, helps, quiet
 from twin.study.search import search
 
 
@@ -29,3 +29,12 @@ def test_what_leads_her_elsewhere_explains_nothing_however_quiet_it_leaves_her(j
     assert explains(case, replace(found, off_m=1.4, floor_m=1.0))
     assert not explains(case, replace(found, off_m=(ASTRAY + 0.1), floor_m=1.0))
     assert not explains(case, replace(found, off_m=1.0, floor_m=1.0, hypothesis=replace(found.hypothesis, world="rough")))
+
+
+@pytest.mark.parametrize("effects, off, answer", [
+    (("RudderWear",), 0.9, True), (("RudderWear",), 0.99, False), (("GyroBias",), 1.0, True), (("GyroBias", "RudderWear"), 1.0, False),
+])  # fmt: skip
+def test_a_force_must_lead_her_better_and_a_fault_of_an_instrument_need_not(judged, effects, off, answer):
+    case, found = judged
+    named = replace(found, off_m=off, hypothesis=replace(found.hypothesis, effects=effects))
+    assert helps(case, named, replace(found, off_m=1.0)) is answer

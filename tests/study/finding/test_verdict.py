@@ -11,7 +11,7 @@ from twin.study.verdict import Weights, judge
 def verdict(effects=(), nothing=0.0, unknown=0.0, how=(), **sure):
     best = Hypothesis(tuple(effects), "usual", 0.0, 0.0)
     singles = [Hypothesis((name,), "usual", -float(i), 0.0) for i, name in enumerate(effects)]
-    nobody = Hypothesis((), "usual", 0.0, 0.0)  # alone is never sure: it is there with the probability of `best`
+    nobody = Hypothesis((), "usual", 0.0, 0.0)  # as likely as the best, so that no group is sure
     return judge([best, *singles, nobody], Weights(nothing, unknown, sure, best), dict.fromkeys(effects, ()), **dict.fromkeys(how, False))
 
 
@@ -58,6 +58,10 @@ def test_voyages_without_a_manoeuvre_decide_nothing():
 def test_voyages_that_would_not_have_shown_most_effects_acquit_nobody_but_name_what_they_show():
     assert verdict(["Current"], Current=1.0, how=("sharp",)) == ("missing", ["Current"])
     assert verdict(nothing=0.99, how=("sharp",)) == ("undecided", [])
+
+
+def test_what_does_not_lead_her_better_is_not_named():
+    assert verdict(["Loading"], Loading=1.0, how=("helpful",)) == ("undecided", [])
 
 
 def test_two_effects_that_leave_her_restless_are_unknown():
