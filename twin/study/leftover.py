@@ -22,8 +22,16 @@ SEA = 0.003  # wave height in ship lengths from which a measured sea may be the 
 
 
 def explains(case: Case, found: Found) -> bool:
-    """Whether no more is left under this hypothesis than a true one would leave."""
-    return not found.off_m > ASTRAY * found.floor_m and quiet(case, found)
+    """Whether no more is left under this hypothesis than a true one would leave. A sea that was measured may be the reason for more,
+    and a stream that changes for restlessness."""
+    world = WORLDS[found.hypothesis.world]
+    if _at_sea(case):
+        return True
+    return world.plain and not found.off_m > ASTRAY * found.floor_m and (world.flow > 1.0 or quiet(case, found))
+
+
+def _at_sea(case: Case) -> bool:
+    return any(np.nanmedian(t.weather["H_s"]) > SEA * case.model.ship.L_pp for t in case.tracks if "H_s" in t.weather)
 
 
 def helps(case: Case, found: Found, nothing: Found) -> bool:
@@ -34,14 +42,8 @@ def helps(case: Case, found: Found, nothing: Found) -> bool:
 
 
 def quiet(case: Case, found: Found) -> bool:
-    """Whether the voyages are, under this hypothesis, as quiet as the reference voyages; a stream that changes or a sea that was
-    measured may make them restless."""
-    chosen, world = found.hypothesis.effects, WORLDS[found.hypothesis.world]
-    if world.share > 1.0:
-        return False
-    if world.flow > 1.0 or any(np.nanmedian(t.weather["H_s"]) > SEA * case.model.ship.L_pp for t in case.tracks if "H_s" in t.weather):
-        return True
+    """Whether the voyages are, under this hypothesis, as quiet as the reference voyages."""
     lines, at = standing(case, found)
     floors = [replace(case.floor, white=float(k) * case.white, doubt=found.doubt) for k in FACTORS]
-    says = np.array([posterior(r, chosen).log_evidence for r in case.reduced(lines, floors, at)])
+    says = np.array([posterior(r, found.hypothesis.effects).log_evidence for r in case.reduced(lines, floors, at)])
     return bool(says[FACTORS >= RESTLESS].max() < says[FACTORS < RESTLESS].max() + CLEAR)
