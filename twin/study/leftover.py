@@ -13,7 +13,7 @@ from .case import WORLDS, Case
 from .evidence import posterior
 from .refine import Found, standing
 
-ASTRAY = 1.5  # times the floor that the best explanation may end away from where she went
+ASTRAY = 2.0  # times the floor that the best explanation may end away from where she went
 BETTER = 0.05  # share by which a force must bring her nearer to where she went
 RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
