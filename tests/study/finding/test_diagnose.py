@@ -45,6 +45,7 @@ def test_the_size_comes_with_an_interval_and_a_force_in_newtons(monday):
 def test_the_error_falls_on_parts_not_used_for_the_fit(monday):
     first = monday["candidates"][0]
     assert first["error_with"] < 0.8 * first["error_without"]
+    assert 0.0 < first["error_floor"] < first["error_without"]
 
 
 def test_two_voyages_together_say_it_more_clearly_than_one(tanker, monday):
