@@ -1,5 +1,7 @@
 """`twin`: whatever is wrong, one line that says what to do, and the exit code that means it."""
 
+import os
+import subprocess
 import sys
 
 import pytest
@@ -53,3 +55,12 @@ def test_a_folder_or_nothing_where_a_file_should_be_is_one_line(verb, tmp_path, 
         *progress, complaint = capsys.readouterr().err.strip().splitlines()
         assert str(path) in complaint and complaint.startswith("DataError") and len(progress) <= 1
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("wish, threads", [(None, 1), ("2", 2)])
+def test_matrices_are_not_shared_between_threads_unless_the_owner_wishes(wish, threads):
+    """A diagnosis beside other work took 47 s of two cores' time with threads and 13 s without."""
+    code = "from twin import cli; cli.main(['effects', 'Wind']); import os; print(os.environ['OPENBLAS_NUM_THREADS'])"
+    env = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"} | ({"OPENBLAS_NUM_THREADS": wish} if wish else {})
+    told = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True).stdout
+    assert told.splitlines()[-1] == str(threads)

@@ -54,6 +54,7 @@ ASIDE = ("export", "bench")  # packages of the source folder that an installatio
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one verb; a problem is one line on standard error and an exit code (see twin/errors.py)."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy loads: on matrices of a hundred rows threads wait for each other
     return guarded(lambda: _verb(sys.argv[1:] if argv is None else list(argv)))
 
 
