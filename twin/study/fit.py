@@ -17,6 +17,11 @@ from .innovations import Floor, Linear, Normal, innovate, linearise
 from .track import Track
 
 Catalogue = dict[str, type[Effect]]
+TRIES = 3  # times the steps that are asked for
+POOR = 0.1  # share of the gain that a step promised, below which it went too far
+LEVEL = 0.5  # by which a step may seem worse: the filter is linearised anew
+SHORTER = 0.1  # of the information, added to it when a step made things worse
+STANDS = 0.02  # prior widths that a step may still move
 
 
 @dataclass(frozen=True)
@@ -42,25 +47,38 @@ class Fit:
 
 def fit(
     tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue, floor: Floor, *,
-    temper: float = 1.0, rounds: int = 4,
+    temper: float = 1.0, rounds: int = 4, reach: float = np.inf,
 ) -> Fit:  # fmt: skip
-    """The most probable values of the unknowns, given the tracks and their priors."""
+    """The most probable values of the unknowns, given the tracks and their priors, after so many steps that made them more probable,
+    none of which moves a number by more than `reach` prior widths.
+    A step too far is taken back and made shorter (Levenberg & Marquardt), so that a fit of many numbers does not end in a corner of their boxes."""
     centre, sd = np.array([u.centre for u in unknowns]), np.array([u.sd for u in unknowns])
     value = np.array([_present(model, u) for u in unknowns])
-    for last in range(rounds):
+    least, promised, damping, steps = np.inf, 0.0, 0.0, 0
+    for _ in range(TRIES * rounds):
         model = with_values(model, unknowns, value.tolist(), catalogue)
         here = {u.label: float(v) for u, v in zip(unknowns, value, strict=True)}
         late = {label: v for label, v in here.items() if label.startswith(LATE)}
-        lines = [linearise(t, model, [replace(u, centre=here[u.label]) for u in unknowns], catalogue, late) for t in tracks]
-        normal = innovate(lines, [floor])[0]
-        A, b, _ = normal.total()
-        A, b = A / temper * np.outer(sd, sd), b / temper * sd
-        H = A + np.eye(sd.size)
-        step = np.linalg.solve(H, b - (value - centre) / sd)
-        new = np.clip(value + sd * step, [u.lo for u in unknowns], [u.hi for u in unknowns])
-        moved, value = np.max(np.abs(new - value) / sd), new
-        if moved < 0.02 or last == rounds - 1:
+        trial = [linearise(t, model, [replace(u, centre=here[u.label]) for u in unknowns], catalogue, late) for t in tracks]
+        told = innovate(trial, [floor])[0]
+        z = (value - centre) / sd
+        cost = float((told.ee + told.logdet).sum()) / temper + float(z @ z)
+        if least - cost >= POOR * promised - LEVEL:
+            least, damping, steps = cost, 0.1 * damping, steps + 1
+            at, lines, normal = value, trial, told
+            A, b, _ = normal.total()
+            H, pull = A / temper * np.outer(sd, sd) + np.eye(sd.size), b / temper * sd - z
+        else:
+            damping = max(10.0 * damping, SHORTER)
+        step = np.linalg.solve(H + damping * np.diag(np.diag(H)), pull)
+        step *= min(1.0, reach / max(float(np.max(np.abs(step))), STANDS))
+        value = np.clip(at + sd * step, [u.lo for u in unknowns], [u.hi for u in unknowns])
+        step = (value - at) / sd
+        promised = max(0.0, float(2.0 * pull @ step - step @ H @ step))
+        if np.max(np.abs(step)) < STANDS or steps == rounds:
             break
+    else:
+        value = at
     model = with_values(model, unknowns, value.tolist(), catalogue)
     covariance = np.linalg.inv(H) * np.outer(sd, sd)
     return Fit(model, tuple(unknowns), value, covariance, tuple(lines), normal)
