@@ -51,7 +51,8 @@ def fit(
 ) -> Fit:  # fmt: skip
     """The most probable values of the unknowns, given the tracks and their priors, after so many steps that made them more probable,
     none of which moves a number by more than `reach` prior widths.
-    A step too far is taken back and made shorter (Levenberg & Marquardt), so that a fit of many numbers does not end in a corner of their boxes."""
+    A step too far is taken back and made shorter (Levenberg & Marquardt), so that a fit of many numbers does not end in a corner of their boxes;
+    the last one is not judged."""
     centre, sd = np.array([u.centre for u in unknowns]), np.array([u.sd for u in unknowns])
     value = np.array([_present(model, u) for u in unknowns])
     least, promised, damping, steps = np.inf, 0.0, 0.0, 0
