@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from twin.errors import DataError
+from twin.live.learned import scale_of
+from twin.live.residual import bundled
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load
@@ -19,6 +21,7 @@ from twin.study.identifiability import (
     verdict,
 )
 from twin.study.jsonable import plain
+from twin.study.learned import features, learned_force
 from twin.study.track import track
 from twin.study.voyage import Voyage
 
@@ -118,6 +121,18 @@ def test_features_that_are_the_cores_terms_meet_it_and_others_do_not(zigzag, tol
     other = residual_angles(t, model, lambda s: np.random.default_rng(1).normal(size=(s.u.size, 2)))
     assert same["sway"]["smallest_deg"] < 0.1 and "disjoint" in " ".join(verdict(told | {"residual": same}))
     assert other["sway"]["smallest_deg"] > 60.0 and "do not meet" in " ".join(verdict(told | {"residual": other}))
+
+
+def test_what_was_learned_is_judged_by_its_features_and_by_its_force(zigzag, told):
+    """Test: the bundled tanker's residual. Expected: features times last layer are the force that the loop adds; shares of it by axis,
+    and in words."""
+    phi, W = features(str(bundled(SHIP)), SHIP)
+    s = Situation(u=7.5, v=0.1, r=1e-3, u_r=7.5, v_r=0.1, delta=0.1, n=1.6)
+    force = np.array([x[0] for x in learned_force(str(bundled(SHIP)), SHIP)(s)])
+    assert (phi(s) @ W.T)[0] * np.array(scale_of(SHIP)) == pytest.approx(force, rel=1e-3, abs=10.0)
+    found = residual_angles(track(zigzag, SHIP), Model.of(SHIP), phi, W)
+    assert all(0.0 <= a["force_inside_core"] <= 1.0 for a in found.values())
+    assert "of its force" in "\n".join(text(told | {"residual": found}))
 
 
 def test_features_of_the_wrong_length_are_refused(zigzag):

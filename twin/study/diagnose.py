@@ -10,6 +10,7 @@ import numpy as np
 
 from twin.physics.ship import Ship, load
 
+from . import identifiability
 from .assemble import assemble, unjudged_because
 from .case import Case
 from .import_voyage import write_json
@@ -137,11 +138,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--reference", metavar="VOYAGE", nargs="+", default=[], help="voyages of the same ship on which nothing was wrong")
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
     parser.add_argument("--report", metavar="FILE.html", help="one self-contained page with the plots")
-    parser.add_argument("--identifiability", action="store_true", help="also say what these voyages can tell at all")
+    parser.add_argument("--identifiability", action="store_true", help="also say what the first of these voyages can tell at all")
+    parser.add_argument("--residual", metavar="FILE.onnx", help="also say whether what was learned stands apart from the core")
 
 
 def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
+    learned = _features(args.residual, ship)
     voyages, references = ([read_voyage(p) for p in paths] for paths in (args.voyages, args.reference))
     done = diagnose(voyages, ship, references, lambda text: print(f"{text} ...", file=sys.stderr))
     result = done.result | {
@@ -150,13 +153,13 @@ def run(args: argparse.Namespace) -> int:
         "files": {"ship": args.ship, "voyages": args.voyages},
     }
     page = sys.stderr if args.json == "-" else sys.stdout
-    if args.identifiability:
-        from .identifiability import report as identifiability
-
-        result["identifiability"] = plain(identifiability(voyages[0], done.case.model))
+    page_lines = told(result)
+    if args.identifiability or learned:
+        result["identifiability"] = plain(identifiability.report(voyages[0], done.case.model, *learned))
+        page_lines += ["", *identifiability.text(result["identifiability"])]
     if args.json:
         write_json(result, args.json)
-    print("\n".join(told(result)), file=page)
+    print("\n".join(page_lines), file=page)
     if args.report:
         from . import report
 
@@ -164,6 +167,15 @@ def run(args: argparse.Namespace) -> int:
         print(f"\nwrote {args.report}", file=page)
     print(f"\nnext: {_next_command(args, result)}", file=page)
     return 0
+
+
+def _features(path: str | None, ship: Ship) -> tuple[Any, ...]:
+    """What the residual is made of (twin/study/learned.py)."""
+    if not path:
+        return ()
+    from .learned import features
+
+    return features(path, ship)
 
 
 def _next_command(args: argparse.Namespace, result: dict[str, Any]) -> str:

@@ -40,9 +40,9 @@ ROWS = 1500  # of the voyage used for the angles
 Features = Callable[[Situation], np.ndarray]  # (N, F) of a situation of arrays
 
 
-def report(voyage: Voyage, model: Model, residual: Features | None = None) -> dict[str, Any]:
-    """`observability` by set of sensors, `angles` by effect, `residual` where its features are given; see
-    `text`.
+def report(voyage: Voyage, model: Model, residual: Features | None = None, W: np.ndarray | None = None) -> dict[str, Any]:
+    """`observability` by set of sensors, `angles` by effect, `residual` where its features (and last layer)
+    are given; see `text`.
     """
     t = track(voyage, model.ship)
     return {
@@ -50,7 +50,7 @@ def report(voyage: Voyage, model: Model, residual: Features | None = None) -> di
         "unknowns": list(UNKNOWNS),
         "observability": observability(t, model),
         "angles": angles(t, model),
-        "residual": None if residual is None else residual_angles(t, model, residual),
+        "residual": None if residual is None else residual_angles(t, model, residual, W),
     }
 
 
@@ -162,9 +162,9 @@ def angles(t: Track, model: Model) -> dict[str, dict[str, Any]]:
     return out
 
 
-def residual_angles(t: Track, model: Model, features: Features) -> dict[str, dict[str, Any]]:
+def residual_angles(t: Track, model: Model, features: Features, W: np.ndarray | None = None) -> dict[str, dict[str, Any]]:
     """For each axis: the residual's features against the core's columns of that axis (the paper's F_theta
-    against F_D).
+    against F_D); with its last layer W (3, F) also how much of the learned force the core could give itself.
     """
     thin, known = _thinned(t), catalogue()
     A = columns(thin, model, core_unknowns(model), known)[0]
@@ -173,18 +173,28 @@ def residual_angles(t: Track, model: Model, features: Features) -> dict[str, dic
     phi = np.asarray(features(s), float)
     if phi.shape[0] != len(thin):
         raise DataError(f"the residual gave {phi.shape} features for {len(thin)} situations: one row each is needed.")
-    return {axis: _told(basis(phi), phi, basis(A[:, i])) for i, axis in enumerate(("surge", "sway", "yaw"))}
+    out = {}
+    for i, axis in enumerate(("surge", "sway", "yaw")):
+        core = basis(A[:, i])
+        out[axis] = _told(basis(phi), phi, core)
+        if W is not None:
+            out[axis]["force_inside_core"] = _inside(phi @ W[i], core)
+    return out
 
 
 def _told(own: np.ndarray, span: np.ndarray, core: np.ndarray) -> dict[str, Any]:
     found = principal(own, core)
-    inside = float(np.sum((core.T @ span) ** 2) / max(np.sum(span**2), 1e-300))
     return {
         "smallest_deg": float(found[0]),
         "largest_deg": float(found[-1]),
-        "share_inside_core": inside,
+        "share_inside_core": _inside(span, core),
         "dimensions": int(own.shape[1]),
     }
+
+
+def _inside(span: np.ndarray, core: np.ndarray) -> float:
+    """How much of the columns' squares lies in the span of the core's."""
+    return float(np.sum((core.T @ span) ** 2) / max(np.sum(span**2), 1e-300))
 
 
 def principal(a: np.ndarray, b: np.ndarray) -> np.ndarray:
@@ -242,8 +252,9 @@ def text(result: Mapping[str, Any]) -> list[str]:
         nearest = f"{a['nearest']} ({a['nearest_deg']:.1f} deg)" if a["nearest"] else "-"
         lines.append(f"{name:<20}{a['smallest_deg']:>11.1f} deg{100.0 * a['share_inside_core']:>11.0f} %  {nearest}")
     for axis, a in (result["residual"] or {}).items():
+        force = f", of its force {100.0 * a['force_inside_core']:.0f} % inside" if "force_inside_core" in a else ""
         lines.append(
-            f"residual, {axis:<10}{a['smallest_deg']:>11.1f} deg{100.0 * a['share_inside_core']:>11.0f} %  {a['dimensions']} directions"
+            f"residual, {axis:<10}{a['smallest_deg']:>11.1f} deg{100.0 * a['share_inside_core']:>11.0f} %  {a['dimensions']} directions{force}"
         )
     return [*lines, "", *verdict(result)]
 

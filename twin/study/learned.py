@@ -1,11 +1,15 @@
-"""A trained residual in the study: the learned force as the loop adds it (its adaptation left out), for arrays of situations."""
+"""A trained residual in the study, for arrays of situations: the learned force as the loop adds it (its adaptation left out), and the
+features it is made of."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
 
 from twin.live.learned import LearnedForce
+from twin.live.network import Network
+from twin.live.onnx_file import look
 from twin.live.residual import load
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
@@ -16,10 +20,27 @@ def learned_force(path: str, ship: Ship) -> Callable[[Situation], Force]:
     learned = LearnedForce(ship, load(path, ship), adapt=False)
 
     def force(s: Situation) -> Force:
-        there = {f.name: np.atleast_1d(np.asarray(x, float)) for f in fields(Situation) if (x := getattr(s, f.name)) is not None}
-        width = max(x.size for x in there.values())
-        rows = zip(*(np.broadcast_to(x, width).tolist() for x in there.values()), strict=True)
-        found = [learned.at(Situation(**dict(zip(there, row, strict=True))), ()).force for row in rows]
-        return Force(*np.array(found).T)
+        return Force(*np.array([learned.at(one, ()).force for one in _each(s)]).T)
 
     return force
+
+
+def features(path: str, ship: Ship) -> tuple[Callable[[Situation], np.ndarray], np.ndarray]:
+    """Situation -> (N, features) phi, nothing where it is not believed; and the last layer W (3, features)."""
+    residual, model = load(path, ship), Path(path).read_bytes()
+    manifest, names = residual.manifest, look(model)
+    trunk = Network(model, names.inputs[0][0], len(manifest.inputs), names.outputs[0][0], manifest.features)
+
+    def phi(s: Situation) -> np.ndarray:
+        told = [residual.scaled(one) for one in _each(s)]
+        return np.array([weight * np.array(trunk.run(x)) if weight else np.zeros(manifest.features) for x, weight, _ in told])
+
+    return phi, np.array(manifest.W)
+
+
+def _each(s: Situation) -> Iterator[Situation]:
+    """The situations one by one, in plain floats."""
+    there = {f.name: np.atleast_1d(np.asarray(x, float)) for f in fields(Situation) if (x := getattr(s, f.name)) is not None}
+    width = max(x.size for x in there.values())
+    for row in zip(*(np.broadcast_to(x, width).tolist() for x in there.values()), strict=True):
+        yield Situation(**dict(zip(there, row, strict=True)))
