@@ -9,6 +9,7 @@ import torch
 from bench.paper_lab import Course, grounded
 from export.batches import STRIDE, shuffled
 from export.data import Leg
+from export.teach import FEWEST
 
 WARM, FREE, HIDDEN, BATCH = 12, 24, 64, 64  # steps of 2.5 s for KVLCC2: 30 s and 60 s
 
@@ -73,7 +74,8 @@ def _late(leg: Leg) -> np.ndarray:
 def train(
     train_legs: Sequence[Leg], validation: Sequence[Leg], epochs: int, seed: int = 42, patience: int = 20, keep: Path | None = None
 ) -> Lstm:
-    """Adam at 3e-3, Huber of heading and speeds in deviations; the best on validation stays. `keep`: a file of a finished training."""
+    """Adam at 3e-3, Huber of heading and speeds in deviations; the best on validation stays, or the last where as few voyages validate
+    as the hybrid would not ask either. `keep`: a file of a finished training."""
     torch.manual_seed(seed)
     torch.set_num_threads(1)
     data, held = _all(train_legs), _all(validation)
@@ -90,7 +92,7 @@ def train(
         model.load_state_dict(kept["network"])
         model.curve = kept["curve"]
         return model
-    best, since = (float("inf"), model.state_dict()), 0
+    best, since, asked = (float("inf"), model.state_dict()), 0, len(validation) >= FEWEST
     for epoch in range(epochs):
         for k in shuffled(data[1].numel(), BATCH, 7919 * seed + epoch):
             loss = _loss(model, [x[..., k, :] if x.ndim > 1 else x[k] for x in data], h, size)
@@ -101,7 +103,7 @@ def train(
         with torch.no_grad():
             value = float(_loss(model, held, h, size))
         model.curve.append(value)
-        best, since = ((value, {n: x.clone() for n, x in model.state_dict().items()}), 0) if value < best[0] else (best, since + 1)
+        best, since = ((value, {n: x.clone() for n, x in model.state_dict().items()}), 0) if value < best[0] or not asked else (best, since + 1)
         if since >= patience:
             break
     model.load_state_dict(best[1])

@@ -10,6 +10,7 @@ import torch
 
 from bench import paper_adapted, paper_ekf, paper_filter, paper_lstm, paper_lstm_onnx
 from bench.paper_adapted import Acting
+from bench.paper_apart import apart
 from bench.paper_filter import Push, Tuning
 from bench.paper_gap import gap
 from bench.paper_lab import Course, free
@@ -48,7 +49,7 @@ class Models:
 
     predict: dict[str, Predict] = field(default_factory=dict)
     told: dict[str, Any] = field(default_factory=dict)
-    seeds: dict[int, Predict] = field(default_factory=dict)  # the hybrid of every seed
+    seeds: dict[str, dict[int, Predict]] = field(default_factory=dict)  # of every seed: the hybrid, and that on named physics
     curves: dict[str, list[list[float]]] = field(default_factory=dict)  # validation loss by epoch, of every seed
     acting: Acting | None = None  # the first seed's network, for adaptation
     tuning: Tuning = field(default_factory=Tuning)
@@ -95,7 +96,7 @@ def build(
     _filtered(out, shop, plain)
     _sequence(out, shop, lstm_epochs, seeds[0])
     _hybrids(out, shop, plain, seeds)
-    _named(out, shop, plain, seeds[0])
+    _named(out, shop, plain, seeds)
     return out
 
 
@@ -123,28 +124,31 @@ def _hybrids(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) ->
     first = taught[seeds[0]]
     shop.tell("tuning the hybrid's filter")
     out.tuning = shop.tuned(plain, first.network)
-    for seed, one in taught.items():
-        out.seeds[seed] = _started(plain, one.network, out.tuning)
+    out.seeds["hybrid"] = {seed: _started(plain, one.network, out.tuning) for seed, one in taught.items()}
     out.curves["hybrid"] = [[row[3] for row in t.curve if row[0] == "rollout"] for t in taught.values()]
     out.network = first.network
     out.acting = Acting(first.network, plain, zeta_of(first.network, first.samples))
-    out.told["hybrid"] = _about(plain, first) | {"filter": asdict(out.tuning)}
-    told = {"hybrid": out.seeds[seeds[0]], "analytic_current": out.predict["analytic_current"]}
+    out.predict["hybrid"] = out.seeds["hybrid"][seeds[0]]
+    out.told["hybrid"] = _about(plain, first) | {"filter": asdict(out.tuning), "apart": apart(shop.parts["test"], plain, first.network)}
+    told = {"hybrid": out.predict["hybrid"], "analytic_current": out.predict["analytic_current"]}
     out.told["gap"] = gap(told, shop.parts["validation"], shop.parts["test"])
     out.predict["hybrid_smooth"] = lambda cs: free(plain, first.network, cs)
-    out.predict["hybrid"] = out.seeds[seeds[0]]
     out.predict["hybrid_adapted"] = lambda cs: paper_adapted.predict(cs, plain, out.acting, out.tuning)  # type: ignore[arg-type]
 
 
-def _named(out: Models, shop: Workshop, plain: Model, seed: int) -> None:
+def _named(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) -> None:
     """What has a name first, then a network on top."""
     shop.tell("calibrating the core, then adding " + ", ".join(NAMED))
     core, added = named(shop.parts["train"], plain)
     out.told["added"] = {type(e).__name__: {p.name: float(getattr(e, p.name)) for p in e.params()} for e in added.effects}
-    taught = shop.taught(added, seed, "added")
-    out.told["physics_added_hybrid"] = _about(added, taught)
-    for name, model, network in (("calibrated", core, None), ("physics_added", added, None), ("physics_added_hybrid", added, taught.network)):
-        out.predict[name] = _started(model, network, shop.tuned(model, network))
+    for name, model in (("calibrated", core), ("physics_added", added)):
+        out.predict[name] = _started(model, None, shop.tuned(model, None))
+    taught = {seed: shop.taught(added, seed, "added") for seed in seeds}
+    first = taught[seeds[0]]
+    tuning, both = shop.tuned(added, first.network), "physics_added_hybrid"
+    out.told[both] = _about(added, first) | {"apart": apart(shop.parts["test"], added, first.network)}
+    out.seeds[both] = {seed: _started(added, one.network, tuning) for seed, one in taught.items()}
+    out.predict[both] = out.seeds[both][seeds[0]]
 
 
 def named(train: Sequence[Course], plain: Model) -> tuple[Model, Model]:

@@ -34,9 +34,9 @@ def all_tables(
     found = {name: by_group(f, {group: courses[group] for group in wanted[name]}) for name, f in models.predict.items()}
     errors = {name: e["zigzags"] for name, e in found.items()}
     zigzags = courses["zigzags"]
-    others = [judge(f(zigzags), zigzags) for f in list(models.seeds.values())[1:]]
+    seeds = {n: [errors[n], *(judge(f(zigzags), zigzags) for f in list(some.values())[1:])] for n, some in models.seeds.items()}
     return {
-        "3": table3(errors, [errors["hybrid"], *others]),
+        "3": table3(errors, seeds),
         "4": {n: _interval(e, resamples) | {"paper": PAPER_4.get(n)} for n, e in errors.items()},
         "5": {n: _against(errors["hybrid"], e) | {"paper": PAPER_5.get(n)} for n, e in errors.items() if n != "hybrid"},
         "6": {n: _r2(e, r2_resamples) | {"paper": PAPER_6.get(n)} for n, e in errors.items()},
@@ -56,8 +56,8 @@ def by_group(predict: Predict, groups: dict[str, list[Course]]) -> dict[str, Err
     return {name: judge([next(runs) for _ in some], some) for name, some in groups.items()}
 
 
-def table3(errors: dict[str, Errors], seeds: Sequence[Errors]) -> dict[str, Any]:
-    """Mean errors of every model; by scenario; over the seeds of the hybrid."""
+def table3(errors: dict[str, Errors], seeds: dict[str, list[Errors]]) -> dict[str, Any]:
+    """Mean errors of every model; by scenario; over the seeds of the hybrids."""
     every = {n: stats.summary(e) for n, e in errors.items()}
     out: dict[str, Any] = {
         measure: {n: s[measure] for n, s in every.items()} | {"paper": PAPER_3[measure]} for measure in PAPER_3
@@ -69,8 +69,9 @@ def table3(errors: dict[str, Errors], seeds: Sequence[Errors]) -> dict[str, Any]
         }
         for k in sorted(set(errors["hybrid"].scenario.tolist()))
     }
-    means = np.array([[e.heading_deg.mean(), e.lateral_m.mean()] for e in seeds])
-    out["seeds"] = {"count": len(seeds), "mean": means.mean(0).tolist(), "sd": means.std(0).tolist()}
+    out["by_seed"] = {n: [[float(e.heading_deg.mean()), float(e.lateral_m.mean())] for e in some] for n, some in seeds.items()}
+    means = np.array(out["by_seed"]["hybrid"])
+    out["seeds"] = {"count": len(means), "mean": means.mean(0).tolist(), "sd": means.std(0, ddof=min(1, len(means) - 1)).tolist()}
     out["windows"] = int(errors["hybrid"].voyage.size)
     return out
 

@@ -13,6 +13,8 @@ import torch
 
 from twin.live.learned import scale_of
 from twin.live.residual import MARGIN
+from twin.physics.effects.wind import Wind
+from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 from twin.physics.zeta import inputs
@@ -81,7 +83,9 @@ class Residual(torch.nn.Module):
             self.bound.fill_(1.2 * float(torch.quantile(self.f(zeta).norm(dim=-1), 0.999)) + 1e-3)
 
 
-def names_for(legs: Sequence[object]) -> tuple[str, ...]:
-    """Which inputs the voyages can feed: her motion and controls; the air too where every voyage measured it."""
+def names_for(legs: Sequence[object], model: Model) -> tuple[str, ...]:
+    """Which inputs the voyages can feed: her motion and controls; the air too where every voyage measured it, unless the wind has
+    its name in the model already (few voyages would teach the network their weathers by heart)."""
     measured = all("wind_speed" in leg.inputs for leg in legs)  # type: ignore[attr-defined]
-    return CALM + AIR if measured else CALM
+    named = any(isinstance(effect, Wind) for effect in model.effects)
+    return CALM + AIR if measured and not named else CALM

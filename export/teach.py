@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import torch
+from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from twin.physics.model import Model
 from twin.physics.state import Situation
@@ -46,11 +47,13 @@ class Settings:
     rollout_rate: float = 1e-3
     orthogonality: float = 0.0
     mirror: float = 0.0
+    average: float = 3.0  # epochs: what is judged and kept are weights averaged over about so many
 
 
 DECAY_EPOCHS = 10
 MOST = 4096  # windows or moments that a validation looks at
 EVEN = 10.0
+FEWEST = 5  # validation voyages from which they may say when to stop; fewer are not like the rest, and all epochs are gone through
 
 
 @dataclass
@@ -96,7 +99,7 @@ def teach(
     torch.manual_seed(settings.seed)
     data = prepared(parts, model, settings)
     legs = [leg for some in parts.values() for leg in some]
-    names = names_for(legs)
+    names = names_for(legs, model)
     with torch.no_grad():
         probe = _probe(model, names, data["train"].samples)
     network = Residual(model.ship, names, probe.numpy())
@@ -124,7 +127,7 @@ STAGES = {"paper": ("paper",), "acceleration": ("acceleration",), "rollout": ("a
 
 
 class Course:
-    """One training: its network, its optimiser, and where it stands."""
+    """One training: its network, the average of its weights over the last epochs, its optimiser, and where it stands."""
 
     def __init__(
         self,
@@ -153,21 +156,23 @@ class Course:
         self.key = _key(settings, data)
         self.kept = self._kept()
         self.best = float("inf")
+        self.asked = int(data["validation"].samples.voyage.max()) + 1 >= FEWEST
         self.weight = torch.ones(1)  # of each training voyage, while a stage runs
 
     def run(self, stage: str) -> None:
-        """All epochs of a stage; the weights of the best validation loss stay."""
+        """All epochs of a stage; of the averaged weights those of the best validation loss stay, or the last where it says too little."""
         c = self.settings
         epochs = c.rollout_epochs if stage == "rollout" else c.epochs
         rate = c.rollout_rate if stage == "rollout" else c.rate
         self.optimiser = torch.optim.Adam(self.network.parameters(), lr=rate, weight_decay=c.l2)
+        self.mean = AveragedModel(self.network, multi_avg_fn=get_ema_multi_avg_fn(1.0 - 1.0 / (1.0 + c.average * self._batches(stage))))
         best, since, first = (self._copy(), self.validation(stage)), 0, 0
         if self.kept and self.kept["stage"] == stage:
             best, since, first = self._resume()
         elif self.kept and stage in self.kept["done"]:
             return
         for epoch in range(first, epochs):
-            if since >= c.patience:
+            if since >= c.patience and self.asked:
                 break
             for group in self.optimiser.param_groups:
                 group["lr"] = rate * (0.5 + 0.5 * cos(pi * epoch / epochs) if stage == "rollout" else c.decay ** (epoch // DECAY_EPOCHS))
@@ -175,7 +180,7 @@ class Course:
             validation = self.validation(stage)
             self.curve.append((stage, epoch, value, validation))
             self.progress(stage, epoch + 1, epochs, value, validation)
-            best, since = ((self._copy(), validation), 0) if validation < best[1] else (best, since + 1)
+            best, since = ((self._copy(), validation), 0) if validation < best[1] or not self.asked else (best, since + 1)
             self._save(stage, epoch + 1, best, since)
         self.network.load_state_dict(best[0])
         self.best = best[1]
@@ -188,50 +193,59 @@ class Course:
             value.backward()
             torch.nn.utils.clip_grad_norm_(self.network.parameters(), 10.0)
             self.optimiser.step()
+            self.mean.update_parameters(self.network)
             total, count = total + float(value.detach()), count + 1
         return total / max(count, 1)
 
     def _losses(self, stage: str, seed: int) -> Iterator[torch.Tensor]:
         """The loss of every batch of an epoch."""
         part = self.data["train"]
-        many, batch = (len(part.windows), self.settings.rollout_batch) if stage == "rollout" else (len(part.samples), self.settings.batch)
-        for k in shuffled(many, batch, seed):
+        for k in shuffled(*self._amount(stage), seed):
             value = self._loss(stage, "train", k)
             yield value + self._penalty(
                 torch.randint(len(part.samples), (self.settings.batch,), generator=torch.Generator().manual_seed(seed))
             )
 
+    def _amount(self, stage: str) -> tuple[int, int]:
+        """What there is to learn from, and how much of it at once."""
+        part, c = self.data["train"], self.settings
+        return (len(part.windows), c.rollout_batch) if stage == "rollout" else (len(part.samples), c.batch)
+
+    def _batches(self, stage: str) -> int:
+        many, batch = self._amount(stage)
+        return max(1, many // batch)
+
     def _loss(self, stage: str, part: str, k: torch.Tensor) -> torch.Tensor:
         """The loss of a batch; in training each voyage counts by its weight."""
         if stage == "paper":
-            return self._literal(part, k)
-        each = self._each(stage, part, k)
+            return self._literal(self.network, part, k)
+        each = self._each(self.network, stage, part, k)
         return (self.weight[self._voyage(stage, part)[k]] * each).mean()
 
-    def _each(self, stage: str, part: str, k: torch.Tensor) -> torch.Tensor:
+    def _each(self, network: Residual, stage: str, part: str, k: torch.Tensor) -> torch.Tensor:
         """(B,) the loss of each window or moment."""
         data = self.data[part]
         if stage == "rollout":
             w = data.windows.some(k)
-            return losses.rollout(self.network, self.model, w.start, w.inputs, w.wanted, w.h)
-        return losses.acceleration(self.network, self.zeta[part][k], data.samples.d[k], self.size)
+            return losses.rollout(network, self.model, w.start, w.inputs, w.wanted, w.h)
+        return losses.acceleration(network, self.zeta[part][k], data.samples.d[k], self.size)
 
-    def _literal(self, part: str, k: torch.Tensor) -> torch.Tensor:
+    def _literal(self, network: Residual, part: str, k: torch.Tensor) -> torch.Tensor:
         one, c = self.data[part].samples, self.settings
         value, self.diagnostics = losses.paper(
-            self.network, self.model, one.situation(k), one.ahead[k], one.h[k], self.jump, c.lambda_data, c.lambda_phys
+            network, self.model, one.situation(k), one.ahead[k], one.h[k], self.jump, c.lambda_data, c.lambda_phys
         )
         return value
 
     def _voyage(self, stage: str, part: str) -> torch.Tensor:
         return self.data[part].windows.voyage if stage == "rollout" else self.data[part].samples.voyage
 
-    def _by_voyage(self, stage: str, part: str) -> torch.Tensor:
+    def _by_voyage(self, network: Residual, stage: str, part: str) -> torch.Tensor:
         """The mean loss of every voyage of a part (over at most MOST windows or moments)."""
         voyage = self._voyage(stage, part)
         k = torch.arange(0, voyage.numel(), max(1, voyage.numel() // MOST))
         with torch.no_grad():
-            each = torch.cat([self._each(stage, part, some) for some in k.split(1024)])
+            each = torch.cat([self._each(network, stage, part, some) for some in k.split(1024)])
         total = torch.zeros(int(voyage.max()) + 1).index_add(0, voyage[k], each)
         return total / torch.bincount(voyage[k], minlength=total.numel()).clamp(min=1)
 
@@ -240,7 +254,7 @@ class Course:
         waves, counts no more than a calm one. No weight is more than EVEN times another."""
         if stage == "paper":
             return torch.ones(1)
-        scatter = self._by_voyage(stage, "train")
+        scatter = self._by_voyage(self.network, stage, "train")
         inverse = scatter.clamp(min=1e-12).pow(-1.0)
         inverse = inverse.clamp(max=EVEN * float(inverse.min()))
         return inverse / inverse.mean()
@@ -255,14 +269,15 @@ class Course:
         return total
 
     def validation(self, stage: str) -> float:
-        """The loss of the stage on the validation part: the geometric mean over its voyages."""
+        """The loss of the averaged weights on the validation part: the geometric mean over its voyages."""
+        network = self.mean.module
         if stage == "paper":
             many = len(self.data["validation"].samples)
-            return float(self._literal("validation", torch.arange(0, many, max(1, many // MOST))).detach())
-        return float(self._by_voyage(stage, "validation").clamp(min=1e-12).log().mean().exp())
+            return float(self._literal(network, "validation", torch.arange(0, many, max(1, many // MOST))).detach())
+        return float(self._by_voyage(network, stage, "validation").clamp(min=1e-12).log().mean().exp())
 
     def _copy(self) -> dict[str, Any]:
-        return {name: x.detach().clone() for name, x in self.network.state_dict().items()}
+        return {name: x.detach().clone() for name, x in self.mean.module.state_dict().items()}
 
     def _kept(self) -> dict[str, Any] | None:
         if self.keep is None or not self.keep.exists():
@@ -274,6 +289,7 @@ class Course:
         kept, self.kept = self.kept, None
         assert kept is not None
         self.network.load_state_dict(kept["network"])
+        self.mean.load_state_dict(kept["mean"])
         self.optimiser.load_state_dict(kept["optimiser"])
         self.curve = [(str(a), int(b), float(c), float(d)) for a, b, c, d in kept["curve"]]
         return (kept["best"], kept["best_loss"]), kept["since"], kept["epoch"]
@@ -285,7 +301,7 @@ class Course:
         aside = self.keep.with_name(f"{self.keep.name}.aside")
         torch.save(
             {"key": self.key, "stage": stage, "done": list(stages[: stages.index(stage)]), "epoch": epoch, "since": since,
-             "network": self.network.state_dict(), "optimiser": self.optimiser.state_dict(), "best": best[0],
+             "network": self.network.state_dict(), "mean": self.mean.state_dict(), "optimiser": self.optimiser.state_dict(), "best": best[0],
              "best_loss": best[1], "curve": [list(row) for row in self.curve]},
             aside,
         )  # fmt: skip

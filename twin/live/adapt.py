@@ -2,10 +2,11 @@
 not help.
 
     learned force_r = W_r phi + g_r a_r q_r         q_r = [whitened components of phi | known forces of row r | 1]
-    a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - a_r q_f)^2/(NOISE_S s_r^2) + |a_r|^2/USUAL^2
+    a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - a_r q_f)^2/(NOISE_S s_r^2) + |a_r/usual|^2
 
 each row a ridge regression on fading evidence (evidence.py): what nothing teaches fades back to the trained
-weights. d_r is cut at three usual errors s_r from what is expected; A is projected on boxes and on ||A|| <=
+weights. What usually changes are the known forces' sizes; features only fill in, else they would explain the
+noise of ten minutes. d_r is cut at three usual errors s_r from what is expected; A is projected on boxes and on ||A|| <=
 A_MAX. The gate g opens only as far as the numbers of a while ago explain the present better than none.
 """
 
@@ -28,7 +29,7 @@ COLUMNS = (("hull", "propeller"), ("hull", "rudder"), ("hull", "rudder"))  # kno
 HULL, PROPELLER, RUDDER = CORE.index("hull"), CORE.index("propeller"), CORE.index("rudder")
 A_MAX = 1.0  # norm of all numbers together
 BOX_COMPONENT, BOX_KNOWN, BOX_CONSTANT = 0.5, 0.3, 0.5
-USUAL = 0.1  # how far a number is usually off: the prior's deviation
+USUAL_COMPONENT, USUAL_KNOWN, USUAL_CONSTANT = 0.01, 0.2, 0.02  # how far a number is usually off: the prior's deviations
 NOISE_S = 0.75  # time over which noise hangs together, in L/U_0
 MEMORY, SPREAD, GATE = 20.0, 1.5, 3.0  # time constants, in L/U_0
 HINDSIGHT = 1.5  # the gate asks numbers at least as old as this, in L/U_0
@@ -79,6 +80,8 @@ class Adaptation:
         self.notes: list[str] = []  # what was wrong with saved numbers
         self.updates = 0
         self._boxes = [BOX_COMPONENT] * components + [BOX_KNOWN] * 2 + [BOX_CONSTANT]
+        self._usual = [USUAL_COMPONENT] * components + [USUAL_KNOWN] * 2 + [USUAL_CONSTANT]
+        self._prior = [u**-2 for u in self._usual]
         self._rows = [self._blank() for _ in ROWS]
         self.open = False  # whether any gate is
         self._slow: list[float] = []
@@ -160,7 +163,7 @@ class Adaptation:
             for line, wx in zip(row.I, [weight * x for x in q], strict=True)
         ]
         row.b = [keep * b + y * x for b, x in zip(row.b, q, strict=True)]
-        row.L = factor(row.I, USUAL**-2)
+        row.L = factor(row.I, self._prior)
         row.a = solve(row.L, row.b)
 
     def _project(self, row: Row) -> None:
@@ -184,8 +187,8 @@ class Adaptation:
         out, pressed = [], self.norm() > 0.999 * A_MAX
         for r, row in enumerate(self._rows):
             names = [*(f"feature {i + 1}" for i in range(self.components)), *COLUMNS[r], "constant"]
-            for name, value, box, sigma in zip(names, row.a, self._boxes, row.sigma, strict=True):
-                known = sigma < 0.7 * USUAL and row.gate > 0.3
+            for name, value, box, sigma, usual in zip(names, row.a, self._boxes, row.sigma, self._usual, strict=True):
+                known = sigma < 0.7 * usual and row.gate > 0.3
                 status = "invalid" if pressed or abs(value) >= box else "estimated" if known else "unestimated"
                 out.append(Parameter(f"{ROWS[r]} {name}", value, -box, box, sigma, "-", status))
         return out
@@ -217,23 +220,23 @@ class Adaptation:
         for row, values in zip(self._rows, fresh, strict=True):
             row.a = values  # the gate stays shut: old numbers must prove themselves again
             self._project(row)
-            row.b = [x * USUAL**-2 for x in row.a]
+            row.b = [x * p for x, p in zip(row.a, self._prior, strict=True)]
             row.then, row.next = list(row.a), list(row.a)
 
     def _blank(self) -> Row:
         n = self.width
         blank = [[0.0] * n for _ in range(n)]
-        return Row([0.0] * n, blank, [0.0] * n, factor(blank, USUAL**-2), [USUAL] * n, [0.0] * n, [0.0] * n)
+        return Row([0.0] * n, blank, [0.0] * n, factor(blank, self._prior), list(self._usual), [0.0] * n, [0.0] * n)
 
 
-def factor(information: list[list[float]], prior: float) -> list[list[float]]:
-    """L of I + prior 1 = L L' (Cholesky), in plain floats: the same on every machine."""
+def factor(information: list[list[float]], prior: list[float]) -> list[list[float]]:
+    """L of I + diag(prior) = L L' (Cholesky), in plain floats: the same on every machine."""
     L: list[list[float]] = []
-    for i, line in enumerate(information):
+    for i, (line, least) in enumerate(zip(information, prior, strict=True)):
         row: list[float] = []
         for j in range(i):
             row.append((line[j] - sum(map(mul, row, L[j]))) / L[j][j])
-        row.append(sqrt(line[i] + prior - sum(map(mul, row, row))))
+        row.append(sqrt(line[i] + least - sum(map(mul, row, row))))
         L.append(row)
     return L
 
