@@ -72,7 +72,7 @@ def reproduce(plan: sea.Plan, work: Path, quick: bool, figures: Path | None = No
     closed = paper_closed.sail(models.plain, models.network, plan.closed, plan.tick_s)
     tables["fig5"] = paper_closed.table(closed)
     tell("less data")
-    tables["data"] = curve(models.shop, models.tuning, courses["zigzags"], plan.curve, plan.lstm_epochs, plan.seeds[0])
+    tables["data"] = curve(models.shop, models.tuning, courses["zigzags"], plan.curve, plan.lstm_epochs, plan.seeds)
     if figures:
         tables["fig6_ms"] = _draw(figures, models, courses["zigzags"], closed, tables)
     return {

@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from bench.paper_lab import Course, grounded
 from export.batches import STRIDE, shuffled
 from export.data import Leg
-from export.teach import FEWEST
+from export.teach import FEWEST, Settings
 
 WARM, FREE, HIDDEN, BATCH = 12, 24, 64, 64  # steps of 2.5 s for KVLCC2: 30 s and 60 s
 
@@ -74,8 +75,8 @@ def _late(leg: Leg) -> np.ndarray:
 def train(
     train_legs: Sequence[Leg], validation: Sequence[Leg], epochs: int, seed: int = 42, patience: int = 20, keep: Path | None = None
 ) -> Lstm:
-    """Adam at 3e-3, Huber of heading and speeds in deviations; the best on validation stays, or the last where as few voyages validate
-    as the hybrid would not ask either. `keep`: a file of a finished training."""
+    """Adam at 3e-3, Huber of heading and speeds in deviations. Like the hybrid's, its weights are averaged, and the best on validation
+    stay, or the last where few voyages validate. `keep`: a file of a finished training."""
     torch.manual_seed(seed)
     torch.set_num_threads(1)
     data, held = _all(train_legs), _all(validation)
@@ -92,6 +93,8 @@ def train(
         model.load_state_dict(kept["network"])
         model.curve = kept["curve"]
         return model
+    batches = max(1, data[1].numel() // BATCH)
+    mean = AveragedModel(model, multi_avg_fn=get_ema_multi_avg_fn(1.0 - 1.0 / (1.0 + Settings.average * batches)))
     best, since, asked = (float("inf"), model.state_dict()), 0, len(validation) >= FEWEST
     for epoch in range(epochs):
         for k in shuffled(data[1].numel(), BATCH, 7919 * seed + epoch):
@@ -100,10 +103,11 @@ def train(
             loss.backward()
             torch.nn.utils.clip_grad_norm_(model.parameters(), 5.0)
             optimiser.step()
+            mean.update_parameters(model)
         with torch.no_grad():
-            value = float(_loss(model, held, h, size))
+            value = float(_loss(mean.module, held, h, size))
         model.curve.append(value)
-        best, since = ((value, {n: x.clone() for n, x in model.state_dict().items()}), 0) if value < best[0] or not asked else (best, since + 1)
+        best, since = ((value, {n: x.clone() for n, x in mean.module.state_dict().items()}), 0) if value < best[0] or not asked else (best, since + 1)
         if since >= patience:
             break
     model.load_state_dict(best[1])

@@ -30,15 +30,17 @@ def page(r: dict[str, Any]) -> list[str]:
 
 def _seeds(by_seed: dict[str, Any]) -> list[str]:
     """The hybrids over all seeds."""
-    lines = []
-    for name, rows in by_seed.items():
-        told = []
-        for x, unit, digits in zip(zip(*rows, strict=True), ("deg", "m"), (3, 2), strict=True):
-            each = ", ".join(f"{y:.{digits}f}" for y in x)
-            spread = stdev(x) if len(x) > 1 else 0.0
-            told.append(f"{mean(x):.{digits}f} +- {spread:.{digits}f} {unit} ({100 * spread / mean(x):.1f} %; {each})")
-        lines += ["", f"Over {len(rows)} seed(s), {ROWS[name].replace('**', '')}: {'; '.join(told)}."]
-    return lines
+    return [x for name, rows in by_seed.items() for x in ("", f"Over {len(rows)} seed(s), {ROWS[name].replace('**', '')}: {_spread(rows)}.")]
+
+
+def _spread(rows: Any) -> str:
+    """Mean and spread of [heading, lateral] errors, and each of them."""
+    told = []
+    for x, unit, digits in zip(zip(*rows, strict=True), ("deg", "m"), (3, 2), strict=True):
+        each = ", ".join(f"{y:.{digits}f}" for y in x)
+        spread = stdev(x) if len(x) > 1 else 0.0
+        told.append(f"{mean(x):.{digits}f} +- {spread:.{digits}f} {unit} ({100 * spread / mean(x):.1f} %; {each})")
+    return "; ".join(told)
 
 
 def _apart(models: dict[str, Any]) -> list[str]:
@@ -210,7 +212,10 @@ def _data(t: dict[str, Any]) -> list[str]:
         lines.append(f"| {x['runs']} | " + " | ".join(f"{x[n]['heading_mae_deg']:.3f} / {x[n]['lateral_mae_m']:.2f}" for n in names) + " |")
     three = t["3"]
     whole = [f"{three['heading_mae_deg'][n]:.3f} / {three['lateral_mae_m'][n]:.2f}" for n in names]
-    return [*lines, f"| all | {' | '.join(whole)} |"]
+    lines += [f"| all | {' | '.join(whole)} |"]
+    for x in t["data"]:
+        lines += ["", f"{ROWS['physics_added_hybrid']}, from {x['runs']} run(s), over {len(x['by_seed'])} seed(s): {_spread(x['by_seed'])}."]
+    return lines
 
 
 def _gap(told: dict[str, Any]) -> list[str]:
