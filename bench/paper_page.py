@@ -245,9 +245,9 @@ def _end(r: dict[str, Any]) -> list[str]:
         "* Nominal: literature coefficients, off by 4 to 20 % (bench/paper_ship.py), fixed before any result was seen.",
         "* EKF: three sizes of the disturbance's walk, disturbance kept or dropped in the prediction; best on the validation runs: "
         f"walk {ekf['walk']:g}, {kept}.",
-        "* LSTM: one layer of 64, 30 s to warm up, trained by 60 s free runs, early stop on the validation runs; as ONNX it says the "
-        f"same to {r['models']['lstm']['torch_onnx_difference']:.0e}.",
-        f"* Hybrid: docs/training.md's settings, {r['models']['hybrid']['epochs']} epochs; early stop on the validation runs.",
+        "* LSTM: one layer of 64, 30 s to warm up, trained by 60 s free runs, averaged weights and early stop on the validation runs; as ONNX it "
+        f"says the same to {r['models']['lstm']['torch_onnx_difference']:.0e}.",
+        f"* Hybrid: docs/training.md's settings, {r['models']['hybrid']['epochs']} epochs; averaged weights and early stop on the validation runs.",
         f"* Its filter (bench/paper_filter.py): walks {f['walk']:g} and {f['current']:g}, noise x {f['noise']:g}, best on the validation "
         "runs; the same search for every row that begins in its own filter.",
         "* Calibrated: the study's fit on TS-01 training runs; Wind and WaveDrift on the others.",
