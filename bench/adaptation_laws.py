@@ -15,8 +15,7 @@ from twin.live.residual import dot
 
 GAIN, SIGMA, MU = 1.0, 1.0 / 60.0, 0.5  # per L/U_0
 MEMORY = 20.0  # of RLS, in L/U_0
-P_FIRST, P_MOST = 0.05, 0.05
-LEAK, WALK = 60.0, 8e-4
+LEAK, WALK = 60.0, 0.016  # in L/U_0; of what is usual, squared, per L/U_0
 
 
 class Gradient(Adaptation):
@@ -50,11 +49,11 @@ class DeadZone(Gradient):
 
 
 class Covariant(Adaptation):
-    """What RLS and the Kalman filter share: a covariance P of each row."""
+    """What RLS and the Kalman filter share: a covariance P of each row, which begins as the prior of the law on board."""
 
     def __init__(self, *args: Any) -> None:
         super().__init__(*args)
-        self._P = {id(row): [[P_FIRST if i == j else 0.0 for j in range(self.width)] for i in range(self.width)] for row in self._rows}
+        self._P = {id(row): [[u * u if i == j else 0.0 for j in range(self.width)] for i, u in enumerate(self._usual)] for row in self._rows}
 
     def _fit(self, row: Row, q: list[float], error: float, h: float) -> None:
         P = self._P[id(row)]
@@ -78,7 +77,7 @@ class Recursive(Covariant):
     def _later(self, P: list[list[float]], h: float) -> list[list[float]]:
         grown = [[p / (1.0 - h / MEMORY) for p in line] for line in P]
         trace = sum(grown[i][i] for i in range(self.width))
-        most = P_MOST * self.width
+        most = sum(u * u for u in self._usual)
         return grown if trace <= most else [[p * most / trace for p in line] for line in grown]
 
 
@@ -89,8 +88,8 @@ class Kalman(Covariant):
         return 1.0 - h / LEAK
 
     def _later(self, P: list[list[float]], h: float) -> list[list[float]]:
-        keep, walk = 1.0 - 2.0 * h / LEAK, h * WALK
-        return [[keep * p + (walk if i == j else 0.0) for j, p in enumerate(line)] for i, line in enumerate(P)]
+        keep, walk = 1.0 - 2.0 * h / LEAK, [h * WALK * u * u for u in self._usual]
+        return [[keep * p + (walk[i] if i == j else 0.0) for j, p in enumerate(line)] for i, line in enumerate(P)]
 
 
 class Writes(Adaptation):
