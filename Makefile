@@ -5,7 +5,7 @@ PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
 	$$p -c 'import sys; sys.exit(sys.version_info < (3, 11))' 2>/dev/null && echo $$p && break; done)
 
-.PHONY: demo test lint types tests bench clean help
+.PHONY: demo test lint types tests paper bench clean help
 
 help:  ## these words
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
@@ -24,6 +24,9 @@ types: $(VENV)/.development  ## mypy on public signatures
 tests: $(VENV)/.development  ## pytest: what is inside its budget, alone; then the rest on all cores, four at most
 	$(BIN)/python -m pytest tests/bench/test_tick.py
 	OMP_NUM_THREADS=1 $(BIN)/python -m pytest -n auto --maxprocesses 4 --dist loadfile --ignore tests/bench/test_tick.py
+
+paper: $(VENV)/.development  ## the paper's tables in small: two minutes
+	OMP_NUM_THREADS=1 $(BIN)/twin-bench paper --quick
 
 bench: $(VENV)/.development  ## the budget: 12 ms and 48 MB
 	$(BIN)/twin-bench --steps 10000

@@ -30,7 +30,8 @@ def page(r: dict[str, Any]) -> list[str]:
 
 def _seeds(by_seed: dict[str, Any]) -> list[str]:
     """The hybrids over all seeds."""
-    return [x for name, rows in by_seed.items() for x in ("", f"Over {len(rows)} seed(s), {ROWS[name].replace('**', '')}: {_spread(rows)}.")]
+    many = {name: rows for name, rows in by_seed.items() if len(rows) > 1}
+    return [x for name, rows in many.items() for x in ("", f"Over {len(rows)} seeds, {ROWS[name].replace('**', '')}: {_spread(rows)}.")]
 
 
 def _spread(rows: Any) -> str:
@@ -38,8 +39,7 @@ def _spread(rows: Any) -> str:
     told = []
     for x, unit, digits in zip(zip(*rows, strict=True), ("deg", "m"), (3, 2), strict=True):
         each = ", ".join(f"{y:.{digits}f}" for y in x)
-        spread = stdev(x) if len(x) > 1 else 0.0
-        told.append(f"{mean(x):.{digits}f} +- {spread:.{digits}f} {unit} ({100 * spread / mean(x):.1f} %; {each})")
+        told.append(f"{mean(x):.{digits}f} +- {stdev(x):.{digits}f} {unit} ({100 * stdev(x) / mean(x):.1f} %; {each})")
     return "; ".join(told)
 
 
@@ -214,7 +214,8 @@ def _data(t: dict[str, Any]) -> list[str]:
     whole = [f"{three['heading_mae_deg'][n]:.3f} / {three['lateral_mae_m'][n]:.2f}" for n in names]
     lines += [f"| all | {' | '.join(whole)} |"]
     for x in t["data"]:
-        lines += ["", f"{ROWS['physics_added_hybrid']}, from {x['runs']} run(s), over {len(x['by_seed'])} seed(s): {_spread(x['by_seed'])}."]
+        if len(x["by_seed"]) > 1:
+            lines += ["", f"{ROWS['physics_added_hybrid']}, from {x['runs']} run(s), over {len(x['by_seed'])} seeds: {_spread(x['by_seed'])}."]
     return lines
 
 
