@@ -13,7 +13,7 @@ help:  ## these words
 demo: $(VENV)/.on-board  ## makes .venv, installs, and tells the whole story: a twin alive, then what her owner finds
 	$(BIN)/twin demo
 
-test: lint types tests  ## the same with the tools of development: ruff, mypy and all tests
+test: lint types tests paper  ## the same with the tools of development: ruff, mypy, all tests and the paper's tables in small
 
 lint: $(VENV)/.development  ## ruff
 	$(BIN)/ruff check .
