@@ -81,7 +81,7 @@ def test_a_shaft_speed_sets_the_thrust(tmp_path):
 
 def test_two_propellers_push_twice_as_hard_and_each_rudder_feels_one_of_them():
     one, two = (first_model("x", given(51.5, 8.6, 2.3, {"pitch-ratio": 1.2, "propellers": count}))[0].derivatives for count in (1.0, 2.0))
-    assert two.K_T0 == pytest.approx(2.0 * one.K_T0) and two.K_T1 == pytest.approx(2.0 * one.K_T1, rel=1e-3)
+    assert pytest.approx(2.0 * one.K_T0) == two.K_T0 and pytest.approx(2.0 * one.K_T1, rel=1e-3) == two.K_T1
     assert two.kappa == pytest.approx(0.5 * one.kappa, rel=1e-3)
     assert two.w < one.w
 

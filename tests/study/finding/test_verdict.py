@@ -7,7 +7,6 @@ import pytest
 from twin.study.evidence import Hypothesis
 from twin.study.verdict import Weights, judge
 
-
 YES = ("tossed",)
 
 
