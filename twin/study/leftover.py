@@ -25,12 +25,13 @@ CLEAR = 3.0  # log evidence by which the voyages must be restless
 
 
 def explains(case: Case, weighed: Sequence[Hypothesis], found: Found) -> bool:
-    """Whether no more is left under this hypothesis than a true one would leave. A sea that was measured may be the reason for more,
-    and a stream that changes for restlessness."""
+    """Whether no more is left under this hypothesis than a true one would leave (`weighed`: all of them, best first). A sea that was
+    measured may be the reason for more, and a stream that changes for restlessness."""
     if any(at_sea(t, case.model) for t in case.tracks):
         return True
-    plain = max((h for h in weighed if h.effects == found.hypothesis.effects and WORLDS[h.world].plain), key=lambda h: h.log_weight, default=None)
-    if plain is None or found.hypothesis.log_weight - plain.log_weight > CLEAR or found.off_m > ASTRAY * found.floor_m:
+    own = [h for h in weighed if h.effects == found.hypothesis.effects]
+    plain = next((h for h in own if WORLDS[h.world].plain), None)
+    if plain is None or own[0].log_weight - plain.log_weight > CLEAR or found.off_m > ASTRAY * found.floor_m:
         return False
     return WORLDS[plain.world].flow > 1.0 or quiet(case, found)
 

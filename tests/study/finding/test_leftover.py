@@ -40,6 +40,8 @@ def test_a_world_that_is_clearly_rougher_is_no_explanation_unless_a_sea_was_meas
     rough, plain = as_if(found, rough=0.0, usual=-CLEAR - 0.1)
     assert not explains(case, [rough, plain], replace(found, hypothesis=rough))
     assert explains(case, [rough, replace(plain, log_evidence=plain.log_evidence + 0.2)], replace(found, hypothesis=rough))
+    astray = [replace(h, log_evidence=h.log_evidence - 50.0) for h in (plain, rough)]  # what the path says counts for all worlds alike
+    assert explains(case, astray, found)
     (track,) = case.tracks
     waves = np.full(len(track), 0.01 * case.model.ship.L_pp)
     assert explains(replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),)), [rough], replace(found, hypothesis=rough))
