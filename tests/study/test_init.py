@@ -79,6 +79,13 @@ def test_a_shaft_speed_sets_the_thrust(tmp_path):
     assert 60.0 * shaft_speed(Model.of(ship), 7.5) == pytest.approx(105.0, rel=0.01)
 
 
+def test_two_propellers_push_twice_as_hard_and_each_rudder_feels_one_of_them():
+    one, two = (first_model("x", given(51.5, 8.6, 2.3, {"pitch-ratio": 1.2, "propellers": count}))[0].derivatives for count in (1.0, 2.0))
+    assert pytest.approx(2.0 * one.K_T0) == two.K_T0 and pytest.approx(2.0 * one.K_T1, rel=1e-3) == two.K_T1
+    assert two.kappa == pytest.approx(0.5 * one.kappa, rel=1e-3)
+    assert two.w < one.w
+
+
 def test_it_warns_where_the_regressions_know_no_such_hull():
     _, warnings = first_model("Cat", given(2.0, 1.08, 0.14, {"mass-kg": 65.0}))
     assert any("L/B = 1.85" in w and "Clarke" in w for w in warnings)

@@ -80,8 +80,9 @@ def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue
 
 def _line(t: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]]) -> Linear:
     here, _ = model.without_inputs(t.missing())
-    t = calmed(t, here)
-    return replace(linearise(t, here, unknowns, catalogue), slack=np.hypot(_roughly_known(t, here), tossed(t, here)))
+    calm = calmed(t, here)
+    waves = tossed(t, here) if calm is t else 0.0
+    return replace(linearise(calm, here, unknowns, catalogue), slack=np.hypot(_roughly_known(calm, here), waves))
 
 
 def _roughly_known(t: Track, model: Model) -> np.ndarray:

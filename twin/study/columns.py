@@ -103,8 +103,9 @@ def columns(
 
 
 def _step(unknown: Unknown, here: float | None) -> float:
-    """A plausible step that stays in the box: a whole prior width from null, a tenth of one about a found value."""
-    size = unknown.sd if here is None else 0.1 * unknown.sd
+    """A plausible step that stays in the box: a whole prior width from null (a gear that is a little slow is not slow at all, to first
+    order), a tenth of one about a found value."""
+    size = unknown.sd if here in (None, unknown.centre) else 0.1 * unknown.sd
     start = unknown.centre if here is None else here
     return size if start + size <= unknown.hi else -size
 

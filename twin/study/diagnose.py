@@ -16,12 +16,13 @@ from .case import Case
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import explains, helps
+from .leftover import explains, helpful
 from .manoeuvres import next_manoeuvre
 from .overtime import over_time
 from .read import read_voyage
 from .refine import Found
 from .search import search
+from .seaway import at_sea
 from .tell_diagnosis import sentence, told
 from .verdict import alike, excites, judge, parameters, shows, typical_force, weights
 from .voyage import Voyage
@@ -53,9 +54,11 @@ def diagnose(
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed)
     best = found[w.best.effects]
-    explained, helpful = not w.best.effects or explains(case, best), not w.best.effects or helps(case, best, found[()])
+    explained, leads = not w.best.effects or explains(case, weighed, best), helpful(case, found, w.best.effects)
     like = {name: alike(case, weighed, name) for name in w.best.effects}
-    verdict, missing = judge(weighed, w, like, excited=excites(case), sharp=shows(seen), explained=explained, helpful=helpful)
+    verdict, missing = judge(
+        weighed, w, like, leads, excited=excites(case), sharp=shows(seen), explained=explained, tossed=any(at_sea(t, case.model) for t in case.tracks)
+    )  # fmt: skip
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
@@ -71,9 +74,9 @@ def diagnose(
         "ship": ship.name,
         "verdict": verdict,
         "missing": missing,
-        "probabilities": {"nothing_missing": w.nothing, "unknown": w.unknown},
+        "probabilities": {"nothing_missing": w.nothing, "unknown": w.unknown if explained else 1.0 - w.nothing},
         "candidates": [c for c in candidates if c],
-        "next_manoeuvre": _next(case, found, verdict, missing, candidates, w.effects, progress),
+        "next_manoeuvre": _next(case, found, verdict, missing, candidates, {n: w.effects[n] for n, can in seen.items() if can}, progress),
         "not_judged": _not_judged(case),
         "not_visible": [n for n, can in seen.items() if not can and n not in missing],
         "floor": {"share_surge_sway_yaw": case.floor.share, "sensor_factor": case.floor.sensor, "temper": case.temper},

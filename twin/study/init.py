@@ -28,9 +28,10 @@ OPTIONS: tuple[tuple[str, str, float, float], ...] = (
     ("shaft-speed-rpm", "propeller rate at service speed: sets the thrust", 1.0, 10000.0),
     ("x-g-m", "centre of gravity ahead of midship", -60.0, 60.0),
     ("rho-kg-m3", "density of the water", 900.0, 1100.0),
-    ("propeller-diameter-m", "propeller diameter", 0.005, 15.0),
+    ("propellers", "how many propellers turn alike; default 1", 1.0, 4.0),
+    ("propeller-diameter-m", "diameter of each propeller", 0.005, 15.0),
     ("pitch-ratio", "propeller pitch over diameter", 0.3, 2.0),
-    ("rudder-area-m2", "moveable rudder area", 1e-5, 250.0),
+    ("rudder-area-m2", "moveable area of all rudders", 1e-5, 250.0),
     ("rudder-height-m", "rudder height", 0.005, 20.0),
     ("frontal-area-m2", "frontal area above the water", 1e-4, 5000.0),
     ("lateral-area-m2", "lateral area above the water", 1e-4, 20000.0),
@@ -152,22 +153,36 @@ def _derivatives(h: reg.Hull, p: Numbers, given: Given) -> Numbers:
     out["X_uu"] = (-polynomial["R0"], "ITTC57")
     height = given["rudder-height-m"] or min(0.7 * h.T, (2.2 * p["A_R"][0]) ** 0.5)
     out |= reg.steering(h, height**2 / p["A_R"][0])
-    screw = reg.propulsion(h, _pitch_ratio(h, p, given, out))
-    eta = min(1.0, p["D_P"][0] / height)
-    epsilon, kappa = slipstream(screw["K_T0"][0], screw["K_T1"][0], 1.02, 0.6 / 1.02, eta)
-    out |= screw | {"epsilon": (epsilon, "MAT80; LSQ"), "kappa": (kappa, "MAT80; LSQ")}
+    pitch = _pitch_ratio(h, p, given, out)
+    one, eta, count = reg.propulsion(h, pitch), min(1.0, p["D_P"][0] / height), _propellers(given)
+    epsilon, kappa = slipstream(one["K_T0"][0], one["K_T1"][0], 1.02, 0.6 / 1.02, eta)
+    out |= _all_screws(h, pitch, count) | {"epsilon": (epsilon, "MAT80; LSQ"), "kappa": (kappa / count, "MAT80; LSQ")}
     return {k: (float(f"{v:.5g}") + 0.0, s) for k, (v, s) in out.items()}
+
+
+def _propellers(given: Given) -> float:
+    count = given.get("propellers") or 1.0
+    if count != round(count):
+        raise SettingsError(f"--propellers {count:g} is no whole number. How many propellers turn alike?")
+    return count
+
+
+def _all_screws(h: reg.Hull, pitch: float, count: float) -> Numbers:
+    """One propeller in the place of all: of the same diameter, with the thrust of all of them. What a rudder feels is one slipstream,
+    so kappa is divided by their number."""
+    out = reg.propulsion(h, pitch, count)
+    return out | {name: (count * out[name][0], out[name][1]) for name in ("K_T0", "K_T1")}
 
 
 def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
     """Given, or usual for a hull as full as this, or such that the shaft speed given drives her at service speed."""
-    usual = given["pitch-ratio"] or min(1.2, max(0.6, 1.7 - 1.2 * h.C_b))
+    usual, count = given["pitch-ratio"] or min(1.2, max(0.6, 1.7 - 1.2 * h.C_b)), _propellers(given)
     rpm = given["shaft-speed-rpm"]
     if not rpm:
         return usual
 
     def turns(diameter: float, pitch: float) -> float:
-        return 60.0 * shaft_speed(Model(_ship("", p | {"D_P": (diameter, "")}, d | reg.propulsion(h, pitch))), h.U)
+        return 60.0 * shaft_speed(Model(_ship("", p | {"D_P": (diameter, "")}, d | _all_screws(h, pitch, count))), h.U)
 
     D = p["D_P"][0]
     if given["propeller-diameter-m"] is None and not turns(D, 1.4) < rpm < turns(D, 0.5):
@@ -177,7 +192,7 @@ def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
     if abs(turns(D, pitch) / rpm - 1.0) > 0.02:
         raise SettingsError(
             f"--shaft-speed-rpm {rpm:g} cannot drive her at {h.U:.3g} m/s with a propeller of {D:.3g} m: no usual pitch does. "
-            "Check shaft speed, service speed and propeller diameter."
+            "Check shaft speed, service speed, propeller diameter and --propellers."
         )
     return pitch
 

@@ -5,45 +5,54 @@ the truth, what remains is what remained on the reference voyages. When it only 
 go where it leads her.
 """
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from .case import WORLDS, Case
-from .evidence import posterior
-from .refine import Found, standing
+from .evidence import Hypothesis, posterior
+from .innovations import standard
+from .led import FORM
+from .refine import Found, Sets, standing
+from .seaway import at_sea
 
 ASTRAY = 2.0  # times the floor that the best explanation may end away from where she went
 BETTER = 0.05  # share by which a force must bring her nearer to where she went
 RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
 CLEAR = 3.0  # log evidence by which the voyages must be restless
-SEA = 0.003  # wave height in ship lengths from which a measured sea may be the reason
 
 
-def explains(case: Case, found: Found) -> bool:
-    """Whether no more is left under this hypothesis than a true one would leave. A sea that was measured may be the reason for more,
-    and a stream that changes for restlessness."""
-    world = WORLDS[found.hypothesis.world]
-    if _at_sea(case):
+def explains(case: Case, weighed: Sequence[Hypothesis], found: Found) -> bool:
+    """Whether no more is left under this hypothesis than a true one would leave (`weighed`: all of them, best first). A sea that was
+    measured may be the reason for more, and a stream that changes for restlessness."""
+    if any(at_sea(t, case.model) for t in case.tracks):
         return True
-    return world.plain and not found.off_m > ASTRAY * found.floor_m and (world.flow > 1.0 or quiet(case, found))
+    own = [h for h in weighed if h.effects == found.hypothesis.effects]
+    plain = next((h for h in own if WORLDS[h.world].plain), None)
+    if plain is None or own[0].log_weight - plain.log_weight > CLEAR or found.off_m > ASTRAY * found.floor_m:
+        return False
+    return WORLDS[plain.world].flow > 1.0 or quiet(case, found)
 
 
-def _at_sea(case: Case) -> bool:
-    return any(np.nanmedian(t.weather["H_s"]) > SEA * case.model.ship.L_pp for t in case.tracks if "H_s" in t.weather)
+def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
+    """Those of a set of effects with which she is led better than without, as `twin add` will ask; one that only changes what the
+    instruments read need not lead her."""
+    return [n for n in chosen if case.catalogue[n].kind == "SensorFault" or _leads(found, chosen, n)]
 
 
-def helps(case: Case, found: Found, nothing: Found) -> bool:
-    """Whether she is led better with the effects of this hypothesis than without, as `twin add` will ask; one that only changes what
-    the instruments read need not."""
-    moves = any(case.catalogue[name].kind != "SensorFault" for name in found.hypothesis.effects)
-    return not moves or not found.off_m > (1.0 - BETTER) * nothing.off_m
+def _leads(found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:
+    without = found.get(tuple(n for n in chosen if n != name))
+    return without is None or not found[chosen].off_m > (1.0 - BETTER) * without.off_m
 
 
 def quiet(case: Case, found: Found) -> bool:
-    """Whether the voyages are, under this hypothesis, as quiet as the reference voyages."""
+    """Whether the voyages are, under this hypothesis, as quiet as the reference voyages, but for what its form may miss of its force
+    from moment to moment."""
     lines, at = standing(case, found)
-    floors = [replace(case.floor, white=float(k) * case.white, doubt=found.doubt) for k in FACTORS]
+    forces = np.concatenate([np.broadcast_to(line.doubted, (len(line.track), 3)) for line in lines]) / standard(case.model)
+    usual = float(np.hypot(case.white, FORM * np.sqrt(np.mean(forces**2))))
+    floors = [replace(case.floor, white=float(k) * usual, doubt=found.doubt) for k in FACTORS]
     says = np.array([posterior(r, found.hypothesis.effects).log_evidence for r in case.reduced(lines, floors, at)])
     return bool(says[FACTORS >= RESTLESS].max() < says[FACTORS < RESTLESS].max() + CLEAR)

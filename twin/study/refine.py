@@ -19,9 +19,9 @@ from .respond import respond
 
 DOUBTS = (0.2, 0.1, 0.05)
 Sets = tuple[str, ...]
-NEWTON = 4  # steps, at most
+NEWTON = 8  # steps, at most
 FARTHER = (2.0, 4.0)  # times the linear guess, where Newton begins again when it ended in no plain world
-STANDS = 0.25  # prior widths that a step may still move
+STANDS = 0.05  # prior widths that a step may still move
 
 
 @dataclass(frozen=True)
@@ -42,10 +42,12 @@ def refine(case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[
     of `wider` beside it."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     best, at = _climb(case, chosen, mine, world, z)
+    first = _boxed(case, z)
+    first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
     for factor in FARTHER:
         if WORLDS[best.world].plain:
             break
-        best, at = max((best, at), _climb(case, chosen, mine, "usual", factor * z), key=lambda end: end[0].log_weight)
+        best, at = max((best, at), _climb(case, chosen, mine, "usual", factor * first), key=lambda end: end[0].log_weight)
     model, lines = about(case, at, mine, case.unknowns)
     doubt = _doubt(case, chosen, lines, best.world, at)
     reduced = _everywhere(case, chosen, lines, at, doubt)

@@ -19,7 +19,7 @@ SOURCES = {
     "FUJ61": "Fujii & Tsuda (1961) J. Soc. Naval Arch. Japan 110: slope of the rudder force 6.13 A/(A + 2.25), A the aspect ratio",
     "DNV": "Det Norske Veritas (1975) Rules for Steel Ships: rudder area T L/100 (1 + 25 (B/L)^2)",
     "ITTC57": "ITTC (1957) friction line, Watanabe's form factor, Bowden & Davison's allowance, Denny-Mumford's wetted surface, residual part by Froude number",
-    "TAY43": "Taylor (1943) The Speed and Power of Ships: w = 0.5 C_b - 0.05, single screw",
+    "TAY43": "Taylor (1943) The Speed and Power of Ships: w = 0.5 C_b - 0.05, twin screws 0.55 C_b - 0.2",
     "HAR83": "Harvald (1983) Resistance and Propulsion of Ships: t near 0.2 for single screws",
     "WAG": "Wageningen B-series, 4 blades: K_T = K_T0 (1 - J/(1.1 P/D)), K_T0 = 0.43 P/D - 0.02 (Oosterveld & van Oossanen 1975)",
     "ALEX": "Alexander's formula C_b = 1.08 - 1.68 Fr (Schneekluth & Bertram 1998)",
@@ -145,12 +145,13 @@ def resistance(h: Hull) -> float:
     return 1.05 * (friction * (1.0 + form) + roughness + residual) * surface / (h.L * h.T)  # 5 % for appendages
 
 
-def propulsion(h: Hull, pitch_ratio: float) -> Estimates:
-    """Thrust, wake and thrust deduction of a single screw."""
+def propulsion(h: Hull, pitch_ratio: float, screws: float = 1.0) -> Estimates:
+    """Thrust of one screw; wake and thrust deduction of a ship that has one, or more."""
     K_T0 = 0.43 * pitch_ratio - 0.02
+    wake = 0.5 * h.C_b - 0.05 if screws == 1.0 else 0.55 * h.C_b - 0.2
     return {
         "K_T0": (K_T0, "WAG"), "K_T1": (-K_T0 / (1.1 * pitch_ratio), "WAG"),
-        "w": (max(0.0, 0.5 * h.C_b - 0.05), "TAY43"), "t": (0.2, "HAR83"),
+        "w": (max(0.0, wake), "TAY43"), "t": (0.2, "HAR83"),
     }  # fmt: skip
 
 

@@ -11,6 +11,8 @@ NEAR = 0.5  # probability from which an effect is told as the nearest one when n
 def told(result: dict[str, Any]) -> list[str]:
     """Lines for the terminal."""
     lines = [sentence(result), ""]
+    if result["verdict"] == "unknown" and result["candidates"]:
+        lines.append("were it one of the effects I know:")
     for c in result["candidates"]:
         lines += _candidate(c)
     chances = result["probabilities"]

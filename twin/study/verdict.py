@@ -64,24 +64,24 @@ def one_of(weighed: Sequence[Hypothesis], names: Sequence[str]) -> float:
 
 
 def judge(
-    weighed: Sequence[Hypothesis], w: Weights, like: Mapping[str, Sequence[str]], *, excited: bool = True, sharp: bool = True,
-    explained: bool = True, helpful: bool = True,
+    weighed: Sequence[Hypothesis], w: Weights, like: Mapping[str, Sequence[str]], leads: Sequence[str], *, excited: bool = True,
+    sharp: bool = True, explained: bool = True, tossed: bool = False,
 ) -> tuple[str, list[str]]:  # fmt: skip
     """The verdict, and the effects to add, first the one that explains most. One that others could stand in for (`like`) is named
-    when one of them is surely there. Voyages without a manoeuvre decide nothing (`excited`); those that would not have shown most
-    effects acquit nobody (`sharp`); what the best hypothesis leaves over is unknown (`explained`);
-    what does not lead her better is not named (`helpful`)."""
+    when one of them is surely there, and only if it leads her better (`leads`). Voyages without a manoeuvre decide nothing (`excited`);
+    those that would not have shown most effects acquit nobody (`sharp`); what the best hypothesis leaves over is unknown (`explained`),
+    but a restlessness for which there was a sea decides nothing (`tossed`)."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
-    named = [n for n in w.best.effects if w.effects[n] >= SURE or one_of(weighed, [n, *like[n]]) >= SURE_GROUP]
+    named = [n for n in w.best.effects if n in leads and (w.effects[n] >= SURE or one_of(weighed, [n, *like[n]]) >= SURE_GROUP)]
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
     named = [n for i, n in enumerate(named) if i == 0 or w.effects[n] >= SURE_TOO]
-    if not excited:
+    if not excited or (tossed and w.unknown >= LOST):
         return "undecided", []
     if w.unknown >= LOST or not explained:
         return "unknown", []
     if w.nothing >= ACQUITTED and sharp:
         return "nothing_missing", []
-    return ("missing", named) if named and helpful else ("undecided", [])
+    return ("missing", named) if named else ("undecided", [])
 
 
 def excites(case: Case) -> bool:

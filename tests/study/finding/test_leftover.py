@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.leftover import ASTRAY, explains, helps, quiet
+from twin.study.leftover import ASTRAY, CLEAR, explains, helpful, quiet
 from twin.study.search import search
 
 
@@ -20,25 +20,45 @@ def test_under_its_true_cause_a_ship_is_as_quiet_as_on_her_reference_voyages(jud
     assert quiet(*judged)
 
 
-def test_a_world_with_a_larger_floor_is_no_explanation_unless_a_sea_was_measured(judged):
+def as_if(found, **worlds):
+    """The same hypothesis as likely as said in each of these worlds."""
+    return [replace(found.hypothesis, world=w, log_evidence=e - found.hypothesis.log_prior) for w, e in worlds.items()]
+
+
+def test_a_ship_that_is_tossed_about_is_not_quiet(judged):
     case, found = judged
-    rough = replace(found, hypothesis=replace(found.hypothesis, world="rough"))
-    assert not explains(case, rough)
+    (line,) = case.lines
+    swing = 0.2 * np.sin(2.0 * np.pi / 20.0 * line.track.t)
+    state, measured = line.track.state.copy(), line.track.measured.copy()
+    for column in (state[:, 4], measured[:, 4], measured[:, 7]):
+        column += swing
+    assert not quiet(replace(case, lines=(replace(line, track=replace(line.track, state=state, measured=measured)),)), found)
+
+
+def test_a_world_that_is_clearly_rougher_is_no_explanation_unless_a_sea_was_measured(judged):
+    case, found = judged
+    rough, plain = as_if(found, rough=0.0, usual=-CLEAR - 0.1)
+    assert not explains(case, [rough, plain], replace(found, hypothesis=rough))
+    assert explains(case, [rough, replace(plain, log_evidence=plain.log_evidence + 0.2)], replace(found, hypothesis=rough))
+    astray = [replace(h, log_evidence=h.log_evidence - 50.0) for h in (plain, rough)]  # what the path says counts for all worlds alike
+    assert explains(case, astray, found)
     (track,) = case.tracks
     waves = np.full(len(track), 0.01 * case.model.ship.L_pp)
-    assert explains(replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),)), rough)
+    assert explains(replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),)), [rough], replace(found, hypothesis=rough))
 
 
 def test_what_leads_her_elsewhere_explains_nothing_however_quiet_it_leaves_her(judged):
     case, found = judged
-    assert explains(case, replace(found, off_m=1.4, floor_m=1.0))
-    assert not explains(case, replace(found, off_m=(ASTRAY + 0.1), floor_m=1.0))
+    weighed = [found.hypothesis]
+    assert explains(case, weighed, replace(found, off_m=1.4, floor_m=1.0))
+    assert not explains(case, weighed, replace(found, off_m=(ASTRAY + 0.1), floor_m=1.0))
 
 
-@pytest.mark.parametrize("effects, off, answer", [
-    (("RudderWear",), 0.9, True), (("RudderWear",), 0.99, False), (("GyroBias",), 1.0, True), (("GyroBias", "RudderWear"), 1.0, False),
+@pytest.mark.parametrize("effects, off, named", [
+    (("RudderWear",), 0.9, ("RudderWear",)), (("RudderWear",), 0.99, ()), (("GyroBias",), 1.0, ("GyroBias",)),
+    (("GyroBias", "RudderWear"), 1.0, ("GyroBias",)), (("GyroBias", "RudderWear"), 0.9, ("GyroBias", "RudderWear")),
 ])  # fmt: skip
-def test_a_force_must_lead_her_better_and_a_fault_of_an_instrument_need_not(judged, effects, off, answer):
+def test_a_force_must_lead_her_better_than_without_it_and_a_fault_of_an_instrument_need_not(judged, effects, off, named):
     case, found = judged
-    named = replace(found, off_m=off, hypothesis=replace(found.hypothesis, effects=effects))
-    assert helps(case, named, replace(found, off_m=1.0)) is answer
+    led = {s: replace(found, off_m=1.0) for s in ((), ("GyroBias",), ("RudderWear",))} | {effects: replace(found, off_m=off)}
+    assert helpful(case, led, effects) == list(named)

@@ -7,12 +7,15 @@ import pytest
 from twin.study.evidence import Hypothesis
 from twin.study.verdict import Weights, judge
 
+YES = ("tossed",)
 
-def verdict(effects=(), nothing=0.0, unknown=0.0, how=(), **sure):
+
+def verdict(effects=(), nothing=0.0, unknown=0.0, how=(), leads=None, **sure):
     best = Hypothesis(tuple(effects), "usual", 0.0, 0.0)
     singles = [Hypothesis((name,), "usual", -float(i), 0.0) for i, name in enumerate(effects)]
     nobody = Hypothesis((), "usual", 0.0, 0.0)  # as likely as the best, so that no group is sure
-    return judge([best, *singles, nobody], Weights(nothing, unknown, sure, best), dict.fromkeys(effects, ()), **dict.fromkeys(how, False))
+    flags = {flag: flag in YES for flag in how}
+    return judge([best, *singles, nobody], Weights(nothing, unknown, sure, best), dict.fromkeys(effects, ()), effects if leads is None else leads, **flags)
 
 
 def test_what_is_there_with_odds_of_four_to_one_is_named_and_what_is_less_likely_is_not():
@@ -25,8 +28,8 @@ def test_one_of_two_that_cannot_be_told_apart_is_named_when_one_of_them_is_surel
     chances = {("RudderOffset",): 0.55 - nothing, ("PropellerWalk",): 0.45, (): nothing}
     weighed = [Hypothesis(effects, "usual", math.log(p), 0.0) for effects, p in chances.items()]
     w = Weights(nothing, 0.0, {"RudderOffset": 0.55 - nothing, "PropellerWalk": 0.45}, weighed[0])
-    assert judge(weighed, w, {"RudderOffset": ["PropellerWalk"]}) == answer
-    assert judge(weighed, w, {"RudderOffset": []}) == ("undecided", [])
+    assert judge(weighed, w, {"RudderOffset": ["PropellerWalk"]}, ["RudderOffset"]) == answer
+    assert judge(weighed, w, {"RudderOffset": []}, ["RudderOffset"]) == ("undecided", [])
 
 
 def test_a_second_effect_is_named_only_when_it_is_nearly_certain():
@@ -61,7 +64,13 @@ def test_voyages_that_would_not_have_shown_most_effects_acquit_nobody_but_name_w
 
 
 def test_what_does_not_lead_her_better_is_not_named():
-    assert verdict(["Loading"], Loading=1.0, how=("helpful",)) == ("undecided", [])
+    assert verdict(["Loading"], Loading=1.0, leads=[]) == ("undecided", [])
+    assert verdict(["Loading", "RudderWear"], Loading=1.0, RudderWear=1.0, leads=["RudderWear"]) == ("missing", ["RudderWear"])
+
+
+def test_a_restlessness_for_which_there_was_a_sea_decides_nothing():
+    assert verdict(["SteeringLag"], unknown=0.9, SteeringLag=1.0, how=("tossed",)) == ("undecided", [])
+    assert verdict(["WaveDrift"], unknown=0.1, WaveDrift=1.0, how=("tossed",)) == ("missing", ["WaveDrift"])
 
 
 def test_two_effects_that_leave_her_restless_are_unknown():

@@ -18,7 +18,7 @@ class SteeringLag(Lag):
     source = "SOLAS II-1/29 (65 deg in 28 s); Van Amerongen (1982) Adaptive steering of ships, ch. 2"
 
     delay: float = param(0.05, unit="s", lo=0.0, hi=0.5, sd=0.05, of="time", doc="dead time between order and movement")
-    travel_time: float = param(0.7, unit="s", lo=0.0, hi=3.0, sd=0.5, of="time", doc="35 deg one side to 30 deg the other, at full rate")
+    travel_time: float = param(0.7, unit="s", lo=0.0, hi=10.0, sd=1.0, of="time", doc="35 deg one side to 30 deg the other, at full rate")
 
     def dead_time(self) -> Number:
         return self.delay
