@@ -155,7 +155,9 @@ class Bench:
 
     def _numbers(self, made: Any, stream: Stream, steps: int) -> np.ndarray:
         """(K, 3, width) what acts after each step; steps without a measurement change nothing."""
-        width = len(self.acting.rows) + 3
+        from twin.live.adapt import BESIDE
+
+        width = len(self.acting.rows) + BESIDE
         out = np.zeros((steps, 3, width))
         if made is None:
             return out

@@ -15,7 +15,7 @@ from bench.paper_lab import Course
 from export.loss import known
 from export.network import Residual
 from export.to_onnx import whitening
-from twin.live.adapt import Adaptation
+from twin.live.adapt import BESIDE, CORES, LARGEST, Adaptation
 from twin.live.dynamics import Known
 from twin.live.evidence import Evidence
 from twin.physics.model import CORE, Model
@@ -24,7 +24,6 @@ from twin.physics.state import Force, Rates, Situation
 from twin.study.track import READINGS
 
 Law = Callable[[Ship, Force, int], Adaptation]
-HULL, PROPELLER, RUDDER = (CORE.index(n) for n in ("hull", "propeller", "rudder"))
 SPEEDS = [READINGS.index(n) for n in ("u", "v", "r")]
 
 
@@ -36,7 +35,7 @@ class Acting:
         with torch.no_grad():
             table = whitening(network.phi(zeta).numpy().astype(float))
         self.mean, self.rows = (torch.tensor(table[n], dtype=torch.float32) for n in ("mean", "components"))
-        self.A = torch.zeros(1, 3, len(self.rows) + 3)
+        self.A = torch.zeros(1, 3, len(self.rows) + BESIDE)
 
     def holding(self, A: np.ndarray) -> "Acting":
         """The same network with other learned numbers (B, 3, width)."""
@@ -50,11 +49,10 @@ class Acting:
         zeta = self.network.zeta(s)
         phi = self.network.phi(zeta)
         components = torch.clamp((phi - self.mean) @ self.rows.T, -3.0, 3.0)
-        pairs = ((HULL, PROPELLER), (HULL, RUDDER), (HULL, RUDDER))
-        rows = [
-            torch.cat([components, torch.stack([_sized(forces[i][r], S[r], phi) for i in pair] + [torch.ones(len(phi))], -1)], -1)
-            for r, pair in enumerate(pairs)
-        ]
+        rows = []
+        for r, core in enumerate(CORES):
+            sizes = [*(forces[i][r] for i in core), sum(force[r] for force in forces[len(CORE) :])]
+            rows.append(torch.cat([components, torch.stack([_sized(x, S[r], phi) for x in sizes] + [torch.ones(len(phi))], -1)], -1))
         return self.network.weight(zeta).unsqueeze(-1), self.network.last(phi), torch.stack(rows, 1)
 
     def f(self, s: Situation) -> torch.Tensor:
@@ -69,7 +67,7 @@ class Acting:
 
 
 def _sized(force: torch.Tensor | float, size: float, like: torch.Tensor) -> torch.Tensor:
-    return torch.clamp((torch.as_tensor(force) / size).float() + torch.zeros(len(like)), -5.0, 5.0)
+    return torch.clamp((torch.as_tensor(force) / size).float() + torch.zeros(len(like)), -LARGEST, LARGEST)
 
 
 class Learning(Filter):
@@ -123,8 +121,8 @@ class Learning(Filter):
             rates = torch.stack(list(_accelerations(self.model, forces)), -1)
             w, trained, q = self.acting.parts(s)
             shadow = self.acting.f(s)
-        many = q.shape[-1] - 3
-        sizes = q[:, :, many : many + 2].reshape(len(q), 6)
+        many = q.shape[-1] - BESIDE
+        sizes = q[:, :, many:-1].reshape(len(q), -1)
         return tuple(t.double() for t in (rates, w * trained, shadow, q[:, 0, :many], sizes))
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from bench import adaptation_laws as laws
 from bench.adaptation import LIES
-from twin.live.adapt import A_MAX, Adaptation
+from twin.live.adapt import A_MAX, SIZES, Adaptation
 from twin.live.learned import scale_of
 from twin.physics.ship import load
 
@@ -25,8 +25,8 @@ def stream(planted, seed=1, noise=0.02):
     rng, out = np.random.default_rng(seed), []
     for k in range(STEPS):
         t = k * DT
-        q = [sin(t / 40.0), sin(t / 27.0 + 1.0), *(0.5 * sin(t / (35.0 + 7 * i) + i) for i in range(6))]
-        out.append((tuple(planted * q[2 + 2 * r] + noise * rng.standard_normal() for r in range(3)), q, DT, ""))
+        q = [sin(t / 40.0), sin(t / 27.0 + 1.0), *(0.5 * sin(t / (35.0 + 7 * i) + i) for i in range(3 * SIZES))]
+        out.append((tuple(planted * q[2 + SIZES * r] + noise * rng.standard_normal() for r in range(3)), q, DT, ""))
     return out
 
 

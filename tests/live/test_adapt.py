@@ -17,10 +17,10 @@ def made(ship, components=2):
     return Adaptation(ship, scale_of(ship), components)
 
 
-def known(ship, hull=(0.5, 0.5, 0.5), rudder=(0.0, 0.3, 0.3)):
+def known(ship, hull=(0.5, 0.5, 0.5), rudder=(0.0, 0.3, 0.3), more=()):
     S = scale_of(ship)
     sized = [Force(*(h * s for h, s in zip(f, S, strict=True))) for f in (hull, rudder)]
-    return [sized[0], Force(), Force(0.4 * S.X), sized[1]]  # in the order of the core
+    return [sized[0], Force(), Force(0.4 * S.X), sized[1], *more]  # in the order of the core, then of the effects
 
 
 def teach(adaptation, ship, truth, seconds=4000, dt=0.5, noise=0.1, seed=1, frozen=""):
@@ -45,6 +45,20 @@ def test_it_finds_a_hull_force_that_is_20_percent_off(kvlcc2):
     found = {p.name: p for p in adaptation.parameters()}
     assert found["sway hull"].value == pytest.approx(0.2, abs=0.06)
     assert found["sway hull"].status == "estimated"
+
+
+def test_it_finds_named_effects_that_are_20_percent_too_weak(kvlcc2):
+    adaptation, S, dice = made(kvlcc2), scale_of(kvlcc2), random.Random(1)
+    for k in range(8000):
+        t = 0.5 * k
+        wind, waves = Force(0.2 * S.X * sin(t / 33.0), 0.8 * S.Y * sin(t / 38.0)), Force(0.0, 0.3 * S.Y * sin(t / 21.0))
+        forces = known(kvlcc2, hull=(0.5, 0.6 * sin(t / 35.0), 0.0), rudder=(0.0, sin(t / 50.0), 0.0), more=(wind, waves))
+        q = adaptation.regressors([sin(t / 40.0), sin(t / 27.0 + 1.0)], forces)
+        missing = 0.2 * (wind.Y + waves.Y) / S.Y
+        adaptation.learn((0.0, missing + 0.1 * dice.gauss(0.0, 1.0), 0.0), q, 0.5, "")
+    found = {p.name: p for p in adaptation.parameters()}
+    assert found["sway effects"].value == pytest.approx(0.2, abs=0.06) and found["sway effects"].status == "estimated"
+    assert abs(found["sway hull"].value) < 0.06 and abs(found["yaw effects"].value) < 0.06
 
 
 def test_with_nothing_to_find_the_gate_stays_shut(kvlcc2):

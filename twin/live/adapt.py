@@ -1,13 +1,14 @@
 """Slow learning on board: a few numbers on top of the trained last layer, kept small, unused when they do
 not help.
 
-    learned force_r = W_r phi + g_r a_r q_r         q_r = [whitened components of phi | known forces of row r | 1]
+    learned force_r = W_r phi + g_r a_r q_r         q_r = [whitened components of phi | known forces of row r | its named effects | 1]
     a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - a_r q_f)^2/(NOISE_S s_r^2) + |a_r/usual|^2
 
 each row a ridge regression on fading evidence (evidence.py): what nothing teaches fades back to the trained
-weights. What usually changes are the known forces' sizes; features only fill in, else they would explain the
-noise of ten minutes. d_r is cut at three usual errors s_r from what is expected; A is projected on boxes and on ||A|| <=
-A_MAX. The gate g opens only as far as the numbers of a while ago explain the present better than none.
+weights. What usually changes are the known forces' sizes, those of the named effects (`twin add`) together
+among them; features only fill in, else they would explain the noise of ten minutes. d_r is cut at three usual
+errors s_r from what is expected; A is projected on boxes and on ||A|| <= A_MAX. The gate g opens only as far
+as the numbers of a while ago explain the present better than none.
 """
 
 import json
@@ -25,8 +26,11 @@ from twin.physics.ship import Ship
 from twin.physics.state import Force
 
 ROWS = ("surge", "sway", "yaw")
-COLUMNS = (("hull", "propeller"), ("hull", "rudder"), ("hull", "rudder"))  # known forces whose size each row may correct
-HULL, PROPELLER, RUDDER = CORE.index("hull"), CORE.index("propeller"), CORE.index("rudder")
+COLUMNS = (("hull", "propeller", "effects"), ("hull", "rudder", "effects"), ("hull", "rudder", "effects"))  # sizes that each row may correct
+SIZES = len(COLUMNS[0])
+BESIDE = SIZES + 1  # numbers of a row beside its components: sizes and a constant
+CORES = tuple(tuple(CORE.index(name) for name in row[:-1]) for row in COLUMNS)  # where they stand among the forces; the effects' come last
+LARGEST = 5.0  # force scales that a regressor may be
 A_MAX = 1.0  # norm of all numbers together
 BOX_COMPONENT, BOX_KNOWN, BOX_CONSTANT = 0.5, 0.3, 0.5
 USUAL_COMPONENT, USUAL_KNOWN, USUAL_CONSTANT = 0.01, 0.2, 0.02  # how far a number is usually off: the prior's deviations
@@ -75,12 +79,12 @@ class Adaptation:
     def __init__(self, ship: Ship, scale: Force, components: int):
         self.time_s = ship.L_pp / ship.U_0
         self.scale, self.components = scale, components
-        self.width = components + 3
+        self.width = components + BESIDE
         self.frozen = "nothing measured yet"
         self.notes: list[str] = []  # what was wrong with saved numbers
         self.updates = 0
-        self._boxes = [BOX_COMPONENT] * components + [BOX_KNOWN] * 2 + [BOX_CONSTANT]
-        self._usual = [USUAL_COMPONENT] * components + [USUAL_KNOWN] * 2 + [USUAL_CONSTANT]
+        self._boxes = [BOX_COMPONENT] * components + [BOX_KNOWN] * SIZES + [BOX_CONSTANT]
+        self._usual = [USUAL_COMPONENT] * components + [USUAL_KNOWN] * SIZES + [USUAL_CONSTANT]
         self._prior = [u**-2 for u in self._usual]
         self._rows = [self._blank() for _ in ROWS]
         self.open = False  # whether any gate is
@@ -90,12 +94,12 @@ class Adaptation:
         self._since = [0.0, 0.0, 0.0]
 
     def regressors(self, components: list[float], forces: Forces) -> list[float]:
-        """The whitened components, then two known forces for each row."""
-        S, hull, rudder = self.scale, forces[HULL], forces[RUDDER]
-        sizes = (
-            hull[0] / S[0], forces[PROPELLER][0] / S[0], hull[1] / S[1], rudder[1] / S[1], hull[2] / S[2], rudder[2] / S[2],
-        )  # fmt: skip
-        return [*(components or [0.0] * self.components), *[-5.0 if x < -5.0 else 5.0 if x > 5.0 else x for x in sizes]]
+        """The whitened components, then for each row its known forces and what all named effects give it together."""
+        sizes = []
+        for r, (scale, core) in enumerate(zip(self.scale, CORES, strict=True)):
+            sizes += [forces[i][r] / scale for i in core]
+            sizes.append(sum([force[r] for force in forces[len(CORE) :]]) / scale)
+        return [*(components or [0.0] * self.components), *[-LARGEST if x < -LARGEST else LARGEST if x > LARGEST else x for x in sizes]]
 
     def correction(self, regressors: list[float]) -> Three:
         """g A q, in units of the force scale."""
@@ -116,9 +120,9 @@ class Adaptation:
         self.open = any(row.gate for row in self._rows)
 
     def _of_row(self, r: int, regressors: list[float]) -> list[float]:
-        """q of one row: the components, its two known forces, 1."""
+        """q of one row: the components, its known forces and effects, 1."""
         p = self.components
-        return [*regressors[:p], regressors[p + 2 * r], regressors[p + 2 * r + 1], 1.0]
+        return [*regressors[:p], *regressors[p + SIZES * r : p + SIZES * (r + 1)], 1.0]
 
     def _watch(self, regressors: list[float], dt: float) -> None:
         """How much the regressors move about their slow means."""
