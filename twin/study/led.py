@@ -54,9 +54,14 @@ def led(case: Case, found: Mapping[Sets, Found]) -> Led:
     off = {s: held_out_error(case, f) for s, f in found.items() if not s or f.hypothesis.log_weight > best - REACH}
     floors = zip(WORLDS, case.worlds(list(WORLDS)), strict=True)
     floor = {name: _usual(case, floor) for name, floor in floors}
-    asked = {s: replace(found[s], off_m=m, floor_m=_floor(found[s].hypothesis, floor, off[()])) for s, m in off.items()}
+    asked = {s: replace(found[s], off_m=m, floor_m=_floor(_plain(found[s].hypothesis), floor, off[()])) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
     return Led(asked, floor, windows)
+
+
+def _plain(h: Hypothesis) -> Hypothesis:
+    """The same in a world that is no rougher than on the reference voyages."""
+    return h if WORLDS[h.world].plain else replace(h, world=next(n for n, w in WORLDS.items() if w.plain and w.flow == WORLDS[h.world].flow))
 
 
 def _floor(h: Hypothesis, floor: Mapping[str, float], nothing_m: float) -> float:

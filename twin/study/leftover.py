@@ -31,7 +31,9 @@ def explains(case: Case, weighed: Sequence[Hypothesis], found: Found) -> bool:
         return True
     own = [h for h in weighed if h.effects == found.hypothesis.effects]
     plain = next((h for h in own if WORLDS[h.world].plain), None)
-    if plain is None or own[0].log_weight - plain.log_weight > CLEAR or found.off_m > ASTRAY * found.floor_m:
+    if plain is None or found.off_m > ASTRAY * found.floor_m:
+        return False
+    if own[0].log_weight - plain.log_weight > CLEAR and not found.off_m <= found.floor_m:  # a rough world that leads her astray nowhere is none
         return False
     return WORLDS[plain.world].flow > 1.0 or quiet(case, found)
 

@@ -33,7 +33,7 @@ class Found:
     model: Model
     doubt: float = 0.0  # share of its own force that may be something else
     off_m: float = float("nan")  # held-out position error, when it was asked (led.py)
-    floor_m: float = float("nan")  # and what it would be were this the truth
+    floor_m: float = float("nan")  # and what it would be were this the truth, in a world as it was on the reference voyages
 
 
 def refine(case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[str]) -> tuple[Found, list[Hypothesis]]:

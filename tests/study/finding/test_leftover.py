@@ -38,8 +38,9 @@ def test_a_ship_that_is_tossed_about_is_not_quiet(judged):
 def test_a_world_that_is_clearly_rougher_is_no_explanation_unless_a_sea_was_measured(judged):
     case, found = judged
     rough, plain = as_if(found, rough=0.0, usual=-CLEAR - 0.1)
-    assert not explains(case, [rough, plain], replace(found, hypothesis=rough))
-    assert explains(case, [rough, replace(plain, log_evidence=plain.log_evidence + 0.2)], replace(found, hypothesis=rough))
+    assert not explains(case, [rough, plain], replace(found, hypothesis=rough, off_m=1.1, floor_m=1.0))
+    assert explains(case, [rough, plain], replace(found, hypothesis=rough, off_m=0.9, floor_m=1.0))
+    assert explains(case, [rough, replace(plain, log_evidence=plain.log_evidence + 0.2)], replace(found, hypothesis=rough, off_m=1.1, floor_m=1.0))
     astray = [replace(h, log_evidence=h.log_evidence - 50.0) for h in (plain, rough)]  # what the path says counts for all worlds alike
     assert explains(case, astray, found)
     (track,) = case.tracks
