@@ -10,6 +10,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -80,6 +81,13 @@ def laws() -> dict[str, Any]:
     }  # fmt: skip
 
 
+def midway_laws() -> dict[str, Any]:
+    """Nothing, the law on board, and the same told of the change."""
+    from bench.adaptation_laws import Told
+
+    return {"off": None, "on": laws()[ON_BOARD], "told": partial(Told, at_s=CHANGE_S)}
+
+
 def ships(seeds: int) -> dict[str, list[Any]]:
     """The ship as the models know her, and changed ones; the same seas for all."""
     from bench.paper_sea import zigzags
@@ -148,7 +156,7 @@ class Bench:
         return cls(model, Acting(taught.network, model, zeta_of(taught.network, taught.samples)), shop.tuned(model, taught.network), work)
 
     def midway(self, seeds: int) -> dict[str, Any]:
-        """Of every change in the middle: errors by window, learning off and on."""
+        """Of every change in the middle: errors by window, by how she learns."""
         from bench.paper_sea import zigzags
 
         out: dict[str, Any] = {}
@@ -156,7 +164,7 @@ class Bench:
             _tell(f"midway: {name}")
             heard = self.heard(zigzags(seeds, 90_000, change=change), ROUND_S)
             scenario = np.array([c.scenario for c in heard.courses])
-            out[name] = {how: _summary(*self.errors(law, heard)[:2], scenario) for how, law in (("off", "none"), ("on", ON_BOARD))}
+            out[name] = {how: _summary(*self.errors(made, heard)[:2], scenario) for how, made in midway_laws().items()}
         return out
 
     def heard(self, cases: list[Any], starts_s: tuple[float, ...] = STARTS_S) -> Heard:
@@ -173,19 +181,18 @@ class Bench:
 
     def judged(self, law: str, heard: Heard) -> dict[str, Any]:
         """Heading deg and lateral m, early and late; and the greatest |A|."""
-        heading, lateral, largest = self.errors(law, heard)
+        heading, lateral, largest = self.errors(laws()[law], heard)
         return {
             "heading_deg": float(heading[:, LATE].mean()), "lateral_m": float(lateral[:, LATE].mean()),
             "heading_early_deg": float(heading[:, EARLY].mean()), "lateral_early_m": float(lateral[:, EARLY].mean()),
             "by_start_deg": heading.mean(0).tolist(), "largest_A": largest,
         }  # fmt: skip
 
-    def errors(self, law: str, heard: Heard) -> tuple[np.ndarray, np.ndarray, float]:
+    def errors(self, made: Any, heard: Heard) -> tuple[np.ndarray, np.ndarray, float]:
         """Free runs with what the law had learned by their starts: heading deg and lateral m (V, W); and the greatest |A|."""
         from bench.paper_filter import from_states
         from bench.paper_lab import judge
 
-        made = laws()[law]
         learned = [self._numbers(made, stream, len(heard.states)) for stream in heard.streams]
         held = np.concatenate([x[c.starts] for x, c in zip(learned, heard.courses, strict=True)])
         starts = [heard.states[c.starts, i] for i, c in enumerate(heard.courses)]

@@ -3,6 +3,7 @@
 from pathlib import Path
 from typing import Any
 
+SAID = {"off": "learning off", "on": "learning on", "told": "learning on, told of the change"}
 HAND = "## What it says"  # from here on the page is written by hand
 
 
@@ -24,9 +25,10 @@ def page(r: dict[str, Any]) -> list[str]:
         *_table(r["lies"], lies, lambda x: f"{x['heading_deg']:.3f} / {x['lateral_m']:.2f} ({x['largest_A']:.2f})"),
         "", "## A change in the middle of a voyage", "",
         f"Zigzags of 900 s in other seas, the change at {r['change_s']:.0f} s; heading deg / lateral m of free runs by the second they "
-        "begin at, learning off and on (the law on board). The run begun at the change knows nothing of it yet.", "",
+        "begin at: learning off; on (the law on board); told (the same law, which forgets all it knew at the change: on board nobody says so). "
+        "The run begun at the change knows nothing of it yet.", "",
         *_midway(r),
-        "", "Heading deg by scenario, mean of the windows begun at the change and later, learning off / on.", "",
+        "", "Heading deg by scenario, mean of the windows begun at the change and later, learning off / on / told.", "",
         *_by_scenario(r["midway"]),
     ]  # fmt: skip
     return lines
@@ -40,9 +42,11 @@ def _midway(r: dict[str, Any]) -> list[str]:
 
 
 def _by_scenario(midway: dict[str, Any]) -> list[str]:
-    off, on = ({name: both[how]["by_scenario_deg"] for name, both in midway.items()} for how in ("off", "on"))
-    scenarios = list(next(iter(off.values())))
-    rows = [f"| {name} |" + "".join(f" {off[name][ts]:.3f} / {on[name][ts]:.3f} |" for ts in scenarios) for name in midway]
+    scenarios = list(next(iter(midway.values()))["off"]["by_scenario_deg"])
+    rows = [
+        f"| {name} |" + "".join(f" {' / '.join(format(e['by_scenario_deg'][ts], '.3f') for e in hows.values())} |" for ts in scenarios)
+        for name, hows in midway.items()
+    ]
     return [f"| change | {' | '.join(scenarios)} |", "|---" * (1 + len(scenarios)) + "|", *rows]
 
 
@@ -65,8 +69,8 @@ def figure(r: dict[str, Any], path: Path) -> None:
     healthy = r["midway"]["as she is"]["on"]["heading_deg"]
     for ax, name in zip(axes.flat, changed, strict=False):
         both = r["midway"][name]
-        ax.plot(since, both["off"]["heading_deg"], "o-", color="tab:orange", label="learning off")
-        ax.plot(since, both["on"]["heading_deg"], "o-", color="tab:blue", label="learning on")
+        for how, colour in (("off", "tab:orange"), ("on", "tab:blue"), ("told", "tab:green")):
+            ax.plot(since, both[how]["heading_deg"], "o-", ms=4, color=colour, label=SAID[how])
         ax.plot(since, healthy, ":", color="0.4", label="no change, learning on")
         ax.axvline(0.0, color="0.7", lw=0.8)
         ax.set(title=name, ylim=(0.0, None))
@@ -74,8 +78,8 @@ def figure(r: dict[str, Any], path: Path) -> None:
         ax.set(xlabel="free run begins, s since the change")
     for ax in axes[:, 0]:
         ax.set(ylabel="heading error over 120 s, deg")
-    axes.flat[0].legend(fontsize=8)
-    fig.tight_layout()
+    fig.legend(*axes.flat[0].get_legend_handles_labels(), loc="upper center", ncol=4, fontsize=9)
+    fig.tight_layout(rect=(0.0, 0.0, 1.0, 0.95))
     fig.savefig(path, dpi=72)
     plt.close(fig)
 

@@ -76,7 +76,7 @@ def test_the_page_holds_every_change_and_keeps_what_was_written_by_hand(tmp_path
     one = {"heading_deg": [0.1] * 9, "lateral_m": [1.0] * 9, "by_scenario_deg": {"TS-01": 0.1}}
     result = {
         "seeds": 1, "full": False, "voyages": 6, "change_s": CHANGE_S, "starts_s": ROUND_S, "changed": {"none": {"as she is": cell}},
-        "lies": {"none": {"stuck": cell}}, "midway": {name: {"off": one, "on": one} for name in changes()},
+        "lies": {"none": {"stuck": cell}}, "midway": {name: {"off": one, "on": one, "told": one} for name in changes()},
     }  # fmt: skip
     text = "\n".join(page(result))
     assert all(f"| {name}, on |" in text for name in changes())
@@ -84,3 +84,15 @@ def test_the_page_holds_every_change_and_keeps_what_was_written_by_hand(tmp_path
     assert (tmp_path / "a.png").read_bytes()[:4] == b"\x89PNG"
     (tmp_path / "a.md").write_text("old tables\n## What it says\n\nmine\n")
     assert kept(tmp_path / "a.md") == "\n## What it says\n\nmine\n" and kept(tmp_path / "none.md") == ""
+
+
+def test_a_law_that_is_told_of_a_change_forgets_once_and_learns_on(ship):
+    """Test: 0.2 off for twenty-five minutes, told at twenty. Expected: until then the law on board, then as one that began there."""
+    told, board, fresh = laws.Told(ship, scale_of(ship), 2, at_s=1200.0), *(Adaptation(ship, scale_of(ship), 2) for _ in range(2))
+    for k, step in enumerate(stream(0.2)):
+        told.learn(*step), board.learn(*step)
+        if k < 959:
+            assert told.numbers() == board.numbers()
+        else:
+            fresh.learn(*step)
+    assert told.numbers() == fresh.numbers() != board.numbers()
