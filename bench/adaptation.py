@@ -1,14 +1,16 @@
 """`twin-bench adaptation`: laws of adaptation side by side on ships that changed, and under measurements that lie.
 
-The change has just happened when a voyage begins: the twin still has what she learned on the ship as she was. All laws see the same
-stream of unexplained force and regressors (from the hybrid's own filter, which does not use what they learn), and are judged by the
-free runs of 120 s that follow. Boxes, ball and gate are those of twin/live/adapt.py for all of them.
+The change has just happened when a voyage begins, and nothing is learned yet; or it comes in the middle, when the law on board has
+heard the ship as she was for five minutes. All laws see the same stream of unexplained force and regressors (from the hybrid's own
+filter, which does not use what they learn), and are judged by the free runs of 120 s that follow. Boxes, ball and gate are those of
+twin/live/adapt.py for all of them.
 """
 
 import argparse
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -18,10 +20,14 @@ from twin.study.import_voyage import write_json
 
 EPILOG = """example: twin-bench adaptation --work .paper --markdown docs/results/adaptation.md
 
-Trains the hybrid first where DIR holds none from `twin-bench paper` (--full: that of its full plan). Exit code 0: the tables are made.
+Trains the hybrid first where DIR holds none from `twin-bench paper` (--full: that of its full plan). Beside FILE.md goes a figure,
+FILE.png; what the page held from its line "## What it says" on stays. Exit code 0: the tables are made.
 """
 STARTS_S = (60.0, 120.0, 180.0, 240.0, 300.0, 360.0, 420.0, 480.0, 540.0)
+CHANGE_S = 300.0  # of a change in the middle of a voyage
+ROUND_S = (180.0, 300.0, 360.0, 420.0, 480.0, 540.0, 600.0, 660.0, 720.0)  # windows around it: the first ends where it begins
 EARLY, LATE = slice(0, 3), slice(4, 9)  # windows while it learns, and after
+ON_BOARD = "ridge on fading evidence"
 Stream = list[tuple[tuple[float, ...], list[float], float, str]]  # what a law is told at each step: wanted, regressors, dt, frozen
 
 
@@ -41,7 +47,10 @@ def run(args: argparse.Namespace) -> int:
     text = "\n".join(page(result))
     print(text, file=sys.stderr if args.json == "-" else sys.stdout)
     if args.markdown:
-        args.markdown.write_text(text + "\n")
+        from bench.adaptation_page import figure, kept
+
+        figure(result, args.markdown.with_suffix(".png"))
+        args.markdown.write_text(f"{text}\n\n![Error over time since a change]({args.markdown.stem}.png)\n{kept(args.markdown)}")
     if args.json:
         write_json(result, args.json)
     return 0
@@ -58,7 +67,7 @@ def compare(work: Path, full: bool, seeds: int) -> dict[str, Any]:
         clean = streams["as she is"]
         out["lies"][law] = {name: bench.judged(law, replace(clean, streams=lie(clean.streams))) for name, lie in LIES.items()}
     out["voyages"] = len(streams["as she is"].courses)
-    return out
+    return out | {"midway": bench.midway(seeds), "change_s": CHANGE_S, "starts_s": ROUND_S}
 
 
 def laws() -> dict[str, Any]:
@@ -68,22 +77,44 @@ def laws() -> dict[str, Any]:
 
     return {
         "none": None, "gradient, sigma": peers.Gradient, "gradient, e-modification": peers.EModified, "gradient, dead zone": peers.DeadZone,
-        "RLS, forgetting": peers.Recursive, "Kalman, walk and leak": peers.Kalman, "ridge on fading evidence": Adaptation,
+        "RLS, forgetting": peers.Recursive, "Kalman, walk and leak": peers.Kalman, ON_BOARD: Adaptation,
     }  # fmt: skip
+
+
+def midway_laws() -> dict[str, Any]:
+    """Nothing, the law on board, and the same told of the change."""
+    from bench.adaptation_laws import Told
+
+    return {"off": None, "on": laws()[ON_BOARD], "told": partial(Told, at_s=CHANGE_S)}
 
 
 def ships(seeds: int) -> dict[str, list[Any]]:
     """The ship as the models know her, and changed ones; the same seas for all."""
-    from bench.paper_sea import FULL, changed, zigzags
+    from bench.paper_sea import zigzags
+
+    return {name: zigzags(seeds, 80_000, hull=h) for name, h in hulls().items()}
+
+
+def hulls() -> dict[str, Any]:
+    """Hers, and what may become of it."""
+    from bench.paper_sea import FULL, changed
     from bench.reference import HULLS
 
     hull = HULLS["kvlcc2"]
     heavy, held = (changed(FULL)[name][0].hull for name in ("Mass error M (+5%)", "Damping error D (+10%)"))
-    altered = {
+    return {
         "as she is": hull, "mass +5 %": heavy, "damping +10 %": held, "fouling: resistance +30 %": replace(hull, R0=1.3 * hull.R0),
         "windage +50 %": replace(hull, A_L=1.5 * hull.A_L, A_F=1.5 * hull.A_F), "rudder area -20 %": replace(hull, A_R=0.8 * hull.A_R),
     }  # fmt: skip
-    return {name: zigzags(seeds, 80_000, hull=h) for name, h in altered.items()}
+
+
+def changes() -> dict[str, Any]:
+    """What happens to her at CHANGE_S."""
+    from bench.reference import Change
+
+    altered = hulls()
+    became = {name: Change(CHANGE_S, altered[name]) for name in altered if name not in ("as she is", "windage +50 %")}
+    return {"as she is": None, **became, "wind x 1.5": Change(CHANGE_S, wind=1.5), "wind x 2": Change(CHANGE_S, wind=2.0)}
 
 
 @dataclass(frozen=True)
@@ -124,34 +155,50 @@ class Bench:
         taught = shop.taught(model, plan.seeds[0], "hybrid")
         return cls(model, Acting(taught.network, model, zeta_of(taught.network, taught.samples)), shop.tuned(model, taught.network), work)
 
-    def heard(self, cases: list[Any]) -> Heard:
+    def midway(self, seeds: int) -> dict[str, Any]:
+        """Of every change in the middle: errors by window, by how she learns."""
+        from bench.paper_sea import zigzags
+
+        out: dict[str, Any] = {}
+        for name, change in changes().items():
+            _tell(f"midway: {name}")
+            heard = self.heard(zigzags(seeds, 90_000, change=change), ROUND_S)
+            scenario = np.array([c.scenario for c in heard.courses])
+            out[name] = {how: _summary(*self.errors(made, heard)[:2], scenario) for how, made in midway_laws().items()}
+        return out
+
+    def heard(self, cases: list[Any], starts_s: tuple[float, ...] = STARTS_S) -> Heard:
         """Sail, filter, and write down what a law would be told."""
         from bench.adaptation_laws import Writes
         from bench.paper_adapted import Learning
         from bench.paper_lab import course
         from bench.paper_sea import sail
 
-        courses = [replace(course(one, self.model.ship), starts_s=STARTS_S) for one in sail(cases, self.work / "voyages", _tell)]
+        courses = [replace(course(one, self.model.ship), starts_s=starts_s) for one in sail(cases, self.work / "voyages", _tell)]
         learning = Learning(courses, self.model, self.acting, self.tuning, Writes)
         states = learning.run(int(courses[0].starts[-1]))
         return Heard(courses, states, [law.heard for law in learning.laws])  # type: ignore[attr-defined]
 
     def judged(self, law: str, heard: Heard) -> dict[str, Any]:
-        """Free runs with what the law had learned by their starts: heading deg and lateral m, early and late; and the greatest |A|."""
+        """Heading deg and lateral m, early and late; and the greatest |A|."""
+        heading, lateral, largest = self.errors(laws()[law], heard)
+        return {
+            "heading_deg": float(heading[:, LATE].mean()), "lateral_m": float(lateral[:, LATE].mean()),
+            "heading_early_deg": float(heading[:, EARLY].mean()), "lateral_early_m": float(lateral[:, EARLY].mean()),
+            "by_start_deg": heading.mean(0).tolist(), "largest_A": largest,
+        }  # fmt: skip
+
+    def errors(self, made: Any, heard: Heard) -> tuple[np.ndarray, np.ndarray, float]:
+        """Free runs with what the law had learned by their starts: heading deg and lateral m (V, W); and the greatest |A|."""
         from bench.paper_filter import from_states
         from bench.paper_lab import judge
 
-        made = laws()[law]
         learned = [self._numbers(made, stream, len(heard.states)) for stream in heard.streams]
         held = np.concatenate([x[c.starts] for x, c in zip(learned, heard.courses, strict=True)])
         starts = [heard.states[c.starts, i] for i, c in enumerate(heard.courses)]
         e = judge(from_states(heard.courses, self.model, self.acting.holding(held), starts), heard.courses)
         heading, lateral = (x.reshape(len(heard.courses), -1) for x in (e.heading_deg, e.lateral_m))
-        return {
-            "heading_deg": float(heading[:, LATE].mean()), "lateral_m": float(lateral[:, LATE].mean()),
-            "heading_early_deg": float(heading[:, EARLY].mean()), "lateral_early_m": float(lateral[:, EARLY].mean()),
-            "by_start_deg": heading.mean(0).tolist(), "largest_A": float(np.sqrt((np.array(learned) ** 2).sum((2, 3))).max()),
-        }  # fmt: skip
+        return heading, lateral, float(np.sqrt((np.array(learned) ** 2).sum((2, 3))).max())
 
     def _numbers(self, made: Any, stream: Stream, steps: int) -> np.ndarray:
         """(K, 3, width) what acts after each step; steps without a measurement change nothing."""
@@ -166,6 +213,15 @@ class Bench:
             law.learn(wanted, regressors, dt, frozen)
             out[k:] = law.numbers()
         return out
+
+
+def _summary(heading: np.ndarray, lateral: np.ndarray, scenario: np.ndarray) -> dict[str, Any]:
+    """Of errors (V, W): by window; and heading of the windows since the change, by scenario."""
+    since = heading[:, np.array(ROUND_S) >= CHANGE_S].mean(1)
+    return {
+        "heading_deg": heading.mean(0).tolist(), "lateral_m": lateral.mean(0).tolist(),
+        "by_scenario_deg": {name: float(since[scenario == name].mean()) for name in sorted(set(scenario.tolist()))},
+    }  # fmt: skip
 
 
 def _noisy(streams: Sequence[Stream]) -> list[Stream]:

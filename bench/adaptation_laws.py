@@ -11,11 +11,28 @@ from math import sqrt
 from typing import Any
 
 from twin.live.adapt import NOISE_S, Adaptation, Row
+from twin.live.evidence import Three
 from twin.live.residual import dot
+from twin.physics.ship import Ship
+from twin.physics.state import Force
 
 GAIN, SIGMA, MU = 1.0, 1.0 / 60.0, 0.5  # per L/U_0
 MEMORY = 20.0  # of RLS, in L/U_0
 LEAK, WALK = 60.0, 0.016  # in L/U_0; of what is usual, squared, per L/U_0
+
+
+class Told(Adaptation):
+    """The law on board, were it told `at_s` after it began that the ship has changed: it forgets everything then."""
+
+    def __init__(self, ship: Ship, scale: Force, components: int, at_s: float):
+        super().__init__(ship, scale, components)
+        self._anew, self._left_s = (ship, scale, components), at_s
+
+    def learn(self, wanted: Three, regressors: list[float], dt: float, frozen: str) -> None:
+        if self._left_s > 0.0 >= self._left_s - dt:
+            super().__init__(*self._anew)
+        self._left_s -= dt
+        super().learn(wanted, regressors, dt, frozen)
 
 
 class Gradient(Adaptation):

@@ -1,6 +1,10 @@
 """The page of `twin-bench adaptation`."""
 
+from pathlib import Path
 from typing import Any
+
+SAID = {"off": "learning off", "on": "learning on", "told": "learning on, told of the change"}
+HAND = "## What it says"  # from here on the page is written by hand
 
 
 def page(r: dict[str, Any]) -> list[str]:
@@ -19,8 +23,65 @@ def page(r: dict[str, Any]) -> list[str]:
         "", "## Measurements that lie, on the ship as she is", "",
         "Heading deg / lateral m (300 to 540 s), and the greatest |A| that ever acted (at most 1).", "",
         *_table(r["lies"], lies, lambda x: f"{x['heading_deg']:.3f} / {x['lateral_m']:.2f} ({x['largest_A']:.2f})"),
+        "", "## A change in the middle of a voyage", "",
+        f"Zigzags of 900 s in other seas, the change at {r['change_s']:.0f} s; heading deg / lateral m of free runs by the second they "
+        "begin at: learning off; on (the law on board); told (the same law, which forgets all it knew at the change: on board nobody says so). "
+        "The run begun at the change knows nothing of it yet.", "",
+        *_midway(r),
+        "", "Heading deg by scenario, mean of the windows begun at the change and later, learning off / on / told.", "",
+        *_by_scenario(r["midway"]),
     ]  # fmt: skip
     return lines
+
+
+def _midway(r: dict[str, Any]) -> list[str]:
+    rows = [f"| {name}, {how} |" + "".join(f" {a:.3f} / {b:.2f} |" for a, b in zip(e["heading_deg"], e["lateral_m"], strict=True))
+            for name, both in r["midway"].items() for how, e in both.items()]  # fmt: skip
+    starts = [f"{t:.0f} s" for t in r["starts_s"]]
+    return [f"| change, learning | {' | '.join(starts)} |", "|---" * (1 + len(starts)) + "|", *rows]
+
+
+def _by_scenario(midway: dict[str, Any]) -> list[str]:
+    scenarios = list(next(iter(midway.values()))["off"]["by_scenario_deg"])
+    rows = [
+        f"| {name} |" + "".join(f" {' / '.join(format(e['by_scenario_deg'][ts], '.3f') for e in hows.values())} |" for ts in scenarios)
+        for name, hows in midway.items()
+    ]
+    return [f"| change | {' | '.join(scenarios)} |", "|---" * (1 + len(scenarios)) + "|", *rows]
+
+
+def kept(page: Path) -> str:
+    """What was written by hand at the end of the page that is there."""
+    old = page.read_text() if page.exists() else ""
+    return f"\n{HAND}{old.split(HAND, 1)[1]}" if HAND in old else ""
+
+
+def figure(r: dict[str, Any], path: Path) -> None:
+    """Heading error of the free runs over time since the change, each change beside the ship as she is."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    since = [t - r["change_s"] for t in r["starts_s"]]
+    changed = [name for name in r["midway"] if name != "as she is"]
+    fig, axes = plt.subplots(2, -(-len(changed) // 2), figsize=(11, 6), sharex=True)
+    healthy = r["midway"]["as she is"]["on"]["heading_deg"]
+    for ax, name in zip(axes.flat, changed, strict=False):
+        both = r["midway"][name]
+        for how, colour in (("off", "tab:orange"), ("on", "tab:blue"), ("told", "tab:green")):
+            ax.plot(since, both[how]["heading_deg"], "o-", ms=4, color=colour, label=SAID[how])
+        ax.plot(since, healthy, ":", color="0.4", label="no change, learning on")
+        ax.axvline(0.0, color="0.7", lw=0.8)
+        ax.set(title=name, ylim=(0.0, None))
+    for ax in axes[-1]:
+        ax.set(xlabel="free run begins, s since the change")
+    for ax in axes[:, 0]:
+        ax.set(ylabel="heading error over 120 s, deg")
+    fig.legend(*axes.flat[0].get_legend_handles_labels(), loc="upper center", ncol=4, fontsize=9)
+    fig.tight_layout(rect=(0.0, 0.0, 1.0, 0.95))
+    fig.savefig(path, dpi=72)
+    plt.close(fig)
 
 
 def _table(rows: dict[str, Any], columns: list[str], cell: Any) -> list[str]:

@@ -1,7 +1,7 @@
 """Legs as tensors: single samples for losses of one moment, windows for roll-outs."""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import torch
@@ -37,6 +37,12 @@ class Samples:
     def situation(self, k: torch.Tensor) -> Situation:
         return Situation(**{name: x[k] for name, x in self.fields.items()})
 
+    def on(self, device: torch.device) -> "Samples":
+        """The same where they are computed with; indices stay with the processor."""
+        fields = {name: x.to(device) for name, x in self.fields.items()}
+        rest = {name: getattr(self, name).to(device) for name in ("ahead", "h", "d", "columns")}
+        return replace(self, fields=fields, **rest)
+
 
 @dataclass(frozen=True)
 class Windows:
@@ -55,6 +61,11 @@ class Windows:
     def voyage(self) -> torch.Tensor:
         """(W,) where each comes from."""
         return torch.tensor(self.group // BLOCKS)
+
+    def on(self, device: torch.device) -> "Windows":
+        """The same where they are computed with; indices stay with the processor."""
+        inputs = {name: x.to(device) for name, x in self.inputs.items()}
+        return Windows(self.start.to(device), inputs, self.wanted.to(device), self.h.to(device), self.group)
 
     def some(self, k: torch.Tensor) -> "Windows":
         inputs = {name: x[:, k] for name, x in self.inputs.items()}

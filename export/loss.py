@@ -65,7 +65,7 @@ def paper(
     data = (((nu - ahead) / size) ** 2).mean()
     dot = torch.stack([torch.autograd.grad(nu[:, i].sum(), h, create_graph=True)[0] for i in range(3)], -1)
     end = replace(s, u=nu[:, 0], v=nu[:, 1], r=nu[:, 2])
-    scale = torch.tensor(network.S, dtype=nu.dtype)
+    scale = nu.new_tensor(network.S)
     without = (needed(model, dot) - known(model, end)) / scale
     R = without - network.f(network.zeta(end))
     loss = lambda_data * data + lambda_phys * (R**2).mean()
@@ -116,7 +116,7 @@ def rollout(
     h: torch.Tensor,
 ) -> torch.Tensor:
     """(B,) Huber loss along each run; a ship that runs away counts as much as can be."""
-    off = (free_run(network, model, start, inputs, h) - wanted) / allowed(model)
+    off = (free_run(network, model, start, inputs, h) - wanted) / allowed(model).to(wanted.device)
     off = torch.nan_to_num(off, nan=1e3, posinf=1e3, neginf=-1e3).clamp(-1e3, 1e3)
     return torch.nn.functional.huber_loss(off, torch.zeros_like(off), delta=2.0, reduction="none").mean((0, 2))
 
@@ -143,5 +143,5 @@ def span(model: Model, s: Situation) -> torch.Tensor:
 
 def mirror(network: Residual, zeta: torch.Tensor) -> torch.Tensor:
     """How far f is from that of the mirrored ship, mirrored."""
-    sign = torch.tensor([-1.0 if name in ODD else 1.0 for name in network.names])
-    return ((network.f(zeta) - network.f(zeta * sign) * torch.tensor([1.0, -1.0, -1.0])) ** 2).mean()
+    sign = zeta.new_tensor([-1.0 if name in ODD else 1.0 for name in network.names])
+    return ((network.f(zeta) - network.f(zeta * sign) * zeta.new_tensor([1.0, -1.0, -1.0])) ** 2).mean()

@@ -63,6 +63,14 @@ class Set:
     samples: Samples
     windows: Windows
 
+    def on(self, device: torch.device) -> "Set":
+        return Set(self.samples.on(device), self.windows.on(device))
+
+
+def device() -> torch.device:
+    """Where to train: the GPU when there is one."""
+    return torch.device("cuda" if torch.cuda.is_available() else "cpu")
+
 
 @dataclass
 class Taught:
@@ -103,10 +111,13 @@ def teach(
     with torch.no_grad():
         probe = _probe(model, names, data["train"].samples)
     network = Residual(model.ship, names, probe.numpy())
-    course = Course(network, model, settings, data, progress or (lambda *_: None), keep)
+    there = device()  # it begins with the same weights anywhere: they are drawn before
+    moved = {part: one.on(there) for part, one in data.items()}
+    course = Course(network.to(there), model, settings, moved, progress or (lambda *_: None), keep)
     began = time.monotonic()
     for stage in STAGES[settings.loss]:
         course.run(stage)
+    network.cpu()
     network.bind(zeta_of(network, data["train"].samples))
     return Taught(
         network,
@@ -220,7 +231,7 @@ class Course:
         if stage == "paper":
             return self._literal(self.network, part, k)
         each = self._each(self.network, stage, part, k)
-        return (self.weight[self._voyage(stage, part)[k]] * each).mean()
+        return (self.weight[self._voyage(stage, part)[k]].to(each.device) * each).mean()
 
     def _each(self, network: Residual, stage: str, part: str, k: torch.Tensor) -> torch.Tensor:
         """(B,) the loss of each window or moment."""
@@ -245,7 +256,7 @@ class Course:
         voyage = self._voyage(stage, part)
         k = torch.arange(0, voyage.numel(), max(1, voyage.numel() // MOST))
         with torch.no_grad():
-            each = torch.cat([self._each(network, stage, part, some) for some in k.split(1024)])
+            each = torch.cat([self._each(network, stage, part, some) for some in k.split(1024)]).cpu()
         total = torch.zeros(int(voyage.max()) + 1).index_add(0, voyage[k], each)
         return total / torch.bincount(voyage[k], minlength=total.numel()).clamp(min=1)
 
@@ -282,7 +293,7 @@ class Course:
     def _kept(self) -> dict[str, Any] | None:
         if self.keep is None or not self.keep.exists():
             return None
-        found = torch.load(self.keep, weights_only=True)
+        found = torch.load(self.keep, weights_only=True, map_location="cpu")
         return found if found.get("key") == self.key else None
 
     def _resume(self) -> tuple[tuple[dict[str, Any], float], int, int]:
@@ -312,5 +323,5 @@ def _key(settings: Settings, data: dict[str, Set]) -> str:
     """Tells one training from another: its settings and its data."""
     digest = hashlib.sha256(json.dumps(asdict(settings)).encode())
     for part in data.values():
-        digest.update(part.samples.d.numpy().tobytes())
+        digest.update(part.samples.d.cpu().numpy().tobytes())
     return digest.hexdigest()

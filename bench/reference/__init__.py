@@ -6,7 +6,7 @@ recording.columns["heading_true_north_deg"], recording.truth["u"], recording.hid
 
 from .hulls import HULLS, Hull
 from .sea import Sea
-from .voyage import Case, Recording, simulate
+from .voyage import Case, Change, Recording, simulate
 from .weather import WEATHERS, Weather
 
-__all__ = ["HULLS", "WEATHERS", "Case", "Hull", "Recording", "Sea", "Weather", "simulate"]
+__all__ = ["HULLS", "WEATHERS", "Case", "Change", "Hull", "Recording", "Sea", "Weather", "simulate"]

@@ -38,13 +38,18 @@ class Environment:
             GNSS_TIME * one,
         ]
         self.wander = Wander(seeds, times, dt)
-        self.tables = np.stack([wind.table(x) for x in hulls])
+        self.take(hulls)
         self.sea = waves.stack_seas(
             [waves.components(w, np.random.default_rng([s, 4])) for w, s in zip(weathers, seeds, strict=True)]
         )
-        self.oscillator, self.has_waves = waves.oscillator(h), bool(self.sea.a.any())
+        self.has_waves = bool(self.sea.a.any())
         self.current, self.has_tide, self.has_squall = None, bool(f.tide_mps.any()), bool(f.squall_mps.any())
         self.wave_force = self.drift = self.heave = self.pitch = np.zeros(len(hulls))
+
+    def take(self, hulls):
+        """What wind and waves must know of these hulls (`h` holds their numbers)."""
+        self.tables = np.stack([wind.table(x) for x in hulls])
+        self.oscillator = waves.oscillator(self.h)
 
     def step(self, tick, t, north, east, psi):
         """Bring the surroundings to this tick."""

@@ -1,5 +1,6 @@
 """The sea itself: ships, each with her helmsman, weather, flaws and instruments, stepped tick by tick."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -49,6 +50,15 @@ def hull_of(case) -> Hull:
     if case.hull not in HULLS:
         raise ValueError(f"unknown hull {case.hull!r}. Known: {', '.join(HULLS)}.")
     return HULLS[case.hull]
+
+
+def hull_later(case) -> Hull:
+    """Her hull once she has changed."""
+    now = hull_of(case)
+    later = now if case.change.hull is None else hull_of(replace(case, hull=case.change.hull))
+    if later.L != now.L:
+        raise ValueError(f"a change cannot make {now.name} ({now.L:g} m) a ship of {later.L:g} m. Give a hull of her length.")
+    return later
 
 
 def weather_of(case) -> Weather:
@@ -110,7 +120,26 @@ class Sea:
         self.instruments = Instruments(
             self.h, self.f, np.array([x.d for x in calm]), self.weathers, seeds, self.dt, perfect
         )
+        self._plan_changes(turned)
         self._rest(share, n_start)
+
+    def _plan_changes(self, weathers):
+        """Which ships change at which tick, and what their hulls are then, hidden effects included."""
+        self.changes = {}
+        for i, c in enumerate(self.cases):
+            if c.change is not None:
+                later = prepare(hull_later(c), weathers[i], c.hidden, c.decoys, c.seed)[0]
+                self.changes.setdefault(int(np.ceil(c.change.at_s / self.dt - 1e-9)), []).append((i, later))
+
+    def _change(self):
+        """Hulls and wind that change at this tick; motion, helmsman, waves, current and instruments go on."""
+        due = self.changes.pop(self.tick, ())
+        for i, later in due:
+            self.hulls[i] = later
+            self.env.wind_mean[i] *= self.cases[i].change.wind
+        if due:
+            vars(self.h).update(vars(stack(self.hulls)))
+            self.env.take(self.hulls)
 
     def _rest(self, share, n_start):
         count = len(self.cases)
@@ -136,6 +165,7 @@ class Sea:
     def _tick(self):
         """Look at this instant: surroundings, controls, forces, instruments. The state stays."""
         t, s = self.tick * self.dt, self.s
+        self._change()
         self.env.t = t
         self.env.step(self.tick, t, s[motion.NORTH], s[motion.EAST], s[motion.PSI])
         self._controls(t)

@@ -12,6 +12,15 @@ AXES = ("X_N", "Y_N", "N_Nm")
 
 
 @dataclass(frozen=True)
+class Change:
+    """From `at_s` on she is another `hull` of the same length, and the wind blows `wind` times as hard; all else goes on."""
+
+    at_s: float
+    hull: object = None  # as in Case; None: hers
+    wind: float = 1.0
+
+
+@dataclass(frozen=True)
 class Case:
     """One voyage to sail. `hidden`: pairs (effect, strength); `decoys`: strong weather that is no riddle.
 
@@ -29,6 +38,7 @@ class Case:
     speed_fraction: float = 1.0
     heading_deg: float | None = None
     sensors: str = "ship"
+    change: Change | None = None  # in the middle of the voyage
 
 
 @dataclass

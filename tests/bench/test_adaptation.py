@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from bench import adaptation_laws as laws
-from bench.adaptation import LIES
+from bench.adaptation import CHANGE_S, LIES, ROUND_S, changes
+from bench.adaptation_page import figure, kept, page
 from twin.live.adapt import A_MAX, SIZES, Adaptation
 from twin.live.learned import scale_of
 from twin.physics.ship import load
@@ -58,3 +59,40 @@ def test_drop_outs_freeze_and_the_rest_still_teaches(ship):
     told = LIES["drop-outs"]([stream(0.2)])[0]
     made = taught(Adaptation, ship, told)
     assert 0 < made.updates < STEPS and made.numbers()[1][2] == pytest.approx(0.2, abs=0.05)
+
+
+def test_every_change_in_the_middle_comes_when_the_windows_expect_it():
+    """Expected: one window ends where the change begins, the others begin at it or later; asked of a fouled, a heavier and a held ship
+    and of a step of wind."""
+    made = changes()
+    assert {c.at_s for c in made.values() if c} == {CHANGE_S} and made["as she is"] is None
+    assert ROUND_S[0] + 120.0 == CHANGE_S == ROUND_S[1] and sorted(ROUND_S) == list(ROUND_S)
+    for word in ("mass", "damping", "fouling", "wind"):
+        assert any(word in name for name in made)
+
+
+def test_the_page_holds_every_change_and_keeps_what_was_written_by_hand(tmp_path):
+    cell = {"heading_deg": 0.1, "lateral_m": 1.0, "heading_early_deg": 0.2, "lateral_early_m": 2.0, "largest_A": 0.3}
+    one = {"heading_deg": [0.1] * 9, "lateral_m": [1.0] * 9, "by_scenario_deg": {"TS-01": 0.1}}
+    result = {
+        "seeds": 1, "full": False, "voyages": 6, "change_s": CHANGE_S, "starts_s": ROUND_S, "changed": {"none": {"as she is": cell}},
+        "lies": {"none": {"stuck": cell}}, "midway": {name: {"off": one, "on": one, "told": one} for name in changes()},
+    }  # fmt: skip
+    text = "\n".join(page(result))
+    assert all(f"| {name}, on |" in text for name in changes())
+    figure(result, tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes()[:4] == b"\x89PNG"
+    (tmp_path / "a.md").write_text("old tables\n## What it says\n\nmine\n")
+    assert kept(tmp_path / "a.md") == "\n## What it says\n\nmine\n" and kept(tmp_path / "none.md") == ""
+
+
+def test_a_law_that_is_told_of_a_change_forgets_once_and_learns_on(ship):
+    """Test: 0.2 off for twenty-five minutes, told at twenty. Expected: until then the law on board, then as one that began there."""
+    told, board, fresh = laws.Told(ship, scale_of(ship), 2, at_s=1200.0), *(Adaptation(ship, scale_of(ship), 2) for _ in range(2))
+    for k, step in enumerate(stream(0.2)):
+        told.learn(*step), board.learn(*step)
+        if k < 959:
+            assert told.numbers() == board.numbers()
+        else:
+            fresh.learn(*step)
+    assert told.numbers() == fresh.numbers() != board.numbers()

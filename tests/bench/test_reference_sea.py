@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import bench.reference
-from bench.reference import HULLS, Case, Sea, Weather, simulate
+from bench.reference import HULLS, Case, Change, Sea, Weather, simulate
 from bench.reference.manoeuvres import MANOEUVRES, RUDDER, ZIGZAG, Leg
 from bench.reference.sensors import COLUMNS
 
@@ -128,3 +128,61 @@ def test_a_crash_stop_stops_her_within_fifteen_lengths():
 def test_a_wrong_name_is_answered_with_the_right_ones(case, word):
     with pytest.raises(ValueError, match=word):
         simulate([case])
+
+
+CHANGED_AT_S, TICK_S = 60.0, 0.1
+KVLCC2 = HULLS["kvlcc2"]
+CHANGES = {
+    "heavier": {"hull": replace(KVLCC2, m=1.05 * KVLCC2.m)},
+    "fouled": {"hull": replace(KVLCC2, R0=1.3 * KVLCC2.R0)},
+    "windage": {"hull": replace(KVLCC2, A_L=2 * KVLCC2.A_L)},
+    "wind": {"wind": 2.0},
+}
+
+
+@pytest.fixture(scope="module")
+def changed():
+    """A zigzag as she is, and with each change in its middle."""
+    plain = Case("kvlcc2", "zigzag_20", "TS-02", seed=7, duration_s=120.0)
+    cases = [plain, *(replace(plain, change=Change(CHANGED_AT_S, **c)) for c in CHANGES.values())]
+    return dict(zip(("as she is", *CHANGES), simulate(cases, TICK_S), strict=True))
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_a_change_is_not_felt_before_its_time_and_is_felt_after(changed, name):
+    """Test: another hull or another wind from 60 s on. Expected: the same bytes before; another speed in the end."""
+    at, plain, other = round(CHANGED_AT_S / TICK_S), changed["as she is"], changed[name]
+    for column in COLUMNS:
+        assert plain.columns[column][:at].tobytes() == other.columns[column][:at].tobytes(), column
+    for state in ("north", "east", "psi", "u", "v", "r", "phi"):  # at the instant itself only forces differ
+        assert plain.truth[state][: at + 1].tobytes() == other.truth[state][: at + 1].tobytes(), state
+    assert abs(plain.truth["u"][-1] - other.truth["u"][-1]) > 1e-4
+
+
+@pytest.mark.parametrize("name", CHANGES)
+def test_speeds_do_not_jump_at_a_change(changed, name):
+    """Expected: from tick to tick no more than three times what they moved before, in the same waves."""
+    at = round(CHANGED_AT_S / TICK_S)
+    for state in "uvr":
+        steps = np.abs(np.diff(changed[name].truth[state]))
+        assert steps[at : at + 20].max() < 3 * steps[:at].max(), state
+
+
+def test_a_step_of_wind_leaves_waves_and_current_as_they_were(changed):
+    at, plain, blown = round(CHANGED_AT_S / TICK_S), changed["as she is"].truth, changed["wind"].truth
+    assert blown["wind_speed"][at:] == pytest.approx(2 * plain["wind_speed"][at:])
+    assert blown["current_north"].tobytes() == plain["current_north"].tobytes()
+    waves = [t["forces"]["waves"]["Y_N"] for t in (plain, blown)]
+    assert waves[0][: at + 1].tobytes() == waves[1][: at + 1].tobytes()
+
+
+def test_who_changes_at_once_sails_like_who_was_so_from_the_beginning():
+    heavy = CHANGES["heavier"]["hull"]
+    cases = [Case(heavy, seed=7, duration_s=30.0), Case("kvlcc2", seed=7, duration_s=30.0, change=Change(0.0, heavy))]
+    first, second = simulate(cases)
+    assert first.truth["u"].tobytes() == second.truth["u"].tobytes()
+
+
+def test_a_ship_cannot_change_her_length():
+    with pytest.raises(ValueError, match="of her length"):
+        simulate([Case("kvlcc2", duration_s=5.0, change=Change(1.0, "container"))])

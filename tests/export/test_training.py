@@ -11,10 +11,10 @@ torch = pytest.importorskip("torch", reason="torch is not installed: pip install
 pytest.importorskip("onnx", reason="onnx is not installed: pip install 'shiptwin[train]'")
 
 from export import loss, to_onnx, train  # noqa: E402
-from export.batches import input_names, samples  # noqa: E402
+from export.batches import input_names, samples, zeta_of  # noqa: E402
 from export.data import leg, model_of, split  # noqa: E402
 from export.network import Residual  # noqa: E402
-from export.teach import Course, Settings, prepared, teach  # noqa: E402
+from export.teach import Course, Settings, device, prepared, teach  # noqa: E402
 from twin.cli import main  # noqa: E402
 from twin.errors import ThresholdError  # noqa: E402
 from twin.live import residual as live  # noqa: E402
@@ -90,6 +90,50 @@ def test_the_same_seed_gives_the_same_weights_and_an_interrupted_training_goes_o
     again = teach(*parts, settings, None, tmp_path / "kept.pt")
     assert _digest(again.network) == _digest(whole.network)
     assert [row[1] for row in again.curve] == [0, 1, 2, 3]
+
+
+@pytest.mark.parametrize(("there", "expected"), [(True, "cuda"), (False, "cpu")])
+def test_the_gpu_is_chosen_when_there_is_one(there, expected, monkeypatch):
+    monkeypatch.setattr(torch.cuda, "is_available", lambda: there)
+    assert device().type == expected
+
+
+def test_a_training_moves_to_the_chosen_device_and_comes_back(parts, monkeypatch):
+    """Test: a device that stands in for a GPU ("meta" has no numbers), and stages that only look. Expected: network and data are there
+    while they run, the network is called back, and the samples it is judged with never left."""
+    seen = []
+    monkeypatch.setattr("export.teach.device", lambda: torch.device("meta"))
+    monkeypatch.setattr("export.teach._key", lambda settings, data: "")
+    monkeypatch.setattr(Course, "run", lambda course, stage: seen.append((course.network, course.data["train"])))
+    monkeypatch.setattr(Residual, "cpu", lambda network: seen.append({p.device.type for p in network.parameters()}))
+    monkeypatch.setattr(Residual, "bind", lambda network, zeta: None)
+    monkeypatch.setattr("export.teach.zeta_of", lambda network, data: data.d)
+    taught = teach(*parts, replace(FEW, loss="acceleration"))
+    network, data = seen[0]
+    assert {data.samples.d.device.type, data.windows.start.device.type} | seen[-1] == {"meta"}
+    assert taught.network is network and taught.samples.d.device.type == "cpu"
+
+
+@pytest.mark.parametrize("stage", ["paper", "acceleration", "rollout"])
+def test_a_batch_does_not_mix_two_devices(parts, stage):
+    """Test: a batch forward and back on the stand-in for a GPU. Expected: torch finds no tensor on another device."""
+    away, settings = torch.device("meta"), replace(FEW, mirror=0.1)
+    data = prepared(*parts, settings)
+    probe = Residual(parts[1].ship, ("surge", "sway", "yaw", "rudder", "propeller"), np.ones((3, 5)) * [[0.0], [0.5], [1.0]]).to(away)
+    probe.bound = torch.tensor(float("inf"))  # asked for its value, which nothing on "meta" has
+    course = object.__new__(Course)
+    course.network, course.model, course.settings, course.weight = probe, parts[1], settings, torch.ones(8)
+    course.data = {part: one.on(away) for part, one in data.items()}
+    course.zeta = {part: zeta_of(probe, one.samples) for part, one in course.data.items()}
+    course.size = course.jump = torch.ones(3, device=away)
+    k = torch.arange(4)
+    if stage == "paper":
+        with pytest.raises(RuntimeError, match="item"):  # as far as its diagnostics, which are numbers
+            course._loss(stage, "train", k)
+        return
+    value = course._loss(stage, "train", k) + course._penalty(k)
+    value.backward()
+    assert {p.grad.device.type for p in probe.parameters()} == {"meta"}
 
 
 def _digest(network):

@@ -54,7 +54,7 @@ def diagnose(
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed)
     best = found[w.best.effects]
-    explained, leads = not w.best.effects or explains(case, weighed, best), helpful(case, found, w.best.effects)
+    explained, leads = not w.best.effects or explains(case, weighed, best, found[()]), helpful(case, found, w.best.effects)
     like = {name: alike(case, weighed, name) for name in w.best.effects}
     verdict, missing = judge(
         weighed, w, like, leads, excited=excites(case), sharp=shows(seen), explained=explained, tossed=any(at_sea(t, case.model) for t in case.tracks)

@@ -17,6 +17,7 @@ from .led import FORM
 from .refine import Found, Sets, standing
 from .seaway import at_sea
 
+MOSTLY = 1.0 / 3.0  # of the error without it that may be left whatever else is
 ASTRAY = 2.0  # times the floor that the best explanation may end away from where she went
 BETTER = 0.05  # share by which a force must bring her nearer to where she went
 RESTLESS = 4  # times the fast part of the floor
@@ -24,10 +25,11 @@ FACTORS = np.array([1, 2, 4, 8, 16, 32])
 CLEAR = 3.0  # log evidence by which the voyages must be restless
 
 
-def explains(case: Case, weighed: Sequence[Hypothesis], found: Found) -> bool:
-    """Whether no more is left under this hypothesis than a true one would leave (`weighed`: all of them, best first). A sea that was
-    measured may be the reason for more, and a stream that changes for restlessness."""
-    if any(at_sea(t, case.model) for t in case.tracks):
+def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: Found) -> bool:
+    """Whether no more is left under this hypothesis than a true one would leave (`weighed`: all of them, best first). It is explanation
+    enough to lead her most of the way to where she went; a sea that was measured may be the reason for more, and a stream that changes
+    for restlessness."""
+    if found.off_m <= MOSTLY * nothing.off_m or any(at_sea(t, case.model) for t in case.tracks):
         return True
     own = [h for h in weighed if h.effects == found.hypothesis.effects]
     plain = next((h for h in own if WORLDS[h.world].plain), None)

@@ -37,22 +37,31 @@ def test_a_ship_that_is_tossed_about_is_not_quiet(judged):
 
 def test_a_world_that_is_clearly_rougher_is_no_explanation_unless_a_sea_was_measured(judged):
     case, found = judged
+    nothing = replace(found, off_m=1.5)
     rough, plain = as_if(found, rough=0.0, usual=-CLEAR - 0.1)
-    assert not explains(case, [rough, plain], replace(found, hypothesis=rough, off_m=1.1, floor_m=1.0))
-    assert explains(case, [rough, plain], replace(found, hypothesis=rough, off_m=0.9, floor_m=1.0))
-    assert explains(case, [rough, replace(plain, log_evidence=plain.log_evidence + 0.2)], replace(found, hypothesis=rough, off_m=1.1, floor_m=1.0))
+    off, led = (replace(found, hypothesis=rough, off_m=x, floor_m=1.0) for x in (1.1, 0.9))
+    assert not explains(case, [rough, plain], off, nothing)
+    assert explains(case, [rough, plain], led, nothing)
+    assert explains(case, [rough, replace(plain, log_evidence=plain.log_evidence + 0.2)], off, nothing)
     astray = [replace(h, log_evidence=h.log_evidence - 50.0) for h in (plain, rough)]  # what the path says counts for all worlds alike
-    assert explains(case, astray, found)
+    assert explains(case, astray, found, nothing)
     (track,) = case.tracks
     waves = np.full(len(track), 0.01 * case.model.ship.L_pp)
-    assert explains(replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),)), [rough], replace(found, hypothesis=rough))
+    assert explains(replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),)), [rough], off, nothing)
 
 
 def test_what_leads_her_elsewhere_explains_nothing_however_quiet_it_leaves_her(judged):
     case, found = judged
-    weighed = [found.hypothesis]
-    assert explains(case, weighed, replace(found, off_m=1.4, floor_m=1.0))
-    assert not explains(case, weighed, replace(found, off_m=(ASTRAY + 0.1), floor_m=1.0))
+    nothing = replace(found, off_m=5.0)
+    assert explains(case, [found.hypothesis], replace(found, off_m=1.4, floor_m=0.8), nothing)
+    assert not explains(case, [found.hypothesis], replace(found, off_m=(ASTRAY + 0.1), floor_m=1.0), nothing)
+
+
+def test_what_leads_her_most_of_the_way_explains_whatever_is_left(judged):
+    case, found = judged
+    far = replace(found, off_m=10.0, floor_m=1.0, hypothesis=replace(found.hypothesis, world="rough"))
+    assert explains(case, [far.hypothesis], far, replace(found, off_m=30.5))
+    assert not explains(case, [far.hypothesis], far, replace(found, off_m=29.5))
 
 
 @pytest.mark.parametrize("effects, off, named", [
