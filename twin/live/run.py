@@ -96,12 +96,16 @@ def serve(settings: Settings, duration_s: float | None = None, on_tick: Callable
 
 @contextmanager
 def opened(settings: Settings, clock_of: Callable[[float], Clock] = MonotonicClock) -> Iterator["Service"]:
-    """The service of these settings, ready to tick by the clock that `clock_of(rate_hz)` gives."""
+    """The service of these settings, ready to tick by the clock that `clock_of(rate_hz)` gives.
+
+    The bus opens last: when peers greet it while the network is being loaded, the pages of both are resident
+    at once, and their sum would be the peak.
+    """
     realtime.save_memory()
-    recorder = recorder_of(settings)
-    with bus_of(settings) as bus:
-        log = recorder.write if recorder else None
-        loop = build.loop_of(settings, Inbox(bus, log), _voice(settings, bus, log))
+    recorder, bus = recorder_of(settings), bus_of(settings)
+    log = recorder.write if recorder else None
+    loop = build.loop_of(settings, Inbox(bus, log), _voice(settings, bus, log))
+    with bus:
         if recorder:
             recorder.start()
             loop.notes += recorder.repaired
