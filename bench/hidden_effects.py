@@ -31,6 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--quick", action="store_true", help="one hull, one seed, strength 1, some 12 voyages")
     parser.add_argument("--hull", nargs="+", choices=plan.HULLS, help="default: all")
     parser.add_argument("--seeds", type=int, help="rounds; each is a fair sample (default 5)")
+    parser.add_argument("--first-seed", type=int, default=1, metavar="N", help="of the rounds: other voyages of the same questions (default 1)")
     parser.add_argument("--strength", nargs="+", type=float, help="default: 1 and 0.5")
     parser.add_argument("--effect", nargs="+", default=[], help="hide only these of the catalogue")
     parser.add_argument("--every", type=int, default=1, metavar="N", help="one question in N, in turn over effects, hulls and seeds (default 1)")
@@ -64,6 +65,7 @@ def command(args: argparse.Namespace) -> str:
     for name in ("hull", "strength", "effect"):
         said += [f"--{name} {' '.join(map(str, getattr(args, name)))}"] if getattr(args, name) else []
     said += [f"--seeds {args.seeds}"] if args.seeds else []
+    said += [f"--first-seed {args.first_seed}"] if args.first_seed > 1 else []
     said += [f"--every {args.every}"] if args.every > 1 else []
     said += [f"--kind {' '.join(args.kind)}"] if args.kind is not plan.KINDS else []
     said += [f"--duration {args.duration:g}"] if args.duration else []

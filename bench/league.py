@@ -30,7 +30,8 @@ class League:
         self.hulls: Sequence[str] = args.hull or quick["hulls"]
         self.strengths: Sequence[float] = args.strength or quick["strengths"]
         self.fleet, self.jobs = (args.duration, args.references, not args.quick), args.jobs
-        rounds = plan.questions(self.hulls, args.seeds or quick["seeds"], self.strengths, args.effect, args.quick, args.duration, args.every)
+        asked = (args.effect, args.quick, args.duration, args.every, args.first_seed)
+        rounds = plan.questions(self.hulls, args.seeds or quick["seeds"], self.strengths, *asked)
         self.rounds = [[q for q in r if q.kind in args.kind] for r in rounds]
         self.folder, self.log = folder, folder / "answers.jsonl"
         self.ends = time.monotonic() + 60.0 * args.minutes if args.minutes else float("inf")

@@ -57,7 +57,7 @@ def told(answer: dict[str, Any]) -> dict[str, Any]:
     return {
         "verdict": answer["verdict"],
         "missing": answer["missing"],
-        "group": first["cannot_be_told_from"] if first else [],
+        "group": first["cannot_be_told_from"] if first else answer["one_of"],
         "nothing": answer["probabilities"]["nothing_missing"],
         "unknown": answer["probabilities"]["unknown"],
         "candidates": {c["effect"]: c["probability"] for c in answer["candidates"]},

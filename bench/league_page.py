@@ -31,7 +31,8 @@ is a bundled file calibrated on six calm reference voyages. A case is one voyage
 minutes, 900 of her lengths), diagnosed alone, with the reference voyages known only through the ship file.
 
 * **Named**: the hidden effect is the first of `missing`. **In its group**: it is among `missing`, or among the
-  effects that the diagnosis says it could not tell from the first. **Wrong**: another effect comes first.
+  effects that the diagnosis says it could not tell from the first; or, when nothing is named, in the group of at most
+  four of which it says that one is surely there. **Wrong**: another effect comes first.
 * **Before**, **after**, **oracle**: mean 120 s open-loop position error on *another* voyage (same hidden effect,
   another manoeuvre): of the calibrated ship; after `add` of what was named, fitted on the diagnosed voyage
   (nothing is added when nothing was named); and after the same fit of the *true* effect in the catalogue's form.

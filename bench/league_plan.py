@@ -72,9 +72,9 @@ def lasts(hull: str, duration_s: float | None) -> float:
 
 def questions(
     hulls: Sequence[str], seeds: int, strengths: Sequence[float], effects: Sequence[str] = (), quick: bool = False,
-    duration_s: float | None = None, every: int = 1,
+    duration_s: float | None = None, every: int = 1, first_seed: int = 1,
 ) -> list[list[Question]]:  # fmt: skip
-    """A round of questions for each seed; of all of them one in `every`, in turn over questions, hulls and seeds."""
+    """A round of questions for each of `seeds` seeds; of all of them one in `every`, in turn over questions, hulls and seeds."""
     return [
         [
             Question(h, *rest, duration_s=lasts(h, duration_s))
@@ -82,7 +82,7 @@ def questions(
             for j, h in enumerate(hulls)
             if (i + j + seed) % every == 0
         ]
-        for seed in range(1, seeds + 1)
+        for seed in range(first_seed, first_seed + seeds)
     ]
 
 

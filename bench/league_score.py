@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from twin.physics.effects import find
+
 Row = dict[str, Any]
 SCHEMA_VERSION = 1
 
@@ -16,8 +18,9 @@ def named(row: Row) -> bool:
 
 
 def in_group(row: Row) -> bool:
-    """It is among the named, or in the group that the data could not tell from the first of them."""
-    return bool(row["missing"]) and row["missing_truly"][0] in {*row["missing"], *row["group"]}
+    """It is among the named, or in the group that the data could not tell from the first of them; or, when nothing was named, in the
+    small group of which one is surely there."""
+    return row["missing_truly"][0] in {*row["missing"], *row["group"]}
 
 
 def alarm(row: Row) -> bool:
@@ -30,7 +33,8 @@ def recognised(row: Row) -> bool:
 
 
 def both(row: Row) -> bool:
-    return set(row["missing_truly"]) <= set(row["missing"])
+    """Both are named, or one that the other is a part of (a changing current has a mean)."""
+    return set(row["missing_truly"]) <= {part for n in row["missing"] for part in (n, *find(n).holds)}
 
 
 def share(rows: Sequence[Row], test: Any) -> float | None:

@@ -44,6 +44,12 @@ def test_no_two_questions_are_the_same():
     assert len(set(keys)) == len(keys)
 
 
+def test_other_seeds_ask_the_same_kinds_of_questions_on_other_voyages():
+    first, sixth = (plan.questions(["usv"], 1, [1.0], first_seed=seed)[0] for seed in (1, 6))
+    assert {q.seed % 50 for q in sixth} == {6} and {q.seed % 50 for q in first} == {1}
+    assert {q.kind for q in first} == {q.kind for q in sixth} and not {q.key for q in first} & {q.key for q in sixth}
+
+
 def test_the_held_out_voyage_is_another_manoeuvre_of_the_same_ship():
     for q in plan.questions(["usv"], 1, [1.0])[0]:
         if q.proves:

@@ -11,12 +11,14 @@ from twin.physics.effects import catalogue as known_effects
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
-from .case import ODDS, ODDS_MEASURED, Case, settle
+from .case import MOST_SEGMENTS, ODDS, ODDS_MEASURED, Case, settle
 from .columns import FORM, Unknown, effect_unknowns, lateness_unknowns
+from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, temper_of
 from .respond import respond
 from .seaway import calmed, tossed
+from .segments import read_parts
 from .structure import structural_floor
 from .track import Track, track
 from .voyage import Voyage
@@ -47,7 +49,7 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     floor, temper = stored_floor(ship) or Floor(), float(ship.notes.get("structural", {}).get("temper", TEMPER))
     if references:
         progress("reading the reference voyages")
-        lines = [_line(track(v, ship), model, nuisance, catalogue) for v in references]
+        lines, _ = _lines([track(v, ship) for v in references], model, nuisance, catalogue)
         if stored_floor(ship) is None:
             progress("finding the structural floor")
             floor = structural_floor(lines, nuisance)
@@ -56,9 +58,10 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     else:
         known = from_ship(model, nuisance)
     progress("linearising")
+    lines, excited = _lines(tracks, model, unknowns, catalogue, MOST_SEGMENTS)
     case = Case(
-        tracks, model, catalogue, candidates, unknowns, effects, known, floor, temper, _odds(tracks, candidates, ship),
-        tuple(_line(t, model, unknowns, catalogue) for t in tracks), floor.white,
+        tracks, model, catalogue, candidates, unknowns, effects, known, floor, temper, _odds(tracks, candidates, ship), lines, excited,
+        floor.white,
     )  # fmt: skip
     return settle(case)
 
@@ -78,11 +81,20 @@ def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue
     return tuple(n for n in effect.needs_ship if getattr(model.ship, n, None) is None)
 
 
-def _line(t: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]]) -> Linear:
-    here, _ = model.without_inputs(t.missing())
-    calm = calmed(t, here)
-    waves = tossed(t, here) if calm is t else 0.0
-    return replace(linearise(calm, here, unknowns, catalogue), slack=np.hypot(_roughly_known(calm, here), waves))
+def _lines(
+    tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], most: int | None = None
+) -> tuple[tuple[Linear, ...], bool]:
+    """The tracks without their waves, linearised where they will be read (`most` segments); and whether any of them holds a manoeuvre."""
+    models = [model.without_inputs(t.missing())[0] for t in tracks]
+    calm = [calmed(t, m) for t, m in zip(tracks, models, strict=True)]
+    parts = read_parts(calm, float(model.ship.scale("time")), most)
+    lines = []
+    for t, m, quiet, part in zip(tracks, models, calm, parts, strict=True):
+        slack = _roughly_known(part, m)
+        if quiet is t:
+            slack = np.hypot(slack, tossed(t, m)[np.searchsorted(t.t, part.t)])
+        lines.append(replace(linearise(part, m, unknowns, catalogue), slack=slack))
+    return tuple(lines), any(manoeuvred(t, model.ship) for t in calm)
 
 
 def _roughly_known(t: Track, model: Model) -> np.ndarray:

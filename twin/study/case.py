@@ -58,7 +58,8 @@ class Case:
     floor: Floor
     temper: float
     odds: Mapping[str, float]
-    lines: tuple[Linear, ...]
+    lines: tuple[Linear, ...]  # of what is read of each track
+    excited: bool  # whether one of the voyages holds a manoeuvre
     white: float  # fast part of the floor on the reference voyages, before `settle`
 
     def reduced(self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None) -> list[Reduced]:

@@ -24,15 +24,16 @@ from .refine import Found
 from .search import search
 from .seaway import at_sea
 from .tell_diagnosis import sentence, told
-from .verdict import alike, excites, judge, parameters, shows, typical_force, weights
+from .verdict import alike, group, judge, parameters, shows, typical_force, weights
 from .voyage import Voyage
 
 SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
 LEAST = 0.05
 EPILOG = """Verdicts: missing (named, with size and interval, and with what cannot be told from it), nothing_missing, unknown (something is there
-that no effect of the catalogue explains), undecided (the voyages cannot tell; next_manoeuvre says what to sail). Reference voyages are
-those of the same ship on which nothing was wrong: they set the floor below which an imperfect model is not called a missing effect.
+that no effect of the catalogue explains), undecided (the voyages cannot tell; one_of: the few of which one is surely there; next_manoeuvre:
+what to sail). Reference voyages are those of the same ship on which nothing was wrong: they set the floor below which an imperfect model
+is not called a missing effect.
 Exit code 4: a voyage cannot be used; 5: the ship file is not valid.
 """
 
@@ -57,7 +58,7 @@ def diagnose(
     explained, leads = not w.best.effects or explains(case, weighed, best, found[()]), helpful(case, found, w.best.effects)
     like = {name: alike(case, weighed, name) for name in w.best.effects}
     verdict, missing = judge(
-        weighed, w, like, leads, excited=excites(case), sharp=shows(seen), explained=explained, tossed=any(at_sea(t, case.model) for t in case.tracks)
+        weighed, w, like, leads, excited=case.excited, sharp=shows(seen), explained=explained, tossed=any(at_sea(t, case.model) for t in case.tracks)
     )  # fmt: skip
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
@@ -74,6 +75,7 @@ def diagnose(
         "ship": ship.name,
         "verdict": verdict,
         "missing": missing,
+        "one_of": group(weighed, w) if verdict == "undecided" and case.excited else [],
         "probabilities": {"nothing_missing": w.nothing, "unknown": w.unknown if explained else 1.0 - w.nothing},
         "candidates": [c for c in candidates if c],
         "next_manoeuvre": _next(case, found, verdict, missing, candidates, {n: w.effects[n] for n, can in seen.items() if can}, progress),

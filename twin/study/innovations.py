@@ -10,7 +10,6 @@ Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import pairwise
 
 import numpy as np
 
@@ -21,10 +20,10 @@ from twin.physics.model import Model
 
 from .columns import LATE, Unknown, columns
 from .respond import advance, jacobian, lagged, respond
+from .segments import segments
 from .track import Track
 
 STATES = 11  # delta (6), b (3), c (2)
-SEGMENT_LENGTHS = 16  # a segment lasts while the ship sails so many of her lengths
 MEMORY_B, MEMORY_C = 3.0, 12.0  # correlation times of b and c, in ship lengths sailed
 
 
@@ -156,25 +155,10 @@ class Normal:
         )  # fmt: skip
 
 
-def segments(lines: Sequence[Linear]) -> list[tuple[int, int, int]]:
-    """(track, first, last) of the stretches that are filtered on their own; a break in the controls ends one."""
-    out = []
-    for i, line in enumerate(lines):
-        length = max(32, int(SEGMENT_LENGTHS * float(line.model.ship.scale("time")) / line.track.h))
-        edges = np.flatnonzero(np.diff(np.concatenate([[False], line.track.whole, [False]]).astype(int)))
-        for start, stop in zip(edges[::2], edges[1::2], strict=True):
-            pieces = max(1, round((stop - start) / length))
-            cuts = np.linspace(start, stop, pieces + 1).astype(int)
-            out += [(i, int(a), int(b)) for a, b in pairwise(cuts) if b - a >= 24]
-    return out
-
-
 def innovate(lines: Sequence[Linear], floors: Sequence[Floor], most: int | None = None) -> list[Normal]:
     """Filter every segment of every track (or an even choice of `most`), under every floor, side by side; the normal equations
     for each floor."""
-    where = segments(lines)
-    if most is not None and len(where) > most:
-        where = [where[i] for i in np.linspace(0, len(where) - 1, most).astype(int)]
+    where = segments([line.track for line in lines], float(lines[0].model.ship.scale("time")), most)
     T, S, W = max(b - a for _, a, b in where), len(where), len(floors)
     P = lines[0].A.shape[2]
 

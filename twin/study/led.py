@@ -91,8 +91,10 @@ def held_out_error(case: Case, found: Found) -> float:
         for i, track in enumerate(case.tracks):
             windows = coarse(track, model.without_inputs(track.missing())[0], horizon_s(track, case.model), leads=1)
             inside = np.zeros(windows.start.size, bool)
+            steps = lines[i].track.steps()
             for t, a, b in (w for w, s in zip(normal.where, half, strict=True) if s == side):
-                inside |= (t == i) & (windows.start >= a) & (windows.start < b)
+                if t == i:
+                    inside |= (windows.start >= steps[a]) & (windows.start <= steps[b - 1])
             errors = _errors(windows, MODEL)[inside]
             total, count = total + float(np.nansum(errors)), count + int(np.isfinite(errors).sum())
     return total / max(count, 1)

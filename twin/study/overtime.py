@@ -32,7 +32,7 @@ def over_time(case: Case, found: Found, names: Sequence[str]) -> dict[str, list[
         A = directions @ part.A @ directions.T + 1e-6 * np.eye(len(names))
         share, sd = 1.0 + np.linalg.solve(A, directions @ part.b), np.sqrt(np.diag(np.linalg.inv(A)))
         (i, a, _), (_, _, b) = normal.where[rows[0]], normal.where[rows[-1]]
-        track = case.tracks[i]
+        track = lines[i].track
         place = {"voyage": track.name, "start_s": float(track.t[a]), "end_s": float(track.t[b - 1])}
         for name, s, e in zip(names, share, sd, strict=True):
             out[name].append(place | {"share": float(s), "sd": float(e)})

@@ -43,6 +43,9 @@ def sentence(result: dict[str, Any]) -> str:
         near = [c["effect"] for c in result["candidates"] if c["probability"] >= NEAR]
         nearest = f" Nearest, but not enough: {' with '.join(near)}." if near else ""
         return f"Something is missing, but none of the effects I know explains it.{nearest}"
+    if result["one_of"]:
+        *others, last = [_likely(by_name, n) for n in result["one_of"]]
+        return f"Undecided: something is missing, {', '.join(others)} or {last}; these voyages cannot tell them apart."
     return "Undecided: these voyages cannot tell what, if anything, is missing."
 
 

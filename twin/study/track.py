@@ -66,11 +66,18 @@ class Track:
 
     def part(self, first: int, last: int) -> "Track":
         """Grid steps first <= k < last."""
-        cut = slice(first, last)
+        return self.where(slice(first, last))
+
+    def where(self, keep: slice | np.ndarray) -> "Track":
+        """Some of the grid steps; where others are left out between them, `whole` must be False on one side."""
         return Track(
-            self.name, self.t[cut], self.h, self.state[cut], self.delta[cut], self.n[cut],
-            {k: w[cut] for k, w in self.weather.items()}, self.measured[cut], self.sd, self.whole[cut],
+            self.name, self.t[keep], self.h, self.state[keep], self.delta[keep], self.n[keep],
+            {k: w[keep] for k, w in self.weather.items()}, self.measured[keep], self.sd, self.whole[keep],
         )  # fmt: skip
+
+    def steps(self) -> np.ndarray:
+        """(N,) which grid steps of the whole voyage these are."""
+        return np.rint(self.t / self.h).astype(int)
 
 
 def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH) -> Track:

@@ -9,12 +9,12 @@ from twin.physics.model import Model
 
 from .case import WORLDS, Case
 from .evidence import Hypothesis, Posterior, probabilities
-from .excitation import manoeuvred
 from .nuisance import SURROUNDINGS
 from .respond import respond
 
 SURE = 0.8  # probability from which an effect is named
 SURE_GROUP = 0.95  # and from which one is named with those that these voyages cannot tell it from: one of them is there
+LARGEST_GROUP = 4  # effects that may stand for each other and still be an answer
 LOST = 0.5  # probability of something unknown from which no name is given
 SURE_TOO = 0.9  # another beside it when that is nearly certain: of two forms that are only roughly right, one may mend the other
 FORM = 0.1  # how far from the truth a size may be because nature writes the effect otherwise, as a share of it
@@ -63,6 +63,16 @@ def one_of(weighed: Sequence[Hypothesis], names: Sequence[str]) -> float:
     return float(sum(p for h, p in zip(weighed, probabilities(weighed), strict=True) if set(names) & set(h.effects)))
 
 
+def group(weighed: Sequence[Hypothesis], w: Weights) -> list[str]:
+    """The fewest effects, likeliest first, of which one is surely there though none of them is likely enough to be named; none when that
+    takes too many, or when it may be nothing or something unknown."""
+    likeliest = sorted(w.effects, key=lambda n: -w.effects[n])
+    if w.unknown >= LOST or w.effects[likeliest[0]] >= SURE:
+        return []
+    groups = (likeliest[:k] for k in range(2, LARGEST_GROUP + 1))
+    return next((names for names in groups if one_of(weighed, names) >= SURE_GROUP), [])
+
+
 def judge(
     weighed: Sequence[Hypothesis], w: Weights, like: Mapping[str, Sequence[str]], leads: Sequence[str], *, excited: bool = True,
     sharp: bool = True, explained: bool = True, tossed: bool = False,
@@ -82,11 +92,6 @@ def judge(
     if w.nothing >= ACQUITTED and sharp:
         return "nothing_missing", []
     return ("missing", named) if named else ("undecided", [])
-
-
-def excites(case: Case) -> bool:
-    """Whether one of the voyages holds a manoeuvre."""
-    return any(manoeuvred(line.track, case.model.ship) for line in case.lines)
 
 
 def shows(seen: dict[str, bool]) -> bool:

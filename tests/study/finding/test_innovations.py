@@ -6,7 +6,8 @@ import pytest
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.study.columns import core_unknowns, effect_unknowns, with_values
-from twin.study.innovations import Floor, innovate, linearise, segments
+from twin.study.innovations import Floor, innovate, linearise
+from twin.study.segments import read_parts, segments
 from twin.study.track import READINGS, track
 
 
@@ -57,7 +58,30 @@ def test_a_hole_in_the_controls_ends_a_segment(judged):
     from dataclasses import replace
 
     broken = replace(line, track=replace(t, whole=whole))
-    assert all(b <= 300 or a >= 310 for _, a, b in segments([broken]))
+    assert all(b <= 300 or a >= 310 for _, a, b in segments([broken.track], float(model.ship.scale("time"))))
+
+
+@pytest.mark.parametrize("slow_gear", [False, True])
+def test_what_the_filter_would_not_read_may_be_left_out(judged, slow_gear):
+    """Of 1200 s (eight segments of a ship four times as quick) every other one is read; the gear remembers what came before."""
+    t, model, unknowns = judged
+    known, time_s = catalogue(), 0.25 * float(model.ship.scale("time"))
+    if slow_gear:
+        model = model.but(known["SteeringLag"](delay=1.0, travel_time=30.0))
+    (part,) = read_parts([t], time_s, 4)
+    assert len(part) < 0.8 * len(t) and part.whole.sum() < 0.6 * t.whole.sum()
+    where = [(a, b) for _, a, b in segments([part], time_s)]
+    assert [(part.steps()[a], part.steps()[b - 1] + 1) for a, b in where] == [(a, b) for _, a, b in segments([t], time_s, 4)]
+    whole, read = linearise(t, model, unknowns, known), linearise(part, model, unknowns, known)
+    for (a, b), (_, first, last) in zip(where, segments([t], time_s, 4), strict=True):
+        for name in ("F", "e", "A", "R", "busy"):
+            theirs = getattr(whole, name)[first:last]
+            np.testing.assert_allclose(getattr(read, name)[a:b], theirs, rtol=1e-3, atol=1e-3 * np.nanmax(np.abs(theirs)))
+
+
+def test_a_voyage_that_is_read_whole_stays_as_it_is(judged):
+    t, model, _ = judged
+    assert read_parts([t], float(model.ship.scale("time")), 20)[0] is t
 
 
 def test_a_track_holds_samples_and_invents_none(tanker, voyages):

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from twin.study.evidence import Hypothesis
-from twin.study.verdict import Weights, judge
+from twin.study.verdict import Weights, group, judge
 
 YES = ("tossed",)
 
@@ -75,3 +75,19 @@ def test_a_restlessness_for_which_there_was_a_sea_decides_nothing():
 
 def test_two_effects_that_leave_her_restless_are_unknown():
     assert verdict(["TowForce", "PropellerWear"], TowForce=1.0, PropellerWear=1.0, how=("explained",)) == ("unknown", [])
+
+
+@pytest.mark.parametrize(
+    "chances, names",
+    [
+        ({"PropellerWear": 0.4, "RudderWear": 0.32, "Loading": 0.27, "": 0.01}, ["PropellerWear", "RudderWear", "Loading"]),
+        ({"PropellerWear": 0.6, "RudderWear": 0.38, "": 0.02}, ["PropellerWear", "RudderWear"]),
+        ({"PropellerWear": 0.5, "RudderWear": 0.3, "": 0.2}, []),  # it may be nothing
+        ({"PropellerWear": 0.9, "RudderWear": 0.1}, []),  # likely enough: something else spoke against it
+        (dict.fromkeys("ABCDE", 0.2), []),  # anything
+    ],
+)
+def test_an_undecided_answer_still_says_of_which_few_effects_one_is_surely_there(chances, names):
+    weighed = [Hypothesis((name,) if name else (), "usual", math.log(p), 0.0) for name, p in chances.items()]
+    w = Weights(chances.get("", 0.0), 0.0, {n: p for n, p in chances.items() if n}, weighed[0])
+    assert group(weighed, w) == names

@@ -1,0 +1,47 @@
+"""The stretches of a voyage that are judged each on its own, and as much of the track as it takes to judge them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from .track import Track
+
+SEGMENT_LENGTHS = 16  # a segment lasts while the ship sails so many of her lengths
+BEFORE_LENGTHS, AFTER_LENGTHS = 4, 2  # and so much of what is about it is kept
+
+
+def segments(tracks: Sequence[Track], time_s: float, most: int | None = None) -> list[tuple[int, int, int]]:
+    """(track, first, last) of the stretches that are filtered on their own, or an even choice of `most`; a break in the controls ends
+    one. `time_s`: L/U_0."""
+    out = []
+    for i, track in enumerate(tracks):
+        length = max(32, int(SEGMENT_LENGTHS * time_s / track.h))
+        edges = np.flatnonzero(np.diff(np.concatenate([[False], track.whole, [False]]).astype(int)))
+        for start, stop in zip(edges[::2], edges[1::2], strict=True):
+            pieces = max(1, round((stop - start) / length))
+            cuts = np.linspace(start, stop, pieces + 1).astype(int)
+            out += [(i, int(a), int(b)) for a, b in pairwise(cuts) if b - a >= 24]
+    if most is not None and len(out) > most:
+        out = [out[i] for i in np.linspace(0, len(out) - 1, most).astype(int)]
+    return out
+
+
+def read_parts(tracks: Sequence[Track], time_s: float, most: int | None) -> list[Track]:
+    """The same tracks without what the filter would not read of them (`most` segments of all together); each segment keeps some of what
+    is about it, for a slow steering gear remembers what came before."""
+    chosen = segments(tracks, time_s, most)
+    if len(chosen) == len(segments(tracks, time_s)):
+        return list(tracks)
+    return [_kept(t, [(a, b) for j, a, b in chosen if j == i], time_s / t.h) for i, t in enumerate(tracks)]
+
+
+def _kept(track: Track, stretches: Sequence[tuple[int, int]], length: float) -> Track:
+    """The track at these stretches and what is about them (`length`: steps in a ship length); where there are none, its begin."""
+    keep, whole = np.zeros(len(track), bool), np.zeros(len(track), bool)
+    before, after = round(BEFORE_LENGTHS * length), round(AFTER_LENGTHS * length)
+    keep[:before] = not stretches
+    for a, b in stretches:
+        keep[max(a - before, 0) : b + after], whole[a:b] = True, True
+    return replace(track, whole=whole).where(keep)
