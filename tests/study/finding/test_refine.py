@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.refine import FARTHER, _bends, _climb, _pressed, refine
+from twin.study.refine import _bends, _pressed
 
 
 @pytest.fixture(scope="module")
@@ -29,12 +29,3 @@ def test_only_what_ended_at_nothing_and_bends_is_looked_for_farther_out(case):
     at[mine] = 1.0
     assert _pressed(case, mine, at) == []
     assert _pressed(case, rows(case, "RudderOffset"), np.zeros(len(case.effects))) == []
-
-
-def test_a_slow_gear_is_found_also_where_a_climb_from_nothing_ends_at_nothing(case):
-    mine, none = rows(case, "SteeringLag"), np.zeros(len(case.effects))
-    near, at = _climb(case, ("SteeringLag",), mine, "usual", none)
-    far, _ = _climb(case, ("SteeringLag",), mine, "usual", FARTHER[0] * np.ones(len(case.effects)))
-    found, _ = refine(case, ("SteeringLag",), "usual", none, ())
-    print(near.log_weight, [case.effects[i].sd * at[i] for i in mine], far.log_weight, [case.effects[i].sd * found.posterior.z[i] for i in mine])
-    assert found.hypothesis.log_weight >= near.log_weight
