@@ -70,9 +70,13 @@ class Case:
         return [replace(self.floor.scaled(WORLDS[n].share, flow=WORLDS[n].flow), doubt=doubt) for n in names]
 
     def log_prior(self, chosen: Sequence[str], world: str) -> float:
-        if world == "flooding" and "VaryingCurrent" not in chosen:
+        if (world == "flooding" and "VaryingCurrent" not in chosen) or self._twice(chosen):
             return -np.inf
         return float(np.log(WORLDS[world].probability) + sum(np.log(self.odds[name]) for name in chosen))
+
+    def _twice(self, chosen: Sequence[str]) -> bool:
+        """Whether one of these effects is a part of another: together they say no more than that one."""
+        return any(part in chosen for name in chosen for part in self.catalogue[name].holds)
 
 
 def settle(case: Case) -> Case:

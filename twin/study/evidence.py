@@ -83,6 +83,14 @@ def reduce(
     return Reduced(A[C:, C:] - cross.T @ cross, b[C:] - cross.T @ mean, base, tuple(effects), np.zeros(len(effects)) if at is None else at)
 
 
+def given(reduced: Reduced, z: np.ndarray, known: np.ndarray) -> Reduced:
+    """What is left to be asked once some of the parameters (`known`: which) have the values z."""
+    rest = ~known
+    b = reduced.b - reduced.A[:, known] @ (z - reduced.at)[known]
+    unknowns = tuple(u for u, is_left in zip(reduced.unknowns, rest, strict=True) if is_left)
+    return Reduced(reduced.A[np.ix_(rest, rest)], b[rest], reduced.base, unknowns, reduced.at[rest])
+
+
 @dataclass(frozen=True)
 class Posterior:
     """Parameters of all effects in prior widths from "not there", under one hypothesis."""

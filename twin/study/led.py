@@ -14,7 +14,7 @@ from twin.physics.model import Model
 
 from .case import MOST_SEGMENTS, WORLDS, Case
 from .columns import with_values
-from .evidence import Hypothesis, posterior, reduce
+from .evidence import Hypothesis, given, posterior, reduce
 from .innovations import Floor, innovate
 from .openloop import MODEL, STRUCTURE, Windows, coarse, predict
 from .refine import Found, Sets, standing
@@ -42,9 +42,11 @@ class Led:
         return -2.0 * self.windows * float(np.log(max(error, floor) / floor))  # two directions, a normal error of unknown size
 
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """The same hypotheses with this evidence too, best first. Where one effect leads her there, two are a luxury."""
-        one = any(len(s) == 1 and f.off_m <= f.floor_m for s, f in self.found.items())
-        extra = (self.log_probability(h) - LUXURY * (one and len(h.effects) > 1) for h in weighed)
+        """The same hypotheses with this evidence too, best first. Where one effect leads her there, two are a luxury; the less so the
+        more the path asks for them."""
+        alone = [2.0 * self.windows * float(np.log(max(f.off_m / f.floor_m, 1.0))) for s, f in self.found.items() if len(s) == 1]
+        luxury = max(0.0, LUXURY - min(alone, default=LUXURY))
+        extra = (self.log_probability(h) - luxury * (len(h.effects) > 1) for h in weighed)
         return sorted((replace(h, log_evidence=h.log_evidence + e) for h, e in zip(weighed, extra, strict=True)), key=lambda h: -h.log_weight)
 
 
@@ -76,16 +78,20 @@ def horizon_s(track: Track, model: Model) -> float:
 
 def held_out_error(case: Case, found: Found) -> float:
     """Mean position error [m] with the effects of a hypothesis, each half of the segments predicted with the parameters that the
-    other half asks for, about where the hypothesis stands."""
+    other half asks for, about where the hypothesis stands. What changes with the clock is taken as the whole voyage has it: no other
+    hour tells of it."""
     chosen = found.hypothesis.effects
     lines, at = standing(case, found)
     mine = [i for i, u in enumerate(case.effects) if u.owner in chosen]
+    lasts = np.array(["t" not in case.catalogue[u.owner].needs for u in case.effects])
     normal = innovate(lines, case.worlds([found.hypothesis.world], found.doubt), MOST_SEGMENTS)[0]
     half = np.arange(len(normal.where)) % 2
     total, count = 0.0, 0
     for side in (0, 1):
-        part = reduce(normal.only(half != side), case.nuisance, case.unknowns, case.effects, case.temper, at) if half.any() else None
-        z = posterior(part, chosen).z if part is not None else found.posterior.z
+        z = found.posterior.z.copy()
+        if half.any():
+            part = reduce(normal.only(half != side), case.nuisance, case.unknowns, case.effects, case.temper, at)
+            z[lasts] = posterior(given(part, z, ~lasts), chosen).z
         values = [case.effects[i].centre + case.effects[i].sd * z[i] for i in mine]
         model = with_values(case.model, [case.effects[i] for i in mine], values, case.catalogue)
         for i, track in enumerate(case.tracks):

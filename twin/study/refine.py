@@ -12,15 +12,16 @@ import numpy as np
 from twin.physics.model import Model
 
 from .case import WORLDS, Case
-from .columns import Unknown, with_values
+from .columns import Unknown, changed, with_values
 from .evidence import Hypothesis, Posterior, Reduced, log_evidence, posterior, weigh_with
-from .innovations import Linear, linearise
+from .innovations import Linear, linearise, standard
 from .respond import respond
 
 DOUBTS = (0.2, 0.1, 0.05)
 Sets = tuple[str, ...]
 NEWTON = 8  # steps, at most
-FARTHER = (2.0, 4.0)  # times the linear guess, where Newton begins again when it ended in no plain world
+FARTHER = (2.0, 4.0)  # times the linear guess, where Newton begins again when it ended in no plain world, or at nothing
+BENT = 0.3  # share of what a number does that is not in proportion to it
 STANDS = 0.05  # prior widths that a step may still move
 
 
@@ -38,15 +39,17 @@ class Found:
 
 def refine(case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[str]) -> tuple[Found, list[Hypothesis]]:
     """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand; begun again farther out
-    when that explains nothing plainly. What was found; and, about it, the hypothesis in every world, and every one that has one
-    of `wider` beside it."""
+    when that explains nothing plainly, or when a number ended at nothing that cannot be seen from there. What was found; and, about
+    it, the hypothesis in every world, and every one that has one of `wider` beside it."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     best, at = _climb(case, chosen, mine, world, z)
     first = _boxed(case, z)
     first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
     for factor in FARTHER:
-        if WORLDS[best.world].plain:
+        pressed = _pressed(case, mine, at)
+        if WORLDS[best.world].plain and not pressed:
             break
+        first[pressed] = 1.0
         best, at = max((best, at), _climb(case, chosen, mine, "usual", factor * first), key=lambda end: end[0].log_weight)
     model, lines = about(case, at, mine, case.unknowns)
     doubt = _doubt(case, chosen, lines, best.world, at)
@@ -67,6 +70,26 @@ def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray
             break
     judged, _ = _judged(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0]))
     return max(judged, key=lambda h: h.log_weight), at
+
+
+def _pressed(case: Case, mine: np.ndarray, at: np.ndarray) -> list[int]:
+    """Parameters that ended at nothing although what they do is not in proportion to them: about nothing, they could not be seen."""
+    own = [case.effects[i] for i in mine]
+    model = with_values(case.model, own, [u.centre + u.sd * at[i] for i, u in zip(mine, own, strict=True)], case.catalogue)
+    return [int(i) for i, u in zip(mine, own, strict=True) if at[i] == 0.0 and _bends(case, model, u)]
+
+
+def _bends(case: Case, model: Model, unknown: Unknown) -> bool:
+    """Whether so many prior widths of a number do clearly more, or less, than so many times what one does."""
+    for line in case.lines:
+        here = model.without_inputs(line.track.missing())[0]
+        none, one, far = (
+            respond(line.track, changed(here, unknown, unknown.centre + k * unknown.sd, case.catalogue))[0] for k in (0.0, 1.0, FARTHER[-1])
+        )
+        did, missed = (far - none) / standard(here), (far - none - FARTHER[-1] * (one - none)) / standard(here)
+        if np.linalg.norm(missed) > BENT * np.linalg.norm(did):
+            return True
+    return False
 
 
 def _everywhere(case: Case, chosen: Sets, lines: Sequence[Linear], at: np.ndarray, doubt: float) -> dict[str, Reduced]:

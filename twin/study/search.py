@@ -12,12 +12,13 @@ import numpy as np
 from .case import ODDS_WEAK, WORLDS, Case
 from .evidence import Hypothesis, Reduced, posterior, weigh_all
 from .led import Led, led
+from .leftover import explains
 from .refine import Found, Sets, refine
 
 MOST = 2  # effects at once
 ROUNDS = 20  # hypotheses judged about their own size, at most
 SINGLES = 3  # of which so many single effects first, unless nothing at all explains the voyages
-LAST = 6  # and so many more single effects, when nothing plain was found
+LAST = 6  # and so many more single effects, when nothing plain was found, or nothing that explains enough
 CLOSE = 3.0  # log odds behind the best within which a hypothesis is judged about its own size
 VISIBLE = 4.0  # log odds that an effect of plausible size would have to show, or the data could not have seen it
 EARNED = 1.5  # log evidence that an effect must add to deserve a second look
@@ -34,6 +35,15 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
     weak = [name for name, can in seen.items() if not can and case.catalogue[name].needs]
     case = replace(case, odds=dict(case.odds) | dict.fromkeys(weak, ODDS_WEAK))
     book = _Book(case, worlds)
+    searched = _searched(book, progress, seen)
+    if book.last and not _explained(case, *searched[:2]):
+        book.wide = True
+        searched = _searched(book, progress, seen)
+    return searched
+
+
+def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bool]) -> Searched:
+    """What the book says once nothing is left to be judged."""
     for _ in range(ROUNDS):
         chosen = book.next()
         if chosen is None:
@@ -41,8 +51,13 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
         progress("judging " + " + ".join(chosen) + " about its own size")
         book.judge(chosen)
     progress("asking where each would have led her")
-    asked = led(case, book.found)
+    asked = led(book.case, book.found)
     return book.proved(asked), book.found | dict(asked.found), seen
+
+
+def _explained(case: Case, weighed: list[Hypothesis], found: dict[Sets, Found]) -> bool:
+    best = weighed[0].effects
+    return not best or explains(case, weighed, found[best], found[()])
 
 
 def visible(reduced: Reduced, name: str) -> bool:
@@ -57,6 +72,7 @@ class _Book:
 
     def __init__(self, case: Case, worlds: dict[str, Reduced]) -> None:
         self.case, self.worlds = case, worlds
+        self.wide = False  # whether every promising effect is judged, because the best so far leaves too much
         self.entries: dict[tuple[Sets, str], Hypothesis] = {}
         for world, reduced in worlds.items():
             for chosen, evidence in weigh_all(reduced, case.candidates, MOST):
@@ -99,7 +115,7 @@ class _Book:
                 break
             if h.effects not in self.found:
                 return next(((name,) for name in h.effects if (name,) not in self.found), h.effects)
-        while self.last and not WORLDS[ranked[0].world].plain:
+        while self.last and (self.wide or not WORLDS[ranked[0].world].plain):
             if (chosen := self.last.pop(0)) not in self.found:
                 return chosen
         return None
@@ -114,10 +130,12 @@ class _Book:
         wider = self.case.candidates if len(chosen) < MOST else ()
         self.found[chosen], judged = refine(self.case, chosen, mine[0].world, z, wider)
         for h in judged:
-            if h.effects == chosen or (h.effects not in self.found and self._nearer(chosen, h.effects)):
+            if h.effects == chosen or (h.effects not in self.found and self._nearer(chosen, h)):
                 self._enter(h)
 
-    def _nearer(self, chosen: Sets, wider: Sets) -> bool:
-        """Whether this is the best part of the wider set that was judged so far."""
-        parts = [f.hypothesis.log_weight for s, f in self.found.items() if s and set(s) < set(wider)]
-        return self.found[chosen].hypothesis.log_weight >= max(parts)
+    def _nearer(self, chosen: Sets, wider: Hypothesis) -> bool:
+        """Whether no other part of the wider set was judged so far, or none about which the whole explains more: a slow gear is nothing
+        to first order, and shows beside another effect only about its own size."""
+        parts = [s for s in self.found if s and s != chosen and set(s) < set(wider.effects)]
+        before = self.entries.get((wider.effects, wider.world))
+        return not parts or before is None or wider.log_weight > before.log_weight

@@ -12,6 +12,7 @@ HIDDEN = {
     "HeadingBias": (("HeadingBias", 1.0),),
     "Current": (("Current", 1.0),),
     "RudderWear": (("RudderWear", 1.0),),
+    "SteeringLag": (("SteeringLag", 1.0),),
 }
 
 

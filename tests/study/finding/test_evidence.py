@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from twin.study.columns import Unknown
-from twin.study.evidence import Reduced, log_evidence, posterior, weigh_all, weigh_with
+from twin.study.evidence import Reduced, given, log_evidence, posterior, weigh_all, weigh_with
 
 
 def unknowns():
@@ -58,3 +58,12 @@ def test_one_effect_more_beside_those_found_gives_the_evidence_of_the_whole_post
         both = tuple(sorted(("B", name)))
         assert value == pytest.approx(log_evidence(moved, both, posterior(moved, both)), abs=1e-8), name
     assert [name for name, _ in weigh_with(moved, ("B",), ["A", "B", "C"])] == ["A", "C"]
+
+
+def test_what_is_left_given_some_values_is_the_whole_posterior_conditioned_on_them(reduced):
+    at, known, z = np.array([0.3, 1.2, -0.3, 0.1]), np.array([False, True, False, False]), np.array([0.0, 0.7, 0.0, 0.0])
+    moved = Reduced(reduced.A, reduced.b - reduced.A @ at, reduced.base, unknowns(), at)
+    whole, left = posterior(moved, ("A", "B")), posterior(given(moved, z, known), ("A", "B"))
+    along = whole.covariance[~known][:, known] / whole.covariance[known][:, known]
+    np.testing.assert_allclose(left.z, whole.z[~known] + along[:, 0] * (z[known] - whole.z[known]), atol=1e-10)
+    assert np.abs(left.z - whole.z[~known]).max() > 0.01

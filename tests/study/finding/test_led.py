@@ -1,12 +1,14 @@
 """Where a hypothesis leads the ship, beside where she went."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
 from twin.study.evidence import Hypothesis
 from twin.study.led import FORM, LUXURY, Led, held_out_error, horizon_s, led
-from twin.study.refine import Found
+from twin.study.refine import Found, refine
 from twin.study.search import search
 from twin.study.verdict import weights
 
@@ -60,6 +62,24 @@ def test_a_second_effect_costs_more_where_one_leads_her_there_and_nothing_where_
     for path, cost in ((asked(nothing=20.0, Wind=7.0, Wind_Bank=7.0), LUXURY), (asked(nothing=20.0, Wind=15.0, Wind_Bank=7.0), 0.0)):
         weighed = {h.effects: h.log_evidence for h in path.weigh([none, pair])}
         assert weighed["Wind", "Bank"] == pytest.approx(pair.log_evidence - cost)
+
+
+def test_what_the_path_asks_for_is_no_luxury_and_there_is_no_step_between():
+    pair, gains = says("Wind", "Bank"), []
+    for off in FLOOR_M * np.exp(np.array([0.0, 0.5, 1.0, 2.0]) * LUXURY / (2.0 * TEN)):
+        path = asked(nothing=20.0, Wind=off, Wind_Bank=7.0)
+        weighed = {h.effects: h.log_evidence for h in path.weigh([says("Wind"), pair])}
+        gains.append(weighed["Wind", "Bank"] - weighed[("Wind",)])
+    assert gains == pytest.approx([-LUXURY, 0.0, LUXURY, 2.0 * LUXURY])
+
+
+def test_a_stream_is_not_asked_for_in_hours_that_were_left_out(tanker, voyages):
+    """Expected: the current's own numbers come from the other half, those of a stream that changes from the whole voyage."""
+    case = assemble([voyages["Current"]], tanker)
+    for name, same in (("VaryingCurrent", True), ("Current", False)):
+        found, _ = refine(case, (name,), "usual", np.zeros(len(case.effects)), ())
+        elsewhere = replace(found, posterior=replace(found.posterior, z=1.5 * found.posterior.z))
+        assert (held_out_error(case, elsewhere) > 1.2 * held_out_error(case, found)) == same
 
 
 def test_the_best_come_first():

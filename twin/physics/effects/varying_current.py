@@ -25,6 +25,7 @@ class VaryingCurrent(Flow):
 
     stream = True
     needs = ("t",)
+    holds = ("Current",)
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.3; harmonic form as in tidal analysis (Foreman 1977)"
 
     north: float = param(0.0, unit="m/s", lo=-0.6, hi=0.6, sd=0.08, of="speed", doc="mean toward north")

@@ -1,0 +1,56 @@
+"""What is judged next, and about which part a pair is weighed."""
+
+import numpy as np
+import pytest
+
+from twin.physics.effects import catalogue
+from twin.study.assemble import assemble
+from twin.study.case import WORLDS
+from twin.study.search import _Book, search
+
+PAIR = ("RudderWear", "SteeringLag")
+
+
+@pytest.fixture(scope="module")
+def case(tanker, voyages):
+    return assemble([voyages["SteeringLag"]], tanker)
+
+
+def book(case):
+    names = list(WORLDS)
+    return _Book(case, dict(zip(names, case.reduced(case.lines, case.worlds(names)), strict=True)))
+
+
+def weighed(case, *judged):
+    """The pair in every world, once these sets were judged about their own size."""
+    held = book(case)
+    for chosen in judged:
+        held.judge(chosen)
+    return {world: h.log_weight for (s, world), h in held.entries.items() if s == PAIR}
+
+
+def test_a_pair_is_weighed_about_the_part_where_it_explains_more_whichever_was_judged_first(case):
+    worn, slow = weighed(case, PAIR[:1]), weighed(case, PAIR[1:])
+    for both in (weighed(case, PAIR[:1], PAIR[1:]), weighed(case, PAIR[1:], PAIR[:1])):
+        assert both == pytest.approx({world: max(worn[world], slow[world]) for world in worn})
+    assert max(slow.values()) > max(worn.values())
+
+
+def test_every_promising_effect_is_judged_when_what_was_found_leaves_too_much(tanker, voyages):
+    held = book(assemble([voyages["nothing"]], tanker))
+    held.last = [("Bank",)]
+    assert held.next() is None
+    held.wide = True
+    assert held.next() == ("Bank",)
+
+
+def test_an_effect_and_a_part_of_it_are_no_pair(case):
+    assert case.log_prior(("Current", "VaryingCurrent"), "usual") == -np.inf
+    assert np.isfinite(case.log_prior(("VaryingCurrent",), "usual")) and np.isfinite(case.log_prior(("Current", "HullFouling"), "usual"))
+    assert ("Current", "VaryingCurrent") not in {h.effects for h in search(case)[0]}
+
+
+def test_what_an_effect_holds_is_in_the_catalogue():
+    effects = catalogue()
+    assert effects["VaryingCurrent"].holds == ("Current",)
+    assert {part for e in effects.values() for part in e.holds} <= set(effects)
