@@ -1,9 +1,9 @@
 """`twin-bench adaptation`: laws of adaptation side by side on ships that changed, and under measurements that lie.
 
 The change has just happened when a voyage begins, and nothing is learned yet; or it comes in the middle, when the law on board has
-heard the ship as she was for five minutes. All laws see the same stream of unexplained force and regressors (from the hybrid's own
-filter, which does not use what they learn), and are judged by the free runs of 120 s that follow. Boxes, ball and gate are those of
-twin/live/adapt.py for all of them.
+heard the ship as she was for five minutes (adaptation_named.py: there it is a named effect that grows). All laws see the same stream
+of unexplained force and regressors (from the hybrid's own filter, which does not use what they learn), and are judged by the free runs
+of 120 s that follow. Boxes, ball and gate are those of twin/live/adapt.py for all of them.
 """
 
 import argparse
@@ -20,8 +20,8 @@ from twin.study.import_voyage import write_json
 
 EPILOG = """example: twin-bench adaptation --work .paper --markdown docs/results/adaptation.md
 
-Trains the hybrid first where DIR holds none from `twin-bench paper` (--full: that of its full plan). Beside FILE.md goes a figure,
-FILE.png; what the page held from its line "## What it says" on stays. Exit code 0: the tables are made.
+Trains the hybrid first where DIR holds none from `twin-bench paper` (--full: that of its full plan). Beside FILE.md go two
+figures, FILE.png and FILE-named.png; what the page held from its line "## What it says" on stays. Exit code 0: the tables are made.
 """
 STARTS_S = (60.0, 120.0, 180.0, 240.0, 300.0, 360.0, 420.0, 480.0, 540.0)
 CHANGE_S = 300.0  # of a change in the middle of a voyage
@@ -47,17 +47,23 @@ def run(args: argparse.Namespace) -> int:
     text = "\n".join(page(result))
     print(text, file=sys.stderr if args.json == "-" else sys.stdout)
     if args.markdown:
+        from bench import adaptation_named_page
         from bench.adaptation_page import figure, kept
 
+        second = args.markdown.with_name(f"{args.markdown.stem}-named.png")
         figure(result, args.markdown.with_suffix(".png"))
-        args.markdown.write_text(f"{text}\n\n![Error over time since a change]({args.markdown.stem}.png)\n{kept(args.markdown)}")
+        adaptation_named_page.figure(result["named"], second)
+        drawn = f"![Error over time since a change]({args.markdown.stem}.png)\n\n![A named effect that grows]({second.name})"
+        args.markdown.write_text(f"{text}\n\n{drawn}\n{kept(args.markdown)}")
     if args.json:
         write_json(result, args.json)
     return 0
 
 
 def compare(work: Path, full: bool, seeds: int) -> dict[str, Any]:
-    """Every law on every ship and every lie."""
+    """Every law on every ship and every lie; and the law on board where a named effect grows."""
+    from bench import adaptation_named
+
     bench = Bench.of(work, full)
     out: dict[str, Any] = {"schema_version": 1, "seeds": seeds, "full": full, "changed": {}, "lies": {}}
     streams = {name: bench.heard(cases) for name, cases in ships(seeds).items()}
@@ -67,7 +73,8 @@ def compare(work: Path, full: bool, seeds: int) -> dict[str, Any]:
         clean = streams["as she is"]
         out["lies"][law] = {name: bench.judged(law, replace(clean, streams=lie(clean.streams))) for name, lie in LIES.items()}
     out["voyages"] = len(streams["as she is"].courses)
-    return out | {"midway": bench.midway(seeds), "change_s": CHANGE_S, "starts_s": ROUND_S}
+    named = adaptation_named.compare(work, full, 2 * seeds, _tell)
+    return out | {"midway": bench.midway(seeds), "change_s": CHANGE_S, "starts_s": ROUND_S, "named": named}
 
 
 def laws() -> dict[str, Any]:

@@ -3,6 +3,8 @@
 from pathlib import Path
 from typing import Any
 
+from bench import adaptation_named_page
+
 SAID = {"off": "learning off", "on": "learning on", "told": "learning on, told of the change"}
 HAND = "## What it says"  # from here on the page is written by hand
 
@@ -30,6 +32,7 @@ def page(r: dict[str, Any]) -> list[str]:
         *_midway(r),
         "", "Heading deg by scenario, mean of the windows begun at the change and later, learning off / on / told.", "",
         *_by_scenario(r["midway"]),
+        "", *adaptation_named_page.page(r["named"]),
     ]  # fmt: skip
     return lines
 

@@ -33,6 +33,7 @@ BENCHES: dict[str, Bench] = {
     "adaptation": Bench(
         "bench.adaptation", "laws of adaptation on ships that changed", "twin-bench adaptation --work .paper"
     ),
+    "gap": Bench("bench.paper_again", "the gap from validation to test, on more runs", "twin-bench gap --work .paper"),
     "stability": Bench(
         "bench.stability", "ten thousand runs against the certificate", "twin-bench stability --runs 1000"
     ),

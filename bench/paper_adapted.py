@@ -6,6 +6,7 @@ What is learned up to the start of a window is held while the window is predicte
 """
 
 from collections.abc import Callable, Sequence
+from copy import copy
 
 import numpy as np
 import torch
@@ -18,7 +19,8 @@ from export.to_onnx import whitening
 from twin.live.adapt import BESIDE, CORES, LARGEST, Adaptation
 from twin.live.dynamics import Known
 from twin.live.evidence import Evidence
-from twin.physics.model import CORE, Model
+from twin.live.movable import Columns, movable
+from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Rates, Situation
 from twin.study.track import READINGS
@@ -37,10 +39,10 @@ class Acting:
         self.mean, self.rows = (torch.tensor(table[n], dtype=torch.float32) for n in ("mean", "components"))
         self.A = torch.zeros(1, 3, len(self.rows) + BESIDE)
 
-    def holding(self, A: np.ndarray) -> "Acting":
-        """The same network with other learned numbers (B, 3, width)."""
+    def holding(self, A: np.ndarray, model: Model | None = None) -> "Acting":
+        """The same network with other learned numbers (B, 3, width), on another state of the model if one is given."""
         other = object.__new__(Acting)
-        other.__dict__.update(self.__dict__, A=torch.tensor(A, dtype=torch.float32))
+        other.__dict__.update(self.__dict__, A=torch.tensor(A, dtype=torch.float32), model=model or self.model)
         return other
 
     def parts(self, s: Situation) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
@@ -51,7 +53,7 @@ class Acting:
         components = torch.clamp((phi - self.mean) @ self.rows.T, -3.0, 3.0)
         rows = []
         for r, core in enumerate(CORES):
-            sizes = [*(forces[i][r] for i in core), sum(force[r] for force in forces[len(CORE) :])]
+            sizes = [forces[i][r] for i in core]
             rows.append(torch.cat([components, torch.stack([_sized(x, S[r], phi) for x in sizes] + [torch.ones(len(phi))], -1)], -1))
         return self.network.weight(zeta).unsqueeze(-1), self.network.last(phi), torch.stack(rows, 1)
 
@@ -80,6 +82,7 @@ class Learning(Filter):
         self.laws = [law(ship, S, components) for _ in courses]
         self.evidence = [Evidence(ship, S) for _ in courses]
         self.physics = Known(model)
+        self.probes = [probe for m in movable(model.effects, ship) if (probe := Columns.probe(model, m))]
         self.last: tuple[torch.Tensor, ...] | None = None
         self.numbers: list[np.ndarray] = []  # after each step, (V, 3, width)
 
@@ -94,14 +97,14 @@ class Learning(Filter):
         seen = self._seen(k)
         middle = [0.5 * (a + b) for a, b in zip(self.last or seen, seen, strict=True)]
         self.last = seen
-        rates, trained, shadow, q, forces = (x.tolist() for x in middle)
+        rates, trained, shadow, q, forces, columns = (x.tolist() for x in middle)
         measured = self.through_water(k)
         for i, (law, evidence) in enumerate(zip(self.laws, self.evidence, strict=True)):
             nu = tuple(measured[i])
             if not np.isfinite(nu).all():
                 evidence.pause()
                 continue
-            evidence.feed(nu, Rates(*rates[i]), tuple(shadow[i]), tuple(trained[i]), [*q[i], *forces[i]], self.physics, self.h)
+            evidence.feed(nu, Rates(*rates[i]), tuple(shadow[i]), tuple(trained[i]), [*q[i], *forces[i], *columns[i]], self.physics, self.h)
             wanted = tuple(d - t for d, t in zip(evidence.unexplained, evidence.trained, strict=True))
             law.learn(wanted, evidence.regressors, self.h, "" if evidence.ready else "has just begun")
 
@@ -112,7 +115,8 @@ class Learning(Filter):
         return self.measured[k][:, SPEEDS] - np.column_stack([north * c + east * s, east * c - north * s, 0.0 * c])
 
     def _seen(self, k: int) -> tuple[torch.Tensor, ...]:
-        """Of each voyage: accelerations by known forces, W phi, the whole learned force, components, and known forces."""
+        """Of each voyage: accelerations by known forces, W phi, the whole learned force, components, known forces, and columns of the
+        named effects' numbers."""
         x, y, psi, u, v, r = torch.tensor(self.x[:, :6].T, dtype=torch.float32)
         now = {n: torch.tensor(a[k], dtype=torch.float32) for n, a in self.inputs.items()}
         s = Situation(x, y, psi, u, v, r, **now)
@@ -121,9 +125,19 @@ class Learning(Filter):
             rates = torch.stack(list(_accelerations(self.model, forces)), -1)
             w, trained, q = self.acting.parts(s)
             shadow = self.acting.f(s)
+            columns = [self._column(*probe, s, rates, shadow) for probe in self.probes]
         many = q.shape[-1] - BESIDE
         sizes = q[:, :, many:-1].reshape(len(q), -1)
-        return tuple(t.double() for t in (rates, w * trained, shadow, q[:, 0, :many], sizes))
+        return tuple(t.double() for t in (rates, w * trained, shadow, q[:, 0, :many], sizes, torch.cat([sizes[:, :0], *columns], -1)))
+
+    def _column(self, probe: Model, share: float, s: Situation, rates: torch.Tensor, shadow: torch.Tensor) -> torch.Tensor:
+        """(V, 3) as movable.Columns has it."""
+        S = torch.tensor([float(x) for x in self.acting.network.S])
+        learned = shadow * S
+        before = rates + torch.stack(list(_accelerations(self.model, learned.T)), -1)
+        after = torch.stack(list(_accelerations(probe, (known(probe, copy(s)) + learned).T)), -1)
+        push = torch.stack(list(self.physics.force_for(*(after - before).unbind(-1))), -1)
+        return push / S / share
 
 
 def _accelerations(model: Model, forces: torch.Tensor) -> tuple[torch.Tensor, ...]:

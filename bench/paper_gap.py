@@ -1,7 +1,8 @@
 """Are runs that told the training when to stop predicted better than runs that had no say? And how much of that is the voyages'?
 
 The same two parts are judged with a model that nothing was chosen for (the nominal ship, told the current): what differs there
-differs by the voyages alone. Intervals by voyage: fifteen voyages cannot tell a twentieth.
+differs by the voyages alone. Intervals by voyage: fifteen voyages cannot tell a twentieth. `among_like_95` draws voyages among those of
+the same manoeuvre and sea: both parts hold the same by plan, so that what these differ by is no chance of the gap.
 """
 
 from collections.abc import Callable, Sequence
@@ -22,7 +23,11 @@ def gap(models: dict[str, Predict], validation: Sequence[Course], test: Sequence
     out: dict[str, Any] = {"runs": {name: len(some) for name, some in parts.items()}}
     for name, predict in models.items():
         errors = {part: judge(predict(some), some) for part, some in parts.items()}
-        out[name] = {short: _change(errors, of, resamples) for short, of in (("heading", "heading_deg"), ("lateral", "lateral_m"))}
+        kinds = {part: [c.name.rsplit(" ", 1)[0] for c in some] for part, some in parts.items()}
+        out[name] = {
+            short: _change(errors, of, resamples) | _among_like(errors, kinds, of, resamples)
+            for short, of in (("heading", "heading_deg"), ("lateral", "lateral_m"))
+        }
     return out
 
 
@@ -40,3 +45,16 @@ def _change(errors: dict[str, Errors], of: str, resamples: int, seed: int = 1) -
         means[part], drawn[part] = float(x.mean()), total[k].sum(1) / count[k].sum(1)
     low, high = np.quantile(100.0 * (drawn["test"] / drawn["validation"] - 1.0), (0.025, 0.975))
     return means | {"change_percent": 100.0 * (means["test"] / means["validation"] - 1.0), "by_voyage_95": [float(low), float(high)]}
+
+
+def _among_like(errors: dict[str, Errors], kinds: dict[str, list[str]], of: str, resamples: int, seed: int = 1) -> dict[str, list[float]]:
+    """The same interval by voyages drawn among those of their kind (manoeuvre and sea)."""
+    rng, drawn = np.random.default_rng(seed), {}
+    for part, e in errors.items():
+        index = np.unique(e.voyage, return_inverse=True)[1]
+        total, count = np.bincount(index, getattr(e, of)), np.bincount(index)
+        like = [np.flatnonzero(np.array(kinds[part]) == kind) for kind in sorted(set(kinds[part]))]
+        k = np.concatenate([some[rng.integers(some.size, size=(resamples, some.size))] for some in like], 1)
+        drawn[part] = total[k].sum(1) / count[k].sum(1)
+    low, high = np.quantile(100.0 * (drawn["test"] / drawn["validation"] - 1.0), (0.025, 0.975))
+    return {"among_like_95": [float(low), float(high)]}

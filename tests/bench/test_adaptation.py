@@ -74,9 +74,13 @@ def test_every_change_in_the_middle_comes_when_the_windows_expect_it():
 def test_the_page_holds_every_change_and_keeps_what_was_written_by_hand(tmp_path):
     cell = {"heading_deg": 0.1, "lateral_m": 1.0, "heading_early_deg": 0.2, "lateral_early_m": 2.0, "largest_A": 0.3}
     one = {"heading_deg": [0.1] * 9, "lateral_m": [1.0] * 9, "by_scenario_deg": {"TS-01": 0.1}}
+    way = {"heading_deg": [0.1], "lateral_m": [1.0], "late_heading_deg": [0.1, 0.2], "late_lateral_m": [1.0, 1.0]}
+    number = {"label": "RudderWear.loss", "file": 0.15, "truth": 0.3, "held": 0.9} | {k: {"TS-01": [0.2]} for k in ("value", "half_95", "spread")}
+    growth = {"how": {"off": way, "rows alone": way, "on": way}, "number": number}
     result = {
         "seeds": 1, "full": False, "voyages": 6, "change_s": CHANGE_S, "starts_s": ROUND_S, "changed": {"none": {"as she is": cell}},
         "lies": {"none": {"stuck": cell}}, "midway": {name: {"off": one, "on": one, "told": one} for name in changes()},
+        "named": {"seeds": 2, "change_s": 300.0, "late_s": 600.0, "starts_s": (180.0,), "growths": {"grows": growth}},
     }  # fmt: skip
     text = "\n".join(page(result))
     assert all(f"| {name}, on |" in text for name in changes())

@@ -1,42 +1,41 @@
 """Slow learning on board: a few numbers on top of the trained last layer, kept small, unused when they do
-not help.
+not help; and the numbers of the named effects (`twin add`), inside their boxes.
 
-    learned force_r = W_r phi + g_r a_r q_r         q_r = [whitened components of phi | known forces of row r | its named effects | 1]
-    a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - a_r q_f)^2/(NOISE_S s_r^2) + |a_r/usual|^2
+    learned force_r = W_r phi + g_r a_r q_r         q_r = [whitened components of phi | known forces of row r | 1]
+    a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x - a_r q_f)^2/(NOISE_S s_r^2) + |a_r/usual|^2
 
 each row a ridge regression on fading evidence (evidence.py): what nothing teaches fades back to the trained
-weights. What usually changes are the known forces' sizes, those of the named effects (`twin add`) together
-among them; features only fill in, else they would explain the noise of ten minutes. d_r is cut at three usual
-errors s_r from what is expected; A is projected on boxes and on ||A|| <= A_MAX. The gate g opens only as far
-as the numbers of a while ago explain the present better than none.
+weights. What usually changes are the known forces' sizes; features only fill in, else they would explain the
+noise of ten minutes. x are the numbers of the named effects and c_r what they do (named.py): they explain
+first, and what the rows learned of the same force before is taken off them as x moves. d_r is cut at three
+usual errors s_r from what is expected; A is projected on boxes and on ||A|| <= A_MAX. The gate g opens only as
+far as the numbers of a while ago explain the present better than none.
 """
 
 import json
+from copy import copy, deepcopy
 from dataclasses import dataclass
 from math import isfinite, sqrt
-from operator import mul
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from twin.live.dynamics import Forces
 from twin.live.evidence import Three
+from twin.live.named import Named
 from twin.live.residual import dot
+from twin.live.ridge import GATE, HINDSIGHT, LARGEST, MEMORY, NOISE_S, SPREAD, deviations, factor, solve
 from twin.physics.model import CORE
 from twin.physics.ship import Ship
 from twin.physics.state import Force
 
 ROWS = ("surge", "sway", "yaw")
-COLUMNS = (("hull", "propeller", "effects"), ("hull", "rudder", "effects"), ("hull", "rudder", "effects"))  # sizes that each row may correct
+COLUMNS = (("hull", "propeller"), ("hull", "rudder"), ("hull", "rudder"))  # sizes that each row may correct
 SIZES = len(COLUMNS[0])
 BESIDE = SIZES + 1  # numbers of a row beside its components: sizes and a constant
-CORES = tuple(tuple(CORE.index(name) for name in row[:-1]) for row in COLUMNS)  # where they stand among the forces; the effects' come last
-LARGEST = 5.0  # force scales that a regressor may be
+CORES = tuple(tuple(CORE.index(name) for name in row) for row in COLUMNS)  # where they stand among the forces
 A_MAX = 1.0  # norm of all numbers together
 BOX_COMPONENT, BOX_KNOWN, BOX_CONSTANT = 0.5, 0.3, 0.5
 USUAL_COMPONENT, USUAL_KNOWN, USUAL_CONSTANT = 0.01, 0.2, 0.02  # how far a number is usually off: the prior's deviations
-NOISE_S = 0.75  # time over which noise hangs together, in L/U_0
-MEMORY, SPREAD, GATE = 20.0, 1.5, 3.0  # time constants, in L/U_0
-HINDSIGHT = 1.5  # the gate asks numbers at least as old as this, in L/U_0
 EXCITED = 0.02  # rms of the regressors' motion below which there is nothing to learn from
 
 
@@ -66,6 +65,7 @@ class Row:
     sigma: list[float]  # of a, at that time
     then: list[float]  # a of HINDSIGHT to twice that ago, which the gate asks
     next: list[float]
+    B: list[list[float]]  # information that it shares with each number of the named effects
     age: float = 0.0
     spread: float = 0.05  # s_r^2
     without: float = 0.0  # mean squared error without and with A
@@ -74,19 +74,21 @@ class Row:
 
 
 class Adaptation:
-    """Learns from the unexplained force; `correction(rows)` is what it adds, in units of the force scale."""
+    """Learns from the unexplained force; `correction(regressors)` is what the rows add, in units of the force scale, and
+    `named.effects` are the ship's effects with the numbers that act. `rows` False: no network, so the effects alone."""
 
-    def __init__(self, ship: Ship, scale: Force, components: int):
+    def __init__(self, ship: Ship, scale: Force, components: int, rows: bool = True):
         self.time_s = ship.L_pp / ship.U_0
         self.scale, self.components = scale, components
         self.width = components + BESIDE
+        self.named = Named(ship, scale)
         self.frozen = "nothing measured yet"
         self.notes: list[str] = []  # what was wrong with saved numbers
         self.updates = 0
         self._boxes = [BOX_COMPONENT] * components + [BOX_KNOWN] * SIZES + [BOX_CONSTANT]
         self._usual = [USUAL_COMPONENT] * components + [USUAL_KNOWN] * SIZES + [USUAL_CONSTANT]
         self._prior = [u**-2 for u in self._usual]
-        self._rows = [self._blank() for _ in ROWS]
+        self._rows = [self._blank() for _ in ROWS] if rows else []
         self.open = False  # whether any gate is
         self._slow: list[float] = []
         self._excited = 0.0
@@ -94,11 +96,10 @@ class Adaptation:
         self._since = [0.0, 0.0, 0.0]
 
     def regressors(self, components: list[float], forces: Forces) -> list[float]:
-        """The whitened components, then for each row its known forces and what all named effects give it together."""
+        """The whitened components, then for each row its known forces; `learn` wants those of the named effects' numbers after them."""
         sizes = []
         for r, (scale, core) in enumerate(zip(self.scale, CORES, strict=True)):
             sizes += [forces[i][r] / scale for i in core]
-            sizes.append(sum([force[r] for force in forces[len(CORE) :]]) / scale)
         return [*(components or [0.0] * self.components), *[-LARGEST if x < -LARGEST else LARGEST if x > LARGEST else x for x in sizes]]
 
     def correction(self, regressors: list[float]) -> Three:
@@ -107,8 +108,8 @@ class Adaptation:
         return tuple([row.gate * dot(row.a, self._of_row(r, regressors)) if row.gate else 0.0 for r, row in rows])  # type: ignore[return-value]
 
     def learn(self, wanted: Three, regressors: list[float], dt: float, frozen: str) -> None:
-        """What the rows should give (low-passed, like the regressors), the time since the last call, why
-        not to learn, or ""."""
+        """What is missing beside the ship file's model and the trained force (low-passed, like the regressors), the time since the
+        last call, why not to learn, or ""."""
         self._watch(regressors, dt)
         self.frozen = frozen or ("" if self._excited > EXCITED else "waits for a manoeuvre: nothing moves that could teach it")
         if self.frozen:
@@ -116,7 +117,12 @@ class Adaptation:
             return
         self._since = [s + dt for s in self._since]
         self._turn = r = (self._turn + 1) % 3  # one row at a time keeps the tick short
-        self._update(r, wanted[r], self._of_row(r, regressors))
+        columns = regressors[self.components + 3 * SIZES + r :: 3] if self.named else []
+        if columns:
+            self.named.learn(r, wanted[r], columns, self._since[r] / self.time_s)
+        if self._rows:
+            self._update(r, wanted[r], self._of_row(r, regressors), columns)
+        self._since[r] = 0.0
         self.open = any(row.gate for row in self._rows)
 
     def _of_row(self, r: int, regressors: list[float]) -> list[float]:
@@ -131,17 +137,18 @@ class Adaptation:
         motion = sum([(x - m) ** 2 for x, m in zip(regressors, self._slow, strict=True)])
         self._excited = sqrt(max(self._excited**2 + a * (motion - self._excited**2), 0.0))
 
-    def _update(self, r: int, wanted: float, q: list[float]) -> None:
+    def _update(self, r: int, wanted: float, q: list[float], c: list[float]) -> None:
         row, h = self._rows[r], self._since[r] / self.time_s  # in L/U_0
-        self._since[r] = 0.0
-        limit = 3.0 * sqrt(row.spread)
-        error = min(max(wanted - dot(row.a, q), -limit), limit)
+        limit, named = 3.0 * sqrt(row.spread), dot(c, self.named.acting())
+        error = min(max(wanted - named - dot(row.a, q), -limit), limit)
         if not (isfinite(error) and h > 0.0):
             return
         self.updates += 1
         row.spread += min(h / SPREAD, 0.2) * (error * error + 1e-5 - row.spread)
-        self._judge(row, wanted, q, h)
+        self._judge(row, wanted - named, q, h)
         self._fit(row, q, error, h)
+        if c:
+            self._fit_beside(row, q, c, named, h)
         self._project(row)
 
     def _judge(self, row: Row, wanted: float, q: list[float], h: float) -> None:
@@ -170,6 +177,13 @@ class Adaptation:
         row.L = factor(row.I, self._prior)
         row.a = solve(row.L, row.b)
 
+    def _fit_beside(self, row: Row, q: list[float], c: list[float], named: float, h: float) -> None:
+        """The same with the named effects' part in the evidence, and taken off as it is known now."""
+        keep, weight, x = 1.0 - min(h / MEMORY, 0.5), h / (NOISE_S * row.spread), self.named.acting()
+        row.b = [b + weight * named * y for b, y in zip(row.b, q, strict=True)]
+        row.B = [[keep * b + weight * z * y for b, y in zip(line, q, strict=True)] for line, z in zip(row.B, c, strict=True)]
+        row.a = solve(row.L, [b - sum([z * line[i] for z, line in zip(x, row.B, strict=True)]) for i, b in enumerate(row.b)])
+
     def _project(self, row: Row) -> None:
         """On the boxes, then on the ball of all three rows."""
         inside = [min(max(x, -b), b) if isfinite(x) else 0.0 for x, b in zip(row.a, self._boxes, strict=True)]
@@ -178,6 +192,12 @@ class Adaptation:
         if norm > A_MAX:
             for other in self._rows:
                 other.a = [x * A_MAX / norm for x in other.a]
+
+    def held(self) -> "Adaptation":
+        """A copy whose rows do not learn on; it is only asked for corrections."""
+        other = copy(self)
+        other._rows = deepcopy(self._rows)
+        return other
 
     def numbers(self) -> list[list[float]]:
         """g a of each row: what acts."""
@@ -195,11 +215,21 @@ class Adaptation:
                 known = sigma < 0.7 * usual and row.gate > 0.3
                 status = "invalid" if pressed or abs(value) >= box else "estimated" if known else "unestimated"
                 out.append(Parameter(f"{ROWS[r]} {name}", value, -box, box, sigma, "-", status))
+        return out + self._of_effects()
+
+    def _of_effects(self) -> list[Parameter]:
+        """The numbers of the named effects, each in its own unit."""
+        out, named = [], self.named
+        for m, value, sigma in zip(named.numbers, named.values(), named.sigma, strict=True):
+            pressed, known = value != m.start and not m.low < value < m.high, sigma < 0.7 and named.gate > 0.3
+            status = "invalid" if pressed else "estimated" if known else "unestimated"
+            out.append(Parameter(m.label, value, m.low, m.high, sigma * m.sd, m.unit, status))
         return out
 
     def saved(self, mark: str) -> str:
         """The numbers as a text to keep; `mark` names ship and network they belong to."""
-        return json.dumps({"mark": mark, "rows": [{"a": row.a} for row in self._rows]})
+        effects = dict(zip([m.label for m in self.named.numbers], self.named.values(), strict=True))
+        return json.dumps({"mark": mark, "rows": [{"a": row.a} for row in self._rows]} | ({"effects": effects} if effects else {}))
 
     def restore(self, path: str | Path, mark: str) -> None:
         """Read the numbers back, clamped; what cannot be used is left out, and `notes` says why."""
@@ -209,6 +239,8 @@ class Adaptation:
                 self.notes.append(f"{path}: learned for another ship or network, left out")
                 return
             self._restore(table["rows"])
+            if self.named:
+                self.named.begin(table["effects"])
         except FileNotFoundError:
             return
         except (OSError, ValueError, KeyError, TypeError, RecursionError) as error:
@@ -216,7 +248,7 @@ class Adaptation:
 
     def _restore(self, rows: list[Any]) -> None:
         fresh = []
-        for entry, box in zip(rows, (self._boxes,) * 3, strict=True):
+        for entry, box in zip(rows, (self._boxes,) * len(self._rows), strict=True):
             values = [float(x) for x in entry["a"]]
             if len(values) != self.width or not all(map(isfinite, values)):
                 raise ValueError("numbers that are not finite or too many")
@@ -230,36 +262,5 @@ class Adaptation:
     def _blank(self) -> Row:
         n = self.width
         blank = [[0.0] * n for _ in range(n)]
-        return Row([0.0] * n, blank, [0.0] * n, factor(blank, self._prior), list(self._usual), [0.0] * n, [0.0] * n)
-
-
-def factor(information: list[list[float]], prior: list[float]) -> list[list[float]]:
-    """L of I + diag(prior) = L L' (Cholesky), in plain floats: the same on every machine."""
-    L: list[list[float]] = []
-    for i, (line, least) in enumerate(zip(information, prior, strict=True)):
-        row: list[float] = []
-        for j in range(i):
-            row.append((line[j] - sum(map(mul, row, L[j]))) / L[j][j])
-        row.append(sqrt(line[i] + least - sum(map(mul, row, row))))
-        L.append(row)
-    return L
-
-
-def solve(L: list[list[float]], b: list[float]) -> list[float]:
-    """x of L L' x = b."""
-    x: list[float] = []
-    for row, y in zip(L, b, strict=True):
-        x.append((y - sum(map(mul, row, x))) / row[-1])
-    for i in range(len(b) - 1, -1, -1):
-        x[i] = (x[i] - sum([L[k][i] * x[k] for k in range(i + 1, len(b))])) / L[i][i]
-    return x
-
-
-def deviations(L: list[list[float]]) -> list[float]:
-    """Square roots of the diagonal of (L L')^-1: the columns of L^-1 by their lengths."""
-    n, inverse = len(L), [[0.0] * len(L) for _ in L]
-    for i, row in enumerate(L):
-        for j in range(i):
-            inverse[i][j] = -sum([row[k] * inverse[k][j] for k in range(j, i)]) / row[i]
-        inverse[i][i] = 1.0 / row[i]
-    return [sqrt(sum([inverse[k][i] ** 2 for k in range(i, n)])) for i in range(n)]
+        beside = [[0.0] * n for _ in self.named.numbers]
+        return Row([0.0] * n, blank, [0.0] * n, factor(blank, self._prior), list(self._usual), [0.0] * n, [0.0] * n, beside)

@@ -21,7 +21,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.ship import load as load_ship
 
-CERTIFY = "from twin.live.build import certify_aside; certify_aside({!r}, {!r}, {!r}, {!r}, {!r})"
+CERTIFY = "from twin.live.build import certify_aside; certify_aside({!r}, {!r}, {!r}, {!r}, {!r}, {!r})"
 CERTIFY_S = 20.0  # the longest the start waits for a certificate
 
 
@@ -76,9 +76,9 @@ def residual_of(settings: Settings, ship: Ship) -> tuple[Residual | None, str]:
 
 
 def mark_of(learned: LearnedForce) -> str:
-    """What adapted numbers belong to: this ship's model on this network."""
-    assert learned.residual is not None
-    return f"{residuals.ship_hash(learned.residual.ship)} {learned.residual.manifest.sha256[:16]}"
+    """What adapted numbers belong to: this ship's model, and this network if there is one."""
+    network = learned.residual.manifest.sha256[:16] if learned.residual else "no network"
+    return f"{residuals.ship_hash(learned.ship)} {network}"
 
 
 def learned_file(settings: Settings) -> Path | None:
@@ -92,11 +92,11 @@ def stabilizer_of(settings: Settings, ship: Ship) -> Stabilizer:
     h, K = 1.0 / settings["loop.rate_hz"], settings["observer.gain"] or gain_for(ship)
     oldest_s = settings["observer.oldest_s"] or min(max(0.0125 * ship.L_pp / ship.U_0, 2.0 * h), 1.2)
     delay = max(round(oldest_s / h), 1)
-    path = certificate_file(settings)
+    path, adapted = certificate_file(settings), settings["adaptation.on"]
     try:
-        certificate = _on_file(path, ship, K, h, delay)
-        said = "" if certificate else _worked_out(settings["ship.file"], str(path), K, h, delay)
-        certificate = certificate or _on_file(path, ship, K, h, delay)
+        certificate = _on_file(path, ship, K, h, delay, adapted)
+        said = "" if certificate else _worked_out(settings["ship.file"], str(path), K, h, delay, adapted)
+        certificate = certificate or _on_file(path, ship, K, h, delay, adapted)
     except (OSError, SettingsError) as error:
         certificate, said = None, str(error)
     if certificate is None:
@@ -125,13 +125,13 @@ def certificate_file(settings: Settings) -> Path:
     return Path.home() / ".cache" / "shiptwin" / f"{Path(settings['ship.file']).stem}.certificate.json"
 
 
-def certify_aside(ship_file: str, path: str, K: float, h: float, delay: int) -> None:
+def certify_aside(ship_file: str, path: str, K: float, h: float, delay: int, adapted: bool) -> None:
     """Work the certificate out and put it on file: what the other process does."""
     Path(path).parent.mkdir(parents=True, exist_ok=True)
-    kept(path, Model.of(load_ship(ship_file)), (K, K, K), h, delay_samples=delay)
+    kept(path, Model.of(load_ship(ship_file)), (K, K, K), h, delay_samples=delay, adapted=adapted)
 
 
-def _on_file(path: Path, ship: Ship, K: float, h: float, delay: int) -> Certificate | None:
+def _on_file(path: Path, ship: Ship, K: float, h: float, delay: int, adapted: bool) -> Certificate | None:
     """The certificate on file if it is of this ship and these numbers."""
     from twin.live.certificate import _mark
 
@@ -139,5 +139,5 @@ def _on_file(path: Path, ship: Ship, K: float, h: float, delay: int) -> Certific
         found = Certificate.from_json(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    wanted = _mark(Model.of(ship), (K, K, K), h, {"delay_samples": delay})
+    wanted = _mark(Model.of(ship), (K, K, K), h, {"delay_samples": delay, "adapted": adapted})
     return found if found.fingerprint == wanted else None

@@ -19,6 +19,7 @@ from twin.physics.model import Model
 
 from . import comparison as c3
 from .comparison import Matrix, Row
+from .movable import movable
 from .operating import Confined, OperatingSet, of_ship
 from .plant import Disturbance, Plant, lipschitz, output_bound, plant_of, self_regressor, usual_disturbance
 from .theorem import Ages, Promise, Recursion, assess, best_gain, gains_that_do, usual_gain
@@ -30,7 +31,7 @@ __all__ = [
     "usual_disturbance", "usual_gain",
 ]  # fmt: skip
 
-VERSION = 3
+VERSION = 4
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,7 @@ def certify(
     operating_set: OperatingSet | None = None,
     heading_noise: float = 0.0,
     extra_growth: Matrix | None = None,
+    adapted: bool = False,
 ) -> Certificate:
     """Work out the certificate of an observer with gain K [1/s] and period h [s] (its longest).
 
@@ -103,12 +105,14 @@ def certify(
     delay_samples: the greatest age of a used measurement, in samples, a value held until the sensor's next
     one included; one number, or one for each of u, v, r.
     extra_growth: `self_regressor(...)` when the network is fed with the estimate instead of measurements.
+    adapted: the numbers of the effects move on board; everything then holds wherever in their boxes they are.
     """
     K = (K, K, K) if isinstance(K, (int, float)) else tuple(K)
     m = (delay_samples,) * 3 if isinstance(delay_samples, int) else tuple(delay_samples)
     _check(K, h, m, noise)
     d = _bound_of(disturbance) or usual_disturbance(model)
-    plant, noise = plant_of(model, operating_set or of_ship(model), h), tuple(noise)
+    numbers = movable(model.effects, model.ship) if adapted else ()
+    plant, noise = plant_of(model, operating_set or of_ship(model), h, numbers), tuple(noise)
     promise = assess(plant, K, m, noise, d, heading_noise, extra_growth)  # type: ignore[arg-type]
     parts = {name: getattr(promise, name) for name in Promise.__dataclass_fields__}
     return Certificate(**parts, K=K, delays=m, noise=noise, disturbance=d, plant=plant, ship=model.ship.name)  # type: ignore[arg-type]

@@ -106,7 +106,15 @@ class Dynamics:
         self.now = Known(self.full, self.first_current)
         self._needed = sorted({need for e in self.full.effects for need in e.needs if need in WEATHER})
         self._models: dict[tuple[str, ...], tuple[Model, tuple[Effect, ...]]] = {}
+        self._adopted: Sequence[Effect] = ship.effects
         self._gears = [Gear(lag) for lag in self.full.lags]
+
+    def adopt(self, effects: Sequence[Effect]) -> None:
+        """The ship's effects with the numbers that act from now on (twin/live/named.py)."""
+        if effects is not self._adopted:
+            self._adopted, new = effects, {type(e): e for e in effects}
+            self.full = Model(self.ship, tuple([new[type(e)] for e in self.full.effects]))
+            self._models.clear()
 
     def known(self, e: Estimate, measured: Measured) -> tuple[Situation, Known, Forces]:
         """The ship's situation, the physics that holds in it, and every known force."""

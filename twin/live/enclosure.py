@@ -8,12 +8,13 @@ which is sure, and a little wide. A current is no box: seen from the water it on
 nu_c, and adds itself to the wind.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from twin.live.movable import Movable, moved
 from twin.physics import core
 from twin.physics.dual import Dual
 from twin.physics.effect import Effect
@@ -23,6 +24,7 @@ from twin.physics.state import Situation
 
 Ranges = Mapping[str, tuple[float, float]]
 NU, STATES = ("u", "v", "r"), ("u", "v", "r", "psi")
+WIDTH = 1 + len(STATES)  # a rate and its slopes
 PIECES = {
     "u": 8, "v": 6, "r": 6, "delta": 6, "n": 6, "psi": 4, "wind_to": 8, "wind_speed": 2, "wave_to": 8,
     "H_s": 2, "T_p": 2, "bank_port": 3, "bank_starboard": 3, "phi": 2,
@@ -47,6 +49,7 @@ class Slopes:
     hi: tuple[tuple[float, ...], ...]
     rate: tuple[tuple[float, float], ...]
     boxes: int
+    moved: tuple[float, ...] = (0.0, 0.0, 0.0)  # how far nu_dot can be from the ship file's, for the numbers that adaptation moves
 
     @property
     def most(self) -> tuple[float, ...]:
@@ -54,35 +57,49 @@ class Slopes:
         return tuple(max(-a, b) for a, b in self.rate)
 
     @classmethod
-    def of(cls, lo: list[float], hi: list[float], boxes: int) -> "Slopes":
-        """From rows of (value, four slopes) for each of the three rates."""
-        rows = [tuple(tuple(x[5 * i + 1 : 5 * i + 5]) for i in range(3)) for x in (lo, hi)]
-        return cls(rows[0], rows[1], tuple((lo[5 * i], hi[5 * i]) for i in range(3)), boxes)
+    def of(cls, lo: list[float], hi: list[float], boxes: int, numbers: Sequence[Movable] = ()) -> "Slopes":
+        """From rows of (value, four slopes, and one for each number that moves) for each of the three rates."""
+        k = WIDTH + len(numbers)
+        rows = [tuple(tuple(x[k * i + 1 : k * i + WIDTH]) for i in range(3)) for x in (lo, hi)]
+        steep = [[max(-a, b) for a, b in zip(lo[k * i + WIDTH : k * i + k], hi[k * i + WIDTH : k * i + k], strict=True)] for i in range(3)]
+        far = [max(m.high - m.start, m.start - m.low) for m in numbers]
+        moved = tuple(sum(a * b for a, b in zip(row, far, strict=True)) for row in steep)
+        return cls(rows[0], rows[1], tuple((lo[k * i], hi[k * i]) for i in range(3)), boxes, moved)
 
 
-def slopes(model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES) -> Slopes:
+def slopes(model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES, numbers: Sequence[Movable] = ()) -> Slopes:
     """Sure bounds of the slopes of the known physics (the learned residual is an input, not a slope).
 
-    They hold as well while effects are switched off for want of an input.
+    They hold as well while effects are switched off for want of an input, and wherever in their boxes `numbers` of the effects
+    are.
     """
     model, ranges = _seen_from_the_water(model, ranges)
-    total: list[Any] = [0.0] * 15
+    model = anywhere(model, numbers)
+    k = WIDTH + len(numbers)
+    total: list[Any] = [0.0] * (3 * k)
     boxes = 0
     with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
         for group in GROUPS:
             names = _forces(model, group)
             if not names:
                 continue
-            s = boxed(ranges, group, pieces)
-            parts = _flat(contribution(model, s, names))
+            s = boxed(ranges, group, pieces, len(numbers))
+            parts = _flat(contribution(model, s, names), k)
             boxes += max(np.broadcast(of(p).lo).size for p in parts)
             parts = [Interval(np.min(p.lo, axis=1), np.max(p.hi, axis=1)) for p in map(_two_axes, parts)]
             total = [
                 a + (p if group is GROUPS[0] else hull(p, 0.0)) for a, p in zip(total, parts, strict=True)
             ]
-    total = _with_the_stream(total, ranges)
+    total = _with_the_stream(total, ranges, k)
     lo, hi = [float(np.min(t.lo)) for t in total], [float(np.max(t.hi)) for t in total]
-    return Slopes.of(lo, hi, boxes)
+    return Slopes.of(lo, hi, boxes, numbers)
+
+
+def anywhere(model: Model, numbers: Sequence[Movable]) -> Model:
+    """The model whose effects' numbers are anywhere in their boxes, each with slope one along its own direction."""
+    count = len(numbers)
+    values = [Dual(Interval(m.low, m.high), tuple(1.0 if i == j else 0.0 for i in range(-len(STATES), count))) for j, m in enumerate(numbers)]
+    return Model(model.ship, moved(model.effects, numbers, values)) if numbers else model
 
 
 def sampled(model: Model, ranges: Ranges, count: int = 20000, seed: int = 0) -> Slopes:
@@ -107,13 +124,14 @@ def _points(ranges: Ranges, count: int, seed: int) -> dict[str, np.ndarray]:
     return at
 
 
-def boxed(ranges: Ranges, group: tuple[str, ...], pieces: Mapping[str, int]) -> Situation:
-    """The operating set as boxes: motions along the first axis, the inputs of one group along the second."""
+def boxed(ranges: Ranges, group: tuple[str, ...], pieces: Mapping[str, int], more: int = 0) -> Situation:
+    """The operating set as boxes: motions along the first axis, the inputs of one group along the second. `more`: directions of
+    slopes beside the states."""
     axes = tuple(_cut(NU, ranges, pieces)), tuple(_cut(group, ranges, pieces))
     values = {name: Interval(lo, hi) for name, (lo, hi) in ranges.items()}
     values |= {name: Interval(lo[:, None], hi[:, None]) for name, lo, hi in axes[0]}
     values |= {name: Interval(lo[None, :], hi[None, :]) for name, lo, hi in axes[1]}
-    return _situation(values)
+    return _situation(values, more)
 
 
 def contribution(model: Model, s: Situation, names: frozenset[str]) -> tuple[Any, Any, Any]:
@@ -137,16 +155,16 @@ def _seen_from_the_water(model: Model, ranges: Ranges) -> tuple[Model, Ranges]:
     return calm, {**ranges, "wind_speed": (max(lo - stream, 0.0), hi + stream)}
 
 
-def _with_the_stream(total: list[Any], ranges: Ranges) -> list[Any]:
+def _with_the_stream(total: list[Any], ranges: Ranges, k: int = WIDTH) -> list[Any]:
     """What a current adds: r x nu_c to the rates, itself to their slope with r, and with the heading what
     turning nu_c does.
     """
     c, r = ranges["stream"][1], max(abs(x) for x in ranges["r"])
     for i in range(3):
-        value, by_u, by_v, by_r, by_psi = total[5 * i : 5 * i + 5]
+        value, by_u, by_v, by_r, by_psi = total[k * i : k * i + WIDTH]
         own = c if i < 2 else 0.0
         turned = c * (float(np.max(of(by_u).magnitude)) + float(np.max(of(by_v).magnitude))) + r * own
-        total[5 * i : 5 * i + 5] = [
+        total[k * i : k * i + WIDTH] = [
             value + _either_way(r * own),
             by_u,
             by_v,
@@ -160,8 +178,8 @@ def _either_way(x: float) -> Interval:
     return Interval(-x, x)
 
 
-def _situation(values: Mapping[str, Any]) -> Situation:
-    return Situation(**{name: _seed(name, x) for name, x in values.items() if name != "stream"})
+def _situation(values: Mapping[str, Any], more: int = 0) -> Situation:
+    return Situation(**{name: _seed(name, x, more) for name, x in values.items() if name != "stream"})
 
 
 def _forces(model: Model, group: tuple[str, ...]) -> frozenset[str]:
@@ -173,9 +191,9 @@ def _group(effect: Effect) -> tuple[str, ...]:
     return next((g for g in GROUPS if set(g).intersection(effect.needs)), GROUPS[0])
 
 
-def _seed(name: str, value: Any) -> Dual:
+def _seed(name: str, value: Any, more: int) -> Dual:
     """The value, with slope one along its own direction when it is one of the states."""
-    return Dual(value, tuple(1.0 if name == state else 0.0 for state in STATES))
+    return Dual(value, (*(1.0 if name == state else 0.0 for state in STATES), *(0.0,) * more))
 
 
 def _cut(
@@ -197,11 +215,11 @@ def _edges(lo: float, hi: float, pieces: int) -> np.ndarray:
     return np.geomspace(lo, hi, pieces + 1) if lo > 0.0 else np.linspace(lo, hi, pieces + 1)
 
 
-def _flat(rates: tuple[Any, Any, Any]) -> list[Any]:
-    """Value and four slopes of each of the three rates, in one row of 15."""
+def _flat(rates: tuple[Any, Any, Any], k: int = WIDTH) -> list[Any]:
+    """Value and slopes of each of the three rates, in one row of 3 k."""
     row = []
     for rate in rates:
-        row += [rate.value, *rate.slopes] if isinstance(rate, Dual) else [rate, 0.0, 0.0, 0.0, 0.0]
+        row += [rate.value, *rate.slopes] if isinstance(rate, Dual) else [rate] + [0.0] * (k - 1)
     return [of(x) if not isinstance(x, (float, np.ndarray)) else x for x in row]
 
 

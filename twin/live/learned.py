@@ -6,14 +6,16 @@ never leave.
 w is how far the features may be believed. Without a residual the force is zero, and says why.
 """
 
-from copy import copy, deepcopy
+from copy import copy
 from dataclasses import dataclass, field
 from math import sqrt
 
 from twin.live.adapt import Adaptation
 from twin.live.dynamics import Forces, Known
 from twin.live.evidence import Evidence, Three
+from twin.live.movable import movable
 from twin.live.residual import Residual
+from twin.physics.effect import Effect
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 
@@ -41,11 +43,12 @@ class LearnedForce:
     """Residual and adaptation together; `at` has no memory, so the predictor uses it too."""
 
     def __init__(self, ship: Ship, residual: Residual | None, why_not: str = "", adapt: bool = True):
-        self.residual, self.why_not = residual, why_not
+        self.ship, self.residual, self.why_not = ship, residual, why_not
         self.scale = residual.manifest.force_scale if residual else scale_of(ship)
         self.bound = residual.manifest.output_bound if residual else 0.0
         rows = residual.manifest.whitening[1] if residual and residual.manifest.whitening else ()
-        self.adaptation = Adaptation(ship, self.scale, len(rows)) if residual and adapt else None
+        learns = adapt and (residual is not None or bool(movable(ship.effects, ship)))
+        self.adaptation = Adaptation(ship, self.scale, len(rows), residual is not None) if learns else None
         self.evidence = Evidence(ship, self.scale)
         self.bound_N = self.bound * max(self.scale.X, self.scale.Y)
         self.bound_Nm = self.bound * self.scale.N
@@ -71,10 +74,15 @@ class LearnedForce:
         force = Force(x * S[0], y * S[1], n * S[2]) if allowed else ZERO
         return Learned(force, (x, y, n), trained, w if allowed else 0.0, self.bound_N, self.bound_Nm, clipped, why, components)
 
+    @property
+    def effects(self) -> tuple[Effect, ...]:
+        """The ship's named effects with the numbers that act."""
+        return self.adaptation.named.effects if self.adaptation else self.ship.effects
+
     def as_known_now(self) -> "LearnedForce":
         """A copy that does not learn on: what a prediction made now may use."""
         kept = copy(self)
-        kept.adaptation = deepcopy(self.adaptation)
+        kept.adaptation = self.adaptation.held() if self.adaptation else None
         return kept
 
     def share(self, learned: Learned, forces: Forces) -> float:
@@ -91,22 +99,28 @@ class LearnedForce:
         """Weigh the evidence of one tick (`nu` None: not measured), and adapt unless `frozen` says why
         not."""
         self._waited_s += dt
-        if self.residual is None or (self._waited_s < LEARN_S and nu is not None):
+        adaptation = self.adaptation
+        if (self.residual is None and adaptation is None) or (self._waited_s < LEARN_S and nu is not None):
             return
         dt, self._waited_s = self._waited_s, 0.0
         if nu is None or not 0.0 < dt < 1.0:
             self.evidence.pause()
-            if self.adaptation:
-                self.adaptation.frozen = frozen or "speed, rate of turn or controls are not measured"
+            if adaptation:
+                adaptation.frozen = frozen or "speed, rate of turn or controls are not measured"
             return
         evidence = self.evidence
-        regressors = self.adaptation.regressors(learned.components, forces) if self.adaptation else []
+        regressors = adaptation.regressors(learned.components, forces) if adaptation else []
+        named = adaptation.named if adaptation else None
+        if named:
+            columns = named.columns.at(s, forces, physics, learned.force)
+            regressors = [*regressors, *columns, *named.shift(columns)]
         evidence.feed(nu, physics.rates_of(s, forces), learned.shadow, learned.trained, regressors, physics, dt)
-        if self.adaptation:
+        if adaptation:
             frozen = frozen or ("" if evidence.ready else "has just begun")
             dx, dy, dn = evidence.unexplained
             tx, ty, tn = evidence.trained
-            self.adaptation.learn((dx - tx, dy - ty, dn - tn), evidence.regressors, dt, frozen)
+            regressors, (sx, sy, sn) = (evidence.regressors[:-3], evidence.regressors[-3:]) if named else (evidence.regressors, ZERO)
+            adaptation.learn((dx - tx + sx, dy - ty + sy, dn - tn + sn), regressors, dt, frozen)
 
 
 def scale_of(ship: Ship) -> Force:

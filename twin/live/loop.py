@@ -90,6 +90,7 @@ class Loop:
         learned = self.learned.at(situation, forces, verdict.use_learned)
         self.guard.note(learned, dt)
         self.learned.learn(measured_nu(measured), situation, forces, learned, physics, dt, verdict.frozen)
+        self.dynamics.adopt(self.learned.effects)
         self.observer.steer(self.dynamics.ahead(situation, forces, learned.force, self.period_s))
         ahead = self.predictor.advance(instant.time_s, estimate, situation, physics, self.learned_at(verdict.use_learned), verdict.mode != INVALID)
         certified = self.stabilizer.step(self.observer, measured, situation)

@@ -2,13 +2,16 @@
 and how she is disturbed.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from twin.physics import core
 from twin.physics.model import Model
 
 from . import comparison as c3
 from .comparison import AXES, Matrix, Row
+from .movable import Movable
 from .operating import OperatingSet
 
 
@@ -18,7 +21,7 @@ class Plant:
 
     lo, hi: slopes of nu_dot with (u, v, r) [1/s, and m, 1/m where units differ]; heading: greatest slope with
     psi; most: greatest |nu_dot|; inertia: |M^-1|; h: sample period [s]; bend: of a step's slopes beyond I + h
-    A (see `at_period`).
+    A (see `at_period`); moved: how far adaptation of the effects' numbers can take nu_dot from the ship file's.
     """
 
     lo: Matrix
@@ -29,6 +32,7 @@ class Plant:
     h: float
     operating: OperatingSet
     bend: tuple[tuple[float, ...], ...] = ()
+    moved: Row = (0.0, 0.0, 0.0)
 
     def magnitude(self) -> Matrix:
         """|A|: the greatest slope either way."""
@@ -63,24 +67,31 @@ class Disturbance:
         return tuple(a + b * H_s for a, b in zip(self.calm, self.per_metre, strict=True))  # type: ignore[return-value]
 
 
-def plant_of(model: Model, operating: OperatingSet, h: float) -> Plant:
+def plant_of(model: Model, operating: OperatingSet, h: float, numbers: Sequence[Movable] = ()) -> Plant:
     """Sure bounds of the known physics (the learned force is an input, not a slope); a quarter of a second
-    for a ship with wind.
+    for a ship with wind. `numbers`: those of the effects that adaptation may move, all over their boxes.
     """
-    from .enclosure import slopes
+    from .enclosure import anywhere, slopes
 
-    steep = slopes(model, operating.ranges)
-    unit = [core.accelerations(*row, model.c) for row in c3.IDENTITY]
+    steep = slopes(model, operating.ranges, numbers=numbers)
+    unit = [core.accelerations(*row, anywhere(model, numbers).c) for row in c3.IDENTITY]
     made = Plant(
         lo=c3.matrix(lambda i, j: steep.lo[i][j]),
         hi=c3.matrix(lambda i, j: steep.hi[i][j]),
         heading=tuple(max(-steep.lo[i][3], steep.hi[i][3]) for i in AXES),  # type: ignore[arg-type]
         most=steep.most,  # type: ignore[arg-type]
-        inertia=c3.matrix(lambda i, j: abs(unit[j][i])),
+        inertia=c3.matrix(lambda i, j: _size(unit[j][i])),
         h=h,
         operating=operating,
+        moved=steep.moved,  # type: ignore[arg-type]
     )
     return made.at_period(h)
+
+
+def _size(x: Any) -> float:
+    """The greatest |x|, of a number or of one that lies in an interval."""
+    x = getattr(x, "value", x)
+    return float(getattr(x, "magnitude", abs(x)))
 
 
 def usual_disturbance(model: Model) -> Disturbance:

@@ -126,13 +126,13 @@ def assess(
 
 
 def pushed(plant: Plant, heading_noise: float) -> tuple[Matrix, Row]:
-    """d = push force + calm: a bounded force, an error of heading, what one step misses of her path."""
+    """d = push force + calm: a bounded force, an error of heading, what one step misses of her path, what adaptation moves."""
     h, size, bend = plant.h, plant.magnitude(), plant.bend
     along = c3.plus(c3.IDENTITY, c3.scaled(0.5 * h, size))
     turn = max(abs(x) for x in plant.operating.ranges["r"])
-    curve = c3.apply(size, plant.most)
+    curve, moved = c3.apply(size, plant.most), c3.apply(along, plant.moved)
     calm = tuple(
-        (h * p + bend[i][3]) * heading_noise + h * h * (curve[i] + p * turn)
+        (h * p + bend[i][3]) * heading_noise + h * h * (curve[i] + p * turn) + h * moved[i]
         for i, p in enumerate(plant.heading)
     )
     return c3.scaled(h, c3.product(along, plant.inertia)), calm  # type: ignore[return-value]

@@ -1,0 +1,213 @@
+"""An effect was named and added, and grows in the middle of a voyage: what learning its number on board takes back.
+
+The ship's model is the calibrated core with Wind and WaveDrift and their network (as in `twin-bench paper`), and one effect more,
+added at the size it had before the voyage; at CHANGE_S it grows. The filter keeps the ship file's numbers and hears all laws' stream;
+free runs of 120 s begin with what each had learned by then. RUN_S is long enough for the memory of 20 L/U_0 to be filled anew.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import torch
+
+from twin.live.adapt import Adaptation
+from twin.live.movable import movable, moved
+from twin.physics.effects import find
+from twin.physics.model import Model
+
+CHANGE_S, RUN_S = 300.0, 1500.0
+STARTS_S = (180.0, 300.0, 420.0, 600.0, 780.0, 960.0, 1140.0, 1320.0)  # the first window ends where the change begins
+LATE_S = 600.0  # windows begun so long after the change are called late
+SIGMAS = 1.96  # of the interval
+
+
+class RowsAlone(Adaptation):
+    """The law on board, but the effects' numbers stand still."""
+
+    def __init__(self, *args: Any) -> None:
+        super().__init__(*args)
+        self.named.learn = lambda *_: None  # type: ignore[method-assign]
+
+
+HOW: dict[str, Callable[..., Adaptation] | None] = {"off": None, "rows alone": RowsAlone, "on": Adaptation}
+
+
+@dataclass(frozen=True)
+class Growth:
+    """An effect of the ship file with its numbers, the hull before and after the change, and the number that grows with its truth."""
+
+    effect: str
+    file: dict[str, float]
+    before: dict[str, float]  # fields of the reference hull, as factors
+    after: dict[str, float]
+    grows: str = ""
+    truth: float = 0.0
+
+
+GROWTHS = {
+    "rudder wear 0.15, and stays": Growth("RudderWear", {"loss": 0.15}, {"A_R": 0.85}, {"A_R": 0.85}, "loss", 0.15),
+    "rudder wear 0.15 to 0.30": Growth("RudderWear", {"loss": 0.15}, {"A_R": 0.85}, {"A_R": 0.70}, "loss", 0.30),
+    "fouling 0.2 to 0.4": Growth("HullFouling", {"extra": 0.2}, {"R0": 1.2}, {"R0": 1.4}, "extra", 0.4),
+    "mass 0.05 to 0.10": Growth("Loading", {"mass": 0.05, "draught": 0.0, "x_G": 0.0}, {"m": 1.05}, {"m": 1.10}, "mass", 0.10),
+    "windage, and half as much again": Growth("", {}, {}, {"A_L": 1.5, "A_F": 1.5}),
+    "as she is": Growth("", {}, {}, {}),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Heard:
+    """Voyages of one growth: what the laws are told, and where the filter stood after each step (K, V, 11)."""
+
+    model: Model
+    acting: Any
+    courses: Sequence[Any]
+    states: np.ndarray
+    streams: Sequence[Any]
+
+
+class Bench:
+    """The named model, its network and its filter's tuning."""
+
+    def __init__(self, work: Path, full: bool, tell: Callable[[str], None]):
+        from bench import paper_sea as sea
+        from bench.paper import settings_for
+        from bench.paper_lab import course
+        from bench.paper_models import Workshop, named
+        from bench.paper_ship import nominal
+        from export.batches import zeta_of
+        from export.data import split
+
+        self.work, self.tell = work, tell
+        ship, plan = nominal(), sea.FULL if full else sea.QUICK
+        courses = [course(one, ship) for one in sea.sail(sea.lessons(plan), work / "voyages", tell)]
+        shop = Workshop(split(courses), split([c.water for c in courses]), settings_for(plan), work, tell)  # type: ignore[type-var]
+        self.model = named(shop.parts["train"], Model(ship))[1]
+        taught = shop.taught(self.model, plan.seeds[0], "added")
+        self.network, self.zeta = taught.network, zeta_of(taught.network, taught.samples)
+        self.tuning = shop.tuned(self.model, taught.network)
+
+    def heard(self, growth: Growth, seeds: int) -> Heard:
+        """Sail, filter, and write down what a law would be told."""
+        from bench.adaptation_laws import Writes
+        from bench.paper_adapted import Acting, Learning
+        from bench.paper_lab import course
+        from bench.paper_sea import sail
+
+        model = self.model
+        if growth.effect:
+            model = Model(model.ship, (*model.effects, find(growth.effect)(**growth.file)))
+        model = replace(model, ship=replace(model.ship, effects=model.effects))
+        acting = Acting(self.network, model, self.zeta)
+        cases = growing(growth, seeds)
+        courses = [replace(course(one, model.ship), starts_s=STARTS_S) for one in sail(cases, self.work / "voyages", self.tell)]
+        learning = Learning(courses, model, acting, self.tuning, Writes)
+        states = learning.run(int(courses[0].starts[-1]))
+        return Heard(model, acting, courses, states, [law.heard for law in learning.laws])  # type: ignore[attr-defined]
+
+
+def growing(growth: Growth, seeds: int) -> list[Any]:
+    """Zigzags of her hull before, and of that after from CHANGE_S on."""
+    from bench.paper_sea import zigzags
+    from bench.reference import HULLS, Change
+
+    hull = HULLS["kvlcc2"]
+    before, after = (replace(hull, **{k: f * getattr(hull, k) for k, f in by.items()}) for by in (growth.before, growth.after))
+    change = None if growth.before == growth.after else Change(CHANGE_S, after)
+    return zigzags(seeds, 97_000, hull=before, change=change, duration_s=RUN_S)
+
+
+@dataclass(frozen=True)
+class Learned:
+    """By voyage and window: the rows' numbers (V, W, 3, width), the effects' that act and as published with sigma (V, W, P), the gate."""
+
+    rows: np.ndarray
+    acting: np.ndarray
+    value: np.ndarray
+    sigma: np.ndarray
+    gate: np.ndarray
+
+
+def learned(made: Callable[..., Adaptation] | None, heard: Heard) -> Learned:
+    """What a law has learned by each window's start."""
+    voyages = [_of_voyage(made, heard, stream, c.starts) for stream, c in zip(heard.streams, heard.courses, strict=True)]
+    return Learned(*(np.array([v[i] for v in voyages]) for i in range(5)))
+
+
+def _of_voyage(made: Any, heard: Heard, stream: Any, starts: np.ndarray) -> tuple[list[Any], ...]:
+    law = (made or Adaptation)(heard.model.ship, heard.acting.network.S, len(heard.acting.rows))
+    out: tuple[list[Any], ...] = ([], [], [], [], [])
+    first = len(heard.states) - len(stream)
+    for k in range(int(starts[-1]) + 1):
+        if made is not None and k >= first:
+            law.learn(*stream[k - first])
+        if k in starts:
+            for kept, x in zip(out, (law.numbers(), law.named.acting(), law.named.values(), law.named.sigma, law.named.gate), strict=True):
+                kept.append(x)
+    return out
+
+
+def errors(heard: Heard, known: Learned) -> tuple[np.ndarray, np.ndarray]:
+    """Heading deg and lateral m of the free runs (V, W)."""
+    from bench.paper_filter import from_states
+    from bench.paper_lab import judge
+
+    numbers = movable(heard.model.effects, heard.model.ship)
+    flat = known.acting.reshape(-1, len(numbers))
+    values = [torch.tensor(m.start + m.sd * x, dtype=torch.float32) for m, x in zip(numbers, flat.T, strict=True)]
+    model = Model(heard.model.ship, moved(heard.model.effects, numbers, values))
+    held = known.rows.reshape(-1, *known.rows.shape[2:])
+    starts = [heard.states[c.starts, i] for i, c in enumerate(heard.courses)]
+    e = judge(from_states(heard.courses, model, heard.acting.holding(held, model), starts), heard.courses)
+    heading, lateral = (x.reshape(len(heard.courses), -1) for x in (e.heading_deg, e.lateral_m))
+    return heading, lateral
+
+
+def compare(work: Path, full: bool, seeds: int, tell: Callable[[str], None]) -> dict[str, Any]:
+    """Every growth, every way of learning."""
+    bench = Bench(work, full, tell)
+    out: dict[str, Any] = {"seeds": seeds, "change_s": CHANGE_S, "late_s": LATE_S, "starts_s": STARTS_S, "growths": {}}
+    for name, growth in GROWTHS.items():
+        tell(f"named: {name}")
+        heard = bench.heard(growth, seeds)
+        known = {how: learned(made, heard) for how, made in HOW.items()}
+        scenario = np.array([c.scenario for c in heard.courses])
+        ways = {how: summary(*errors(heard, x), scenario, seeds) for how, x in known.items()}
+        out["growths"][name] = {"how": ways, "number": arrival(growth, heard, known["on"], scenario)}
+    return out
+
+
+def late() -> np.ndarray:
+    """(W,) the windows begun LATE_S after the change or later."""
+    return np.array(STARTS_S) >= CHANGE_S + LATE_S
+
+
+def summary(heading: np.ndarray, lateral: np.ndarray, scenario: np.ndarray, seeds: int) -> dict[str, Any]:
+    """Of errors (V, W): by window; of the late windows by seed and by scenario."""
+    end = late()
+    return {
+        "heading_deg": heading.mean(0).tolist(), "lateral_m": lateral.mean(0).tolist(),
+        "late_heading_deg": [float(x[:, end].mean()) for x in np.split(heading, seeds)],
+        "late_lateral_m": [float(x[:, end].mean()) for x in np.split(lateral, seeds)],
+        "by_scenario_deg": {name: float(heading[scenario == name][:, end].mean()) for name in sorted(set(scenario.tolist()))},
+    }  # fmt: skip
+
+
+def arrival(growth: Growth, heard: Heard, known: Learned, scenario: np.ndarray) -> dict[str, Any] | None:
+    """The number that grew, as published, beside the truth: by scenario mean over voyages at each window, and half its 95 % interval;
+    and in which share of the late windows the interval holds the truth."""
+    if not growth.grows:
+        return None
+    numbers = movable(heard.model.effects, heard.model.ship)
+    j = [m.label for m in numbers].index(f"{growth.effect}.{growth.grows}")
+    value, half = known.value[..., j], SIGMAS * numbers[j].sd * known.sigma[..., j]
+    held = np.abs(value - growth.truth)[:, late()] <= half[:, late()]
+    parts = {name: scenario == name for name in sorted(set(scenario.tolist()))}
+    return {
+        "label": numbers[j].label, "file": growth.file[growth.grows], "truth": growth.truth, "held": float(held.mean()),
+        "value": {name: value[some].mean(0).tolist() for name, some in parts.items()},
+        "half_95": {name: half[some].mean(0).tolist() for name, some in parts.items()},
+        "spread": {name: value[some].std(0, ddof=1).tolist() if some.sum() > 1 else [0.0] * len(STARTS_S) for name, some in parts.items()},
+    }  # fmt: skip

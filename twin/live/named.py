@@ -1,0 +1,111 @@
+"""The numbers of the named effects, learned on board from the force that all three rows together miss.
+
+    x = (theta - theta_file)/sd,   d_r = c_r x + what the rows' own numbers explain (adapt.py)
+    x = argmin  sum_r sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x)^2/(NOISE_S s_r^2) + |x|^2,      low <= theta <= high
+    g = [beta - its deviation]/ENOUGH in [0, 1],   beta = sum_r <d_r p_r>/s_r^2 / sum_r <p_r^2>/s_r^2,   p = c x of a while ago
+
+Few numbers and three rows to learn them from, so the memory is half of a row's. The gate asks how much of what the numbers of a while
+ago promised has come true: of what was only noise, nothing. theta_file + g (theta - theta_file) acts, in the known physics. What has a
+name explains first; the rows explain what is left.
+"""
+
+from math import isfinite, sqrt
+
+from twin.live.evidence import Three
+from twin.live.movable import Columns, movable, moved
+from twin.live.residual import dot
+from twin.live.ridge import GATE, HINDSIGHT, NOISE_S, SPREAD, deviations, factor, solve
+from twin.physics.effect import Effect
+from twin.physics.ship import Ship
+from twin.physics.state import Force
+
+MEMORY = 10.0  # in L/U_0
+SAMPLES = 2.0 * GATE / NOISE_S  # that the gate's means count as
+ENOUGH = 0.5  # share of what was promised that must surely have come true for all of it to act
+STIRRED = 0.01  # prior deviations by which what acts must have moved before the model is made anew
+
+
+class Named:
+    """Learns x; `effects` are those of the ship with the numbers that act, the same object until one of them moves."""
+
+    def __init__(self, ship: Ship, scale: Force):
+        self.numbers = movable(ship.effects, ship)
+        self.columns = Columns(self.numbers, scale)
+        n = len(self.numbers)
+        self._boxes = [((m.low - m.start) / m.sd, (m.high - m.start) / m.sd) for m in self.numbers]
+        self._prior = [1.0] * n
+        self.x, self._b = [0.0] * n, [0.0] * n
+        self._I = [[0.0] * n for _ in self.numbers]
+        self._L = factor(self._I, self._prior)
+        self.sigma, self._then, self._next = [1.0] * n, [0.0] * n, [0.0] * n
+        self._age = 0.0
+        self._spread = [0.05] * 3
+        self._kept = [[0.0, 0.0, 0.0] for _ in range(3)]  # of each row: means of wanted times promised, promised^2, wanted^2
+        self.gate = 0.0
+        self.effects: tuple[Effect, ...] = ship.effects
+        self._acting = [0.0] * n
+
+    def __bool__(self) -> bool:
+        return bool(self.numbers)
+
+    def acting(self) -> list[float]:
+        """g x: what acts, in prior deviations from the ship file's numbers."""
+        return [self.gate * x for x in self.x]
+
+    def shift(self, columns: list[float]) -> Three:
+        """What the numbers that act do more than the ship file's would, in units of the force scale."""
+        a = self._acting
+        return dot(a, columns[0::3]), dot(a, columns[1::3]), dot(a, columns[2::3])
+
+    def learn(self, r: int, wanted: float, c: list[float], h: float) -> None:
+        """What row r wants beyond the ship file's numbers, its columns, and the time since it was last asked [L/U_0]."""
+        limit = 3.0 * sqrt(self._spread[r])
+        error = min(max(wanted - dot(self.x, c), -limit), limit)
+        if not (isfinite(error) and h > 0.0):
+            return
+        self._spread[r] += min(h / SPREAD, 0.2) * (error * error + 1e-5 - self._spread[r])
+        self._judge(r, wanted, c, h)
+        keep, weight = 1.0 - min(h / MEMORY, 0.5) / 3.0, h / (NOISE_S * self._spread[r])  # a third: each of three rows fades it
+        y = weight * (dot(self.x, c) + error)
+        self._I = [[keep * i + w * x for i, x in zip(line, c, strict=True)] for line, w in zip(self._I, [weight * x for x in c], strict=True)]
+        self._b = [keep * b + y * x for b, x in zip(self._b, c, strict=True)]
+        self._L = factor(self._I, self._prior)
+        self.x = [min(max(x, lo), hi) for x, (lo, hi) in zip(solve(self._L, self._b), self._boxes, strict=True)]
+        self._act()
+
+    def _judge(self, r: int, wanted: float, c: list[float], h: float) -> None:
+        """How much of what the numbers of a while ago promised has come true? All rows together, each by its own scatter."""
+        kept, s = self._kept[r], self._spread[r]
+        promised, limit, g = dot(self._then, c), 3.0 * sqrt(kept[2] + s), min(h / GATE, 0.2)
+        cut = min(max(wanted, -limit), limit)
+        for i, x in enumerate((cut * promised, promised * promised, cut * cut)):
+            kept[i] += g * (x - kept[i])
+        came, size = (sum(k[i] / s for k, s in zip(self._kept, self._spread, strict=True)) for i in (0, 1))
+        least = (came - sqrt(size / SAMPLES)) / size if size > 0.0 else 0.0  # less one deviation of its noise
+        self.gate = min(max(least / ENOUGH, 0.0), 1.0)
+        self._age += h / 3.0
+        if self._age > HINDSIGHT:
+            self._then, self._next, self._age = self._next, list(self.x), 0.0
+            self.sigma = deviations(self._L)
+
+    def _act(self) -> None:
+        """New effects once what acts has moved by more than nothing."""
+        acting = self.acting()
+        if max(abs(a - b) for a, b in zip(acting, self._acting, strict=True)) > STIRRED:
+            self._acting = acting
+            self.effects = moved(self.effects, self.numbers, self._values(acting))
+
+    def values(self) -> list[float]:
+        """theta as learned, each in its own unit; what acts is between it and the ship file's."""
+        return self._values(self.x)
+
+    def _values(self, x: list[float]) -> list[float]:
+        return [min(max(m.start + m.sd * y, m.low), m.high) for m, y in zip(self.numbers, x, strict=True)]
+
+    def begin(self, values: dict[str, float]) -> None:
+        """Old values (by label), clamped; the gate stays shut: they must prove themselves again."""
+        fresh = [(float(values[m.label]) - m.start) / m.sd for m in self.numbers]
+        if not all(map(isfinite, fresh)):
+            raise ValueError("numbers of effects that are not finite")
+        self.x = [min(max(x, lo), hi) for x, (lo, hi) in zip(fresh, self._boxes, strict=True)]
+        self._b, self._then, self._next = list(self.x), list(self.x), list(self.x)
