@@ -11,9 +11,10 @@ import json
 import sys
 import time
 from collections import deque
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,6 +22,7 @@ from twin.errors import ThresholdError
 from twin.live import certificate as cert
 from twin.live import comparison as c3
 from twin.live.certificate import Certificate, Confined
+from twin.live.movable import Movable, movable, moved
 from twin.physics import core
 from twin.physics.effects import find
 from twin.physics.model import Model
@@ -45,6 +47,7 @@ class Case(NamedTuple):
     H_s: float = 0.0
     dropouts: bool = False
     K: float | None = None  # 1/s; None: `usual_gain`
+    moving: tuple[str, ...] = ()  # effects whose numbers an adversary moves in their boxes, and the wind's, as adaptation might
 
 
 CASES = (
@@ -58,6 +61,8 @@ CASES = (
     Case("usv", 50.0, (1, 1, 1), 500),
     Case("usv", 50.0, (0, 0, 0), 500, dropouts=True),
     Case("usv", 10.0, (0, 0, 0), 500),
+    Case("kvlcc2", 10.0, (1, 1, 1), 1000, moving=("RudderWear", "HullFouling")),
+    Case("container", 10.0, (1, 1, 1), 500, moving=("RudderWear", "Loading")),
 )
 
 
@@ -82,23 +87,25 @@ def certified(case: Case) -> tuple[Model, Certificate]:
     model = model.but(
         find("Wind").plausible(model.ship),
         find("Current").plausible(model.ship).but(north=0.12 * U, east=-0.08 * U),
+        *(find(name).plausible(model.ship) for name in case.moving),
     )
     h = 1.0 / case.rate_hz
-    plant = cert.plant_of(model, cert.of_ship(model), h)
+    plant = cert.plant_of(model, cert.of_ship(model), h, movable(model.effects, model.ship) if case.moving else ())
     K = (
         case.K or cert.usual_gain(plant, case.delays) or 1.0 / model.ship.scale("time")
     )  # if none holds, the certificate says so
-    return model, cert.certify(model, K, h, case.delays, NOISE[case.ship], heading_noise=HEADING_NOISE)
+    return model, cert.certify(model, K, h, case.delays, NOISE[case.ship], heading_noise=HEADING_NOISE, adapted=bool(case.moving))
 
 
 class Fleet:
     """Many ships of one kind at once, each with an observer and an adversary of her own."""
 
     def __init__(
-        self, model: Model, c: Certificate, runs: int, seed: int, H_s: float = 0.0, dropouts: bool = False
+        self, model: Model, c: Certificate, runs: int, seed: int, H_s: float = 0.0, dropouts: bool = False, moving: bool = False
     ) -> None:
         self.c, self.runs, self.rng, self.h = c, runs, np.random.default_rng(seed), c.h
         self.H_s, self.dropouts = H_s, dropouts
+        self.numbers = movable(model.effects, model.ship) if moving else ()
         self.time = model.ship.scale("time")  # L/U_0 [s]
         self.limit = np.array(c.disturbance.at(H_s))[:, None]
         self.noise = np.array(c.noise)[:, None]
@@ -126,6 +133,7 @@ class Fleet:
         self.share = rng.random(n)  # of the disturbance that is the ship's; the rest is the hostile network's
         self.gentle = rng.uniform(0.1, 1.0, n)
         self.silent = np.zeros((3, n))  # samples for which a row stays silent
+        self.held = rng.integers(0, 2, (len(self.numbers), n))  # the end of its box at which each number is held
         self._helm()
 
     def _helm(self) -> None:
@@ -148,6 +156,26 @@ class Fleet:
         white = self.rng.uniform(-1, 1, (3, self.runs))
         return np.choose(self.policy, [error, self.corner, square, white])
 
+    def _twin(self, k: int, before: tuple[Any, ...], side: np.ndarray) -> Confined:
+        """What the observer integrates: the ship's equations, with every number of her effects where the adversary wants it."""
+        if not self.numbers:
+            return self.twin
+        worst = [self._worse(i, before, side) for i in range(len(self.numbers))]
+        square = (self.held + (np.sin(2 * np.pi * k * self.h / self.period) > 0.0)) % 2
+        share = np.choose(self.policy, [worst, self.held, square, self.rng.random(self.held.shape)])
+        return self._with(self.numbers, [m.low + x * (m.high - m.low) for m, x in zip(self.numbers, share, strict=True)])
+
+    def _worse(self, i: int, before: tuple[Any, ...], side: np.ndarray) -> np.ndarray:
+        """(runs,) 1 where the upper end of a number's box drives the error further than the lower one, else 0."""
+        m, weight = self.numbers[i], side / np.array(self.c.bound)[:, None]
+        low, high = (
+            np.array(self._with((m,), [x]).step(before, Situation(**self.inputs), self.h)[3:]) for x in (m.low, m.high)
+        )
+        return ((weight * (high - low)).sum(0) > 0.0).astype(int)
+
+    def _with(self, numbers: Sequence[Movable], values: Sequence[object]) -> Confined:
+        return replace(self.twin, effects=moved(self.twin.effects, numbers, values))
+
     def _received(self) -> np.ndarray:
         """(3, runs) which rows were measured: all, or one in ten lost and now and then all of an axis for a
         while.
@@ -166,9 +194,8 @@ class Fleet:
         force = np.sign(self.inverse.T @ (side / np.array(self.c.bound)[:, None])) * self.limit
         self.push, self.learned = -self.share * force, (1.0 - self.share) * force
         heading = self.truth[2] + HEADING_NOISE * side[2]
-        self.estimate = np.array(
-            self.twin.step((0.0, 0.0, heading, *self.estimate), Situation(**self.inputs), self.h)[3:]
-        )
+        before = (0.0, 0.0, heading, *self.estimate)
+        self.estimate = np.array(self._twin(k, before, side).step(before, Situation(**self.inputs), self.h)[3:])
         for _ in range(2):
             self.truth = self.true.step(self.truth, Situation(**self.inputs), 0.5 * self.h)
         self.past.append((np.array(self.truth[3:]), self.estimate))
@@ -220,12 +247,13 @@ def trial(
     H_s: float = 0.0,
     dropouts: bool = False,
     seconds: float | None = None,
+    moving: bool = False,
 ) -> Outcome:
     """Let a fleet sail until old errors have faded five times over, at least two ship lengths (at most 1500
     samples).
     """
     begin = time.perf_counter()
-    fleet = Fleet(model, c, runs, seed, H_s, dropouts)
+    fleet = Fleet(model, c, runs, seed, H_s, dropouts, moving)
     steps = min(int((seconds or max(5.0 / c.rate, 2.0 * fleet.time)) / c.h), 1500)
     bound = np.array(c.bound_in(H_s))[:, None]
     of_tube = of_bound = error = np.zeros(3)
@@ -275,7 +303,7 @@ def run(args: argparse.Namespace) -> int:
         begin = time.perf_counter()
         model, c = certified(case)
         made = time.perf_counter() - begin
-        outcome = trial(model, c, max(1, round(case.runs * share)), args.seed + i, case.H_s, case.dropouts)
+        outcome = trial(model, c, max(1, round(case.runs * share)), args.seed + i, case.H_s, case.dropouts, moving=bool(case.moving))
         rows.append((case, c, outcome, made))
         print(
             f"{case.ship} {case.rate_hz:g} Hz: {outcome.violations} violations in {outcome.runs} runs",

@@ -17,7 +17,7 @@ SHIPS = ("kvlcc2", "container", "kvlcc2_model", "usv")
 UNITS = "m/s, m/s, deg/s"
 RUNS = (
     "ship", "Hz", "samples late", "H_s m", "drop-outs", "K 1/s", "runs", "left", "broken", "b", "error/tube",
-    "b/seen",
+    "b/seen", "numbers moved",
 )  # fmt: skip
 
 
@@ -39,6 +39,7 @@ b: the ultimate bound ({UNITS}). Error/tube: the greatest error in units of the 
 {_head(*RUNS)}
 {_lines(_run(*row) for row in rows)}
 
+Numbers moved: those of these effects, by the adversary, anywhere in the boxes of adaptation (twin/live/movable.py).
 With drop-outs the error may exceed b, which counts on measurements; the tube must hold, and does.
 
 ## Slopes and gains
@@ -77,6 +78,7 @@ def _run(case: Any, c: Any, o: Any, made: float) -> list[str]:
         f"{u:.3f}, {v:.3f}, {degrees(r):.3f}",
         " / ".join(f"{x:.2f}" for x in o.of_tube),
         " / ".join(f"{1.0 / x:.1f}" if x > 0.0 else "-" for x in o.of_bound),
+        ", ".join((*case.moving, "Wind")) if case.moving else "none",
     ]
 
 
