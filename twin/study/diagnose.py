@@ -63,7 +63,7 @@ def diagnose(
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
-    candidates = [_candidate(case, weighed, found, name, w.effects[name]) for name in likely]
+    candidates = [_candidate(case, weighed, found, missing, name, w.effects[name]) for name in likely]
     if w.best.effects:
         progress("asking each part of the voyages")
         parts = over_time(case, best, w.best.effects)
@@ -83,13 +83,18 @@ def diagnose(
         "not_visible": [n for n, can in seen.items() if not can and n not in missing],
         "floor": {"share_surge_sway_yaw": case.floor.share, "sensor_factor": case.floor.sensor, "temper": case.temper},
         "voyages": [v.name for v in voyages],
+        "voyages_hold_a_manoeuvre": case.excited,
         "references": [v.name for v in references],
     }
     return Diagnosis(plain(result), case, found)
 
 
-def _candidate(case: Case, weighed: Sequence[Any], found: dict[tuple[str, ...], Found], name: str, probability: float) -> dict[str, Any]:
+def _candidate(
+    case: Case, weighed: Sequence[Any], found: dict[tuple[str, ...], Found], missing: Sequence[str], name: str, probability: float
+) -> dict[str, Any]:  # fmt: skip
+    """One effect with its numbers: what is named as it stands in the answer, the others as they stand in the best set that holds them."""
     sets = [h.effects for h in weighed if name in h.effects and h.effects in found]
+    sets.sort(key=lambda s: name not in missing or set(s) != set(missing))
     if not sets:
         return {}
     best = found[sets[0]]

@@ -18,7 +18,8 @@ from .refine import Found, Sets, standing
 from .seaway import at_sea
 
 MOSTLY = 1.0 / 3.0  # of the error without it that may be left whatever else is
-ASTRAY = 2.0  # times the floor that the best explanation may end away from where she went
+ASTRAY = 2.0  # times the floor that the best explanation may end away from where she went, if it leads her half of the way
+NEARLY = 1.5  # and if it does not
 BETTER = 0.05  # share by which a force must bring her nearer to where she went
 RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
@@ -33,7 +34,7 @@ def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: F
         return True
     own = [h for h in weighed if h.effects == found.hypothesis.effects]
     plain = next((h for h in own if WORLDS[h.world].plain), None)
-    if plain is None or found.off_m > ASTRAY * found.floor_m:
+    if plain is None or found.off_m > (ASTRAY if found.off_m <= 0.5 * nothing.off_m else NEARLY) * found.floor_m:
         return False
     if own[0].log_weight - plain.log_weight > CLEAR and not found.off_m <= found.floor_m:  # a rough world that leads her astray nowhere is none
         return False

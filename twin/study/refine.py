@@ -37,19 +37,22 @@ class Found:
     floor_m: float = float("nan")  # and what it would be were this the truth, in a world as it was on the reference voyages
 
 
-def refine(case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[str]) -> tuple[Found, list[Hypothesis]]:
-    """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand; begun again farther out
-    when that explains nothing plainly, or when a number ended at nothing that cannot be seen from there. What was found; and, about
-    it, the hypothesis in every world, and every one that has one of `wider` beside it."""
+def refine(
+    case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[str], hoped: float = -np.inf
+) -> tuple[Found, list[Hypothesis]]:
+    """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand; begun again farther out when
+    that explains nothing plainly, or when a number whose effect is bent ended at nothing, or the whole below the log weight that was
+    `hoped` for to first order. What was found; and, about it, the hypothesis in every world, and every one that has one of `wider`
+    beside it."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     best, at = _climb(case, chosen, mine, world, z)
     first = _boxed(case, z)
     first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
     for factor in FARTHER:
-        pressed = _pressed(case, mine, at)
-        if WORLDS[best.world].plain and not pressed:
+        lost = _lost(case, mine, at, best.log_weight < hoped)
+        if WORLDS[best.world].plain and not lost:
             break
-        first[pressed] = 1.0
+        first[[i for i in lost if at[i] == 0.0]] = 1.0
         best, at = max((best, at), _climb(case, chosen, mine, "usual", factor * first), key=lambda end: end[0].log_weight)
     model, lines = about(case, at, mine, case.unknowns)
     doubt = _doubt(case, chosen, lines, best.world, at)
@@ -60,23 +63,31 @@ def refine(case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[
 
 
 def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray) -> tuple[Hypothesis, np.ndarray]:
-    """Where the effects' parameters come to stand, and the hypothesis there in its best world (by columns of its own alone)."""
+    """Where the effects' parameters come to stand, and the hypothesis there in its best world (by columns of its own alone). A step after
+    which the voyages are less probable is taken back by half, and by half again: what is bent may lead a whole step astray."""
+    lines: Sequence[Linear] = case.lines
+    merit, best, aim, share = -np.inf, np.zeros_like(z), z, 1.0
     for _ in range(NEWTON):
         at = np.zeros_like(z)
-        at[mine] = _boxed(case, z)[mine]
-        lines = about(case, at, mine, [case.effects[i] for i in mine])[1]
-        z = posterior(case.reduced(lines, case.worlds([world], DOUBTS[0]), at)[0], chosen).z
-        if np.max(np.abs(_boxed(case, z)[mine] - at[mine])) < STANDS:
+        at[mine] = _boxed(case, best + share * (aim - best))[mine]
+        tried = about(case, at, mine, [case.effects[i] for i in mine])[1]
+        reduced = case.reduced(tried, case.worlds([world], DOUBTS[0]), at)[0]
+        if (now := reduced.base - 0.5 * float(at @ at)) > merit:
+            merit, best, lines, share, aim = now, at, tried, 1.0, _boxed(case, posterior(reduced, chosen).z)
+        else:
+            share *= 0.5
+        if share * np.max(np.abs(aim - best)[mine]) < STANDS:
             break
-    judged, _ = _judged(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0]))
-    return max(judged, key=lambda h: h.log_weight), at
+    judged, _ = _judged(case, chosen, _everywhere(case, chosen, lines, best, DOUBTS[0]))
+    return max(judged, key=lambda h: h.log_weight), best
 
 
-def _pressed(case: Case, mine: np.ndarray, at: np.ndarray) -> list[int]:
-    """Parameters that ended at nothing although what they do is not in proportion to them: about nothing, they could not be seen."""
+def _lost(case: Case, mine: np.ndarray, at: np.ndarray, fallen: bool) -> list[int]:
+    """Parameters that ended at nothing, or (when the whole has `fallen` short) anywhere, although what they do is not in proportion to
+    them: about nothing, they could not be seen."""
     own = [case.effects[i] for i in mine]
     model = with_values(case.model, own, [u.centre + u.sd * at[i] for i, u in zip(mine, own, strict=True)], case.catalogue)
-    return [int(i) for i, u in zip(mine, own, strict=True) if at[i] == 0.0 and _bends(case, model, u)]
+    return [int(i) for i, u in zip(mine, own, strict=True) if (fallen or at[i] == 0.0) and _bends(case, model, u)]
 
 
 def _bends(case: Case, model: Model, unknown: Unknown) -> bool:

@@ -115,10 +115,18 @@ class _Book:
                 break
             if h.effects not in self.found:
                 return next(((name,) for name in h.effects if (name,) not in self.found), h.effects)
+        for simpler in self._simpler(ranked[0].effects):
+            if simpler not in self.found:
+                return simpler
         while self.last and (self.wide or not WORLDS[ranked[0].world].plain):
             if (chosen := self.last.pop(0)) not in self.found:
                 return chosen
         return None
+
+    def _simpler(self, effects: Sets) -> list[Sets]:
+        """The same set with a part in the place of an effect that holds it: a current that does not change is a steady one."""
+        swaps = [(name, part) for name in effects for part in self.case.catalogue[name].holds if part in self.case.candidates]
+        return [tuple(n for n in self.case.candidates if n == part or (n in effects and n != name)) for name, part in swaps]
 
     def judge(self, chosen: Sets) -> None:
         """Enter what the voyages say of this set, and of every set with one effect more, about its own size."""
@@ -128,7 +136,7 @@ class _Book:
         known = [i for i, u in enumerate(self.case.effects) if u.owner in start.hypothesis.effects]
         z[known] = start.posterior.z[known]  # where a part of the set was found to stand
         wider = self.case.candidates if len(chosen) < MOST else ()
-        self.found[chosen], judged = refine(self.case, chosen, mine[0].world, z, wider)
+        self.found[chosen], judged = refine(self.case, chosen, mine[0].world, z, wider, mine[0].log_weight)
         for h in judged:
             if h.effects == chosen or (h.effects not in self.found and self._nearer(chosen, h)):
                 self._enter(h)

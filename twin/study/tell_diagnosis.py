@@ -3,7 +3,9 @@
 from typing import Any
 
 from .effects import INPUTS
+from .leftover import BETTER
 from .overtime import changes
+from .verdict import SURE
 
 NEAR = 0.5  # probability from which an effect is told as the nearest one when none explains the voyages
 
@@ -46,7 +48,21 @@ def sentence(result: dict[str, Any]) -> str:
     if result["one_of"]:
         *others, last = [_likely(by_name, n) for n in result["one_of"]]
         return f"Undecided: something is missing, {', '.join(others)} or {last}; these voyages cannot tell them apart."
+    likely = [c for c in result["candidates"] if c["probability"] >= SURE]
+    if not result["voyages_hold_a_manoeuvre"]:
+        return "Undecided: no manoeuvre was sailed, and a ship that holds her course and speed tells one cause from no other."
+    if likely and not nearer(likely[0]):
+        c = likely[0]
+        return (
+            f"Undecided: step by step the readings say {_likely(by_name, c['effect'])}, but it does not lead her to where she went any better "
+            f"({c['error_with']:.3g} m off with it, {c['error_without']:.3g} m without)."
+        )
     return "Undecided: these voyages cannot tell what, if anything, is missing."
+
+
+def nearer(candidate: dict[str, Any]) -> bool:
+    """Whether the ship is led clearly nearer with this effect than without any."""
+    return bool(candidate["error_with"] <= (1.0 - BETTER) * candidate["error_without"])
 
 
 def _likely(by_name: dict[str, Any], name: str) -> str:

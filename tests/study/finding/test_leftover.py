@@ -57,6 +57,14 @@ def test_what_leads_her_elsewhere_explains_nothing_however_quiet_it_leaves_her(j
     assert not explains(case, [found.hypothesis], replace(found, off_m=(ASTRAY + 0.1), floor_m=1.0), nothing)
 
 
+def test_what_leaves_half_of_the_way_must_end_nearer_to_where_she_went(judged):
+    case, found = judged
+    half = replace(found, off_m=1.8, floor_m=1.0)
+    assert explains(case, [found.hypothesis], half, replace(found, off_m=3.7))
+    assert not explains(case, [found.hypothesis], half, replace(found, off_m=3.5))
+    assert explains(case, [found.hypothesis], replace(half, off_m=1.4), replace(found, off_m=1.5))
+
+
 def test_what_leads_her_most_of_the_way_explains_whatever_is_left(judged):
     case, found = judged
     far = replace(found, off_m=10.0, floor_m=1.0, hypothesis=replace(found.hypothesis, world="rough"))

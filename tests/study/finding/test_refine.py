@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.refine import _bends, _pressed
+from twin.study.refine import DOUBTS, _bends, _climb, _lost, about
 
 
 @pytest.fixture(scope="module")
@@ -23,9 +23,23 @@ def test_a_gears_travel_time_is_not_in_proportion_to_what_it_does_and_a_rudders_
     assert not _bends(case, case.model, by_label["PropellerWear.loss"])
 
 
-def test_only_what_ended_at_nothing_and_bends_is_looked_for_farther_out(case):
+def test_only_what_bends_is_looked_for_farther_out_when_it_ended_at_nothing_or_fell_short(case):
     mine, at = rows(case, "SteeringLag"), np.zeros(len(case.effects))
-    assert {case.effects[i].name for i in _pressed(case, mine, at)} >= {"travel_time"}
+    assert {case.effects[i].name for i in _lost(case, mine, at, False)} >= {"travel_time"}
     at[mine] = 1.0
-    assert _pressed(case, mine, at) == []
-    assert _pressed(case, rows(case, "RudderOffset"), np.zeros(len(case.effects))) == []
+    assert _lost(case, mine, at, False) == []
+    assert {case.effects[i].name for i in _lost(case, mine, at, True)} >= {"travel_time"}
+    assert _lost(case, rows(case, "RudderOffset"), np.zeros(len(case.effects)), True) == []
+
+
+@pytest.mark.parametrize("start", [0.3, 1.0, 3.0])
+def test_a_climb_never_ends_where_the_voyages_are_less_probable_than_where_it_began(case, start):
+    mine, z = rows(case, "SteeringLag"), np.zeros(len(case.effects))
+    z[mine] = start
+
+    def probable(at):
+        lines = about(case, at, mine, [case.effects[i] for i in mine])[1]
+        return case.reduced(lines, case.worlds(["usual"], DOUBTS[0]), at)[0].base - 0.5 * float(at @ at)
+
+    end = _climb(case, ("SteeringLag",), mine, "usual", z)[1]
+    assert probable(end) >= probable(z)

@@ -50,6 +50,11 @@ def test_an_effect_and_a_part_of_it_are_no_pair(case):
     assert ("Current", "VaryingCurrent") not in {h.effects for h in search(case)[0]}
 
 
+def test_beside_a_stream_that_changes_a_steady_one_is_judged_too(case):
+    assert book(case)._simpler(("VaryingCurrent", "HullFouling")) == [tuple(n for n in case.candidates if n in ("Current", "HullFouling"))]
+    assert book(case)._simpler(("HullFouling",)) == []
+
+
 def test_what_an_effect_holds_is_in_the_catalogue():
     effects = catalogue()
     assert effects["VaryingCurrent"].holds == ("Current",)
