@@ -11,6 +11,7 @@ import numpy as np
 from bench.ekf import ShipFilter
 from bench.paper_lab import Course, grounded, judge
 from export.batches import STRIDE
+from twin.physics import core
 from twin.physics.model import Model
 from twin.physics.state import Force, Situation
 from twin.study.track import READINGS
@@ -67,8 +68,8 @@ def _from(c: Course, model: Model, state: np.ndarray, keep: bool) -> np.ndarray:
 
 def _pushed(c: Course, model: Model, state: np.ndarray) -> np.ndarray:
     """The free run with the filter's accelerations held as forces."""
-    a, m, view, at = state[:, 6:].T, model.c, c.water, c.at
-    force = Force(m.m_u * a[0], m.m_v * a[1] + m.m_vr * a[2], m.m_rv * a[1] + m.m_r * a[2])
+    view, at = c.water, c.at
+    force = Force(*core.force_for(*state[:, 6:].T, model.c))
     pushed = Model(model.ship, model.effects, lambda s: force)
     now, kept = (np.zeros(len(state)), np.zeros(len(state)), *state[:, 2:6].T), []
     for k in range(c.steps):

@@ -12,8 +12,9 @@ from dataclasses import replace
 
 import torch
 
+from twin.physics import core
 from twin.physics.model import CORE, Model
-from twin.physics.state import Force, Situation
+from twin.physics.state import Force, Number, Situation
 
 from .network import Residual
 
@@ -30,11 +31,9 @@ class Held:
         return self.force
 
 
-def needed(model: Model, rate: torch.Tensor) -> torch.Tensor:
-    """(B, 3) M nu_dot in newtons."""
-    u, v, r = rate.unbind(-1)
-    c = model.c
-    return torch.stack([c.m_u * u, c.m_v * v + c.m_vr * r, c.m_rv * v + c.m_r * r], -1)
+def needed(model: Model, rate: torch.Tensor, k_m: Number = 0.0) -> torch.Tensor:
+    """(B, 3) M nu_dot in newtons, where the added mass has grown by the share k_m."""
+    return torch.stack(core.force_for(*rate.unbind(-1), model.c, k_m), -1)  # type: ignore[arg-type]
 
 
 def known(model: Model, s: Situation) -> torch.Tensor:
@@ -44,8 +43,9 @@ def known(model: Model, s: Situation) -> torch.Tensor:
 
 
 def left_over(model: Model, s: Situation, rate: torch.Tensor, scale: torch.Tensor) -> torch.Tensor:
-    """(B, 3) what the known forces leave, in units of the force scale."""
-    return (needed(model, rate) - known(model, s)) / scale
+    """(B, 3) what the known forces leave, in units of the force scale; sets the speeds through water of s."""
+    forces = known(model, s)  # first: it finds how her added mass has grown
+    return (needed(model, rate, s.k_m) - forces) / scale
 
 
 def acceleration(network: Residual, zeta: torch.Tensor, d: torch.Tensor, size: torch.Tensor) -> torch.Tensor:
@@ -66,7 +66,7 @@ def paper(
     dot = torch.stack([torch.autograd.grad(nu[:, i].sum(), h, create_graph=True)[0] for i in range(3)], -1)
     end = replace(s, u=nu[:, 0], v=nu[:, 1], r=nu[:, 2])
     scale = nu.new_tensor(network.S)
-    without = (needed(model, dot) - known(model, end)) / scale
+    without = left_over(model, end, dot, scale)
     R = without - network.f(network.zeta(end))
     loss = lambda_data * data + lambda_phys * (R**2).mean()
     return loss, {"data": float(data.detach()), "R": _rms(R), "f": _rms(without)}

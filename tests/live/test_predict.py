@@ -1,13 +1,16 @@
 """What is said about the future: right for a ship that obeys her model, honest about doubt, a little in
 each tick."""
 
+from dataclasses import replace
 from math import degrees, hypot, radians
+from types import SimpleNamespace
 
 import pytest
 
-from twin.live.dynamics import Known
+from twin.live.dynamics import Dynamics, Known
 from twin.live.estimate import Estimate
-from twin.live.predict import LEARNED, Middle, Predictor, Sureness, ensemble
+from twin.live.predict import LEARNED, Middle, Predictor, Sureness, carry, ensemble
+from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Force, Situation
@@ -139,3 +142,29 @@ def test_the_learned_force_of_a_step_is_that_of_its_middle():
     middle = Middle()
     said = [middle.of(Force(2.0 * t, 0.0, 0.0), h).X for t, h in ((0.0, 5.0), (5.0, 5.0), (10.0, 3.0))]
     assert said == pytest.approx([0.0, 15.0, 23.0])
+
+
+def test_a_rudder_that_is_still_on_its_way_is_foretold_where_a_slow_gear_will_have_it(kvlcc2):
+    """Test: 20 deg ordered 5 s ago, a gear with 2 s of dead time and 28 s of travel. Expected: the turn of that order, not of the
+    angle that the rudder has by now."""
+    slow = kvlcc2.with_effects(find("SteeringLag")(delay=2.0, travel_time=28.0))
+    dynamics, measured = Dynamics(slow), SimpleNamespace(si={"delta": 0.0, "n": 1.2}, now_s=0.0)
+    e = Estimate(u=7.0)
+    for k in range(60):
+        measured.now_s, measured.si["delta"] = 0.1 * k, radians(20.0) if k > 10 else 0.0
+        s, physics, _ = dynamics.known(e, measured)
+    assert 0.0 < s.delta < radians(10.0)
+    held, carried = ({"steering": None}, {"steering": dynamics.steering()})
+    headings = []
+    for how in (held, carried):
+        there, middle = replace(s), Middle()
+        for _ in range(120):
+            carry(there, physics, nothing, 1.0, middle, **how)
+        headings.append(degrees(there.psi))
+    at_once = replace(s, delta=radians(20.0))
+    middle = Middle()
+    for _ in range(120):
+        carry(at_once, physics, nothing, 1.0, middle)
+    assert headings[0] < 0.7 * degrees(at_once.psi)
+    assert 0.8 * degrees(at_once.psi) < headings[1] < degrees(at_once.psi)
+    assert dynamics.steering().gears[0].actual == s.delta  # the gear on board did not move with the forecast

@@ -270,3 +270,14 @@ def test_F3_a_source_that_nobody_is_is_named_after_ten_seconds(kvlcc2, make_brid
     assert said(bridge.run(0.4), f"{HEADING}: its source 'gyro 2' has never been heard")
     bridge.run(1.0, only(HEADING, lambda r, b: r._replace(source="gyro 2")))
     assert not said(bridge.run(1.0, only(HEADING, lambda r, b: r._replace(source="gyro 2"))), "never been heard")
+
+
+def test_I8_a_sensor_silent_for_hours_is_only_stale(bridge):
+    """Test: the rate gyro falls silent, and two hours pass. Expected: the gates go on; nothing is raised."""
+    bridge.run(60.0)
+    gates = bridge.loop.sensors.gates
+    late_s = bridge.now_s + 7200.0
+    assert any(gate.losing(late_s) for gate in gates.values())
+    bridge.run(1.0, only(YAW, lambda r, b: None))
+    bridge.now_s = late_s
+    assert isfinite(bridge.run(1.0, only(YAW, lambda r, b: None))[-1].estimate.yaw_rate_degps)

@@ -4,7 +4,7 @@ from math import hypot
 
 from twin.live.certificate import Tube, certify
 from twin.live.learned import LearnedForce
-from twin.live.stabilizer import Stabilizer
+from twin.live.stabilizer import USELESS, Stabilizer
 from twin.physics.model import Model
 
 
@@ -39,3 +39,35 @@ def test_outside_the_operating_set_nothing_is_promised(kvlcc2, make_bridge):
 
 def test_without_a_certificate_nothing_is_promised(make_bridge):
     assert not make_bridge().run(5.0)[-1].certificate.inside
+
+
+def test_without_any_measurement_nothing_is_promised_however_long_and_with_them_again_it_comes_back(kvlcc2, make_bridge):
+    """Test: no speed and no rate of turn for four minutes. Expected: from some time on no bound at all, until they return."""
+    bridge = stabilized(kvlcc2, make_bridge)
+    bridge.run(20.0)
+    silent = bridge.run(240.0, lambda readings, b: [r for r in readings if "velocity" not in r.channel and "rate_degps" not in r.channel])
+    lost = next(i for i, t in enumerate(silent) if t.certificate.bound >= USELESS)
+    assert not any(t.certificate.inside for t in silent[lost:])
+    assert bridge.run(240.0)[-1].certificate.inside
+
+
+def test_measurements_that_contradict_the_bound_take_the_promise_back_and_the_learned_force_off(kvlcc2, make_bridge):
+    """Test: the log goes off by 1.5 m/s and stays there, which is believed after a while. Expected: inside before, not after, and why."""
+    bridge = stabilized(kvlcc2, make_bridge)
+    assert bridge.run(60.0)[-1].certificate.inside and not bridge.loop.stabilizer.broken
+    off = lambda readings, b: [r._replace(value=r.value + 1.5) if r.channel == "surge_velocity_mps" else r for r in readings]  # noqa: E731
+    why = set()
+    for _ in range(100):
+        tick = bridge.run(0.1, off)[-1]
+        why.add(bridge.loop.stabilizer.broken)
+        assert not (bridge.loop.stabilizer.broken and tick.certificate.inside)
+    assert "u is measured farther from the estimate than its bound allows" in why
+
+
+def test_a_sample_that_pulls_by_less_than_the_certified_gain_is_no_measurement_of_it(kvlcc2, make_bridge):
+    """Test: speed over ground every three seconds. Expected: the cap on h K bites, and the tube is not told that K acted."""
+    bridge = stabilized(kvlcc2, make_bridge)
+    bridge.run(20.0)
+    slow = lambda readings, b: [r for r in readings if "velocity" not in r.channel or b.number % 30 == 0]  # noqa: E731
+    before = bridge.ticks[-1].certificate.bound
+    assert bridge.run(120.0, slow)[-1].certificate.bound > before

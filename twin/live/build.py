@@ -6,7 +6,7 @@ from pathlib import Path
 from twin.errors import SettingsError
 from twin.live import network, realtime
 from twin.live import residual as residuals
-from twin.live.certificate import Certificate, Tube, kept
+from twin.live.certificate import Certificate, Tube, kept, on_board
 from twin.live.config import Settings
 from twin.live.estimate import gain_for
 from twin.live.guard import Guard
@@ -128,7 +128,8 @@ def certificate_file(settings: Settings) -> Path:
 def certify_aside(ship_file: str, path: str, K: float, h: float, delay: int, adapted: bool) -> None:
     """Work the certificate out and put it on file: what the other process does."""
     Path(path).parent.mkdir(parents=True, exist_ok=True)
-    kept(path, Model.of(load_ship(ship_file)), (K, K, K), h, delay_samples=delay, adapted=adapted)
+    ship = load_ship(ship_file)
+    kept(path, Model.of(ship), (K, K, K), h, **on_board(ship, delay, adapted))
 
 
 def _on_file(path: Path, ship: Ship, K: float, h: float, delay: int, adapted: bool) -> Certificate | None:
@@ -139,5 +140,5 @@ def _on_file(path: Path, ship: Ship, K: float, h: float, delay: int, adapted: bo
         found = Certificate.from_json(path.read_text(encoding="utf-8"))
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    wanted = _mark(Model.of(ship), (K, K, K), h, {"delay_samples": delay, "adapted": adapted})
+    wanted = _mark(Model.of(ship), (K, K, K), h, on_board(ship, delay, adapted))
     return found if found.fingerprint == wanted else None

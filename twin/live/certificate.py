@@ -16,19 +16,20 @@ from typing import Any
 
 from twin.errors import SettingsError
 from twin.physics.model import Model
+from twin.physics.ship import Ship
 
 from . import comparison as c3
 from .comparison import Matrix, Row
 from .movable import movable
 from .operating import Confined, OperatingSet, of_ship
-from .plant import Disturbance, Plant, lipschitz, output_bound, plant_of, self_regressor, usual_disturbance
+from .plant import HEADING_NOISE, Disturbance, Plant, lipschitz, output_bound, plant_of, self_regressor, usual_disturbance, usual_noise
 from .theorem import Ages, Promise, Recursion, assess, best_gain, gains_that_do, usual_gain
 from .tube import Tube
 
 __all__ = [
     "Certificate", "Confined", "Disturbance", "OperatingSet", "Plant", "Tube", "assess", "best_gain",
     "certify", "gains_that_do", "kept", "lipschitz", "of_ship", "output_bound", "plant_of", "self_regressor",
-    "usual_disturbance", "usual_gain",
+    "usual_disturbance", "usual_gain", "usual_noise",
 ]  # fmt: skip
 
 VERSION = 4
@@ -139,6 +140,11 @@ def kept(
     except OSError:
         pass  # a folder one may not write to costs half a second at each start, nothing else
     return made
+
+
+def on_board(ship: Ship, delay_samples: int, adapted: bool) -> dict[str, Any]:
+    """What the loop's own certificate is asked for."""
+    return {"delay_samples": delay_samples, "adapted": adapted, "noise": usual_noise(ship), "heading_noise": HEADING_NOISE}
 
 
 def _mark(model: Model, *settings: Any) -> str:

@@ -6,12 +6,12 @@ where it is now, and without those effects whose inputs nobody measures.
 
 from collections import deque
 from collections.abc import Sequence
+from copy import copy
 
 from twin.live.estimate import Estimate
 from twin.live.measured import Measured
 from twin.physics import core
-from twin.physics.effect import Effect, Lag
-from twin.physics.effects.current import Current
+from twin.physics.effect import Effect, Flow, Lag
 from twin.physics.maths import cos, sin
 from twin.physics.model import Model
 from twin.physics.ship import Ship
@@ -88,26 +88,26 @@ class Known:
             (k1[2] + 2.0 * (k2[2] + k3[2]) + k4[2]) / 6.0,
         )
 
-    def force_for(self, u_dot: Number, v_dot: Number, r_dot: Number) -> Force:
-        """M times an acceleration: the force it takes."""
-        c = self.model.c
-        return Force(c.m_u * u_dot, c.m_v * v_dot + c.m_vr * r_dot, c.m_rv * v_dot + c.m_r * r_dot)
+    def force_for(self, u_dot: Number, v_dot: Number, r_dot: Number, k_m: Number = 0.0) -> Force:
+        """The force that an acceleration takes, where her added mass has grown by the share k_m."""
+        return Force(*core.force_for(u_dot, v_dot, r_dot, self.model.c, k_m))
 
 
 class Dynamics:
     """Which physics holds now: `now` is rebuilt by `situation` from what is measured."""
 
     def __init__(self, ship: Ship):
-        steady = next((e for e in ship.effects if type(e) is Current), None)
-        self.first_current = (steady.north, steady.east) if steady else (0.0, 0.0)
+        streams = [e for e in ship.effects if isinstance(e, Flow) and e.stream]  # the observer's filter follows all of them together
+        north, east = (sum((getattr(e, axis, 0.0) for e in streams), 0.0) for axis in ("north", "east"))
+        self.first_current = north, east
         self.ship = ship
-        self.full = Model(ship, tuple(e for e in ship.effects if e is not steady))
+        self.full = Model(ship, tuple(e for e in ship.effects if e not in streams))
         self.off: tuple[Effect, ...] = ()  # effects without their inputs
         self.now = Known(self.full, self.first_current)
         self._needed = sorted({need for e in self.full.effects for need in e.needs if need in WEATHER})
         self._models: dict[tuple[str, ...], tuple[Model, tuple[Effect, ...]]] = {}
         self._adopted: Sequence[Effect] = ship.effects
-        self._gears = [Gear(lag) for lag in self.full.lags]
+        self._steering = Steering([Gear(lag) for lag in self.full.lags])
 
     def adopt(self, effects: Sequence[Effect]) -> None:
         """The ship's effects with the numbers that act from now on (twin/live/named.py)."""
@@ -121,6 +121,10 @@ class Dynamics:
         s = self.situation(e, measured)
         return s, self.now, self.now.forces(s)
 
+    def steering(self) -> "Steering | None":
+        """The gear as it is now, to be carried ahead; None when the rudder is where it was ordered."""
+        return self._steering.copy() if self._steering.gears else None
+
     def ahead(self, s: Situation, forces: Forces, learned: Force, h: float) -> Rates:
         """What takes nu over the next h seconds."""
         return self.now.mean_rates(s, forces, learned, h)
@@ -133,8 +137,8 @@ class Dynamics:
         for name in INPUTS:
             if name in si:
                 setattr(s, name, si[name])
-        for gear in self._gears:
-            s.delta = gear.turn(s.delta, measured.now_s)
+        self._steering.order = s.delta  # type: ignore[assignment]
+        s.delta = self._steering.at(measured.now_s)
         missing = tuple([need for need in self._needed if need not in si])
         if missing not in self._models:
             self._models[missing] = self.full.without_inputs(set(missing))
@@ -149,13 +153,30 @@ def _along(s: Situation, start: tuple[Number, ...], r: Number, k: Rates, h: floa
     s.psi, s.u, s.v, s.r = psi0 + h * r, u0 + h * k[0], v0 + h * k[1], r0 + h * k[2]
 
 
+class Steering:
+    """The order, and the rudder that follows it through every gear of the model."""
+
+    def __init__(self, gears: "list[Gear]", order: float = 0.0):
+        self.gears, self.order = gears, order
+
+    def at(self, t: float) -> float:
+        """Where the rudder is at time t [rad]; times may only go on."""
+        delta = self.order
+        for gear in self.gears:
+            delta = gear.turn(delta, t)
+        return delta
+
+    def copy(self) -> "Steering":
+        return Steering([gear.copy() for gear in self.gears], self.order)
+
+
 class Gear:
     """A rudder that answers late: where it is, given what was ordered."""
 
     def __init__(self, lag: Lag):
         self.lag = lag
         self.actual: float | None = None
-        self._orders: deque[tuple[float, float]] = deque(maxlen=1024)
+        self._orders: deque[tuple[float, float]] = deque(maxlen=4096)
         self._t = 0.0
 
     def turn(self, order: float, now_s: float) -> float:
@@ -169,3 +190,8 @@ class Gear:
             self.actual = order
         self.actual = float(self.lag.step(self.actual, self._orders[0][1], dt))
         return self.actual
+
+    def copy(self) -> "Gear":
+        other = copy(self)
+        other._orders = self._orders.copy()
+        return other

@@ -23,7 +23,7 @@ A_MAX = 0.5  # no sample pulls more than half way in one tick
 DELAYED = 0.6  # K times (delay + time until the next sample): above about 1 an observer swings
 OUTLIER = 4.0  # usual deviations beyond which a sample pulls no more
 MAX_GAP_S = 3.0  # the model is not carried over a longer pause of the machine
-HISTORY = 128  # ticks remembered, to compare a late sample with its own time
+HISTORY = 256  # ticks remembered, to compare a late sample with its own time
 
 
 @dataclass(slots=True)
@@ -61,7 +61,8 @@ class Observer:
         self.gain = gain or gain_for(ship)
         self.estimate = Estimate(current_north=current[0], current_east=current[1])
         self.innovation: dict[str, float] = {}  # measured less estimated, by state, as last compared
-        self.received: dict[str, bool] = dict.fromkeys(STATES, False)  # which pulled in this tick, unclipped
+        self.received: dict[str, bool] = dict.fromkeys(STATES, False)  # which pulled in this tick, unclipped and by the whole of K
+        self.pulled: dict[str, float] = dict.fromkeys(STATES, 0.0)  # by how much each was pulled in this tick, received or not
         self.restarts = 0
         self.sigma = Sigma(ship)
         self.rates = Rates(0.0, 0.0, 0.0)
@@ -177,7 +178,7 @@ class Observer:
         deviations do."""
         gap, si = self.innovation.get(state), measured.si
         source = state if state in si else WATER.get(state, state)
-        self.received[state] = False
+        self.received[state], self.pulled[state] = False, 0.0
         if gap is None or source not in si:
             return
         heard_s, hold_s = measured.heard[source], measured.hold_s[source]
@@ -187,9 +188,10 @@ class Observer:
         limit = doubt.limit()
         waits_s = hold_s + heard_s - measured.time[source] + dt
         a = min(self.gain * dt, DELAYED * dt / waits_s, A_MAX)
-        self.received[state] = usual = -limit <= gap <= limit
+        usual = -limit <= gap <= limit
+        self.received[state] = usual and a >= self.gain * dt  # the certificate is that of K, not of less
         pull = gap if usual else limit if gap > 0.0 else -limit
-        e = self.estimate
+        e, self.pulled[state] = self.estimate, a * abs(pull)
         setattr(e, state, getattr(e, state) + a * pull)
         if source in measured.fresh:
             doubt.learn(pull)

@@ -40,16 +40,20 @@ class Evidence:
     def regressors(self) -> list[float]:
         return self._low[12:]
 
-    def feed(self, nu: Three, known: Rates, learned: Three, trained: Three, regressors: Sequence[float], physics: Known, dt: float) -> None:
+    def feed(
+        self, nu: Three, known: Rates, learned: Three, trained: Three, regressors: Sequence[float], physics: Known, dt: float,
+        k_m: float = 0.0,
+    ) -> None:  # fmt: skip
         """Measured nu, accelerations the known forces give, learned and trained force [S], seconds since
-        the last time."""
+        the last time, growth of the added mass."""
         new = [*nu, *known, *learned, *trained, *regressors]
         a = min(self.lam * dt, 0.5)
         if len(self._low) != len(new):
             self._low, self._heard_s = new, 0.0
         self._low = low = [f + a * (x - f) for f, x in zip(self._low, new, strict=True)]
         lam = self.lam / (1.0 - a)  # exact for steps of dt: the low-pass has already taken in a share a of the newest nu
-        X, Y, N = physics.force_for(lam * (nu[0] - low[0]) - low[3], lam * (nu[1] - low[1]) - low[4], lam * (nu[2] - low[2]) - low[5])
+        u, v, r = (lam * (y - f) - F for y, f, F in zip(nu, low[:3], low[3:6], strict=True))
+        X, Y, N = physics.force_for(u, v, r, k_m)
         self.unexplained = x, y, n = X / self.scale.X, Y / self.scale.Y, N / self.scale.N
         self._heard_s += dt
         self.ready = self._heard_s > SETTLED / self.lam

@@ -14,6 +14,7 @@ from twin.physics.ship import Ship
 from twin.physics.state import Rates, Situation
 
 FIELDS = tuple(f.name for f in fields(Situation) if f.name not in ("t", "u_dot", "v_dot"))
+OWN = ("r", "wind_speed", "wind_to")  # derived, these come from what the faults were taken off already
 
 
 class KnownFaults:
@@ -40,6 +41,6 @@ class KnownFaults:
                 read = fault.read(read, self.ship)
         for name in FIELDS:
             said, is_so = getattr(read, name), getattr(true, name)
-            if name in si and said != is_so:
+            if name in si and said != is_so and not (name in OWN and name in measured.derived):
                 si[name] -= turn(said - is_so) if name == "psi" else said - is_so
         return measured

@@ -13,7 +13,7 @@ from math import ceil, degrees, hypot
 from typing import NamedTuple
 
 from twin.live.derive import turn
-from twin.live.dynamics import INPUTS, Known
+from twin.live.dynamics import INPUTS, Known, Steering
 from twin.live.loop import Loop
 from twin.live.predict import STEP, LearnedAt, Middle, carry
 from twin.physics.state import Situation
@@ -33,6 +33,7 @@ class Start(NamedTuple):
     situation: Situation
     physics: Known
     learned: LearnedAt
+    steering: Steering | None
 
 
 class Foresight:
@@ -58,7 +59,8 @@ class Foresight:
         elif now_s >= self._next_start:
             self._next_start = now_s + self.every_s
             known_now = self.loop.learned.as_known_now()
-            start = Start(now_s, replace(seen.situation), self.loop.dynamics.now, lambda s, f: known_now.at(s, f).force)
+            dynamics = self.loop.dynamics
+            start = Start(now_s, replace(seen.situation), dynamics.now, lambda s, f: known_now.at(s, f).force, dynamics.steering())
             self._starts.append(start)
 
     def judged(self) -> list[Sight]:
@@ -73,24 +75,26 @@ class Foresight:
 
     def _sail(self, start: Start) -> dict[float, tuple[float, float]]:
         """(position error [m], heading error [deg]) after each horizon."""
-        s, found, middle = replace(start.situation), {}, Middle()
+        s, found, middle, steering = replace(start.situation), {}, Middle(), start.steering
         course = [(t, si) for t, si in self._course if start.time_s <= t <= start.time_s + self.horizons_s[-1] + 2.0 * self.step_s]
         left = list(self.horizons_s)
         for (t, si), (t_next, si_next) in itertools.pairwise(course):
             for name in INPUTS:
                 if name in si:
                     setattr(s, name, si[name])
+            if steering:
+                steering.order = si.get("delta", steering.order)
             if t_next - t > 5.0:
                 break
             while left and start.time_s + left[0] <= t_next + 1e-6:
                 there = replace(s)
-                carry(there, start.physics, start.learned, start.time_s + left[0] - t, copy(middle))
+                carry(there, start.physics, start.learned, start.time_s + left[0] - t, copy(middle), steering and steering.copy())
                 if error := _error(there, si, si_next, (start.time_s + left[0] - t) / (t_next - t)):
                     found[left[0]] = error
                 left.pop(0)
             steps = ceil((t_next - t) / self.step_s)
             for _ in range(steps):
-                carry(s, start.physics, start.learned, (t_next - t) / steps, middle)
+                carry(s, start.physics, start.learned, (t_next - t) / steps, middle, steering)
         return found
 
 

@@ -76,7 +76,7 @@ class Gate:
         """Whether less than 60 % of the usual samples arrive."""
         if self.samples < 3 * LEARN or not 0.0 < self.interval_s < 1.0:
             return False
-        return self._rate / exp((now_s - self._rate_s) / WINDOW_S) < 0.6 / self.interval_s
+        return self._rate * exp((self._rate_s - now_s) / WINDOW_S) < 0.6 / self.interval_s
 
     def _judge(self, reading: Reading, t: float, motion: float) -> Quality:
         if not self.low <= reading.value <= self.high:

@@ -55,9 +55,11 @@ class Guard:
         hold_s = hold_s or 3.0 * T
         self._worse = Held(hold_s)
         self._broken = Held(hold_s)
+        self._bound = Held(hold_s)
         self._clipped = Held(hold_s)
+        self._back = Held(hold_s)
         self._clipped_share = 0.0
-        self._bad = self._outside = ""
+        self._bad = self._outside = self._unproved = ""
         self._reckoning_since: float | None = None
         self._announced: list[tuple[float, str]] = []
 
@@ -70,15 +72,17 @@ class Guard:
         if not estimate.ready:
             return Verdict(STARTING, [_waiting(measured), *said], False, "no estimate yet")
         lost = _lost(measured)
+        away = self._back.feed(lost, measured.now_s)
         if lost:
             return self._reckon(measured.now_s, lost, said)
         self._reckoning_since = None
-        off = self._off(measured.now_s, dt)
+        off = self._off(measured.now_s, dt) or ([f"learned force off: {away} until just now"] if away else [])
         frozen = odd[0] if odd else next((text for text in sensors if _matters(text)), "")
         return Verdict(PHYSICS if off else HYBRID, [*off, *([self._outside] if self._outside else []), *said], not off, frozen)
 
-    def note(self, learned: Learned, dt: float) -> None:
-        """How the learned force came out in this tick; it counts in the next."""
+    def note(self, learned: Learned, dt: float, unproved: str = "") -> None:
+        """How the learned force came out in this tick, and what broke the certificate in the last one; it counts in the next."""
+        self._unproved = unproved
         share = min(dt / 10.0, 0.5)
         self._clipped_share += share * (learned.clipped - self._clipped_share)
         self._bad = learned.why if learned.weight == 0.0 and learned.why and not any(learned.shadow) else ""
@@ -97,6 +101,7 @@ class Guard:
             self._broken.feed(self._bad if broken else "", now_s),
             self._clipped.feed("the learned force stays at its bound" if self._clipped_share > CLIPPED_SHARE else "", now_s),
             self._bad if not broken else "",
+            self._bound.feed(self._unproved, now_s),
         ]
         return [f"learned force off: {why}" for why in reasons if why]
 

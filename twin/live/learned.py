@@ -114,7 +114,7 @@ class LearnedForce:
         if named:
             columns = named.columns.at(s, forces, physics, learned.force)
             regressors = [*regressors, *columns, *named.shift(columns)]
-        evidence.feed(nu, physics.rates_of(s, forces), learned.shadow, learned.trained, regressors, physics, dt)
+        evidence.feed(nu, physics.rates_of(s, forces), learned.shadow, learned.trained, regressors, physics, dt, s.k_m)
         if adaptation:
             frozen = frozen or ("" if evidence.ready else "has just begun")
             dx, dy, dn = evidence.unexplained

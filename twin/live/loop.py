@@ -88,11 +88,13 @@ class Loop:
         situation, physics, forces = self.dynamics.known(estimate, measured)
         verdict = self.guard.judge(measured, estimate, self.sensors.reasons(), dt)
         learned = self.learned.at(situation, forces, verdict.use_learned)
-        self.guard.note(learned, dt)
+        self.guard.note(learned, dt, self.stabilizer.broken)
         self.learned.learn(measured_nu(measured), situation, forces, learned, physics, dt, verdict.frozen)
         self.dynamics.adopt(self.learned.effects)
         self.observer.steer(self.dynamics.ahead(situation, forces, learned.force, self.period_s))
-        ahead = self.predictor.advance(instant.time_s, estimate, situation, physics, self.learned_at(verdict.use_learned), verdict.mode != INVALID)
+        ahead = self.predictor.advance(
+            instant.time_s, estimate, situation, physics, self.learned_at(verdict.use_learned), verdict.mode != INVALID, self.dynamics.steering
+        )
         certified = self.stabilizer.step(self.observer, measured, situation)
         tick = self.publisher.tick(
             instant, self.pace, verdict._replace(reasons=self._all_reasons(verdict.reasons, instant)), measured,

@@ -8,6 +8,7 @@ from typing import Any
 
 from twin.physics import core
 from twin.physics.model import Model
+from twin.physics.ship import Ship
 
 from . import comparison as c3
 from .comparison import AXES, Matrix, Row
@@ -92,6 +93,16 @@ def _size(x: Any) -> float:
     """The greatest |x|, of a number or of one that lies in an interval."""
     x = getattr(x, "value", x)
     return float(getattr(x, "magnitude", abs(x)))
+
+
+HEADING_NOISE = 0.005  # rad: three deviations of a usual compass
+
+
+def usual_noise(ship: Ship) -> Row:
+    """Three deviations of what usual instruments of a ship of this size and speed read wrongly [m/s, m/s, rad/s]: a log to 0.15 m/s or
+    4 % of U_0, a rate of turn to 0.0005 rad/s or 1 % of U_0/L."""
+    speed = min(0.15, 0.04 * ship.U_0)
+    return (speed, speed, max(5e-4, 0.0106 * ship.U_0 / ship.L_pp))
 
 
 def usual_disturbance(model: Model) -> Disturbance:

@@ -6,17 +6,18 @@ Each pair is two slow sums, k = sum(a b)/sum(b b) over a few ship lengths; a fac
 a name.
 """
 
+from collections.abc import Sequence
 from math import sqrt
 
 from twin.live.derive import turn
 from twin.live.measured import Measured
 from twin.physics.ship import Ship
 
-FACTORS = (
-    (-1.0, "has the wrong sign"), (57.2958, "is in degrees where radians were meant"),
+TURNS = (
+    (-1.0, "has the wrong sign"), (60.0, "is per minute"), (57.2958, "is in degrees where radians were meant"),
     (0.0174533, "is in radians where degrees were meant"),
-    (60.0, "is per minute"), (1.943844, "is in knots"), (0.514444, "was converted from knots twice"),
 )  # fmt: skip
+SPEEDS = ((1.943844, "is in knots"), (0.514444, "was converted from knots twice"))
 
 
 class Pair:
@@ -89,20 +90,18 @@ class Plausibility:
 
     def reasons(self) -> list[str]:
         said = []
-        for pair, what in (
-            (self._turn, "yaw_rate_degps against the turning heading"),
-            (self._speed, "speed over ground against the positions"),
+        for pair, what, mistakes in (
+            (self._turn, "yaw_rate_degps against the turning heading", TURNS),
+            (self._speed, "speed over ground against the positions", SPEEDS),
         ):
-            if pair.judged and (word := _word(pair.factor())):
+            if pair.judged and (word := _word(pair.factor(), mistakes)):
                 said.append(f"{what}: it {word} (factor {pair.factor():.3g})")
         if self._helm.judged and self._helm.correlation() < -0.3:
             said.append("yaw_rate_degps against rudder_angle_deg: she turns against her rudder; one of the two has the wrong sign")
         return said
 
 
-def _word(factor: float) -> str:
-    """What a factor that should be 1 looks like; "" when it may be 1."""
-    for value, word in FACTORS:
-        if abs(factor / value - 1.0) < 0.2:
-            return word
-    return "" if 0.6 < factor < 1.6 else "does not fit"
+def _word(factor: float, mistakes: Sequence[tuple[float, str]]) -> str:
+    """The mistake whose factor is nearest; "" when it may be 1."""
+    off, word = min((abs(factor / value - 1.0), word) for value, word in mistakes)
+    return word if off < 0.2 else "" if 0.6 < factor < 1.6 else "does not fit"

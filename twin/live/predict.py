@@ -13,7 +13,7 @@ from math import ceil, exp, hypot, log, pi
 from typing import NamedTuple
 
 from twin.live.derive import turn
-from twin.live.dynamics import Forces, Known
+from twin.live.dynamics import Forces, Known, Steering
 from twin.live.estimate import Estimate
 from twin.physics.maths import cos, sin
 from twin.physics.ship import Ship
@@ -56,8 +56,11 @@ class Predictor:
         self._round: Round | None = None
         self._due: dict[float, deque[tuple[float, tuple[float, ...]]]] = {h: deque(maxlen=1024) for h in self.horizons_s}
 
-    def advance(self, now_s: float, e: Estimate, s: Situation, physics: Known, learned: LearnedAt, good: bool) -> list[Prediction]:
-        """Check what fell due, then carry the present round on by a few steps."""
+    def advance(
+        self, now_s: float, e: Estimate, s: Situation, physics: Known, learned: LearnedAt, good: bool,
+        steering: Callable[[], Steering | None] = lambda: None,
+    ) -> list[Prediction]:  # fmt: skip
+        """Check what fell due, then carry the present round on by a few steps; `steering` gives the gear as a new round finds it."""
         if not (e.ready and good):
             self._round = None
             for waiting in self._due.values():
@@ -65,7 +68,7 @@ class Predictor:
             return []
         self._check(now_s, e)
         if self._round is None:
-            self._round = Round(now_s, e, replace(s), physics, self.step_s, [h + self.lead_s for h in self.horizons_s])
+            self._round = Round(now_s, e, replace(s), physics, self.step_s, [h + self.lead_s for h in self.horizons_s], steering())
         self._credit += self.steps_a_tick
         try:
             done = self._round.run(int(self._credit), learned)
@@ -102,10 +105,12 @@ class Lost(Exception):
 class Round:
     """One prediction under way, to a few moments ahead of its start."""
 
-    def __init__(self, start_s: float, e: Estimate, s: Situation, physics: Known, step_s: float, moments_s: list[float]):
+    def __init__(
+        self, start_s: float, e: Estimate, s: Situation, physics: Known, step_s: float, moments_s: list[float], steering: Steering | None = None
+    ):
         self.start_s, self.sigma, self.step_s = start_s, e.sigma, step_s
         self._s, self._physics, self._moments_s = s, physics, moments_s
-        self._ahead_s = 0.0
+        self._ahead_s, self._steering = 0.0, steering
         self._middle = Middle()
         self._done: list[tuple[float, ...]] = []
 
@@ -116,7 +121,7 @@ class Round:
                 break
             left_s = self._moments_s[len(self._done)] - self._ahead_s
             step_s = min(self.step_s, left_s)
-            carry(self._s, self._physics, learned, step_s, self._middle)
+            carry(self._s, self._physics, learned, step_s, self._middle, self._steering)
             if not (abs(self._s.u) + abs(self._s.v) < ABSURD_MPS and abs(self._s.r) < ABSURD_RADPS):
                 raise Lost
             self._ahead_s += step_s
@@ -140,9 +145,11 @@ class Middle:
         return Force(*[f + by * (f - b) for f, b in zip(force, before, strict=True)])
 
 
-def carry(s: Situation, physics: Known, learned: LearnedAt, h: float, middle: Middle) -> None:
+def carry(s: Situation, physics: Known, learned: LearnedAt, h: float, middle: Middle, steering: Steering | None = None) -> None:
     """Puts s h seconds on: nu by one Runge-Kutta step, eta along the mean of old and new nu; learned force
-    that of the step's middle."""
+    that of the step's middle, the rudder where a slow gear has it by then."""
+    if steering:
+        s.delta = steering.at(s.t)
     forces = physics.forces(s)
     rates = physics.far_rates(s, forces, middle.of(learned(s, forces), h), h)
     u, v, r = s.u + h * rates.u, s.v + h * rates.v, s.r + h * rates.r

@@ -6,10 +6,12 @@ from math import hypot
 from twin.live.estimate import Observer
 from twin.live.measured import Measured
 from twin.live.publish import Certified
-from twin.live.tube import Tube
+from twin.live.tube import STILL, Tube
 from twin.physics.state import Situation
 
 NU = ("u", "v", "r")
+MEMORY = 100.0  # ticks with a measurement over which it is counted how often they contradict the bound
+SURPRISED = 0.1  # share of them from which it does not hold
 
 USELESS = 1e3  # m/s: a bound above every speed at sea
 
@@ -21,6 +23,7 @@ class Stabilizer:
     def __init__(self, tube: Tube | None = None, why_not: str = "no certificate"):
         self.tube, self.why_not = tube, why_not
         self._restarts = -1
+        self._surprised = dict.fromkeys(NU, 0.0)
         self.outside: str | None = why_not
 
     def step(self, observer: Observer, measured: Measured, s: Situation) -> Certified:
@@ -32,14 +35,31 @@ class Stabilizer:
             tube.reset()
             self._restarts = observer.restarts
         got = tuple([observer.received[a] and self._in_time(a, measured, tube) for a in NU])
-        beta = tube.step(got, measured.si.get("H_s", 0.0))  # type: ignore[arg-type]
+        self._watch(observer, got, tube)
+        pulled = tuple([0.0 if g else observer.pulled[a] for a, g in zip(NU, got, strict=True)])
+        beta = tube.step(got, measured.si.get("H_s", 0.0), pulled if any(pulled) else STILL)  # type: ignore[arg-type]
         self.outside = tube.outside(s)
         certificate = tube.certificate
         bound = hypot(beta[0], beta[1])
-        if not bound < USELESS:  # a tube that no gain holds widens for ever: it says nothing, and begins anew
-            tube.reset()
+        if not bound < USELESS:  # says nothing; with measurements it comes back by itself
             return Certified(certificate.margin, USELESS, False)
-        return Certified(certificate.margin, bound, certificate.ok and self.outside is None)
+        return Certified(certificate.margin, bound, certificate.ok and self.outside is None and not self.broken)
+
+    @property
+    def broken(self) -> str:
+        """What shows that the promise's conditions do not hold; "" when nothing does, or nothing was promised."""
+        if self.tube is None or not self.tube.certificate.ok:
+            return ""
+        axis = next((a for a, share in self._surprised.items() if share > SURPRISED), "")
+        return f"{axis} is measured farther from the estimate than its bound allows" if axis else ""
+
+    def _watch(self, observer: Observer, got: tuple[bool, ...], tube: Tube) -> None:
+        """How often an accepted sample lies farther from the estimate than bound and noise allow: one in many may, a row of them tells
+        of a larger disturbance or a worse sensor than was assumed."""
+        for axis, accepted, most, noise in zip(NU, got, tube.widest, tube.certificate.noise, strict=True):
+            if accepted:
+                off = abs(observer.innovation[axis]) > most + noise
+                self._surprised[axis] += (off - self._surprised[axis]) / MEMORY
 
     def _in_time(self, attribute: str, measured: Measured, tube: Tube) -> bool:
         """Measured by its own instrument, and not older than the certificate allows."""

@@ -113,6 +113,11 @@ class Tube:
             for i in (0, 1, 2)
         )
 
+    @property
+    def widest(self) -> Three:
+        """The greatest bound of the window that a measurement of greatest age looks back on."""
+        return self._widest
+
     def inside(self, s: Situation) -> bool:
         """True when the ship is surely in the operating set: the estimate, widened by its bound, and every
         measured input.

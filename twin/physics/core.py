@@ -141,6 +141,12 @@ def rudder(u: Number, v: Number, r: Number, delta: Number, thrust: Number, c: Co
     return -c.drag_R * normal * si, c.side_R * athwart, c.lever_R * athwart
 
 
+def force_for(u_dot: Number, v_dot: Number, r_dot: Number, c: Coefficients, k_m: Number = 0.0) -> Tau:
+    """M nu_dot: the force that an acceleration takes, the other way round of `accelerations`."""
+    m_v, m_r = c.m_v - k_m * c.Y_vdot, c.m_r - k_m * c.N_rdot
+    return c.m_u * u_dot, m_v * v_dot + c.m_vr * r_dot, c.m_rv * v_dot + m_r * r_dot
+
+
 def accelerations(X: Number, Y: Number, N: Number, c: Coefficients, k_m: Number = 0.0) -> Tau:
     """M^-1 tau by components: surge stands alone, sway and yaw are a 2 x 2 system. k_m: growth of their added mass, as a share."""
     m_v, m_r = c.m_v - k_m * c.Y_vdot, c.m_r - k_m * c.N_rdot

@@ -31,8 +31,8 @@ OPTIONS: tuple[tuple[str, str, float, float], ...] = (
     ("propellers", "how many propellers turn alike; default 1", 1.0, 4.0),
     ("propeller-diameter-m", "diameter of each propeller", 0.005, 15.0),
     ("pitch-ratio", "propeller pitch over diameter", 0.3, 2.0),
-    ("rudder-area-m2", "moveable area of all rudders", 1e-5, 250.0),
-    ("rudder-height-m", "rudder height", 0.005, 20.0),
+    ("rudder-area-m2", "moveable area of all rudders, one behind each propeller", 1e-5, 250.0),
+    ("rudder-height-m", "height of each rudder", 0.005, 20.0),
     ("frontal-area-m2", "frontal area above the water", 1e-4, 5000.0),
     ("lateral-area-m2", "lateral area above the water", 1e-4, 20000.0),
 )
@@ -151,10 +151,12 @@ def _derivatives(h: reg.Hull, p: Numbers, given: Given) -> Numbers:
     source = {"X_vr": "HAS80; LSQ"} | dict.fromkeys(("X_vv", "X_rr"), "YM12; LSQ")
     out |= {k: (v, source.get(k, "CGH83; KIJ90; YM12; LSQ")) for k, v in modulus_form(polynomial, m_x, m_y).items()}
     out["X_uu"] = (-polynomial["R0"], "ITTC57")
-    height = given["rudder-height-m"] or min(0.7 * h.T, (2.2 * p["A_R"][0]) ** 0.5)
-    out |= reg.steering(h, height**2 / p["A_R"][0])
+    count = _propellers(given)
+    blade = p["A_R"][0] / count  # of one rudder: there is one behind each propeller
+    height = given["rudder-height-m"] or min(0.7 * h.T, (2.2 * blade) ** 0.5)
+    out |= reg.steering(h, height**2 / blade)
     pitch = _pitch_ratio(h, p, given, out)
-    one, eta, count = reg.propulsion(h, pitch), min(1.0, p["D_P"][0] / height), _propellers(given)
+    one, eta = reg.propulsion(h, pitch), min(1.0, p["D_P"][0] / height)
     epsilon, kappa = slipstream(one["K_T0"][0], one["K_T1"][0], 1.02, 0.6 / 1.02, eta)
     out |= _all_screws(h, pitch, count) | {"epsilon": (epsilon, "MAT80; LSQ"), "kappa": (kappa / count, "MAT80; LSQ")}
     return {k: (float(f"{v:.5g}") + 0.0, s) for k, (v, s) in out.items()}

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from twin.physics import core
 from twin.physics.effects.current import Current
 from twin.physics.model import Model
 from twin.physics.state import Force, Situation
@@ -144,12 +145,8 @@ class _Slow:
     def force(self, model: Model, step: np.ndarray) -> Force:
         """(3 W,) the force that gives this acceleration; none on the first two runs."""
         self.b = self.keep * self.b + np.sqrt(1.0 - self.keep**2) * self.rng.standard_normal(self.b.shape)
-        a, none, c = self.b * self.size[step].T, np.zeros(2 * step.size), model.c
-        return Force(
-            np.append(none, c.m_u * a[0]),
-            np.append(none, c.m_v * a[1] + c.m_vr * a[2]),
-            np.append(none, c.m_rv * a[1] + c.m_r * a[2]),
-        )
+        none, (u, v, r) = np.zeros(2 * step.size), self.b * self.size[step].T
+        return Force(*(np.append(none, f) for f in core.force_for(u, v, r, model.c)))
 
 
 def _slow(track: Track, model: Model, floor: Floor | None, start: np.ndarray, rng: np.random.Generator) -> _Slow | None:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from twin.physics import core
 from twin.physics.model import Model
 
 from .respond import lagged
@@ -50,12 +51,13 @@ def _energy(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray, np.ndar
     physics = replace(model, residual=None)
     known = physics.known(s)
     rates = np.column_stack([np.broadcast_to(a, track.t.shape) for a in physics.nu_dot(s)])
+    k_m = float(np.mean(s.k_m))
     learned = np.zeros_like(rates)
     if model.residual is not None:
         learned = np.column_stack([np.broadcast_to(f, track.t.shape) for f in model.residual(s)])
     noise = noisy(track, model, np.random.default_rng(0))[:, 3:]
-    missing = _force(_slope(state[:, 3:], track.h, width) - _mean(rates, width), model) - _mean(learned, width)
-    shaken = _force(_slope(noise, track.h, width), model)
+    missing = _force(_slope(state[:, 3:], track.h, width) - _mean(rates, width), model, k_m) - _mean(learned, width)
+    shaken = _force(_slope(noise, track.h, width), model, k_m)
     whole = _mean(track.whole[:, None].astype(float), width) > 0.999
     each = np.array([sum(np.broadcast_to(np.square(f[i]), track.t.shape)[track.whole].sum() for f in known.values()) for i in range(3)])
     square = np.where(whole, np.square(missing) - np.square(shaken), 0.0)
@@ -73,6 +75,6 @@ def _mean(values: np.ndarray, width: int) -> np.ndarray:
     return (total[width:] - total[:-width]) / width
 
 
-def _force(a: np.ndarray, model: Model) -> np.ndarray:
-    c = model.c
-    return np.column_stack([c.m_u * a[:, 0], c.m_v * a[:, 1] + c.m_vr * a[:, 2], c.m_rv * a[:, 1] + c.m_r * a[:, 2]])
+def _force(a: np.ndarray, model: Model, k_m: float) -> np.ndarray:
+    u, v, r = a.T
+    return np.column_stack(core.force_for(u, v, r, model.c, k_m))

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from twin.physics import core
 from twin.physics.model import Model
 
 from .case import WORLDS, Case
@@ -121,7 +122,8 @@ def typical_force(case: Case, model: Model, name: str) -> dict[str, float]:
     total, count = np.zeros(3), 0
     for track in case.tracks:
         a, b = (respond(track, m.without_inputs(track.missing())[0])[0] for m in (model, without))
-        total, count = total + ((a - b) ** 2).sum(0), count + len(track)
-    c = model.c
-    X, Y, N = np.sqrt(total / max(count, 1)) * (float(c.m_u), float(c.m_v), float(c.m_r))
+        u, v, r = (a - b).T
+        force = np.column_stack(core.force_for(u, v, r, model.c))
+        total, count = total + (force**2).sum(0), count + len(track)
+    X, Y, N = np.sqrt(total / max(count, 1))
     return {"X_N": float(X), "Y_N": float(Y), "N_Nm": float(N)}

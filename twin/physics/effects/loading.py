@@ -8,10 +8,12 @@ m, the resistance with the wetted surface 1.7 L T + C_b L B. Derivatives are sto
 from dataclasses import replace
 
 from twin.physics.effect import Force, param
+from twin.physics.maths import maximum
 from twin.physics.particulars import Ship
 from twin.physics.state import Number
 
 SLENDER = ("Y_vdot", "Y_rdot", "N_vdot", "N_rdot", "Y_uv", "Y_ur", "N_uv", "N_ur")  # prime value grows with T
+LEAST = 0.2  # share of the area above the water that stays: superstructure, however deep she lies
 
 
 class Loading(Force):
@@ -39,7 +41,7 @@ class Loading(Force):
             T=ship.T * k,
             x_G=x_G,
             I_z=ship.I_z * (1.0 + self.mass) + m * (x_G * x_G - ship.x_G * ship.x_G),
-            A_F=None if ship.A_F is None else ship.A_F - ship.B * dry,
-            A_L=None if ship.A_L is None else ship.A_L - ship.L_pp * dry,
+            A_F=None if ship.A_F is None else maximum(ship.A_F - ship.B * dry, LEAST * ship.A_F),
+            A_L=None if ship.A_L is None else maximum(ship.A_L - ship.L_pp * dry, LEAST * ship.A_L),
             derivatives=replace(d, **primes),
         )

@@ -2,7 +2,7 @@
 
     V(t) = V_0 + sum_k (a_k cos(w_k t) + b_k sin(w_k t)),   w_k = 2 pi k / 3600 s,  k = 1, 2, 3
 Linear in every number; slower than 20 min within a voyage of an hour, and bounded ever after (it repeats, which is
-all that can be promised of a stream that was not forecast: on board the adaptation re-learns it).
+all that can be promised of a stream that was not forecast: on board the observer's own filter follows the whole stream).
 """
 
 from math import pi
