@@ -117,7 +117,7 @@ def _worked_out(*arguments: object) -> str:
 
 
 def certificate_file(settings: Settings) -> Path:
-    """As the settings say, else in the state folder, else in the folder for temporary files of this user."""
+    """As the settings say, else in the state folder, else in ~/.cache/shiptwin, under the ship file's name."""
     if settings["observer.certificate"]:
         return Path(settings["observer.certificate"])
     if settings["state.folder"]:

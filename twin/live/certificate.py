@@ -1,7 +1,7 @@
 """The stabilizer's certificate: how far the observer's error can go, worked out from the ship's own numbers
 before she sails.
 
-`certify` at start (or `kept`, which looks it up in a file beside the ship), `Tube.step` once a tick.
+`certify` at start (or `kept`, which looks it up in a file), `Tube.step` once a tick.
 Assumptions, proof and what is not promised: docs/stability.md. Plain floats; only the sure bounds of the
 slopes need numpy, and only when they are not on file.
 """

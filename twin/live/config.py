@@ -63,7 +63,7 @@ KEYS: tuple[Key, ...] = (
         "observer.certificate",
         str,
         "",
-        'where the certificate is kept, "" for beside the ship file or in state.folder',
+        'where the certificate is kept, "" for state.folder, or without one ~/.cache/shiptwin',
     ),
     Key(
         "residual.file",

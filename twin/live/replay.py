@@ -48,7 +48,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         _write_json(summary, args.json)
     if args.json != "-":
-        print("\n".join(told(summary, args)))
+        print("\n".join(told(summary, args, settings["ship.file"])))
     return 0
 
 
@@ -119,8 +119,8 @@ def _without_numbers(reason: str) -> str:
     return reason.partition(", for ")[0].partition(" = ")[0]
 
 
-def told(s: Summary, args: argparse.Namespace) -> list[str]:
-    """The summary for people, with the next command."""
+def told(s: Summary, args: argparse.Namespace, ship: str) -> list[str]:
+    """The summary for people, with the next command; `ship`: the file that was used."""
     lines = [f"{s.log}: {s.kind}, {s.duration_s:.0f} s, {s.ticks} ticks with {s.ship}; {s.rejected} samples refused"]
     lines.append("modes: " + ", ".join(f"{mode} {100 * n / s.ticks:.0f} %" for mode, n in s.modes.items()))
     lines += [f"  {n:6d} ticks: {reason}" for reason, n in s.reasons.items()]
@@ -130,8 +130,7 @@ def told(s: Summary, args: argparse.Namespace) -> list[str]:
             f"  {f.horizon_s:4.0f} s: position {f.position_m:7.2f} m, heading {f.heading_deg:6.2f} deg ({f.windows} starts)" for f in s.foresight
         ]
     lines += [f"note: {note}" for note in s.notes]
-    ship = f" --ship {args.ship}" if args.ship else " --ship kvlcc2"
-    return [*lines, f"next: twin compare {args.output or args.log}{ship}"]
+    return [*lines, f"next: twin compare {args.output or args.log} --ship {ship}"]
 
 
 def _write_json(summary: Summary, path: str) -> None:

@@ -88,7 +88,7 @@ def calibrate(
         ],
         "unexcited": unexcited,
         "fitted_by": by,
-        "usual": _told_usual(after, usual),
+        "usual": _told_usual(after, usual), "between_voyages": usual["between_voyages"],
         "floor": asdict(floor), "temper": temper, "by_regime": regimes,
         "held_out": [b | {"before_m": a["position_m"], "before_deg": a["heading_deg"]} for a, b in zip(before, behind, strict=True)],
     }  # fmt: skip
@@ -247,7 +247,8 @@ def run(args: argparse.Namespace) -> int:
         done = _with_all(done, calibrate(read_all(args.voyages, ship), held_out, ship, tell, done.result["fitted_by"]))
     save(done.ship, args.output)
     r = done.result
-    result = r | {"held_out_is": words, "output": str(args.output), "doubts": doubts(r["derivatives"], r["held_out"], r["floor"]["share"])}
+    found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
+    result = r | {"held_out_is": words, "output": str(args.output), "doubts": found}
     if args.json:
         write_json(result, args.json)
     page = sys.stderr if args.json == "-" else sys.stdout

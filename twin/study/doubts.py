@@ -1,18 +1,24 @@
 """What is doubtful about a calibration, in words an owner can act on."""
 
 from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 from typing import Any
 
 from twin.physics.ship import DERIVATIVES
 
 EDGE = 1e-6  # of the box: a value nearer than this to its end was stopped by it
 LARGE = 0.25  # share of the forces at work that is much to leave unexplained
+BLIND = 1.0  # widths of its prior by which an effect's number may differ between healthy voyages and still be seen
 AXES = ("surge", "sway", "yaw")
 
 
-def doubts(derivatives: Sequence[Mapping[str, Any]], held_out: Sequence[Mapping[str, Any]], share: Sequence[float]) -> list[str]:
-    """Sentences; none when the calibration is as it should be."""
-    return [*_stopped(derivatives), *_no_better(held_out), *_coarse(share)]
+def doubts(
+    derivatives: Sequence[Mapping[str, Any]], held_out: Sequence[Mapping[str, Any]], share: Sequence[float],
+    usual: Sequence[Mapping[str, Any]] = (), between: Mapping[str, float] = MappingProxyType({}),
+) -> list[str]:  # fmt: skip
+    """Sentences; none when the calibration is as it should be. `usual`: lasting effects that she shows; `between`: by how many widths of
+    their priors numbers differ from voyage to voyage."""
+    return [*_stopped(derivatives), *_no_better(held_out), *_coarse(share), *_ordered(usual), *_blind(between)]
 
 
 def _stopped(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -57,3 +63,21 @@ def _coarse(share: Sequence[float]) -> list[str]:
     return [
         f"{', '.join(large)} of the forces at work stays unexplained, and no smaller effect will be named: more, or calmer, reference voyages help"
     ]
+
+
+def _ordered(usual: Sequence[Mapping[str, Any]]) -> list[str]:
+    """The ship turns later than the rudder that was recorded: then that is its order."""
+    if not any(u["name"].startswith("SteeringLag.") for u in usual):
+        return []
+    return [
+        "the ship answers later than rudder_angle_deg, as if that were the order and not the rudder itself: record the feedback if you can, "
+        "else the gear hides in the derivatives, and a fault of rudder or gear is hard to see"
+    ]
+
+
+def _blind(between: Mapping[str, float]) -> list[str]:
+    large = {label: widths for label, widths in between.items() if widths >= BLIND and not label.startswith(("core.", "form.", "late."))}
+    if not large:
+        return []
+    told = ", ".join(f"{label} ({widths:.1f} times its usual width)" for label, widths in large.items())
+    return [f"{told} differs so much between these voyages that a fault of its kind will hardly be seen: was something wrong on one of them?"]

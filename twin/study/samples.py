@@ -7,6 +7,7 @@ from twin.live.sentinels import CODES, GENERIC, IN_RANGE_TOO
 from twin.study.resample import continuous
 
 FEWEST = 20  # samples, to know what is usual
+USUAL = 0.97  # share of the steps from sample to sample that count as usual
 FAR_M = 1e5  # positions farther from zero than this count from another origin (UTM)
 
 
@@ -27,13 +28,26 @@ def plausible(name: str, values: np.ndarray, lines: np.ndarray) -> tuple[np.ndar
 
 
 def sentinel(name: str, values: np.ndarray) -> np.ndarray:
-    """True where a value is a known code for "not available"; the generic ones count only out of range."""
+    """True where a value is a known code for "not available"; the generic ones count only out of range, and none where the ship was about
+    to read it anyway."""
     ch = BY_NAME[name]
     with np.errstate(invalid="ignore"):
         out = ~((values >= ch.low) & (values <= ch.high)) & np.isin(values, GENERIC)
         for code in CODES[name]:
             out |= np.abs(values - code) <= abs(code) * IN_RANGE_TOO
-    return np.asarray(out)
+    return np.asarray(out) & ~_on_the_way(values, np.asarray(out))
+
+
+def _on_the_way(values: np.ndarray, codes: np.ndarray) -> np.ndarray:
+    """True where a value lies no more than three usual steps from the last or the next that is no code."""
+    at = np.flatnonzero(np.isfinite(values) & ~codes)
+    if at.size < FEWEST or not codes.any():
+        return np.zeros(values.shape, bool)
+    usual = 3.0 * float(np.quantile(np.abs(np.diff(values[at])), USUAL))
+    after = np.searchsorted(at, np.arange(values.size))
+    sides = (values[at[np.maximum(after - 1, 0)]], values[at[np.minimum(after, at.size - 1)]])
+    with np.errstate(invalid="ignore"):
+        return np.asarray(np.minimum(*(np.abs(values - side) for side in sides)) <= usual)
 
 
 def count(bad: np.ndarray, lines: np.ndarray) -> str:
