@@ -23,7 +23,6 @@ MAY_IMPORT = {
     "twin.study": {"twin.physics", "twin.live", "twin.study"},
     "export": {"twin.physics", "twin.live", "twin.study", "export"},
 }
-PHYSICS_MAY_LOAD = {"tomli_w"}  # to write a ship file, and only then
 ONLY_IN_EXPORT = {"torch"}
 NOT_ON_BOARD = {"torch", "scipy", "matplotlib", "pydantic", "filterpy", "sympy", "numpy", "twin.study"}
 
@@ -76,7 +75,7 @@ def test_nothing_in_twin_imports_export_bench_or_deploy():
 
 def test_physics_loads_no_library():
     """Expected: the standard library and the twin's own errors, nothing else."""
-    known = sys.stdlib_module_names | PHYSICS_MAY_LOAD | {"twin"}
+    known = sys.stdlib_module_names | {"twin"}
     wrong = [(p.name, m) for p in sources("twin.physics") for m in imports(p) if m.split(".")[0] not in known]
     assert not wrong
 

@@ -23,7 +23,10 @@ class Loading(Force):
 
     mass: float = param(0.2, unit="-", lo=-0.7, hi=0.6, sd=0.15, doc="mass beyond the model's, as a fraction of it")
     draught: float = param(0.15, unit="-", lo=-0.7, hi=0.6, sd=0.12, doc="draught beyond the model's, as a fraction of it")
-    x_G: float = param(0.0, unit="m", lo=-0.06, hi=0.06, sd=0.01, of="length", doc="shift of the centre of gravity, ahead positive")
+    x_G: float = param(
+        0.0, unit="m", lo=-0.06, hi=0.06, sd=0.01, of="length",
+        doc="shift of the centre of gravity as she steers, ahead positive: what a trim does to her lift is in it, so no loading computer's number",
+    )  # fmt: skip
 
     def alter(self, ship: Ship) -> Ship:
         m, k, x_G = ship.m * (1.0 + self.mass), 1.0 + self.draught, ship.x_G + self.x_G
