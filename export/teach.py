@@ -22,8 +22,6 @@ from .batches import Samples, Windows, input_names, samples, shuffled, windows, 
 from .data import Leg
 from .network import Residual, names_for
 
-SEEDS = (42, 123, 256, 512, 1024)
-LOSSES = ("paper", "acceleration", "rollout")
 Progress = Callable[[str, int, int, float, float], None]  # stage, epoch, epochs, loss, validation loss
 
 

@@ -81,7 +81,6 @@ def test_with_nothing_to_find_next_to_nothing_acts(worn):
         teach(adaptation, (0.0, 0.0), seconds=100, seed=part, start_s=100.0 * part)
         acted.append(max(map(abs, adaptation.named.acting())))
     assert max(acted) < 0.15 and sum(acted) / len(acted) < 0.03  # prior deviations
-    assert adaptation.named.effects == worn.effects or max(acted) > 0.01
 
 
 def test_what_only_follows_the_moment_stays_behind_the_gate(worn):

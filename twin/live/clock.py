@@ -9,8 +9,6 @@ import time
 from collections.abc import Callable, Iterable
 from typing import NamedTuple, Protocol
 
-WALL_STEP_S = 0.5  # a wall clock that moves this much against the monotonic one was set
-
 
 class Instant(NamedTuple):
     """One tick's time: `time_s` monotonic [s], `wall_s` UTC since 1970 [s]."""
@@ -20,7 +18,6 @@ class Instant(NamedTuple):
     wall_s: float
     late_s: float = 0.0  # how long after its deadline the tick woke
     skipped: int = 0  # periods missed just before this tick: counted, never made up
-    wall_step_s: float = 0.0  # not zero: the wall clock was set by this much since the last tick
 
 
 class Clock(Protocol):
@@ -53,7 +50,6 @@ class MonotonicClock:
         self._period = 0  # whole periods from the start to the next deadline
         self._index = 0
         self._woke_s = self._start_s - self.period_s
-        self._offset_s = wall() - self._start_s
 
     def wait(self) -> Instant:
         skipped = self._skip()
@@ -62,9 +58,7 @@ class MonotonicClock:
             self._sleep(left)
         now_s = self._monotonic()
         wall_s = self._wall()
-        instant = Instant(
-            self._index, now_s, wall_s, now_s - deadline, skipped, self._wall_step(wall_s - now_s)
-        )
+        instant = Instant(self._index, now_s, wall_s, now_s - deadline, skipped)
         self._index += 1
         self._period += 1
         self._woke_s = now_s
@@ -84,11 +78,6 @@ class MonotonicClock:
         self._period += behind
         self.overruns += behind
         return behind
-
-    def _wall_step(self, offset_s: float) -> float:
-        step_s = offset_s - self._offset_s
-        self._offset_s = offset_s
-        return step_s if abs(step_s) >= WALL_STEP_S else 0.0
 
 
 class ReplayClock:

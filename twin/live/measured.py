@@ -47,10 +47,6 @@ class Measured:
     def age_s(self, attribute: str) -> float:
         return self.now_s - self.time[attribute]
 
-    def since_s(self, attribute: str) -> float:
-        """Time since the newest sample arrived."""
-        return self.now_s - self.heard[attribute]
-
     def age_by_channel(self) -> Numbers:
         now_s = self.now_s
         return {name: now_s - t for name, t in self.taken.items()}

@@ -15,7 +15,6 @@ from twin.study.units import froude
 Columns = dict[str, np.ndarray]
 CHART = ("north_m", "east_m")
 HEADING = "heading_true_north_deg"
-SLOWEST_MPS = 1e-3  # below this a ship has no course
 
 
 def placed(time_s: np.ndarray, columns: Columns, by: Map) -> tuple[Columns, dict[str, Any], list[str]]:

@@ -9,7 +9,6 @@ from twin.physics.ship import Ship
 from twin.study.voyage import Voyage
 
 MOST_ROWS = 20_000
-MOVED_MPS = 0.02  # slower than this a ship lies still
 
 
 @dataclass(frozen=True)
