@@ -10,6 +10,7 @@ from typing import Any
 
 from google.protobuf.message import DecodeError
 
+from twin import whole
 from twin.cli import guarded
 from twin.errors import UsageError
 from twin.live import config, messages
@@ -104,5 +105,4 @@ def _tell(said: str, tick: Any, code: int, path: str | None) -> None:
     if path == "-":
         print(text)
     else:
-        with open(path, "w", encoding="utf-8") as file:
-            file.write(text + "\n")
+        whole.write(path, text + "\n", "--json")

@@ -9,6 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from twin import whole
 from twin.errors import DataError, SettingsError
 from twin.live import build, config
 from twin.live.clock import ReplayClock
@@ -143,6 +144,4 @@ def _write_json(summary: Summary, path: str) -> None:
     if path == "-":
         print(text)
         return
-    aside = Path(path).with_name(f".{Path(path).name}.part")
-    aside.write_text(text + "\n", encoding="utf-8")
-    aside.replace(path)
+    whole.write(path, text + "\n", "--json")

@@ -3,12 +3,10 @@
 import json
 import os
 import re
-import tempfile
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
-from twin.errors import SettingsError
+from twin import whole
 
 from .particulars import DERIVATIVES, PARTICULARS, Ship
 
@@ -89,11 +87,4 @@ def _inline(value: Any) -> str:
 
 def save(ship: Ship, path: str | os.PathLike[str]) -> None:
     """Write the ship file aside and rename it into place, so that no half file is ever seen."""
-    path, content = Path(path), text(to_table(ship))
-    try:
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=f".{path.name}.", delete=False, encoding="utf-8") as file:
-            file.write(content)
-        os.chmod(file.name, 0o644)
-        os.replace(file.name, path)
-    except OSError as error:
-        raise SettingsError(f"{path}: cannot be written ({error.strerror}). Choose another place with -o.") from None
+    whole.write(path, text(to_table(ship)))

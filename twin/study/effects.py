@@ -7,10 +7,9 @@ import os
 import shutil
 import sys
 import textwrap
-from pathlib import Path
 from typing import Any
 
-from twin.errors import SettingsError
+from twin import whole
 from twin.physics.effect import Effect, Param
 from twin.physics.effects import BUILT_IN, catalogue, find
 from twin.physics.ship import Ship, load
@@ -55,10 +54,7 @@ def _write(path: str, text: str) -> None:
     if path == "-":
         print(text)
         return
-    try:
-        Path(path).write_text(text.rstrip("\n") + "\n", encoding="utf-8")
-    except OSError as error:
-        raise SettingsError(f"{path}: cannot be written ({error.strerror}). Choose another place.") from None
+    whole.write(path, text.rstrip("\n") + "\n", "--json or --markdown")
 
 
 def sentence(effect: type[Effect]) -> str:

@@ -8,7 +8,8 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from twin.errors import DataError, SettingsError, TwinError, did_you_mean
+from twin import whole
+from twin.errors import DataError, SettingsError, did_you_mean
 from twin.physics.ship import load
 from twin.study.checks import CHECKS, Check, run_checks
 from twin.study.map_file import read_map
@@ -126,10 +127,4 @@ def write_json(result: dict[str, Any], path: str) -> None:
     if path == "-":
         print(text)
         return
-    aside = Path(f"{path}.{os.getpid()}.part")
-    try:
-        aside.write_text(text + "\n", encoding="utf-8")
-        os.replace(aside, path)
-    except OSError as error:
-        aside.unlink(missing_ok=True)
-        raise TwinError(f"{path}: cannot be written ({error.strerror}). Choose another place with --json.") from None
+    whole.write(path, text + "\n", "--json")

@@ -1,7 +1,6 @@
 """`twin init`: a first model of my ship from what its owner knows; every estimated number says where it comes from."""
 
 import argparse
-import json
 import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -14,6 +13,7 @@ from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship, save
 
 from . import regressions as reg
+from .import_voyage import write_json
 from .modulus import modulus_form, slipstream
 from .trial import shaft_speed, straight_line_stability, turning_circle, zigzag
 
@@ -59,10 +59,7 @@ def run(args: argparse.Namespace) -> int:
     print(summary(ship, figures, warnings), file=out)
     print(f"\nwritten: {args.output}\nnext:    twin calibrate CALM.mcap --ship {args.output} -o {_next(args.output)}", file=out)
     if args.json:
-        text = json.dumps(
-            {"schema_version": 1, "ship": ship.name, "file": str(args.output), "trial": figures, "warnings": warnings}, indent=2
-        )
-        print(text) if args.json == "-" else Path(args.json).write_text(text + "\n", encoding="utf-8")
+        write_json({"schema_version": 1, "ship": ship.name, "file": str(args.output), "trial": figures, "warnings": warnings}, args.json)
     return 0
 
 

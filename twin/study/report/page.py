@@ -2,13 +2,11 @@
 
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from importlib import resources
-from pathlib import Path
 from typing import Any
 
-from twin.errors import TwinError
+from twin import whole
 from twin.physics.model import Model
 
 from .. import locate, score
@@ -32,15 +30,7 @@ def write(
     `before`: the model without what was added. `voyages`: the recordings behind the tracks, in the same order; with them the
     page plots every sample instead of the grid's means.
     """
-    page = html(content(kind, result, tracks, model, before, voyages))
-    path = Path(path)
-    try:
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=f".{path.name}.", delete=False, encoding="utf-8") as file:
-            file.write(page)
-        os.chmod(file.name, 0o644)
-        os.replace(file.name, path)
-    except OSError as error:
-        raise TwinError(f"{path}: cannot be written ({error.strerror}). Choose another place with --report.") from None
+    whole.write(path, html(content(kind, result, tracks, model, before, voyages)), "--report")
 
 
 def content(
