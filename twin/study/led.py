@@ -42,11 +42,9 @@ class Led:
         return -2.0 * self.windows * float(np.log(max(error, floor) / floor))  # two directions, a normal error of unknown size
 
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """The same hypotheses with this evidence too, best first. Where one effect leads her there, two are a luxury; the less so the
-        more the path asks for them."""
-        alone = [2.0 * self.windows * float(np.log(max(f.off_m / f.floor_m, 1.0))) for s, f in self.found.items() if len(s) == 1]
-        luxury = max(0.0, LUXURY - min(alone, default=LUXURY))
-        extra = (self.log_probability(h) - luxury * (len(h.effects) > 1) for h in weighed)
+        """The same hypotheses with this evidence too, best first. Where one effect leads her there, two are a luxury."""
+        one = any(len(s) == 1 and f.off_m <= f.floor_m for s, f in self.found.items())
+        extra = (self.log_probability(h) - LUXURY * (one and len(h.effects) > 1) for h in weighed)
         return sorted((replace(h, log_evidence=h.log_evidence + e) for h, e in zip(weighed, extra, strict=True)), key=lambda h: -h.log_weight)
 
 

@@ -64,15 +64,6 @@ def test_a_second_effect_costs_more_where_one_leads_her_there_and_nothing_where_
         assert weighed["Wind", "Bank"] == pytest.approx(pair.log_evidence - cost)
 
 
-def test_what_the_path_asks_for_is_no_luxury_and_there_is_no_step_between():
-    pair, gains = says("Wind", "Bank"), []
-    for off in FLOOR_M * np.exp(np.array([0.0, 0.5, 1.0, 2.0]) * LUXURY / (2.0 * TEN)):
-        path = asked(nothing=20.0, Wind=off, Wind_Bank=7.0)
-        weighed = {h.effects: h.log_evidence for h in path.weigh([says("Wind"), pair])}
-        gains.append(weighed["Wind", "Bank"] - weighed[("Wind",)])
-    assert gains == pytest.approx([-LUXURY, 0.0, LUXURY, 2.0 * LUXURY])
-
-
 def test_a_stream_is_not_asked_for_in_hours_that_were_left_out(tanker, voyages):
     """Expected: the current's own numbers come from the other half, those of a stream that changes from the whole voyage."""
     case = assemble([voyages["Current"]], tanker)
