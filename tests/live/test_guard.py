@@ -1,12 +1,15 @@
-"""The ladder of modes: hybrid, physics only, dead reckoning, invalid; down at once, up only after a while."""
+"""The ladder of modes: hybrid, physics only, dead reckoning, invalid; down at once, and the learned force back only after a while."""
 
 import json
 
 import pytest
 
+from twin.live.certificate import Tube, certify
 from twin.live.guard import Held
 from twin.live.learned import LearnedForce
 from twin.live.residual import bundled, check, load
+from twin.live.stabilizer import Stabilizer
+from twin.physics.model import Model
 
 
 @pytest.fixture
@@ -68,7 +71,17 @@ def test_I23_without_the_rudder_it_is_dead_reckoning_and_nothing_is_learned(make
     tick = bridge.run(3.0, silent)[-1]
     assert tick.mode == "dead reckoning" and "no rudder_angle_deg" in tick.reasons[0]
     assert "rudder" in hybrid.adaptation.frozen
-    tick = bridge.run(1.0)[-1]
-    assert tick.mode == "physics only" and any("until just now" in reason for reason in tick.reasons)  # a step up takes three ship lengths
-    tick = bridge.run(3.2 * bridge.sailing.ship.L_pp / bridge.sailing.ship.U_0)[-1]
-    assert not any("until just now" in reason for reason in tick.reasons)
+    assert bridge.run(1.0)[-1].mode == "hybrid"
+
+
+def test_where_the_bound_is_contradicted_the_learned_force_rests_for_three_ship_lengths(kvlcc2, make_bridge, hybrid):
+    """Test: the log goes off by 1.5 m/s and stays. Expected: physics only, with the certificate's own reason, and no learned force."""
+    K = 12.0 * kvlcc2.U_0 / kvlcc2.L_pp
+    tube = Tube(certify(Model.of(kvlcc2), (K, K, K), 0.1, delay_samples=5))
+    bridge = make_bridge(loop={"stabilizer": Stabilizer(tube), "learned": hybrid})
+    bridge.run(30.0)
+    off = lambda readings, b: [r._replace(value=r.value + 1.5) if r.channel == "surge_velocity_mps" else r for r in readings]  # noqa: E731
+    ticks = bridge.run(20.0, off)
+    first = next(i for i, t in enumerate(ticks) if any("than its bound allows" in reason for reason in t.reasons))
+    assert not any(t.certificate.inside for t in ticks[first : first + 5])
+    assert ticks[-1].mode == "physics only" and any("than its bound allows" in reason for reason in ticks[-1].reasons)

@@ -1,5 +1,5 @@
-"""How much may be believed: the ladder of modes, each step down with its reasons in words, each step up
-only after a while.
+"""How much may be believed: the ladder of modes, each step down with its reasons in words. What was lost counts
+again as soon as it is heard; the learned force, after a fault of its own, only after a while.
 
     hybrid -> physics only -> dead reckoning -> invalid          ("starting" before the first estimate)
 """
@@ -57,7 +57,6 @@ class Guard:
         self._broken = Held(hold_s)
         self._bound = Held(hold_s)
         self._clipped = Held(hold_s)
-        self._back = Held(hold_s)
         self._clipped_share = 0.0
         self._bad = self._outside = self._unproved = ""
         self._reckoning_since: float | None = None
@@ -72,11 +71,10 @@ class Guard:
         if not estimate.ready:
             return Verdict(STARTING, [_waiting(measured), *said], False, "no estimate yet")
         lost = _lost(measured)
-        away = self._back.feed(lost, measured.now_s)
         if lost:
             return self._reckon(measured.now_s, lost, said)
         self._reckoning_since = None
-        off = self._off(measured.now_s, dt) or ([f"learned force off: {away} until just now"] if away else [])
+        off = self._off(measured.now_s, dt)
         frozen = odd[0] if odd else next((text for text in sensors if _matters(text)), "")
         return Verdict(PHYSICS if off else HYBRID, [*off, *([self._outside] if self._outside else []), *said], not off, frozen)
 
