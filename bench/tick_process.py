@@ -38,10 +38,11 @@ class FastClock:
 
     def __init__(self, rate_hz: float, mark: Mark | None = None):
         self.period_s, self._index, self._mark = 1.0 / rate_hz, 0, mark
-        self._start_s, self._wall_s = time.monotonic(), time.time()
-        self._rested_s = self._start_s
+        self._start_s = self._wall_s = self._rested_s = 0.0  # of the first tick: the feed may take a while to connect
 
     def wait(self) -> Instant:
+        if self._index == 0:
+            self._start_s, self._wall_s = time.monotonic(), time.time()
         if time.monotonic() - self._rested_s > self.work_s:
             time.sleep(self.rest_s)
             self._rested_s = time.monotonic()
