@@ -20,7 +20,7 @@ from bench.timing import quantiles
 from twin.live import config, run
 from twin.live.clock import Clock, Instant, MonotonicClock
 
-WARM_UP = 300  # ticks before anything is counted: gates open, the first prediction is made, the log is open
+WARM_UP = 900  # ticks before anything is counted: the feed is heard, gates open, the first prediction is made, the log is open
 CONNECT_S = 20.0
 FEED_S = 20.0  # a feed that is silent for so long has stopped
 LAG_S = 0.2  # of the loop's own time
