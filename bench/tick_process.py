@@ -7,11 +7,13 @@ clock that the service waits for: a step is everything it does between two waits
 """
 
 import json
+import math
 import os
 import sys
 import time
 import traceback
 from array import array
+from collections.abc import Callable
 from typing import Any
 
 from bench.mark import Mark
@@ -24,25 +26,29 @@ WARM_UP = 900  # ticks before anything is counted: the feed is heard, gates open
 CONNECT_S = 20.0
 FEED_S = 20.0  # a feed that is silent for so long has stopped
 LAG_S = 0.2  # of the loop's own time
+OLD_S = 1.0  # of the loop's own time: measurements older than this are late, not lost
 
 
 class FastClock:
     """A clock that is always due: each tick is one period later than the last, whatever the time is.
 
     Outside every step it waits for a feed that lags by more than `LAG_S` (without measurements the loop would
-    do less work), and rests now and then (the kernel stops a real-time process that never sleeps).
+    do less work), and rests now and then (the kernel stops a real-time process that never sleeps). What the feed
+    has said may still be on its way: while the newest measurement is older than `OLD_S` it ticks on time.
     """
 
     overruns = 0
     work_s, rest_s = 0.05, 0.01
 
-    def __init__(self, rate_hz: float, mark: Mark | None = None):
-        self.period_s, self._index, self._mark = 1.0 / rate_hz, 0, mark
+    def __init__(self, rate_hz: float, mark: Mark | None = None, age_s: Callable[[], float] = lambda: 0.0):
+        self.period_s, self._index, self._mark, self._age_s = 1.0 / rate_hz, 0, mark, age_s
         self._start_s = self._wall_s = self._rested_s = 0.0  # of the first tick: the feed may take a while to connect
 
     def wait(self) -> Instant:
         if self._index == 0:
             self._start_s, self._wall_s = time.monotonic(), time.time()
+        if self._age_s() > OLD_S:
+            time.sleep(self.period_s)
         if time.monotonic() - self._rested_s > self.work_s:
             time.sleep(self.rest_s)
             self._rested_s = time.monotonic()
@@ -117,9 +123,14 @@ class Measured:
         return self._result() | {"log": service.recorder.state._asdict()}
 
     def _clock(self, rate_hz: float) -> Clock:
-        clock: Clock = MonotonicClock(rate_hz) if self.paced else FastClock(rate_hz, self.mark)
+        clock: Clock = MonotonicClock(rate_hz) if self.paced else FastClock(rate_hz, self.mark, self._age_s)
         self.watch = StopWatch(clock, self.steps, self.parts)
         return self.watch
+
+    def _age_s(self) -> float:
+        """Of the newest heading, by the loop's own clock; infinite before there is one."""
+        seen = self.loop.last
+        return seen.measured.now_s - seen.measured.time.get("psi", -math.inf) if seen else 0.0
 
     def _keep(self, tick: Any) -> None:
         self.last = tick
