@@ -12,14 +12,14 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 
 from .case import MOST_SEGMENTS, ODDS, ODDS_MEASURED, Case, settle
-from .columns import FORM, Unknown, effect_unknowns, lateness_unknowns
+from .columns import FORM, Unknown, core_unknowns, effect_unknowns, lateness_unknowns
 from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, temper_of
 from .respond import respond
 from .seaway import calmed, tossed
 from .segments import read_parts
-from .structure import structural_floor
+from .structure import floor_beside, structural_floor
 from .track import Track, track
 from .voyage import Voyage
 
@@ -27,9 +27,10 @@ Progress = Callable[[str], None]
 KNOWN = 0.1  # share of the force of an effect in the model that may be something else
 
 
-def stored_floor(ship: Ship) -> Floor | None:
-    """The structural floor that calibration left in the ship file."""
-    table = ship.notes.get("structural", {}).get("floor")
+def stored_floor(ship: Ship, name: str = "floor") -> Floor | None:
+    """A structural floor that calibration left in the ship file: what the model alone leaves (`floor`), or what is left beside all that is
+    usual on this ship (`beside`)."""
+    table = ship.notes.get("structural", {}).get(name)
     return Floor(**(dict(table) | {"share": tuple(table["share"])})) if table else None
 
 
@@ -46,13 +47,15 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     core = [u for u in nuisance if u.owner in ("core", FORM)]
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
-    floor, temper = stored_floor(ship) or Floor(), float(ship.notes.get("structural", {}).get("temper", TEMPER))
+    path = stored_floor(ship) or Floor()
+    floor, temper = stored_floor(ship, "beside") or path, _temper(ship)
     if references:
         progress("reading the reference voyages")
         lines, _ = _lines([track(v, ship) for v in references], model, nuisance, catalogue)
         if stored_floor(ship) is None:
             progress("finding the structural floor")
-            floor = structural_floor(lines, nuisance)
+            path = structural_floor(_of_core(lines, nuisance), core_unknowns(model))
+            floor = floor_beside(lines, nuisance, path)
         temper = temper_of(innovate(lines, [floor])[0], nuisance)
         known, _ = from_references(lines, nuisance, floor, temper)
     else:
@@ -60,10 +63,22 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     progress("linearising")
     lines, excited = _lines(tracks, model, unknowns, catalogue, MOST_SEGMENTS)
     case = Case(
-        tracks, model, catalogue, candidates, unknowns, effects, known, floor, temper, _odds(tracks, candidates, ship), lines, excited,
+        tracks, model, catalogue, candidates, unknowns, effects, known, floor, path, temper, _odds(tracks, candidates, ship), lines, excited,
         floor.white,
     )  # fmt: skip
     return settle(case)
+
+
+def _temper(ship: Ship) -> float:
+    """How much less than its likelihood a voyage tells, beside all that is usual on this ship."""
+    notes = ship.notes.get("structural", {})
+    return float(notes.get("temper_beside", notes.get("temper", TEMPER)))
+
+
+def _of_core(lines: Sequence[Linear], unknowns: Sequence[Unknown]) -> list[Linear]:
+    """The same with the core's columns alone."""
+    core = [i for i, u in enumerate(unknowns) if u.owner == "core"]
+    return [replace(line, A=line.A[:, :, core], R=line.R[:, :, core]) for line in lines]
 
 
 def judgeable(tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]) -> tuple[str, ...]:

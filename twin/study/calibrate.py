@@ -18,13 +18,13 @@ from .columns import Unknown, core_unknowns
 from .doubts import doubts
 from .fit import Fit, fit
 from .import_voyage import write_json
-from .innovations import Floor, linearise
+from .innovations import Floor, innovate, linearise
 from .jsonable import plain
 from .nuisance import TEMPER, from_references, instruments, nuisance_unknowns, temper_of
 from .openloop import HORIZONS_S, predict
 from .rollout import rolled_out
 from .sailed import Sailed, fed, read_all
-from .structure import structural_floor
+from .structure import floor_beside, structural_floor
 from .track import Track
 
 SCHEMA_VERSION = 1
@@ -72,7 +72,7 @@ def calibrate(
     by = by if by in ships else min(ships, key=lambda name: _size(errors[name]) - BETTER * (name == "steps"))
     after, behind, before = ships[by], errors[by], _errors(model, held_out)
     progress("learning what is usual on this ship")
-    usual = _usual(after, tracks, known, floor, temper)
+    usual = _usual(after, tracks, known, floor)
     after.notes["structural"].update(usual)  # type: ignore[attr-defined]
     regimes = _by_regime(Model.of(after), held_out)
     after.notes["structural"]["held_out"] = behind  # type: ignore[index]
@@ -136,13 +136,15 @@ def _size(errors: Sequence[dict[str, float]]) -> float:
     return float(np.log(np.maximum(numbers, 1e-9)).mean()) if numbers else 0.0
 
 
-def _usual(ship: Ship, tracks: Sequence[Track], known: dict[str, type[Effect]], floor: Floor, temper: float) -> dict[str, Any]:
-    """What is known after calibration of the core, of every lasting effect and of the instruments: offsets from the ship file and
-    their covariance, in the unknowns' own units. A diagnosis starts from here."""
+def _usual(ship: Ship, tracks: Sequence[Track], known: dict[str, type[Effect]], floor: Floor) -> dict[str, Any]:
+    """What is known after calibration of the core, of what it leaves out, of every lasting effect and of the instruments: offsets from the
+    ship file and their covariance, in the unknowns' own units; and the floor `beside` all that. A diagnosis starts from here."""
     model = Model.of(ship)
     unknowns = nuisance_unknowns(model, known)
     lines = [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
-    nuisance, between = from_references(lines, unknowns, floor, temper, np.array([_prior(u, ship).centre for u in unknowns]))
+    beside = floor_beside(lines, unknowns, floor)
+    temper = temper_of(innovate(lines, [beside])[0], unknowns)
+    nuisance, between = from_references(lines, unknowns, beside, temper, np.array([_prior(u, ship).centre for u in unknowns]))
     sd = np.array([u.sd for u in unknowns])
     covariance = np.linalg.inv(nuisance.information)
     return {
@@ -150,6 +152,8 @@ def _usual(ship: Ship, tracks: Sequence[Track], known: dict[str, type[Effect]], 
         "offset": [float(v) for v in sd * (covariance @ nuisance.pull)],
         "covariance": [[float(c) for c in row] for row in covariance * np.outer(sd, sd)],
         "between_voyages": between,
+        "beside": plain(asdict(beside)),
+        "temper_beside": temper,
     }
 
 

@@ -55,7 +55,8 @@ class Case:
     unknowns: tuple[Unknown, ...]  # core, then the parameters of the candidates and of all instruments
     effects: tuple[Unknown, ...]  # parameters of the candidates
     nuisance: Nuisance
-    floor: Floor
+    floor: Floor  # what is left when all unknowns explain what they can
+    path: Floor  # what the model alone leaves, when it is run free
     temper: float
     odds: Mapping[str, float]
     lines: tuple[Linear, ...]  # of what is read of each track
@@ -68,6 +69,10 @@ class Case:
 
     def worlds(self, names: Sequence[str], doubt: float = 0.0) -> list[Floor]:
         return [replace(self.floor.scaled(WORLDS[n].share, flow=WORLDS[n].flow), doubt=doubt) for n in names]
+
+    def paths(self) -> dict[str, Floor]:
+        """By world: what the model alone leaves."""
+        return {n: self.path.scaled(w.share, flow=w.flow) for n, w in WORLDS.items()}
 
     def log_prior(self, chosen: Sequence[str], world: str) -> float:
         if (world == "flooding" and "VaryingCurrent" not in chosen) or self._twice(chosen):
@@ -85,6 +90,11 @@ def settle(case: Case) -> Case:
     Judged with every effect allowed, so that no cause is mistaken for noise.
     """
     grid = [(white, sensor) for sensor in (1.0, 3.0) for white in (1.0, 2.0, 4.0, 8.0, 32.0)]
-    floors = [replace(case.floor, white=w * case.floor.white, sensor=s * case.floor.sensor) for w, s in grid]
+    floors = [_rougher(case.floor, w, s) for w, s in grid]
     scores = [posterior(r, case.candidates).log_evidence for r in case.reduced(case.lines, floors)]
-    return replace(case, floor=floors[int(np.argmax(scores))])
+    best = int(np.argmax(scores))
+    return replace(case, floor=floors[best], path=_rougher(case.path, *grid[best]))
+
+
+def _rougher(floor: Floor, white: float, sensor: float) -> Floor:
+    return replace(floor, white=white * floor.white, sensor=sensor * floor.sensor)

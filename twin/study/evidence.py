@@ -20,7 +20,7 @@ from scipy.special import log_ndtr
 from .columns import Unknown
 from .innovations import Normal
 
-SPIKE = 0.04  # width of "not there", in widths of "there"
+SPIKE = 0.01  # width of "not there", in widths of "there"
 
 
 @dataclass(frozen=True)

@@ -71,13 +71,15 @@ def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
 
 
 def temper_of(normal: Normal, unknowns: Sequence[Unknown]) -> float:
-    """How much less the innovations tell than they would if they were white: variance of the segments' scores over their information.
+    """How much less the innovations tell than they would if they were white: variance of the segments' scores over their information,
+    where the unknowns together explain the voyages best.
 
     Only directions that the voyages inform count; the median is taken, between 1.5 and 8 (White 1982, the sandwich).
     """
     sd = np.array([u.sd for u in unknowns])
-    scores = normal.b * sd
-    information = np.einsum("sii->i", normal.A) * sd**2
+    A, b = normal.A * np.outer(sd, sd), normal.b * sd
+    scores = b - A @ np.linalg.solve(np.eye(sd.size) + A.sum(0), b.sum(0))
+    information = np.einsum("sii->i", A)
     told = information > 10.0
     if len(scores) < 4 or not told.any():
         return TEMPER

@@ -13,24 +13,34 @@ from .fit import evidence
 from .innovations import Floor, Linear, Normal, innovate
 
 MOST_SEGMENTS = 40
+FEWER = 20  # where many columns make each dear
 BOUNDS = {"share": (0.01, 0.5), "calm": (0.1, 4.0), "white": (0.002, 1.0), "flow": (0.002, 0.05), "sensor": (0.7, 4.0)}
+BESIDE = 0.2  # how far the slow part may fall beside more unknowns, as a share of what a core alone is ever trusted with
 
 
 def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor | None = None) -> Floor:
-    """The most probable floor of these reference voyages (linearised about the fitted model)."""
-    sd = np.array([u.sd for u in unknowns])
-    floor, step = start or Floor(), 2.0
-    best = _scores(lines, [floor], sd)[0]
+    """The most probable floor of these reference voyages (linearised about the fitted model): what the core alone leaves."""
+    return _climbed(lines, unknowns, start or Floor(), 1.0, MOST_SEGMENTS)
+
+
+def floor_beside(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor) -> Floor:
+    """The same when the unknowns are all that a diagnosis keeps in mind: less is left beside them."""
+    return _climbed(lines, unknowns, start, BESIDE, FEWER)
+
+
+def _climbed(lines: Sequence[Linear], unknowns: Sequence[Unknown], floor: Floor, least: float, most: int) -> Floor:
+    sd, step = np.array([u.sd for u in unknowns]), 2.0
+    best = _scores(lines, [floor], sd, most)[0]
     while step > 1.2:
-        trials = [(i, t) for i, change in enumerate(CHANGES) for k in (step, 1.0 / step) if _inside(t := change(floor, k))]
-        scores = _scores(lines, [t for _, t in trials], sd)
+        trials = [(i, t) for i, change in enumerate(CHANGES) for k in (step, 1.0 / step) if _inside(t := change(floor, k), least)]
+        scores = _scores(lines, [t for _, t in trials], sd, most)
         better: dict[int, tuple[float, Floor]] = {}
         for (i, trial), score in zip(trials, scores, strict=True):
             if score > max(best, better.get(i, (best, floor))[0]):
                 better[i] = (score, trial)
         moves = sorted(better.values(), key=lambda m: -m[0])
         together = [_together(floor, [m for _, m in moves[:n]]) for n in range(1, len(moves) + 1)]
-        scores = [moves[0][0], *_scores(lines, together[1:], sd)] if moves else []
+        scores = [moves[0][0], *_scores(lines, together[1:], sd, most)] if moves else []
         if moves and max(scores) > best + 0.2:
             best, floor = max(scores), together[int(np.argmax(scores))]
         else:
@@ -52,8 +62,8 @@ def _logs(floor: Floor) -> np.ndarray:
     return np.log([*floor.share, floor.calm, floor.white, floor.flow, floor.sensor])
 
 
-def _scores(lines: Sequence[Linear], floors: Sequence[Floor], sd: np.ndarray) -> list[float]:
-    return [predictive(n, sd) for n in innovate(lines, floors, MOST_SEGMENTS)] if floors else []
+def _scores(lines: Sequence[Linear], floors: Sequence[Floor], sd: np.ndarray, most: int) -> list[float]:
+    return [predictive(n, sd) for n in innovate(lines, floors, most)] if floors else []
 
 
 def predictive(normal: Normal, sd: np.ndarray) -> float:
@@ -83,5 +93,7 @@ def _change(i: int) -> Callable[[Floor, float], Floor]:
 CHANGES = tuple(_change(i) for i in range(7))
 
 
-def _inside(floor: Floor) -> bool:
-    return all(lo <= v <= hi for name, (lo, hi) in BOUNDS.items() for v in (floor.share if name == "share" else (getattr(floor, name),)))
+def _inside(floor: Floor, least: float) -> bool:
+    low = {"share": least, "calm": least}
+    values = {name: floor.share if name == "share" else (getattr(floor, name),) for name in BOUNDS}
+    return all(low.get(name, 1.0) * lo <= v <= hi for name, (lo, hi) in BOUNDS.items() for v in values[name])
