@@ -18,6 +18,7 @@ from twin.physics.state import Force
 
 GAIN, SIGMA, MU = 1.0, 1.0 / 60.0, 0.5  # per L/U_0
 MEMORY = 20.0  # of RLS, in L/U_0
+Stream = list[tuple[Three, list[float], float, str]]  # what a law is told at each step: wanted, regressors, dt, frozen
 LEAK, WALK = 60.0, 0.016  # in L/U_0; of what is usual, squared, per L/U_0
 
 
@@ -114,7 +115,7 @@ class Writes(Adaptation):
 
     def __init__(self, *args: Any) -> None:
         super().__init__(*args)
-        self.heard: list[tuple[Any, list[float], float, str]] = []
+        self.heard: Stream = []
 
     def learn(self, wanted: Any, regressors: list[float], dt: float, frozen: str) -> None:
         self.heard.append((wanted, list(regressors), dt, frozen))

@@ -5,14 +5,18 @@ added at the size it had before the voyage; at CHANGE_S it grows. The filter kee
 free runs of 120 s begin with what each had learned by then. RUN_S is long enough for the memory of 20 L/U_0 to be filled anew.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
 
+from bench.adaptation_heard import Heard, Hearing, by_scenario
+from bench.paper_models import Workshop, named
+from bench.paper_sea import zigzags
+from bench.paper_ship import nominal
+from bench.reference import HULLS, Change
 from twin.live.adapt import Adaptation
 from twin.live.movable import movable, moved
 from twin.physics.effects import find
@@ -57,62 +61,15 @@ GROWTHS = {
 }  # fmt: skip
 
 
-@dataclass(frozen=True)
-class Heard:
-    """Voyages of one growth: what the laws are told, and where the filter stood after each step (K, V, 11)."""
-
-    model: Model
-    acting: Any
-    courses: Sequence[Any]
-    states: np.ndarray
-    streams: Sequence[Any]
-
-
-class Bench:
-    """The named model, its network and its filter's tuning."""
-
-    def __init__(self, work: Path, full: bool, tell: Callable[[str], None]):
-        from bench import paper_sea as sea
-        from bench.paper import settings_for
-        from bench.paper_lab import course
-        from bench.paper_models import Workshop, named
-        from bench.paper_ship import nominal
-        from export.batches import zeta_of
-        from export.data import split
-
-        self.work, self.tell = work, tell
-        ship, plan = nominal(), sea.FULL if full else sea.QUICK
-        courses = [course(one, ship) for one in sea.sail(sea.lessons(plan), work / "voyages", tell)]
-        shop = Workshop(split(courses), split([c.water for c in courses]), settings_for(plan), work, tell)  # type: ignore[type-var]
-        self.model = named(shop.parts["train"], Model(ship))[1]
-        taught = shop.taught(self.model, plan.seeds[0], "added")
-        self.network, self.zeta = taught.network, zeta_of(taught.network, taught.samples)
-        self.tuning = shop.tuned(self.model, taught.network)
-
-    def heard(self, growth: Growth, seeds: int) -> Heard:
-        """Sail, filter, and write down what a law would be told."""
-        from bench.adaptation_laws import Writes
-        from bench.paper_adapted import Acting, Learning
-        from bench.paper_lab import course
-        from bench.paper_sea import sail
-
-        model = self.model
-        if growth.effect:
-            model = Model(model.ship, (*model.effects, find(growth.effect)(**growth.file)))
-        model = replace(model, ship=replace(model.ship, effects=model.effects))
-        acting = Acting(self.network, model, self.zeta)
-        cases = growing(growth, seeds)
-        courses = [replace(course(one, model.ship), starts_s=STARTS_S) for one in sail(cases, self.work / "voyages", self.tell)]
-        learning = Learning(courses, model, acting, self.tuning, Writes)
-        states = learning.run(int(courses[0].starts[-1]))
-        return Heard(model, acting, courses, states, [law.heard for law in learning.laws])  # type: ignore[attr-defined]
+def with_effect(growth: Growth, model: Model) -> Model:
+    """The model that the ship file has before she grows; on board the law learns what the file names."""
+    if growth.effect:
+        model = Model(model.ship, (*model.effects, find(growth.effect)(**growth.file)))
+    return replace(model, ship=replace(model.ship, effects=model.effects))
 
 
 def growing(growth: Growth, seeds: int) -> list[Any]:
     """Zigzags of her hull before, and of that after from CHANGE_S on."""
-    from bench.paper_sea import zigzags
-    from bench.reference import HULLS, Change
-
     hull = HULLS["kvlcc2"]
     before, after = (replace(hull, **{k: f * getattr(hull, k) for k, f in by.items()}) for by in (growth.before, growth.after))
     change = None if growth.before == growth.after else Change(CHANGE_S, after)
@@ -151,31 +108,23 @@ def _of_voyage(made: Any, heard: Heard, stream: Any, starts: np.ndarray) -> tupl
 
 def errors(heard: Heard, known: Learned) -> tuple[np.ndarray, np.ndarray]:
     """Heading deg and lateral m of the free runs (V, W)."""
-    from bench.paper_filter import from_states
-    from bench.paper_lab import judge
-
     numbers = movable(heard.model.effects, heard.model.ship)
     flat = known.acting.reshape(-1, len(numbers))
     values = [torch.tensor(m.start + m.sd * x, dtype=torch.float32) for m, x in zip(numbers, flat.T, strict=True)]
     model = Model(heard.model.ship, moved(heard.model.effects, numbers, values))
-    held = known.rows.reshape(-1, *known.rows.shape[2:])
-    starts = [heard.states[c.starts, i] for i, c in enumerate(heard.courses)]
-    e = judge(from_states(heard.courses, model, heard.acting.holding(held, model), starts), heard.courses)
-    heading, lateral = (x.reshape(len(heard.courses), -1) for x in (e.heading_deg, e.lateral_m))
-    return heading, lateral
+    return heard.errors(known.rows.reshape(-1, *known.rows.shape[2:]), model)
 
 
-def compare(work: Path, full: bool, seeds: int, tell: Callable[[str], None]) -> dict[str, Any]:
+def compare(shop: Workshop, seeds: int) -> dict[str, Any]:
     """Every growth, every way of learning."""
-    bench = Bench(work, full, tell)
+    hearing = Hearing.of(shop, named(shop.parts["train"], Model(nominal()))[1], "added")
     out: dict[str, Any] = {"seeds": seeds, "change_s": CHANGE_S, "late_s": LATE_S, "starts_s": STARTS_S, "growths": {}}
     for name, growth in GROWTHS.items():
-        tell(f"named: {name}")
-        heard = bench.heard(growth, seeds)
+        shop.tell(f"named: {name}")
+        heard = hearing.of_voyages(growing(growth, seeds), STARTS_S, with_effect(growth, hearing.model))
         known = {how: learned(made, heard) for how, made in HOW.items()}
-        scenario = np.array([c.scenario for c in heard.courses])
-        ways = {how: summary(*errors(heard, x), scenario, seeds) for how, x in known.items()}
-        out["growths"][name] = {"how": ways, "number": arrival(growth, heard, known["on"], scenario)}
+        ways = {how: summary(*errors(heard, x), heard.scenario, seeds) for how, x in known.items()}
+        out["growths"][name] = {"how": ways, "number": arrival(growth, heard, known["on"], heard.scenario)}
     return out
 
 
@@ -191,7 +140,7 @@ def summary(heading: np.ndarray, lateral: np.ndarray, scenario: np.ndarray, seed
         "heading_deg": heading.mean(0).tolist(), "lateral_m": lateral.mean(0).tolist(),
         "late_heading_deg": [float(x[:, end].mean()) for x in np.split(heading, seeds)],
         "late_lateral_m": [float(x[:, end].mean()) for x in np.split(lateral, seeds)],
-        "by_scenario_deg": {name: float(heading[scenario == name][:, end].mean()) for name in sorted(set(scenario.tolist()))},
+        "by_scenario_deg": by_scenario(heading[:, end], scenario),
     }  # fmt: skip
 
 

@@ -1,5 +1,6 @@
 """The part of the page of `twin-bench adaptation` where a named effect grows."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,14 +9,14 @@ import numpy as np
 
 def page(r: dict[str, Any]) -> list[str]:
     """Markdown."""
-    minutes = r["late_s"] / 60.0
+    minutes, errors = r["late_s"] / 60.0, {name: g["how"] for name, g in r["growths"].items()}
     return [
         "## A named effect grows in the middle of a voyage", "",
         f"The calibrated core with Wind and WaveDrift and their network, and one effect more in the ship file at the size it had before: "
         f"zigzags of 1500 s, {r['seeds']} seeds of six voyages, the change at {r['change_s']:.0f} s. Learning off; on but for the effects' "
         f"numbers (rows alone); on. Heading deg / lateral m of free runs begun {minutes:.0f} minutes or more after the change: mean and "
         "spread (n - 1) over seeds.", "",
-        *_late(r), "", "The same by the second the free runs begin at.", "", *_by_window(r), "",
+        *_late(r), "", "The same by the second the free runs begin at.", "", *by_window("ship", errors, r["starts_s"]), "",
         "The number that grows, as the twin publishes it: mean over voyages at the last window +- half the 95 % interval it gives (and the "
         "spread of its values over voyages), and the share of the late windows in which the interval holds the truth.", "",
         *_arrival(r),
@@ -36,12 +37,13 @@ def _spread(values: list[float], digits: int) -> str:
     return f"{np.mean(values):.{digits}f} ± {sd:.{digits}f}"
 
 
-def _by_window(r: dict[str, Any]) -> list[str]:
+def by_window(what: str, errors: dict[str, Any], starts_s: Sequence[float]) -> list[str]:
+    """A row for each ship or change and each way of learning, a column for each window."""
     rows = [
         f"| {name}, {how} |" + "".join(f" {a:.3f} / {b:.2f} |" for a, b in zip(e["heading_deg"], e["lateral_m"], strict=True))
-        for name, g in r["growths"].items() for how, e in g["how"].items()
+        for name, ways in errors.items() for how, e in ways.items()
     ]  # fmt: skip
-    return [f"| ship, learning | {' | '.join(f'{t:.0f} s' for t in r['starts_s'])} |", "|---" * (1 + len(r["starts_s"])) + "|", *rows]
+    return [f"| {what}, learning | {' | '.join(f'{t:.0f} s' for t in starts_s)} |", "|---" * (1 + len(starts_s)) + "|", *rows]
 
 
 def _arrival(r: dict[str, Any]) -> list[str]:

@@ -29,19 +29,12 @@ def page(r: dict[str, Any]) -> list[str]:
         f"Zigzags of 900 s in other seas, the change at {r['change_s']:.0f} s; heading deg / lateral m of free runs by the second they "
         "begin at: learning off; on (the law on board); told (the same law, which forgets all it knew at the change: on board nobody says so). "
         "The run begun at the change knows nothing of it yet.", "",
-        *_midway(r),
+        *adaptation_named_page.by_window("change", r["midway"], r["starts_s"]),
         "", "Heading deg by scenario, mean of the windows begun at the change and later, learning off / on / told.", "",
         *_by_scenario(r["midway"]),
         "", *adaptation_named_page.page(r["named"]),
     ]  # fmt: skip
     return lines
-
-
-def _midway(r: dict[str, Any]) -> list[str]:
-    rows = [f"| {name}, {how} |" + "".join(f" {a:.3f} / {b:.2f} |" for a, b in zip(e["heading_deg"], e["lateral_m"], strict=True))
-            for name, both in r["midway"].items() for how, e in both.items()]  # fmt: skip
-    starts = [f"{t:.0f} s" for t in r["starts_s"]]
-    return [f"| change, learning | {' | '.join(starts)} |", "|---" * (1 + len(starts)) + "|", *rows]
 
 
 def _by_scenario(midway: dict[str, Any]) -> list[str]:

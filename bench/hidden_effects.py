@@ -1,18 +1,18 @@
 """The hidden-effect league: voyages of the reference sea with something hidden, and what the diagnosis makes of them."""
 
 import argparse
-import json
 import os
 import tempfile
 from pathlib import Path
-from typing import Any
 
+from bench import answer
 from bench import league_plan as plan
 from bench import league_score as score
 from bench.league import League
 from bench.league_page import page
 from twin.errors import SettingsError
 from twin.physics.effects import catalogue
+from twin.study.import_voyage import write_json
 
 EPILOG = """example:
   twin-bench hidden-effects --quick --json -
@@ -20,7 +20,7 @@ EPILOG = """example:
 
 Each ship is a bundled ship file, calibrated in memory on calm reference voyages of the reference sea. With --resume a run
 that was stopped goes on where it ended (after a change of the twin begin a new folder: the ships in it are calibrated); without it
-everything but the result is deleted.
+everything but the result is deleted. FILE.json goes beside FILE.md.
 """
 PART = 60  # questions whose voyages are sailed before they are judged
 
@@ -41,8 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--minutes", type=float, help="begin no voyage after so many minutes")
     parser.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
     parser.add_argument("--resume", metavar="DIR", help="keep what is done here, and go on from it")
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
-    parser.add_argument("--out", metavar="FILE.md", help="the result as a page, FILE.json beside it")
+    answer.add_arguments(parser, "--out")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -55,7 +54,9 @@ def run(args: argparse.Namespace) -> int:
         rows = league.play()
         result = score.contract(rows) | {"run": {"command": command(args)} | league.facts(rows)}
         text = page(rows, result, league.calibrations())
-    _write(args, result, text)
+    answer.give(args, result, text)
+    if args.page:
+        write_json(result, str(args.page.with_suffix(".json")))
     return 0
 
 
@@ -69,18 +70,5 @@ def command(args: argparse.Namespace) -> str:
     said += [f"--every {args.every}"] if args.every > 1 else []
     said += [f"--kind {' '.join(args.kind)}"] if args.kind is not plan.KINDS else []
     said += [f"--duration {args.duration:g}"] if args.duration else []
-    said += [f"--out {args.out}"] if args.out else []
+    said += [f"--out {args.page}"] if args.page else []
     return " ".join(said)
-
-
-def _write(args: argparse.Namespace, result: dict[str, Any], text: str) -> None:
-    data = json.dumps(result, indent=1)
-    if args.out:
-        Path(args.out).write_text(text)
-        Path(args.out).with_suffix(".json").write_text(data + "\n")
-    if args.json == "-":
-        print(data)
-    else:
-        print(text)
-        if args.json:
-            Path(args.json).write_text(data + "\n")

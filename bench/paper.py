@@ -2,14 +2,13 @@
 
 import argparse
 import json
-import sys
 import tempfile
 import time
 from pathlib import Path
 from typing import Any
 
+from bench import answer
 from bench import paper_sea as sea
-from twin.study.import_voyage import write_json
 
 EPILOG = """example: twin-bench paper --quick
 
@@ -28,8 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--figures", metavar="DIR", type=Path, help="Figures 2 to 6 as PNG files (needs matplotlib)")
     parser.add_argument("--tick", metavar="FILE.json", type=Path, help="what `twin-bench --json` wrote, for Table 9")
-    parser.add_argument("--markdown", metavar="FILE.md", type=Path, help="the tables as a page")
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+    answer.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -41,12 +39,7 @@ def run(args: argparse.Namespace) -> int:
         result = reproduce(sea.FULL if args.full else sea.QUICK, work, not args.full, args.figures)
     if tick:
         result["tables"]["9"] = tick
-    text = "\n".join(page(result))
-    print(text, file=sys.stderr if args.json == "-" else sys.stdout)
-    if args.markdown:
-        args.markdown.write_text(text + "\n")
-    if args.json:
-        write_json(result, args.json)
+    answer.give(args, result, "\n".join(page(result)))
     return 0
 
 
@@ -56,16 +49,17 @@ def reproduce(plan: sea.Plan, work: Path, quick: bool, figures: Path | None = No
     from bench.paper_curve import curve
     from bench.paper_lab import course
     from bench.paper_ship import nominal
+
     began, wall = time.process_time(), time.monotonic()
     work.mkdir(parents=True, exist_ok=True)
-    ship, tell = nominal(), _tell
+    ship, tell = nominal(), answer.tell
     changed, speeds = sea.changed(plan), sea.by_speed(plan)
     groups = {"lessons": sea.lessons(plan), "zigzags": sea.unseen(plan), **changed, **speeds}
     sailed = iter(sea.sail([c for cases in groups.values() for c in cases], work / "voyages", tell, plan.tick_s))
     voyages = {name: [next(sailed) for _ in cases] for name, cases in groups.items()}
     voyages[paper_tables.EXACT] = [sea.without_gnss_noise(one) for one in voyages[next(iter(changed))]]
     courses = {name: [course(one, ship, plan.starts_s) for one in some] for name, some in voyages.items()}
-    models = paper_models.build(courses["lessons"], settings_for(plan), plan.lstm_epochs, plan.seeds, work, tell)
+    models = paper_models.build(courses["lessons"], paper_models.settings_for(plan), plan.lstm_epochs, plan.seeds, work, tell)
     tell("predicting")
     tables = paper_tables.all_tables(models, courses, list(changed), list(speeds), plan.resamples, plan.resamples // 2)
     tell("closed loop")
@@ -99,12 +93,3 @@ def _draw(folder: Path, models: Any, zigzags: list[Any], closed: Any, tables: di
     return draw.horizons(folder)
 
 
-def settings_for(plan: sea.Plan) -> Any:
-    """Of the training."""
-    from export.teach import Settings
-
-    return Settings(epochs=plan.epochs, rollout_epochs=plan.rollout_epochs, rollout_batch=plan.rollout_batch)
-
-
-def _tell(text: str) -> None:
-    print(time.strftime("%H:%M:%S"), text, file=sys.stderr, flush=True)

@@ -6,14 +6,13 @@ manoeuvres, seas and speeds, and chance; what differs between validation and its
 """
 
 import argparse
-import sys
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from bench import answer
 from bench import paper_sea as sea
-from twin.study.import_voyage import write_json
 
 EPILOG = """example: twin-bench gap --work .paper --markdown docs/results/gap.md
 
@@ -34,41 +33,30 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--full", action="store_true", help="the network of `twin-bench paper --full`")
     parser.add_argument("--times", metavar="N", type=int, default=5, help="how often each run is sailed again (%(default)s)")
     parser.add_argument("--work", metavar="DIR", type=Path, default=Path(".paper"), help="voyages and checkpoints (%(default)s)")
-    parser.add_argument("--markdown", metavar="FILE.md", type=Path, help="the table as a page")
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+    answer.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     result = compare(args.work, sea.FULL if args.full else sea.QUICK, args.times)
-    text = "\n".join(page(result, args.full))
-    print(text, file=sys.stderr if args.json == "-" else sys.stdout)
-    if args.markdown:
-        args.markdown.write_text(text + "\n")
-    if args.json:
-        write_json(result, args.json)
+    answer.give(args, result, "\n".join(page(result, args.full)))
     return 0
 
 
 def compare(work: Path, plan: sea.Plan, times: int) -> dict[str, Any]:
     """Sail, predict, count."""
-    from bench.paper import settings_for
     from bench.paper_filter import predict
     from bench.paper_gap import gap
     from bench.paper_lab import course, free
     from bench.paper_models import Workshop
     from bench.paper_ship import nominal
-    from export.data import split
     from twin.physics.model import Model
 
-    ship, model = nominal(), Model(nominal())
-    cases = sea.lessons(plan)
-    courses = [course(one, ship) for one in sea.sail(cases, work / "voyages", _tell)]
-    parts = split(courses)  # type: ignore[type-var]
-    shop = Workshop(parts, split([c.water for c in courses]), settings_for(plan), work, _tell)  # type: ignore[arg-type]
+    model, shop = Model(nominal()), Workshop.planned(plan, work, answer.tell)
     network = shop.taught(model, plan.seeds[0], "hybrid").network
     tuning = shop.tuned(model, network)
-    for name, some in again(cases, len(parts["train"]), len(parts["validation"]), times).items():
-        parts[name] = [course(one, ship) for one in sea.sail(some, work / "voyages", _tell)]
+    others = again(sea.lessons(plan), len(shop.parts["train"]), len(shop.parts["validation"]), times)
+    sailed = {name: sea.sail(cases, work / "voyages", answer.tell) for name, cases in others.items()}
+    parts = shop.parts | {name: [course(one, model.ship) for one in some] for name, some in sailed.items()}
     models = {"hybrid": lambda cs: predict(cs, model, network, tuning), "analytic_current": lambda cs: free(model, None, cs)}
     pairs = {said: gap(models, parts[a], parts[b]) for said, (a, b) in PAIRS.items()}
     return {"schema_version": 1, "times": times, "pairs": pairs}
@@ -98,7 +86,3 @@ def page(r: dict[str, Any], full: bool) -> list[str]:
                 cells += [f"{low:+.1f} to {high:+.1f} %" for low, high in (x["by_voyage_95"], x["among_like_95"])]
             lines.append(f"| {said} | {found['runs']['validation']}, {found['runs']['test']} | {words} | {' | '.join(cells)} |")
     return [*lines, "", "Intervals among like are too narrow where a kind has one voyage only, as most kinds of the paper's parts have."]
-
-
-def _tell(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)

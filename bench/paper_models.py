@@ -9,11 +9,12 @@ import numpy as np
 import torch
 
 from bench import paper_adapted, paper_ekf, paper_filter, paper_lstm, paper_lstm_onnx
+from bench import paper_sea as sea
 from bench.paper_adapted import Acting
 from bench.paper_apart import apart
 from bench.paper_filter import Push, Tuning
 from bench.paper_gap import gap
-from bench.paper_lab import Course, free
+from bench.paper_lab import Course, course, free
 from bench.paper_ship import nominal
 from export.batches import zeta_of
 from export.data import Leg, split
@@ -68,6 +69,16 @@ class Workshop:
     work: Path
     tell: Callable[[str], None]
 
+    @classmethod
+    def of(cls, lessons: Sequence[Course], settings: Settings, work: Path, tell: Callable[[str], None]) -> "Workshop":
+        return cls(split(lessons), split([c.water for c in lessons]), settings, work, tell)  # type: ignore[type-var,arg-type]
+
+    @classmethod
+    def planned(cls, plan: sea.Plan, work: Path, tell: Callable[[str], None]) -> "Workshop":
+        """Of a plan whose lessons are not yet sailed."""
+        lessons = [course(one, nominal()) for one in sea.sail(sea.lessons(plan), work / "voyages", tell, plan.tick_s)]
+        return cls.of(lessons, settings_for(plan), work, tell)
+
     def taught(self, model: Model, seed: int, name: str) -> Taught:
         """The trained network; the checkpoint stays, so that a run that was stopped goes on."""
         self.tell(f"training {name}-{seed}")
@@ -82,15 +93,18 @@ class Workshop:
         return paper_filter.tuned(self.parts["validation"], model, push)
 
 
+def settings_for(plan: sea.Plan) -> Settings:
+    """Of the training."""
+    return Settings(epochs=plan.epochs, rollout_epochs=plan.rollout_epochs, rollout_batch=plan.rollout_batch)
+
+
 def build(
     lessons: Sequence[Course], settings: Settings, lstm_epochs: int, seeds: Sequence[int], work: Path, tell: Callable[[str], None]
 ) -> Models:
     """Train, fit and tune everything."""
-    out, parts = Models(), split(lessons)  # type: ignore[type-var]
-    shop = Workshop(parts, split([c.water for c in lessons]), settings, work, tell)  # type: ignore[arg-type]
-    plain = Model(nominal())
+    out, shop, plain = Models(), Workshop.of(lessons, settings, work, tell), Model(nominal())
     out.shop, out.plain = shop, plain
-    out.told["parts"] = {name: len(some) for name, some in parts.items()}
+    out.told["parts"] = {name: len(some) for name, some in shop.parts.items()}
     out.predict["analytic"] = lambda cs: free(plain, None, cs, "earth")
     out.predict["analytic_current"] = lambda cs: free(plain, None, cs)
     _filtered(out, shop, plain)

@@ -1,15 +1,14 @@
 """The measured KVLCC2 manoeuvres of SIMMAN 2008: published coefficients, calibration, and what the diagnosis says of them."""
 
 import argparse
-import json
 import os
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from bench import answer
 from bench.real_page import page
 from twin.errors import SettingsError
 from twin.physics.effects import find
@@ -61,8 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
     parser.add_argument("--data", metavar="DIR", default=os.environ.get("SHIPTWIN_DATA"), help="default: $SHIPTWIN_DATA")
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
-    parser.add_argument("--out", metavar="FILE.md", help="the result as a page")
+    answer.add_arguments(parser, "--out")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -70,22 +68,17 @@ def run(args: argparse.Namespace) -> int:
     if not args.data or not root.is_dir():
         raise SettingsError(f"{root}: the SIMMAN files are not there. Set SHIPTWIN_DATA to the folder above kvlcc2_simman.")
     result = {"schema_version": 1, "basins": [judged(basin, root) for basin in BASINS]}
-    text, data = page(result), json.dumps(result, indent=1)
-    if args.out:
-        Path(args.out).write_text(text)
-    if args.json and args.json != "-":
-        Path(args.json).write_text(data + "\n")
-    print(data if args.json == "-" else text)
+    answer.give(args, result, page(result))
     return 0
 
 
 def judged(basin: Basin, root: Path) -> dict[str, Any]:
     """Everything about one basin's runs."""
-    _say(f"{basin.name}: reading")
+    answer.tell(f"{basin.name}: reading")
     ship, runs = load(basin.ship), voyages(basin, root)
     fitted = [s for s in runs if any(w in s.voyage.name for w in basin.fitted)]
     others = [s for s in runs if s not in fitted]
-    _say(f"{basin.name}: calibrating")
+    answer.tell(f"{basin.name}: calibrating")
     after = calibrate(fitted, [(s.track, 0) for s in others], ship)
     return {
         "basin": basin.name, "words": basin.words, "ship": basin.ship,
@@ -97,8 +90,8 @@ def judged(basin: Basin, root: Path) -> dict[str, Any]:
         "helm": [helm(s) for s in runs],
         "asked": [asked(name, fitted, others, after.ship) for name in ASYMMETRIC],
         "diagnoses": [
-            answer("published coefficients, all runs", runs, ship),
-            answer("calibrated ship, the runs that it was not fitted to", others, after.ship),
+            diagnosed("published coefficients, all runs", runs, ship),
+            diagnosed("calibrated ship, the runs that it was not fitted to", others, after.ship),
         ],
     }  # fmt: skip
 
@@ -138,18 +131,14 @@ def helm(s: Sailed) -> dict[str, Any]:
 
 def asked(name: str, fitted: Sequence[Sailed], others: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
     """The effect as if it had been named: fitted on the calibration's runs, judged on the others at the longest horizon."""
-    _say(f"adding {name}")
+    answer.tell(f"adding {name}")
     model, found = adding.fitted(ship, [find(name)], [s.track for s in fitted])
     before, after = (ladder(others, s)[-1] for s in (ship, ship.with_effects(*model.effects)))
     return {"effect": name, "numbers": [{"name": f.name, **f.entry()} for f in found], "before": before, "after": after}
 
 
-def answer(words: str, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
-    _say(f"diagnosing: {words}")
+def diagnosed(words: str, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
+    answer.tell(f"diagnosing: {words}")
     found = diagnose([s.voyage for s in runs], ship).result
     keep = ("verdict", "missing", "probabilities", "candidates", "next_manoeuvre", "not_judged")
     return {"of": words} | {k: found[k] for k in keep}
-
-
-def _say(words: str) -> None:
-    print(f"{words} ...", file=sys.stderr, flush=True)

@@ -7,17 +7,15 @@ operating set is judged until it leaves, and counted.
 """
 
 import argparse
-import json
-import sys
 import time
 from collections import deque
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from bench import answer
 from twin.errors import ThresholdError
 from twin.live import certificate as cert
 from twin.live import comparison as c3
@@ -285,12 +283,9 @@ def _inner(span: tuple[float, float], share: float) -> tuple[float, float]:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--runs", type=int, default=sum(c.runs for c in CASES), help="runs in all (default: %(default)s)"
-    )
+    parser.add_argument("--runs", type=int, default=sum(c.runs for c in CASES), help="runs in all (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--json", metavar="FILE", help="the numbers as JSON (- = standard output)")
-    parser.add_argument("--results", metavar="FILE", help="write the tables as Markdown")
+    answer.add_arguments(parser, "--results")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -305,27 +300,10 @@ def run(args: argparse.Namespace) -> int:
         made = time.perf_counter() - begin
         outcome = trial(model, c, max(1, round(case.runs * share)), args.seed + i, case.H_s, case.dropouts, moving=bool(case.moving))
         rows.append((case, c, outcome, made))
-        print(
-            f"{case.ship} {case.rate_hz:g} Hz: {outcome.violations} violations in {outcome.runs} runs",
-            file=sys.stderr,
-        )
-    text = tables(rows, args)
-    print(text)
-    if args.results:
-        Path(args.results).write_text(text, encoding="utf-8")
-    if args.json:
-        told = json.dumps(
-            {
-                "schema_version": 1,
-                "cases": [
-                    {**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o, _ in rows
-                ],
-            }
-        )
-        print(told) if args.json == "-" else Path(args.json).write_text(told, encoding="utf-8")
+        answer.tell(f"{case.ship} {case.rate_hz:g} Hz: {outcome.violations} violations in {outcome.runs} runs")
+    cases = [{**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o, _ in rows]
+    answer.give(args, {"schema_version": 1, "cases": cases}, tables(rows, args))
     broken = sum(o.violations for _, _, o, _ in rows)
     if broken:
-        raise ThresholdError(
-            f"the bound was broken in {broken} samples inside the operating set. Do not use the certificate."
-        )
+        raise ThresholdError(f"the bound was broken in {broken} samples inside the operating set. Do not use the certificate.")
     return 0

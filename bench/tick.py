@@ -13,7 +13,7 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from bench import cortex, feed, instructions, mark, tick_table
+from bench import answer, cortex, feed, instructions, mark, tick_table
 from bench.tick_process import WARM_UP
 from twin.errors import TwinError, UsageError
 from twin.live.residual import bundled
@@ -30,18 +30,15 @@ MORE = ("sensors", "predict")  # what no peer does: gates, and 120 s ahead
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--steps", type=int, default=10000, help="ticks as fast as possible (default: 10000)")
     parser.add_argument("--rate", type=float, default=50.0, metavar="HZ", help="of the loop (default: 50)")
-    parser.add_argument(
-        "--paced", type=int, metavar="N", help="ticks on time (default: 20 s of them; 0: none)"
-    )
+    parser.add_argument("--paced", type=int, metavar="N", help="ticks on time (default: 20 s of them; 0: none)")
     parser.add_argument("--ship", default="kvlcc2", help="ship file or bundled ship (default: kvlcc2)")
-    parser.add_argument(
-        "--target", choices=["here", "cortex-a72"], default="here", help="whose budget is checked"
-    )
+    parser.add_argument("--target", choices=["here", "cortex-a72"], default="here", help="whose budget is checked")
     parser.add_argument("--budget-ms", type=float, default=12.0, help="for a step, p99.9 (default: 12)")
     parser.add_argument("--budget-mb", type=float, default=48.0, help="for the process, peak (default: 48)")
     parser.add_argument("--no-peers", action="store_true", help="leave the peers out")
     parser.add_argument("--no-instructions", action="store_true", help="leave valgrind out")
     parser.add_argument("--json", metavar="FILE", help="write the result here (- for standard output)")
+    parser.set_defaults(page=None)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -49,12 +46,7 @@ def run(args: argparse.Namespace) -> int:
     if args.steps < 10:
         raise UsageError(f"--steps {args.steps}: at least 10 are needed for a median and a tail.")
     result = measure(args)
-    if args.json == "-":
-        print(json.dumps(result, indent=1))
-    else:
-        if args.json:
-            _write(Path(args.json), result)
-        print(tick_table.text(result))
+    answer.give(args, result, tick_table.text(result))
     return 0 if result["within_budget"] else 3
 
 
@@ -63,20 +55,20 @@ def measure(args: argparse.Namespace) -> dict[str, Any]:
     paced_steps = int(PACED_S * args.rate) if args.paced is None else args.paced
     with tempfile.TemporaryDirectory(prefix="twin-bench-") as folder:
         place = Place(Path(folder), args)
-        _say(f"sailing the voyage that is fed ({place.seconds(args.steps):.0f} s at sea) ...")
+        answer.tell(f"sailing the voyage that is fed ({place.seconds(args.steps):.0f} s at sea) ...")
         place.prepare(max(args.steps, paced_steps))
-        _say(f"the loop as fast as it can, {args.steps} steps ...")
+        answer.tell(f"the loop as fast as it can, {args.steps} steps ...")
         fast = place.loop(args.steps, PARTS, "fast")
         if paced_steps:
-            _say(f"the loop on time, {paced_steps} steps at {args.rate:g} Hz ...")
+            answer.tell(f"the loop on time, {paced_steps} steps at {args.rate:g} Hz ...")
         paced = place.loop(paced_steps, 0, "paced") if paced_steps else None
         peers = {"hybrid": {}, "peers": {}, "look_ahead": {}}
         if not args.no_peers:
-            _say("the peers ...")
+            answer.tell("the peers ...")
             peers = _json_of([sys.executable, "-m", "bench.peers"], "the peers")
         counted = {}
         if args.steps >= COUNTED_FROM and not args.no_instructions and instructions.available():
-            _say("counting instructions with valgrind ...")
+            answer.tell("counting instructions with valgrind ...")
             counted = instructions.counts()
         residual = place.residual
     return judged(args, fast, paced, peers, counted, residual)
@@ -198,13 +190,3 @@ def _paced(paced: Any) -> dict[str, Any] | None:
 def _ratios(found: dict[str, Any]) -> dict[str, float]:
     """The twin's step over each peer's, all hot: below 1 the twin is quicker."""
     return {f"hybrid_over_{name}": round(found["hybrid"]["mean_us"] / p["median_us"], 2) for name, p in found["peers"].items()}
-
-
-def _write(path: Path, result: dict[str, Any]) -> None:
-    aside = path.with_name(f".{path.name}.part")
-    aside.write_text(json.dumps(result, indent=1) + "\n")
-    aside.replace(path)
-
-
-def _say(text: str) -> None:
-    print(text, file=sys.stderr, flush=True)

@@ -1,0 +1,31 @@
+"""How a benchmark answers: its page, the same numbers as JSON, and words on standard error while it works."""
+
+import argparse
+import sys
+import time
+from pathlib import Path
+from typing import Any
+
+from twin import whole
+from twin.study.import_voyage import write_json
+
+
+def add_arguments(parser: argparse.ArgumentParser, option: str = "--markdown") -> None:
+    """`option`: what this benchmark calls its page."""
+    parser.add_argument(option, metavar="FILE.md", dest="page", type=Path, help="the result as a page")
+    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+    parser.set_defaults(page_option=option)
+
+
+def give(args: argparse.Namespace, result: dict[str, Any], text: str, more: str = "") -> None:
+    """Print the text and write what was asked for; `more` stands below it on the page that is written."""
+    text = text.rstrip("\n")
+    print(text, file=sys.stderr if args.json == "-" else sys.stdout)
+    if args.page:
+        whole.write(args.page, f"{text}\n{more}", args.page_option)
+    if args.json:
+        write_json(result, args.json)
+
+
+def tell(text: str) -> None:
+    print(time.strftime("%H:%M:%S"), text, file=sys.stderr, flush=True)
