@@ -5,20 +5,36 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from twin.errors import did_you_mean
+
 from . import score
+from .track import MEASURED
+
+AT_HORIZON = (*score.NAMES.values(), "noise_units")  # may have @SECONDS behind
+METRICS = (
+    *AT_HORIZON, *(f"unexplained_force.{axis}" for axis in ("surge", "sway", "yaw")), "learned_share",
+    *(f"channels.{column}.mae" for column in MEASURED.values()),
+)  # fmt: skip
 
 
 def threshold(text: str) -> tuple[str, float]:
-    """METRIC=VALUE."""
+    """METRIC=VALUE, refused before any work when there is no such metric."""
     name, _, value = text.partition("=")
+    bare, at, seconds = name.partition("@")
     try:
-        return name, float(value)
-    except ValueError:
+        limit = float(value)
+        if at:
+            positive(seconds)
+    except (ValueError, argparse.ArgumentTypeError):
         raise argparse.ArgumentTypeError(f"{text!r}: METRIC=VALUE is needed, such as position_mae_m=50") from None
+    known = AT_HORIZON if at else METRICS
+    if bare not in known:
+        raise argparse.ArgumentTypeError(f"no metric is called {bare!r}.{did_you_mean(bare, known)}")
+    return name, limit
 
 
 def metric(result: dict[str, Any], name: str) -> float | None:
-    """The number that --fail-above speaks of; None when there is no such metric."""
+    """The number that --fail-above speaks of; None when these voyages do not give it."""
     name, _, at = name.partition("@")
     row = next(
         (r for r in result["horizons"] if at and f"{r['horizon_s']:g}" == at),

@@ -87,16 +87,19 @@ def test_json_on_standard_output_is_alone_there(verb, on_disk, make, capsys):
     assert [h["horizon_s"] for h in json.loads(capsys.readouterr().out)["horizons"]] == [30.0]
 
 
+UNKNOWN = ("x", "position_mae=1", "nonsense=1", "channels.yaw_rate_dps.mae=1", "learned_share@60=1", "position_mae_m@soon=1")
+
+
 @pytest.mark.parametrize(
     "limit, code",
     [("position_mae_m=1000", 0), ("position_mae_m=0.001", 3), ("position_mae_m@10=1000", 0), ("noise_units=0.01", 3),
-     ("unexplained_force.yaw=0.5", 0), ("channels.yaw_rate_degps.mae=1e-9", 3), ("nonsense=1", 3)],
+     ("unexplained_force.yaw=0.5", 0), ("channels.yaw_rate_degps.mae=1e-9", 3), ("position_mae_m@11=1000", 3)],
 )  # fmt: skip
 def test_a_threshold_that_is_passed_is_exit_code_3(verb, on_disk, make, limit, code):
     assert verb("compare", on_disk(make()), "--ship", "kvlcc2", "--fail-above", limit) == code
 
 
-@pytest.mark.parametrize("words", [["--fail-above", "x"], ["--horizon", "-3"], ["--horizon", "soon"]])
+@pytest.mark.parametrize("words", [["--fail-above", x] for x in UNKNOWN] + [["--horizon", "-3"], ["--horizon", "soon"]])
 def test_words_that_mean_nothing_are_a_usage_error(verb, words):
     with pytest.raises(SystemExit) as stop:
         verb("compare", "v.mcap", "--ship", "kvlcc2", *words)
