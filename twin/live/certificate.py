@@ -10,11 +10,13 @@ import hashlib
 import json
 import os
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from twin.errors import SettingsError
+from twin import whole
+from twin.errors import SettingsError, TwinError
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
@@ -28,7 +30,7 @@ from .tube import Tube
 
 __all__ = [
     "Certificate", "Confined", "Disturbance", "OperatingSet", "Plant", "Tube", "assess", "best_gain",
-    "certify", "gains_that_do", "kept", "lipschitz", "of_ship", "output_bound", "plant_of", "self_regressor",
+    "certify", "gains_that_do", "kept", "lipschitz", "mark", "of_ship", "on_file", "output_bound", "plant_of", "self_regressor",
     "usual_disturbance", "usual_gain", "usual_noise",
 ]  # fmt: skip
 
@@ -125,21 +127,23 @@ def kept(
     """The certificate from its file if it is of this ship, K and settings; else worked out and, where
     possible, written there.
     """
-    mark = _mark(model, K, h, settings)
+    wanted = mark(model, K, h, settings)
+    if found := on_file(path, wanted):
+        return found
+    made = replace(certify(model, K, h, **settings), fingerprint=wanted)
+    with suppress(OSError, TwinError):  # a folder one may not write to costs half a second at each start, nothing else
+        Path(path).parent.mkdir(parents=True, exist_ok=True)
+        whole.write(path, made.to_json())
+    return made
+
+
+def on_file(path: str | os.PathLike[str], wanted: str) -> Certificate | None:
+    """The certificate of that mark, if the file holds it."""
     try:
         found = Certificate.from_json(Path(path).read_text(encoding="utf-8"))
-        if found.fingerprint == mark:
-            return found
     except (OSError, ValueError, KeyError, TypeError):
-        pass
-    made = replace(certify(model, K, h, **settings), fingerprint=mark)
-    try:
-        aside = Path(f"{path}.part")
-        aside.write_text(made.to_json(), encoding="utf-8")
-        aside.replace(path)
-    except OSError:
-        pass  # a folder one may not write to costs half a second at each start, nothing else
-    return made
+        return None
+    return found if found.fingerprint == wanted else None
 
 
 def on_board(ship: Ship, delay_samples: int, adapted: bool) -> dict[str, Any]:
@@ -147,7 +151,7 @@ def on_board(ship: Ship, delay_samples: int, adapted: bool) -> dict[str, Any]:
     return {"delay_samples": delay_samples, "adapted": adapted, "noise": usual_noise(ship), "heading_noise": HEADING_NOISE}
 
 
-def _mark(model: Model, *settings: Any) -> str:
+def mark(model: Model, *settings: Any) -> str:
     """What the certificate depends on, as a hash: the ship's numbers, her effects, the settings and the
     theorem's version.
     """

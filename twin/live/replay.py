@@ -77,7 +77,7 @@ def replay(log: str | Path, settings: Settings, output: str | Path | None = None
         file = stack.enter_context(LogFile(output)) if output else None
         ears = Played([])
         voice = Outbox(Publisher(), settings["bus.base"], settings["bus.entity"], None, file.add if file else None)
-        loop = build.loop_of(settings, ears, voice)
+        loop = build.loop_of(settings, ears, voice, patience_s=None)
         return _sailed(loop, ears, played, batches, file, realtime)
 
 

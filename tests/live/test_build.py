@@ -1,0 +1,50 @@
+"""From settings to a loop: where her certificate comes from, and what is said when there is none."""
+
+from importlib import resources
+
+import pytest
+
+from twin.live.build import certificate_file, stabilizer_of
+from twin.live.config import Settings
+from twin.physics.ship import load
+
+
+@pytest.fixture
+def at_home(tmp_path, monkeypatch):
+    """A home folder in which nothing is on file."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    return tmp_path
+
+
+def ship_file(folder, mass_kg):
+    """A file tanker.toml in a folder of its own: KVLCC2 with another mass."""
+    text = (resources.files("twin.ships") / "kvlcc2.toml").read_text(encoding="utf-8")
+    path = folder / mass_kg / "tanker.toml"
+    path.parent.mkdir()
+    path.write_text(text.replace("m = { value = 320415000.0", f"m = {{ value = {mass_kg}"), encoding="utf-8")
+    return str(path)
+
+
+def test_two_ships_whose_files_have_one_name_keep_a_certificate_each(at_home):
+    """Test: the same file name in two folders, two masses. Expected: two files, each of its own ship, and both are found again."""
+    files = [ship_file(at_home, mass_kg) for mass_kg in ("320415000.0", "350000000.0")]
+    made = [stabilizer_of(Settings({"ship.file": path}), load(path), None).tube.certificate for path in files]
+    assert made[0].fingerprint != made[1].fingerprint and len(list((at_home / ".cache" / "shiptwin").iterdir())) == 2
+    for path, certificate in zip(files, made, strict=True):
+        assert stabilizer_of(Settings({"ship.file": path}), load(path), 0.0).tube.certificate == certificate
+
+
+def test_a_certificate_that_is_not_ready_in_time_is_one_clear_line(at_home):
+    """Test: no patience at all. Expected: no tube; the reason is one line with the seconds, not another process's command."""
+    made = stabilizer_of(Settings({"ship.file": "kvlcc2"}), load("kvlcc2"), 0.0)
+    assert made.tube is None and made.why_not == "not worked out (not ready after 0 s. Start again when the machine is less busy)"
+
+
+def test_where_no_file_can_be_written_there_is_a_certificate_all_the_same(at_home):
+    settings = Settings({"ship.file": "kvlcc2", "observer.certificate": "/proc/none/certificate.json"})
+    assert stabilizer_of(settings, load("kvlcc2"), None).tube.certificate.ship == "KVLCC2"
+
+
+def test_settings_name_the_certificates_file_before_the_cache_does(at_home):
+    assert certificate_file(Settings({"state.folder": "/var/lib/shiptwin"}), "mark").as_posix() == "/var/lib/shiptwin/certificate.json"
+    assert certificate_file(Settings({"ship.file": "x/alma.toml"}), "mark").name == "alma-mark.certificate.json"
