@@ -5,12 +5,12 @@ objects run live, in a replay and in a test, and the same messages give the same
 """
 
 from collections.abc import Callable
-from typing import Any, NamedTuple, Protocol
+from typing import Any, Protocol
 
 from twin.live.clock import Instant
 from twin.live.decode import Result
 from twin.live.dynamics import Dynamics
-from twin.live.estimate import Estimate, Observer
+from twin.live.estimate import Observer
 from twin.live.faults import KnownFaults
 from twin.live.geodesy import Datum
 from twin.live.guard import INVALID, Guard
@@ -19,11 +19,10 @@ from twin.live.measured import Measured
 from twin.live.outbox import Outbox
 from twin.live.parts import Parts
 from twin.live.predict import LearnedAt, Predictor
-from twin.live.publish import Pace
+from twin.live.seen import Pace, Seen, Standing
 from twin.live.sensors import Sensors
 from twin.live.stabilizer import Stabilizer
 from twin.physics.ship import Ship
-from twin.physics.state import Situation
 
 PARAMETERS_EVERY = 10  # ticks between two lists of adapted numbers
 
@@ -35,14 +34,6 @@ class Ears(Protocol):
     def datum(self) -> Datum | None: ...
 
     def read(self, instant: Instant) -> list[Result]: ...
-
-
-class Seen(NamedTuple):
-    """What the last tick knew, for those who look on."""
-
-    measured: Measured
-    estimate: Estimate
-    situation: Situation
 
 
 class Loop:
@@ -96,14 +87,9 @@ class Loop:
             instant.time_s, estimate, situation, physics, self.learned_at(verdict.use_learned), verdict.mode != INVALID, self.dynamics.steering
         )
         certified = self.stabilizer.step(self.observer, measured, situation)
-        tick = self.publisher.tick(
-            instant, self.pace, verdict._replace(reasons=self._all_reasons(verdict.reasons, instant)), measured,
-            self.sensors.codes, estimate, dict(zip(physics.names, forces, strict=True)), learned,
-            self.learned.share(learned, forces), self._parameters(instant), ahead, certified,
-            self.sensors.rejected, self.dropped(),
-        )  # fmt: skip
+        self.last = Seen(instant, measured, estimate, situation, physics, forces, verdict, learned, ahead, certified)
+        tick = self.publisher.tick(self.last, self._standing(self.last))
         self.voice.send(tick, self.ears.datum)
-        self.last = Seen(measured, estimate, situation)
         return tick
 
     def measure_parts(self) -> Parts:
@@ -129,15 +115,17 @@ class Loop:
         """The learned force as the predictor carries it ahead."""
         return lambda s, forces: self.learned.at(s, forces, allowed).force
 
-    def _parameters(self, instant: Instant) -> list[Any]:
+    def _standing(self, seen: Seen) -> Standing:
         adaptation = self.learned.adaptation
-        return adaptation.parameters() if adaptation and instant.number % PARAMETERS_EVERY == 0 else []
+        parameters = adaptation.parameters() if adaptation and seen.instant.number % PARAMETERS_EVERY == 0 else []
+        share = self.learned.share(seen.learned, seen.forces)
+        return Standing(self.pace, self._reasons(seen), self.sensors.codes, share, parameters, self.sensors.rejected, self.dropped())
 
-    def _all_reasons(self, reasons: list[str], instant: Instant) -> list[str]:
-        said = [*reasons, *self.watched()]
+    def _reasons(self, seen: Seen) -> list[str]:
+        said = [*seen.verdict.reasons, *self.watched()]
         if self.dynamics.off:
             said.append(f"effects without their inputs: {', '.join(type(e).__name__ for e in self.dynamics.off)}")
-        if instant.number < 10.0 * self.rate_hz:
+        if seen.instant.number < 10.0 * self.rate_hz:
             said += self.notes
         return said
 

@@ -3,39 +3,16 @@
 Nothing that is not a finite number is ever put into a message: such a field stays absent, and is counted.
 """
 
-from collections.abc import Iterable
 from math import degrees, isfinite
-from typing import Any, NamedTuple
+from typing import Any
 
 from twin.live import messages
-from twin.live.adapt import Parameter
-from twin.live.clock import Instant
 from twin.live.estimate import Estimate
 from twin.live.geodesy import Datum, from_chart
-from twin.live.guard import Verdict
 from twin.live.learned import Learned
-from twin.live.measured import Measured
-from twin.live.predict import Prediction
+from twin.live.seen import Seen, Standing
 from twin.live.topics import OUTPUTS, Output
 from twin.physics.core import Tau
-
-
-class Pace(NamedTuple):
-    """How the loop keeps time."""
-
-    rate_hz: float
-    overruns: int = 0  # periods skipped since start
-    slack_us: float | None = None  # time that was left when the tick before was done; absent in a replay
-    step_us: float | None = None  # what the tick before took
-
-
-class Certified(NamedTuple):
-    """The certificate's margin, the live bound of the observer's error in speed [m/s], and whether it
-    holds now."""
-
-    margin: float = 0.0
-    bound: float = 0.0
-    inside: bool = False
 
 
 class Publisher:
@@ -45,45 +22,29 @@ class Publisher:
         self.withheld = 0
         self._next: dict[Output, float] = {}
 
-    def tick(
-        self,
-        instant: Instant,
-        pace: Pace,
-        verdict: Verdict,
-        measured: Measured,
-        codes: dict[str, int],
-        estimate: Estimate,
-        known: dict[str, Tau],
-        learned: Learned,
-        share: float,
-        parameters: Iterable[Parameter],
-        predictions: Iterable[Prediction],
-        certified: Certified,
-        rejected: int,
-        log_dropped: int,
-    ) -> Any:
+    def tick(self, seen: Seen, standing: Standing) -> Any:
         """The wide record."""
-        finite = self._finite
-        ready = estimate.ready
+        finite, instant, measured, estimate = self._finite, seen.instant, seen.measured, seen.estimate
+        ready, pace = estimate.ready, standing.pace
         return messages.Tick(
-            index=instant.number, time_s=instant.time_s, wall_s=instant.wall_s, mode=verdict.mode, reasons=verdict.reasons,
-            rate_hz=pace.rate_hz, slack_us=pace.slack_us, step_us=pace.step_us, overruns=pace.overruns, rejected=rejected,
-            log_dropped=log_dropped, measured=finite({**measured.border, "time_s": instant.wall_s}),
-            age_s=finite(measured.age_by_channel()), quality=codes,
+            index=instant.number, time_s=instant.time_s, wall_s=instant.wall_s, mode=seen.verdict.mode, reasons=standing.reasons,
+            rate_hz=pace.rate_hz, slack_us=pace.slack_us, step_us=pace.step_us, overruns=pace.overruns, rejected=standing.rejected,
+            log_dropped=standing.log_dropped, measured=finite({**measured.border, "time_s": instant.wall_s}),
+            age_s=finite(measured.age_by_channel()), quality=standing.quality,
             estimate=finite(state_of(estimate)) if ready else None,
             sigma=finite(border_sigma(estimate.sigma)) if ready else None,
-            known=[{"name": name, **finite(named(force))} for name, force in known.items()],
-            learned=finite(learned_of(learned, share)), parameters=[
-                {"name": p.name, "unit": p.unit, "status": p.status, **finite(p.numbers())} for p in parameters
+            known=[{"name": name, **finite(named(force))} for name, force in zip(seen.physics.names, seen.forces, strict=True)],
+            learned=finite(learned_of(seen.learned, standing.share)), parameters=[
+                {"name": p.name, "unit": p.unit, "status": p.status, **finite(p.numbers())} for p in standing.parameters
             ],
             predictions=[
                 {
                     "horizon_s": p.horizon_s, "state": finite(border_state(*p.state)), "sigma": finite(border_sigma(p.sigma)),
                     "age_s": p.age_s, "status": p.status,
                 }
-                for p in predictions
+                for p in seen.ahead
             ],
-            certificate=finite(certified._asdict()),
+            certificate=finite(seen.certified._asdict()),
         )  # fmt: skip
 
     def due(self, tick: Any, datum: Datum | None) -> list[tuple[Output, bytes]]:

@@ -5,7 +5,7 @@ from math import hypot
 
 from twin.live.estimate import Observer
 from twin.live.measured import Measured
-from twin.live.publish import Certified
+from twin.live.seen import Certified
 from twin.live.tube import STILL, Tube
 from twin.physics.state import Situation
 

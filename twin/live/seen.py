@@ -1,0 +1,60 @@
+"""What one tick knew: for the wide record, and for those who look on."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from twin.live.adapt import Parameter
+from twin.live.clock import Instant
+from twin.live.dynamics import Known
+from twin.live.estimate import Estimate
+from twin.live.guard import Verdict
+from twin.live.learned import Learned
+from twin.live.measured import Measured
+from twin.live.predict import Prediction
+from twin.physics.core import Tau
+from twin.physics.state import Situation
+
+
+class Certified(NamedTuple):
+    """The certificate's margin, the live bound of the observer's error in speed [m/s], and whether it
+    holds now."""
+
+    margin: float = 0.0
+    bound: float = 0.0
+    inside: bool = False
+
+
+class Seen(NamedTuple):
+    """What the lines of one tick found, in their order."""
+
+    instant: Instant
+    measured: Measured
+    estimate: Estimate
+    situation: Situation
+    physics: Known
+    forces: Sequence[Tau]  # known ones, in the order of physics.names
+    verdict: Verdict
+    learned: Learned
+    ahead: Sequence[Prediction]
+    certified: Certified
+
+
+class Pace(NamedTuple):
+    """How the loop keeps time."""
+
+    rate_hz: float
+    overruns: int = 0  # periods skipped since start
+    slack_us: float | None = None  # time that was left when the tick before was done; absent in a replay
+    step_us: float | None = None  # what the tick before took
+
+
+class Standing(NamedTuple):
+    """What goes on from tick to tick, as it stands after this one."""
+
+    pace: Pace
+    reasons: list[str]  # why the mode is not better, and every alarm
+    quality: dict[str, int]  # by channel
+    share: float  # the learned force's part of all force
+    parameters: Sequence[Parameter]
+    rejected: int  # samples since start
+    log_dropped: int  # messages since start
