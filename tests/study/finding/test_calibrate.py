@@ -6,8 +6,8 @@ import pytest
 
 from twin import cli
 from twin.physics.ship import load
-from twin.study.calibrate import _told_usual
 from twin.study.doubts import doubts
+from twin.study.usual import clearly_hers
 from twin.study.write import write_voyage
 
 
@@ -60,7 +60,7 @@ def test_calibrating_again_starts_from_the_prior_and_not_from_its_own_answer(cal
 def test_what_no_ship_can_show_is_not_told_as_usual(calibrated):
     ship, _ = calibrated
     labels = ["SteeringLag.delay", "HeadingBias.bias"]
-    told = _told_usual(ship, {"labels": labels, "offset": [-0.4, 0.02], "covariance": [[1e-4, 0.0], [0.0, 1e-6]]})
+    told = clearly_hers(ship, {"labels": labels, "offset": [-0.4, 0.02], "covariance": [[1e-4, 0.0], [0.0, 1e-6]]})
     assert [t["name"] for t in told] == ["HeadingBias.bias"]
 
 

@@ -1,0 +1,67 @@
+"""The core's derivatives as reference voyages tell of them, and as the ship file remembers them."""
+
+import datetime
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any, NamedTuple
+
+from twin.physics.ship import Ship
+
+from .columns import Unknown
+from .fit import Fit
+
+UNEXCITED = 0.1  # a derivative of whose prior variance the voyages took away less than this keeps its prior
+
+
+class Derivative(NamedTuple):
+    """One derivative; `gained`: what the voyages took away of its prior variance."""
+
+    unknown: Unknown
+    fitted: float
+    sd: float
+    gained: float
+
+    @property
+    def excited(self) -> bool:
+        return self.gained >= UNEXCITED
+
+    @property
+    def value(self) -> float:
+        return self.fitted if self.excited else self.unknown.centre
+
+
+def told_by(found: Fit) -> list[Derivative]:
+    """Those among the fit's unknowns."""
+    rows = zip(found.unknowns, found.value.tolist(), found.sd.tolist(), found.gained.tolist(), strict=True)
+    return [Derivative(*row) for row in rows if row[0].owner == "core"]
+
+
+def first_prior(unknown: Unknown, ship: Ship) -> Unknown:
+    """A derivative that was calibrated before keeps the prior that it had then, so that no voyage counts twice."""
+    entry = ship.notes.get("derivatives", {}).get(unknown.name, {}) if unknown.owner == "core" else {}
+    centre = entry.get("prior_value") if isinstance(entry, dict) else None
+    return unknown if centre is None else replace(unknown, centre=float(centre))
+
+
+def with_derivatives(ship: Ship, found: Sequence[Derivative]) -> Ship:
+    """The ship with their values, standard errors and priors."""
+    source = f"calibrated {datetime.date.today().isoformat()}", "prior kept: the reference voyages do not excite it"
+    entries = {
+        d.unknown.name: {"value": d.value, "unit": d.unknown.unit, "sd": d.sd, "prior_value": d.unknown.centre, "prior_sd": d.unknown.sd,
+                         "source": source[not d.excited]}
+        for d in found
+    }  # fmt: skip
+    after = ship.with_derivatives(**{d.unknown.name: d.value for d in found})
+    return noted(after, "derivatives", entries)
+
+
+def with_core_of(ship: Ship, other: Ship) -> Ship:
+    """The ship with the derivatives of another fit to the same voyages; their standard errors stay."""
+    values = {name: float(getattr(other.derivatives, name)) for name in ship.notes["derivatives"] if hasattr(other.derivatives, name)}
+    entries = {name: ship.notes["derivatives"][name] | {"value": value} for name, value in values.items()}
+    return noted(ship.with_derivatives(**values), "derivatives", entries)
+
+
+def noted(ship: Ship, section: str, entries: dict[str, Any]) -> Ship:
+    """The ship whose file remembers this too."""
+    return replace(ship, notes={**ship.notes, section: {**ship.notes.get(section, {}), **entries}})

@@ -1,0 +1,68 @@
+"""What a fit does not see, and how wrong a model is on it, open loop: by horizon, and by how hard she turns."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from twin.physics.model import Model
+
+from .openloop import HORIZONS_S, predict
+from .sailed import Sailed, fed
+from .track import Track
+
+HeldOut = Sequence[tuple[Track, int]]  # tracks, each with the first grid step that was not used for the fit
+LAST = "the last third of the voyages; the ship that is written was then fitted to all"
+BANDS = (("straight", 0.0, 0.1), ("turning", 0.1, 0.4), ("turning hard", 0.4, np.inf))  # |r| L/U_0
+
+
+def split(fitted: list[Sailed], held_out: list[Sailed]) -> tuple[list[Sailed], HeldOut, str]:
+    """What is fitted, what is held out, and how to say so."""
+    if held_out:
+        return fitted, [(s.track, 0) for s in held_out], "the voyages given with --held-out"
+    if len(fitted) > 2:
+        keep = len(fitted) - max(1, len(fitted) // 3)
+        return fitted[:keep], [(s.track, 0) for s in fitted[keep:]], LAST
+    cuts = [int(0.7 * len(s.track)) for s in fitted]
+    parts = [replace(s, track=s.track.part(0, cut)) for s, cut in zip(fitted, cuts, strict=True)]
+    return parts, [(s.track, cut) for s, cut in zip(fitted, cuts, strict=True)], "the last 30 % of each voyage"
+
+
+def errors(model: Model, held_out: HeldOut) -> list[dict[str, float]]:
+    """Their means by horizon."""
+    return [_mean(horizon, *_ends(model, held_out, horizon)[1:]) for horizon in HORIZONS_S]
+
+
+def _mean(horizon_s: float, position: np.ndarray, heading: np.ndarray) -> dict[str, float]:
+    place, turn = (float(e.mean()) if e.size else float("nan") for e in (position, heading))
+    return {"horizon_s": float(horizon_s), "windows": position.size, "position_m": place, "heading_deg": float(np.degrees(turn))}
+
+
+def by_regime(model: Model, held_out: HeldOut) -> list[dict[str, Any]]:
+    """Position error after the middle horizon while sailing straight, turning, and turning hard."""
+    horizon = HORIZONS_S[1]
+    turning, position, _ = _ends(model, held_out, horizon)
+    parts = [(name, position[(turning >= lo) & (turning < hi)]) for name, lo, hi in BANDS]
+    return [{"regime": name, "horizon_s": float(horizon), "windows": e.size, "position_m": float(e.mean())} for name, e in parts if e.size]
+
+
+def size(errors: Sequence[dict[str, float]]) -> float:
+    """Errors in place and heading over all horizons, as one number to compare: their mean logarithm."""
+    numbers = [e[name] for e in errors if e["windows"] for name in ("position_m", "heading_deg")]
+    return float(np.log(np.maximum(numbers, 1e-9)).mean()) if numbers else 0.0
+
+
+def _ends(model: Model, held_out: HeldOut, horizon_s: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of every window that begins in what was held out: |r| L/U_0 as it begins, and how far off its end is in place [m] and heading [rad]."""
+    found: list[list[np.ndarray]] = [[np.empty(0)], [np.empty(0)], [np.empty(0)]]
+    for track, first in held_out:
+        windows = predict(track, fed(model, track)[0], [horizon_s], leads=1)
+        k = windows.at(horizon_s)
+        ok = windows.valid[k] & (windows.start >= first)
+        off = windows.errors()
+        turning = np.abs(track.state[windows.start, 5]) * float(model.ship.scale("time"))
+        for column, x in zip(found, (turning, off["position"][k], off["heading"][k]), strict=True):
+            column.append(x[ok])
+    turning, position, heading = map(np.concatenate, found)
+    return turning, position, heading
