@@ -8,7 +8,7 @@ equations A = G'G, b = G'e of every later question. Tracks are cut into segments
 Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy & O'Hagan (2001) (model discrepancy).
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -19,11 +19,13 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 
 from .columns import LATE, Unknown, columns
+from .filters import FLOW, MOTION, SLOW, SPEEDS, STATES, Filters, Noise, Stretches
+from .normal import Normal, Sums
 from .respond import advance, jacobian, lagged, respond
 from .segments import segments
 from .track import Track
 
-STATES = 11  # delta (6), b (3), c (2)
+Where = Sequence[tuple[int, int, int]]  # segments: track, first step, last step
 MEMORY_B, MEMORY_C = 3.0, 12.0  # correlation times of b and c, in ship lengths sailed
 
 
@@ -70,39 +72,52 @@ def linearise(
     track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None
 ) -> Linear:
     """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model already holds)."""
-    h, n = track.h, len(track)
     _, reading = respond(track, model)
     A, R = columns(track, model, unknowns, catalogue, at)
-    U = float(model.ship.scale("speed"))
-    current = [Unknown("Current", axis, "m/s", 0.0, 0.02 * U, -U, U) for axis in ("north", "east")]
-    flow, _ = columns(track, _without_current(model), current, {"Current": find("Current")})
-    F = np.zeros((n, STATES, STATES))
-    psi, u, v = track.state[:, 2], track.state[:, 3], track.state[:, 4]
-    c, s = np.cos(psi), np.sin(psi)
-    rate = np.zeros((n, STATES, STATES))  # the continuous system matrix
-    rate[:, 0, 2], rate[:, 0, 3], rate[:, 0, 4] = -u * s - v * c, c, -s
-    rate[:, 1, 2], rate[:, 1, 3], rate[:, 1, 4] = u * c - v * s, s, c
-    rate[:, 2, 5] = 1.0
-    rate[:, 3:6, :6] = jacobian(track, model)
-    rate[:, 3:6, 6:9] = np.eye(3)
-    rate[:, 3:6, 9:11] = flow
-    time = float(model.ship.scale("time"))
-    F = np.eye(STATES) + h * rate + 0.5 * h * h * rate @ rate
-    F[:, 6:9, 6:9] = np.eye(3) * np.exp(-h / (MEMORY_B * time))
-    F[:, 9:11, 9:11] = np.eye(2) * np.exp(-h / (MEMORY_C * time))
-    defect = advance(track, model)
-    defect[:-1] -= track.state[1:]
-    defect[-1] = 0.0
-    H = np.zeros((n, 8, STATES))
-    H[:, :6, :6] = np.eye(6)
-    H[:, 6, 3] = H[:, 7, 4] = 1.0
-    H[:, 6, 9], H[:, 6, 10], H[:, 7, 9], H[:, 7, 10] = -c, -s, s, -c
     e = track.measured - reading
     for j, unknown in enumerate(unknowns):
         if unknown.owner == LATE:  # no model holds it: what is known of it is taken off the readings
             e -= R[:, :, j] * (at or {}).get(unknown.label, 0.0)
     e[:, 2] = (e[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
-    return Linear(track, F, defect, H, e, A.astype(np.float32), R.astype(np.float32), busy(track, model), model)
+    defect = advance(track, model)
+    defect[:-1] -= track.state[1:]
+    defect[-1] = 0.0
+    return Linear(track, _system(track, model), defect, _reader(track), e, A.astype(np.float32), R.astype(np.float32), busy(track, model), model)
+
+
+def _system(track: Track, model: Model) -> np.ndarray:
+    """(N, 11, 11) what takes the state one step on: the ship's own slopes, and b and c that fade."""
+    h, time = track.h, float(model.ship.scale("time"))
+    rate = np.zeros((len(track), STATES, STATES))  # the continuous system matrix
+    psi, u, v = track.state[:, 2], track.state[:, 3], track.state[:, 4]
+    c, s = np.cos(psi), np.sin(psi)
+    rate[:, 0, 2], rate[:, 0, 3], rate[:, 0, 4] = -u * s - v * c, c, -s
+    rate[:, 1, 2], rate[:, 1, 3], rate[:, 1, 4] = u * c - v * s, s, c
+    rate[:, 2, 5] = 1.0
+    rate[:, SPEEDS, MOTION] = jacobian(track, model)
+    rate[:, SPEEDS, SLOW] = np.eye(3)
+    rate[:, SPEEDS, FLOW] = _by_current(track, model)
+    F = np.eye(STATES) + h * rate + 0.5 * h * h * rate @ rate
+    F[:, SLOW, SLOW] = np.eye(3) * np.exp(-h / (MEMORY_B * time))
+    F[:, FLOW, FLOW] = np.eye(2) * np.exp(-h / (MEMORY_C * time))
+    return F
+
+
+def _by_current(track: Track, model: Model) -> np.ndarray:
+    """(N, 3, 2) acceleration per m/s of current to the north and to the east."""
+    U = float(model.ship.scale("speed"))
+    axes = [Unknown("Current", axis, "m/s", 0.0, 0.02 * U, -U, U) for axis in ("north", "east")]
+    return columns(track, _without_current(model), axes, {"Current": find("Current")})[0]
+
+
+def _reader(track: Track) -> np.ndarray:
+    """(N, 8, 11) what the instruments show of the state: each its own, the log the speed through water."""
+    c, s = np.cos(track.state[:, 2]), np.sin(track.state[:, 2])
+    H = np.zeros((len(track), 8, STATES))
+    H[:, MOTION, MOTION] = np.eye(6)
+    H[:, 6, 3] = H[:, 7, 4] = 1.0
+    H[:, 6, 9], H[:, 6, 10], H[:, 7, 9], H[:, 7, 10] = -c, -s, s, -c
+    return H
 
 
 def _without_current(model: Model) -> Model:
@@ -131,118 +146,50 @@ def standard(model: Model) -> np.ndarray:
     return np.array([force / c.m_u, force / c.m_v, 0.3 * moment / c.m_r])
 
 
-@dataclass(frozen=True)
-class Normal:
-    """Normal equations of whitened innovations, one for each segment: epsilon = e - G theta, A = G'G, b = G'e."""
-
-    A: np.ndarray  # (S, P, P)
-    b: np.ndarray  # (S, P)
-    ee: np.ndarray  # (S,)
-    logdet: np.ndarray  # (S,) sum of log det of the innovations' covariance
-    count: np.ndarray  # (S,) readings
-    energy: np.ndarray  # (S, 8) sum of squares by reading
-    where: tuple[tuple[int, int, int], ...]  # (track, first step, last step)
-
-    def total(self) -> tuple[np.ndarray, np.ndarray, float]:
-        return self.A.sum(0), self.b.sum(0), float(self.ee.sum())
-
-    def only(self, keep: np.ndarray) -> "Normal":
-        """Some of the segments."""
-        rows = np.flatnonzero(keep)
-        return Normal(
-            self.A[rows], self.b[rows], self.ee[rows], self.logdet[rows], self.count[rows], self.energy[rows],
-            tuple(self.where[i] for i in rows),
-        )  # fmt: skip
-
-
 def innovate(lines: Sequence[Linear], floors: Sequence[Floor], most: int | None = None) -> list[Normal]:
     """Filter every segment of every track (or an even choice of `most`), under every floor, side by side; the normal equations
     for each floor."""
     where = segments([line.track for line in lines], float(lines[0].model.ship.scale("time")), most)
-    T, S, W = max(b - a for _, a, b in where), len(where), len(floors)
-    P = lines[0].A.shape[2]
+    told, noise = _stretches(lines, where), _noise(lines, floors, where)
+    filters, sums = Filters(told, noise, _start(lines[0].model, noise.slow[0], noise.flow)), Sums(len(noise.row), told.A.shape[-1])
+    for k in range(len(told.e)):
+        sums.add(*filters.correct(k))
+        filters.advance(k)
+    whole = sums.normal(tuple(where) * len(floors))
+    return [whole.only(np.arange(len(noise.row)) // len(where) == w) for w in range(len(floors))]
 
-    def stack(pick: Callable[[Linear], np.ndarray], fill: float = 0.0) -> np.ndarray:
-        first = pick(lines[0])
-        out = np.full((T, S, *first.shape[1:]), fill, first.dtype)
-        for k, (i, a, b) in enumerate(where):
-            out[: b - a, k] = pick(lines[i])[a:b]
-        return out
 
-    F, H, e = stack(lambda x: x.F), stack(lambda x: x.H), stack(lambda x: x.e, np.nan)
-    defect, turn = stack(lambda x: x.defect), stack(_turn)
-    A, R = stack(lambda x: x.A), stack(lambda x: x.R)
-    slow = np.concatenate([stack(lambda x, f=f: _slow(x, f)) for f in floors], axis=1)  # type: ignore[misc]
-    row = np.tile(np.arange(S), W)  # every floor runs over all segments
-    model = lines[0].model
-    h = np.array([lines[i].track.h for i, _, _ in where])[row]
+def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
+    return Stretches(
+        F=_abreast([x.F for x in lines], where), H=_abreast([x.H for x in lines], where), e=_abreast([x.e for x in lines], where, np.nan),
+        defect=_abreast([x.defect for x in lines], where), turn=_abreast([_turn(x) for x in lines], where),
+        A=_abreast([x.A for x in lines], where), R=_abreast([x.R for x in lines], where),
+    )  # fmt: skip
+
+
+def _abreast(arrays: Sequence[np.ndarray], where: Where, fill: float = 0.0) -> np.ndarray:
+    """(T, S, ...) the segments of the tracks' arrays (N, ...), begun together; shorter ones are filled up."""
+    out = np.full((max(b - a for _, a, b in where), len(where), *arrays[0].shape[1:]), fill, arrays[0].dtype)
+    for k, (i, a, b) in enumerate(where):
+        out[: b - a, k] = arrays[i][a:b]
+    return out
+
+
+def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> Noise:
+    """Every floor in turn, over all segments."""
+    model, row = lines[0].model, np.tile(np.arange(len(where)), len(floors))
     time, speed = float(model.ship.scale("time")), float(model.ship.scale("speed"))
-    scatter = np.stack([lines[i].track.sd for i, _, _ in where])
-
-    def by_floor(value: Callable[[Floor], "float | np.ndarray"]) -> np.ndarray:
-        return np.repeat(np.array([value(f) for f in floors], dtype=float), S, axis=0)
-
-    noise = (by_floor(lambda f: f.sensor)[:, None] * scatter[row]) ** 2  # (SW, 8)
-    flow = (by_floor(lambda f: f.flow) * speed) ** 2
-    fast = (by_floor(lambda f: f.white)[:, None] * standard(model)) ** 2 * (h * time)[:, None]  # velocity variance in one step
-    keep_b, keep_c = 1.0 - np.exp(-2.0 * h / (MEMORY_B * time)), 1.0 - np.exp(-2.0 * h / (MEMORY_C * time))
-    C, X = _start(model, slow[0], flow), np.zeros((S * W, STATES, 1 + P))
-    eye, sums = np.arange(STATES), _Sums(S * W, P)
-    h_ = h[:, None, None]
-    for k in range(T):
-        ok = np.isfinite(e[k])[row]
-        Hk = H[k][row] * ok[:, :, None]
-        E = -(Hk @ X)
-        E[:, :, 0] += np.where(ok, e[k][row], 0.0)
-        E[:, :, 1:] -= R[k][row] * ok[:, :, None]
-        HC = Hk @ C
-        Sk = HC @ Hk.transpose(0, 2, 1)
-        Sk[:, eye[:8], eye[:8]] += np.where(ok, noise, 1.0)
-        L = np.linalg.cholesky(Sk)
-        white = np.linalg.inv(L) @ np.concatenate([E, HC], axis=2)
-        V = white[:, :, 1 + P :]
-        sums.add(white[:, :, : 1 + P], L, ok)
-        VT = V.transpose(0, 2, 1)
-        Fk = F[k][row]
-        X = Fk @ (X + VT @ white[:, :, : 1 + P])
-        X[:, :6, 0] += defect[k][row]
-        push = h_ * A[k][row]
-        X[:, 3:6, 1:] += push
-        X[:, 0:3, 1:] += 0.5 * h_ * (turn[k][row] @ push)
-        C = Fk @ (C - VT @ V) @ Fk.transpose(0, 2, 1)
-        C[:, eye[3:6], eye[3:6]] += fast
-        C[:, eye[6:9], eye[6:9]] += keep_b[:, None] * slow[k]
-        C[:, eye[9:], eye[9:]] += (keep_c * flow)[:, None]
-    whole = sums.normal(tuple(where) * W)
-    return [whole.only(np.arange(S * W) // S == w) for w in range(W)]
-
-
-class _Sums:
-    """Running sums of whitened innovations by segment."""
-
-    def __init__(self, S: int, P: int) -> None:
-        self.M = np.zeros((S, 1 + P, 1 + P))
-        self.logdet, self.count, self.energy = np.zeros(S), np.zeros(S), np.zeros((S, 8))
-        self.held: list[np.ndarray] = []
-
-    def add(self, white: np.ndarray, L: np.ndarray, here: np.ndarray) -> None:
-        self.held.append(white)
-        if len(self.held) == 16:
-            self._fold()
-        self.logdet += 2.0 * np.log(np.diagonal(L, axis1=1, axis2=2)).sum(1)
-        self.count += here.sum(1)
-        self.energy += white[:, :, 0] ** 2 * here
-
-    def _fold(self) -> None:
-        if self.held:
-            W = np.concatenate(self.held, axis=1)
-            self.M += W.transpose(0, 2, 1) @ W
-            self.held = []
-
-    def normal(self, where: tuple[tuple[int, int, int], ...]) -> Normal:
-        self._fold()
-        M = self.M
-        return Normal(M[:, 1:, 1:], -M[:, 1:, 0], M[:, 0, 0], self.logdet, self.count, self.energy, where)
+    h = np.array([lines[i].track.h for i, _, _ in where])[row]
+    scatter = np.stack([lines[i].track.sd for i, _, _ in where])[row]
+    sensor, white, flow = (np.repeat([getattr(f, name) for f in floors], len(where)) for name in ("sensor", "white", "flow"))
+    return Noise(
+        row, h,
+        reading=(sensor[:, None] * scatter) ** 2,
+        fast=(white[:, None] * standard(model)) ** 2 * (h * time)[:, None],
+        slow=np.concatenate([_abreast([_slow(x, f) for x in lines], where) for f in floors], axis=1),
+        flow=(flow * speed) ** 2,
+        new_b=1.0 - np.exp(-2.0 * h / (MEMORY_B * time)), new_c=1.0 - np.exp(-2.0 * h / (MEMORY_C * time)),
+    )  # fmt: skip
 
 
 def _turn(line: Linear) -> np.ndarray:

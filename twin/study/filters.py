@@ -1,0 +1,81 @@
+"""Many Kalman filters side by side, each with its tangents: every segment of every track, under every floor.
+
+The state is delta = (x, y, psi, u, v, r), b and c as in innovations.py. X holds its mean and how that depends on each unknown, C its
+covariance; both are corrected by the readings of a step, and carried on to the next.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+MOTION, SPEEDS, SLOW, FLOW = slice(0, 6), slice(3, 6), slice(6, 9), slice(9, 11)  # places in the state
+STATES = 11
+DIAGONAL = np.arange(STATES)
+
+
+@dataclass(frozen=True)
+class Stretches:
+    """Segments begun together, of T steps and S of them; what is not there (a reading, a segment's end) is NaN in e."""
+
+    F: np.ndarray  # (T, S, 11, 11)
+    H: np.ndarray  # (T, S, 8, 11)
+    e: np.ndarray  # (T, S, 8)
+    defect: np.ndarray  # (T, S, 6)
+    turn: np.ndarray  # (T, S, 3, 3) body velocities to d(x, y, psi)/dt
+    A: np.ndarray  # (T, S, 3, P)
+    R: np.ndarray  # (T, S, 8, P)
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Of each filter: its segment, its step [s], and variances; of b and c also the share that is renewed in one step."""
+
+    row: np.ndarray  # (K,) places among the segments
+    h: np.ndarray  # (K,)
+    reading: np.ndarray  # (K, 8)
+    fast: np.ndarray  # (K, 3) of velocity, in one step
+    slow: np.ndarray  # (T, K, 3) of b
+    flow: np.ndarray  # (K,) of c
+    new_b: np.ndarray  # (K,)
+    new_c: np.ndarray  # (K,)
+
+
+class Filters:
+    """K filters at the same step of their segments."""
+
+    def __init__(self, told: Stretches, noise: Noise, C: np.ndarray) -> None:
+        self.told, self.noise, self.C = told, noise, C
+        self.X = np.zeros((len(C), STATES, 1 + told.A.shape[-1]))
+
+    def correct(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """By the readings of step k; gives the whitened innovations with their tangents (K, 8, 1 + P), the root of their covariance, and
+        which readings there were (K, 8)."""
+        told, row = self.told, self.noise.row
+        here = np.isfinite(told.e[k])[row]
+        H = told.H[k][row] * here[:, :, None]
+        E = -(H @ self.X)
+        E[:, :, 0] += np.where(here, told.e[k][row], 0.0)
+        E[:, :, 1:] -= told.R[k][row] * here[:, :, None]
+        HC = H @ self.C
+        S = HC @ H.transpose(0, 2, 1)
+        S[:, DIAGONAL[:8], DIAGONAL[:8]] += np.where(here, self.noise.reading, 1.0)
+        L = np.linalg.cholesky(S)
+        both = np.linalg.inv(L) @ np.concatenate([E, HC], axis=2)
+        white, V = both[:, :, : E.shape[2]], both[:, :, E.shape[2] :]
+        VT = V.transpose(0, 2, 1)
+        self.X = self.X + VT @ white
+        self.C = self.C - VT @ V
+        return white, L, here
+
+    def advance(self, k: int) -> None:
+        """From step k to the next: by the linear ship, what the unknowns push, and noise."""
+        told, noise, row = self.told, self.noise, self.noise.row
+        F, h = told.F[k][row], noise.h[:, None, None]
+        push = h * told.A[k][row]
+        self.X = F @ self.X
+        self.X[:, MOTION, 0] += told.defect[k][row]
+        self.X[:, SPEEDS, 1:] += push
+        self.X[:, 0:3, 1:] += 0.5 * h * (told.turn[k][row] @ push)
+        self.C = F @ self.C @ F.transpose(0, 2, 1)
+        for part, variance in ((SPEEDS, noise.fast), (SLOW, noise.new_b[:, None] * noise.slow[k]), (FLOW, (noise.new_c * noise.flow)[:, None])):
+            self.C[:, DIAGONAL[part], DIAGONAL[part]] += variance
