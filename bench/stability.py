@@ -89,18 +89,14 @@ def certified(case: Case) -> tuple[Model, Certificate]:
     )
     h = 1.0 / case.rate_hz
     plant = cert.plant_of(model, cert.of_ship(model), h, movable(model.effects, model.ship) if case.moving else ())
-    K = (
-        case.K or cert.usual_gain(plant, case.delays) or 1.0 / model.ship.scale("time")
-    )  # if none holds, the certificate says so
+    K = case.K or cert.usual_gain(plant, case.delays) or 1.0 / model.ship.scale("time")  # if none holds, the certificate says so
     return model, cert.certify(model, K, h, case.delays, NOISE[case.ship], heading_noise=HEADING_NOISE, adapted=bool(case.moving))
 
 
 class Fleet:
     """Many ships of one kind at once, each with an observer and an adversary of her own."""
 
-    def __init__(
-        self, model: Model, c: Certificate, runs: int, seed: int, H_s: float = 0.0, dropouts: bool = False, moving: bool = False
-    ) -> None:
+    def __init__(self, model: Model, c: Certificate, runs: int, seed: int, H_s: float = 0.0, dropouts: bool = False, moving: bool = False) -> None:
         self.c, self.runs, self.rng, self.h = c, runs, np.random.default_rng(seed), c.h
         self.H_s, self.dropouts = H_s, dropouts
         self.numbers = movable(model.effects, model.ship) if moving else ()
@@ -166,9 +162,7 @@ class Fleet:
     def _worse(self, i: int, before: tuple[Any, ...], side: np.ndarray) -> np.ndarray:
         """(runs,) 1 where the upper end of a number's box drives the error further than the lower one, else 0."""
         m, weight = self.numbers[i], side / np.array(self.c.bound)[:, None]
-        low, high = (
-            np.array(self._with((m,), [x]).step(before, Situation(**self.inputs), self.h)[3:]) for x in (m.low, m.high)
-        )
+        low, high = (np.array(self._with((m,), [x]).step(before, Situation(**self.inputs), self.h)[3:]) for x in (m.low, m.high))
         return ((weight * (high - low)).sum(0) > 0.0).astype(int)
 
     def _with(self, numbers: Sequence[Movable], values: Sequence[object]) -> Confined:
@@ -220,19 +214,12 @@ class Fleet:
     def _grow(self) -> None:
         """The same bound as `Tube`, for all runs at once."""
         c, step = self.c, self.c.step
-        V, drift, keep, again, pull = (
-            np.array(x) for x in (step.V, step.drift, step.keep, step.again, step.pull)
-        )
+        V, drift, keep, again, pull = (np.array(x) for x in (step.V, step.drift, step.keep, step.again, step.pull))
         d = np.array(c.push) @ self.limit[:, 0] + c.calm
         E = V @ self.tube + d[:, None]
         self.before.append(E)
         c_ = pull * (c.noise + np.array(step.m) * (pull * c.noise + d))
-        seen = (
-            keep[:, None] * E
-            + again[:, None] * np.max(self.before, axis=0)
-            + drift @ np.max(self.after, axis=0)
-            + c_[:, None]
-        )
+        seen = keep[:, None] * E + again[:, None] * np.max(self.before, axis=0) + drift @ np.max(self.after, axis=0) + c_[:, None]
         self.tube = np.where(self.received, seen, E)
         self.after.append(self.tube)
 

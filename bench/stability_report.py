@@ -105,8 +105,6 @@ def widening(model: Model, operating: cert.OperatingSet) -> tuple[float, float]:
     """
     ranges = {**operating.ranges, "stream": (0.0, 0.0)}  # what a current adds is exact
     sure, seen = slopes(model, ranges), sampled(model, ranges)
-    ratios = [
-        (sure.hi[i][j] - sure.lo[i][j]) / (seen.hi[i][j] - seen.lo[i][j]) for i in range(3) for j in range(3)
-    ]
+    ratios = [(sure.hi[i][j] - sure.lo[i][j]) / (seen.hi[i][j] - seen.lo[i][j]) for i in range(3) for j in range(3)]
     ratios = [x for x in ratios if isfinite(x)]
     return max(ratios), sum(ratios) / len(ratios)

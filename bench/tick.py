@@ -74,9 +74,7 @@ def measure(args: argparse.Namespace) -> dict[str, Any]:
     return judged(args, fast, paced, peers, counted, residual)
 
 
-def judged(
-    args: argparse.Namespace, fast: Any, paced: Any, peers: Any, counted: dict[str, int], residual: str
-) -> dict[str, Any]:
+def judged(args: argparse.Namespace, fast: Any, paced: Any, peers: Any, counted: dict[str, int], residual: str) -> dict[str, Any]:
     """The measurements put together, and held against the budgets."""
     step, memory = fast["step_us"], fast["memory"]
     parts = {name: times for name, times in fast["parts_us"].items() if name != "tick"}
@@ -143,27 +141,15 @@ class Place:
         return stand_in.write(self.folder / "stand-in.onnx", self.ship)
 
     def _settings(self, ship: str, residual: Path) -> None:
-        zenoh = (
-            self.folder / "zenoh.json5"
-        )  # the limit of 200 messages a second is meant for time that passes
-        zenoh.write_text(
-            '{downsampling: [{messages: ["put"], flows: ["ingress"], rules: [{key_expr: "x", freq: 1.0}]}]}'
-        )
-        lines = {
+        zenoh = self.folder / "zenoh.json5"  # the limit of 200 messages a second is meant for time that passes
+        zenoh.write_text('{downsampling: [{messages: ["put"], flows: ["ingress"], rules: [{key_expr: "x", freq: 1.0}]}]}')
+        settings = {
             "ship": {"file": ship}, "loop": {"rate_hz": self.rate}, "log": {"folder": self.folder / "logs"},
             "bus": {"listen": self.endpoint, "file": zenoh}, "state": {"folder": self.folder / "state"},
-            "residual": {"file": residual, "required": "true"},
+            "residual": {"file": residual, "required": True},
         }  # fmt: skip
-        plain = (int, float)
-        text = "".join(
-            f"[{section}]\n"
-            + "".join(
-                f"{k} = {v if isinstance(v, plain) or v == 'true' else json.dumps(str(v))}\n"
-                for k, v in keys.items()
-            )
-            for section, keys in lines.items()
-        )
-        (self.folder / "twin.toml").write_text(text)
+        sections = [[f"[{name}]", *(f"{key} = {json.dumps(x, default=str)}" for key, x in keys.items())] for name, keys in settings.items()]
+        (self.folder / "twin.toml").write_text("\n".join(line for section in sections for line in section))
 
 
 def _hull(ship_name: str) -> str:

@@ -52,9 +52,7 @@ def _title(words: str, right: str = "") -> str:
 
 def _head(r: dict[str, Any]) -> str:
     lines = [f"twin-bench: {r['steps']} steps of the whole loop at {r['rate_hz']:g} Hz, mode: {r['mode']}"]
-    lines.append(
-        f"residual: {r['residual']}; {r['messages_per_step']:g} messages a step; {r['log']['written']} logged"
-    )
+    lines.append(f"residual: {r['residual']}; {r['messages_per_step']:g} messages a step; {r['log']['written']} logged")
     others = {mode: n for mode, n in r["modes"].items() if mode != r["mode"]}
     if others:
         lines.append(f"note: not all steps did all the work: {others}")
@@ -86,10 +84,7 @@ def _parts(r: dict[str, Any]) -> str:
     total = sum(p["mean"] for p in r["parts_us"].values()) or 1.0
     for name, times in r["parts_us"].items():
         bar = "█" * round(14 * times["mean"] / total)
-        lines.append(
-            f"  {name:<12}{times['median']:>8,.0f}{times['p99']:>8,.0f}{times['mean']:>8,.0f}"
-            f"  {DOC.get(name, ''):<44}{bar}"
-        )
+        lines.append(f"  {name:<12}{times['median']:>8,.0f}{times['p99']:>8,.0f}{times['mean']:>8,.0f}  {DOC.get(name, ''):<44}{bar}")
     return "\n".join(lines)
 
 
@@ -97,10 +92,8 @@ def _memory(r: dict[str, Any]) -> str:
     return "\n".join(
         [
             _title("Memory of the whole process [MB]"),
-            f"  peak (VmHWM) {r['rss_peak_mb']:.1f}   at the end: anonymous {r['rss_anon_mb']:.1f}, "
-            f"file-backed {r['rss_file_mb']:.1f}",
-            f"  growth from a tenth of the steps to the end: {r['rss_growth_mb']:+.2f}, "
-            f"of it anonymous {r['rss_growth_anon_mb']:+.2f}",
+            f"  peak (VmHWM) {r['rss_peak_mb']:.1f}   at the end: anonymous {r['rss_anon_mb']:.1f}, file-backed {r['rss_file_mb']:.1f}",
+            f"  growth from a tenth of the steps to the end: {r['rss_growth_mb']:+.2f}, of it anonymous {r['rss_growth_anon_mb']:+.2f}",
         ]
     )
 

@@ -121,12 +121,8 @@ def certify(
     return Certificate(**parts, K=K, delays=m, noise=noise, disturbance=d, plant=plant, ship=model.ship.name)  # type: ignore[arg-type]
 
 
-def kept(
-    path: str | os.PathLike[str], model: Model, K: float | Sequence[float], h: float, **settings: Any
-) -> Certificate:
-    """The certificate from its file if it is of this ship, K and settings; else worked out and, where
-    possible, written there.
-    """
+def kept(path: str | os.PathLike[str], model: Model, K: float | Sequence[float], h: float, **settings: Any) -> Certificate:
+    """The certificate from its file if it is of this ship, K and settings; else worked out and, where possible, written there."""
     wanted = mark(model, K, h, settings)
     if found := on_file(path, wanted):
         return found
@@ -152,9 +148,7 @@ def on_board(ship: Ship, delay_samples: int, adapted: bool) -> dict[str, Any]:
 
 
 def mark(model: Model, *settings: Any) -> str:
-    """What the certificate depends on, as a hash: the ship's numbers, her effects, the settings and the
-    theorem's version.
-    """
+    """What the certificate depends on, as a hash: the ship's numbers, her effects, the settings and the theorem's version."""
     ship = replace(model.ship, notes={})
     return hashlib.sha256(repr((VERSION, ship, model.effects, *settings)).encode()).hexdigest()[:16]
 
@@ -183,10 +177,6 @@ def _check(K: Sequence[float], h: float, m: Sequence[int], noise: Sequence[float
 
 def _tuples(x: Any) -> Any:
     """JSON lists as the tuples they were."""
-    return (
-        tuple(map(_tuples, x))
-        if isinstance(x, list)
-        else {k: _tuples(v) for k, v in x.items()}
-        if isinstance(x, dict)
-        else x
-    )
+    if isinstance(x, list):
+        return tuple(map(_tuples, x))
+    return {k: _tuples(v) for k, v in x.items()} if isinstance(x, dict) else x

@@ -87,9 +87,7 @@ def slopes(model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES, num
             parts = _flat(contribution(model, s, names), k)
             boxes += max(np.broadcast(of(p).lo).size for p in parts)
             parts = [Interval(np.min(p.lo, axis=1), np.max(p.hi, axis=1)) for p in map(_two_axes, parts)]
-            total = [
-                a + (p if group is GROUPS[0] else hull(p, 0.0)) for a, p in zip(total, parts, strict=True)
-            ]
+            total = [a + (p if group is GROUPS[0] else hull(p, 0.0)) for a, p in zip(total, parts, strict=True)]
     total = _with_the_stream(total, ranges, k)
     lo, hi = [float(np.min(t.lo)) for t in total], [float(np.max(t.hi)) for t in total]
     return Slopes.of(lo, hi, boxes, numbers)
@@ -196,9 +194,7 @@ def _seed(name: str, value: Any, more: int) -> Dual:
     return Dual(value, (*(1.0 if name == state else 0.0 for state in STATES), *(0.0,) * more))
 
 
-def _cut(
-    names: tuple[str, ...], ranges: Ranges, pieces: Mapping[str, int]
-) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+def _cut(names: tuple[str, ...], ranges: Ranges, pieces: Mapping[str, int]) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
     """(name, lo, hi) of every box of the grid over these names, flattened."""
     names = tuple(n for n in names if n in ranges)
     edges = [_edges(*ranges[n], pieces.get(n, 1)) for n in names]

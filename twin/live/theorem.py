@@ -120,9 +120,7 @@ def assess(
     by_force, by_noise = c3.product(c3.product(end, step.share()), push), c3.product(end, step.heard())
     sampling = c3.apply(c3.product(end, step.share()), calm)
     bound = c3.add(c3.apply(by_force, d.calm), c3.apply(by_noise, noise), sampling)
-    return Promise(
-        True, reason, 1.0 - ratio, _rate(step, plant.h), bound, by_force, by_noise, step.G, push, calm, step
-    )
+    return Promise(True, reason, 1.0 - ratio, _rate(step, plant.h), bound, by_force, by_noise, step.G, push, calm, step)
 
 
 def pushed(plant: Plant, heading_noise: float) -> tuple[Matrix, Row]:
@@ -131,10 +129,7 @@ def pushed(plant: Plant, heading_noise: float) -> tuple[Matrix, Row]:
     along = c3.plus(c3.IDENTITY, c3.scaled(0.5 * h, size))
     turn = max(abs(x) for x in plant.operating.ranges["r"])
     curve, moved = c3.apply(size, plant.most), c3.apply(along, plant.moved)
-    calm = tuple(
-        (h * p + bend[i][3]) * heading_noise + h * h * (curve[i] + p * turn) + h * moved[i]
-        for i, p in enumerate(plant.heading)
-    )
+    calm = tuple((h * p + bend[i][3]) * heading_noise + h * h * (curve[i] + p * turn) + h * moved[i] for i, p in enumerate(plant.heading))
     return c3.scaled(h, c3.product(along, plant.inertia)), calm  # type: ignore[return-value]
 
 
@@ -160,9 +155,7 @@ def usual_gain(plant: Plant, m: Ages, extra: Matrix | None = None) -> Row | None
     return k, k, k
 
 
-def best_gain(
-    plant: Plant, m: Ages, noise: Row, d: Disturbance, H_s: float = 0.0, extra: Matrix | None = None
-) -> Row | None:
+def best_gain(plant: Plant, m: Ages, noise: Row, d: Disturbance, H_s: float = 0.0, extra: Matrix | None = None) -> Row | None:
     """The K with the smallest bound against hostile noise and disturbance, each axis in units of its range;
     None when none is certified.
     """
