@@ -31,6 +31,18 @@ def test_without_measurements_the_bound_grows_and_comes_back(kvlcc2, make_bridge
     assert bridge.run(60.0)[-1].certificate.bound < silent[-1].certificate.bound
 
 
+def test_a_speed_that_was_not_measured_as_she_began_is_not_bounded_as_if_it_had_been(kvlcc2, make_bridge):
+    """Test: a ship that drifts at 0.6 m/s, her sway first measured in the second tick. Expected: no promise until the bound has come back."""
+    bridge = stabilized(kvlcc2, make_bridge)
+    bridge.sailing.state = (0.0, 0.0, 0.5, 6.0, 0.6, 0.0)
+    first = bridge.run(0.1, lambda readings, b: [r for r in readings if r.channel != "sway_velocity_mps"])[0]
+    assert bridge.error("sway_velocity_mps") < -0.5 and first.certificate.bound > 10.0 and not first.certificate.inside
+    for _ in range(90):
+        tick = bridge.run(1.0)[-1]
+        assert hypot(bridge.error("surge_velocity_mps"), bridge.error("sway_velocity_mps")) < tick.certificate.bound
+    assert tick.certificate.inside
+
+
 def test_outside_the_operating_set_nothing_is_promised(kvlcc2, make_bridge):
     bridge = stabilized(kvlcc2, make_bridge, shaft=0.01)
     bridge.sailing.state = (0.0, 0.0, 0.5, 0.1, 0.0, 0.0)

@@ -68,7 +68,7 @@ class Observer:
         self.rates = Rates(0.0, 0.0, 0.0)
         self._now_s: float | None = None
         speed, turning = 4.0 * ship.U_0 + 5.0, 8.0 * ship.U_0 / ship.L_pp
-        self._most = speed, turning  # no ship moves faster, whatever her instruments and her model say
+        self.most = speed, speed, turning  # no ship moves faster, whatever her instruments and her model say
         self._past: deque[tuple[float, tuple[float, ...]]] = deque(maxlen=HISTORY)
         self._current = CurrentFilter(ship, *current)
 
@@ -117,7 +117,7 @@ class Observer:
     def _move(self, dt: float) -> None:
         """Model: nu by the rates of the last tick, eta along the mean of old and new nu."""
         e, rates = self.estimate, self.rates
-        speed, turning = self._most
+        speed, _, turning = self.most
         u = min(max(e.u + rates.u * dt, -speed), speed)
         v = min(max(e.v + rates.v * dt, -speed), speed)
         r = min(max(e.r + rates.r * dt, -turning), turning)

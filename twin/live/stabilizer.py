@@ -6,7 +6,7 @@ from math import hypot
 from twin.live.estimate import Observer
 from twin.live.measured import Measured
 from twin.live.seen import Certified
-from twin.live.tube import STILL, Tube
+from twin.live.tube import STILL, Three, Tube
 from twin.physics.state import Situation
 
 NU = ("u", "v", "r")
@@ -32,7 +32,7 @@ class Stabilizer:
         if tube is None or not observer.estimate.ready:
             return Certified(margin=tube.certificate.margin if tube else 0.0)
         if observer.restarts != self._restarts:
-            tube.reset()
+            tube.reset(self._first(observer, measured, tube))
             self._restarts = observer.restarts
         got = tuple([observer.received[a] and self._in_time(a, measured, tube) for a in NU])
         self._watch(observer, got, tube)
@@ -60,6 +60,15 @@ class Stabilizer:
             if accepted:
                 off = abs(observer.innovation[axis]) > most + noise
                 self._surprised[axis] += (off - self._surprised[axis]) / MEMORY
+
+    def _first(self, observer: Observer, measured: Measured, tube: Tube) -> Three:
+        """What a first estimate is off by at most: the noise of what was measured and her way since; where nothing was, all that a ship can."""
+        c = tube.certificate
+        u, v, r = (
+            noise + measured.age_s(a) * way if self._in_time(a, measured, tube) else 2.0 * most
+            for a, noise, way, most in zip(NU, c.noise, c.plant.most, observer.most, strict=True)
+        )
+        return u, v, r
 
     def _in_time(self, attribute: str, measured: Measured, tube: Tube) -> bool:
         """Measured by its own instrument, and not older than the certificate allows."""
