@@ -3,7 +3,7 @@
 Truth is the ship's own equations with a bounded force added, integrated twice as finely; the observer sees
 late, noisy, missing measurements and a hostile network. Disturbance, noise and network are chosen against it
 (along its error, held in one corner, square waves, white), all within their bounds. A run that leaves the
-operating set is judged until it leaves, and counted.
+operating set is judged until it leaves, and counted. Beside them a few of the twin's own loops (stability_loop.py).
 """
 
 import argparse
@@ -26,6 +26,7 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Force, Situation
+from twin.study.jsonable import plain
 
 NOISE = {
     "kvlcc2": (0.15, 0.15, 0.0005),
@@ -70,7 +71,8 @@ class Outcome:
 
     runs: int
     left: int
-    samples: int
+    steps: int
+    samples: int  # inside the operating set, of runs x steps
     violations: int
     of_tube: tuple[float, ...]
     of_bound: tuple[float, ...]
@@ -224,44 +226,28 @@ class Fleet:
         self.after.append(self.tube)
 
 
-def trial(
-    model: Model,
-    c: Certificate,
-    runs: int,
-    seed: int,
-    H_s: float = 0.0,
-    dropouts: bool = False,
-    seconds: float | None = None,
-    moving: bool = False,
-) -> Outcome:
+def trial(fleet: Fleet, seconds: float | None = None) -> Outcome:
     """Let a fleet sail until old errors have faded five times over, at least two ship lengths (at most 1500
     samples).
     """
-    begin = time.perf_counter()
-    fleet = Fleet(model, c, runs, seed, H_s, dropouts, moving)
+    begin, c = time.perf_counter(), fleet.c
     steps = min(int((seconds or max(5.0 / c.rate, 2.0 * fleet.time)) / c.h), 1500)
-    bound = np.array(c.bound_in(H_s))[:, None]
+    bound = np.array(c.bound_in(fleet.H_s))[:, None]
     of_tube = of_bound = error = np.zeros(3)
     violations = samples = 0
     for k in range(steps):
         e = np.abs(fleet.step(k))
         inside = fleet.alive
         if not inside.any():
-            break
+            continue
         samples += int(inside.sum())
         violations += int(np.any(e > fleet.tube * (1.0 + 1e-9), axis=0)[inside].sum())
         of_tube = np.maximum(of_tube, (e / fleet.tube)[:, inside].max(axis=1))
         of_bound = np.maximum(of_bound, (e / bound)[:, inside].max(axis=1))
         error = np.maximum(error, e[:, inside].max(axis=1))
     took = time.perf_counter() - begin
-    return Outcome(
-        runs,
-        int((~fleet.alive).sum()),
-        samples,
-        violations,
-        *map(tuple, map(np.ndarray.tolist, (of_tube, of_bound, error))),
-        took,
-    )
+    ratios = (tuple(x.tolist()) for x in (of_tube, of_bound, error))
+    return Outcome(fleet.runs, int((~fleet.alive).sum()), steps, samples, violations, *ratios, took)
 
 
 def _inner(span: tuple[float, float], share: float) -> tuple[float, float]:
@@ -277,20 +263,27 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """All cases; ThresholdError when a bound was broken inside the operating set."""
+    from bench.stability_loop import CASES as LOOPS
+    from bench.stability_loop import Loops
     from bench.stability_report import tables
 
     share = args.runs / sum(c.runs for c in CASES)
-    rows = []
+    rows, loops = [], []
     for i, case in enumerate(CASES):
-        begin = time.perf_counter()
         model, c = certified(case)
-        made = time.perf_counter() - begin
-        outcome = trial(model, c, max(1, round(case.runs * share)), args.seed + i, case.H_s, case.dropouts, moving=bool(case.moving))
-        rows.append((case, c, outcome, made))
-        answer.tell(f"{case.ship} {case.rate_hz:g} Hz: {outcome.violations} violations in {outcome.runs} runs")
-    cases = [{**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o, _ in rows]
-    answer.give(args, {"schema_version": 1, "cases": cases}, tables(rows, args))
-    broken = sum(o.violations for _, _, o, _ in rows)
+        fleet = Fleet(model, c, max(1, round(case.runs * share)), args.seed + i, case.H_s, case.dropouts, bool(case.moving))
+        rows.append((case, c, _told(f"{case.ship} {case.rate_hz:g} Hz", trial(fleet))))
+    for i, of_loop in enumerate(LOOPS):
+        sailed = Loops(of_loop, max(1, round(of_loop.runs * share)), args.seed + i)
+        loops.append((of_loop, sailed.c, _told(f"the loop, {of_loop.ship} {of_loop.rate_hz:g} Hz", trial(sailed))))
+    cases, own = ([{**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o in some] for some in (rows, loops))
+    answer.give(args, plain({"schema_version": 1, "cases": cases, "loops": own}), tables(rows, loops, args))
+    broken = sum(o.violations for _, _, o in (*rows, *loops))
     if broken:
         raise ThresholdError(f"the bound was broken in {broken} samples inside the operating set. Do not use the certificate.")
     return 0
+
+
+def _told(what: str, o: Outcome) -> Outcome:
+    answer.tell(f"{what}: {o.violations} violations in {o.runs} runs")
+    return o

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bench.stability import Case, Fleet, certified, trial
+from bench.stability_loop import LoopCase, Loops
 from twin.live.certificate import Tube, certify
 from twin.live.tube import Highest
 from twin.physics.effects import find
@@ -114,9 +115,18 @@ def test_two_hundred_hostile_runs_never_break_the_bound(case, runs, seconds):
     """
     model, c = certified(case)
     assert c.ok
-    outcome = trial(model, c, runs, seed=11, H_s=case.H_s, dropouts=case.dropouts, seconds=seconds)
+    outcome = trial(Fleet(model, c, runs, 11, case.H_s, case.dropouts), seconds)
     assert outcome.violations == 0
     assert outcome.left < runs
+    assert max(outcome.of_tube) > 0.7
+
+
+@pytest.mark.parametrize("dropouts", [False, True])
+def test_hostile_ships_do_not_break_the_bound_of_the_twins_own_loop(dropouts):
+    """Test: three tankers against the whole loop, its gates and its K. Expected: it says that its certificate holds, and no error
+    leaves the tube, which is nearly touched."""
+    outcome = trial(Loops(LoopCase("kvlcc2", 10.0, 3, dropouts), 3, seed=11), 60.0)
+    assert outcome.violations == 0 and outcome.samples > 0.5 * outcome.runs * outcome.steps
     assert max(outcome.of_tube) > 0.7
 
 
