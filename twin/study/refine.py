@@ -46,7 +46,7 @@ def refine(
     beside it."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     best, at = _climb(case, chosen, mine, world, z)
-    first = _boxed(case, z)
+    first = boxed(case, z)
     first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
     for factor in FARTHER:
         lost = _lost(case, mine, at, best.log_weight < hoped)
@@ -69,11 +69,11 @@ def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray
     merit, best, aim, share = -np.inf, np.zeros_like(z), z, 1.0
     for _ in range(NEWTON):
         at = np.zeros_like(z)
-        at[mine] = _boxed(case, best + share * (aim - best))[mine]
+        at[mine] = boxed(case, best + share * (aim - best))[mine]
         tried = about(case, at, mine, [case.effects[i] for i in mine])[1]
         reduced = case.reduced(tried, case.worlds([world], DOUBTS[0]), at)[0]
         if (now := reduced.base - 0.5 * float(at @ at)) > merit:
-            merit, best, lines, share, aim = now, at, tried, 1.0, _boxed(case, posterior(reduced, chosen).z)
+            merit, best, lines, share, aim = now, at, tried, 1.0, boxed(case, posterior(reduced, chosen).z)
         else:
             share *= 0.5
         if share * np.max(np.abs(aim - best)[mine]) < STANDS:
@@ -129,7 +129,7 @@ def _beside(case: Case, chosen: Sets, reduced: dict[str, Reduced], wider: Sequen
     return out
 
 
-def _boxed(case: Case, z: np.ndarray) -> np.ndarray:
+def boxed(case: Case, z: np.ndarray) -> np.ndarray:
     """Parameters kept inside their boxes, in prior widths."""
     lo = np.array([(u.lo - u.centre) / u.sd for u in case.effects])
     hi = np.array([(u.hi - u.centre) / u.sd for u in case.effects])
@@ -161,5 +161,5 @@ def standing(case: Case, found: Found) -> tuple[list[Linear], np.ndarray]:
     """The tracks linearised where a hypothesis was found to stand, and that place, in prior widths."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in found.hypothesis.effects], dtype=int)
     at = np.zeros(len(case.effects))
-    at[mine] = _boxed(case, found.posterior.z)[mine]
+    at[mine] = boxed(case, found.posterior.z)[mine]
     return about(case, at, mine, [case.effects[i] for i in mine])[1], at

@@ -13,7 +13,7 @@ from .case import ODDS_WEAK, WORLDS, Case
 from .evidence import Hypothesis, Reduced, posterior, weigh_all
 from .led import Led, led
 from .leftover import explains
-from .refine import Found, Sets, refine
+from .refine import Found, Sets, boxed, refine
 
 MOST = 2  # effects at once
 ROUNDS = 20  # hypotheses judged about their own size, at most
@@ -137,9 +137,17 @@ class _Book:
         z[known] = start.posterior.z[known]  # where a part of the set was found to stand
         wider = self.case.candidates if len(chosen) < MOST else ()
         self.found[chosen], judged = refine(self.case, chosen, mine[0].world, z, wider, mine[0].log_weight)
+        if self._hollow(chosen):
+            self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}
+            judged = [h for h in judged if h.effects != chosen]
         for h in judged:
             if h.effects == chosen or (h.effects not in self.found and self._nearer(chosen, h)):
                 self._enter(h)
+
+    def _hollow(self, chosen: Sets) -> bool:
+        """Whether an effect of this set ended at nothing: it would help only with sizes that cannot be, and the set says no more than the rest."""
+        z = boxed(self.case, self.found[chosen].posterior.z)
+        return any(not np.any(z[[i for i, u in enumerate(self.case.effects) if u.owner == name]]) for name in chosen)
 
     def _nearer(self, chosen: Sets, wider: Hypothesis) -> bool:
         """Whether no other part of the wider set was judged so far, or none about which the whole explains more: a slow gear is nothing

@@ -15,7 +15,7 @@ from .innovations import Floor, Linear, Normal, innovate
 MOST_SEGMENTS = 40
 FEWER = 20  # where many columns make each dear
 BOUNDS = {"share": (0.01, 0.5), "calm": (0.1, 4.0), "white": (0.002, 1.0), "flow": (0.002, 0.05), "sensor": (0.7, 4.0)}
-BESIDE = 0.2  # how far the slow part may fall beside more unknowns, as a share of what a core alone is ever trusted with
+BESIDE = 0.4  # how far the slow part may fall beside more unknowns, as a share of what a core alone is ever trusted with
 
 
 def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor | None = None) -> Floor:
