@@ -70,10 +70,6 @@ class Case:
     def worlds(self, names: Sequence[str], doubt: float = 0.0) -> list[Floor]:
         return [replace(self.floor.scaled(WORLDS[n].share, flow=WORLDS[n].flow), doubt=doubt) for n in names]
 
-    def paths(self) -> dict[str, Floor]:
-        """By world: what the model alone leaves."""
-        return {n: self.path.scaled(w.share, flow=w.flow) for n, w in WORLDS.items()}
-
     def log_prior(self, chosen: Sequence[str], world: str) -> float:
         if (world == "flooding" and "VaryingCurrent" not in chosen) or self._twice(chosen):
             return -np.inf

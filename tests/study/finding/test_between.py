@@ -4,6 +4,9 @@ import numpy as np
 import pytest
 
 from twin.study.between import Told, scattered, ship_of
+from twin.study.columns import Unknown
+from twin.study.innovations import Normal
+from twin.study.nuisance import temper_of
 
 P, SAID = 6, 400.0  # numbers, and how much a voyage says of each (in priors)
 
@@ -67,3 +70,23 @@ def test_its_slope_by_each_variance_is_the_difference_quotient():
     for i in range(P):
         up, down = (covariance + s * 1e-5 * np.diag(np.eye(P)[i]) for s in (1.0, -1.0))
         assert (told.log_probability(mean, up) - told.log_probability(mean, down)) / 2e-5 == pytest.approx(slope[i], rel=1e-4)
+
+
+def segments_of(truth, spread, seed=0, count=40):
+    """Normal equations of segments that all know the same numbers, scattered by `spread` times what white readings would."""
+    rng = np.random.default_rng(seed)
+    A, b = [], []
+    for _ in range(count):
+        root = rng.standard_normal((4 * P, P)) * np.sqrt(SAID / (4 * P))
+        e = root @ truth + np.sqrt(spread) * rng.standard_normal(4 * P)
+        A.append(root.T @ root)
+        b.append(root.T @ e)
+    none = np.zeros(count)
+    return Normal(np.array(A), np.array(b), none, none, none, np.zeros((count, 8)), ((0, 0, 1),) * count)
+
+
+def test_what_the_unknowns_explain_tempers_nothing_and_what_they_cannot_does():
+    unknowns = [Unknown("core", str(i), "", 0.0, 1.0, -9.0, 9.0) for i in range(P)]
+    told = {spread: temper_of(segments_of(np.full(P, 2.0), spread), unknowns) for spread in (1.0, 4.0)}
+    assert told[1.0] == 1.5  # as little as it ever is
+    assert told[4.0] == pytest.approx(4.0, rel=0.3)

@@ -42,6 +42,14 @@ def test_the_ship_file_carries_standard_errors_and_what_remains(calibrated):
     assert structural["by_regime"] and said["floor"]["share"]
 
 
+def test_beside_all_that_is_usual_less_is_left_than_beside_the_core_alone(calibrated):
+    structural = calibrated[0].notes["structural"]
+    alone, beside = structural["floor"], structural["beside"]
+    assert set(beside) == set(alone)
+    assert all(b <= a for a, b in zip(alone["share"], beside["share"], strict=True))
+    assert 1.5 <= structural["temper_beside"] <= 8.0
+
+
 def test_what_the_voyages_do_not_excite_is_named_and_keeps_its_prior(calibrated):
     ship, said = calibrated
     published = load("kvlcc2")

@@ -32,6 +32,14 @@ def test_what_is_no_farther_off_than_noise_and_structure_would_be_is_not_judged_
     assert path.log_probability(says("Wind")) == path.log_probability(says("Bank")) == 0.0
 
 
+def test_the_path_has_the_floor_of_the_model_alone_and_the_steps_the_one_beside_all_that_is_usual(tanker, voyages):
+    case = assemble([voyages["nothing"]], tanker)
+    notes = tanker.notes["structural"]
+    assert case.path.share == pytest.approx(notes["floor"]["share"]) and case.floor.share == pytest.approx(notes["beside"]["share"])
+    floor = led(case, search(case)[1]).floor
+    assert floor["usual"] <= floor["rough"] <= floor["strange"] < 4.0 * floor["usual"]
+
+
 def test_what_goes_astray_loses_by_how_far_and_how_often():
     path = asked(nothing=20.0, Wind=16.0)
     assert path.log_probability(says("Wind")) == pytest.approx(-2.0 * TEN * np.log(16.0 / FLOOR_M))
@@ -85,5 +93,6 @@ def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker
     assert found["RudderWear",].off_m < 0.7 * found[()].off_m
     path = led(case, found)
     assert path.windows == pytest.approx(case.tracks[0].t[-1] / horizon_s(case.tracks[0], case.model))
-    assert path.log_probability(found["RudderWear",].hypothesis) > path.log_probability(found[()].hypothesis)
+    worn, healthy = (path.log_probability(replace(found[s].hypothesis, world="usual")) for s in (("RudderWear",), ()))
+    assert worn > healthy
     assert held_out_error(case, found[()]) == pytest.approx(found[()].off_m)

@@ -1,11 +1,14 @@
 """What is judged next, and about which part a pair is weighed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from twin.physics.effects import catalogue
 from twin.study.assemble import assemble
 from twin.study.case import WORLDS
+from twin.study.refine import Found
 from twin.study.search import _Book, search
 
 PAIR = ("RudderWear", "SteeringLag")
@@ -59,3 +62,20 @@ def test_what_an_effect_holds_is_in_the_catalogue():
     effects = catalogue()
     assert effects["VaryingCurrent"].holds == ("Current",)
     assert {part for e in effects.values() for part in e.holds} <= set(effects)
+
+
+def test_an_effect_that_ended_at_nothing_says_no_more_than_the_rest(case, monkeypatch):
+    """A loss below nothing cannot be: whatever it would explain, the set leaves the list."""
+    held = book(case)
+
+    def below_nothing(case, chosen, world, z, wider, hoped):
+        none = held.found[()]
+        z = np.array([-1.0 if u.owner == "RudderWear" else 0.0 for u in case.effects])
+        h = replace(none.hypothesis, effects=chosen, log_evidence=1e6)
+        return Found(h, replace(none.posterior, z=z), case.model), [h]
+
+    monkeypatch.setattr("twin.study.search.refine", below_nothing)
+    held.judge(("RudderWear",))
+    assert ("RudderWear",) in held.found
+    assert ("RudderWear",) not in {h.effects for h in held.weighed()}
+    assert held.next() != ("RudderWear",)
