@@ -1,15 +1,15 @@
 """Slow learning on board: a few numbers on top of the trained last layer, kept small, unused when they do
 not help; and the numbers of the named effects (`twin add`), inside their boxes.
 
-    learned force_r = W_r phi + g_r a_r q_r         q_r = [whitened components of phi | known forces of row r | 1]
+    learned force_r = W_r phi + g a_r q_r           q_r = [whitened components of phi | known forces of row r | 1]
     a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x - a_r q_f)^2/(NOISE_S s_r^2) + |a_r/usual|^2
 
 each row a ridge regression on fading evidence (evidence.py): what nothing teaches fades back to the trained
 weights. What usually changes are the known forces' sizes; features only fill in, else they would explain the
 noise of ten minutes. x are the numbers of the named effects and c_r what they do (named.py): they explain
 first, and what the rows learned of the same force before is taken off them as x moves. d_r is cut at three
-usual errors s_r from what is expected; A is projected on boxes and on ||A|| <= A_MAX. The gate g opens only as
-far as the numbers of a while ago explain the present better than none.
+usual errors s_r from what is expected; A is projected on boxes and on ||A|| <= A_MAX. The gate g, one
+for all rows, opens as far as what the numbers of a while ago promised has come true (proof.py).
 """
 
 import json
@@ -22,8 +22,9 @@ from typing import Any, NamedTuple
 from twin.live.dynamics import Forces
 from twin.live.evidence import Three
 from twin.live.named import Named
+from twin.live.proof import Proof
 from twin.live.residual import dot
-from twin.live.ridge import GATE, HINDSIGHT, LARGEST, MEMORY, NOISE_S, SPREAD, deviations, factor, solve
+from twin.live.ridge import HINDSIGHT, LARGEST, MEMORY, NOISE_S, SPREAD, deviations, factor, solve
 from twin.physics.model import CORE
 from twin.physics.ship import Ship
 from twin.physics.state import Force
@@ -56,21 +57,18 @@ class Parameter(NamedTuple):
 
 @dataclass(slots=True)
 class Row:
-    """One row's numbers, their covariance, and the evidence for and against them."""
+    """One row's numbers, their covariance, and the evidence for them."""
 
     a: list[float]
     I: list[list[float]]  # information: what was seen, over its noise
     b: list[float]
     L: list[list[float]]  # its factor, with the prior
     sigma: list[float]  # of a, at that time
-    then: list[float]  # a of HINDSIGHT to twice that ago, which the gate asks
+    then: list[float]  # a of HINDSIGHT to twice that ago, whose promises the gate weighs
     next: list[float]
     B: list[list[float]]  # information that it shares with each number of the named effects
     age: float = 0.0
     spread: float = 0.05  # s_r^2
-    without: float = 0.0  # mean squared error without and with A
-    with_a: float = 0.0
-    gate: float = 0.0
 
 
 class Adaptation:
@@ -89,7 +87,7 @@ class Adaptation:
         self._usual = [USUAL_COMPONENT] * components + [USUAL_KNOWN] * SIZES + [USUAL_CONSTANT]
         self._prior = [u**-2 for u in self._usual]
         self._rows = [self._blank() for _ in ROWS] if rows else []
-        self.open = False  # whether any gate is
+        self._proof = Proof()
         self._slow: list[float] = []
         self._excited = 0.0
         self._turn = 0
@@ -104,8 +102,8 @@ class Adaptation:
 
     def correction(self, regressors: list[float]) -> Three:
         """g A q, in units of the force scale."""
-        rows = enumerate(self._rows)
-        return tuple([row.gate * dot(row.a, self._of_row(r, regressors)) if row.gate else 0.0 for r, row in rows])  # type: ignore[return-value]
+        gate, rows = self._proof.gate, enumerate(self._rows)
+        return tuple([gate * dot(row.a, self._of_row(r, regressors)) for r, row in rows])  # type: ignore[return-value]
 
     def learn(self, wanted: Three, regressors: list[float], dt: float, frozen: str) -> None:
         """What is missing beside the ship file's model and the trained force (low-passed, like the regressors), the time since the
@@ -123,7 +121,6 @@ class Adaptation:
         if self._rows:
             self._update(r, wanted[r], self._of_row(r, regressors), columns)
         self._since[r] = 0.0
-        self.open = any(row.gate for row in self._rows)
 
     def _of_row(self, r: int, regressors: list[float]) -> list[float]:
         """q of one row: the components, its known forces and effects, 1."""
@@ -145,21 +142,15 @@ class Adaptation:
             return
         self.updates += 1
         row.spread += min(h / SPREAD, 0.2) * (error * error + 1e-5 - row.spread)
-        self._judge(row, wanted - named, q, h)
+        self._proof.weigh(r, wanted - named, dot(row.then, q), row.spread, h)
+        self._keep(row, h)
         self._fit(row, q, error, h)
         if c:
             self._fit_beside(row, q, c, named, h)
         self._project(row)
 
-    def _judge(self, row: Row, wanted: float, q: list[float], h: float) -> None:
-        """Would the numbers of a while ago explain what is wanted now? Today's would: they were fitted to it."""
-        limit, g = 3.0 * sqrt(row.without + row.spread), min(h / GATE, 0.2)
-        without = min(max(wanted, -limit), limit)
-        with_a = min(max(wanted - dot(row.then, q), -limit), limit)
-        row.without += g * (without * without - row.without)
-        row.with_a += g * (with_a * with_a - row.with_a)
-        ratio = row.with_a / row.without if row.without > 0.0 else 1.0
-        row.gate = min(max((1.0 - ratio - 0.02) / 0.15, 0.0), 1.0)
+    def _keep(self, row: Row, h: float) -> None:
+        """The numbers of now, for a while later: today's were fitted to what they would be asked about."""
         row.age += h
         if row.age > HINDSIGHT:
             row.then, row.next, row.age = row.next, list(row.a), 0.0
@@ -196,12 +187,17 @@ class Adaptation:
     def held(self) -> "Adaptation":
         """A copy whose rows do not learn on; it is only asked for corrections."""
         other = copy(self)
-        other._rows = deepcopy(self._rows)
+        other._rows, other._proof = deepcopy(self._rows), copy(self._proof)
         return other
 
     def numbers(self) -> list[list[float]]:
         """g a of each row: what acts."""
-        return [[row.gate * x for x in row.a] for row in self._rows]
+        return [[self._proof.gate * x for x in row.a] for row in self._rows]
+
+    @property
+    def open(self) -> bool:
+        """Whether anything of what was learned acts."""
+        return self._proof.gate > 0.0
 
     def norm(self) -> float:
         return sqrt(sum(dot(row.a, row.a) for row in self._rows))
@@ -212,7 +208,7 @@ class Adaptation:
         for r, row in enumerate(self._rows):
             names = [*(f"feature {i + 1}" for i in range(self.components)), *COLUMNS[r], "constant"]
             for name, value, box, sigma, usual in zip(names, row.a, self._boxes, row.sigma, self._usual, strict=True):
-                known = sigma < 0.7 * usual and row.gate > 0.3
+                known = sigma < 0.7 * usual and self._proof.gate > 0.3
                 status = "invalid" if pressed or abs(value) >= box else "estimated" if known else "unestimated"
                 out.append(Parameter(f"{ROWS[r]} {name}", value, -box, box, sigma, "-", status))
         return out + self._of_effects()

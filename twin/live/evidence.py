@@ -4,7 +4,9 @@ regression.
     y_f' = lam (y - y_f),  F_f' = lam (nu_dot_known - F_f),  q_f' = lam (q - q_f)
     d = S^-1 M [lam (y - y_f) - F_f]   the force that the known ones do not explain, low-passed, in units of the force scale S
 
-All pass the same filter, so d = (learned force)_f + noise, whatever the manoeuvre.
+All pass the same filter, so d = (learned force)_f + noise, whatever the manoeuvre; and all pass it a second time. Noise of speeds
+that are as good as differentiated, and waves, lie above the manoeuvres: behind one filter they are most of d in a sea way, behind two
+little of it.
 """
 
 from collections.abc import Sequence
@@ -14,7 +16,7 @@ from twin.physics.ship import Ship
 from twin.physics.state import Force, Rates
 
 Three = tuple[float, float, float]
-SETTLED = 3.0  # time constants of the filter until d may be used
+SETTLED = 5.0  # time constants until d may be used: what both filters began with is 4 % by then
 
 
 class Evidence:
@@ -25,20 +27,21 @@ class Evidence:
         self.time_s = ship.L_pp / ship.U_0
         self.lam = 2.0 / self.time_s
         self.scale = scale
-        self.unexplained: Three = (0.0, 0.0, 0.0)  # d [S]
+        self.unexplained: Three = (0.0, 0.0, 0.0)  # d [S], low-passed twice
         self.without = self.with_learned = 0.0  # mean |d|^2, mean |d - learned_f|^2
         self.ready = False
         self._low: list[float] = []  # nu, rates, learned, trained, regressors: low-passed
+        self._twice: list[float] = []  # d, learned, trained, regressors: low-passed again
         self._heard_s = 0.0
 
     @property
     def trained(self) -> list[float]:
         """What the trained last layer gives, low-passed [S]."""
-        return self._low[9:12]
+        return self._twice[6:9]
 
     @property
     def regressors(self) -> list[float]:
-        return self._low[12:]
+        return self._twice[9:]
 
     def feed(
         self, nu: Three, known: Rates, learned: Three, trained: Three, regressors: Sequence[float], physics: Known, dt: float,
@@ -50,11 +53,14 @@ class Evidence:
         a = min(self.lam * dt, 0.5)
         if len(self._low) != len(new):
             self._low, self._heard_s = new, 0.0
-        self._low = low = [f + a * (x - f) for f, x in zip(self._low, new, strict=True)]
+        self._low = low = _low_passed(self._low, new, a)
         lam = self.lam / (1.0 - a)  # exact for steps of dt: the low-pass has already taken in a share a of the newest nu
         u, v, r = (lam * (y - f) - F for y, f, F in zip(nu, low[:3], low[3:6], strict=True))
         X, Y, N = physics.force_for(u, v, r, k_m)
-        self.unexplained = x, y, n = X / self.scale.X, Y / self.scale.Y, N / self.scale.N
+        x, y, n = X / self.scale.X, Y / self.scale.Y, N / self.scale.N
+        once = [x, y, n, *low[6:]]
+        self._twice = _low_passed(self._twice if self._heard_s else once, once, a)
+        self.unexplained = self._twice[0], self._twice[1], self._twice[2]
         self._heard_s += dt
         self.ready = self._heard_s > SETTLED / self.lam
         if self.ready:
@@ -71,3 +77,7 @@ class Evidence:
     def judged(self) -> bool:
         """Long enough heard to compare with and without the learned force."""
         return self._heard_s > 3.0 * self.time_s
+
+
+def _low_passed(low: list[float], new: list[float], a: float) -> list[float]:
+    return [f + a * (x - f) for f, x in zip(low, new, strict=True)]

@@ -2,26 +2,24 @@
 
     x = (theta - theta_file)/sd,   d_r = c_r x + what the rows' own numbers explain (adapt.py)
     x = argmin  sum_r sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x)^2/(NOISE_S s_r^2) + |x|^2,      low <= theta <= high
-    g = [beta - its deviation]/ENOUGH in [0, 1],   beta = sum_r <d_r p_r>/s_r^2 / sum_r <p_r^2>/s_r^2,   p = c x of a while ago
 
-Few numbers and three rows to learn them from, so the memory is half of a row's. The gate asks how much of what the numbers of a while
-ago promised has come true: of what was only noise, nothing. theta_file + g (theta - theta_file) acts, in the known physics. What has a
-name explains first; the rows explain what is left.
+Few numbers and three rows to learn them from, so the memory is half of a row's. theta_file + g (theta - theta_file) acts, in the known
+physics; the gate g asks how much of what x promised a while ago has come true (proof.py). What has a name explains first; the rows
+explain what is left.
 """
 
 from math import isfinite, sqrt
 
 from twin.live.evidence import Three
 from twin.live.movable import Columns, movable, moved
+from twin.live.proof import Proof
 from twin.live.residual import dot
-from twin.live.ridge import GATE, HINDSIGHT, NOISE_S, SPREAD, deviations, factor, solve
+from twin.live.ridge import HINDSIGHT, NOISE_S, SPREAD, deviations, factor, solve
 from twin.physics.effect import Effect
 from twin.physics.ship import Ship
 from twin.physics.state import Force
 
 MEMORY = 10.0  # in L/U_0
-SAMPLES = 2.0 * GATE / NOISE_S  # that the gate's means count as
-ENOUGH = 0.5  # share of what was promised that must surely have come true for all of it to act
 STIRRED = 0.01  # prior deviations by which what acts must have moved before the model is made anew
 
 
@@ -40,13 +38,17 @@ class Named:
         self.sigma, self._then, self._next = [1.0] * n, [0.0] * n, [0.0] * n
         self._age = 0.0
         self._spread = [0.05] * 3
-        self._kept = [[0.0, 0.0, 0.0] for _ in range(3)]  # of each row: means of wanted times promised, promised^2, wanted^2
-        self.gate = 0.0
+        self._proof = Proof()
         self.effects: tuple[Effect, ...] = ship.effects
         self._acting = [0.0] * n
 
     def __bool__(self) -> bool:
         return bool(self.numbers)
+
+    @property
+    def gate(self) -> float:
+        """How far the numbers act, 0 to 1."""
+        return self._proof.gate
 
     def acting(self) -> list[float]:
         """g x: what acts, in prior deviations from the ship file's numbers."""
@@ -64,7 +66,8 @@ class Named:
         if not (isfinite(error) and h > 0.0):
             return
         self._spread[r] += min(h / SPREAD, 0.2) * (error * error + 1e-5 - self._spread[r])
-        self._judge(r, wanted, c, h)
+        self._proof.weigh(r, wanted, dot(self._then, c), self._spread[r], h)
+        self._keep(h)
         keep, weight = 1.0 - min(h / MEMORY, 0.5) / 3.0, h / (NOISE_S * self._spread[r])  # a third: each of three rows fades it
         y = weight * (dot(self.x, c) + error)
         self._I = [[keep * i + w * x for i, x in zip(line, c, strict=True)] for line, w in zip(self._I, [weight * x for x in c], strict=True)]
@@ -73,16 +76,8 @@ class Named:
         self.x = [min(max(x, lo), hi) for x, (lo, hi) in zip(solve(self._L, self._b), self._boxes, strict=True)]
         self._act()
 
-    def _judge(self, r: int, wanted: float, c: list[float], h: float) -> None:
-        """How much of what the numbers of a while ago promised has come true? All rows together, each by its own scatter."""
-        kept, s = self._kept[r], self._spread[r]
-        promised, limit, g = dot(self._then, c), 3.0 * sqrt(kept[2] + s), min(h / GATE, 0.2)
-        cut = min(max(wanted, -limit), limit)
-        for i, x in enumerate((cut * promised, promised * promised, cut * cut)):
-            kept[i] += g * (x - kept[i])
-        came, size = (sum(k[i] / s for k, s in zip(self._kept, self._spread, strict=True)) for i in (0, 1))
-        least = (came - sqrt(size / SAMPLES)) / size if size > 0.0 else 0.0  # less one deviation of its noise
-        self.gate = min(max(least / ENOUGH, 0.0), 1.0)
+    def _keep(self, h: float) -> None:
+        """The numbers of now, for a while later."""
         self._age += h / 3.0
         if self._age > HINDSIGHT:
             self._then, self._next, self._age = self._next, list(self.x), 0.0
