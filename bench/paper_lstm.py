@@ -13,6 +13,7 @@ from export.data import Leg
 from export.teach import FEWEST, Settings
 
 WARM, FREE, HIDDEN, BATCH = 12, 24, 64, 64  # steps of 2.5 s for KVLCC2: 30 s and 60 s
+STEPS = 30  # in an epoch at least, as the hybrid has them: batches are smaller where there is less to learn from
 
 
 class Lstm(torch.nn.Module):
@@ -93,11 +94,12 @@ def train(
         model.load_state_dict(kept["network"])
         model.curve = kept["curve"]
         return model
-    batches = max(1, data[1].numel() // BATCH)
-    mean = AveragedModel(model, multi_avg_fn=get_ema_multi_avg_fn(1.0 - 1.0 / (1.0 + Settings.average * batches)))
+    many = data[1].numel()
+    batch = max(1, min(BATCH, many // STEPS))
+    mean = AveragedModel(model, multi_avg_fn=get_ema_multi_avg_fn(1.0 - 1.0 / (1.0 + Settings.average * max(1, many // batch))))
     best, since, asked = (float("inf"), model.state_dict()), 0, len(validation) >= FEWEST
     for epoch in range(epochs):
-        for k in shuffled(data[1].numel(), BATCH, 7919 * seed + epoch):
+        for k in shuffled(many, batch, 7919 * seed + epoch):
             loss = _loss(model, [x[..., k, :] if x.ndim > 1 else x[k] for x in data], h, size)
             optimiser.zero_grad()
             loss.backward()

@@ -51,6 +51,7 @@ class Settings:
 DECAY_EPOCHS = 10
 MOST = 4096  # windows or moments that a validation looks at
 EVEN = 10.0
+STEPS = 50  # in an epoch of single moments at least: where there is less to learn from, batches are smaller, not the steps fewer
 FEWEST = 5  # validation voyages from which they may say when to stop; fewer are not like the rest, and all epochs are gone through
 
 
@@ -218,7 +219,9 @@ class Course:
     def _amount(self, stage: str) -> tuple[int, int]:
         """What there is to learn from, and how much of it at once."""
         part, c = self.data["train"], self.settings
-        return (len(part.windows), c.rollout_batch) if stage == "rollout" else (len(part.samples), c.batch)
+        if stage == "rollout":
+            return len(part.windows), c.rollout_batch
+        return len(part.samples), max(1, min(c.batch, len(part.samples) // STEPS))
 
     def _batches(self, stage: str) -> int:
         many, batch = self._amount(stage)

@@ -11,7 +11,7 @@ torch = pytest.importorskip("torch", reason="torch is not installed: pip install
 pytest.importorskip("onnx", reason="onnx is not installed: pip install 'shiptwin[train]'")
 
 from export import loss, to_onnx, train  # noqa: E402
-from export.batches import input_names, samples, zeta_of  # noqa: E402
+from export.batches import input_names, samples, shuffled, zeta_of  # noqa: E402
 from export.data import leg, model_of, split  # noqa: E402
 from export.network import Residual  # noqa: E402
 from export.teach import Course, Settings, device, prepared, teach  # noqa: E402
@@ -237,6 +237,18 @@ def test_a_voyage_in_heavy_sea_counts_no_more_than_a_calm_one(parts):
     calm, rough = weights([first, *others]), weights([shaken, *others])
     assert float(rough.mean()) == pytest.approx(1.0, abs=1e-5)
     assert rough[0] < 0.5 * calm[0] and rough.max() / rough.min() < 10.01
+
+
+def test_little_data_is_taught_in_smaller_batches_and_not_in_fewer_steps(parts):
+    """Test: the four voyages, and a quarter of them. Expected: fifty steps an epoch of either."""
+    split_parts, model = parts
+    for legs in (split_parts["train"], split_parts["train"][:1]):
+        data = prepared({"train": legs, "validation": split_parts["validation"]}, model, FEW)
+        network = Residual(model.ship, ("surge", "sway", "yaw", "rudder", "propeller"), np.ones((3, 5)) * [[0.0], [0.5], [1.0]])
+        course = Course(network, model, FEW, data, lambda *_: None, None)
+        many, batch = course._amount("acceleration")
+        assert many == len(data["train"].samples) and batch <= FEW.batch
+        assert len(list(shuffled(many, batch, 1))) >= 50
 
 
 def test_a_learned_force_is_that_of_the_middle_of_its_step(ship):

@@ -4,7 +4,9 @@ from math import isfinite, nan
 
 import pytest
 
+from twin.live.learned import LearnedForce
 from twin.live.readings import Quality, Rejected
+from twin.live.residual import bundled, load
 
 HEADING, NORTH, SURGE, YAW = "heading_true_north_deg", "north_m", "surge_velocity_mps", "yaw_rate_degps"
 
@@ -281,3 +283,18 @@ def test_I8_a_sensor_silent_for_hours_is_only_stale(bridge):
     bridge.run(1.0, only(YAW, lambda r, b: None))
     bridge.now_s = late_s
     assert isfinite(bridge.run(1.0, only(YAW, lambda r, b: None))[-1].estimate.yaw_rate_degps)
+
+
+@pytest.mark.parametrize("name", (HEADING, SURGE, YAW))
+def test_I6_of_a_reading_that_is_stuck_for_minutes_nothing_is_learned(kvlcc2, make_bridge, name):
+    """Test: a zigzag with learning on, then one instrument says the same for three minutes. Expected: learning stands still after five
+    seconds, and what they taught moved no number by a hundredth."""
+    learned = LearnedForce(kvlcc2, load(bundled(kvlcc2), kvlcc2))
+    bridge = make_bridge(loop={"learned": learned})
+    bridge.run(400.0)
+    adaptation, value = learned.adaptation, {}
+    before, updates = adaptation.numbers(), adaptation.updates
+    bridge.run(180.0, only(name, lambda r, b: r._replace(value=value.setdefault("v", r.value))))
+    assert updates > 500 and adaptation.updates - updates < 55
+    moved = [abs(a - b) for new, old in zip(adaptation.numbers(), before, strict=True) for a, b in zip(new, old, strict=True)]
+    assert max(moved) < 0.01
