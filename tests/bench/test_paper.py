@@ -172,3 +172,8 @@ def test_the_loop_closed_over_the_reference_sea_settles_and_a_hostile_residual_s
         alone = rows["analytic alone", scenario]
         assert alone["settle_lengths_max"] < 6.0 and alone["overshoot_percent"] < 8.0 and alone["rudder_deg"] < 20.0
         assert rows["with a hostile residual", scenario]["gust_deg"] < 60.0
+
+
+def test_errors_that_are_the_same_are_not_smaller():
+    x = np.array([1.0, 2.0, 3.0, 4.0])
+    assert paper_stats.wilcoxon(x, x.copy(), np.array([0, 0, 1, 1])) == (1.0, 1.0)
