@@ -18,11 +18,13 @@ MOST_SEGMENTS = 20  # of 16 ship lengths each; a small boat's hour holds more, a
 
 @dataclass(frozen=True)
 class World:
-    """One state of the world: factors on the floor's slow acceleration error and on the water's own motion, and its odds."""
+    """One state of the world: factors on the floor's slow acceleration error (beside all that is usual; or `alone`, of the core alone) and on
+    the water's own motion, and its odds."""
 
     share: float
     flow: float
     probability: float
+    alone: bool = False
     unknown: bool = False  # so restless that something must be at work which nobody named
 
     @property
@@ -32,12 +34,13 @@ class World:
 
 
 WORLDS: dict[str, World] = {
-    "usual": World(1.0, 1.0, 0.85),
-    "rough": World(2.0, 1.0, 0.08),
+    "usual": World(1.0, 1.0, 0.75),
+    "coarse": World(1.0, 1.0, 0.1, alone=True),
+    "rough": World(2.0, 1.0, 0.08, alone=True),
     "streaming": World(1.0, 4.0, 0.04),
     "flooding": World(1.0, 16.0, 0.01),  # only a varying current explains it
-    "strange": World(4.0, 1.0, 0.015, unknown=True),
-    "stranger": World(8.0, 4.0, 0.005, unknown=True),
+    "strange": World(4.0, 1.0, 0.015, alone=True, unknown=True),
+    "stranger": World(8.0, 4.0, 0.005, alone=True, unknown=True),
 }
 ODDS = 0.03  # of an effect about which nothing is known
 ODDS_WEAK = 0.002  # when it needs a cause that was measured to be too weak to show
@@ -68,7 +71,8 @@ class Case:
         return [reduce(n, self.nuisance, self.unknowns, self.effects, self.temper, at) for n in normals]
 
     def worlds(self, names: Sequence[str], doubt: float = 0.0) -> list[Floor]:
-        return [replace(self.floor.scaled(WORLDS[n].share, flow=WORLDS[n].flow), doubt=doubt) for n in names]
+        floors = ((self.path if w.alone else self.floor).scaled(w.share, flow=w.flow) for w in map(WORLDS.__getitem__, names))
+        return [replace(floor, doubt=doubt) for floor in floors]
 
     def log_prior(self, chosen: Sequence[str], world: str) -> float:
         if (world == "flooding" and "VaryingCurrent" not in chosen) or self._twice(chosen):

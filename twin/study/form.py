@@ -68,7 +68,7 @@ def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
         force = 0.5 * ship.rho * ship.L_pp * ship.T * _speed(track, model) ** 2 * term(a)
         tau = {"X": (force, zero, zero), "Y": (zero, force, zero), "N": (zero, zero, force * ship.L_pp)}[axis]
     elif name in RUDDER:
-        u, delta = track.state[:, 3], lagged(track, model)
+        u, delta = _through_water(track, model)[0], lagged(track, model)
         alone = core.rudder(u, zero, zero, delta, core.thrust(u, track.n, model.c), model.c)
         tau = tuple(part * RUDDER[name][1](a) for part in alone)  # type: ignore[assignment]
     else:
@@ -86,15 +86,25 @@ def readings(track: Track, model: Model, name: str) -> np.ndarray:
     return out
 
 
+def _through_water(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
+    """(u_r, v_r) along the track, in the streams that the model has [m/s]."""
+    u, v = track.state[:, 3], track.state[:, 4]
+    if not model.flows:
+        return u, v
+    water = model.water(track.situation())
+    return u - water.u, v - water.v
+
+
 def _speed(track: Track, model: Model) -> np.ndarray:
-    return np.sqrt(track.state[:, 3] ** 2 + track.state[:, 4] ** 2 + (SLOWEST * model.ship.U_0) ** 2)
+    u, v = _through_water(track, model)
+    return np.sqrt(u**2 + v**2 + (SLOWEST * model.ship.U_0) ** 2)
 
 
 def _along(track: Track, model: Model) -> Along:
     U, time = _speed(track, model), float(model.ship.scale("time"))
     phi = _smooth(track.weather["phi"], ROLLED * time / track.h) if "phi" in track.weather else np.zeros(len(track))
     p = np.gradient(phi, track.h) * time
-    return Along(track.state[:, 4] / U, track.state[:, 5] * model.ship.L_pp / U, phi, p, np.gradient(p, track.h) * time)
+    return Along(_through_water(track, model)[1] / U, track.state[:, 5] * model.ship.L_pp / U, phi, p, np.gradient(p, track.h) * time)
 
 
 def _smooth(values: np.ndarray, steps: float) -> np.ndarray:

@@ -12,13 +12,13 @@ import numpy as np
 from .case import ODDS_WEAK, WORLDS, Case
 from .evidence import Hypothesis, Reduced, posterior, weigh_all
 from .led import Led, led
-from .leftover import explains
+from .leftover import NEARLY, explains
 from .refine import Found, Sets, boxed, refine
 
 MOST = 2  # effects at once
 ROUNDS = 20  # hypotheses judged about their own size, at most
 SINGLES = 3  # of which so many single effects first, unless nothing at all explains the voyages
-LAST = 6  # and so many more single effects, when nothing plain was found, or nothing that explains enough
+LAST = 6  # and so many more single effects, when nothing plain was found, or what was found (nothing, too) leaves too much
 CLOSE = 3.0  # log odds behind the best within which a hypothesis is judged about its own size
 VISIBLE = 4.0  # log odds that an effect of plausible size would have to show, or the data could not have seen it
 EARNED = 1.5  # log evidence that an effect must add to deserve a second look
@@ -56,8 +56,8 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
 
 
 def _explained(case: Case, weighed: list[Hypothesis], found: dict[Sets, Found]) -> bool:
-    best = weighed[0].effects
-    return not best or explains(case, weighed, found[best], found[()])
+    best, nothing = weighed[0].effects, found[()]
+    return explains(case, weighed, found[best], nothing) if best else nothing.off_m <= NEARLY * nothing.floor_m
 
 
 def visible(reduced: Reduced, name: str) -> bool:
@@ -79,8 +79,10 @@ class _Book:
                 self._enter(Hypothesis(chosen, world, evidence, case.log_prior(chosen, world)))
         nothing = max((h for h in self.entries.values() if not h.effects), key=lambda h: h.log_weight)
         self.found: dict[Sets, Found] = {(): Found(nothing, posterior(worlds[nothing.world], ()), case.model)}
+        ranked = self.weighed()
+        first = 0 if not ranked[0].effects and WORLDS[ranked[0].world].plain else SINGLES  # none when the plain answer is that nothing is there
         singles = self._promising()
-        self.first, self.last = singles[:SINGLES], singles[SINGLES : SINGLES + LAST]
+        self.first, self.last = singles[:first], singles[first : first + LAST]
 
     def _enter(self, h: Hypothesis) -> None:
         if np.isfinite(h.log_weight):
@@ -96,10 +98,8 @@ class _Book:
         return [h for h in weighed if h.effects in self.found or h.log_weight <= best]
 
     def _promising(self) -> list[Sets]:
-        """The single effects that explain something, best first; none when the plain answer is that nothing is there."""
+        """The single effects that explain something, best first."""
         ranked = self.weighed()
-        if ranked[0].effects == () and WORLDS[ranked[0].world].plain:
-            return []
         nothing = {h.world: h.log_evidence for h in ranked if not h.effects}
         singles: list[Sets] = [h.effects for h in ranked if len(h.effects) == 1 and h.log_evidence > nothing.get(h.world, -np.inf) + EARNED]
         return list(dict.fromkeys(singles))

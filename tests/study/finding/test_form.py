@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.study import form
 from twin.study.columns import columns, form_unknowns
@@ -30,6 +31,18 @@ def test_every_term_pushes_a_mirrored_ship_the_mirrored_way(sailed, name):
     here = form.accelerations(t, model, name)
     assert np.abs(here).max() > 0.0
     assert form.accelerations(mirrored(t), model, name) == pytest.approx(here * MIRROR)
+
+
+@pytest.mark.parametrize("name", ["X_vvvv", "Y_vvv", "N_vvr", "q_vv"])
+def test_in_a_stream_every_term_is_what_it_would_be_at_the_speed_through_the_water(sailed, name):
+    t, model = sailed
+    north, east, psi = 0.8, -0.5, t.state[:, 2]
+    state = t.state.copy()
+    state[:, 3] -= north * np.cos(psi) + east * np.sin(psi)
+    state[:, 4] -= east * np.cos(psi) - north * np.sin(psi)
+    stream = model.but(find("Current")(north=north, east=east))
+    assert form.accelerations(t, stream, name) == pytest.approx(form.accelerations(replace(t, state=state), model, name))
+    assert form.accelerations(t, stream, name) != pytest.approx(form.accelerations(t, model, name), rel=0.02)
 
 
 def test_a_receiver_high_above_the_axis_of_roll_is_carried_aside(sailed):
