@@ -124,11 +124,11 @@ def test_what_is_counted_runs_as_a_whole():
 
 
 def test_the_twins_step_beside_the_peers_does_all_the_work():
-    """Test: 80 s of it. Expected: the estimate follows the measurements, the network acts, and she learns."""
-    step = counted.hybrid(4000)
-    e = [step() for _ in range(4000)][-1]
+    """Test: 120 s of it. Expected: the estimate follows the measurements, the network acts, and she learns."""
+    step = counted.hybrid(6000)
+    e = [step() for _ in range(6000)][-1]
     loop = next(c.cell_contents for c in step.__closure__ if isinstance(c.cell_contents, Loop))
     assert e.ready and e.u == pytest.approx(7.0, abs=0.1)
-    assert e.r == pytest.approx(0.006 * math.cos(0.06 * 79.98), abs=2e-3)
+    assert e.r == pytest.approx(0.006 * math.cos(0.06 * 119.98), abs=2e-3)
     assert any(loop.learned.evidence.trained)
     assert loop.learned.adaptation.updates > 100, loop.learned.adaptation.frozen
