@@ -52,8 +52,8 @@ def led(case: Case, found: Mapping[Sets, Found]) -> Led:
     """Run nothing and every hypothesis that could still be the answer over the held-out parts."""
     best = max(f.hypothesis.log_weight for f in found.values())
     off = {s: held_out_error(case, f) for s, f in found.items() if not s or f.hypothesis.log_weight > best - REACH}
-    alone, floors = _usual(case, case.path), zip(WORLDS, case.worlds(list(WORLDS)), strict=True)
-    floor = {name: max(alone, _usual(case, floor)) for name, floor in floors}  # a rough world is rough beside what is usual
+    steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
+    floor = {name: max(m, steps["coarse"]) for name, m in steps.items()}  # what is run free is a core alone
     asked = {s: replace(found[s], off_m=m, floor_m=_floor(_plain(found[s].hypothesis), floor, off[()])) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
     return Led(asked, floor, windows)
