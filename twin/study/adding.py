@@ -83,7 +83,7 @@ def fitted(ship: Ship, effects: Sequence[type[Effect]], tracks: Sequence[Track])
     """The ship's model with these effects at their most probable size."""
     base, known = Model.of(ship), catalogue()
     known = known | {e.__name__: e for e in effects}
-    unknowns = [u for e in effects for u in effect_unknowns(e, base)]
+    unknowns = [u for e in effects for u in effect_unknowns(e, Model(ship))]
     floor = floor_of(ship) or Floor()
     usable = in_one(base, tracks)
     tracks = [calmed(t, usable) for t in tracks]

@@ -82,9 +82,8 @@ def _of_core(lines: Sequence[Linear], unknowns: Sequence[Unknown]) -> list[Linea
 
 
 def judgeable(tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]) -> tuple[str, ...]:
-    """Effects whose inputs at least one voyage holds, and that the ship does not have yet."""
-    present = {type(e).__name__ for e in model.effects}
-    return tuple(name for name in catalogue if name not in present and not unjudged_because(name, tracks, model, catalogue))
+    """Effects whose inputs at least one voyage holds; of one that the ship has already, a change of it."""
+    return tuple(name for name in catalogue if not unjudged_because(name, tracks, model, catalogue))
 
 
 def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]) -> tuple[str, ...]:
@@ -113,9 +112,9 @@ def _lines(
 
 
 def _roughly_known(t: Track, model: Model) -> np.ndarray:
-    """(N, 3) acceleration error of the effects that the model has: their forms, too, are only roughly right."""
-    out = np.zeros((len(t), 3))
-    for effect in (e for e in model.effects if not getattr(e, "stream", False)):
+    """(N, 3) acceleration error of the effects that were added since calibration: their forms, too, are only roughly right."""
+    out, calibrated = np.zeros((len(t), 3)), model.ship.notes.get("structural", {}).get("beside_effects", ())
+    for effect in (e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in calibrated):
         without = Model(model.ship, tuple(e for e in model.effects if e is not effect))
         out += np.square(KNOWN * (respond(t, model)[0] - respond(t, without)[0]))
     return np.sqrt(out)
@@ -129,7 +128,8 @@ def _odds(tracks: Sequence[Track], candidates: Sequence[str], ship: Ship) -> dic
         "ShallowWater": _typical(tracks, "depth", np.nanmin) < 3.0 * float(ship.T),
         "Bank": min(_typical(tracks, "bank_port", np.nanmin), _typical(tracks, "bank_starboard", np.nanmin)) < 6.0 * float(ship.B),
     }
-    return {name: ODDS_MEASURED if strong.get(name) else ODDS for name in candidates}
+    present = {type(e).__name__ for e in ship.effects}
+    return {name: ODDS_MEASURED if strong.get(name) and name not in present else ODDS for name in candidates}
 
 
 def _typical(tracks: Sequence[Track], name: str, of: Callable[[np.ndarray], float] = np.nanmedian) -> float:

@@ -7,14 +7,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from twin.physics.effect import Effect
 from twin.physics.effects import catalogue
+from twin.physics.effects.steering_lag import SteeringLag
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 
 from .columns import core_unknowns
 from .derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
 from .doubts import doubts
-from .fit import fit
+from .fit import Fit, fit
+from .gear import gear_unknowns, geared
 from .held_out import LAST, HeldOut, by_regime, errors, size, split
 from .import_voyage import write_json
 from .innovations import Floor
@@ -55,6 +58,8 @@ class Core:
     """What a filter one step ahead makes of the voyages: the derivatives, and what they leave over."""
 
     derivatives: list[Derivative]
+    effects: tuple[Effect, ...]  # of the ship file, the steering gear among them when the rudder's order was recorded
+    gear: dict[str, dict[str, Any]]  # its numbers with their standard errors
     floor: Floor
     temper: float
 
@@ -84,17 +89,35 @@ def _core(tracks: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
     progress("fitting the core")
     rough = fit(tracks, model, unknowns, known, Floor(), temper=TEMPER, rounds=4)
+    progress("asking whether the rudder that was recorded is its order")
+    if (with_gear := geared(rough.model, tracks, unknowns, known, TEMPER)).lags:
+        unknowns = (*unknowns, *gear_unknowns(model))
+        rough = fit(tracks, with_gear, unknowns, known, Floor(), temper=TEMPER, rounds=4)
     progress("finding the structural floor")
     floor, temper = structural_floor(rough.lines, unknowns), temper_of(rough.normal, unknowns)
     progress("fitting again above the floor")
-    return Core(told_by(fit(tracks, rough.model, unknowns, known, floor, temper=temper, rounds=4)), floor, temper)
+    found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, rounds=4)
+    kept = tuple(type(e) for e in ship.effects)
+    effects = tuple(e for e in found.model.effects if type(e) in kept or e in found.model.lags)
+    return Core(told_by(found), effects, _gear(found), floor, temper)
+
+
+def _gear(found: Fit) -> dict[str, dict[str, Any]]:
+    """What the ship file keeps of the steering gear's numbers."""
+    source = f"calibrated {datetime.date.today().isoformat()}: the recorded rudder angle is its order"
+    return {
+        u.name: {"value": float(value), "unit": u.unit, "sd": float(sd), "source": source}
+        for u, value, sd in zip(found.unknowns, found.value, found.sd, strict=True)
+        if u.owner == SteeringLag.__name__
+    }
 
 
 def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
     """The ship with the fitted derivatives and what remains of these voyages, in place of what an earlier calibration left."""
     today, voyages = datetime.date.today().isoformat(), [s.provenance() for s in fitted]
-    structural = {"floor": plain(asdict(core.floor)), "temper": core.temper, "date": today, "voyages": voyages}
-    after = with_derivatives(ship, core.derivatives)
+    names = [type(e).__name__ for e in core.effects]
+    structural = {"floor": plain(asdict(core.floor)), "temper": core.temper, "date": today, "voyages": voyages, "beside_effects": names}
+    after = noted(replace(with_derivatives(ship, core.derivatives), effects=core.effects), "effects", core.gear and {SteeringLag.__name__: core.gear})
     return replace(after, notes={**after.notes, "structural": structural})
 
 
@@ -107,6 +130,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "derivatives": [_row(d, ship, after) for d in core.derivatives],
         "unexcited": [d.unknown.name for d in core.derivatives if not d.excited],
         "fitted_by": by,
+        "gear": {name: {k: v for k, v in number.items() if k != "source"} for name, number in core.gear.items()},
         "usual": clearly_hers(after, hers), "between_voyages": hers["between_voyages"],
         "floor": asdict(core.floor), "temper": core.temper, "by_regime": hers["by_regime"],
         "held_out": [e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]} for b, e in zip(before, hers["held_out"], strict=True)],
@@ -161,6 +185,9 @@ def told(result: dict[str, Any]) -> list[str]:
             )
     lines += [f"  after {r['horizon_s']:.0f} s while {r['regime']}: {r['position_m']:.3g} m ({r['windows']} windows)" for r in result["by_regime"]]
     lines.append("  fitted to " + ("where she went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading"))
+    if gear := result["gear"]:
+        size = ", ".join(f"{name} {g['value']:.3g} +- {g['sd']:.1g} {g['unit']}" for name, g in gear.items())
+        lines.append(f"  rudder_angle_deg is the rudder's order: the gear between them is now part of the model (SteeringLag: {size})")
     share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [f"usual on this ship: {i['name']} {i['value']:.3g} +- {i['sd']:.1g} (kept in mind by diagnose)" for i in result["usual"]]

@@ -25,7 +25,7 @@ class Unknown:
     owner: str  # "core" or the name of an effect
     name: str
     unit: str
-    centre: float  # prior mean: the ship file's value, or the null of an effect
+    centre: float  # prior mean: the ship file's value, or the null of an effect that it does not have
     sd: float
     lo: float
     hi: float
@@ -69,11 +69,12 @@ def core_unknowns(model: Model) -> list[Unknown]:
 
 
 def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:
-    """The parameters of one effect on this ship, centred on "not there"."""
+    """The parameters of one effect on this ship, centred on what the model holds of it: on "not there" where it does not."""
+    present = next((e for e in model.effects if type(e) is effect), None) or effect.absent(model.ship)
     out = []
     for p in effect.params():
         k, (lo, hi) = p.scale(model.ship), p.box(model.ship)
-        out.append(Unknown(effect.__name__, p.name, p.unit, p.null * k, p.sd * k, lo, hi))
+        out.append(Unknown(effect.__name__, p.name, p.unit, float(getattr(present, p.name)), p.sd * k, lo, hi))
     return out
 
 

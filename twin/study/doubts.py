@@ -70,8 +70,8 @@ def _ordered(usual: Sequence[Mapping[str, Any]]) -> list[str]:
     if not any(u["name"].startswith("SteeringLag.") for u in usual):
         return []
     return [
-        "the ship answers later than rudder_angle_deg, as if that were the order and not the rudder itself: record the feedback if you can, "
-        "else the gear hides in the derivatives, and a fault of rudder or gear is hard to see"
+        "the ship answers otherwise than rudder and steering gear of the model would have it: record the rudder's feedback if you can, "
+        "else a fault of rudder or gear is hard to see"
     ]
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 
-from .columns import LATE, Unknown, with_values
+from .columns import Unknown, with_values
 from .innovations import Floor, Linear, Normal, innovate, linearise
 from .track import Track
 
@@ -59,8 +59,8 @@ def fit(
     for _ in range(TRIES * rounds):
         model = with_values(model, unknowns, value.tolist(), catalogue)
         here = {u.label: float(v) for u, v in zip(unknowns, value, strict=True)}
-        late = {label: v for label, v in here.items() if label.startswith(LATE)}
-        trial = [linearise(t, model, [replace(u, centre=here[u.label]) for u in unknowns], catalogue, late) for t in tracks]
+        about = [replace(u, centre=here[u.label]) if u.owner == "core" else u for u in unknowns]
+        trial = [linearise(t, model, about, catalogue, here) for t in tracks]
         told = innovate(trial, [floor])[0]
         z = (value - centre) / sd
         cost = float((told.ee + told.logdet).sum()) / temper + float(z @ z)

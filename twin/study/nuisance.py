@@ -19,9 +19,9 @@ SURROUNDINGS = ("Wind", "WaveDrift", "Current", "VaryingCurrent", "ShallowWater"
 
 
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
-    """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of each."""
-    present = {type(e).__name__ for e in model.effects}
-    return [u for name, e in catalogue.items() if name not in (*SURROUNDINGS, *present) for u in effect_unknowns(e, model)]
+    """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of each, beside what her file
+    says of it."""
+    return [u for name, e in catalogue.items() if name not in SURROUNDINGS for u in effect_unknowns(e, model)]
 
 
 def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
@@ -57,7 +57,8 @@ def from_references(
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     """What the ship file's calibration left open; where it says nothing, the priors."""
     stored = model.ship.notes.get("structural", {})
-    place = {label: i for i, label in enumerate(stored.get("labels", []))}
+    since = {type(e).__name__ for e in model.effects} - set(stored.get("beside_effects", ()))  # added when she was calibrated already
+    place = {label: i for i, label in enumerate(stored.get("labels", [])) if label.split(".")[0] not in since}
     size = len(unknowns)
     information, mean = np.eye(size), np.zeros(size)
     mine = [i for i, u in enumerate(unknowns) if u.label in place]

@@ -67,7 +67,10 @@ def nearer(candidate: dict[str, Any]) -> bool:
 
 def _likely(by_name: dict[str, Any], name: str) -> str:
     """A name with its probability, where that is known."""
-    return f"{name} ({by_name[name]['probability']:.0%})" if name in by_name else name
+    if name not in by_name:
+        return name
+    changed = any("in_ship_file" in p for p in by_name[name]["parameters"])
+    return f"{'a change of ' * changed}{name} ({by_name[name]['probability']:.0%})"
 
 
 def _candidate(c: dict[str, Any]) -> list[str]:
@@ -76,7 +79,8 @@ def _candidate(c: dict[str, Any]) -> list[str]:
         head += f" (together with {', '.join(c['together_with'])})"
     lines = [head]
     for p in c["parameters"]:
-        lines.append(f"          {p['name']:<12} {p['value']:>11.4g} {p['unit']:<5} 95 %: {p['low95']:.4g} to {p['high95']:.4g}")
+        file = f"   (ship file: {p['in_ship_file']:.4g})" if "in_ship_file" in p else ""
+        lines.append(f"          {p['name']:<12} {p['value']:>11.4g} {p['unit']:<5} 95 %: {p['low95']:.4g} to {p['high95']:.4g}{file}")
     force = c["typical_force"]
     if _force(force):
         lines.append(f"          typically    {_force(force)}")

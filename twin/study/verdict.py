@@ -102,8 +102,9 @@ def shows(seen: dict[str, bool]) -> bool:
 
 
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:
-    """Each parameter of one effect with its 95 % interval, inside its box; that the form is only roughly right is part of it."""
-    out = []
+    """Each parameter of one effect with its 95 % interval, inside its box; that the form is only roughly right is part of it. Of an effect
+    that the ship has already, also what her file says."""
+    out, present = [], {type(e).__name__ for e in case.model.effects}
     for i, u in enumerate(case.effects):
         if u.owner == name:
             value = u.centre + u.sd * found.z[i]
@@ -112,13 +113,15 @@ def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object
             out.append(
                 {"name": u.name, "value": float(np.clip(value, u.lo, u.hi)), "low95": float(np.clip(low, u.lo, u.hi)),
                  "high95": float(np.clip(high, u.lo, u.hi)), "unit": u.unit}
+                | ({"in_ship_file": u.centre} if name in present else {})
             )  # fmt: skip
     return out
 
 
 def typical_force(case: Case, model: Model, name: str) -> dict[str, float]:
-    """Root mean square of the force by which the model changes when this effect is taken out [N, N, N m]."""
-    without = Model(model.ship, tuple(e for e in model.effects if type(e).__name__ != name))
+    """Root mean square of the force by which the model changes when this effect is taken out, or put back to what it was [N, N, N m]."""
+    before = (e for e in case.model.effects if type(e).__name__ == name)
+    without = Model(model.ship, (*(e for e in model.effects if type(e).__name__ != name), *before))
     total, count = np.zeros(3), 0
     for track in case.tracks:
         a, b = (respond(track, m.without_inputs(track.missing())[0])[0] for m in (model, without))

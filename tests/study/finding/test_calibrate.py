@@ -86,7 +86,7 @@ def test_a_calibration_that_ended_badly_says_so_and_a_good_one_does_not(calibrat
     assert "40 % in sway" in coarse
     assert "--held-out" in doubts([], [fell | {"windows": 0}], (0.1, 0.1, 0.1))[0]
     (late,) = doubts([], [fell], (0.1, 0.1, 0.1), [{"name": "SteeringLag.travel_time"}, {"name": "HeadingBias.bias"}])
-    assert "as if that were the order" in late
+    assert "record the rudder's feedback" in late
     (blind,) = doubts([], [fell], (0.1, 0.1, 0.1), (), {"RudderWear.loss": 1.6, "HeadingBias.bias": 0.2, "core.N_rr": 1.6})
     assert blind.startswith("RudderWear.loss (1.6") and "core" not in blind
 

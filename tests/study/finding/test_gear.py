@@ -1,0 +1,71 @@
+"""The rudder's order in place of the rudder: the gear between them is found on the references and becomes a part of the ship's model."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bench.bundled import recorded
+from bench.reference import Case, simulate
+from twin import cli
+from twin.physics.effects import catalogue
+from twin.physics.effects.steering_lag import TRAVEL, SteeringLag
+from twin.physics.model import Model
+from twin.physics.ship import load
+from twin.study.columns import effect_unknowns
+from twin.study.nuisance import from_ship, nuisance_unknowns
+from twin.study.write import write_voyage
+
+
+@pytest.fixture(scope="module")
+def ordered(tmp_path_factory):
+    """Two voyages of the tanker that hold the rudder's order behind a gear slower than usual, and one behind a gear that is slower still;
+    what was hidden in each; and the ship calibrated on the first two."""
+    folder, paths, hidden = tmp_path_factory.mktemp("gear"), {}, {}
+    for name, manoeuvre, strength, seed in (("zigzag", "zigzag_20", 0.5, 970), ("mixed", "mixed", 0.5, 971), ("slower", "mixed", 2.0, 972)):
+        made = simulate([Case("kvlcc2", manoeuvre, hidden=(("SteeringLag", strength),), seed=seed, duration_s=1200.0)])[0]
+        paths[name], hidden[name] = folder / f"{name}.mcap", made.hidden["SteeringLag"]
+        write_voyage(recorded(name, made.columns, every=10), paths[name])
+    out, said = folder / "tanker.toml", folder / "said.json"
+    words = ["calibrate", str(paths["zigzag"]), str(paths["mixed"]), "--ship", "kvlcc2", "-o", str(out), "--json", str(said)]
+    assert cli.main(words) == 0
+    return paths, hidden, out, json.loads(said.read_text())
+
+
+def test_the_gear_between_order_and_rudder_is_found_on_the_references(ordered):
+    _, hidden, out, said = ordered
+    (gear,) = [e for e in load(out).effects if type(e) is SteeringLag]
+    assert gear.travel_time == pytest.approx(np.degrees(TRAVEL) / hidden["mixed"]["rate_degps"], rel=0.2)
+    assert gear.delay == pytest.approx(hidden["mixed"]["delay_s"], rel=0.5)
+    assert said["gear"]["delay"]["value"] == gear.delay and said["gear"]["delay"]["sd"] > 0.0
+    assert load(out).notes["structural"]["beside_effects"] == ["SteeringLag"]
+
+
+def test_a_gear_that_became_slower_than_the_ship_file_has_it_is_named_as_a_change(ordered, tmp_path, capsys):
+    paths, hidden, out, _ = ordered
+    answer = tmp_path / "answer.json"
+    assert cli.main(["diagnose", str(paths["slower"]), "--ship", str(out), "--json", str(answer)]) == 0
+    said = json.loads(answer.read_text())
+    assert said["missing"] == ["SteeringLag"]
+    assert "a change of SteeringLag" in capsys.readouterr().out
+    travel = next(p for p in said["candidates"][0]["parameters"] if p["name"] == "travel_time")
+    assert travel["low95"] < np.degrees(TRAVEL) / hidden["slower"]["rate_degps"] < travel["high95"]
+    assert travel["in_ship_file"] == pytest.approx(next(e for e in load(out).effects if type(e) is SteeringLag).travel_time)
+
+
+def test_an_effect_that_the_ship_has_is_asked_about_from_where_it_stands(ordered):
+    model = Model.of(load(ordered[2]))
+    (gear,) = model.effects
+    assert [u.centre for u in effect_unknowns(SteeringLag, model)] == [gear.delay, gear.travel_time]
+
+
+def test_of_an_effect_added_after_calibration_the_ship_file_knows_nothing_but_its_prior(ordered):
+    ship = load(ordered[2])
+    wear = catalogue()["RudderWear"].absent(ship).but(loss=0.2)
+    later = Model.of(replace(ship, effects=(*ship.effects, wear)))
+    labels = [u.label for u in nuisance_unknowns(later, catalogue())]
+    known = from_ship(later, nuisance_unknowns(later, catalogue()))
+    at = labels.index("RudderWear.loss")
+    assert known.pull[at] == 0.0 and known.information[at, at] == 1.0
+    assert known.information[labels.index("SteeringLag.delay")].max() > 1.0

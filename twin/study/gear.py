@@ -1,0 +1,46 @@
+"""Whether what was recorded as the rudder is its order: then the steering gear stands between it and the ship, and belongs to her model.
+
+A rudder that is ordered at once arrives seconds later, and by then the ship has turned by less than the core would have it. Taken for
+the rudder, the order bends every derivative of sway and yaw; a fault of rudder or gear can then not be told from the core's. So each of
+a few gears is put between, and the reference voyages say how much more probable they are with it (the core's freedom integrated out).
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from twin.physics.effects.steering_lag import SteeringLag
+from twin.physics.model import Model
+
+from .columns import Unknown, effect_unknowns
+from .fit import Catalogue, evidence
+from .innovations import Floor, innovate, linearise
+from .sailed import fed
+from .track import Track
+
+TRAVEL, DELAY = (0.35, 0.7, 1.4, 2.8), (0.05, 0.1, 0.2)  # L/U_0; the first is as fast as a large tanker's must be
+CLEAR = 20.0  # log evidence, tempered, that a gear must add: where the rudder itself was recorded it adds nothing at all
+
+
+def gear_unknowns(model: Model) -> tuple[Unknown, ...]:
+    """The gear's numbers, about no gear."""
+    return tuple(effect_unknowns(SteeringLag, Model(model.ship)))
+
+
+def geared(model: Model, tracks: Sequence[Track], unknowns: Sequence[Unknown], known: Catalogue, temper: float) -> Model:
+    """The model with the most probable steering gear, if the voyages clearly ask for one; a gear that is there already stays."""
+    if model.lags:
+        return model
+    sd, time = np.array([u.sd for u in unknowns]), float(model.ship.scale("time"))
+
+    def with_gear(delay: float, travel: float) -> Model:
+        return model.but(SteeringLag.absent(model.ship).but(delay=delay * time, travel_time=travel * time))
+
+    def probable(m: Model) -> float:
+        lines = [linearise(t, fed(m, t)[0], unknowns, known) for t in tracks]
+        return evidence(innovate(lines, [Floor()])[0], sd) / temper
+
+    none = (probable(model), 0.0, 0.0)
+    _, _, travel = slow = max(none, *((probable(with_gear(0.0, k)), 0.0, k) for k in TRAVEL))
+    score, delay, travel = max(slow, *((probable(with_gear(k, travel)), k, travel) for k in DELAY))
+    return with_gear(delay, travel) if score > none[0] + CLEAR else model
