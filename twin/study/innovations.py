@@ -23,6 +23,7 @@ from .filters import FLOW, MOTION, SLOW, SPEEDS, STATES, Filters, Noise, Stretch
 from .normal import Normal, Sums
 from .respond import advance, jacobian, lagged, respond
 from .segments import segments
+from .start import undone
 from .track import Track
 
 Where = Sequence[tuple[int, int, int]]  # segments: track, first step, last step
@@ -71,7 +72,9 @@ class Linear:
 def linearise(
     track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None
 ) -> Linear:
-    """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model already holds)."""
+    """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model already holds), about the
+    motion as it was if the model's sensor faults are there."""
+    track = undone(track, model)
     _, reading = respond(track, model)
     A, R = columns(track, model, unknowns, catalogue, at)
     e = track.measured - reading

@@ -39,13 +39,18 @@ class Led:
         """Of the path under a hypothesis; one that was not asked leads no worse than the best part of it that was."""
         own, floor = self.found.get(h.effects), _floor(h, self.floor, self.found[()].off_m)
         error = own.off_m if own else min(f.off_m for s, f in self.found.items() if set(s) <= set(h.effects))
-        return -2.0 * self.windows * float(np.log(max(error, floor) / floor))  # two directions, a normal error of unknown size
+        return self._path(error, floor)
 
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """The same hypotheses with this evidence too, best first. Where one effect leads her there, two are a luxury."""
-        one = any(len(s) == 1 and f.off_m <= f.floor_m for s, f in self.found.items())
-        extra = (self.log_probability(h) - LUXURY * (one and len(h.effects) > 1) for h in weighed)
+        """The same hypotheses with this evidence too, best first. As far as one effect leads her there alone, two are a luxury."""
+        luxury = max(0.0, LUXURY + max((self._path(f.off_m, f.floor_m) for s, f in self.found.items() if len(s) == 1), default=-LUXURY))
+        extra = (self.log_probability(h) - luxury * (len(h.effects) > 1) for h in weighed)
         return sorted((replace(h, log_evidence=h.log_evidence + e) for h, e in zip(weighed, extra, strict=True)), key=lambda h: -h.log_weight)
+
+    def _path(self, error: float, floor: float) -> float:
+        """Log probability of ending so far off where the floor is all that a true hypothesis would leave: two directions, a normal error of
+        unknown size."""
+        return -2.0 * self.windows * float(np.log(max(error, floor) / floor))
 
 
 def led(case: Case, found: Mapping[Sets, Found]) -> Led:

@@ -32,6 +32,18 @@ def true_motion(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray | No
     return kinematics(place, track.h), wind_to
 
 
+def undone(track: Track, model: Model) -> Track:
+    """The track with the model's sensor faults taken out of the motion and the wind, each stretch of consecutive steps by itself; its
+    measurements stay what was shown."""
+    if not _moved(track, model, track.weather.get("wind_to")):
+        return track
+    breaks = np.flatnonzero(np.diff(track.steps()) != 1) + 1
+    stretches = [track.part(a, b) for a, b in zip([0, *breaks], [*breaks, len(track)], strict=True)]
+    state, wind_to = zip(*(true_motion(s, model) for s in stretches), strict=True)
+    wind = {} if wind_to[0] is None else {"wind_to": np.concatenate(wind_to)}
+    return replace(track, state=np.concatenate(state), weather=dict(track.weather) | wind)
+
+
 def _moved(track: Track, model: Model, wind_to: np.ndarray | None) -> bool:
     """Whether any fault touches place, heading or wind direction (most only touch a log or a gyro)."""
     read = _read(track, model, track.state, wind_to)
