@@ -97,9 +97,8 @@ def _core(tracks: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     floor, temper = structural_floor(rough.lines, unknowns), temper_of(rough.normal, unknowns)
     progress("fitting again above the floor")
     found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, rounds=4)
-    kept = tuple(type(e) for e in ship.effects)
-    effects = tuple(e for e in found.model.effects if type(e) in kept or e in found.model.lags)
-    return Core(told_by(found), effects, _gear(found), floor, temper)
+    kept = tuple(e for e in ship.effects if e not in model.lags)
+    return Core(told_by(found), (*kept, *found.model.lags), _gear(found), floor, temper)
 
 
 def _gear(found: Fit) -> dict[str, dict[str, Any]]:

@@ -12,10 +12,12 @@ from twin import cli
 from twin.physics.effects import catalogue
 from twin.physics.effects.steering_lag import TRAVEL, SteeringLag
 from twin.physics.model import Model
-from twin.physics.ship import load
+from twin.physics.ship import load, save
 from twin.study.columns import effect_unknowns
 from twin.study.nuisance import from_ship, nuisance_unknowns
 from twin.study.write import write_voyage
+
+GYRO = 1e-6  # rad/s that the ship file already says of the gyro
 
 
 @pytest.fixture(scope="module")
@@ -27,8 +29,10 @@ def ordered(tmp_path_factory):
         made = simulate([Case("kvlcc2", manoeuvre, hidden=(("SteeringLag", strength),), seed=seed, duration_s=1200.0)])[0]
         paths[name], hidden[name] = folder / f"{name}.mcap", made.hidden["SteeringLag"]
         write_voyage(recorded(name, made.columns, every=10), paths[name])
-    out, said = folder / "tanker.toml", folder / "said.json"
-    words = ["calibrate", str(paths["zigzag"]), str(paths["mixed"]), "--ship", "kvlcc2", "-o", str(out), "--json", str(said)]
+    start, out, said = folder / "start.toml", folder / "tanker.toml", folder / "said.json"
+    ship = load("kvlcc2")
+    save(replace(ship, effects=(catalogue()["GyroBias"].absent(ship).but(bias=GYRO),)), start)
+    words = ["calibrate", str(paths["zigzag"]), str(paths["mixed"]), "--ship", str(start), "-o", str(out), "--json", str(said)]
     assert cli.main(words) == 0
     return paths, hidden, out, json.loads(said.read_text())
 
@@ -39,7 +43,12 @@ def test_the_gear_between_order_and_rudder_is_found_on_the_references(ordered):
     assert gear.travel_time == pytest.approx(np.degrees(TRAVEL) / hidden["mixed"]["rate_degps"], rel=0.2)
     assert gear.delay == pytest.approx(hidden["mixed"]["delay_s"], rel=0.5)
     assert said["gear"]["delay"]["value"] == gear.delay and said["gear"]["delay"]["sd"] > 0.0
-    assert load(out).notes["structural"]["beside_effects"] == ["SteeringLag"]
+
+
+def test_what_else_the_ship_file_held_stays_as_it_was(ordered):
+    ship = load(ordered[2])
+    assert [type(e).__name__ for e in ship.effects] == ["GyroBias", "SteeringLag"] == ship.notes["structural"]["beside_effects"]
+    assert ship.effects[0].bias == GYRO
 
 
 def test_a_gear_that_became_slower_than_the_ship_file_has_it_is_named_as_a_change(ordered, tmp_path, capsys):
@@ -56,7 +65,7 @@ def test_a_gear_that_became_slower_than_the_ship_file_has_it_is_named_as_a_chang
 
 def test_an_effect_that_the_ship_has_is_asked_about_from_where_it_stands(ordered):
     model = Model.of(load(ordered[2]))
-    (gear,) = model.effects
+    (gear,) = model.lags
     assert [u.centre for u in effect_unknowns(SteeringLag, model)] == [gear.delay, gear.travel_time]
 
 
