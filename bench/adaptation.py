@@ -18,6 +18,7 @@ import numpy as np
 from bench import adaptation_laws as peers
 from bench import answer
 from bench.adaptation_laws import Stream
+from bench.options import positive
 from bench.paper_sea import FULL, QUICK, changed, zigzags
 from bench.reference import HULLS, Change
 from twin.live.adapt import BESIDE, Adaptation
@@ -37,7 +38,7 @@ ON_BOARD = "ridge on fading evidence"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EPILOG
     parser.add_argument("--full", action="store_true", help="the network of `twin-bench paper --full`")
-    parser.add_argument("--seeds", metavar="N", type=int, default=2, help="seeds for each scenario and zigzag (%(default)s)")
+    parser.add_argument("--seeds", metavar="N", type=positive, default=2, help="seeds for each scenario and zigzag (%(default)s)")
     parser.add_argument("--work", metavar="DIR", type=Path, default=Path(".paper"), help="voyages and checkpoints (%(default)s)")
     answer.add_arguments(parser)
 

@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from twin import whole
 from twin.cli import guarded
 from twin.errors import TwinError
 
@@ -51,7 +52,12 @@ def main(argv: Sequence[str] | None = None) -> int:
             if code:
                 return code
     args = parser.parse_args(argv)
-    return guarded(lambda: load(BENCHES[args.bench]).run(args))
+    return guarded(lambda: _run(args))
+
+
+def _run(args: argparse.Namespace) -> int | None:
+    whole.promised(args)
+    return load(BENCHES[args.bench]).run(args)  # type: ignore[no-any-return]
 
 
 def load(bench: Bench) -> Any:

@@ -10,6 +10,7 @@ from bench import league_plan as plan
 from bench import league_score as score
 from bench.league import League
 from bench.league_page import page
+from bench.options import positive
 from twin.errors import SettingsError
 from twin.physics.effects import catalogue
 from twin.study.import_voyage import write_json
@@ -30,16 +31,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EPILOG
     parser.add_argument("--quick", action="store_true", help="one hull, one seed, strength 1, some 12 voyages")
     parser.add_argument("--hull", nargs="+", choices=plan.HULLS, help="default: all")
-    parser.add_argument("--seeds", type=int, help="rounds; each is a fair sample (default 5)")
+    parser.add_argument("--seeds", type=positive, help="rounds; each is a fair sample (default 5)")
     parser.add_argument("--first-seed", type=int, default=1, metavar="N", help="of the rounds: other voyages of the same questions (default 1)")
     parser.add_argument("--strength", nargs="+", type=float, help="default: 1 and 0.5")
     parser.add_argument("--effect", nargs="+", default=[], help="hide only these of the catalogue")
-    parser.add_argument("--every", type=int, default=1, metavar="N", help="one question in N, in turn over effects, hulls and seeds (default 1)")
+    parser.add_argument("--every", type=positive, default=1, metavar="N", help="one question in N, in turn over effects, hulls and seeds (default 1)")
     parser.add_argument("--kind", nargs="+", choices=plan.KINDS, default=plan.KINDS, help="only these questions")
     parser.add_argument("--duration", type=float, metavar="S", help="of a voyage (default 1800, usv 1200)")
-    parser.add_argument("--references", type=int, default=6, metavar="N", help="calm voyages that calibrate a ship (default 6)")
+    parser.add_argument("--references", type=positive, default=6, metavar="N", help="calm voyages that calibrate a ship (default 6)")
     parser.add_argument("--minutes", type=float, help="begin no voyage after so many minutes")
-    parser.add_argument("--jobs", type=int, default=2, help="processes (default 2)")
+    parser.add_argument("--jobs", type=positive, default=2, help="processes (default 2)")
     parser.add_argument("--resume", metavar="DIR", help="keep what is done here, and go on from it")
     answer.add_arguments(parser, "--out")
 

@@ -13,6 +13,7 @@ from typing import Any
 
 from bench import answer
 from bench import paper_sea as sea
+from bench.options import positive
 
 EPILOG = """example: twin-bench gap --work .paper --markdown docs/results/gap.md
 
@@ -31,7 +32,7 @@ WORDS = {"hybrid": "hybrid", "analytic_current": "nominal, told the current: nev
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EPILOG
     parser.add_argument("--full", action="store_true", help="the network of `twin-bench paper --full`")
-    parser.add_argument("--times", metavar="N", type=int, default=5, help="how often each run is sailed again (%(default)s)")
+    parser.add_argument("--times", metavar="N", type=positive, default=5, help="how often each run is sailed again (%(default)s)")
     parser.add_argument("--work", metavar="DIR", type=Path, default=Path(".paper"), help="voyages and checkpoints (%(default)s)")
     answer.add_arguments(parser)
 

@@ -11,6 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from bench.options import positive
 from bench.paper_sea import QUICK, lessons, sail, zigzags
 from bench.paper_ship import nominal
 from twin.study.track import track
@@ -27,9 +28,9 @@ VARIANTS: dict[str, dict[str, Any]] = {
 
 def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m bench.paper_loss", description=__doc__)
-    parser.add_argument("--runs", type=int, default=QUICK.runs)
-    parser.add_argument("--epochs", type=int, default=150)
-    parser.add_argument("--rollout-epochs", type=int, default=30)
+    parser.add_argument("--runs", type=positive, default=QUICK.runs)
+    parser.add_argument("--epochs", type=positive, default=150)
+    parser.add_argument("--rollout-epochs", type=positive, default=30)
     parser.add_argument("--work", type=Path, default=Path(".paper"))
     parser.add_argument("--only", metavar="LOSS", nargs="+", choices=VARIANTS, default=list(VARIANTS), help="some of them")
     args = parser.parse_args()

@@ -18,6 +18,7 @@ import numpy as np
 from bench import counted
 from bench.ekf import ShipFilter
 from bench.lstm import HIDDEN, INPUTS, LAYERS, lstm_bytes
+from bench.options import positive
 from bench.ort import session
 from bench.timing import hot_us, quantiles
 from twin.live.dynamics import NONE, Known
@@ -130,5 +131,5 @@ def _quantiles(times: list[float]) -> dict[str, float]:
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--repeats", type=int, default=1000)
+    parser.add_argument("--repeats", type=positive, default=1000)
     print(json.dumps(measure(parser.parse_args().repeats)))

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bench import answer
+from bench.options import positive
 from twin.errors import ThresholdError
 from twin.live import certificate as cert
 from twin.live import comparison as c3
@@ -256,7 +257,7 @@ def _inner(span: tuple[float, float], share: float) -> tuple[float, float]:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--runs", type=int, default=sum(c.runs for c in CASES), help="runs in all (default: %(default)s)")
+    parser.add_argument("--runs", type=positive, default=sum(c.runs for c in CASES), help="runs in all (default: %(default)s)")
     parser.add_argument("--seed", type=int, default=1)
     answer.add_arguments(parser, "--results")
 

@@ -64,3 +64,11 @@ def test_matrices_are_not_shared_between_threads_unless_the_owner_wishes(wish, t
     env = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"} | ({"OPENBLAS_NUM_THREADS": wish} if wish else {})
     told = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True).stdout
     assert told.splitlines()[-1] == str(threads)
+
+
+@pytest.mark.parametrize("words", [["-o", "no/x.toml"], ["-o", "."], ["-o", "x.toml", "--json", "no/x.json"]])
+def test_what_cannot_be_written_is_said_before_the_work_is_done(words, tmp_path, monkeypatch, capsys):
+    """Test: the voyage is not there either. Expected: the place of the answer is asked about first."""
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["calibrate", "nowhere.mcap", "--ship", "kvlcc2", *words]) == 1
+    assert f"Choose another place with {words[-2]}." in said(capsys)

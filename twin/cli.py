@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
+from twin import whole
 from twin.errors import DataError, TwinError
 
 
@@ -72,6 +73,7 @@ def _verb(argv: list[str]) -> int:
         if name in argv[:1]:
             _module(name).add_arguments(sub)
     args = parser.parse_args(argv)
+    whole.promised(args)
     return _module(args.verb).run(args)  # type: ignore[no-any-return]
 
 

@@ -1,11 +1,29 @@
 """Files that are there whole or not at all."""
 
+import argparse
 import os
 import tempfile
 from contextlib import suppress
 from pathlib import Path
 
 from twin.errors import TwinError
+
+OUTPUTS = {"output": "-o", "json": "--json", "report": "--report", "markdown": "--markdown", "page": ""}  # in what was asked: option
+
+
+def promised(args: argparse.Namespace) -> None:
+    """Before any work is done: TwinError (exit code 1) when a file that was asked for could not be written where it is to be."""
+    for name, option in OUTPUTS.items():
+        path = Path(getattr(args, name, None) or "-")
+        if path == Path("-"):
+            continue
+        why = "it is a folder" if path.is_dir() else "there is no such folder" if not path.parent.is_dir() else ""
+        if why or not os.access(path.parent, os.W_OK):
+            raise _cannot(path, why or "its folder may not be written to", option or args.page_option)
+
+
+def _cannot(path: Path, why: str | None, option: str) -> TwinError:
+    return TwinError(f"{path}: cannot be written ({why}). Choose another place with {option}.")
 
 
 def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
@@ -23,4 +41,4 @@ def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
     except OSError as error:
         with suppress(OSError):
             os.unlink(aside)
-        raise TwinError(f"{path}: cannot be written ({error.strerror}). Choose another place with {option}.") from None
+        raise _cannot(path, error.strerror, option) from None
