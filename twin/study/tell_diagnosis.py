@@ -7,6 +7,7 @@ from .leftover import BETTER
 from .overtime import changes
 from .verdict import SURE
 
+SMALL = "It is too small to show in where these voyages led her: `twin add` may ask for others."
 NEAR = 0.5  # probability from which an effect is told as the nearest one when none explains the voyages
 
 
@@ -38,7 +39,8 @@ def sentence(result: dict[str, Any]) -> str:
         size = f" Typically {_force(force)}." if _force(force) else ""
         rivals = [_likely(by_name, n) for n in first["cannot_be_told_from"]]
         doubt = f" These voyages cannot tell it from {' or '.join(rivals)}." if rivals else ""
-        return f"Missing: {names}. {first['says']}{size}{doubt}"
+        small = f" {SMALL}" if size and len(result["missing"]) == 1 and not nearer(first) else ""
+        return f"Missing: {names}. {first['says']}{size}{doubt}{small}"
     if result["verdict"] == "nothing_missing":
         return "Nothing is missing: what the model cannot explain is no more than it left unexplained on good voyages."
     if result["verdict"] == "unknown":

@@ -78,5 +78,18 @@ def test_what_leads_her_most_of_the_way_explains_whatever_is_left(judged):
 ])  # fmt: skip
 def test_a_force_must_lead_her_better_than_without_it_and_a_fault_of_an_instrument_need_not(judged, effects, off, named):
     case, found = judged
-    led = {s: replace(found, off_m=1.0) for s in ((), ("GyroBias",), ("RudderWear",))} | {effects: replace(found, off_m=off)}
+    led = {s: replace(found, off_m=1.0, floor_m=0.5) for s in ((), ("GyroBias",), ("RudderWear",))} | {effects: replace(found, off_m=off, floor_m=0.5)}
     assert helpful(case, led, effects) == list(named)
+
+
+def test_a_force_that_stands_alone_need_not_lead_her_where_she_is_led_already_but_in_a_sea_it_must(judged):
+    case, found = judged
+    led = {(): replace(found, off_m=0.9, floor_m=1.0), ("RudderWear",): replace(found, off_m=1.0, floor_m=1.0)}
+    assert helpful(case, led, ("RudderWear",)) == ["RudderWear"]
+    assert helpful(case, led | {(): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",)) == []
+    pair = ("RudderWear", "Wind")
+    assert helpful(case, led | {("Wind",): led[()], pair: led["RudderWear",]}, pair) == []
+    (track,) = case.tracks
+    waves = np.full(len(track), 0.01 * case.model.ship.L_pp)
+    tossed = replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),))
+    assert helpful(tossed, led, ("RudderWear",)) == []
