@@ -13,6 +13,7 @@ from twin.physics.ship import Ship, load
 from . import identifiability
 from .assemble import assemble, unjudged_because
 from .case import Case
+from .effects import INPUTS
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
@@ -132,10 +133,10 @@ def _next(
 
 
 def _not_judged(case: Case) -> list[dict[str, Any]]:
-    """Effects that could not be judged, and for want of what."""
+    """Effects that could not be judged, and for want of which columns or particulars."""
     present = {type(e).__name__ for e in case.model.effects}
     return [
-        {"effect": name, "lacks": list(unjudged_because(name, case.tracks, case.model, case.catalogue))}
+        {"effect": name, "lacks": [INPUTS.get(n, n) for n in unjudged_because(name, case.tracks, case.model, case.catalogue)]}
         for name in case.catalogue
         if name not in case.candidates and name not in present
     ]

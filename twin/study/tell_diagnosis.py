@@ -2,7 +2,6 @@
 
 from typing import Any
 
-from .effects import INPUTS
 from .leftover import BETTER
 from .overtime import changes
 from .verdict import SURE
@@ -23,7 +22,7 @@ def told(result: dict[str, Any]) -> list[str]:
     if result["next_manoeuvre"]:
         m = result["next_manoeuvre"]
         lines += ["", f"To tell {m['separates'][0]} from {m['separates'][1]}, sail: {m['manoeuvre']} ({m['why']})."]
-    lines += [f"{n['effect']} cannot be judged: no {' and no '.join(map(_channel, n['lacks']))} was recorded." for n in result["not_judged"]]
+    lines += [f"{n['effect']} cannot be judged: no {' and no '.join(n['lacks'])} was recorded." for n in result["not_judged"]]
     if result["not_visible"]:
         lines.append(f"Too small to be seen in these voyages, even at a plausible size: {', '.join(result['not_visible'])}.")
     return lines
@@ -97,11 +96,6 @@ def _candidate(c: dict[str, Any]) -> list[str]:
     if c["cannot_be_told_from"]:
         lines.append(f"          not told from {', '.join(c['cannot_be_told_from'])}")
     return lines
-
-
-def _channel(name: str) -> str:
-    """What an owner calls it: the column he would record."""
-    return INPUTS.get(name, name)
 
 
 def _part(p: dict[str, Any]) -> str:

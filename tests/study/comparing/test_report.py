@@ -69,7 +69,7 @@ def test_the_page_is_dark_when_it_is_asked_to_be(page):
 
 
 def test_the_page_of_diagnose_ranks_causes_in_newtons_with_the_command_beside(stream, sailed, kvlcc2, tmp_path):
-    number = {"name": "east", "value": 0.8, "low95": 0.7, "high95": 0.9, "unit": "m/s"}
+    number = {"name": "east", "value": 0.8, "low95": 0.7, "high95": 0.9, "unit": "m/s", "in_ship_file": 0.2}
     cause = {
         "effect": "Current", "probability": 0.97, "parameters": [number],
         "typical_force": {"X_N": 4.1e4, "Y_N": 5.12e5, "N_Nm": 3.2e7},
@@ -89,6 +89,7 @@ def test_the_page_of_diagnose_ranks_causes_in_newtons_with_the_command_beside(st
     for words in (
         "Current (probability 97 %) is missing",
         "512 kN aside",
+        "; ship file 0.200",
         "32.0 MN m turning",
         "VaryingCurrent",
         "reciprocal runs",

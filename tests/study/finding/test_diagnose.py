@@ -79,7 +79,7 @@ def test_what_was_not_recorded_cannot_be_judged_and_the_answer_says_so(tanker, v
     whole = voyages["nothing"]
     blind = Voyage("blind", whole.time_s, {n: x for n, x in whole.columns.items() if "wind" not in n})
     result = diagnose([blind], tanker).result
-    assert {"effect": "Wind", "lacks": ["wind_speed", "wind_to"]} in result["not_judged"]
+    assert {"effect": "Wind", "lacks": ["true_wind_speed_mps", "true_wind_direction_deg"]} in result["not_judged"]
     assert any("Wind cannot be judged: no true_wind_speed_mps and no" in line for line in told(result))
 
 

@@ -34,7 +34,7 @@ function parameter(p) {
   const lo = Math.min(p.low95, 0), hi = Math.max(p.high95, 0), P = (x) => `${(100 * (x - lo)) / (hi - lo || 1)}%`;
   const draw = el("span.whisker", null, el(".z", { style: { left: P(0) } }), el(".w", { style: { left: P(p.low95), width: `calc(${P(p.high95)} - ${P(p.low95)})` } }), el(".p", { style: { left: P(p.value) } }));
   const unit = p.unit === "-" ? "" : ` ${p.unit}`;
-  return el(".parameter", null, el("code", null, p.name), draw, el("span", null, `${num(p.value)}${unit}`), el("span.note", null, `95 %: ${num(p.low95)} to ${num(p.high95)}${unit}`));
+  return el(".parameter", null, el("code", null, p.name), draw, el("span", null, `${num(p.value)}${unit}`), el("span.note", null, `95 %: ${num(p.low95)} to ${num(p.high95)}${unit}${p.in_ship_file === undefined ? "" : `; ship file ${num(p.in_ship_file)}`}`));
 }
 
 function manoeuvreSection() {
