@@ -35,8 +35,8 @@ class Stabilizer:
         """The K of the certificate [1/s], 0 without one."""
         return self.tube.certificate.K[0] if self.tube else 0.0
 
-    def step(self, observer: Observer, measured: Measured, s: Situation) -> Certified:
-        """The bound of this tick."""
+    def step(self, observer: Observer, measured: Measured, s: Situation, doubt: str = "") -> Certified:
+        """The bound of this tick; `doubt`: an input of the physics that is known to be wrong, in words."""
         tube = self.tube
         if tube is None or not observer.estimate.ready:
             return Certified(margin=tube.certificate.margin if tube else 0.0)
@@ -49,7 +49,7 @@ class Stabilizer:
         beta = tube.step(got, measured.si.get("H_s", 0.0), pulled if any(pulled) else STILL)  # type: ignore[arg-type]
         certificate, first = tube.certificate, self._first(observer, measured, tube)
         within = min(beta[0], first[0]), min(beta[1], first[1]), min(beta[2], first[2])
-        self.outside = next((f"no {name}" for a, name in NEEDED.items() if a not in measured.si), tube.outside(s, within))
+        self.outside = doubt or next((f"no {name}" for a, name in NEEDED.items() if a not in measured.si), tube.outside(s, within))
         self._inside = self._inside + 1 if self.outside is None else 0
         if proven := self._inside >= tube.window:
             self.outside = tube.says_nothing()
