@@ -32,7 +32,7 @@ def zigzag(angle_deg):
 
 
 @pytest.mark.parametrize(("angle_deg", "found"), [(15.0, True), (5.0, False)])
-def test_a_rudder_feedback_that_is_stuck_teaches_nothing(kvlcc2, make_bridge, angle_deg, found):
+def test_I6_a_rudder_feedback_that_is_stuck_teaches_nothing(kvlcc2, make_bridge, angle_deg, found):
     """Test: a zigzag with learning on, then the feedback says the same for three minutes. Expected: learning stands still within three lengths,
     what acts is again what acted at a moment before, and helm of 15 deg that is not seen is said; of 5 deg the model could be that wrong."""
     bridge, learned = learning(kvlcc2, make_bridge, helm_deg=zigzag(angle_deg))

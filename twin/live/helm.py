@@ -84,6 +84,6 @@ class Helm:
     @staticmethod
     def _moment_of_a_radian(ship: Ship) -> float:
         """[N m] at service speed, straight ahead."""
-        model, angle = Model.of(ship), 0.1
+        model, angle = Model(ship, ()), 0.1  # the core alone: nothing is measured yet
         forces = model.forces(Situation(u=model.loaded.U_0, n=propeller_rate(model), delta=angle), model.water(Situation()))
         return abs(float(forces[RUDDER][2])) / angle
