@@ -49,7 +49,7 @@ class Stabilizer:
         beta = tube.step(got, measured.si.get("H_s", 0.0), pulled if any(pulled) else STILL)  # type: ignore[arg-type]
         certificate, first = tube.certificate, self._first(observer, measured, tube)
         within = min(beta[0], first[0]), min(beta[1], first[1]), min(beta[2], first[2])
-        self.outside = doubt or next((f"no {name}" for a, name in NEEDED.items() if a not in measured.si), tube.outside(s, within))
+        self.outside = doubt or _unsure(measured) or tube.outside(s, within)
         self._inside = self._inside + 1 if self.outside is None else 0
         if proven := self._inside >= tube.window:
             self.outside = tube.says_nothing()
@@ -82,7 +82,7 @@ class Stabilizer:
         c, e = tube.certificate, observer.estimate
         u, v, r = (
             abs(measured.si[a] - now) + noise + measured.age_s(a) * way if self._in_time(a, measured, tube) else 2.0 * most
-            for a, now, noise, way, most in zip(NU, (e.u, e.v, e.r), c.noise, c.plant.most, observer.most, strict=True)
+            for a, now, noise, way, most in zip(NU, (e.u, e.v, e.r), c.noise, tube.way, observer.most, strict=True)
         )
         return u, v, r
 
@@ -91,3 +91,10 @@ class Stabilizer:
         if attribute in measured.derived or attribute not in measured.si:
             return False
         return measured.age_s(attribute) <= (tube.certificate.delay_samples + 0.5) * tube.certificate.h
+
+
+def _unsure(measured: Measured) -> str:
+    """Why the physics may not be asked in this tick, or what the estimate was set to; "" when nothing is."""
+    if missing := next((name for a, name in NEEDED.items() if a not in measured.si), ""):
+        return f"no {missing}"
+    return next((f"{a} stepped and is believed" for a in NU if a in measured.steps), "")

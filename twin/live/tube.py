@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from twin.physics.state import Situation
 
-from .comparison import add, apply
+from .comparison import add, apply, scaled_row
 from .operating import NU, WORDS
 
 if TYPE_CHECKING:
@@ -54,6 +54,8 @@ class Tube:
         """`start` bounds the error of the first estimate; by default that is a measurement, so its noise."""
         self.certificate = certificate
         self.window = 2 * max(certificate.delays) + 1
+        self.way: Three  # how fast she can change her motion in the sea of the last step [m/s2, m/s2, rad/s2]
+        self._rows(0.0)
         self.reset(start)
 
     def reset(self, start: Three | None = None) -> None:
@@ -101,7 +103,9 @@ class Tube:
     def _rows(self, H_s: float) -> None:
         """For each axis (V, d, W, again, drift, c) in this sea."""
         c = self.certificate
-        step, d = c.step, add(apply(c.push, c.disturbance.at(H_s)), c.calm)
+        pushed = apply(c.push, c.disturbance.at(H_s))
+        step, d = c.step, add(pushed, c.calm)
+        self.way = add(c.plant.most, scaled_row(1.0 / c.h, pushed))
         told = step.told(d, c.noise)
         self._table = tuple((*step.V[i], d[i], *step.now[i], step.again[i], *step.drift[i], told[i]) for i in (0, 1, 2))
 
@@ -113,9 +117,7 @@ class Tube:
     def outside(self, s: Situation, within: Three | None = None) -> str | None:
         """What leaves the operating set, or may within a sample, in words; None when the ship is surely in it. `within`: how far she
         may be from the estimate, where that is known better than by the tube."""
-        h, most = self.certificate.h, self.certificate.plant.most
-        u, v, r = within or self.beta
-        return self.certificate.operating.outside(s, (u + h * most[0], v + h * most[1], r + h * most[2]))
+        return self.certificate.operating.outside(s, add(within or self.beta, scaled_row(self.certificate.h, self.way)))
 
     def says_nothing(self) -> str | None:
         """In words, while the bound is as wide as the operating set itself; else None."""
