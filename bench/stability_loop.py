@@ -40,7 +40,7 @@ class LoopCase(NamedTuple):
 
 CASES = (
     LoopCase("kvlcc2", 10.0, 40), LoopCase("kvlcc2", 10.0, 25, dropouts=True), LoopCase("container", 10.0, 10), LoopCase("container", 50.0, 10),
-    LoopCase("usv", 50.0, 10),
+    LoopCase("usv", 50.0, 10), LoopCase("usv", 10.0, 10),
 )  # fmt: skip
 
 
