@@ -9,9 +9,9 @@ was only noise nothing comes true.
 
 from math import sqrt
 
-from twin.live.ridge import GATE
+from twin.live.ridge import GATE, NOISE_S
 
-SAMPLES = 8.0  # that the means count as; chosen with GATE and HINDSIGHT on voyages (docs/design.md)
+SAMPLES = 2.0 * GATE / NOISE_S  # that the means count as
 ENOUGH = 0.5  # share of what was promised that must surely have come true for all of it to act
 
 

@@ -4,8 +4,8 @@ from math import sqrt
 from operator import mul
 
 NOISE_S = 0.75  # time over which noise hangs together, in L/U_0
-MEMORY, SPREAD, GATE = 20.0, 1.5, 1.5  # time constants, in L/U_0
-HINDSIGHT = 0.5  # the gate asks numbers at least as old as this, in L/U_0
+MEMORY, SPREAD, GATE = 20.0, 1.5, 3.0  # time constants, in L/U_0
+HINDSIGHT = 1.0  # the gate asks numbers at least as old as this, in L/U_0
 LARGEST = 5.0  # force scales that a regressor may be
 
 
