@@ -45,7 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     from bench import adaptation_named_page as named
-    from bench.adaptation_page import figure, kept, page
+    from bench.adaptation_page import figure, page
     from bench.paper_models import Workshop
 
     shop = Workshop.planned(FULL if args.full else QUICK, args.work, answer.tell)
@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
         first, second = args.page.with_suffix(".png"), args.page.with_name(f"{args.page.stem}-named.png")
         figure(result, first)
         named.figure(result["named"], second)
-        more = f"\n![Error over time since a change]({first.name})\n\n![A named effect that grows]({second.name})\n{kept(args.page)}"
+        more = f"\n![Error over time since a change]({first.name})\n\n![A named effect that grows]({second.name})\n{answer.kept(args.page)}"
     answer.give(args, result, "\n".join(page(result)), more)
     return 0
 

@@ -6,7 +6,6 @@ from typing import Any
 from bench import adaptation_named_page
 
 SAID = {"off": "learning off", "on": "learning on", "told": "learning on, told of the change"}
-HAND = "## What it says"  # from here on the page is written by hand
 
 
 def page(r: dict[str, Any]) -> list[str]:
@@ -44,12 +43,6 @@ def _by_scenario(midway: dict[str, Any]) -> list[str]:
         for name, hows in midway.items()
     ]
     return [f"| change | {' | '.join(scenarios)} |", "|---" * (1 + len(scenarios)) + "|", *rows]
-
-
-def kept(page: Path) -> str:
-    """What was written by hand at the end of the page that is there."""
-    old = page.read_text() if page.exists() else ""
-    return f"\n{HAND}{old.split(HAND, 1)[1]}" if HAND in old else ""
 
 
 def figure(r: dict[str, Any], path: Path) -> None:

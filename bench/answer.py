@@ -9,6 +9,8 @@ from typing import Any
 from twin import whole
 from twin.study.import_voyage import write_json
 
+HAND = "## What it says"  # from this line on a page is written by hand, and stays
+
 
 def add_arguments(parser: argparse.ArgumentParser, option: str = "--markdown") -> None:
     """`option`: what this benchmark calls its page."""
@@ -25,6 +27,12 @@ def give(args: argparse.Namespace, result: dict[str, Any], text: str, more: str 
         whole.write(args.page, f"{text}\n{more}", args.page_option)
     if args.json:
         write_json(result, args.json)
+
+
+def kept(page: Path | None) -> str:
+    """What was written by hand at the end of the page that is there."""
+    old = page.read_text() if page and page.exists() else ""
+    return f"\n{HAND}{old.split(HAND, 1)[1]}" if HAND in old else ""
 
 
 def tell(text: str) -> None:

@@ -13,7 +13,8 @@ from bench import paper_sea as sea
 EPILOG = """example: twin-bench paper --quick
 
 --quick takes minutes and few runs; --full is the paper's 18 hours of voyages, 90 zigzags and five seeds, and takes hours. Both keep
-what is done in --work DIR and go on from there. Exit code 0: the tables are written, whatever they say.
+what is done in --work DIR and go on from there. What a page holds from its line "## What it says" on stays. Exit code 0: the tables are
+written, whatever they say.
 """
 
 
@@ -39,7 +40,7 @@ def run(args: argparse.Namespace) -> int:
         result = reproduce(sea.FULL if args.full else sea.QUICK, work, not args.full, args.figures)
     if tick:
         result["tables"]["9"] = tick
-    answer.give(args, result, "\n".join(page(result)))
+    answer.give(args, result, "\n".join(page(result)), answer.kept(args.page))
     return 0
 
 

@@ -196,6 +196,7 @@ class Fleet:
         self.past.append((np.array(self.truth[3:]), self.estimate))
         self.received = self._received()
         self.estimate = self.estimate + np.where(self.received, self._pull(k, side), 0.0)
+        self.past[-1] = (self.past[-1][0], self.estimate)  # what comes late is compared with the corrected estimate of its time
         self._grow()
         low, high = np.array([self.c.operating.ranges[a] for a in ("u", "v", "r")]).T
         nu, w = np.array(self.truth[3:]), self.true.water(Situation(psi=self.truth[2]))
@@ -217,12 +218,12 @@ class Fleet:
     def _grow(self) -> None:
         """The same bound as `Tube`, for all runs at once."""
         c, step = self.c, self.c.step
-        V, drift, keep, again, pull = (np.array(x) for x in (step.V, step.drift, step.keep, step.again, step.pull))
+        V, drift, now, again = (np.array(x) for x in (step.V, step.drift, step.now, step.again))
         d = np.array(c.push) @ self.limit[:, 0] + c.calm
         E = V @ self.tube + d[:, None]
         self.before.append(E)
-        c_ = pull * (c.noise + np.array(step.m) * (pull * c.noise + d))
-        seen = keep[:, None] * E + again[:, None] * np.max(self.before, axis=0) + drift @ np.max(self.after, axis=0) + c_[:, None]
+        told = np.array(step.told(tuple(d.tolist()), c.noise))
+        seen = now @ self.tube + again[:, None] * np.max(self.before, axis=0) + drift @ np.max(self.after, axis=0) + told[:, None]
         self.tube = np.where(self.received, seen, E)
         self.after.append(self.tube)
 

@@ -1,8 +1,8 @@
 """The twin's own loop against the same adversaries: `twin-bench stability` sails it beside the fleets.
 
 What a Fleet's observer leaves out is all here: readings by channel, gates that refuse, samples that pull by less than K, a heading that
-is estimated. Only the network and the adaptation are off: the whole disturbance is the ship's. A tick counts when the loop itself says
-that its certificate holds.
+is estimated. Every other ship's instruments are half a sample late. Only the network and the adaptation are off: the whole disturbance is
+the ship's. A tick counts when the loop itself says that its certificate holds.
 """
 
 from typing import NamedTuple
@@ -40,7 +40,7 @@ class LoopCase(NamedTuple):
 
 CASES = (
     LoopCase("kvlcc2", 10.0, 40), LoopCase("kvlcc2", 10.0, 25, dropouts=True), LoopCase("container", 10.0, 10), LoopCase("container", 50.0, 10),
-    LoopCase("usv", 50.0, 10),
+    LoopCase("usv", 50.0, 10), LoopCase("usv", 10.0, 10),
 )  # fmt: skip
 
 
@@ -54,6 +54,7 @@ class Loops(Fleet):
         tube, self.rudder = self.loops[0].stabilizer.tube, np.zeros(runs)
         assert tube is not None, self.loops[0].stabilizer.why_not
         super().__init__(Model.of(self.loops[0].ship), tube.certificate, runs, seed, dropouts=case.dropouts)
+        self.halfway, self.late = self.truth, np.arange(runs) % 2 == 1
 
     def step(self, k: int) -> np.ndarray:
         """One tick of all loops on what their ships' instruments say, then the ships sail on; (3, runs) the error at the tick."""
@@ -62,8 +63,9 @@ class Loops(Fleet):
         self._helm()
         self.rudder += np.clip(self.inputs["delta"] - self.rudder, -STEERS * self.h, STEERS * self.h)
         self.push = -np.sign(self.inverse.T @ (self._against(k) / np.array(self.c.bound)[:, None])) * self.limit
-        for _ in range(2):
-            self.truth = self.true.step(self.truth, Situation(delta=self.rudder, n=self.inputs["n"]), 0.5 * self.h)
+        at = Situation(delta=self.rudder, n=self.inputs["n"])
+        self.halfway = self.true.step(self.truth, at, 0.5 * self.h)
+        self.truth = self.true.step(self.halfway, at, 0.5 * self.h)
         return error
 
     def _tick(self, k: int) -> None:
@@ -71,15 +73,16 @@ class Loops(Fleet):
         self.received = self._received()
         for i, (loop, ears, values) in enumerate(zip(self.loops, self.ears, self._instruments(k).T.tolist(), strict=True)):
             said = zip(CHANNELS, values, strict=True)
-            ears.next = [Reading(channel, x, WALL + now_s, now_s, "ship") for channel, x in said if np.isfinite(x)]
+            taken_s = now_s - 0.5 * self.h * self.late[i]
+            ears.next = [Reading(channel, x, WALL + taken_s, now_s, "ship") for channel, x in said if np.isfinite(x)]
             tick, e = loop.tick(Instant(k, now_s, WALL + now_s)), loop.observer.estimate
             self.estimate[:, i], self.tube[:, i], self.alive[i] = (e.u, e.v, e.r), loop.stabilizer.tube.beta, tick.certificate.inside
 
     def _instruments(self, k: int) -> np.ndarray:
         """(8, runs) by channel, off by as much as the certificate allows; NaN where nothing comes."""
         side = self._against(k)
-        x, y, psi = self.truth[:3]
-        u, v, r = np.array(self.truth[3:]) + self.noise * side
+        x, y, psi, *nu = np.where(self.late, self.halfway, self.truth)
+        u, v, r = np.array(nu) + self.noise * side
         heading = np.degrees(psi + HEADING_NOISE * side[2]) % 360.0
         said = np.array([x, y, heading, u, v, np.degrees(r), np.degrees(self.rudder), 60.0 * self.inputs["n"]])
         said[SPEEDS] = np.where(self.received, said[SPEEDS], np.nan)

@@ -21,7 +21,7 @@ RUNS = (
 )  # fmt: skip
 
 
-LOOPS = ("ship", "Hz", "drop-outs", "K 1/s", "runs", "ticks", "inside", "broken", "b", "error/tube")
+LOOPS = ("ship", "Hz", "drop-outs", "K 1/s", "runs", "ticks", "inside", "broken", "b", "error/tube", "b/seen")
 
 
 def tables(rows: list[tuple[Any, ...]], loops: list[tuple[Any, ...]], args: argparse.Namespace) -> str:
@@ -48,8 +48,9 @@ With drop-outs the error may exceed b, which counts on measurements; the tube mu
 
 ## The loop itself
 The twin's own sensors, gates, observer, guard and tube (`bench/stability_loop.py`), fed with the readings of the same hostile ships once in
-each tick, at the K, delay and noise that it would take on board; no wind, no current, network and adaptation off. Inside: the share of
-ticks in which it said that its certificate holds; only those are judged, for of others it promises nothing.
+each tick (every other ship's half a sample late), at the K, delay and noise that it would take on board; no wind, no current, network and
+adaptation off. Inside: the share of ticks in which it said that its certificate holds; only those are judged, for of others it promises
+nothing.
 
 {_head(*LOOPS)}
 {_lines(_loop(*row) for row in loops)}
@@ -85,8 +86,13 @@ def _loop(case: Any, c: Any, o: Any) -> list[str]:
     return [
         case.ship, f"{case.rate_hz:g}", "yes" if case.dropouts else "no", f"{c.K[0]:.3g}", str(o.runs), str(ticks),
         f"{100.0 * o.samples / ticks:.0f} %", str(o.violations), bound,
-        " / ".join(f"{x:.2f}" for x in o.of_tube) if o.samples else "-",
+        " / ".join(f"{x:.2f}" for x in o.of_tube) if o.samples else "-", _seen(o),
     ]  # fmt: skip
+
+
+def _seen(o: Any) -> str:
+    """The ultimate bound over the greatest error met, by axis."""
+    return " / ".join(f"{1.0 / x:.1f}" if x > 0.0 else "-" for x in o.of_bound)
 
 
 def _run(case: Any, c: Any, o: Any) -> list[str]:
@@ -103,7 +109,7 @@ def _run(case: Any, c: Any, o: Any) -> list[str]:
         str(o.violations),
         f"{u:.3f}, {v:.3f}, {degrees(r):.3f}",
         " / ".join(f"{x:.2f}" for x in o.of_tube),
-        " / ".join(f"{1.0 / x:.1f}" if x > 0.0 else "-" for x in o.of_bound),
+        _seen(o),
         ", ".join((*case.moving, "Wind")) if case.moving else "none",
     ]
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from bench import adaptation_laws as laws
+from bench import answer
 from bench.adaptation import CHANGE_S, LIES, ROUND_S, changes
-from bench.adaptation_page import figure, kept, page
+from bench.adaptation_page import figure, page
 from twin.live.adapt import A_MAX, SIZES, Adaptation
 from twin.live.learned import scale_of
 from twin.physics.ship import load
@@ -87,7 +88,7 @@ def test_the_page_holds_every_change_and_keeps_what_was_written_by_hand(tmp_path
     figure(result, tmp_path / "a.png")
     assert (tmp_path / "a.png").read_bytes()[:4] == b"\x89PNG"
     (tmp_path / "a.md").write_text("old tables\n## What it says\n\nmine\n")
-    assert kept(tmp_path / "a.md") == "\n## What it says\n\nmine\n" and kept(tmp_path / "none.md") == ""
+    assert answer.kept(tmp_path / "a.md") == "\n## What it says\n\nmine\n" and answer.kept(tmp_path / "none.md") == ""
 
 
 def test_a_law_that_is_told_of_a_change_forgets_once_and_learns_on(ship):

@@ -29,3 +29,10 @@ def test_the_page_that_is_written_may_hold_more_than_is_printed(tmp_path, capsys
 def test_a_page_that_cannot_be_written_names_its_option(tmp_path):
     with pytest.raises(TwinError, match="--results"):
         answer.give(parsed("--results", f"{tmp_path / 'none' / 'a.md'}", option="--results"), {}, "# Page")
+
+
+def test_what_a_page_says_by_hand_stays_when_it_is_made_again(tmp_path):
+    page = tmp_path / "a.md"
+    page.write_text("# Old\n\n## What it says\n\nIn words.\n")
+    assert answer.kept(page) == "\n## What it says\n\nIn words.\n"
+    assert answer.kept(tmp_path / "none.md") == answer.kept(None) == ""

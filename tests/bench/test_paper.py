@@ -157,7 +157,8 @@ def test_the_lstm_says_the_same_as_onnx(tiny):
 def test_the_page_has_the_papers_numbers_and_the_figures_are_small(tiny):
     result, folder = tiny
     text = "\n".join(page(result))
-    assert all(word in text for word in ("(paper 142.5)", "Table 7", "Table 8", "Fig. 5", "learning on", "Error over amount of data"))
+    assert all(word in text for word in ("(paper 142.5)", "Table 7", "Table 8", "Fig. 5", "learning on", "Error over amount of data", "fig-5-closed-loop.png"))
+    assert "| R2 at least 0.96 |" in text and "| 14 x in heading and 12.7 x lateral against the nominal analytic model |" in text
     drawn = sorted(path.name for path in (folder / "figures").iterdir())
     assert [name[:5] for name in drawn] == [f"fig-{k}" for k in range(2, 8)]
     assert all(path.stat().st_size < 150_000 for path in (folder / "figures").iterdir())

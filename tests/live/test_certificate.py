@@ -113,14 +113,9 @@ def test_the_bound_is_a_fixed_point_of_the_recursion(vlcc):
     _, c = vlcc
     d = c3.add(c3.apply(c.push, c.disturbance.calm), c.calm)
     E = c3.add(c3.apply(c.step.V, c.bound), d)
+    told, now, drift = c.step.told(d, c.noise), c3.apply(c.step.now, c.bound), c3.apply(c.step.drift, c.bound)
     for i in range(3):
-        heard = c.step.pull[i] * (c.noise[i] + c.step.m[i] * (c.step.pull[i] * c.noise[i] + d[i]))
-        again = (
-            (c.step.keep[i] + c.step.again[i]) * E[i]
-            + sum(a * b for a, b in zip(c.step.drift[i], c.bound, strict=True))
-            + heard
-        )
-        assert again == pytest.approx(c.bound[i], rel=1e-9)
+        assert now[i] + c.step.again[i] * E[i] + drift[i] + told[i] == pytest.approx(c.bound[i], rel=1e-9)
 
 
 def test_continuous_and_sampled_theorem_meet_when_the_loop_is_fast():
@@ -149,6 +144,22 @@ def test_a_small_boat_is_told_to_run_faster():
     c = certify(windy("usv"), 12.0, 0.1, noise=(0.06, 0.06, 0.008))
     assert not c.ok and "Run the loop every 0.0" in c.reason
     assert certify(windy("usv"), 20.0, 0.02, 0, noise=(0.06, 0.06, 0.008)).ok
+
+
+@pytest.mark.parametrize(("name", "hz", "least"), [("kvlcc2", 10.0, 0.29), ("container", 10.0, 0.7), ("usv", 50.0, 13.0)])
+def test_the_loops_own_gain_is_that_of_the_ship(name, hz, least):
+    """Expected: the usual 12 U_0/L for a tanker, more for the others, and a bound that is narrower than the operating set on every axis."""
+    ship = load(name)
+    c = certify(Model.of(ship), None, 1.0 / hz, 1, cert.usual_noise(ship), heading_noise=0.005)
+    assert c.ok and c.K[0] >= gain_for(ship) * (1.0 - 1e-9) and least < c.K[0] < 1.6 * least
+    assert all(b < 0.6 * c.operating.ranges[a][1] for a, b in zip(("u", "v", "r"), c.bound, strict=True))
+
+
+def test_a_measurement_one_sample_late_costs_a_strongly_damped_boat_little():
+    """Test: the 2 m boat, whose yaw dies in a sixth of a second, at 50 Hz. Expected: a bound within twice that of measurements in time."""
+    model, K = windy("usv"), 17.0
+    late, prompt = (certify(model, K, 0.02, m, noise=(0.06, 0.06, 0.008)) for m in (1, 0))
+    assert all(b < 2.0 * a for a, b in zip(prompt.bound, late.bound, strict=True))
 
 
 def test_slopes_without_a_bound_are_refused_in_words():

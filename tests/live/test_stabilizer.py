@@ -49,6 +49,33 @@ def test_outside_the_operating_set_nothing_is_promised(kvlcc2, make_bridge):
     assert not bridge.run(5.0)[-1].certificate.inside
 
 
+def test_back_in_the_operating_set_the_promise_waits_until_nothing_looks_back_outside(kvlcc2, make_bridge):
+    """Test: a propeller that is said to turn at twice the certified rate for ten seconds. Expected: no promise as soon as that is
+    believed, nor for as many ticks as a late measurement looks back on; afterwards a promise again, that holds."""
+    bridge = stabilized(kvlcc2, make_bridge)
+    assert bridge.run(20.0)[-1].certificate.inside
+    bridge.run(10.0, lambda readings, b: [r._replace(value=150.0) if r.channel == "propeller_rate_rpm" else r for r in readings])
+    assert not bridge.ticks[-1].certificate.inside and "propeller rate" in bridge.loop.stabilizer.outside
+    most, back = bridge.loop.stabilizer.tube.certificate.operating.ranges["n"][1], []
+    while len(back) < 100:
+        tick = bridge.run(0.1)[-1]
+        back.append((bridge.loop.last.situation.n < most, tick.certificate.inside))
+    first = next(i for i, (within, _) in enumerate(back) if within)
+    window = bridge.loop.stabilizer.tube.window
+    assert [inside for _, inside in back[: first + window - 1]] == [False] * (first + window - 1)
+    assert all(inside for _, inside in back[first + window - 1 :])
+    assert hypot(bridge.error("surge_velocity_mps"), bridge.error("sway_velocity_mps")) < tick.certificate.bound
+
+
+def test_without_the_controls_nothing_is_promised(kvlcc2, make_bridge):
+    """Test: nobody says how fast the propeller turns. Expected: the physics runs on with none, so the bound is not that of her motion."""
+    bridge = stabilized(kvlcc2, make_bridge)
+    assert bridge.run(20.0)[-1].certificate.inside
+    silent = bridge.run(20.0, lambda readings, b: [r for r in readings if r.channel != "propeller_rate_rpm"])
+    assert not silent[-1].certificate.inside and bridge.loop.stabilizer.outside == "no propeller_rate_rpm"
+    assert bridge.run(10.0)[-1].certificate.inside
+
+
 def test_without_a_certificate_nothing_is_promised(make_bridge):
     assert not make_bridge().run(5.0)[-1].certificate.inside
 

@@ -92,6 +92,7 @@ class Adaptation:
         self._excited = 0.0
         self._turn = 0
         self._since = [0.0, 0.0, 0.0]
+        self._remembered: tuple[list[Row], Proof, Named] | None = None
 
     def regressors(self, components: list[float], forces: Forces) -> list[float]:
         """The whitened components, then for each row its known forces; `learn` wants those of the named effects' numbers after them."""
@@ -183,6 +184,16 @@ class Adaptation:
         if norm > A_MAX:
             for other in self._rows:
                 other.a = [x * A_MAX / norm for x in other.a]
+
+    def remember(self) -> None:
+        """What is known now, in case the lessons to come turn out to be none."""
+        self._remembered = [copy(row) for row in self._rows], deepcopy(self._proof), self.named.held()
+
+    def take_back(self) -> None:
+        """As it was when last remembered; nothing where that was taken back already."""
+        if self._remembered:
+            self._rows, self._proof, self.named = self._remembered
+            self._remembered = None
 
     def held(self) -> "Adaptation":
         """A copy whose rows do not learn on; it is only asked for corrections."""

@@ -7,7 +7,6 @@ from twin.live import network, realtime
 from twin.live import residual as residuals
 from twin.live.certificate import Certificate, Tube, kept, mark, on_board, on_file
 from twin.live.config import Settings
-from twin.live.estimate import gain_for
 from twin.live.guard import Guard
 from twin.live.learned import LearnedForce
 from twin.live.loop import Ears, Loop
@@ -43,10 +42,10 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
     if learned.adaptation is not None and (path := learned_file(settings)):
         learned.adaptation.restore(path, mark_of(learned))
         notes += learned.adaptation.notes
-    rate = settings["loop.rate_hz"]
+    rate, stabilizer = settings["loop.rate_hz"], stabilizer_of(settings, ship, patience_s)
     loop = Loop(
-        ship, ears, voice, learned, rate, settings["observer.gain"],
-        stabilizer=stabilizer_of(settings, ship, patience_s),
+        ship, ears, voice, learned, rate, settings["observer.gain"] or stabilizer.gain,
+        stabilizer=stabilizer,
         predictor=Predictor(ship, tuple(settings["prediction.horizons_s"]), settings["prediction.refresh_s"], rate),
         sensors=Sensors(ship, settings.sources, settings["sensors.max_delay_s"]),
         guard=Guard(ship, learned, settings["guard.reckoning_s"]),
@@ -88,11 +87,11 @@ def learned_file(settings: Settings) -> Path | None:
 def stabilizer_of(settings: Settings, ship: Ship, patience_s: float | None = CERTIFY_S) -> Stabilizer:
     """The certificate from its file; when there is none it is worked out by another process (it needs
     numpy, the loop does not)."""
-    h, K = 1.0 / settings["loop.rate_hz"], settings["observer.gain"] or gain_for(ship)
-    oldest_s = settings["observer.oldest_s"] or min(max(0.0125 * ship.L_pp / ship.U_0, 2.0 * h), 1.2)
+    h, K = 1.0 / settings["loop.rate_hz"], settings["observer.gain"] or None
+    oldest_s = settings["observer.oldest_s"] or min(max(0.0125 * ship.L_pp / ship.U_0, h), 1.2)
     delay = max(round(oldest_s / h), 1)
     adapted, said = settings["adaptation.on"], ""
-    wanted = mark(Model.of(ship), (K, K, K), h, on_board(ship, delay, adapted))
+    wanted = mark(Model.of(ship), K, h, on_board(ship, delay, adapted))
     path = certificate_file(settings, wanted)
     certificate = on_file(path, wanted)
     if certificate is None:
@@ -127,7 +126,7 @@ def certificate_file(settings: Settings, wanted: str) -> Path:
     return Path.home() / ".cache" / "shiptwin" / f"{Path(settings['ship.file']).stem}-{wanted}.certificate.json"
 
 
-def certify_aside(ship_file: str, path: str, K: float, h: float, delay: int, adapted: bool) -> None:
+def certify_aside(ship_file: str, path: str, K: float | None, h: float, delay: int, adapted: bool) -> None:
     """Work the certificate out, put it on file and say it: what the other process does."""
     ship = load_ship(ship_file)
-    print(kept(path, Model.of(ship), (K, K, K), h, **on_board(ship, delay, adapted)).to_json())
+    print(kept(path, Model.of(ship), K, h, **on_board(ship, delay, adapted)).to_json())

@@ -22,19 +22,20 @@ from twin.physics.ship import Ship
 
 from . import comparison as c3
 from .comparison import Matrix, Row
+from .estimate import fastest_gain, gain_for
 from .movable import movable
 from .operating import Confined, OperatingSet, of_ship
 from .plant import HEADING_NOISE, Disturbance, Plant, lipschitz, output_bound, plant_of, self_regressor, usual_disturbance, usual_noise
-from .theorem import Ages, Promise, Recursion, assess, best_gain, gains_that_do, usual_gain
+from .theorem import Ages, Promise, Recursion, assess, best_gain, gains_that_do, suited_gain, usual_gain
 from .tube import Tube
 
 __all__ = [
     "Certificate", "Confined", "Disturbance", "OperatingSet", "Plant", "Tube", "assess", "best_gain",
     "certify", "gains_that_do", "kept", "lipschitz", "mark", "of_ship", "on_file", "output_bound", "plant_of", "self_regressor",
-    "usual_disturbance", "usual_gain", "usual_noise",
+    "suited_gain", "usual_disturbance", "usual_gain", "usual_noise",
 ]  # fmt: skip
 
-VERSION = 4
+VERSION = 5
 
 
 @dataclass(frozen=True)
@@ -90,7 +91,7 @@ class Certificate(Promise):
 
 def certify(
     model: Model,
-    K: float | Sequence[float],
+    K: float | Sequence[float] | None,
     h: float,
     delay_samples: int | Sequence[int] = 1,
     noise: Sequence[float] = (0.15, 0.15, 0.0005),
@@ -102,7 +103,7 @@ def certify(
 ) -> Certificate:
     """Work out the certificate of an observer with gain K [1/s] and period h [s] (its longest).
 
-    Takes a tenth of a second to a second.
+    Takes a tenth of a second to a second. K None: the one that suits the ship (`suited_gain`).
     noise: bounds of |y - nu| [m/s, m/s, rad/s]; heading_noise [rad].
     disturbance: see Disturbance (default: `usual_disturbance`).
     delay_samples: the greatest age of a used measurement, in samples, a value held until the sensor's next
@@ -110,18 +111,18 @@ def certify(
     extra_growth: `self_regressor(...)` when the network is fed with the estimate instead of measurements.
     adapted: the numbers of the effects move on board; everything then holds wherever in their boxes they are.
     """
-    K = (K, K, K) if isinstance(K, (int, float)) else tuple(K)
-    m = (delay_samples,) * 3 if isinstance(delay_samples, int) else tuple(delay_samples)
-    _check(K, h, m, noise)
+    m: Ages = (delay_samples,) * 3 if isinstance(delay_samples, int) else tuple(delay_samples)  # type: ignore[assignment]
+    _check((1.0, 1.0, 1.0) if K is None else _row(K), h, m, noise)
     d = _bound_of(disturbance) or usual_disturbance(model)
     numbers = movable(model.effects, model.ship) if adapted else ()
     plant, noise = plant_of(model, operating_set or of_ship(model), h, numbers), tuple(noise)
+    K = suited_gain(plant, m, gain_for(model.ship), fastest_gain(h, max(m))) if K is None else _row(K)
     promise = assess(plant, K, m, noise, d, heading_noise, extra_growth)  # type: ignore[arg-type]
     parts = {name: getattr(promise, name) for name in Promise.__dataclass_fields__}
     return Certificate(**parts, K=K, delays=m, noise=noise, disturbance=d, plant=plant, ship=model.ship.name)  # type: ignore[arg-type]
 
 
-def kept(path: str | os.PathLike[str], model: Model, K: float | Sequence[float], h: float, **settings: Any) -> Certificate:
+def kept(path: str | os.PathLike[str], model: Model, K: float | Sequence[float] | None, h: float, **settings: Any) -> Certificate:
     """The certificate from its file if it is of this ship, K and settings; else worked out and, where possible, written there."""
     wanted = mark(model, K, h, settings)
     if found := on_file(path, wanted):
@@ -151,6 +152,10 @@ def mark(model: Model, *settings: Any) -> str:
     """What the certificate depends on, as a hash: the ship's numbers, her effects, the settings and the theorem's version."""
     ship = replace(model.ship, notes={})
     return hashlib.sha256(repr((VERSION, ship, model.effects, *settings)).encode()).hexdigest()[:16]
+
+
+def _row(K: float | Sequence[float]) -> Row:
+    return (K, K, K) if isinstance(K, (int, float)) else tuple(K)  # type: ignore[return-value]
 
 
 def _bound_of(disturbance: Sequence[float] | Disturbance | None) -> Disturbance | None:

@@ -31,6 +31,10 @@ def scaled(factor: float, a: Matrix) -> Matrix:
     return matrix(lambda i, j: factor * a[i][j])
 
 
+def scaled_row(factor: float, a: Row) -> Row:
+    return factor * a[0], factor * a[1], factor * a[2]
+
+
 def product(a: Matrix, b: Matrix) -> Matrix:
     return matrix(lambda i, j: sum(a[i][k] * b[k][j] for k in AXES))
 

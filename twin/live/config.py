@@ -49,7 +49,7 @@ KEYS: tuple[Key, ...] = (
     Key("log.segment_mb", float, 256.0, "a new file after this size", "MB", 1.0, 4096.0),
     Key("log.segment_s", float, 900.0, "a new file after this time", "s", 10.0, 86400.0),
     Key("sensors.max_delay_s", float, 2.0, "a sample stamped longer ago than this is refused", "s", 0.1, 60.0),
-    Key("observer.gain", float, 0.0, "K, 0 for 12 U_0/L of the ship", "1/s", 0.0, 20.0),
+    Key("observer.gain", float, 0.0, "K, 0 for 12 U_0/L or what her certificate asks for", "1/s", 0.0, 20.0),
     Key(
         "observer.oldest_s",
         float,

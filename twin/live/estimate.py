@@ -3,9 +3,9 @@
     nu_hat+  = nu_hat + h nu_dot(model) + h K (nu - nu_hat)         (compared at the time nu was measured)
     eta_hat+ = eta_hat + h R(psi_hat) nu_hat + h K (eta - eta_hat)
 
-K = 12 U_0/L unless the settings say otherwise (0.3 1/s for a 320 m ship), less for a sensor too slow or too
-late for that. A sample pulls until the next one is due. What is not measured is predicted, and its
-uncertainty grows.
+K = 12 U_0/L unless settings or certificate say otherwise (0.3 1/s for a 320 m ship), less for a sensor too slow or too
+late for that. A sample pulls until the next one is due; what comes late is compared with the corrected estimate of its time, so
+that no pull is answered twice. What is not measured is predicted, and its uncertainty grows.
 """
 
 from collections import deque
@@ -20,7 +20,8 @@ from twin.physics.state import Rates
 STATES = ("x", "y", "psi", "u", "v", "r")
 WATER = {"u": "u_r", "v": "v_r"}  # what stands in for a speed over ground
 A_MAX = 0.5  # no sample pulls more than half way in one tick
-DELAYED = 0.6  # K times (delay + time until the next sample): above about 1 an observer swings
+HELD = 1.2  # of its usual interval a sample pulls until the next one comes
+DELAYED = 0.6  # K times (delay + time that a sample pulls): above about 1 an observer swings
 OUTLIER = 4.0  # usual deviations beyond which a sample pulls no more
 MAX_GAP_S = 3.0  # the model is not carried over a longer pause of the machine
 HISTORY = 256  # ticks remembered, to compare a late sample with its own time
@@ -60,7 +61,7 @@ class Observer:
     def __init__(self, ship: Ship, gain: float = 0.0, current: tuple[float, float] = (0.0, 0.0)):
         self.gain = gain or gain_for(ship)
         self.estimate = Estimate(current_north=current[0], current_east=current[1])
-        self.innovation: dict[str, float] = {}  # measured less estimated, by state, as last compared
+        self.innovation: dict[str, float] = {}  # measured less estimated of its time, by state, as corrected so far
         self.received: dict[str, bool] = dict.fromkeys(STATES, False)  # which pulled in this tick, unclipped and by the whole of K
         self.pulled: dict[str, float] = dict.fromkeys(STATES, 0.0)  # by how much each was pulled in this tick, received or not
         self.restarts = 0
@@ -90,6 +91,7 @@ class Observer:
         for state in STATES:
             self._pull(state, dt, measured)
         e.psi %= 2.0 * pi
+        self._past[-1] = (now_s, e.state())
         e.sigma = self.sigma.all()
         e.current_north, e.current_east = self._current.feed(measured, e)
         return e
@@ -186,7 +188,7 @@ class Observer:
             return
         doubt = self.sigma.of[state]
         limit = doubt.limit()
-        waits_s = hold_s + heard_s - measured.time[source] + dt
+        waits_s = max(hold_s + heard_s - measured.time[source], dt)
         a = min(self.gain * dt, DELAYED * dt / waits_s, A_MAX)
         usual = -limit <= gap <= limit
         self.received[state] = usual and a >= self.gain * dt  # the certificate is that of K, not of less
@@ -195,6 +197,8 @@ class Observer:
         setattr(e, state, getattr(e, state) + a * pull)
         if source in measured.fresh:
             doubt.learn(pull)
+            if measured.age_s(source) < dt:  # of its own time the estimate is corrected as well; on the line to the tick before, in part
+                self.innovation[state] = gap - (1.0 - measured.age_s(source) / dt) * a * pull
         doubt.shrink(a)
 
 
@@ -283,3 +287,8 @@ class CurrentFilter:
 def gain_for(ship: Ship) -> float:
     """K [1/s] by the ship's own time."""
     return float(12.0 * ship.U_0 / ship.L_pp)
+
+
+def fastest_gain(h: float, samples: int) -> float:
+    """The greatest K [1/s] that acts in full at a period of h seconds, with an instrument heard in each tick and as late as that."""
+    return min(DELAYED / (HELD + samples), A_MAX) / h

@@ -35,6 +35,11 @@ class Evidence:
         self._heard_s = 0.0
 
     @property
+    def left_over(self) -> float:
+        """The yaw moment that neither the known forces nor the learned one explain, low-passed [S]."""
+        return self._twice[2] - self._twice[5]
+
+    @property
     def trained(self) -> list[float]:
         """What the trained last layer gives, low-passed [S]."""
         return self._twice[6:9]

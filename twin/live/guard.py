@@ -67,6 +67,7 @@ class Guard:
         self.plausible.feed(measured, dt)
         self._announce(measured)
         odd = self.plausible.reasons()
+        odd += [self.learned.helm.stuck] * bool(self.learned.helm.stuck)
         said = [text for _, text in self._announced] + sensors + odd
         if not estimate.ready:
             return Verdict(STARTING, [_waiting(measured), *said], False, "no estimate yet")

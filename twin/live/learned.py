@@ -13,6 +13,7 @@ from math import sqrt
 from twin.live.adapt import Adaptation
 from twin.live.dynamics import Forces, Known
 from twin.live.evidence import Evidence, Three
+from twin.live.helm import Helm
 from twin.live.movable import movable
 from twin.live.residual import Residual
 from twin.physics.effect import Effect
@@ -49,7 +50,7 @@ class LearnedForce:
         rows = residual.manifest.whitening[1] if residual and residual.manifest.whitening else ()
         learns = adapt and (residual is not None or bool(movable(ship.effects, ship)))
         self.adaptation = Adaptation(ship, self.scale, len(rows), residual is not None) if learns else None
-        self.evidence = Evidence(ship, self.scale)
+        self.evidence, self.helm = Evidence(ship, self.scale), Helm(ship)
         self.bound_N = self.bound * max(self.scale.X, self.scale.Y)
         self.bound_Nm = self.bound * self.scale.N
         self._waited_s = 0.0
@@ -105,6 +106,7 @@ class LearnedForce:
         dt, self._waited_s = self._waited_s, 0.0
         if nu is None or not 0.0 < dt < 1.0:
             self.evidence.pause()
+            self.helm.pause()
             if adaptation:
                 adaptation.frozen = frozen or "speed, rate of turn or controls are not measured"
             return
@@ -115,12 +117,24 @@ class LearnedForce:
             columns = named.columns.at(s, forces, physics, learned.force)
             regressors = [*regressors, *columns, *named.shift(columns)]
         evidence.feed(nu, physics.rates_of(s, forces), learned.shadow, learned.trained, regressors, physics, dt, s.k_m)
+        if evidence.ready:
+            self._doubt_the_helm(s, forces, dt)
+        frozen = frozen or self.helm.stuck or self.helm.resting
         if adaptation:
             frozen = frozen or ("" if evidence.ready else "has just begun")
             dx, dy, dn = evidence.unexplained
             tx, ty, tn = evidence.trained
             regressors, (sx, sy, sn) = (evidence.regressors[:-3], evidence.regressors[-3:]) if named else (evidence.regressors, ZERO)
             adaptation.learn((dx - tx + sx, dy - ty + sy, dn - tn + sn), regressors, dt, frozen)
+
+
+    def _doubt_the_helm(self, s: Situation, forces: Forces, dt: float) -> None:
+        """What a rudder that stands still taught counts once it has moved again, and is taken back when it does not."""
+        came_to_stand = self.helm.feed(s, forces, self.evidence.left_over * self.scale.N, dt)
+        if self.adaptation and came_to_stand:
+            self.adaptation.remember()
+        if self.adaptation and (self.helm.stuck or self.helm.resting):
+            self.adaptation.take_back()
 
 
 def scale_of(ship: Ship) -> Force:

@@ -86,7 +86,7 @@ class Loop:
         ahead = self.predictor.advance(
             instant.time_s, estimate, situation, physics, self.learned_at(verdict.use_learned), verdict.mode != INVALID, self.dynamics.steering
         )
-        certified = self.stabilizer.step(self.observer, measured, situation)
+        certified = self.stabilizer.step(self.observer, measured, situation, self.learned.helm.stuck)
         self.last = Seen(instant, measured, estimate, situation, physics, forces, verdict, learned, ahead, certified)
         tick = self.publisher.tick(self.last, self._standing(self.last))
         self.voice.send(tick, self.ears.datum)

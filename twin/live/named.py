@@ -8,6 +8,7 @@ physics; the gate g asks how much of what x promised a while ago has come true (
 explain what is left.
 """
 
+from copy import copy, deepcopy
 from math import isfinite, sqrt
 
 from twin.live.evidence import Three
@@ -89,6 +90,12 @@ class Named:
         if max(abs(a - b) for a, b in zip(acting, self._acting, strict=True)) > STIRRED:
             self._acting = acting
             self.effects = moved(self.effects, self.numbers, self._values(acting))
+
+    def held(self) -> "Named":
+        """A copy that does not learn on."""
+        other = copy(self)
+        other._spread, other._proof = list(self._spread), deepcopy(self._proof)
+        return other
 
     def values(self) -> list[float]:
         """theta as learned, each in its own unit; what acts is between it and the ship file's."""

@@ -47,6 +47,13 @@ class Plant:
         rows = tuple((*(h * x for x in size[i]), h * self.heading[i]) for i in AXES)
         return replace(self, h=h, bend=c3.beyond_first((*rows, (0.0, 0.0, h, 0.0))))
 
+    def swing(self) -> tuple[tuple[float, ...], ...]:
+        """exp(h |A|) |A|, heading and all: how steep the way of one sample can be, whatever the step's method lies off it."""
+        size = self.magnitude()
+        rows = (*((*size[i], self.heading[i]) for i in AXES), (0.0, 0.0, 1.0, 0.0))
+        whole = [[float(i == j) + self.h * rows[i][j] + self.bend[i][j] for j in range(4)] for i in range(4)]
+        return tuple(tuple(sum(whole[i][k] * rows[k][j] for k in range(4)) for j in range(4)) for i in AXES)
+
     def growth(self) -> Matrix:
         """A^M: what can make an error grow; on the diagonal only a slope above zero, because clip() may
         switch damping off.

@@ -10,7 +10,7 @@ from math import degrees, inf, pi
 
 from twin.live.channels import CHANNELS
 from twin.live.derive import RateFromHeading, SpeedFromPosition, true_wind
-from twin.live.estimate import Estimate
+from twin.live.estimate import HELD, Estimate
 from twin.live.frozen import Frozen
 from twin.live.gate import Gate
 from twin.live.measured import Measured
@@ -110,7 +110,7 @@ class Sensors:
         now.border[name], now.taken[name] = value, gate.time_s
         now.si[attribute] = value * channel.to_si
         now.time[attribute], now.heard[attribute] = gate.time_s, gate.received_s
-        now.hold_s[attribute] = min(1.2 * gate.interval_s, 2.0)
+        now.hold_s[attribute] = min(HELD * gate.interval_s, 2.0)
         if attribute in FROM:
             now.si[FROM[attribute]] = (value * channel.to_si + pi) % (2.0 * pi)
 

@@ -4,12 +4,14 @@ hold now."""
 from math import hypot
 
 from twin.live.estimate import Observer
+from twin.live.guard import CONTROLS
 from twin.live.measured import Measured
 from twin.live.seen import Certified
 from twin.live.tube import STILL, Three, Tube
 from twin.physics.state import Situation
 
 NU = ("u", "v", "r")
+NEEDED = {**CONTROLS, "psi": "heading"}  # inputs of the physics that nothing stands in for
 MEMORY = 100.0  # ticks with a measurement over which it is counted how often they contradict the bound
 SURPRISED = 0.1  # share of them from which it does not hold
 
@@ -18,32 +20,45 @@ USELESS = 1e3  # m/s: a bound above every speed at sea
 
 class Stabilizer:
     """Steps the tube once a tick; without a certificate it promises nothing, and says so by `inside` being
-    false."""
+    false. Where she may have left the operating set the tube begins anew from what is measured, and promises again once all that a
+    late measurement looks back on is inside."""
 
     def __init__(self, tube: Tube | None = None, why_not: str = "no certificate"):
         self.tube, self.why_not = tube, why_not
         self._restarts = -1
+        self._inside = 0  # ticks that she has surely been in the set
         self._surprised = dict.fromkeys(NU, 0.0)
         self.outside: str | None = why_not
 
-    def step(self, observer: Observer, measured: Measured, s: Situation) -> Certified:
-        """The bound of this tick."""
+    @property
+    def gain(self) -> float:
+        """The K of the certificate [1/s], 0 without one."""
+        return self.tube.certificate.K[0] if self.tube else 0.0
+
+    def step(self, observer: Observer, measured: Measured, s: Situation, doubt: str = "") -> Certified:
+        """The bound of this tick; `doubt`: an input of the physics that is known to be wrong, in words."""
         tube = self.tube
         if tube is None or not observer.estimate.ready:
             return Certified(margin=tube.certificate.margin if tube else 0.0)
         if observer.restarts != self._restarts:
             tube.reset(self._first(observer, measured, tube))
-            self._restarts = observer.restarts
+            self._restarts, self._inside = observer.restarts, tube.window
         got = tuple([observer.received[a] and self._in_time(a, measured, tube) for a in NU])
         self._watch(observer, got, tube)
         pulled = tuple([0.0 if g else observer.pulled[a] for a, g in zip(NU, got, strict=True)])
         beta = tube.step(got, measured.si.get("H_s", 0.0), pulled if any(pulled) else STILL)  # type: ignore[arg-type]
-        self.outside = tube.outside(s)
-        certificate = tube.certificate
-        bound = hypot(beta[0], beta[1])
-        if not bound < USELESS:  # says nothing; with measurements it comes back by itself
+        certificate, first = tube.certificate, self._first(observer, measured, tube)
+        within = min(beta[0], first[0]), min(beta[1], first[1]), min(beta[2], first[2])
+        self.outside = doubt or _unsure(measured) or tube.outside(s, within)
+        self._inside = self._inside + 1 if self.outside is None else 0
+        if proven := self._inside >= tube.window:
+            self.outside = tube.says_nothing()
+        else:
+            tube.reset(first)
+        if tube.says_nothing():  # with measurements it comes back by itself
             return Certified(certificate.margin, USELESS, False)
-        return Certified(certificate.margin, bound, certificate.ok and self.outside is None and not self.broken)
+        inside = certificate.ok and proven and self.outside is None and not self.broken
+        return Certified(certificate.margin, hypot(tube.beta[0], tube.beta[1]), inside)
 
     @property
     def broken(self) -> str:
@@ -62,11 +77,12 @@ class Stabilizer:
                 self._surprised[axis] += (off - self._surprised[axis]) / MEMORY
 
     def _first(self, observer: Observer, measured: Measured, tube: Tube) -> Three:
-        """What a first estimate is off by at most: the noise of what was measured and her way since; where nothing was, all that a ship can."""
-        c = tube.certificate
+        """What the estimate is off by at most, asking the instruments alone: how far it lies from what was measured, its noise and her way
+        since; where nothing was, all that a ship can."""
+        c, e = tube.certificate, observer.estimate
         u, v, r = (
-            noise + measured.age_s(a) * way if self._in_time(a, measured, tube) else 2.0 * most
-            for a, noise, way, most in zip(NU, c.noise, c.plant.most, observer.most, strict=True)
+            abs(measured.si[a] - now) + noise + measured.age_s(a) * way if self._in_time(a, measured, tube) else 2.0 * most
+            for a, now, noise, way, most in zip(NU, (e.u, e.v, e.r), c.noise, tube.way, observer.most, strict=True)
         )
         return u, v, r
 
@@ -75,3 +91,10 @@ class Stabilizer:
         if attribute in measured.derived or attribute not in measured.si:
             return False
         return measured.age_s(attribute) <= (tube.certificate.delay_samples + 0.5) * tube.certificate.h
+
+
+def _unsure(measured: Measured) -> str:
+    """Why the physics may not be asked in this tick, or what the estimate was set to; "" when nothing is."""
+    if missing := next((name for a, name in NEEDED.items() if a not in measured.si), ""):
+        return f"no {missing}"
+    return next((f"{a} stepped and is believed" for a in NU if a in measured.steps), "")

@@ -1,9 +1,9 @@
 """The stabilizer's theorem in numbers: from the ship's slopes and a gain K to what is promised.
 
-    predict   nu- = one Euler or Runge-Kutta step from nu+, f_learned held      its error one sample on: E
-    correct   nu+ = nu- + h K (y - nu-), compared at the time of y              its error, published: p
-    E <= V p + d,   p <= keep E + again max(E) + drift max(p) + c,   max over the last 2m+1 samples
-    G = (keep + again) V + drift,   b = (I - G)^-1 g   when the greatest eigenvalue of G is under one
+    predict   nu- = one Runge-Kutta step from nu+, f_learned held                  its error one sample on: E
+    correct   nu+ = nu- + h K (y - nu_hat), compared with the best of its own time   its error, published: p
+    E <= V p + d,   p <= W p + again max(E) + drift max(p) + c,   max over the last 2m+1 samples
+    G = W + again V + drift,   b = (I - G)^-1 g   when the greatest eigenvalue of G is under one
 
 The proof is in docs/stability.md.
 """
@@ -18,6 +18,7 @@ from .operating import NU
 from .plant import Disturbance, Plant
 
 Ages = tuple[int, int, int]
+SURE = 3.0  # times the least K: what the loop's own is at least
 NEVER = float("inf")
 NOWHERE: Row = (NEVER, NEVER, NEVER)
 
@@ -30,9 +31,10 @@ class Recursion:
     """
 
     V: Matrix  # one step of the physics on a difference of two motions: |I + h A| and its bend
+    now: Matrix  # W: such a step and the pull that answers it, at most one sample late: |I + h A - h K|
     keep: Row  # |1 - h K|
-    again: Row  # m (h K)^2: a pull seen again in late measurements
-    drift: Matrix  # m h K (h |A| + bend): the ship's way while a measurement was under way
+    again: Row  # (m - 1) (h K)^2: a pull seen again in late measurements
+    drift: Matrix  # (m - 1) h K (h |A| + bend): the ship's way while a measurement was under way
     pull: Row  # h K
     m: Ages
 
@@ -41,20 +43,34 @@ class Recursion:
         return c3.plus(self.now, self.past)
 
     @property
-    def now(self) -> Matrix:
-        return c3.matrix(lambda i, j: self.keep[i] * self.V[i][j])
-
-    @property
     def past(self) -> Matrix:
         return c3.matrix(lambda i, j: self.again[i] * self.V[i][j] + self.drift[i][j])
 
-    def share(self) -> Matrix:
-        """How much of a push d during one sample reaches p."""
-        return c3.diagonal(tuple(self.keep[i] + self.again[i] + self.m[i] * self.pull[i] for i in AXES))  # type: ignore[arg-type]
+    @property
+    def before(self) -> Row:
+        """Whole samples that the oldest measurement looks back beyond the last one."""
+        return tuple(float(max(m - 1, 0)) for m in self.m)  # type: ignore[return-value]
 
-    def heard(self) -> Matrix:
+    @property
+    def pushed(self) -> Row:
+        """How much of the push of one sample reaches p with a measurement: by itself, by way of older samples, and by what her path
+        between two samples leaves the line."""
+        return tuple(
+            1.0 + (b + 0.5) * pull if m else keep for m, b, pull, keep in zip(self.m, self.before, self.pull, self.keep, strict=True)
+        )  # type: ignore[return-value]
+
+    @property
+    def heard(self) -> Row:
         """How much of the noise reaches p."""
-        return c3.diagonal(tuple(self.pull[i] * (1.0 + self.m[i] * self.pull[i]) for i in AXES))  # type: ignore[arg-type]
+        return tuple(pull * (1.0 + b * pull) for b, pull in zip(self.before, self.pull, strict=True))  # type: ignore[return-value]
+
+    def told(self, d: Row, noise: Row) -> Row:
+        """What a measurement leaves in p, for one push d in each sample and this noise."""
+        return tuple(a * x + b * n for a, x, b, n in zip(self.pushed, d, self.heard, noise, strict=True))  # type: ignore[return-value]
+
+    def share(self) -> Matrix:
+        """How much of a push d in each sample reaches p, seen-again pulls included."""
+        return c3.diagonal(tuple(a + b for a, b in zip(self.pushed, self.again, strict=True)))  # type: ignore[arg-type]
 
 
 def recursion(plant: Plant, K: Row, m: Ages, extra: Matrix | None = None) -> Recursion:
@@ -62,17 +78,27 @@ def recursion(plant: Plant, K: Row, m: Ages, extra: Matrix | None = None) -> Rec
     h, bend, more = plant.h, plant.bend, extra or c3.scaled(0.0, c3.IDENTITY)
     size, growth = c3.plus(plant.magnitude(), more), c3.plus(plant.growth(), more)
     pull: Row = tuple(h * k for k in K)  # type: ignore[assignment]
+    keep: Row = tuple(abs(1.0 - p) for p in pull)  # type: ignore[assignment]
     change = c3.matrix(lambda i, j: h * size[i][j] + bend[i][j])
 
-    def step(i: int, j: int) -> float:
+    def ends(i: int, less: float) -> float:
         # clip() may switch damping off, so the diagonal reaches from 1 - h |lo| to 1 + h hi
-        return change[i][j] if i != j else max(1.0 + h * growth[i][i] + bend[i][i], change[i][i] - 1.0)
+        return max(1.0 + h * growth[i][i] - less, h * size[i][i] - 1.0 + less) + bend[i][i]
 
+    V = c3.matrix(lambda i, j: change[i][j] if i != j else ends(i, 0.0))
+
+    def answered(i: int, j: int) -> float:
+        if m[i] == 0:
+            return keep[i] * V[i][j]
+        return V[i][j] if i != j else max(ends(i, pull[i]), keep[i] * V[i][i])
+
+    late: Row = tuple(float(max(x - 1, 0)) for x in m)  # type: ignore[assignment]
     return Recursion(
-        V=c3.matrix(step),
-        keep=tuple(abs(1.0 - p) for p in pull),  # type: ignore[arg-type]
-        again=tuple(n * p * p for n, p in zip(m, pull, strict=True)),  # type: ignore[arg-type]
-        drift=c3.matrix(lambda i, j: m[i] * pull[i] * change[i][j]),
+        V=V,
+        now=c3.matrix(answered),
+        keep=keep,
+        again=tuple(n * p * p for n, p in zip(late, pull, strict=True)),  # type: ignore[arg-type]
+        drift=c3.matrix(lambda i, j: late[i] * pull[i] * change[i][j]),
         pull=pull,
         m=m,
     )
@@ -117,7 +143,7 @@ def assess(
     if end is None:
         none = c3.matrix(lambda i, j: NEVER)
         return Promise(False, reason, 1.0 - ratio, -NEVER, NOWHERE, none, none, step.G, push, calm, step)
-    by_force, by_noise = c3.product(c3.product(end, step.share()), push), c3.product(end, step.heard())
+    by_force, by_noise = c3.product(c3.product(end, step.share()), push), c3.product(end, c3.diagonal(step.heard))
     sampling = c3.apply(c3.product(end, step.share()), calm)
     bound = c3.add(c3.apply(by_force, d.calm), c3.apply(by_noise, noise), sampling)
     return Promise(True, reason, 1.0 - ratio, _rate(step, plant.h), bound, by_force, by_noise, step.G, push, calm, step)
@@ -125,11 +151,12 @@ def assess(
 
 def pushed(plant: Plant, heading_noise: float) -> tuple[Matrix, Row]:
     """d = push force + calm: a bounded force, an error of heading, what one step misses of her path, what adaptation moves."""
-    h, size, bend = plant.h, plant.magnitude(), plant.bend
-    along = c3.plus(c3.IDENTITY, c3.scaled(0.5 * h, size))
-    turn = max(abs(x) for x in plant.operating.ranges["r"])
-    curve, moved = c3.apply(size, plant.most), c3.apply(along, plant.moved)
-    calm = tuple((h * p + bend[i][3]) * heading_noise + h * h * (curve[i] + p * turn) + h * moved[i] for i, p in enumerate(plant.heading))
+    h, swing = plant.h, plant.swing()
+    along = c3.plus(c3.IDENTITY, c3.matrix(lambda i, j: 0.75 * h * swing[i][j]))
+    rates = (*plant.most, max(abs(x) for x in plant.operating.ranges["r"]))
+    curve = [0.25 * h * h * sum(a * b for a, b in zip(row, rates, strict=True)) for row in swing]
+    moved = c3.apply(along, plant.moved)
+    calm = tuple((h * p + plant.bend[i][3]) * heading_noise + curve[i] + h * moved[i] for i, p in enumerate(plant.heading))
     return c3.scaled(h, c3.product(along, plant.inertia)), calm  # type: ignore[return-value]
 
 
@@ -155,6 +182,16 @@ def usual_gain(plant: Plant, m: Ages, extra: Matrix | None = None) -> Row | None
     return k, k, k
 
 
+def suited_gain(plant: Plant, m: Ages, usual: float, fastest: float) -> Row:
+    """The loop's K: the usual one, or three times the least if that is more, so that a third of it would do; not above the middle of
+    what is allowed, nor above what the loop lets act. The usual one where none holds."""
+    limits = gains_that_do(plant, m)
+    k = usual
+    if limits is not None and limits[0] < fastest:
+        k = min(max(usual, SURE * limits[0]), sqrt(limits[0] * limits[1]), fastest)
+    return k, k, k
+
+
 def best_gain(plant: Plant, m: Ages, noise: Row, d: Disturbance, H_s: float = 0.0, extra: Matrix | None = None) -> Row | None:
     """The K with the smallest bound against hostile noise and disturbance, each axis in units of its range;
     None when none is certified.
@@ -171,7 +208,7 @@ def best_gain(plant: Plant, m: Ages, noise: Row, d: Disturbance, H_s: float = 0.
         end = c3.settled(step.G)
         if end is None:
             return NEVER
-        g = c3.add(c3.apply(step.share(), during), c3.apply(step.heard(), noise))
+        g = c3.add(c3.apply(step.share(), during), c3.apply(c3.diagonal(step.heard), noise))
         return sum(b / w for b, w in zip(c3.apply(end, g), width, strict=True))
 
     uniform: list[Row] = [(k, k, k) for k in _between(*limits)]

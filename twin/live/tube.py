@@ -1,7 +1,7 @@
 """The live bound of the observer's error, tick by tick, through measurements, drop-outs and changing seas.
 
     before the measurements of a tick:   E = V p + push d(H_s) + calm
-    with one (row by row):               p = keep E + again max(E) + drift max(p) + c
+    with one (row by row):               p = W p + again max(E) + drift max(p) + c
     without:                             p = E, and what a rejected sample was allowed to pull
 
 The matrices are those of twin/live/theorem.py.
@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 from twin.physics.state import Situation
 
-from .comparison import add, apply
+from .comparison import add, apply, scaled_row
+from .operating import NU, WORDS
 
 if TYPE_CHECKING:
     from .certificate import Certificate
@@ -52,16 +53,18 @@ class Tube:
     def __init__(self, certificate: "Certificate", start: Three | None = None) -> None:
         """`start` bounds the error of the first estimate; by default that is a measurement, so its noise."""
         self.certificate = certificate
-        self._window = 2 * max(certificate.delays) + 1
+        self.window = 2 * max(certificate.delays) + 1
+        self.way: Three  # how fast she can change her motion in the sea of the last step [m/s2, m/s2, rad/s2]
+        self._rows(0.0)
         self.reset(start)
 
     def reset(self, start: Three | None = None) -> None:
         """Begin anew, after the observer was set to a measurement."""
         self.beta: Three = self.certificate.noise if start is None else start
-        self._after, self._before = ([Highest(self._window, b) for b in self.beta] for _ in range(2))
+        self._after, self._before = ([Highest(self.window, b) for b in self.beta] for _ in range(2))
         self._widest = self.beta  # greatest after of the window
-        self._seas = Highest(self._window)
-        self._pulls: deque[Three] = deque(maxlen=self._window)
+        self._seas = Highest(self.window)
+        self._pulls: deque[Three] = deque(maxlen=self.window)
         self._sea = -1.0  # the highest in the window, for which the rows below were made
 
     def step(self, received: tuple[bool, bool, bool], H_s: float = 0.0, pulled: Three = STILL) -> Three:
@@ -75,11 +78,11 @@ class Tube:
         pu, pv, pr = self._widest
         u, v, r = self.beta
         beta = []
-        for i, (v0, v1, v2, d, keep, again, d0, d1, d2, c) in enumerate(self._table):
+        for i, (v0, v1, v2, d, w0, w1, w2, again, d0, d1, d2, c) in enumerate(self._table):
             E = min(v0 * u + v1 * v + v2 * r + d, NOTHING)
             widest = self._before[i].push(E)
             if received[i]:
-                E = keep * E + again * widest + d0 * pu + d1 * pv + d2 * pr + c
+                E = w0 * u + w1 * v + w2 * r + again * widest + d0 * pu + d1 * pv + d2 * pr + c
             beta.append(E)
         if pulled is not STILL or self._pulls:
             beta = self._and_pulled(beta, received, pulled)
@@ -91,45 +94,36 @@ class Tube:
     def _and_pulled(self, beta: list[float], received: tuple[bool, bool, bool], pulled: Three) -> list[float]:
         """A rejected sample's pull counts in full now, and shows in late measurements for a while."""
         step = self.certificate.step
-        late = [step.m[i] * step.pull[i] * max((p[i] for p in self._pulls), default=0.0) for i in (0, 1, 2)]
+        late = [step.before[i] * step.pull[i] * max((p[i] for p in self._pulls), default=0.0) for i in (0, 1, 2)]
         self._pulls.append(pulled)
         if not any(any(p) for p in self._pulls):
             self._pulls.clear()
         return [b + (late[i] if received[i] else pulled[i]) for i, b in enumerate(beta)]
 
     def _rows(self, H_s: float) -> None:
-        """For each axis (V, d, keep, again, drift, c) in this sea."""
+        """For each axis (V, d, W, again, drift, c) in this sea."""
         c = self.certificate
-        step, d = c.step, add(apply(c.push, c.disturbance.at(H_s)), c.calm)
-        self._table = tuple(
-            (
-                *step.V[i],
-                d[i],
-                step.keep[i],
-                step.again[i],
-                *step.drift[i],
-                step.pull[i] * (c.noise[i] + step.m[i] * (step.pull[i] * c.noise[i] + d[i])),
-            )
-            for i in (0, 1, 2)
-        )
+        pushed = apply(c.push, c.disturbance.at(H_s))
+        step, d = c.step, add(pushed, c.calm)
+        self.way = add(c.plant.most, scaled_row(1.0 / c.h, pushed))
+        told = step.told(d, c.noise)
+        self._table = tuple((*step.V[i], d[i], *step.now[i], step.again[i], *step.drift[i], told[i]) for i in (0, 1, 2))
 
     @property
     def widest(self) -> Three:
         """The greatest bound of the window that a measurement of greatest age looks back on."""
         return self._widest
 
-    def inside(self, s: Situation) -> bool:
-        """True when the ship is surely in the operating set: the estimate, widened by its bound, and every
-        measured input.
-        """
-        return self.outside(s) is None
+    def outside(self, s: Situation, within: Three | None = None) -> str | None:
+        """What leaves the operating set, or may within a sample, in words; None when the ship is surely in it. `within`: how far she
+        may be from the estimate, where that is known better than by the tube."""
+        return self.certificate.operating.outside(s, add(within or self.beta, scaled_row(self.certificate.h, self.way)))
 
-    def outside(self, s: Situation) -> str | None:
-        """What leaves the operating set, or may within a sample, in words; None when nothing does."""
-        return self.certificate.operating.outside(s, self._reach())
-
-    def _reach(self) -> Three:
-        """The bound, and how far the ship can get in one sample."""
-        h, most = self.certificate.h, self.certificate.plant.most
-        u, v, r = self.beta
-        return u + h * most[0], v + h * most[1], r + h * most[2]
+    def says_nothing(self) -> str | None:
+        """In words, while the bound is as wide as the operating set itself; else None."""
+        ranges = self.certificate.operating.ranges
+        for name, b in zip(NU, self.beta, strict=True):
+            low, high = ranges[name]
+            if not b < 0.5 * (high - low):
+                return f"the bound of {WORDS[name]}, {b:.3g}, is as wide as the operating set"
+        return None
