@@ -8,8 +8,9 @@ from typing import Any
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
-from .adding import OF_THE_DAY, UNTOUCHED, Found
+from .adding import UNTOUCHED, Found
 from .jsonable import short
+from .nuisance import OF_THE_DAY
 from .proof import Fall
 from .sailed import Sailed
 

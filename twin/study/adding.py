@@ -23,12 +23,6 @@ from .sailed import fed, floor_of
 from .seaway import calmed
 from .track import Track
 
-OF_THE_DAY = (
-    "Current",
-    "VaryingCurrent",
-    "ExternalForce",
-    "TowForce",
-)  # their numbers belong to a voyage, not to the ship
 STEPS, REACH = 8, 2.0  # of the fit, and prior widths that one may move: a current of fourteen numbers is not found in one leap
 UNTOUCHED = 0.1  # a number whose doubt shrank by less was not excited
 FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {

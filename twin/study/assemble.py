@@ -15,7 +15,7 @@ from .case import MOST_SEGMENTS, ODDS, ODDS_MEASURED, Case, settle
 from .columns import FORM, Unknown, core_unknowns, effect_unknowns, lateness_unknowns
 from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
-from .nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, temper_of
+from .nuisance import TEMPER, WEATHER, from_references, from_ship, lasting, nuisance_unknowns, temper_of
 from .respond import respond
 from .seaway import calmed, tossed
 from .segments import read_parts
@@ -82,8 +82,10 @@ def _of_core(lines: Sequence[Linear], unknowns: Sequence[Unknown]) -> list[Linea
 
 
 def judgeable(tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]) -> tuple[str, ...]:
-    """Effects whose inputs at least one voyage holds; of one that the ship has already, a change of it."""
-    return tuple(name for name in catalogue if not unjudged_because(name, tracks, model, catalogue))
+    """Effects whose inputs at least one voyage holds; of one that the ship has already, a change of it, unless the weather or the water's
+    bounds bring it: their force is only roughly right on any other day, and is doubted instead."""
+    present = {type(e).__name__ for e in model.effects}.intersection(WEATHER)
+    return tuple(name for name in catalogue if name not in present and not unjudged_because(name, tracks, model, catalogue))
 
 
 def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]) -> tuple[str, ...]:

@@ -15,7 +15,9 @@ from .innovations import Floor, Linear, Normal, innovate
 
 USUAL = 0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
 TEMPER = 3.0  # when no reference voyage tells how far innovations are from white
-SURROUNDINGS = ("Wind", "WaveDrift", "Current", "VaryingCurrent", "ShallowWater", "Bank", "TowForce", "ExternalForce")
+OF_THE_DAY = ("Current", "VaryingCurrent", "ExternalForce", "TowForce")  # their numbers belong to a voyage, not to the ship
+WEATHER = ("Wind", "WaveDrift", "ShallowWater", "Bank")  # their causes belong to the voyage, their numbers to the ship
+SURROUNDINGS = (*WEATHER, *OF_THE_DAY)
 
 
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:

@@ -13,8 +13,10 @@ from twin.physics.effects import catalogue
 from twin.physics.effects.steering_lag import TRAVEL, SteeringLag
 from twin.physics.model import Model
 from twin.physics.ship import load, save
+from twin.study.assemble import judgeable
 from twin.study.columns import effect_unknowns
 from twin.study.nuisance import from_ship, nuisance_unknowns
+from twin.study.track import track
 from twin.study.write import write_voyage
 
 GYRO = 1e-6  # rad/s that the ship file already says of the gyro
@@ -78,3 +80,10 @@ def test_of_an_effect_added_after_calibration_the_ship_file_knows_nothing_but_it
     at = labels.index("RudderWear.loss")
     assert known.pull[at] == 0.0 and known.information[at, at] == 1.0
     assert known.information[labels.index("SteeringLag.delay")].max() > 1.0
+
+
+def test_no_change_is_asked_of_what_the_weather_brings(tanker, voyages):
+    tracks, known = [track(voyages["nothing"], tanker)], catalogue()
+    assert {"Wind", "RudderWear"} <= set(judgeable(tracks, Model.of(tanker), known))
+    has = Model.of(tanker).but(known["Wind"].plausible(tanker), known["RudderWear"].plausible(tanker))
+    assert "Wind" not in judgeable(tracks, has, known) and "RudderWear" in judgeable(tracks, has, known)
