@@ -17,7 +17,7 @@ from .effects import INPUTS
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import explains, helpful
+from .leftover import explains, helpful, too_small
 from .manoeuvres import next_manoeuvre
 from .overtime import over_time
 from .read import read_voyage
@@ -25,7 +25,7 @@ from .refine import Found
 from .search import search
 from .seaway import at_sea
 from .tell_diagnosis import sentence, told
-from .verdict import alike, group, judge, parameters, shows, typical_force, weights
+from .verdict import SURE, alike, group, judge, parameters, shows, typical_force, weights
 from .voyage import Voyage
 
 SCHEMA_VERSION = 1
@@ -57,6 +57,8 @@ def diagnose(
     w = weights(case, weighed)
     best = found[w.best.effects]
     explained, leads = not w.best.effects or explains(case, weighed, best, found[()]), helpful(case, found, w.best.effects)
+    if too_small(case, found, w.best.effects):
+        leads += [n for n in w.best.effects if w.effects[n] >= SURE]
     like = {name: alike(case, weighed, name) for name in w.best.effects}
     verdict, missing = judge(
         weighed, w, like, leads, excited=case.excited, sharp=shows(seen), explained=explained, tossed=any(at_sea(t, case.model) for t in case.tracks)

@@ -42,12 +42,14 @@ def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: F
 
 
 def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
-    """Those of a set of effects with which she is led better than without, as `twin add` will ask. One that only changes what the
-    instruments read need not lead her, nor one that stands alone where she is led there already: in calm water, the readings decide."""
-    nothing, calm = found[()], not any(at_sea(t, case.model) for t in case.tracks)
-    if calm and len(chosen) == 1 and nothing.off_m <= found[chosen].floor_m:
-        return list(chosen)
+    """Those of a set of effects with which she is led better than without, as `twin add` will ask; one that only changes what the
+    instruments read need not lead her."""
     return [n for n in chosen if case.catalogue[n].kind == "SensorFault" or _leads(found, chosen, n)]
+
+
+def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
+    """Whether a single effect cannot show in where she went, for without any she is led there already: in calm water, the readings decide."""
+    return len(chosen) == 1 and found[()].off_m <= found[chosen].floor_m and not any(at_sea(t, case.model) for t in case.tracks)
 
 
 def _leads(found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:

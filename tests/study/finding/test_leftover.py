@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.leftover import ASTRAY, CLEAR, explains, helpful, quiet
+from twin.study.leftover import ASTRAY, CLEAR, explains, helpful, quiet, too_small
 from twin.study.search import search
 
 
@@ -82,14 +82,14 @@ def test_a_force_must_lead_her_better_than_without_it_and_a_fault_of_an_instrume
     assert helpful(case, led, effects) == list(named)
 
 
-def test_a_force_that_stands_alone_need_not_lead_her_where_she_is_led_already_but_in_a_sea_it_must(judged):
+def test_a_force_that_stands_alone_is_too_small_to_show_where_she_is_led_already_but_not_in_a_sea(judged):
     case, found = judged
     led = {(): replace(found, off_m=0.9, floor_m=1.0), ("RudderWear",): replace(found, off_m=1.0, floor_m=1.0)}
-    assert helpful(case, led, ("RudderWear",)) == ["RudderWear"]
-    assert helpful(case, led | {(): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",)) == []
+    assert too_small(case, led, ("RudderWear",))
+    assert not too_small(case, led | {(): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",))
     pair = ("RudderWear", "Wind")
-    assert helpful(case, led | {("Wind",): led[()], pair: led["RudderWear",]}, pair) == []
+    assert not too_small(case, led | {("Wind",): led[()], pair: led["RudderWear",]}, pair)
     (track,) = case.tracks
     waves = np.full(len(track), 0.01 * case.model.ship.L_pp)
     tossed = replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),))
-    assert helpful(tossed, led, ("RudderWear",)) == []
+    assert not too_small(tossed, led, ("RudderWear",))
