@@ -92,7 +92,7 @@ def _tenth(r: dict[str, Any]) -> Iterator[Claim]:
         alone = most["hybrid"]
         yield Claim(
             f"the LSTM's accuracy with all data ({goal[0]:.3f} deg, {goal[1]:.2f} m), by the hybrid from a tenth of it",
-            f"from {most['runs']} of {r['models']['lessons']['train']} runs, named: {a:.3f} deg, {b:.2f} m; the network alone "
+            f"from {most['runs']} of {r['models']['parts']['train']} runs, named: {a:.3f} deg, {b:.2f} m; the network alone "
             f"{alone['heading_mae_deg']:.3f}, {alone['lateral_mae_m']:.2f}",
             a <= goal[0] and b <= goal[1],
         )
