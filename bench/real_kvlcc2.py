@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bench import answer
+from bench import answer, real_faults
 from bench.real_page import page
 from twin.errors import SettingsError
 from twin.physics.effects import find
@@ -93,6 +93,7 @@ def judged(basin: Basin, root: Path) -> dict[str, Any]:
             diagnosed("published coefficients, all runs", runs, ship),
             diagnosed("calibrated ship, the runs that it was not fitted to", others, after.ship),
         ],
+        "faults": [faulty(fault, others, after.ship) for fault in real_faults.FAULTS],
     }  # fmt: skip
 
 
@@ -135,6 +136,11 @@ def asked(name: str, fitted: Sequence[Sailed], others: Sequence[Sailed], ship: S
     model, found = adding.fitted(ship, [find(name)], [s.track for s in fitted])
     before, after = (ladder(others, s)[-1] for s in (ship, ship.with_effects(*model.effects)))
     return {"effect": name, "numbers": [{"name": f.name, **f.entry()} for f in found], "before": before, "after": after}
+
+
+def faulty(fault: real_faults.Fault, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
+    answer.tell(f"putting into the readings: {fault.words}")
+    return real_faults.asked(fault, [s.voyage for s in runs], ship)
 
 
 def diagnosed(words: str, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:

@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
+from bench import real_faults
+
 CYCLES = 3  # whole zigzag cycles, for a mean of the rudder angle to say something
 HEAD = """# Real data: KVLCC2 in two towing tanks
 
@@ -28,6 +30,7 @@ def _basin(b: dict[str, Any]) -> str:
         "### The rudder's asymmetry\n\n" + _helm(b["helm"]),
         *(_diagnosis(d) for d in b["diagnoses"]),
         _asked(b["asked"]),
+        "### Known faults put into the readings of the runs that it was not fitted to\n\n" + real_faults.told(b["faults"]),
     ]
     return "\n\n".join(parts)
 

@@ -66,3 +66,20 @@ def test_physics_imports_nothing_beyond_the_standard_library():
     )
     out = subprocess.run([sys.executable, "-c", code, *bare.stdout.split()], capture_output=True, text=True)
     assert out.stdout.strip() == "[]", out.stdout + out.stderr
+
+
+def test_an_antenna_stands_where_the_true_heading_puts_it_whatever_the_compass_shows(ship, situation):
+    """In whichever order the faults were named: the compass turns what the receiver shows, and moves nothing."""
+    compass, gyro = find("HeadingBias").plausible(ship), find("GyroBias").plausible(ship)
+    antenna, late = find("AntennaOffset").plausible(ship), find("SensorDelay").plausible(ship)
+    said = []
+    for order in ((compass, gyro, antenna, late), (antenna, late, gyro, compass)):
+        shown = situation
+        for fault in Model(ship, order).faults:
+            shown = fault.read(shown, ship)
+        said.append(shown)
+    placed = late.read(antenna.read(situation, ship), ship)
+    for shown in said:
+        assert (shown.x, shown.y) == pytest.approx((placed.x, placed.y), abs=1e-9)
+        assert shown.psi == pytest.approx(situation.psi + compass.bias)
+    assert (said[0].u, said[0].v) == pytest.approx((said[1].u, said[1].v), abs=1e-12)

@@ -155,6 +155,7 @@ class SensorFault(Effect):
     """The ship is right, the instrument is wrong."""
 
     kind = "SensorFault"
+    attitude: ClassVar[bool] = False  # whether it is compass or gyro that is wrong: an antenna stands where the true heading puts it
 
     def read(self, s: Situation, ship: "Ship") -> Situation:
         """What the instruments say (a changed copy) of a ship that is truly in situation s."""

@@ -15,7 +15,7 @@ from .case import MOST_SEGMENTS, ODDS, ODDS_MEASURED, Case, settle
 from .columns import FORM, Unknown, core_unknowns, effect_unknowns, lateness_unknowns
 from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
-from .nuisance import TEMPER, WEATHER, from_references, from_ship, lasting, nuisance_unknowns, temper_of
+from .nuisance import TEMPER, WEATHER, daily, from_references, from_ship, lasting, nuisance_unknowns, temper_of
 from .respond import respond
 from .seaway import calmed, tossed
 from .segments import read_parts
@@ -45,7 +45,7 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     effects = tuple(u for name in candidates for u in effect_unknowns(catalogue[name], model))
     nuisance = nuisance_unknowns(model, catalogue)
     core = [u for u in nuisance if u.owner in ("core", FORM)]
-    extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
+    extra = [u for u in (*lasting(model, catalogue), *daily(model, catalogue)) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
     path = stored_floor(ship) or Floor()
     floor, temper = stored_floor(ship, "beside") or path, _temper(ship)

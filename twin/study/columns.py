@@ -97,16 +97,16 @@ def columns(
         if unknown.owner != "core" and missing.intersection(catalogue[unknown.owner].needs):
             continue  # without its input the effect does nothing on this track
         here = (at or {}).get(unknown.label)
-        step = _step(unknown, here)
+        step = _step(unknown, here, unknown.owner != "core" and catalogue[unknown.owner].kind == "SensorFault")
         a, r = respond(track, changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue))
         A[:, :, j], R[:, :, j] = (a - acceleration) / step, (r - reading) / step
     return A, R
 
 
-def _step(unknown: Unknown, here: float | None) -> float:
+def _step(unknown: Unknown, here: float | None, fine: bool) -> float:
     """A plausible step that stays in the box: a whole prior width from null (a gear that is a little slow is not slow at all, to first
-    order), a tenth of one about a found value."""
-    size = unknown.sd if here in (None, unknown.centre) else 0.1 * unknown.sd
+    order), a tenth of one about a found value, and where the instruments are so `fine` that what is not linear shows: their own faults."""
+    size = unknown.sd if here in (None, unknown.centre) and not fine else 0.1 * unknown.sd
     start = unknown.centre if here is None else here
     return size if start + size <= unknown.hi else -size
 

@@ -21,7 +21,7 @@ from twin.physics.model import Model
 from .columns import LATE, Unknown, columns
 from .filters import FLOW, MOTION, SLOW, SPEEDS, STATES, Filters, Noise, Stretches
 from .normal import Normal, Sums
-from .respond import advance, jacobian, lagged, respond
+from .respond import advance, faulty, jacobian, lagged, respond
 from .segments import segments
 from .start import undone
 from .track import Track
@@ -85,7 +85,8 @@ def linearise(
     defect = advance(track, model)
     defect[:-1] -= track.state[1:]
     defect[-1] = 0.0
-    return Linear(track, _system(track, model), defect, _reader(track), e, A.astype(np.float32), R.astype(np.float32), busy(track, model), model)
+    system, reader = _system(track, model), _reader(track, model)
+    return Linear(track, system, defect, reader, e, A.astype(np.float32), R.astype(np.float32), busy(track, model), model)
 
 
 def _system(track: Track, model: Model) -> np.ndarray:
@@ -113,14 +114,14 @@ def _by_current(track: Track, model: Model) -> np.ndarray:
     return columns(track, _without_current(model), axes, {"Current": find("Current")})[0]
 
 
-def _reader(track: Track) -> np.ndarray:
-    """(N, 8, 11) what the instruments show of the state: each its own, the log the speed through water."""
+def _reader(track: Track, model: Model) -> np.ndarray:
+    """(N, 8, 11) what the instruments show of the state: each its own, the log the speed through water, as far as none is faulty."""
     c, s = np.cos(track.state[:, 2]), np.sin(track.state[:, 2])
     H = np.zeros((len(track), 8, STATES))
     H[:, MOTION, MOTION] = np.eye(6)
     H[:, 6, 3] = H[:, 7, 4] = 1.0
     H[:, 6, 9], H[:, 6, 10], H[:, 7, 9], H[:, 7, 10] = -c, -s, s, -c
-    return H
+    return faulty(track, model) @ H if model.faults else H
 
 
 def _without_current(model: Model) -> Model:

@@ -58,7 +58,8 @@ def led(case: Case, found: Mapping[Sets, Found]) -> Led:
     best = max(f.hypothesis.log_weight for f in found.values())
     off = {s: held_out_error(case, f) for s, f in found.items() if not s or f.hypothesis.log_weight > best - REACH}
     steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
-    floor = {name: max(m, steps["coarse"]) for name, m in steps.items()}  # what is run free is a core alone
+    least = max(steps["coarse"], _measured(case))  # what is run free is a core alone, and no better than it was when nothing was wrong
+    floor = {name: max(m, least) for name, m in steps.items()}
     asked = {s: replace(found[s], off_m=m, floor_m=_floor(_plain(found[s].hypothesis), floor, off[()])) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
     return Led(asked, floor, windows)
@@ -116,6 +117,15 @@ def _usual(case: Case, floor: Floor) -> float:
         model = case.model.without_inputs(track.missing())[0]
         errors.append(_errors(predict(track, model, [horizon_s(track, case.model)], leads=1, floor=floor), STRUCTURE))
     return max(float(np.nanmean(np.concatenate(errors))), 1e-9)
+
+
+def _measured(case: Case) -> float:
+    """Mean position error [m] of the calibrated ship on voyages that she was not fitted to; nothing where no calibration measured it."""
+    told = [(e["horizon_s"], e["position_m"]) for e in case.model.ship.notes.get("structural", {}).get("held_out", ()) if e.get("position_m")]
+    if not told:
+        return 0.0
+    ahead, error = np.log(np.array(told)).T
+    return float(np.exp(np.interp(np.log([horizon_s(t, case.model) for t in case.tracks]), ahead, error)).mean())
 
 
 def _errors(windows: Windows, run: int) -> np.ndarray:

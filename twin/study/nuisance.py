@@ -18,12 +18,18 @@ TEMPER = 3.0  # when no reference voyage tells how far innovations are from whit
 OF_THE_DAY = ("Current", "VaryingCurrent", "ExternalForce", "TowForce")  # their numbers belong to a voyage, not to the ship
 WEATHER = ("Wind", "WaveDrift", "ShallowWater", "Bank")  # their causes belong to the voyage, their numbers to the ship
 SURROUNDINGS = (*WEATHER, *OF_THE_DAY)
+DAILY = ("Current", "ExternalForce")  # of these a little is there on every day, and another on the next: no water stands still
 
 
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of each, beside what her file
     says of it."""
     return [u for name, e in catalogue.items() if name not in SURROUNDINGS for u in effect_unknowns(e, model)]
+
+
+def daily(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
+    """What every day brings a little of."""
+    return [u for name in DAILY if name in catalogue for u in effect_unknowns(catalogue[name], model)]
 
 
 def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
@@ -33,8 +39,9 @@ def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknow
 
 
 def nuisance_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
-    """Core derivatives and what they leave out, what a healthy ship usually shows of every lasting effect, and how late her instruments are."""
-    usual = (replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue))
+    """Core derivatives and what they leave out, what a healthy ship usually shows of every lasting effect and a calm day of its water, and how
+    late her instruments are."""
+    usual = (replace(u, sd=USUAL * u.sd) for u in (*lasting(model, catalogue), *daily(model, catalogue)))
     return (*core_unknowns(model), *form_unknowns(), *usual, *lateness_unknowns())
 
 
@@ -50,10 +57,23 @@ def from_references(
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
     told = voyages(innovate(lines, [floor])[0], sd, temper)
     scatter = scattered(told, pull)
-    mean, covariance = ship_of(told, scatter, pull)
-    information = np.linalg.inv(covariance + np.diag(scatter))
+    mean, covariance = of_another_day(*ship_of(told, scatter, pull), scatter, [(u.owner, u.unit) if u.owner in DAILY else None for u in unknowns])
+    information = np.linalg.inv(covariance)
     between = {u.label: float(np.sqrt(s)) for u, s in zip(unknowns, scatter, strict=True) if s}
     return Nuisance(unknowns, information, information @ mean), between
+
+
+def of_another_day(
+    mean: np.ndarray, covariance: np.ndarray, scatter: np.ndarray, daily: Sequence[object | None]
+) -> tuple[np.ndarray, np.ndarray]:
+    """Mean and covariance on the next voyage: the ship's own, scattered about them. Of what a day brings (`daily`: what it is a part of, None
+    of the ship's own) only how much of it there was stays known, alike for the parts of one thing: no wind blows from the north alone."""
+    apart = np.array([part is not None for part in daily])
+    much = np.diag(covariance) + scatter + mean**2
+    for whole in {part for part in daily if part is not None}:
+        parts = [i for i, part in enumerate(daily) if part == whole]
+        much[parts] = much[parts].mean()
+    return np.where(apart, 0.0, mean), np.where(apart[:, None] | apart, np.diag(much), covariance + np.diag(scatter))
 
 
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:

@@ -71,8 +71,8 @@ def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray
         at = np.zeros_like(z)
         at[mine] = boxed(case, best + share * (aim - best))[mine]
         tried = about(case, at, mine, [case.effects[i] for i in mine])[1]
-        reduced = case.reduced(tried, case.worlds([world], DOUBTS[0]), at)[0]
-        if (now := reduced.base - 0.5 * float(at @ at)) > merit:
+        reduced = _told(case, tried, world, at)
+        if reduced and (now := reduced.base - 0.5 * float(at @ at)) > merit:
             merit, best, lines, share, aim = now, at, tried, 1.0, boxed(case, posterior(reduced, chosen).z)
         else:
             share *= 0.5
@@ -80,6 +80,14 @@ def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray
             break
     judged, _ = _judged(case, chosen, _everywhere(case, chosen, lines, best, DOUBTS[0]))
     return max(judged, key=lambda h: h.log_weight), best
+
+
+def _told(case: Case, lines: Sequence[Linear], world: str, at: np.ndarray) -> Reduced | None:
+    """What the voyages say there; nothing where no filter can follow such a ship (without her mass, she answers within a step)."""
+    try:
+        return case.reduced(lines, case.worlds([world], DOUBTS[0]), at)[0]
+    except np.linalg.LinAlgError:
+        return None
 
 
 def _lost(case: Case, mine: np.ndarray, at: np.ndarray, fallen: bool) -> list[int]:

@@ -76,3 +76,16 @@ def jacobian(track: Track, model: Model) -> np.ndarray:
             sides.append(np.column_stack([np.broadcast_to(a, track.t.shape) for a in model.nu_dot(s)]))
         out[:, :, j] = (sides[0] - sides[1]) / (2.0 * size)
     return out
+
+
+def faulty(track: Track, model: Model) -> np.ndarray:
+    """(N, 8, 8) derivative of what the model's faulty instruments show by what they would show were they right: a compass that is off
+    turns what is left of one speed into the other."""
+    L, U, time = float(model.ship.L_pp), float(model.ship.scale("speed")), float(model.ship.scale("time"))
+    out = np.zeros((len(track), len(READINGS), len(READINGS)))
+    right = track.situation()
+    right.u_dot, right.v_dot, _ = model.nu_dot(right)
+    for j, (name, size) in enumerate(zip(READINGS, (L, L, 1.0, U, U, 1.0 / time, U, U), strict=True)):
+        sides = [readings(replace(right, **{name: getattr(right, name) + sign * 1e-3 * size}), model) for sign in (1.0, -1.0)]
+        out[:, :, j] = (sides[0] - sides[1]) / (2e-3 * size)
+    return out

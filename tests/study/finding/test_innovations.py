@@ -1,5 +1,7 @@
 """The filter: its tangents are the innovations' own, and floors side by side are floors one at a time."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -55,8 +57,6 @@ def test_a_hole_in_the_controls_ends_a_segment(judged):
     line = linearise(t, model, unknowns, catalogue())
     whole = t.whole.copy()
     whole[300:310] = False
-    from dataclasses import replace
-
     broken = replace(line, track=replace(t, whole=whole))
     assert all(b <= 300 or a >= 310 for _, a, b in segments([broken.track], float(model.ship.scale("time"))))
 
@@ -92,3 +92,28 @@ def test_a_track_holds_samples_and_invents_none(tanker, voyages):
     t = track(type(whole)("half", whole.time_s, columns), tanker)
     seen = np.isfinite(t.measured[:, READINGS.index("u_r")])
     assert seen[t.t < 590.0].mean() > 0.9 and not seen[t.t > 605.0].any()
+
+
+def test_a_turned_compass_that_is_known_costs_nothing(judged):
+    """The same voyage with heading and speed over ground turned by a compass: under its own fault it is as probable as it was, also beside
+    an antenna that is known to stand elsewhere."""
+    t, model, _ = judged
+    known, bias = catalogue(), 0.05
+    antenna = known["AntennaOffset"].absent(model.ship).but(ahead=0.2 * model.ship.L_pp)
+    compass = known["HeadingBias"].absent(model.ship).but(bias=bias, turned=bias)
+    c, s = np.cos(bias), np.sin(bias)
+
+    def turned(values, psi, u, v):
+        out = values.copy()
+        out[:, psi], out[:, u], out[:, v] = values[:, psi] + bias, values[:, u] * c + values[:, v] * s, values[:, v] * c - values[:, u] * s
+        return out
+
+    through_it = replace(t, state=turned(t.state, 2, 3, 4), measured=turned(t.measured, 2, 3, 4))
+    unknowns = [*core_unknowns(model), *effect_unknowns(known["GyroBias"], model)]
+    straight = innovate([linearise(t, model.but(antenna), unknowns, known)], [Floor()])[0]
+    shown = innovate([linearise(through_it, model.but(compass, antenna), unknowns, known)], [Floor()])[0]
+    believed = innovate([linearise(through_it, model.but(antenna), unknowns, known)], [Floor()])[0]
+    A, b, ee = straight.total()
+    for told, expected in zip(shown.total(), (A, b, ee), strict=True):
+        np.testing.assert_allclose(told, expected, rtol=0.02, atol=1e-3 * np.abs(expected).max())
+    assert float(believed.ee.sum()) > float(ee) + 20.0

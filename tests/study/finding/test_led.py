@@ -7,7 +7,7 @@ import pytest
 
 from twin.study.assemble import assemble
 from twin.study.evidence import Hypothesis
-from twin.study.led import FORM, LUXURY, Led, held_out_error, horizon_s, led
+from twin.study.led import FORM, LUXURY, Led, _measured, held_out_error, horizon_s, led
 from twin.study.refine import Found, refine
 from twin.study.search import search
 from twin.study.verdict import weights
@@ -96,3 +96,15 @@ def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker
     worn, healthy = (path.log_probability(replace(found[s].hypothesis, world="usual")) for s in (("RudderWear",), ()))
     assert worn > healthy
     assert held_out_error(case, found[()]) == pytest.approx(found[()].off_m)
+
+
+def test_the_floor_is_no_lower_than_what_the_calibration_measured_on_other_voyages(tanker, voyages):
+    case = assemble([voyages["nothing"]], tanker)
+    ahead = horizon_s(case.tracks[0], case.model)
+    for held_out, measured in (([], 0.0), ([{"horizon_s": ahead, "position_m": 500.0}], 500.0)):
+        notes = tanker.notes | {"structural": tanker.notes["structural"] | {"held_out": held_out}}
+        ship = replace(case.model.ship, notes=notes)
+        asked_of = replace(case, model=replace(case.model, ship=ship))
+        assert _measured(asked_of) == pytest.approx(measured)
+    floor = led(asked_of, search(case)[1]).floor
+    assert list(floor.values()) == pytest.approx([500.0] * len(floor))

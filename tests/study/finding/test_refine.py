@@ -1,10 +1,12 @@
 """Where the parameters of a hypothesis come to stand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.refine import DOUBTS, _bends, _climb, _lost, about
+from twin.study.refine import DOUBTS, _bends, _climb, _lost, _told, about
 
 
 @pytest.fixture(scope="module")
@@ -43,3 +45,13 @@ def test_a_climb_never_ends_where_the_voyages_are_less_probable_than_where_it_be
 
     end = _climb(case, ("SteeringLag",), mine, "usual", z)[1]
     assert probable(end) >= probable(z)
+
+
+def test_a_ship_that_no_filter_can_follow_is_no_step_to_take(case):
+    mine, z = rows(case, "Loading"), np.zeros(len(case.effects))
+    z[mine] = [-1e6, 0.0, 0.0]
+    here = about(case, np.zeros_like(z), mine, [case.effects[i] for i in mine])[1]
+    wild = [replace(line, F=line.F * 1e8) for line in here]
+    assert _told(case, here, "usual", np.zeros_like(z)) is not None and _told(case, wild, "usual", np.zeros_like(z)) is None
+    end = _climb(case, ("Loading",), mine, "usual", z)[1]
+    assert np.isfinite(end).all()

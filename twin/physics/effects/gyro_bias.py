@@ -14,6 +14,7 @@ class GyroBias(SensorFault):
     """The rate gyro shows a turn when there is none; the heading does not turn with it."""
 
     needs = ("r",)
+    attitude = True
     source = "IEEE Std 952-1997 (gyro bias); IMO A.526(13) (rate-of-turn indicators: 0.5 deg/min)"
 
     bias: float = param(0.0005, unit="rad/s", lo=-0.02, hi=0.02, sd=0.0007, doc="shown yaw rate less the true one")

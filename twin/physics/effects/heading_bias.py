@@ -17,6 +17,7 @@ from twin.physics.state import Situation
 class HeadingBias(SensorFault):
     """The compass shows a heading that is off by a constant, so she seems to drift sideways wherever she goes."""
 
+    attitude = True
     source = "ISO 8728 and IMO A.424(XI) (gyro-compass settle-point error)"
 
     bias: float = param(0.02, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="shown heading less the true one")
