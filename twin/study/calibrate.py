@@ -9,10 +9,12 @@ from typing import Any
 
 from twin.physics.effect import Effect
 from twin.physics.effects import catalogue
+from twin.physics.effects.antenna_offset import AntennaOffset
 from twin.physics.effects.steering_lag import SteeringLag
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 
+from .antenna import clearly, placed
 from .columns import core_unknowns
 from .derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
 from .doubts import doubts
@@ -32,6 +34,10 @@ from .usual import clearly_hers, usual
 SCHEMA_VERSION = 1
 FITTED_BY = ("steps", "paths")  # one step ahead through a filter, or several lengths ahead without (rollout.py)
 BETTER = 0.05  # share by which paths must be better than steps: a diagnosis judges by steps
+PARTS = {  # of the ship and not of the core, found with it
+    SteeringLag.__name__: "the recorded rudder angle is its order",
+    AntennaOffset.__name__: "the place was measured there on the reference voyages",
+}
 EPILOG = """Reference voyages are ones on which nothing was wrong and the weather was calm: zigzags, circles, speed changes. Without --held-out
 the last third of the voyages (or of a single voyage) is held back to measure the error. The standard errors, and the structural
 error that remains, are stored in the ship file: they keep an imperfect model from being called a missing effect.
@@ -59,7 +65,8 @@ class Core:
 
     derivatives: list[Derivative]
     effects: tuple[Effect, ...]  # of the ship file, the steering gear among them when the rudder's order was recorded
-    gear: dict[str, dict[str, Any]]  # its numbers with their standard errors
+    numbers: dict[str, dict[str, dict[str, Any]]]  # of the gear and of the antenna, with their standard errors
+    antenna: AntennaOffset | None  # where it was found, if not where the ship file has it
     floor: Floor
     temper: float
 
@@ -70,7 +77,7 @@ def calibrate(
     """Fit the core to the tracks. `by`: one of FITTED_BY; None: the one that predicts what was held out better."""
     tracks = [s.track for s in fitted]
     core = _core(tracks, ship, progress)
-    ships = {"steps": _remembering(ship, core, fitted)}
+    ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
     if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
         progress("fitting to where she went")
         led = rolled_out(tracks, Model.of(ships["steps"]), excited, catalogue()).ship
@@ -98,26 +105,37 @@ def _core(tracks: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     progress("fitting again above the floor")
     found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, rounds=4)
     kept = tuple(e for e in ship.effects if e not in model.lags)
-    return Core(told_by(found), (*kept, *found.model.lags), _gear(found), floor, temper)
+    numbers = {name: _numbers(found, name, why) for name, why in PARTS.items()}
+    return Core(told_by(found), (*kept, *found.model.lags), numbers, clearly(found), floor, temper)
 
 
-def _gear(found: Fit) -> dict[str, dict[str, Any]]:
-    """What the ship file keeps of the steering gear's numbers."""
-    source = f"calibrated {datetime.date.today().isoformat()}: the recorded rudder angle is its order"
+def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
+    """What the ship file keeps of the numbers of a part of her that was found with the core."""
+    source = f"calibrated {datetime.date.today().isoformat()}: {why}"
     return {
         u.name: {"value": float(value), "unit": u.unit, "sd": float(sd), "source": source}
         for u, value, sd in zip(found.unknowns, found.value, found.sd, strict=True)
-        if u.owner == SteeringLag.__name__
+        if u.owner == owner
     }
 
 
+def _beside(ship: Ship, core: Core) -> Ship:
+    """The ship with the fitted derivatives, and the steering gear if one was found."""
+    return replace(with_derivatives(ship, core.derivatives), effects=core.effects)
+
+
 def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
-    """The ship with the fitted derivatives and what remains of these voyages, in place of what an earlier calibration left."""
+    """The ship with what remains of these voyages, in place of what an earlier calibration left."""
     today, voyages = datetime.date.today().isoformat(), [s.provenance() for s in fitted]
-    names = [type(e).__name__ for e in core.effects]
+    names = [type(e).__name__ for e in ship.effects]
     structural = {"floor": plain(asdict(core.floor)), "temper": core.temper, "date": today, "voyages": voyages, "beside_effects": names}
-    after = noted(replace(with_derivatives(ship, core.derivatives), effects=core.effects), "effects", core.gear and {SteeringLag.__name__: core.gear})
+    after = noted(ship, "effects", {name: numbers for name, numbers in core.numbers.items() if numbers and _found_here(name, ship, core)})
     return replace(after, notes={**after.notes, "structural": structural})
+
+
+def _found_here(name: str, ship: Ship, core: Core) -> bool:
+    """Whether a part of her is in the ship file as this calibration found it."""
+    return name == SteeringLag.__name__ or (core.antenna is not None and core.antenna in ship.effects)
 
 
 def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str, float]]) -> dict[str, Any]:
@@ -129,11 +147,17 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "derivatives": [_row(d, ship, after) for d in core.derivatives],
         "unexcited": [d.unknown.name for d in core.derivatives if not d.excited],
         "fitted_by": by,
-        "gear": {name: {k: v for k, v in number.items() if k != "source"} for name, number in core.gear.items()},
+        **{key: _said(owner, after, core) for key, owner in (("gear", SteeringLag.__name__), ("antenna", AntennaOffset.__name__))},
         "usual": clearly_hers(after, hers), "between_voyages": hers["between_voyages"],
         "floor": asdict(core.floor), "temper": core.temper, "by_regime": hers["by_regime"],
         "held_out": [e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]} for b, e in zip(before, hers["held_out"], strict=True)],
     }  # fmt: skip
+
+
+def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
+    """The numbers of a part of her that this calibration put into the ship file."""
+    numbers = core.numbers[owner] if _found_here(owner, after, core) else {}
+    return {name: {k: v for k, v in number.items() if k != "source"} for name, number in numbers.items()}
 
 
 def _row(d: Derivative, ship: Ship, after: Ship) -> dict[str, Any]:
@@ -185,8 +209,9 @@ def told(result: dict[str, Any]) -> list[str]:
     lines += [f"  after {r['horizon_s']:.0f} s while {r['regime']}: {r['position_m']:.3g} m ({r['windows']} windows)" for r in result["by_regime"]]
     lines.append("  fitted to " + ("where she went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading"))
     if gear := result["gear"]:
-        size = ", ".join(f"{name} {g['value']:.3g} +- {g['sd']:.1g} {g['unit']}" for name, g in gear.items())
-        lines.append(f"  rudder_angle_deg is the rudder's order: the gear between them is now part of the model (SteeringLag: {size})")
+        lines.append(f"  rudder_angle_deg is the rudder's order: the gear between them is now part of the model (SteeringLag: {_sizes(gear)})")
+    if antenna := result["antenna"]:
+        lines.append(f"  place is measured elsewhere than the ship file had it: where is now part of the model (AntennaOffset: {_sizes(antenna)})")
     share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [f"usual on this ship: {i['name']} {i['value']:.3g} +- {i['sd']:.1g} (kept in mind by diagnose)" for i in result["usual"]]
@@ -195,3 +220,7 @@ def told(result: dict[str, Any]) -> list[str]:
     if result["unexcited"]:
         lines.append(f"not excited by these voyages, prior kept: {', '.join(result['unexcited'])}")
     return lines + [f"careful: {text}" for text in result["doubts"]]
+
+
+def _sizes(numbers: dict[str, dict[str, Any]]) -> str:
+    return ", ".join(f"{name} {n['value']:.3g} +- {n['sd']:.1g} {n['unit']}" for name, n in numbers.items())

@@ -4,6 +4,7 @@ import json
 
 import pytest
 
+from bench.real_faults import antenna_elsewhere
 from twin import cli
 from twin.physics.ship import load
 from twin.study.doubts import doubts
@@ -97,3 +98,24 @@ def test_a_file_that_is_no_voyage_leaves_no_ship_file(tmp_path, capsys):
     assert code == 4
     assert not (tmp_path / "x.toml").exists()
     assert len(capsys.readouterr().err.strip().splitlines()[-1]) > 20
+
+
+def test_an_antenna_that_stands_elsewhere_on_the_references_becomes_a_part_of_the_ship(voyages, tmp_path):
+    """64 m ahead of where the ship file has it, as if the receiver were never told her length; predictions are better for it."""
+    paths = []
+    for name in ("calm", "calm too", "nothing"):
+        paths.append(str(tmp_path / f"{name.replace(' ', '-')}.mcap"))
+        write_voyage(antenna_elsewhere(voyages[name], 64.0), paths[-1])
+    out, said = tmp_path / "better.toml", tmp_path / "said.json"
+    words = ["calibrate", *paths[:2], "--held-out", paths[2], "--ship", "kvlcc2", "-o", str(out), "--json", str(said)]
+    assert cli.main(words) == 0
+    ship, result = load(out), json.loads(said.read_text())
+    (antenna,) = [e for e in ship.effects if type(e).__name__ == "AntennaOffset"]
+    assert antenna.ahead == pytest.approx(64.0, rel=0.25)
+    assert result["antenna"]["ahead"]["value"] == antenna.ahead and "measured there" in ship.notes["effects"]["AntennaOffset"]["ahead"]["source"]
+    assert "AntennaOffset" in ship.notes["structural"]["beside_effects"]
+
+
+def test_a_ship_whose_antenna_is_where_her_file_has_it_gets_none(calibrated):
+    ship, said = calibrated
+    assert said["antenna"] == {} and not ship.effects
