@@ -18,7 +18,7 @@ TEMPER = 3.0  # when no reference voyage tells how far innovations are from whit
 OF_THE_DAY = ("Current", "VaryingCurrent", "ExternalForce", "TowForce")  # their numbers belong to a voyage, not to the ship
 WEATHER = ("Wind", "WaveDrift", "ShallowWater", "Bank")  # their causes belong to the voyage, their numbers to the ship
 SURROUNDINGS = (*WEATHER, *OF_THE_DAY)
-DAILY = ("Current", "ExternalForce")  # of these a little is there on every day, and another on the next: no water stands still
+DAILY = ("Current.north", "Current.east", "ExternalForce.north", "ExternalForce.east")  # a little on every day, another on the next
 
 
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
@@ -28,8 +28,8 @@ def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
 
 
 def daily(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
-    """What every day brings a little of."""
-    return [u for name in DAILY if name in catalogue for u in effect_unknowns(catalogue[name], model)]
+    """What every day brings a little of: no water and no air stands still."""
+    return [u for name in OF_THE_DAY if name in catalogue for u in effect_unknowns(catalogue[name], model) if u.label in DAILY]
 
 
 def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
@@ -57,7 +57,7 @@ def from_references(
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
     told = voyages(innovate(lines, [floor])[0], sd, temper)
     scatter = scattered(told, pull)
-    mean, covariance = of_another_day(*ship_of(told, scatter, pull), scatter, [(u.owner, u.unit) if u.owner in DAILY else None for u in unknowns])
+    mean, covariance = of_another_day(*ship_of(told, scatter, pull), scatter, [u.owner if u.label in DAILY else None for u in unknowns])
     information = np.linalg.inv(covariance)
     between = {u.label: float(np.sqrt(s)) for u, s in zip(unknowns, scatter, strict=True) if s}
     return Nuisance(unknowns, information, information @ mean), between
