@@ -201,3 +201,31 @@ def test_a_gap_is_no_sensor_that_hangs(sail):
     found = answers({n: x[keep] for n, x in columns.items()})
     assert not found["time_gaps"].ok
     assert found["frozen"].ok, found["frozen"].text
+
+
+def messages(columns, digits):
+    """A log with a row for each message: heading and rate twice a second, rudder and engine once, place and speed once, stamped as they came."""
+    rng, t, rows = np.random.default_rng(3), columns["time_s"], []
+    apart = ((HEADING, RATE), (RUDDER,), (TURNS,), ("north_m", "east_m", SURGE, SWAY))
+    for i in np.flatnonzero(np.isclose(t % 0.5, 0.0)):
+        rows += [(t[i] + rng.uniform(0.0, 0.03), names, i) for names in (apart if t[i] % 1.0 == 0.0 else apart[:1])]
+    rows.sort(key=lambda row: row[0])
+    out = {name: np.array([columns[name][i] if name in names else np.nan for _, names, i in rows]) for name in sum(apart, ())}
+    return out | {"time_s": np.round([stamp for stamp, _, _ in rows], digits)}
+
+
+@pytest.mark.parametrize("digits", [2, 3])
+def test_two_instruments_that_speak_at_one_moment_are_no_stamp_twice(sail, digits):
+    """Test: a row for each message, 2 % to a third of the stamps on two rows. Expected: no rounded stamps, no gaps."""
+    log = messages(sail(300.0), digits)
+    assert (np.diff(log["time_s"]) == 0.0).mean() > 0.01
+    found = answers(log)
+    assert found["time_stamps"].ok and "every 0.5" in found["time_stamps"].text, found["time_stamps"].text
+    assert found["time_gaps"].ok, found["time_gaps"].text
+
+
+def test_a_hole_in_a_log_of_messages_is_found_all_the_same(sail):
+    log = messages(sail(300.0), 3)
+    keep = (log["time_s"] < 100.0) | (log["time_s"] > 140.0)
+    found = answers({name: values[keep] for name, values in log.items()})
+    assert not found["time_gaps"].ok and "40" in found["time_gaps"].text

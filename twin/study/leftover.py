@@ -48,8 +48,10 @@ def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
 
 
 def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
-    """Whether a single effect cannot show in where she went, for without any she is led there already: in calm water, the readings decide."""
-    return len(chosen) == 1 and found[()].off_m <= found[chosen].floor_m and not any(at_sea(t, case.model) for t in case.tracks)
+    """Whether a single effect cannot show in where she went, for without any she is led there already, and with it no farther off: in calm
+    water, the readings decide."""
+    without, with_it = found[()].off_m, found[chosen]
+    return len(chosen) == 1 and with_it.off_m <= without <= with_it.floor_m and not any(at_sea(t, case.model) for t in case.tracks)
 
 
 def _leads(found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:

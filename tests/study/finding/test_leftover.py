@@ -84,8 +84,9 @@ def test_a_force_must_lead_her_better_than_without_it_and_a_fault_of_an_instrume
 
 def test_a_force_that_stands_alone_is_too_small_to_show_where_she_is_led_already_but_not_in_a_sea(judged):
     case, found = judged
-    led = {(): replace(found, off_m=0.9, floor_m=1.0), ("RudderWear",): replace(found, off_m=1.0, floor_m=1.0)}
+    led = {(): replace(found, off_m=0.9, floor_m=1.0), ("RudderWear",): replace(found, off_m=0.9, floor_m=1.0)}
     assert too_small(case, led, ("RudderWear",))
+    assert not too_small(case, led | {("RudderWear",): replace(found, off_m=0.91, floor_m=1.0)}, ("RudderWear",))  # it leads her astray
     assert not too_small(case, led | {(): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",))
     pair = ("RudderWear", "Wind")
     assert not too_small(case, led | {("Wind",): led[()], pair: led["RudderWear",]}, pair)
