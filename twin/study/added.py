@@ -21,6 +21,8 @@ def verdict(result: dict[str, Any], proof: Fall) -> str:
     floor = next(row["noise_floor"]["position_mae_m"] for row in result["horizons"] if row["horizon_s"] == proof.horizon_s)
     noise = f" (noise: {floor:.2g} m)" if proof.unit == "m" else ""
     sizes = f"{proof.before:.3g} to {proof.after:.3g} {proof.unit}{noise}"
+    if proof.idle:
+        return f"{names}: fitted to nothing on these voyages; with it this ship file leads her as it did without."
     if proof.proved:
         by = 100.0 * (1.0 - proof.after / proof.before)
         return f"With {names} the {proof.measure} falls by {by:.0f} %, from {sizes}, on measurements not used to fit it."

@@ -20,6 +20,7 @@ from .track import MEASURED
 FEWEST = 2.0  # windows that do not overlap, below which nothing can be proved
 ENOUGH, LENGTHS = 10.0, 3.0  # windows from which a horizon can prove something; and it sails so many ship lengths
 RESAMPLES = 2000
+NOTHING = "no reading"  # what an effect changes that was fitted to nothing
 UNCHANGED = 1e-6  # [m, rad] predictions of the position nearer than this are the same
 
 
@@ -39,6 +40,11 @@ class Fall:
     @property
     def proved(self) -> bool:
         return self.high95 < 0.0
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing is predicted otherwise: the effect was fitted to nothing."""
+        return self.measure.startswith(f"error of {NOTHING}")
 
     def sentence(self) -> str:
         change = f"{self.after - self.before:+.3g} ({self.low95:+.2g} to {self.high95:+.2g})"
@@ -99,7 +105,7 @@ def _judged(before: Sequence[Windows], after: Sequence[Windows], horizon_s: floa
         for i in range(3, len(MEASURED))
         if any(_read(b, i) and not np.allclose(a.promised[MODEL, ..., i], b.promised[MODEL, ..., i]) for b, a in zip(before, after, strict=True))
     ]
-    names = [list(MEASURED.values())[i] for i in touched] or ["no reading"]
+    names = [list(MEASURED.values())[i] for i in touched] or [NOTHING]
     noise = {i: float(np.mean([np.nanmean(np.abs(w.off(SENSORS)[..., i])) for w in before if _read(w, i)])) for i in touched}
 
     def size(w: Windows, k: int) -> np.ndarray:

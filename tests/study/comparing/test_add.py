@@ -139,6 +139,13 @@ def test_a_better_model_is_proved_better_and_chance_is_not(make, kvlcc2):
     assert fall(a, b, 120.0).proved and not fall(b, a, 120.0).proved and not fall(a, a, 120.0).proved
 
 
+def test_an_effect_that_was_fitted_to_nothing_is_said_to_change_nothing(make, kvlcc2):
+    windows = [predict(track(make("calm"), kvlcc2), Model.of(kvlcc2), HORIZONS_S)]
+    assert fall(windows, windows, 60.0).idle and not fall(windows, windows, 60.0).proved
+    better = [predict(windows[0].track, Model.of(kvlcc2).but(find("Current").absent(kvlcc2).but(north=0.3)), HORIZONS_S)]
+    assert not fall(windows, better, 60.0).idle
+
+
 def test_the_interval_of_the_fall_is_as_wide_as_overlapping_windows_make_it():
     from twin.study.proof import _bootstrap
 
