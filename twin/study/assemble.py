@@ -15,7 +15,7 @@ from .case import MOST_SEGMENTS, ODDS, ODDS_MEASURED, Case, settle
 from .columns import FORM, Unknown, core_unknowns, effect_unknowns, lateness_unknowns
 from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
-from .nuisance import TEMPER, WEATHER, daily, from_references, from_ship, lasting, nuisance_unknowns, temper_of
+from .nuisance import TEMPER, WEATHER, from_references, from_ship, lasting, nuisance_unknowns, temper_of, usual_unknowns
 from .respond import respond
 from .seaway import calmed, tossed
 from .segments import read_parts
@@ -45,19 +45,20 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     effects = tuple(u for name in candidates for u in effect_unknowns(catalogue[name], model))
     nuisance = nuisance_unknowns(model, catalogue)
     core = [u for u in nuisance if u.owner in ("core", FORM)]
-    extra = [u for u in (*lasting(model, catalogue), *daily(model, catalogue)) if u.owner not in candidates]
+    extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
     path = stored_floor(ship) or Floor()
     floor, temper = stored_floor(ship, "beside") or path, _temper(ship)
     if references:
         progress("reading the reference voyages")
-        lines, _ = _lines([track(v, ship) for v in references], model, nuisance, catalogue)
+        usual = usual_unknowns(model, catalogue)
+        lines, _ = _lines([track(v, ship) for v in references], model, usual, catalogue)
         if stored_floor(ship) is None:
             progress("finding the structural floor")
-            path = structural_floor(_of_core(lines, nuisance), core_unknowns(model))
-            floor = floor_beside(lines, nuisance, path)
-        temper = temper_of(innovate(lines, [floor])[0], nuisance)
-        known, _ = from_references(lines, nuisance, floor, temper)
+            path = structural_floor(_of_core(lines, usual), core_unknowns(model))
+            floor = floor_beside(lines, usual, path)
+        temper = temper_of(innovate(lines, [floor])[0], usual)
+        known, _ = from_references(lines, usual, floor, temper)
     else:
         known = from_ship(model, nuisance)
     progress("linearising")

@@ -2,15 +2,15 @@
 
 A hypothesis is a set of effects (none, one, two) and a state of the world (how large the floor, how restless the water). Its
 evidence integrates out everything else: the core's derivatives and the instruments' usual errors as the reference voyages left
-them, and a small amount of every effect (a spike far narrower than its plausible size), so that only what is clearly more than
-nothing counts. The parameters of its own effects are integrated over their priors (half-normal in a box with one side), so that a
-flexible effect pays for its freedom.
+them, and a small amount of every effect (a spike far narrower than its plausible size, or as wide as what any day brings of it),
+so that only what is clearly more than nothing counts. The parameters of its own effects are integrated over their priors
+(half-normal in a box with one side), so that a flexible effect pays for its freedom.
 
 Source: MacKay (2003) Information theory, inference, and learning algorithms, ch. 28; George & McCulloch (1993), spike and slab.
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
 
@@ -39,11 +39,13 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class Nuisance:
-    """What the reference voyages (or the ship file) say of core and instruments, in prior widths: information and its pull."""
+    """What the reference voyages (or the ship file) say of core and instruments, in prior widths: information and its pull; and how much of an
+    effect any day brings (`daily`: label -> standard deviation in the number's own unit), which is less than "there"."""
 
     unknowns: tuple[Unknown, ...]
     information: np.ndarray  # (C, C)
     pull: np.ndarray  # (C,)
+    daily: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,7 @@ class Reduced:
     base: float  # log evidence without any effect, not even a spike
     unknowns: tuple[Unknown, ...]
     at: np.ndarray  # (Q,) where the equations were linearised, in prior widths from "not there"
+    spike: np.ndarray | float = SPIKE  # (Q,) widths of "not there"
 
     def rows(self, effects: Sequence[str]) -> np.ndarray:
         return np.array([i for i, u in enumerate(self.unknowns) if u.owner in effects], dtype=int)
@@ -80,7 +83,8 @@ def reduce(
     half = np.linalg.solve(L, np.column_stack([A[:C, C:], b[:C] + nuisance.pull]))
     cross, mean = half[:, :-1], half[:, -1]
     base = -0.5 * (ee + float(normal.logdet.sum())) / temper + 0.5 * float(mean @ mean) - float(np.log(np.diag(L)).sum())
-    return Reduced(A[C:, C:] - cross.T @ cross, b[C:] - cross.T @ mean, base, tuple(effects), np.zeros(len(effects)) if at is None else at)
+    spike = np.array([np.clip(nuisance.daily.get(u.label, 0.0) / u.sd, SPIKE, 1.0) for u in effects])
+    return Reduced(A[C:, C:] - cross.T @ cross, b[C:] - cross.T @ mean, base, tuple(effects), np.zeros(len(effects)) if at is None else at, spike)
 
 
 def given(reduced: Reduced, z: np.ndarray, known: np.ndarray) -> Reduced:
@@ -88,7 +92,8 @@ def given(reduced: Reduced, z: np.ndarray, known: np.ndarray) -> Reduced:
     rest = ~known
     b = reduced.b - reduced.A[:, known] @ (z - reduced.at)[known]
     unknowns = tuple(u for u, is_left in zip(reduced.unknowns, rest, strict=True) if is_left)
-    return Reduced(reduced.A[np.ix_(rest, rest)], b[rest], reduced.base, unknowns, reduced.at[rest])
+    spike = np.broadcast_to(reduced.spike, known.shape)[rest]
+    return Reduced(reduced.A[np.ix_(rest, rest)], b[rest], reduced.base, unknowns, reduced.at[rest], spike)
 
 
 @dataclass(frozen=True)
@@ -102,7 +107,7 @@ class Posterior:
 
 def posterior(reduced: Reduced, effects: Sequence[str]) -> Posterior:
     """The effects' parameters when these effects are there and the others are not."""
-    width = np.full(len(reduced.unknowns), SPIKE)
+    width = np.broadcast_to(reduced.spike, len(reduced.unknowns)).astype(float)
     width[reduced.rows(effects)] = 1.0
     K = reduced.A * np.outer(width, width)
     K[np.diag_indices_from(K)] += 1.0
@@ -154,18 +159,19 @@ def _opened(
     """Log evidence when the spikes of each of `sets` become slabs beside those of `held` (`start`: the posterior under `held`)."""
     rows = {name: reduced.rows((name,)) for name in {n for chosen in sets for n in chosen}}
     own = reduced.rows(held)
-    open_up = 1.0 - 1.0 / SPIKE**2  # what a spike's precision loses when it becomes a slab
+    spike = np.broadcast_to(reduced.spike, len(reduced.unknowns))
     out = []
     for chosen in sets:
         at = np.concatenate([rows[name] for name in chosen])
+        open_up = 1.0 - 1.0 / spike[at] ** 2  # what a spike's precision loses when it becomes a slab
         inner = start.covariance[np.ix_(at, at)]
-        K = np.eye(at.size) + open_up * inner
-        mean = np.linalg.solve(K, start.z[at])
-        change = -0.5 * open_up * float(start.z[at] @ mean) - 0.5 * float(np.linalg.slogdet(K)[1]) + at.size * np.log(SPIKE)
+        K = np.eye(at.size) + inner * open_up
+        mean = open_up * np.linalg.solve(K, start.z[at])
+        change = -0.5 * float(start.z[at] @ mean) - 0.5 * float(np.linalg.slogdet(K)[1]) + float(np.log(spike[at]).sum())
         both = np.concatenate([at, own])
         cross = start.covariance[np.ix_(both, at)]
-        wide = start.covariance[np.ix_(both, both)] - open_up * cross @ np.linalg.solve(K, cross.T)
-        where = start.z[both] - open_up * cross @ mean
+        wide = start.covariance[np.ix_(both, both)] - cross @ (open_up[:, None] * np.linalg.solve(K, cross.T))
+        where = start.z[both] - cross @ mean
         out.append((chosen, start.log_evidence + change + _inside(reduced, both, where, wide)))
     return out
 

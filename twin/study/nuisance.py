@@ -39,10 +39,14 @@ def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknow
 
 
 def nuisance_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
-    """Core derivatives and what they leave out, what a healthy ship usually shows of every lasting effect and a calm day of its water, and how
-    late her instruments are."""
-    usual = (replace(u, sd=USUAL * u.sd) for u in (*lasting(model, catalogue), *daily(model, catalogue)))
+    """Core derivatives and what they leave out, what a healthy ship usually shows of every lasting effect, and how late her instruments are."""
+    usual = (replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue))
     return (*core_unknowns(model), *form_unknowns(), *usual, *lateness_unknowns())
+
+
+def usual_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
+    """The same, and what the days of the reference voyages brought."""
+    return (*nuisance_unknowns(model, catalogue), *(replace(u, sd=USUAL * u.sd) for u in daily(model, catalogue)))
 
 
 def from_references(
@@ -57,23 +61,21 @@ def from_references(
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
     told = voyages(innovate(lines, [floor])[0], sd, temper)
     scatter = scattered(told, pull)
-    mean, covariance = of_another_day(*ship_of(told, scatter, pull), scatter, [u.owner if u.label in DAILY else None for u in unknowns])
-    information = np.linalg.inv(covariance)
+    mean, covariance = ship_of(told, scatter, pull)
     between = {u.label: float(np.sqrt(s)) for u, s in zip(unknowns, scatter, strict=True) if s}
-    return Nuisance(unknowns, information, information @ mean), between
+    covariance = covariance + np.diag(scatter)
+    hers = [i for i, u in enumerate(unknowns) if u.label not in DAILY]
+    information = np.linalg.inv(covariance[np.ix_(hers, hers)])
+    sizes = of_any_day(mean, np.diag(covariance), unknowns)
+    usual = {u.label: float(u.sd * size) for u, size in zip(unknowns, sizes, strict=True) if u.label in DAILY}
+    return Nuisance(tuple(unknowns[i] for i in hers), information, information @ mean[hers], usual), between
 
 
-def of_another_day(
-    mean: np.ndarray, covariance: np.ndarray, scatter: np.ndarray, daily: Sequence[object | None]
-) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and covariance on the next voyage: the ship's own, scattered about them. Of what a day brings (`daily`: what it is a part of, None
-    of the ship's own) only how much of it there was stays known, alike for the parts of one thing: no wind blows from the north alone."""
-    apart = np.array([part is not None for part in daily])
-    much = np.diag(covariance) + scatter + mean**2
-    for whole in {part for part in daily if part is not None}:
-        parts = [i for i, part in enumerate(daily) if part == whole]
-        much[parts] = much[parts].mean()
-    return np.where(apart, 0.0, mean), np.where(apart[:, None] | apart, np.diag(much), covariance + np.diag(scatter))
+def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknown]) -> np.ndarray:
+    """(C,) how much of each number a day brings, when these days had such a mean and spread: alike for the parts of one effect, for no wind
+    blows from the north alone."""
+    square, owner = mean**2 + variance, np.array([u.owner for u in unknowns])
+    return np.sqrt([square[(owner == u.owner) & [v.label in DAILY for v in unknowns]].mean() if u.label in DAILY else 0.0 for u in unknowns])
 
 
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
@@ -90,7 +92,7 @@ def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
         covariance = np.array(stored["covariance"])[np.ix_(theirs, theirs)] / np.outer(sd, sd)
         information[np.ix_(mine, mine)] = np.linalg.inv(covariance + 1e-9 * np.eye(len(mine)))
         mean[mine] = np.array(stored["offset"])[theirs] / sd
-    return Nuisance(unknowns, information, information @ mean)
+    return Nuisance(unknowns, information, information @ mean, stored.get("daily", {}))
 
 
 def temper_of(normal: Normal, unknowns: Sequence[Unknown]) -> float:

@@ -13,6 +13,7 @@ from .case import ODDS_WEAK, WORLDS, Case
 from .evidence import Hypothesis, Reduced, posterior, weigh_all
 from .led import Led, led
 from .leftover import NEARLY, explains
+from .nuisance import DAILY
 from .refine import Found, Sets, boxed, refine
 
 MOST = 2  # effects at once
@@ -82,7 +83,7 @@ class _Book:
         ranked = self.weighed()
         first = 0 if not ranked[0].effects and WORLDS[ranked[0].world].plain else SINGLES  # none when the plain answer is that nothing is there
         singles = self._promising()
-        self.first, self.last = singles[:first], singles[first : first + LAST]
+        self.first, self.last = singles[:first] + self._of_the_day() * (first > 0), singles[first : first + LAST]
 
     def _enter(self, h: Hypothesis) -> None:
         if np.isfinite(h.log_weight):
@@ -103,6 +104,10 @@ class _Book:
         nothing = {h.world: h.log_evidence for h in ranked if not h.effects}
         singles: list[Sets] = [h.effects for h in ranked if len(h.effects) == 1 and h.log_evidence > nothing.get(h.world, -np.inf) + EARNED]
         return list(dict.fromkeys(singles))
+
+    def _of_the_day(self) -> list[Sets]:
+        """What every day brings a little of: to first order what is usual takes the credit of much, too, and only its own size tells."""
+        return [(name,) for name in dict.fromkeys(label.split(".")[0] for label in DAILY) if name in self.case.candidates]
 
     def next(self) -> Sets | None:
         """What to judge about its own size next; each effect of a pair alone before the pair: it may do what took two."""

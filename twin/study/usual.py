@@ -13,7 +13,7 @@ from twin.physics.ship import Ship
 from .derivatives import first_prior
 from .innovations import Floor, innovate, linearise
 from .jsonable import plain
-from .nuisance import from_references, nuisance_unknowns, temper_of
+from .nuisance import from_references, nuisance_unknowns, temper_of, usual_unknowns
 from .sailed import fed
 from .structure import floor_beside
 from .track import Track
@@ -25,17 +25,18 @@ def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
     """Offsets from the ship file and their covariance, in the unknowns' own units; by how much numbers differ from voyage to voyage; and the
     floor `beside` all that. A diagnosis starts from here."""
     model, known = Model.of(ship), catalogue()
-    unknowns = nuisance_unknowns(model, known)
+    unknowns = usual_unknowns(model, known)
     lines = [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
     beside = floor_beside(lines, unknowns, floor)
     temper = temper_of(innovate(lines, [beside])[0], unknowns)
     nuisance, between = from_references(lines, unknowns, beside, temper, np.array([first_prior(u, ship).centre for u in unknowns]))
-    sd = np.array([u.sd for u in unknowns])
+    sd = np.array([u.sd for u in nuisance.unknowns])
     covariance = np.linalg.inv(nuisance.information)
     return {
-        "labels": [u.label for u in unknowns],
+        "labels": [u.label for u in nuisance.unknowns],
         "offset": (sd * (covariance @ nuisance.pull)).tolist(),
         "covariance": (covariance * np.outer(sd, sd)).tolist(),
+        "daily": nuisance.daily,
         "between_voyages": between,
         "beside": plain(asdict(beside)),
         "temper_beside": temper,

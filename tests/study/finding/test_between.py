@@ -6,7 +6,7 @@ import pytest
 from twin.study.between import Told, scattered, ship_of
 from twin.study.columns import Unknown
 from twin.study.innovations import Normal
-from twin.study.nuisance import of_another_day, temper_of
+from twin.study.nuisance import of_any_day, temper_of
 
 P, SAID = 6, 400.0  # numbers, and how much a voyage says of each (in priors)
 
@@ -92,10 +92,9 @@ def test_what_the_unknowns_explain_tempers_nothing_and_what_they_cannot_does():
     assert told[4.0] == pytest.approx(4.0, rel=0.3)
 
 
-def test_what_a_day_brings_is_not_carried_to_the_next_but_how_much_it_was_is_whatever_its_direction():
-    mean, scatter = np.array([1.0, 2.0, -3.0, 4.0]), np.array([0.5, 0.1, 0.0, 0.3])
-    covariance = np.diag([0.5, 0.6, 0.7, 0.8]) + 0.1
-    later, how_much = of_another_day(mean, covariance, scatter, [None, "stream", None, "stream"])
-    np.testing.assert_allclose(later, [1.0, 0.0, -3.0, 0.0])
-    stream = 0.5 * ((0.7 + 0.1 + 2.0**2) + (0.9 + 0.3 + 4.0**2))
-    np.testing.assert_allclose(how_much, [[1.1, 0.0, 0.1, 0.0], [0.0, stream, 0.0, 0.0], [0.1, 0.0, 0.8, 0.0], [0.0, 0.0, 0.0, stream]])
+def test_what_any_day_brings_is_as_much_as_the_days_had_whatever_its_direction():
+    named = [("core", "X_uu"), ("Current", "north"), ("Current", "east"), ("ExternalForce", "north"), ("ExternalForce", "turn_north")]
+    unknowns = [Unknown(owner, name, "", 0.0, 1.0, -9.0, 9.0) for owner, name in named]
+    much = of_any_day(np.array([1.0, 2.0, -3.0, 0.5, 7.0]), np.array([0.1, 0.6, 0.8, 0.75, 9.0]), unknowns)
+    stream = np.sqrt(0.5 * ((0.6 + 2.0**2) + (0.8 + 3.0**2)))
+    np.testing.assert_allclose(much, [0.0, stream, stream, 1.0, 0.0])

@@ -1,10 +1,12 @@
 """The linear algebra of the diagnosis against itself, done the long way."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from twin.study.columns import Unknown
-from twin.study.evidence import Reduced, given, log_evidence, posterior, weigh_all, weigh_with
+from twin.study.evidence import SPIKE, Reduced, given, log_evidence, posterior, weigh_all, weigh_with
 
 
 def unknowns():
@@ -27,6 +29,15 @@ def test_low_rank_steps_give_the_evidence_of_the_whole_posterior(reduced):
     for chosen, value in weigh_all(reduced, ["A", "B", "C"]):
         direct = log_evidence(reduced, chosen, posterior(reduced, chosen))
         assert value == pytest.approx(direct, abs=1e-8), chosen
+
+
+def test_the_same_where_any_day_brings_some_of_an_effect(reduced):
+    """B is no spike but half as wide as when it is there: then it takes some of the credit also when it is not."""
+    usual = replace(reduced, spike=np.array([SPIKE, 0.5, 0.5, SPIKE]))
+    for chosen, value in weigh_all(usual, ["A", "B", "C"]):
+        assert value == pytest.approx(log_evidence(usual, chosen, posterior(usual, chosen)), abs=1e-8), chosen
+    odds = [dict(weigh_all(r, ["A", "B", "C"])) for r in (reduced, usual)]
+    assert odds[1][("B",)] - odds[1][()] < 0.2 * (odds[0][("B",)] - odds[0][()])
 
 
 def test_the_set_that_made_the_data_has_the_most_evidence(reduced):
