@@ -22,6 +22,7 @@ SINGLES = 3  # of which so many single effects first, unless nothing at all expl
 LAST = 6  # and so many more single effects, when nothing plain was found, or what was found (nothing, too) leaves too much
 CLOSE = 3.0  # log odds behind the best within which a hypothesis is judged about its own size
 VISIBLE = 4.0  # log odds that an effect of plausible size would have to show, or the data could not have seen it
+MUCH = 0.05  # of an effect's plausible size that any day brings, from which it is judged about its own size without having earned it
 EARNED = 1.5  # log evidence that an effect must add to deserve a second look
 
 Searched = tuple[list[Hypothesis], dict[Sets, Found], dict[str, bool]]
@@ -106,8 +107,9 @@ class _Book:
         return list(dict.fromkeys(singles))
 
     def _of_the_day(self) -> list[Sets]:
-        """What every day brings a little of: to first order what is usual takes the credit of much, too, and only its own size tells."""
-        return [(name,) for name in dict.fromkeys(label.split(".")[0] for label in DAILY) if name in self.case.candidates]
+        """What every day brings much of on this ship: to first order what is usual takes the credit, and only its own size tells."""
+        usual = {u.owner: self.case.nuisance.daily.get(u.label, 0.0) / u.sd for u in self.case.effects if u.label in DAILY}
+        return [(name,) for name, width in usual.items() if width > MUCH]
 
     def next(self) -> Sets | None:
         """What to judge about its own size next; each effect of a pair alone before the pair: it may do what took two."""

@@ -79,3 +79,12 @@ def test_an_effect_that_ended_at_nothing_says_no_more_than_the_rest(case, monkey
     assert ("RudderWear",) in held.found
     assert ("RudderWear",) not in {h.effects for h in held.weighed()}
     assert held.next() != ("RudderWear",)
+
+
+def test_what_any_day_brings_much_of_is_judged_about_its_own_size_without_having_earned_it(case):
+    sizes = {u.label: u.sd for u in case.effects}
+    for share, judged in ((0.02, []), (0.1, [("Current",)])):
+        daily = {label: share * sizes[label] for label in ("Current.north", "Current.east")}
+        usual = replace(case, nuisance=replace(case.nuisance, daily=daily))
+        assert book(usual)._of_the_day() == judged
+        assert [s for s in book(usual).first if s == ("Current",)][:1] == judged
