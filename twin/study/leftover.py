@@ -48,10 +48,11 @@ def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
 
 
 def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
-    """Whether a single effect cannot show in where she went, for without any she is led there already, and with it no farther off: in calm
-    water, the readings decide."""
-    without, with_it = found[()].off_m, found[chosen]
-    return len(chosen) == 1 and with_it.off_m <= without <= with_it.floor_m and not any(at_sea(t, case.model) for t in case.tracks)
+    """Whether a single effect cannot show in where she went, for without any she is led there already, and with it no farther off: then
+    the readings decide, in a sea of the sea's own force alone (of others, they take a wave's pull for a ship's)."""
+    if len(chosen) != 1 or not found[chosen].off_m <= found[()].off_m <= found[chosen].floor_m:
+        return False
+    return "H_s" in case.catalogue[chosen[0]].needs or not any(at_sea(t, case.model) for t in case.tracks)
 
 
 def _leads(found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:

@@ -94,3 +94,4 @@ def test_a_force_that_stands_alone_is_too_small_to_show_where_she_is_led_already
     waves = np.full(len(track), 0.01 * case.model.ship.L_pp)
     tossed = replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),))
     assert not too_small(tossed, led, ("RudderWear",))
+    assert too_small(tossed, led | {("WaveDrift",): led["RudderWear",]}, ("WaveDrift",))
