@@ -5,6 +5,7 @@ from typing import Any
 
 from bench import real_faults
 
+OTHERS = "On the other runs together (which also chose between two ways of fitting, and whether an antenna was moved)"
 CYCLES = 3  # whole zigzag cycles, for a mean of the rudder angle to say something
 HEAD = """# Real data: KVLCC2 in two towing tanks
 
@@ -25,7 +26,7 @@ def _basin(b: dict[str, Any]) -> str:
         f"## {b['basin']}: {b['words']}",
         f"Ship file `{b['ship']}`: published coefficients (Yasukawa and Yoshimura 2015), nothing fitted to these runs.",
         _runs(b),
-        f"### Calibrated on some, judged on the others\n\nFitted to {fitted}. On the other runs together:\n\n" + _before_after(b),
+        f"### Calibrated on some, judged on the others\n\nFitted to {fitted}. {OTHERS}:\n\n" + _before_after(b),
         _floor(b),
         "### The rudder's asymmetry\n\n" + _helm(b["helm"]),
         *(_diagnosis(d) for d in b["diagnoses"]),

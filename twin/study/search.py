@@ -84,7 +84,8 @@ class _Book:
         ranked = self.weighed()
         first = 0 if not ranked[0].effects and WORLDS[ranked[0].world].plain else SINGLES  # none when the plain answer is that nothing is there
         singles = self._promising()
-        self.first, self.last = singles[:first] + self._of_the_day() * (first > 0), singles[first : first + LAST]
+        self.first = [*singles[:first], *(self._of_the_day() if first else [])]
+        self.last = singles[first : first + LAST]
 
     def _enter(self, h: Hypothesis) -> None:
         if np.isfinite(h.log_weight):
