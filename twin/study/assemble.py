@@ -17,7 +17,7 @@ from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, WEATHER, from_references, from_ship, lasting, nuisance_unknowns, temper_of, usual_unknowns
 from .respond import respond
-from .seaway import calmed, tossed
+from .seaway import rocked
 from .segments import read_parts
 from .structure import floor_beside, structural_floor
 from .track import Track, track
@@ -52,7 +52,7 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     if references:
         progress("reading the reference voyages")
         usual = usual_unknowns(model, catalogue)
-        lines, _ = _lines([track(v, ship) for v in references], model, usual, catalogue)
+        lines = _lines([track(v, ship) for v in references], model, usual, catalogue)
         if stored_floor(ship) is None:
             progress("finding the structural floor")
             path = structural_floor(_of_core(lines, usual), core_unknowns(model))
@@ -62,10 +62,11 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     else:
         known = from_ship(model, nuisance)
     progress("linearising")
-    lines, excited = _lines(tracks, model, unknowns, catalogue, MOST_SEGMENTS)
+    rocking = [rocked(t, model.without_inputs(t.missing())[0], unknowns, catalogue, floor) for t in tracks]
     case = Case(
-        tracks, model, catalogue, candidates, unknowns, effects, known, floor, path, temper, _odds(tracks, candidates, ship), lines, excited,
-        floor.white,
+        tracks, model, catalogue, candidates, unknowns, effects, known, floor, path, temper, _odds(tracks, candidates, ship),
+        _lines(rocking, model, unknowns, catalogue, MOST_SEGMENTS), any(manoeuvred(t, ship) for t in tracks), floor.white,
+        tuple(rocking),
     )  # fmt: skip
     return settle(case)
 
@@ -100,18 +101,11 @@ def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue
 
 def _lines(
     tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], most: int | None = None
-) -> tuple[tuple[Linear, ...], bool]:
-    """The tracks without their waves, linearised where they will be read (`most` segments); and whether any of them holds a manoeuvre."""
+) -> tuple[Linear, ...]:
+    """The tracks, linearised where they will be read (`most` segments)."""
     models = [model.without_inputs(t.missing())[0] for t in tracks]
-    calm = [calmed(t, m) for t, m in zip(tracks, models, strict=True)]
-    parts = read_parts(calm, float(model.ship.scale("time")), most)
-    lines = []
-    for t, m, quiet, part in zip(tracks, models, calm, parts, strict=True):
-        slack = _roughly_known(part, m)
-        if quiet is t:
-            slack = np.hypot(slack, tossed(t, m)[np.searchsorted(t.t, part.t)])
-        lines.append(replace(linearise(part, m, unknowns, catalogue), slack=slack))
-    return tuple(lines), any(manoeuvred(t, model.ship) for t in calm)
+    parts = read_parts(tracks, float(model.ship.scale("time")), most)
+    return tuple(replace(linearise(p, m, unknowns, catalogue), slack=_roughly_known(p, m)) for p, m in zip(parts, models, strict=True))
 
 
 def _roughly_known(t: Track, model: Model) -> np.ndarray:

@@ -15,7 +15,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 
 from .antenna import clearly, placed
-from .columns import core_unknowns
+from .columns import Unknown, core_unknowns
 from .derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
 from .doubts import doubts
 from .fit import Fit, fit
@@ -26,7 +26,8 @@ from .innovations import Floor
 from .jsonable import plain
 from .nuisance import TEMPER, instruments, temper_of
 from .rollout import rolled_out
-from .sailed import Sailed, read_all
+from .sailed import Sailed, fed, read_all
+from .seaway import rocked
 from .structure import structural_floor
 from .track import Track
 from .usual import clearly_hers, usual
@@ -75,7 +76,9 @@ def calibrate(
     fitted: Sequence[Sailed], held_out: HeldOut, ship: Ship, progress: Callable[[str], None] = lambda text: None, by: str | None = None
 ) -> Calibrated:
     """Fit the core to the tracks. `by`: one of FITTED_BY; None: the one that predicts what was held out better."""
-    tracks = [s.track for s in fitted]
+    progress("asking whether waves swing her")
+    tracks = _rocked([s.track for s in fitted], ship)
+    held_out = list(zip(_rocked([t for t, _ in held_out], ship), [first for _, first in held_out], strict=True))
     core = _core(tracks, ship, progress)
     ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
     if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
@@ -91,9 +94,20 @@ def calibrate(
     return Calibrated(after, plain(_result(ship, after, core, way, errors(Model.of(ship), held_out))))
 
 
+def _rocked(tracks: Sequence[Track], ship: Ship) -> list[Track]:
+    """The tracks with what waves do to her, as far as her first model can tell."""
+    model, known = Model.of(ship), catalogue()
+    unknowns = (*_unknowns(model), *(() if model.lags else gear_unknowns(model)))
+    return [rocked(t, fed(model, t)[0], unknowns, known, Floor()) for t in tracks]
+
+
+def _unknowns(model: Model) -> tuple[Unknown, ...]:
+    return tuple(first_prior(u, model.ship) for u in (*core_unknowns(model), *instruments(model, catalogue())))
+
+
 def _core(tracks: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
     model, known = Model.of(ship), catalogue()
-    unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
+    unknowns = _unknowns(model)
     progress("fitting the core")
     rough = fit(tracks, model, unknowns, known, Floor(), temper=TEMPER, rounds=4)
     progress("asking whether the rudder that was recorded is its order")

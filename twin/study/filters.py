@@ -1,7 +1,8 @@
 """Many Kalman filters side by side, each with its tangents: every segment of every track, under every floor.
 
-The state is delta = (x, y, psi, u, v, r), b and c as in innovations.py. X holds its mean and how that depends on each unknown, C its
-covariance; both are corrected by the readings of a step, and carried on to the next.
+The state is delta = (x, y, psi, u, v, r), b and c as in innovations.py, and in a sea that was seen to work the waves' accelerations with
+what carries them on. X holds its mean and how that depends on each unknown, C its covariance; both are corrected by the readings of a
+step, and carried on to the next.
 """
 
 from dataclasses import dataclass
@@ -9,21 +10,23 @@ from dataclasses import dataclass
 import numpy as np
 
 MOTION, SPEEDS, SLOW, FLOW = slice(0, 6), slice(3, 6), slice(6, 9), slice(9, 11)  # places in the state
-STATES = 11
-DIAGONAL = np.arange(STATES)
+WAVE, CARRIER = slice(11, 14), slice(14, 17)
+STATES, AT_SEA = 11, 17
+DIAGONAL = np.arange(AT_SEA)
 
 
 @dataclass(frozen=True)
 class Stretches:
     """Segments begun together, of T steps and S of them; what is not there (a reading, a segment's end) is NaN in e."""
 
-    F: np.ndarray  # (T, S, 11, 11)
-    H: np.ndarray  # (T, S, 8, 11)
+    F: np.ndarray  # (T, S, n, n): n is STATES, or AT_SEA
+    H: np.ndarray  # (T, S, 8, n)
     e: np.ndarray  # (T, S, 8)
     defect: np.ndarray  # (T, S, 6)
     turn: np.ndarray  # (T, S, 3, 3) body velocities to d(x, y, psi)/dt
     A: np.ndarray  # (T, S, 3, P)
     R: np.ndarray  # (T, S, 8, P)
+    fresh: np.ndarray | None = None  # (T, S, 3, 2, 2) of wave and carrier, the share of variance that is new after a step
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,7 @@ class Noise:
     flow: np.ndarray  # (K,) of c
     new_b: np.ndarray  # (K,)
     new_c: np.ndarray  # (K,)
+    wave: np.ndarray | None = None  # (T, K, 3) of the waves' accelerations
 
 
 class Filters:
@@ -45,7 +49,7 @@ class Filters:
 
     def __init__(self, told: Stretches, noise: Noise, C: np.ndarray) -> None:
         self.told, self.noise, self.C = told, noise, C
-        self.X = np.zeros((len(C), STATES, 1 + told.A.shape[-1]))
+        self.X = np.zeros((*C.shape[:2], 1 + told.A.shape[-1]))
 
     def correct(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """By the readings of step k; gives the whitened innovations with their tangents (K, 8, 1 + P), the root of their covariance, and
@@ -79,3 +83,7 @@ class Filters:
         self.C = F @ self.C @ F.transpose(0, 2, 1)
         for part, variance in ((SPEEDS, noise.fast), (SLOW, noise.new_b[:, None] * noise.slow[k]), (FLOW, (noise.new_c * noise.flow)[:, None])):
             self.C[:, DIAGONAL[part], DIAGONAL[part]] += variance
+        if told.fresh is not None and noise.wave is not None:
+            for i, a in enumerate((WAVE, CARRIER)):
+                for j, b in enumerate((WAVE, CARRIER)):
+                    self.C[:, DIAGONAL[a], DIAGONAL[b]] += told.fresh[k][row][:, :, i, j] * noise.wave[k]

@@ -20,7 +20,7 @@ from twin.physics.state import Force, Situation
 
 from .innovations import MEMORY_B, Floor, busy, standard
 from .respond import lagged, readings
-from .start import noisy, seen, true_motion
+from .start import noisy, seen, steadied, true_motion
 from .track import READINGS, STATE, Track
 
 HORIZONS_S = (10.0, 60.0, 120.0)
@@ -81,7 +81,7 @@ def predict(
     measured = seen(track)
     start = _starts(track, np.isfinite(measured[:, :3]).all(1), round(min(horizons_s) / track.h), stride_s)
     rng = np.random.default_rng(seed)
-    state, wind_to = true_motion(track, model)
+    state, wind_to = true_motion(steadied(track), model)
     fuzz = noisy(track, model, rng)[start]
     begin = np.concatenate([state[start], state[start] + fuzz, state[start] + fuzz]).T
     run = _Run(track, model, start, wind_to, _slow(track, model, floor, start, rng))
@@ -98,7 +98,7 @@ def coarse(track: Track, model: Model, horizon_s: float, leads: int, stride_s: f
     lead = steps * np.unique(np.linspace(0.0, horizon_s / track.h / steps, leads + 1)[1:].round().clip(1).astype(int))
     measured = seen(track)
     start = _starts(track, np.isfinite(measured[:, :3]).all(1), int(lead[-1]), stride_s)
-    state, wind_to = true_motion(track, model)
+    state, wind_to = true_motion(steadied(track), model)
     with np.errstate(all="ignore"):
         kept = _Run(track, model, start, wind_to, None).through(tuple(state[start].T), lead, steps)
     promised = np.nan_to_num(kept, nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)

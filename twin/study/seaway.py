@@ -1,64 +1,89 @@
-"""Waves taken out of a track before it is judged: what swings faster than the ship manoeuvres is the sea's doing, not hers.
+"""Waves: what swings a ship faster than she manoeuvres is the sea's doing, not hers, and is not noise either.
 
 The motion of first order in a seaway is large and swings about zero. A filter that takes it for noise that forgets itself from one
-reading to the next believes far too much, or trusts nothing. So when the sea is seen to work (the acceleration that the model leaves
-over is mostly faster than the ship), the path is averaged over one period of the waves, and the readings over stretches as long.
-A boat that is quicker than the waves follows them: what they do to her cannot be averaged away and counts as doubt instead.
-Separation of wave-frequency and low-frequency motion: Fossen (2021), sec. 13.2.
+reading to the next believes far too much, or trusts nothing. So the filter carries the waves' accelerations in narrow bands of their
+own (`innovations.py`), as fast and as strong as this voyage shows them: what the model leaves over along the path that is swifter than
+a ship manoeuvres. Whether that is a sea at all, the readings say.
+Waves in a filter: Saelid, Jenssen & Balchen (1983) IEEE Trans. Automatic Control 28; Fossen (2021) sec. 13.2.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from twin.physics.core import GRAVITY
+from twin.physics.effect import Effect
 from twin.physics.model import Model
 
+from .columns import Unknown
+from .fit import evidence
+from .innovations import Floor, Linear, innovate, linearise
 from .respond import respond
-from .track import READINGS, Track
+from .segments import read_parts, segments
+from .start import running_mean, wave_period_s
+from .track import Track
 
-SLOW = 0.6  # of L/U_0: what swings with a longer period may be the ship's own doing
+SWIFT = 3.0  # L/U_0: what swings about the mean over so long a time may be waves
+LATELY = 8.0  # L/U_0: on another course waves are met otherwise
+SLOW = 1.0  # L/U_0: what swings with a longer period may be the ship's own doing
+SEEN = 0.5  # share of what is swift in what is left over of sway or yaw, from which waves are looked for
 SEA = 0.003  # wave height in ship lengths from which a measured sea may move her
-SWIFT = 3.0  # L/U_0: what swings about the mean over so long a time is no steady force
-WORKING = 10.0  # energy of the swift part over that of the slow part from which the sea is seen to work
-PATH = [READINGS.index(name) for name in ("x", "y", "psi", "u", "v", "r", "u", "v")]  # what of the path each reading follows
+MOST_SEGMENTS = 12  # by which a sea is judged
+STRENGTHS = (0.5, 1.0, 2.0)  # of the waves, in units of what is seen of them
+WHITES = (1.0, 8.0, 32.0)  # and of the noise that might be there instead
 
 
-def calmed(track: Track, model: Model) -> Track:
-    """The track without the waves' motion; the same track when no waves are seen. `model` must have its inputs on this track."""
-    steps = wave_steps(track, model)
-    if steps < 2:
+def rocked(track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], floor: Floor) -> Track:
+    """The track with what waves do to her, if that is likelier than any noise would be (with the unknowns as large as they may be); else
+    the same track. `model` must have its inputs on it."""
+    swung = _swung(track, model)
+    if swung.swell is None:
         return track
-    state = np.column_stack([_mean(column, steps) for column in track.state.T])
-    off = track.measured - state[:, PATH]
-    off[:, 2] = (off[:, 2] + np.pi) % (2.0 * np.pi) - np.pi
-    whole = len(track) // steps * steps
-    blocks = off[:whole].reshape(-1, steps, off.shape[1])
-    some = np.isfinite(blocks).any(1)
-    mean = np.where(some, np.nansum(blocks, 1) / np.maximum(np.isfinite(blocks).sum(1), 1), np.nan)
-    middle = np.arange(steps // 2, whole, steps)
-    measured = np.full_like(track.measured, np.nan)
-    measured[middle] = state[middle][:, PATH] + mean
-    weather = {name: _mean(values, steps) if name == "phi" else values for name, values in track.weather.items()}
-    delta, n = (np.where(track.whole, _mean(x, steps), x) for x in (track.delta, track.n))  # as slow as what they do
-    return replace(track, state=state, measured=measured, sd=_scatter(mean, track.sd), weather=weather, delta=delta, n=n)
+    calm, rough = (
+        linearise(read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0], model, unknowns, catalogue) for t in (track, swung)
+    )
+    sd = np.array([u.sd for u in unknowns])
+
+    def likely(line: Linear) -> float:
+        return max(evidence(n, sd) for n in innovate([line], [floor.scaled(white=k) for k in WHITES]))
+
+    if likely(rough) < likely(calm):
+        return track
+    other = {k: likely(replace(rough, track=_times(rough.track, k))) for k in STRENGTHS}
+    return _times(swung, max(other, key=lambda k: other[k]))
 
 
-def tossed(track: Track, model: Model) -> np.ndarray:
-    """(N, 3) acceleration that waves give a ship which meets some of them as slowly as she moves herself [m/s2, m/s2, rad/s2], where they
-    were measured: what the model leaves over that is swifter than a steady force, but no more than H_s/4 omega^2 aside and ahead, and
-    its change along the hull (or along the wave, k = omega^2/g, when that is longer). In a following sea she meets them at
-    omega - omega^2 U/g."""
-    if not at_sea(track, model) or "T_p" not in track.weather or not track.whole.any():
-        return np.zeros((len(track), 3))
-    time, U = float(model.ship.scale("time")), float(model.ship.U_0)
-    omega = 2.0 * np.pi / np.maximum(track.weather["T_p"], 0.1)
-    slow = np.abs(omega - omega**2 * U / GRAVITY) < 2.0 * np.pi / (SLOW * time)
-    most = np.nan_to_num(np.where(slow, track.weather["H_s"] / 4.0 * omega**2, 0.0))
-    most = np.column_stack([most, most, most * np.minimum(omega**2 / GRAVITY, 1.0 / float(model.ship.L_pp))])
+def _times(track: Track, strength: float) -> Track:
+    """The track in waves so many times as strong."""
+    return track if track.swell is None else replace(track, swell=track.swell * np.repeat([1.0, strength], 3))
+
+
+def _swung(track: Track, model: Model) -> Track:
+    """The track with what waves may do to her, or the same track where nothing swings her or there is too little of it."""
+    time = float(model.ship.scale("time"))
+    if not segments([track], time):
+        return track
     left = _left_over(track, model)
-    steady = np.column_stack([_mean(column, max(1, round(SWIFT * time / track.h))) for column in left.T])
-    return np.minimum(most, (left - steady)[track.whole].std(0))
+    left -= left.mean(0)
+    swift = left - _lately(left, SWIFT * time / track.h)
+    share = swift[:, 1:].var(0) / np.maximum(left[:, 1:].var(0), 1e-30)
+    if not at_sea(track, model) and share.max() < SEEN:
+        return track
+    size, change = (_lately(x**2, LATELY * time / track.h) for x in (swift, np.gradient(swift, track.h, axis=0)))
+    omega = np.sqrt(change / np.maximum(size, 1e-30)).clip(2.0 * np.pi / (SWIFT * time), 0.5 * np.pi / track.h)
+    return _level(replace(track, swell=np.column_stack([omega, np.sqrt(size)])), model)
+
+
+def _level(track: Track, model: Model) -> Track:
+    """The track with its roll, and rudder and shaft if she manoeuvres slower than they swing, averaged over one period of the waves:
+    what a helmsman does against a wave, and how she heels to it, would be taken for its cause."""
+    period_s = wave_period_s(track)
+    steps = max(1, round(period_s / track.h))
+    weather = {name: running_mean(values, steps) if name == "phi" else values for name, values in track.weather.items()}
+    if period_s > SLOW * float(model.ship.scale("time")):
+        return replace(track, weather=weather)
+    delta, n = (np.where(track.whole, running_mean(x, steps), x) for x in (track.delta, track.n))
+    return replace(track, weather=weather, delta=delta, n=n)
 
 
 def at_sea(track: Track, model: Model) -> bool:
@@ -66,37 +91,12 @@ def at_sea(track: Track, model: Model) -> bool:
     return "H_s" in track.weather and bool(np.nanmedian(track.weather["H_s"]) > SEA * float(model.ship.L_pp))
 
 
-def wave_steps(track: Track, model: Model) -> int:
-    """The waves' mean period in grid steps, when most of the sway and yaw acceleration that the model leaves over is faster than the
-    ship; else 0."""
-    if not track.whole.any():
-        return 0
-    left = np.where(track.whole[:, None], _left_over(track, model)[:, 1:], 0.0)
-    left -= left.mean(0)
-    power = (np.abs(np.fft.rfft(left * np.hanning(len(track))[:, None], axis=0)) ** 2 / np.maximum(left.var(0), 1e-30)).sum(1)
-    frequency = np.fft.rfftfreq(len(track), track.h)
-    swift = frequency > 1.0 / (SLOW * float(model.ship.scale("time")))
-    if not swift.any() or power[swift].sum() < WORKING * power[~swift].sum():
-        return 0
-    return round(power[swift].sum() / float(power[swift] @ frequency[swift]) / track.h)
-
-
 def _left_over(track: Track, model: Model) -> np.ndarray:
     """(N, 3) acceleration along the path that the model does not explain [m/s2, m/s2, rad/s2]."""
-    return np.gradient(track.state[:, 3:6], track.h, axis=0) - respond(track, model)[0]
+    left = np.gradient(track.state[:, 3:6], track.h, axis=0) - respond(track, model)[0]
+    return np.where(track.whole[:, None], left, 0.0)
 
 
-def _mean(values: np.ndarray, steps: int) -> np.ndarray:
-    """Mean over the `steps` about each point; fewer at the ends."""
-    window = np.ones(steps)
-    return np.convolve(values, window, "same") / np.convolve(np.ones(values.size), window, "same")
-
-
-def _scatter(mean: np.ndarray, before: np.ndarray) -> np.ndarray:
-    """(8,) scatter of the averaged readings from one to the next; where there are none, as it was."""
-    out = before.copy()
-    for j, column in enumerate(mean.T):
-        seen = column[np.isfinite(column)]
-        if seen.size > 8:
-            out[j] = max(1.4826 * float(np.median(np.abs(np.diff(seen)))) / np.sqrt(2.0), 1e-9)
-    return out
+def _lately(values: np.ndarray, steps: float) -> np.ndarray:
+    """Running mean of every column."""
+    return np.column_stack([running_mean(column, max(1, round(steps))) for column in values.T])

@@ -1,4 +1,4 @@
-"""Where a prediction begins: the smooth motion with the instruments' known faults undone, and how far off it may be."""
+"""Where a prediction begins: the smooth motion without what waves swing, the instruments' known faults undone, and how far off it may be."""
 
 from dataclasses import replace
 
@@ -30,6 +30,26 @@ def true_motion(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray | No
         if wind_to is not None:
             wind_to = wind_to + track.weather["wind_to"] - read.wind_to
     return kinematics(place, track.h), wind_to
+
+
+def steadied(track: Track) -> Track:
+    """The track with its motion averaged over one period of the waves, where a sea was seen to work (seaway.py): a heading that a wave
+    turned by a degree would lead her half a length astray."""
+    if track.swell is None:
+        return track
+    steps = max(1, round(wave_period_s(track) / track.h))
+    return replace(track, state=np.column_stack([running_mean(column, steps) for column in track.state.T]))
+
+
+def wave_period_s(track: Track) -> float:
+    """Of the waves that swing her most of the time."""
+    return 0.0 if track.swell is None else 2.0 * np.pi / float(np.median(track.swell[:, 1:3]))
+
+
+def running_mean(values: np.ndarray, steps: int) -> np.ndarray:
+    """Mean over the `steps` about each point; fewer at the ends."""
+    window = np.ones(min(steps, values.size))
+    return np.convolve(values, window, "same") / np.convolve(np.ones(values.size), window, "same")
 
 
 def undone(track: Track, model: Model) -> Track:

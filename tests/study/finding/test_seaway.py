@@ -1,16 +1,22 @@
-"""Waves are taken out of a track when they are there, and only then."""
+"""Waves are seen when they are there, and only then; what they swing is neither hers nor noise."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from twin.physics.effects import catalogue
 from twin.physics.model import Model
-from twin.study.seaway import calmed, tossed, wave_steps
-from twin.study.track import READINGS, track
+from twin.study.columns import core_unknowns
+from twin.study.innovations import _carried
+from twin.study.openloop import coarse
+from twin.study.sailed import floor_of
+from twin.study.seaway import at_sea, rocked
+from twin.study.start import steadied, wave_period_s
+from twin.study.track import track
 
-PERIOD_S = 10.0
-V, R = READINGS.index("v"), READINGS.index("r")
+PERIOD_S = 12.0
+YAW, SWAY = 0.01, 0.3  # amplitudes [rad, m/s]
 
 
 @pytest.fixture(scope="module")
@@ -18,57 +24,81 @@ def calm(tanker, voyages):
     return track(voyages["nothing"], tanker)
 
 
+def in_waves(t, yaw=YAW, sway=SWAY, period_s=PERIOD_S):
+    """The same track in a sea that yaws and sways her, seen by all instruments alike, and her roll and rudder swinging with it."""
+    omega = 2.0 * np.pi / period_s
+    swing, rate = np.sin(omega * t.t), omega * np.cos(omega * t.t)
+    psi, v = yaw * swing, sway * omega * swing / omega
+    aside = -sway / omega * np.cos(omega * t.t)
+    c, s = np.cos(t.state[:, 2]), np.sin(t.state[:, 2])
+    zero = np.zeros_like(swing)
+    off = np.column_stack([-s * aside, c * aside, psi, t.state[:, 4] * psi, v - t.state[:, 3] * psi, yaw * rate, zero, zero])
+    measured = t.measured + off
+    measured[:, 6:] = np.nan
+    return replace(
+        t, state=t.state + off[:, :6], measured=measured, delta=t.delta + 0.02 * swing, weather=dict(t.weather) | {"phi": 0.1 * swing}
+    )  # fmt: skip
+
+
+def seen(t, tanker):
+    model = Model.of(tanker)
+    return rocked(t, model, core_unknowns(model), catalogue(), floor_of(tanker))
+
+
 @pytest.fixture(scope="module")
-def rough(calm):
-    """The same track in a sea that sways and turns her every ten seconds."""
-    state, measured = calm.state.copy(), calm.measured.copy()
-    for column, size in ((V, 0.3), (R, 0.004)):
-        wave = size * np.sin(2.0 * np.pi / PERIOD_S * calm.t)
-        state[:, column] += wave
-        measured[:, column] += wave
-    return replace(calm, state=state, measured=measured)
+def rough(calm, tanker):
+    return seen(in_waves(calm), tanker)
 
 
 def test_a_calm_track_is_left_as_it_is(calm, tanker):
-    assert wave_steps(calm, Model.of(tanker)) == 0
-    assert calmed(calm, Model.of(tanker)) is calm
+    assert seen(calm, tanker) is calm
 
 
-def test_the_period_of_the_waves_is_found(rough, tanker):
-    assert wave_steps(rough, Model.of(tanker)) * rough.h == pytest.approx(PERIOD_S, rel=0.15)
+def test_a_sea_that_was_measured_but_moves_nobody_is_no_sea(calm, tanker):
+    measured = replace(calm, weather=dict(calm.weather) | {"H_s": np.full(len(calm), 3.0)})
+    assert at_sea(measured, Model.of(tanker))
+    assert seen(measured, tanker) is measured
 
 
-def test_the_path_without_waves_is_the_calm_path(calm, rough, tanker):
-    done, whole = calmed(rough, Model.of(tanker)), slice(20, -20)
-    for column, size in ((V, 0.3), (R, 0.004)):
-        left = done.state[whole, column] - calm.state[whole, column]
-        assert np.sqrt(np.mean(left**2)) < 0.15 * size
+def test_the_period_and_the_strength_of_the_waves_are_found(rough):
+    assert wave_period_s(rough) == pytest.approx(PERIOD_S, rel=0.1)
+    omega, sway = 2.0 * np.pi / PERIOD_S, np.sqrt(np.mean(rough.swell[:, 4] ** 2))
+    assert 0.4 < sway / (SWAY * omega / np.sqrt(2.0)) < 2.5
 
 
-def test_averaged_readings_stand_where_the_calm_path_does_and_say_how_sure_they_are(rough, calm, tanker):
-    done = calmed(rough, Model.of(tanker))
-    off = done.measured[:, R] - calm.state[:, 5]
-    seen = np.isfinite(off)
-    assert 0 < seen.sum() < 0.3 * len(calm)
-    assert np.sqrt(np.mean(off[seen] ** 2)) < 0.2 * 0.004
-    assert done.sd[R] < 0.5 * 0.004
+def test_what_a_helmsman_does_against_waves_and_how_she_heels_to_them_is_averaged_out(rough, calm):
+    inside = slice(20, -20)
+    assert np.abs(rough.weather["phi"][inside]).max() < 0.02
+    held = np.ptp(calm.delta[20:]) * 0.02 + 0.004
+    assert np.median(np.abs(rough.delta - calm.delta)[inside]) < held
 
 
-def at_sea(sailed, height_m, period_s):
-    waves = {"H_s": np.full(len(sailed), height_m), "T_p": np.full(len(sailed), period_s)}
-    return replace(sailed, weather=dict(sailed.weather) | waves)
+def test_waves_as_slow_as_a_ship_turns_leave_her_rudder_alone(calm, tanker):
+    slow = in_waves(calm, period_s=2.0 * float(tanker.scale("time")))
+    done = seen(slow, tanker)
+    assert done.swell is None or np.array_equal(done.delta, slow.delta)
 
 
-def test_waves_that_were_not_measured_or_that_a_ship_meets_faster_than_she_moves_toss_nobody(calm, tanker):
+def test_a_prediction_begins_in_the_motion_without_waves(rough, calm, tanker):
     model = Model.of(tanker)
-    assert not tossed(calm, model).any()
-    assert not tossed(at_sea(calm, 3.0, 8.0), model).any()
+    errors = {}
+    for name, t in (("calm", calm), ("waves", rough), ("as shown", replace(rough, swell=None))):
+        windows = coarse(t, model, 60.0, leads=1)
+        errors[name] = float(np.nanmean(np.where(windows.valid, windows.errors()["position"], np.nan)))
+    assert errors["waves"] < 0.5 * (errors["calm"] + errors["as shown"])
+    assert steadied(calm) is calm
 
 
-def test_waves_toss_a_ship_by_what_she_shows_and_by_no_more_than_the_water_itself(calm, rough, tanker):
-    """Waves of 30 s that follow a tanker at 8 m/s meet her every 36 s, hardly faster than she moves (40 s): of 40 m they toss her by
-    what she shows, of 1 m by the water's own acceleration."""
-    model = Model.of(tanker)
-    shown, water = tossed(at_sea(rough, 40.0, 30.0), model)[0], tossed(at_sea(rough, 1.0, 30.0), model)[0]
-    assert shown[1] == pytest.approx(0.3 * 2.0 * np.pi / PERIOD_S / np.sqrt(2.0), rel=0.2)
-    assert water[1] == pytest.approx(0.25 * (2.0 * np.pi / 30.0) ** 2)
+def test_what_carries_waves_on_keeps_their_strength_and_pushes_nobody_for_long(rough):
+    """P = Phi P Phi' + (1 - Phi Phi') holds for P = 1; and a steady push on the carrier moves the wave's acceleration nowhere."""
+    on = _carried(rough)[100, 1]
+    fresh = np.eye(2) - on @ on.T
+    assert np.linalg.eigvalsh(fresh).min() > -1e-12
+    x = float(rough.h * rough.swell[100, 1])
+    rate = np.array([[-0.2, -1.0], [1.0, 0.0]]) * x  # zeta = 0.1
+    powers = [np.eye(2)]
+    for k in range(1, 20):
+        powers.append(powers[-1] @ rate / k)
+    np.testing.assert_allclose(on, sum(powers), atol=1e-12)
+    gain = np.linalg.solve(-rate, [1.0, 0.0])  # of noise on the wave, at omega = 0
+    assert gain[0] == pytest.approx(0.0, abs=1e-12)
