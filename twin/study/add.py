@@ -19,7 +19,8 @@ from .import_voyage import write_json
 from .jsonable import plain
 from .openloop import HORIZONS_S
 from .proof import Fall, by_regime, fall, judged_at, ladder
-from .sailed import Sailed, floor_of, read_all
+from .sailed import Sailed, read_all
+from .structure import floor_of
 from .track import Track
 
 SCHEMA_VERSION = 1

@@ -19,8 +19,9 @@ from .innovations import Floor, innovate, linearise
 from .jsonable import short
 from .nuisance import TEMPER, from_ship, nuisance_unknowns
 from .openloop import Windows, predict
-from .sailed import fed, floor_of
-from .seaway import rocked
+from .sailed import fed
+from .seaway import levelled
+from .structure import floor_of
 from .track import Track
 
 STEPS, REACH = 8, 2.0  # of the fit, and prior widths that one may move: a current of fourteen numbers is not found in one leap
@@ -80,7 +81,7 @@ def fitted(ship: Ship, effects: Sequence[type[Effect]], tracks: Sequence[Track])
     unknowns = [u for e in effects for u in effect_unknowns(e, Model(ship))]
     floor = floor_of(ship) or Floor()
     usable = in_one(base, tracks)
-    tracks = [rocked(t, usable, nuisance_unknowns(usable, known), known, floor) for t in tracks]
+    tracks = [levelled(t, usable) for t in tracks]
     found = fit(tracks, usable, unknowns, known, floor, temper=_temper(ship), rounds=STEPS, reach=REACH)
     sd = _doubt(found, tracks, floor, known, _temper(ship))
     names = {e.__name__ for e in effects}

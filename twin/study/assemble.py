@@ -17,21 +17,14 @@ from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, WEATHER, from_references, from_ship, lasting, nuisance_unknowns, temper_of, usual_unknowns
 from .respond import respond
-from .seaway import rocked
+from .seaway import levelled, swung
 from .segments import read_parts
-from .structure import floor_beside, structural_floor
+from .structure import floor_beside, floor_of, structural_floor
 from .track import Track, track
 from .voyage import Voyage
 
 Progress = Callable[[str], None]
 KNOWN = 0.1  # share of the force of an effect in the model that may be something else
-
-
-def stored_floor(ship: Ship, name: str = "floor") -> Floor | None:
-    """A structural floor that calibration left in the ship file: what the model alone leaves (`floor`), or what is left beside all that is
-    usual on this ship (`beside`)."""
-    table = ship.notes.get("structural", {}).get(name)
-    return Floor(**(dict(table) | {"share": tuple(table["share"])})) if table else None
 
 
 def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage] = (), progress: Progress = lambda text: None) -> Case:
@@ -40,20 +33,20 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
         raise DataError("no voyage given. Name at least one file with measurements.")
     model, catalogue = Model.of(ship), known_effects()
     progress("smoothing tracks")
-    tracks = tuple(track(v, ship) for v in voyages)
+    tracks = tuple(swung(track(v, ship), model) for v in voyages)
     candidates = judgeable(tracks, model, catalogue)
     effects = tuple(u for name in candidates for u in effect_unknowns(catalogue[name], model))
     nuisance = nuisance_unknowns(model, catalogue)
     core = [u for u in nuisance if u.owner in ("core", FORM)]
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
-    path = stored_floor(ship) or Floor()
-    floor, temper = stored_floor(ship, "beside") or path, _temper(ship)
+    path = floor_of(ship) or Floor()
+    floor, temper = floor_of(ship, "beside") or path, _temper(ship)
     if references:
         progress("reading the reference voyages")
         usual = usual_unknowns(model, catalogue)
-        lines = _lines([track(v, ship) for v in references], model, usual, catalogue)
-        if stored_floor(ship) is None:
+        lines = _lines([swung(track(v, ship), model) for v in references], model, usual, catalogue)
+        if floor_of(ship) is None:
             progress("finding the structural floor")
             path = structural_floor(_of_core(lines, usual), core_unknowns(model))
             floor = floor_beside(lines, usual, path)
@@ -62,11 +55,9 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     else:
         known = from_ship(model, nuisance)
     progress("linearising")
-    rocking = [rocked(t, model.without_inputs(t.missing())[0], unknowns, catalogue, floor) for t in tracks]
     case = Case(
         tracks, model, catalogue, candidates, unknowns, effects, known, floor, path, temper, _odds(tracks, candidates, ship),
-        _lines(rocking, model, unknowns, catalogue, MOST_SEGMENTS), any(manoeuvred(t, ship) for t in tracks), floor.white,
-        tuple(rocking),
+        _lines(tracks, model, unknowns, catalogue, MOST_SEGMENTS), any(manoeuvred(t, ship) for t in tracks), floor.white,
     )  # fmt: skip
     return settle(case)
 
@@ -102,9 +93,9 @@ def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue
 def _lines(
     tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], most: int | None = None
 ) -> tuple[Linear, ...]:
-    """The tracks, linearised where they will be read (`most` segments)."""
+    """The tracks with what waves do to them taken for that, linearised where they will be read (`most` segments)."""
     models = [model.without_inputs(t.missing())[0] for t in tracks]
-    parts = read_parts(tracks, float(model.ship.scale("time")), most)
+    parts = read_parts([levelled(t, m) for t, m in zip(tracks, models, strict=True)], float(model.ship.scale("time")), most)
     return tuple(replace(linearise(p, m, unknowns, catalogue), slack=_roughly_known(p, m)) for p, m in zip(parts, models, strict=True))
 
 

@@ -15,7 +15,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 
 from .antenna import clearly, placed
-from .columns import Unknown, core_unknowns
+from .columns import core_unknowns
 from .derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
 from .doubts import doubts
 from .fit import Fit, fit
@@ -26,8 +26,8 @@ from .innovations import Floor
 from .jsonable import plain
 from .nuisance import TEMPER, instruments, temper_of
 from .rollout import rolled_out
-from .sailed import Sailed, fed, read_all
-from .seaway import rocked
+from .sailed import Sailed, read_all
+from .seaway import levelled, swung
 from .structure import structural_floor
 from .track import Track
 from .usual import clearly_hers, usual
@@ -64,6 +64,8 @@ class Calibrated:
 class Core:
     """What a filter one step ahead makes of the voyages: the derivatives, and what they leave over."""
 
+    tracks: list[Track]  # with what waves do to her taken for that
+    model: Model
     derivatives: list[Derivative]
     effects: tuple[Effect, ...]  # of the ship file, the steering gear among them when the rudder's order was recorded
     numbers: dict[str, dict[str, dict[str, Any]]]  # of the gear and of the antenna, with their standard errors
@@ -76,10 +78,9 @@ def calibrate(
     fitted: Sequence[Sailed], held_out: HeldOut, ship: Ship, progress: Callable[[str], None] = lambda text: None, by: str | None = None
 ) -> Calibrated:
     """Fit the core to the tracks. `by`: one of FITTED_BY; None: the one that predicts what was held out better."""
-    progress("asking whether waves swing her")
-    tracks = _rocked([s.track for s in fitted], ship)
-    held_out = list(zip(_rocked([t for t, _ in held_out], ship), [first for _, first in held_out], strict=True))
-    core = _core(tracks, ship, progress)
+    core = _core([s.track for s in fitted], ship, progress)
+    tracks = core.tracks
+    held_out = [(swung(t, core.model), first) for t, first in held_out]
     ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
     if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
         progress("fitting to where she went")
@@ -94,33 +95,28 @@ def calibrate(
     return Calibrated(after, plain(_result(ship, after, core, way, errors(Model.of(ship), held_out))))
 
 
-def _rocked(tracks: Sequence[Track], ship: Ship) -> list[Track]:
-    """The tracks with what waves do to her, as far as her first model can tell."""
+def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
     model, known = Model.of(ship), catalogue()
-    unknowns = (*_unknowns(model), *(() if model.lags else gear_unknowns(model)))
-    return [rocked(t, fed(model, t)[0], unknowns, known, Floor()) for t in tracks]
-
-
-def _unknowns(model: Model) -> tuple[Unknown, ...]:
-    return tuple(first_prior(u, model.ship) for u in (*core_unknowns(model), *instruments(model, catalogue())))
-
-
-def _core(tracks: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
-    model, known = Model.of(ship), catalogue()
-    unknowns = _unknowns(model)
+    unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
     progress("fitting the core")
+    tracks = [levelled(t, model) for t in sailed]
     rough = fit(tracks, model, unknowns, known, Floor(), temper=TEMPER, rounds=4)
     progress("asking whether the rudder that was recorded is its order")
     if (with_gear := geared(rough.model, tracks, unknowns, known, TEMPER)).lags:
         unknowns = (*unknowns, *gear_unknowns(model))
         rough = fit(tracks, with_gear, unknowns, known, Floor(), temper=TEMPER, rounds=4)
+    progress("asking again whether waves swing her")
+    again = [swung(t, rough.model) for t in sailed]
+    if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
+        tracks = [levelled(t, rough.model) for t in again]
+        rough = fit(tracks, rough.model, unknowns, known, Floor(), temper=TEMPER, rounds=4)
     progress("finding the structural floor")
     floor, temper = structural_floor(rough.lines, unknowns), temper_of(rough.normal, unknowns)
     progress("fitting again above the floor")
     found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, rounds=4)
     kept = tuple(e for e in ship.effects if e not in model.lags)
     numbers = {name: _numbers(found, name, why) for name, why in PARTS.items()}
-    return Core(told_by(found), (*kept, *found.model.lags), numbers, clearly(found), floor, temper)
+    return Core(tracks, found.model, told_by(found), (*kept, *found.model.lags), numbers, clearly(found), floor, temper)
 
 
 def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:

@@ -65,7 +65,6 @@ class Case:
     lines: tuple[Linear, ...]  # of what is read of each track
     excited: bool  # whether one of the voyages holds a manoeuvre
     white: float  # fast part of the floor on the reference voyages, before `settle`
-    rocking: tuple[Track, ...]  # the tracks with what waves do to them
 
     def reduced(self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None) -> list[Reduced]:
         normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))

@@ -14,7 +14,8 @@ from . import locate, score
 from .import_voyage import write_json
 from .jsonable import plain
 from .openloop import HORIZONS_S, Windows, predict
-from .sailed import Sailed, fed, floor_of, read_all, switched_off
+from .sailed import Sailed, fed, read_all, switched_off
+from .structure import floor_of
 from .tell import told
 from .thresholds import passed, positive, threshold
 from .unexplained import Energy, energy

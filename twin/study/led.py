@@ -98,7 +98,7 @@ def held_out_error(case: Case, found: Found) -> float:
             z[lasts] = posterior(given(part, z, ~lasts), chosen).z
         values = [case.effects[i].centre + case.effects[i].sd * z[i] for i in mine]
         model = with_values(case.model, [case.effects[i] for i in mine], values, case.catalogue)
-        for i, track in enumerate(case.rocking):
+        for i, track in enumerate(case.tracks):
             windows = coarse(track, model.without_inputs(track.missing())[0], horizon_s(track, case.model), leads=1)
             inside = np.zeros(windows.start.size, bool)
             steps = lines[i].track.steps()
@@ -113,7 +113,7 @@ def held_out_error(case: Case, found: Found) -> float:
 def _usual(case: Case, floor: Floor) -> float:
     """Mean position error [m] of a model that is as good as this floor."""
     errors = []
-    for track in case.rocking:
+    for track in case.tracks:
         model = case.model.without_inputs(track.missing())[0]
         errors.append(_errors(predict(track, model, [horizon_s(track, case.model)], leads=1, floor=floor), STRUCTURE))
     return max(float(np.nanmean(np.concatenate(errors))), 1e-9)

@@ -3,7 +3,7 @@
 import hashlib
 import sys
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +12,8 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
-from .innovations import Floor
 from .read import read_voyage
+from .seaway import swung
 from .track import Track, track
 from .voyage import Voyage
 
@@ -37,22 +37,12 @@ def read_all(paths: Sequence[str], ship: Ship) -> list[Sailed]:
     for path in paths:
         print(f"reading {path} ...", file=sys.stderr)
         voyage = read_voyage(path)
-        made = Sailed(voyage, track(voyage, ship), hashlib.sha256(Path(path).read_bytes()).hexdigest())
+        made = Sailed(voyage, swung(track(voyage, ship), Model.of(ship)), hashlib.sha256(Path(path).read_bytes()).hexdigest())
         twin = next((s for s in out if s.sha256 == made.sha256), None)
         if twin is not None:
             raise DataError(f"{path}: is the same voyage as {twin.track.name}. Give each voyage once.")
         out.append(made)
     return out
-
-
-def floor_of(ship: Ship) -> Floor | None:
-    """What calibration found a model of this kind to leave unexplained on this ship, or None when she was never calibrated."""
-    stored = ship.notes.get("structural", {})
-    stored = stored.get("floor", stored)
-    known = {f.name: stored[f.name] for f in fields(Floor) if f.name in stored}
-    if "share" in known:
-        known["share"] = tuple(known["share"])
-    return Floor(**known) if known else None
 
 
 def fed(model: Model, t: Track) -> tuple[Model, tuple[Effect, ...]]:

@@ -7,20 +7,20 @@ a ship manoeuvres. Whether that is a sea at all, the readings say.
 Waves in a filter: Saelid, Jenssen & Balchen (1983) IEEE Trans. Automatic Control 28; Fossen (2021) sec. 13.2.
 """
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
-from twin.physics.effect import Effect
+from twin.physics.effects import catalogue
 from twin.physics.model import Model
 
-from .columns import Unknown
 from .fit import evidence
 from .innovations import Floor, Linear, innovate, linearise
+from .nuisance import nuisance_unknowns
 from .respond import respond
 from .segments import read_parts, segments
 from .start import running_mean, wave_period_s
+from .structure import floor_of
 from .track import Track
 
 SWIFT = 3.0  # L/U_0: what swings about the mean over so long a time may be waves
@@ -33,24 +33,23 @@ STRENGTHS = (0.5, 1.0, 2.0)  # of the waves, in units of what is seen of them
 WHITES = (1.0, 8.0, 32.0)  # and of the noise that might be there instead
 
 
-def rocked(track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], floor: Floor) -> Track:
-    """The track with what waves do to her, if that is likelier than any noise would be (with the unknowns as large as they may be); else
-    the same track. `model` must have its inputs on it."""
-    swung = _swung(track, model)
-    if swung.swell is None:
+def swung(track: Track, model: Model) -> Track:
+    """The track with what waves do to her, if that is likelier than any noise would be, whatever else may be wrong with her; else without."""
+    track = track if track.swell is None else replace(track, swell=None)
+    usable, floor, known = model.without_inputs(track.missing())[0], floor_of(model.ship) or Floor(), catalogue()
+    rough = _swinging(track, usable)
+    if rough.swell is None:
         return track
-    calm, rough = (
-        linearise(read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0], model, unknowns, catalogue) for t in (track, swung)
-    )
-    sd = np.array([u.sd for u in unknowns])
+    unknowns = nuisance_unknowns(usable, known)
+    parts = [read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0] for t in (track, levelled(rough, usable))]
+    lines, sd = [linearise(p, usable, unknowns, known) for p in parts], np.array([u.sd for u in unknowns])
 
     def likely(line: Linear) -> float:
         return max(evidence(n, sd) for n in innovate([line], [floor.scaled(white=k) for k in WHITES]))
 
-    if likely(rough) < likely(calm):
-        return track
-    other = {k: likely(replace(rough, track=_times(rough.track, k))) for k in STRENGTHS}
-    return _times(swung, max(other, key=lambda k: other[k]))
+    as_strong = {k: likely(replace(lines[1], track=_times(lines[1].track, k))) for k in STRENGTHS}
+    best = max(as_strong, key=lambda k: as_strong[k])
+    return _times(rough, best) if as_strong[best] > likely(lines[0]) else track
 
 
 def _times(track: Track, strength: float) -> Track:
@@ -58,7 +57,7 @@ def _times(track: Track, strength: float) -> Track:
     return track if track.swell is None else replace(track, swell=track.swell * np.repeat([1.0, strength], 3))
 
 
-def _swung(track: Track, model: Model) -> Track:
+def _swinging(track: Track, model: Model) -> Track:
     """The track with what waves may do to her, or the same track where nothing swings her or there is too little of it."""
     time = float(model.ship.scale("time"))
     if not segments([track], time):
@@ -71,12 +70,14 @@ def _swung(track: Track, model: Model) -> Track:
         return track
     size, change = (_lately(x**2, LATELY * time / track.h) for x in (swift, np.gradient(swift, track.h, axis=0)))
     omega = np.sqrt(change / np.maximum(size, 1e-30)).clip(2.0 * np.pi / (SWIFT * time), 0.5 * np.pi / track.h)
-    return _level(replace(track, swell=np.column_stack([omega, np.sqrt(size)])), model)
+    return replace(track, swell=np.column_stack([omega, np.sqrt(size)]))
 
 
-def _level(track: Track, model: Model) -> Track:
+def levelled(track: Track, model: Model) -> Track:
     """The track with its roll, and rudder and shaft if she manoeuvres slower than they swing, averaged over one period of the waves:
     what a helmsman does against a wave, and how she heels to it, would be taken for its cause."""
+    if track.swell is None:
+        return track
     period_s = wave_period_s(track)
     steps = max(1, round(period_s / track.h))
     weather = {name: running_mean(values, steps) if name == "phi" else values for name, values in track.weather.items()}

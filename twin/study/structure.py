@@ -8,6 +8,8 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from twin.physics.ship import Ship
+
 from .columns import Unknown
 from .fit import evidence
 from .innovations import Floor, Linear, Normal, innovate
@@ -16,6 +18,13 @@ MOST_SEGMENTS = 40
 FEWER = 20  # where many columns make each dear
 BOUNDS = {"share": (0.01, 0.5), "calm": (0.1, 4.0), "white": (0.002, 1.0), "flow": (0.002, 0.05), "sensor": (0.7, 4.0)}
 BESIDE = 0.4  # how far the slow part may fall beside more unknowns, as a share of what a core alone is ever trusted with
+
+
+def floor_of(ship: Ship, name: str = "floor") -> Floor | None:
+    """The floor that calibration left in the ship file, None when she was never calibrated: what the model alone leaves (`floor`), or what
+    is left beside all that is usual on this ship (`beside`)."""
+    table = ship.notes.get("structural", {}).get(name)
+    return Floor(**(dict(table) | {"share": tuple(table["share"])})) if table else None
 
 
 def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor | None = None) -> Floor:

@@ -46,7 +46,7 @@ def test_floors_side_by_side_are_floors_one_at_a_time(judged):
 
 def test_innovations_of_a_calibrated_ship_are_no_larger_than_promised(judged):
     t, model, unknowns = judged
-    from twin.study.sailed import floor_of
+    from twin.study.structure import floor_of
 
     normal = innovate([linearise(t, model, unknowns, catalogue())], [floor_of(model.ship)])[0]
     assert 0.5 < normal.ee.sum() / normal.count.sum() < 1.6

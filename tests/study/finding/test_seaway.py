@@ -5,13 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from twin.physics.effects import catalogue
 from twin.physics.model import Model
-from twin.study.columns import core_unknowns
 from twin.study.innovations import _carried
 from twin.study.openloop import coarse
-from twin.study.sailed import floor_of
-from twin.study.seaway import at_sea, rocked
+from twin.study.seaway import at_sea, levelled, swung
 from twin.study.start import steadied, wave_period_s
 from twin.study.track import track
 
@@ -40,24 +37,19 @@ def in_waves(t, yaw=YAW, sway=SWAY, period_s=PERIOD_S):
     )  # fmt: skip
 
 
-def seen(t, tanker):
-    model = Model.of(tanker)
-    return rocked(t, model, core_unknowns(model), catalogue(), floor_of(tanker))
-
-
 @pytest.fixture(scope="module")
 def rough(calm, tanker):
-    return seen(in_waves(calm), tanker)
+    return swung(in_waves(calm), Model.of(tanker))
 
 
 def test_a_calm_track_is_left_as_it_is(calm, tanker):
-    assert seen(calm, tanker) is calm
+    assert swung(calm, Model.of(tanker)) is calm
 
 
 def test_a_sea_that_was_measured_but_moves_nobody_is_no_sea(calm, tanker):
     measured = replace(calm, weather=dict(calm.weather) | {"H_s": np.full(len(calm), 3.0)})
     assert at_sea(measured, Model.of(tanker))
-    assert seen(measured, tanker) is measured
+    assert swung(measured, Model.of(tanker)) is measured
 
 
 def test_the_period_and_the_strength_of_the_waves_are_found(rough):
@@ -66,17 +58,18 @@ def test_the_period_and_the_strength_of_the_waves_are_found(rough):
     assert 0.4 < sway / (SWAY * omega / np.sqrt(2.0)) < 2.5
 
 
-def test_what_a_helmsman_does_against_waves_and_how_she_heels_to_them_is_averaged_out(rough, calm):
-    inside = slice(20, -20)
-    assert np.abs(rough.weather["phi"][inside]).max() < 0.02
+def test_what_a_helmsman_does_against_waves_and_how_she_heels_to_them_is_averaged_out(rough, calm, tanker):
+    level, inside = levelled(rough, Model.of(tanker)), slice(20, -20)
+    assert np.abs(level.weather["phi"][inside]).max() < 0.02
     held = np.ptp(calm.delta[20:]) * 0.02 + 0.004
-    assert np.median(np.abs(rough.delta - calm.delta)[inside]) < held
+    assert np.median(np.abs(level.delta - calm.delta)[inside]) < held
 
 
 def test_waves_as_slow_as_a_ship_turns_leave_her_rudder_alone(calm, tanker):
     slow = in_waves(calm, period_s=2.0 * float(tanker.scale("time")))
-    done = seen(slow, tanker)
-    assert done.swell is None or np.array_equal(done.delta, slow.delta)
+    omega = np.full((len(slow), 3), np.pi / float(tanker.scale("time")))
+    done = levelled(replace(slow, swell=np.column_stack([omega, 0.01 * omega])), Model.of(tanker))
+    assert np.array_equal(done.delta, slow.delta)
 
 
 def test_a_prediction_begins_in_the_motion_without_waves(rough, calm, tanker):

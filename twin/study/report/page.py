@@ -11,7 +11,8 @@ from twin.physics.model import Model
 
 from .. import locate, score
 from ..openloop import HORIZONS_S
-from ..sailed import floor_of, switched_off
+from ..sailed import switched_off
+from ..structure import floor_of
 from ..track import Track
 from ..unexplained import energy
 from ..voyage import Voyage
