@@ -16,10 +16,10 @@ from twin.physics.model import Model
 
 from .fit import evidence
 from .innovations import Floor, Linear, innovate, linearise
-from .nuisance import nuisance_unknowns
+from .nuisance import TEMPER, nuisance_unknowns
 from .respond import respond
 from .segments import read_parts, segments
-from .start import running_mean, wave_period_s
+from .start import wave_period_s
 from .structure import floor_of
 from .track import Track
 
@@ -31,6 +31,7 @@ SEA = 0.003  # wave height in ship lengths from which a measured sea may move he
 MOST_SEGMENTS = 12  # by which a sea is judged
 STRENGTHS = (0.5, 1.0, 2.0)  # of the waves, in units of what is seen of them
 WHITES = (1.0, 8.0, 32.0)  # and of the noise that might be there instead
+CLEAR = 20.0  # log evidence, tempered, that waves must add
 
 
 def swung(track: Track, model: Model) -> Track:
@@ -49,7 +50,7 @@ def swung(track: Track, model: Model) -> Track:
 
     as_strong = {k: likely(replace(lines[1], track=_times(lines[1].track, k))) for k in STRENGTHS}
     best = max(as_strong, key=lambda k: as_strong[k])
-    return _times(rough, best) if as_strong[best] > likely(lines[0]) else track
+    return _times(rough, best) if as_strong[best] > likely(lines[0]) + CLEAR * TEMPER else track
 
 
 def _times(track: Track, strength: float) -> Track:
@@ -101,3 +102,9 @@ def _left_over(track: Track, model: Model) -> np.ndarray:
 def _lately(values: np.ndarray, steps: float) -> np.ndarray:
     """Running mean of every column."""
     return np.column_stack([running_mean(column, max(1, round(steps))) for column in values.T])
+
+
+def running_mean(values: np.ndarray, steps: int) -> np.ndarray:
+    """Mean over the `steps` about each point; fewer at the ends."""
+    window = np.ones(min(steps, values.size))
+    return np.convolve(values, window, "same") / np.convolve(np.ones(values.size), window, "same")

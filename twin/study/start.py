@@ -3,12 +3,14 @@
 from dataclasses import replace
 
 import numpy as np
+from scipy.signal import savgol_filter
 
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
 from .track import STATE, Track, smooth_motion
 
+ABOUT = 2.5  # periods of the waves
 BRIDGE_S = 3.0  # instruments slower than the grid are joined by straight lines over no more than this
 ROUNDS = 3  # of the fixed point: faults of place, heading and wind together
 
@@ -33,23 +35,15 @@ def true_motion(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray | No
 
 
 def steadied(track: Track) -> Track:
-    """The track with its motion averaged over one period of the waves, where a sea was seen to work (seaway.py): a heading that a wave
-    turned by a degree would lead her half a length astray."""
-    if track.swell is None:
-        return track
-    steps = max(1, round(wave_period_s(track) / track.h))
-    return replace(track, state=np.column_stack([running_mean(column, steps) for column in track.state.T]))
+    """The track with the motion that is slower than the waves, where a sea was seen to work (seaway.py): a heading that a wave turned by a
+    degree would lead her astray. A parabola is fitted about each point, over so long that waves fall out of it (Savitzky & Golay 1964)."""
+    steps = min(2 * round(0.5 * ABOUT * wave_period_s(track) / track.h) + 1, len(track) - 1 + len(track) % 2)
+    return replace(track, state=savgol_filter(track.state, steps, 2, axis=0)) if steps > 3 else track
 
 
 def wave_period_s(track: Track) -> float:
     """Of the waves that swing her most of the time."""
     return 0.0 if track.swell is None else 2.0 * np.pi / float(np.median(track.swell[:, 1:3]))
-
-
-def running_mean(values: np.ndarray, steps: int) -> np.ndarray:
-    """Mean over the `steps` about each point; fewer at the ends."""
-    window = np.ones(min(steps, values.size))
-    return np.convolve(values, window, "same") / np.convolve(np.ones(values.size), window, "same")
 
 
 def undone(track: Track, model: Model) -> Track:
