@@ -28,6 +28,7 @@ from .nuisance import TEMPER, instruments, temper_of
 from .rollout import rolled_out
 from .sailed import Sailed, read_all
 from .seaway import levelled, swung
+from .start import told_of_waves, waves_on
 from .structure import structural_floor
 from .track import Track
 from .usual import clearly_hers, usual
@@ -158,6 +159,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "unexcited": [d.unknown.name for d in core.derivatives if not d.excited],
         "fitted_by": by,
         **{key: _said(owner, after, core) for key, owner in (("gear", SteeringLag.__name__), ("antenna", AntennaOffset.__name__))},
+        "waves": waves_on(core.tracks),
         "usual": clearly_hers(after, hers), "between_voyages": hers["between_voyages"],
         "floor": asdict(core.floor), "temper": core.temper, "by_regime": hers["by_regime"],
         "held_out": [e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]} for b, e in zip(before, hers["held_out"], strict=True)],
@@ -222,6 +224,7 @@ def told(result: dict[str, Any]) -> list[str]:
         lines.append(f"  rudder_angle_deg is the rudder's order: the gear between them is now part of the model (SteeringLag: {_sizes(gear)})")
     if antenna := result["antenna"]:
         lines.append(f"  place is measured elsewhere than the ship file had it: where is now part of the model (AntennaOffset: {_sizes(antenna)})")
+    lines += [f"  {text}" for text in told_of_waves(result["waves"])]
     share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [f"usual on this ship: {i['name']} {i['value']:.3g} +- {i['sd']:.1g} (kept in mind by diagnose)" for i in result["usual"]]

@@ -15,6 +15,7 @@ from .import_voyage import write_json
 from .jsonable import plain
 from .openloop import HORIZONS_S, Windows, predict
 from .sailed import Sailed, fed, read_all, switched_off
+from .start import waves_on
 from .structure import floor_of
 from .tell import told
 from .thresholds import passed, positive, threshold
@@ -61,6 +62,7 @@ def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] 
         "where": [{k: v for k, v in w.items() if k != "mask"} for w in where],
         "worst_windows": locate.worst(windows, longest),
         "switched_off": switched_off(model, [s.track for s in sailed]),
+        "waves": waves_on([s.track for s in sailed]),
     }
     result["verdict"] = verdict(result)
     return Compared(plain(result), tuple(sailed), tuple(models), tuple(windows))

@@ -24,6 +24,7 @@ from .read import read_voyage
 from .refine import Found
 from .search import search
 from .seaway import at_sea
+from .start import waves_on
 from .tell_diagnosis import sentence, told
 from .verdict import SURE, alike, group, judge, parameters, shows, typical_force, weights
 from .voyage import Voyage
@@ -86,6 +87,7 @@ def diagnose(
         "not_visible": [n for n, can in seen.items() if not can and n not in missing],
         "floor": {"share_surge_sway_yaw": case.floor.share, "sensor_factor": case.floor.sensor, "temper": case.temper},
         "voyages": [v.name for v in voyages],
+        "waves": waves_on(case.tracks),
         "voyages_hold_a_manoeuvre": case.excited,
         "references": [v.name for v in references],
     }

@@ -1,6 +1,8 @@
 """Where a prediction begins: the smooth motion without what waves swing, the instruments' known faults undone, and how far off it may be."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 from scipy.signal import savgol_filter
@@ -44,6 +46,17 @@ def steadied(track: Track) -> Track:
 def wave_period_s(track: Track) -> float:
     """Of the waves that swing her most of the time."""
     return 0.0 if track.swell is None else 2.0 * np.pi / float(np.median(track.swell[:, 1:3]))
+
+
+def waves_on(tracks: Sequence[Track]) -> list[dict[str, Any]]:
+    """On which voyages waves were seen to swing her, and how often."""
+    return [{"voyage": t.name, "period_s": wave_period_s(t)} for t in tracks if t.swell is not None]
+
+
+def told_of_waves(waves: Sequence[dict[str, Any]]) -> list[str]:
+    """The same in words."""
+    said = "predictions begin in the motion without them, and they are no effect's doing"
+    return [f"waves swing her about every {w['period_s']:.2g} s on {w['voyage']}: {said}" for w in waves]
 
 
 def undone(track: Track, model: Model) -> Track:

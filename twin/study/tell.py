@@ -3,6 +3,8 @@
 import textwrap
 from typing import Any
 
+from .start import told_of_waves
+
 BAR = 24
 
 
@@ -19,6 +21,7 @@ def told(result: dict[str, Any]) -> list[str]:
         *_where(result),
         *_worst(result["worst_windows"]),
         *_off(result["switched_off"]),
+        *told_of_waves(result["waves"]),
         *_checks(result["data_checks"]),
     ]  # fmt: skip
 

@@ -4,6 +4,7 @@ from typing import Any
 
 from .leftover import BETTER
 from .overtime import changes
+from .start import told_of_waves
 from .verdict import SURE
 
 SMALL = "It is too small to show in where these voyages led her: `twin add` may ask for others."
@@ -23,6 +24,7 @@ def told(result: dict[str, Any]) -> list[str]:
         m = result["next_manoeuvre"]
         lines += ["", f"To tell {m['separates'][0]} from {m['separates'][1]}, sail: {m['manoeuvre']} ({m['why']})."]
     lines += [f"{n['effect']} cannot be judged: no {' and no '.join(n['lacks'])} was recorded." for n in result["not_judged"]]
+    lines += told_of_waves(result["waves"])
     if result["not_visible"]:
         lines.append(f"Too small to be seen in these voyages, even at a plausible size: {', '.join(result['not_visible'])}.")
     return lines

@@ -12,6 +12,7 @@ from twin.physics.model import Model
 from .. import locate, score
 from ..openloop import HORIZONS_S
 from ..sailed import switched_off
+from ..start import told_of_waves, waves_on
 from ..structure import floor_of
 from ..track import Track
 from ..unexplained import energy
@@ -80,6 +81,7 @@ def _whole(
     if "unexplained_force" not in result:
         result["unexplained_force"] = energy(tracks, [model] * len(tracks)).unexplained()
     result.setdefault("switched_off", switched_off(model, tracks))
+    result["told_of_waves"] = told_of_waves(waves_on(tracks))
     return result
 
 
