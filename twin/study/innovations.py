@@ -1,9 +1,10 @@
 """What the model cannot predict one step ahead, and how that depends on every unknown: a Kalman filter with its tangents.
 
 Along the smooth motion the ship is linear: delta = (x, y, psi, u, v, r), a slowly varying acceleration b (what any model of this
-kind leaves over: its structural error) and a slowly varying current c, both first-order Gauss-Markov. The filter's gains do
-not depend on the unknowns theta, so its innovations are affine in them: epsilon = e - G theta. Whitened, they give the normal
-equations A = G'G, b = G'e of every later question. Tracks are cut into segments that are filtered side by side.
+kind leaves over: its structural error) and a slowly varying current c, both first-order Gauss-Markov; and, where a sea was seen to
+work, what waves do (waves.py). The filter's gains do not depend on the unknowns theta, so its innovations are affine in them:
+epsilon = e - G theta. Whitened, they give the normal equations A = G'G, b = G'e of every later question. Tracks are cut into
+segments that are filtered side by side.
 
 Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy & O'Hagan (2001) (model discrepancy).
 """
@@ -18,8 +19,9 @@ from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
 
+from . import waves
 from .columns import LATE, Unknown, columns
-from .filters import AT_SEA, CARRIER, FLOW, MOTION, SLOW, SPEEDS, STATES, WAVE, Filters, Noise, Stretches
+from .filters import FLOW, MOTION, SLOW, SPEEDS, STATES, Filters, Noise, Stretches
 from .normal import Normal, Sums
 from .respond import advance, faulty, jacobian, lagged, respond
 from .segments import segments
@@ -28,7 +30,6 @@ from .track import Track
 
 Where = Sequence[tuple[int, int, int]]  # segments: track, first step, last step
 MEMORY_B, MEMORY_C = 3.0, 12.0  # correlation times of b and c, in ship lengths sailed
-WAVE_DAMPING = 0.1  # zeta of what waves do: how broad a band they swing her in
 
 
 @dataclass(frozen=True)
@@ -67,7 +68,7 @@ class Linear:
     busy: np.ndarray  # (N, 3): acceleration that hull, rudder and propeller cause
     model: Model = field(repr=False)
     doubted: np.ndarray | float = 0.0  # (N, 3): acceleration by the effects under judgement, whose forms are only roughly right
-    slack: np.ndarray | float = 0.0  # (N, 3): and one that no hypothesis takes away, of effects in the model and of the sea
+    slack: np.ndarray | float = 0.0  # (N, 3): and one that no hypothesis takes away, of effects in the model
 
 
 def linearise(
@@ -166,10 +167,10 @@ def innovate(lines: Sequence[Linear], floors: Sequence[Floor], most: int | None 
 
 def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
     F, H, fresh = [x.F for x in lines], [x.H for x in lines], None
-    if _rocked(lines):
-        carried = [_carried(x.track) for x in lines]
-        F, H = [_rocking(x, c) for x, c in zip(lines, carried, strict=True)], [np.pad(h, ((0, 0), (0, 0), (0, AT_SEA - STATES))) for h in H]
-        fresh = _abreast([np.eye(2) - c @ c.transpose(0, 1, 3, 2) for c in carried], where)
+    if _in_waves(lines):
+        carried = [waves.carried(x.track) for x in lines]
+        F, H = [waves.in_system(f, c) for f, c in zip(F, carried, strict=True)], [waves.in_reader(h) for h in H]
+        fresh = _abreast([waves.fresh(c) for c in carried], where)
     return Stretches(
         F=_abreast(F, where), H=_abreast(H, where), e=_abreast([x.e for x in lines], where, np.nan),
         defect=_abreast([x.defect for x in lines], where), turn=_abreast([_turn(x) for x in lines], where),
@@ -177,29 +178,8 @@ def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
     )  # fmt: skip
 
 
-def _rocked(lines: Sequence[Linear]) -> bool:
+def _in_waves(lines: Sequence[Linear]) -> bool:
     return any(line.track.swell is not None for line in lines)
-
-
-def _carried(track: Track) -> np.ndarray:
-    """(N, 3, 2, 2) of surge, sway, yaw what takes a wave's acceleration and its carrier one step on, in units in which both scatter alike:
-    w'' + 2 zeta omega w' + omega^2 w = noise', whose spectrum is zero at omega = 0, as no wave pushes for long."""
-    x = track.h * (np.zeros((len(track), 3)) if track.swell is None else track.swell[:, :3])
-    swings = np.sqrt(1.0 - WAVE_DAMPING**2)
-    c, s = np.cos(swings * x), np.sin(swings * x) / swings
-    swing = np.array([[c - WAVE_DAMPING * s, -s], [s, c + WAVE_DAMPING * s]])
-    return np.exp(-WAVE_DAMPING * x)[:, :, None, None] * np.moveaxis(swing, (0, 1), (2, 3))
-
-
-def _rocking(line: Linear, carried: np.ndarray) -> np.ndarray:
-    """(N, 17, 17) the line's F in a seaway: waves push her as what is slow does."""
-    out = np.zeros((len(line.track), AT_SEA, AT_SEA))
-    out[:, :STATES, :STATES], out[:, :STATES, WAVE] = line.F, line.F[:, :, SLOW]
-    out[:, SLOW, WAVE] = 0.0
-    for i, a in enumerate((WAVE, CARRIER)):
-        for j, b in enumerate((WAVE, CARRIER)):
-            out[:, a, b] = np.eye(3) * carried[:, :, i, j, None]
-    return out
 
 
 def _abreast(arrays: Sequence[np.ndarray], where: Where, fill: float = 0.0) -> np.ndarray:
@@ -224,7 +204,7 @@ def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> No
         slow=np.concatenate([_abreast([_slow(x, f) for x in lines], where) for f in floors], axis=1),
         flow=(flow * speed) ** 2,
         new_b=1.0 - np.exp(-2.0 * h / (MEMORY_B * time)), new_c=1.0 - np.exp(-2.0 * h / (MEMORY_C * time)),
-        wave=_abreast([_wave(x) for x in lines], where)[:, row] if _rocked(lines) else None,
+        wave=_abreast([waves.variance(x.track) for x in lines], where)[:, row] if _in_waves(lines) else None,
     )  # fmt: skip
 
 
@@ -242,16 +222,11 @@ def _slow(line: Linear, floor: Floor) -> np.ndarray:
     return (np.array(floor.share) ** 2) * (line.busy**2 + calm**2) + np.square(floor.doubt * line.doubted) + np.square(line.slack)
 
 
-def _wave(line: Linear) -> np.ndarray:
-    """(N, 3) variance of what waves do."""
-    return np.zeros((len(line.track), 3)) if line.track.swell is None else np.square(line.track.swell[:, 3:])
-
-
 def _start(model: Model, noise: Noise) -> np.ndarray:
     """(K, n, n) covariance at the start of each segment: the motion nearly unknown, b, c and the waves as they usually are."""
     ship = model.ship
     L, U, time = float(ship.L_pp), float(ship.scale("speed")), float(ship.scale("time"))
     motion = np.array([0.05 * L, 0.05 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time]) ** 2
-    waves = () if noise.wave is None else (noise.wave[0], noise.wave[0])
-    diagonal = np.column_stack([np.tile(motion, (len(noise.row), 1)), noise.slow[0], noise.flow, noise.flow, *waves])
+    swell = () if noise.wave is None else (noise.wave[0], noise.wave[0])
+    diagonal = np.column_stack([np.tile(motion, (len(noise.row), 1)), noise.slow[0], noise.flow, noise.flow, *swell])
     return np.eye(diagonal.shape[1]) * diagonal[:, None, :]

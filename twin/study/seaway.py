@@ -2,9 +2,9 @@
 
 The motion of first order in a seaway is large and swings about zero. A filter that takes it for noise that forgets itself from one
 reading to the next believes far too much, or trusts nothing. So the filter carries the waves' accelerations in narrow bands of their
-own (`innovations.py`), as fast and as strong as this voyage shows them: what the model leaves over along the path that is swifter than
+own (`waves.py`), as fast and as strong as this voyage shows them: what the model leaves over along the path that is swifter than
 a ship manoeuvres. Whether that is a sea at all, the readings say.
-Waves in a filter: Saelid, Jenssen & Balchen (1983) IEEE Trans. Automatic Control 28; Fossen (2021) sec. 13.2.
+Separation of wave-frequency and low-frequency motion: Fossen (2021), sec. 13.2.
 """
 
 from dataclasses import replace

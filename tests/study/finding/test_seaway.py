@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from twin.physics.model import Model
-from twin.study.innovations import _carried
 from twin.study.openloop import coarse
 from twin.study.seaway import at_sea, levelled, swung
 from twin.study.start import steadied, wave_period_s
 from twin.study.track import track
+from twin.study.waves import carried, fresh
 
 PERIOD_S = 12.0
 YAW, SWAY = 0.01, 0.3  # amplitudes [rad, m/s]
@@ -84,9 +84,8 @@ def test_a_prediction_begins_in_the_motion_without_waves(rough, calm, tanker):
 
 def test_what_carries_waves_on_keeps_their_strength_and_pushes_nobody_for_long(rough):
     """P = Phi P Phi' + (1 - Phi Phi') holds for P = 1; and a steady push on the carrier moves the wave's acceleration nowhere."""
-    on = _carried(rough)[100, 1]
-    fresh = np.eye(2) - on @ on.T
-    assert np.linalg.eigvalsh(fresh).min() > -1e-12
+    on = carried(rough)[100, 1]
+    assert np.linalg.eigvalsh(fresh(carried(rough))[100, 1]).min() > -1e-12
     x = float(rough.h * rough.swell[100, 1])
     rate = np.array([[-0.2, -1.0], [1.0, 0.0]]) * x  # zeta = 0.1
     powers = [np.eye(2)]
