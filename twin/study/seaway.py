@@ -48,9 +48,12 @@ def swung(track: Track, model: Model) -> Track:
     def likely(line: Linear) -> float:
         return max(evidence(n, sd) for n in innovate([line], [floor.scaled(white=k) for k in WHITES]))
 
-    as_strong = {k: likely(replace(lines[1], track=_times(lines[1].track, k))) for k in STRENGTHS}
+    try:
+        calm, as_strong = likely(lines[0]), {k: likely(replace(lines[1], track=_times(lines[1].track, k))) for k in STRENGTHS}
+    except np.linalg.LinAlgError:  # a model that no filter can follow says nothing of waves
+        return track
     best = max(as_strong, key=lambda k: as_strong[k])
-    return _times(rough, best) if as_strong[best] > likely(lines[0]) + CLEAR * TEMPER else track
+    return _times(rough, best) if as_strong[best] > calm + CLEAR * TEMPER else track
 
 
 def _times(track: Track, strength: float) -> Track:

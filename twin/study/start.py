@@ -56,7 +56,7 @@ def waves_on(tracks: Sequence[Track]) -> list[dict[str, Any]]:
 def told_of_waves(waves: Sequence[dict[str, Any]]) -> list[str]:
     """The same in words."""
     said = "predictions begin in the motion without them, and they are no effect's doing"
-    return [f"waves swing her about every {w['period_s']:.2g} s on {w['voyage']}: {said}" for w in waves]
+    return [f"On {w['voyage']} waves swing her about every {w['period_s']:.2g} s: {said}." for w in waves]
 
 
 def undone(track: Track, model: Model) -> Track:

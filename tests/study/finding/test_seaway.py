@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 from twin.physics.model import Model
+from twin.study import seaway
 from twin.study.openloop import coarse
 from twin.study.seaway import at_sea, levelled, swung
-from twin.study.start import steadied, wave_period_s
+from twin.study.start import steadied, told_of_waves, wave_period_s, waves_on
 from twin.study.track import track
 from twin.study.waves import carried, fresh
 
@@ -50,6 +51,20 @@ def test_a_sea_that_was_measured_but_moves_nobody_is_no_sea(calm, tanker):
     measured = replace(calm, weather=dict(calm.weather) | {"H_s": np.full(len(calm), 3.0)})
     assert at_sea(measured, Model.of(tanker))
     assert swung(measured, Model.of(tanker)) is measured
+
+
+def test_a_model_that_no_filter_can_follow_says_nothing_of_waves(calm, tanker, monkeypatch):
+    def lost(*_):
+        raise np.linalg.LinAlgError
+
+    monkeypatch.setattr(seaway, "innovate", lost)
+    rough = in_waves(calm)
+    assert swung(rough, Model.of(tanker)) is rough
+
+
+def test_waves_are_told_with_their_voyage_and_period(rough, calm):
+    (said,) = told_of_waves(waves_on([calm, rough]))
+    assert calm.name in said and f"{wave_period_s(rough):.2g} s" in said
 
 
 def test_the_period_and_the_strength_of_the_waves_are_found(rough):

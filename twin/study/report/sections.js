@@ -92,7 +92,7 @@ function provenanceSection() {
   const out = [];
   const model = RESULT.model ? ["core", ...RESULT.model.effects, ...(RESULT.model.residual ? ["residual"] : [])].join(" + ") + (RESULT.model.hash ? `, hash ${RESULT.model.hash}` : "") : null;
   if (model) out.push(el("p.note", null, `Model: ${RESULT.ship}, ${model}`));
-  for (const said of RESULT.told_of_waves || []) out.push(el("p.note", null, `${said}.`));
+  for (const said of RESULT.told_of_waves || []) out.push(el("p.note", null, said));
   for (const s of RESULT.switched_off || []) out.push(el("p.note", null, `Switched off on ${s.voyage}: ${s.effect}, because ${s.not_measured.join(", ")} was not recorded.`));
   for (const n of RESULT.notes || []) out.push(el("p.note", null, typeof n === "string" ? n : JSON.stringify(n)));
   const rows = [...files(RESULT.voyages), ...(RESULT.held_out ? files(RESULT.held_out).map((r) => (r.firstChild.append(" · held out"), r)) : [])];
