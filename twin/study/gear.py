@@ -15,7 +15,6 @@ from twin.physics.model import Model
 from .columns import Unknown, effect_unknowns
 from .fit import Catalogue, evidence
 from .innovations import Floor, innovate, linearise
-from .sailed import fed
 from .track import Track
 
 TRAVEL, DELAY = (0.35, 0.7, 1.4, 2.8), (0.05, 0.1, 0.2)  # L/U_0; the first is as fast as a large tanker's must be
@@ -37,7 +36,7 @@ def geared(model: Model, tracks: Sequence[Track], unknowns: Sequence[Unknown], k
         return model.but(SteeringLag.absent(model.ship).but(delay=delay * time, travel_time=travel * time))
 
     def probable(m: Model) -> float:
-        lines = [linearise(t, fed(m, t)[0], unknowns, known) for t in tracks]
+        lines = [linearise(t, m.without_inputs(t.missing())[0], unknowns, known) for t in tracks]
         return evidence(innovate(lines, [Floor()])[0], sd) / temper
 
     none = (probable(model), 0.0, 0.0)

@@ -54,6 +54,8 @@ def refine(
             break
         first[[i for i in lost if at[i] == 0.0]] = 1.0
         best, at = max((best, at), _climb(case, chosen, mine, "usual", factor * first), key=lambda end: end[0].log_weight)
+    if all(case.catalogue[name].kind == "Lag" for name in chosen):  # about none, a slow gear is seen by its delay alone
+        best, at = max((best, at), _climb(case, chosen, mine, "usual", np.full_like(z, FARTHER[-1])), key=lambda end: end[0].log_weight)
     model, lines = about(case, at, mine, case.unknowns)
     doubt = _doubt(case, chosen, lines, best.world, at)
     reduced = _everywhere(case, chosen, lines, at, doubt)

@@ -7,6 +7,7 @@ a ship manoeuvres. Whether that is a sea at all, the readings say.
 Separation of wave-frequency and low-frequency motion: Fossen (2021), sec. 13.2.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,7 +15,9 @@ import numpy as np
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
 
+from .columns import Unknown
 from .fit import evidence
+from .gear import geared
 from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, nuisance_unknowns
 from .respond import respond
@@ -37,23 +40,33 @@ CLEAR = 20.0  # log evidence, tempered, that waves must add
 def swung(track: Track, model: Model) -> Track:
     """The track with what waves do to her, if that is likelier than any noise would be, whatever else may be wrong with her; else without."""
     track = track if track.swell is None else replace(track, swell=None)
-    usable, floor, known = model.without_inputs(track.missing())[0], floor_of(model.ship) or Floor(), catalogue()
-    rough = _swinging(track, usable)
+    usable, known = model.without_inputs(track.missing())[0], catalogue()
+    unknowns = nuisance_unknowns(usable, known)
+    try:
+        rough = _likeliest(track, usable, unknowns)
+        if rough.swell is None:
+            return track
+        part = read_parts([track], float(model.ship.scale("time")), MOST_SEGMENTS)
+        slow = geared(usable, part, unknowns, known, TEMPER)  # a gear that lags leaves swift accelerations, too, and is nothing to first order
+        return rough if slow is usable else _likeliest(track, slow, unknowns)
+    except np.linalg.LinAlgError:  # a model that no filter can follow says nothing of waves
+        return track
+
+
+def _likeliest(track: Track, model: Model, unknowns: Sequence[Unknown]) -> Track:
+    """The track in waves as strong as the readings ask for, or in none."""
+    floor, rough = floor_of(model.ship) or Floor(), _swinging(track, model)
     if rough.swell is None:
         return track
-    unknowns = nuisance_unknowns(usable, known)
-    parts = [read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0] for t in (track, levelled(rough, usable))]
-    lines, sd = [linearise(p, usable, unknowns, known) for p in parts], np.array([u.sd for u in unknowns])
+    parts = [read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0] for t in (track, levelled(rough, model))]
+    lines, sd = [linearise(p, model, unknowns, catalogue()) for p in parts], np.array([u.sd for u in unknowns])
 
     def likely(line: Linear) -> float:
         return max(evidence(n, sd) for n in innovate([line], [floor.scaled(white=k) for k in WHITES]))
 
-    try:
-        calm, as_strong = likely(lines[0]), {k: likely(replace(lines[1], track=_times(lines[1].track, k))) for k in STRENGTHS}
-    except np.linalg.LinAlgError:  # a model that no filter can follow says nothing of waves
-        return track
+    as_strong = {k: likely(replace(lines[1], track=_times(lines[1].track, k))) for k in STRENGTHS}
     best = max(as_strong, key=lambda k: as_strong[k])
-    return _times(rough, best) if as_strong[best] > calm + CLEAR * TEMPER else track
+    return _times(rough, best) if as_strong[best] > likely(lines[0]) + CLEAR * TEMPER else track
 
 
 def _times(track: Track, strength: float) -> Track:

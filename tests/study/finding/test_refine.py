@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.refine import DOUBTS, _bends, _climb, _lost, _told, about
+from twin.study.refine import DOUBTS, _bends, _climb, _lost, _told, about, refine
 
 
 @pytest.fixture(scope="module")
@@ -55,3 +55,15 @@ def test_a_ship_that_no_filter_can_follow_is_no_step_to_take(case):
     assert _told(case, here, "usual", np.zeros_like(z)) is not None and _told(case, wild, "usual", np.zeros_like(z)) is None
     end = _climb(case, ("Loading",), mine, "usual", z)[1]
     assert np.isfinite(end).all()
+
+
+def test_a_slow_gear_is_found_however_far_out_it_stands(case):
+    """From the linear guess, which sees the delay alone, and from far out: no place is more probable than where it is said to stand."""
+    mine, guess = rows(case, "SteeringLag"), np.zeros(len(case.effects))
+    guess[mine] = [0.5, 0.2]
+    found, _ = refine(case, ("SteeringLag",), "usual", guess, ())
+    for start in ([2.0, 2.0], [0.5, 4.0]):
+        z = np.zeros(len(case.effects))
+        z[mine] = start
+        other = _climb(case, ("SteeringLag",), mine, "usual", z)[1]
+        assert abs(other[mine] - found.posterior.z[mine]).max() < 0.5

@@ -53,6 +53,11 @@ def test_a_sea_that_was_measured_but_moves_nobody_is_no_sea(calm, tanker):
     assert swung(measured, Model.of(tanker)) is measured
 
 
+def test_a_slow_gear_is_no_sea(tanker, voyages):
+    lagging = track(voyages["SteeringLag"], tanker)
+    assert swung(lagging, Model.of(tanker)).swell is None
+
+
 def test_a_model_that_no_filter_can_follow_says_nothing_of_waves(calm, tanker, monkeypatch):
     def lost(*_):
         raise np.linalg.LinAlgError
