@@ -24,7 +24,7 @@ from .respond import respond
 from .segments import read_parts, segments
 from .start import wave_period_s
 from .structure import floor_of
-from .track import Track
+from .track import Track, running_mean
 
 SWIFT = 3.0  # L/U_0: what swings about the mean over so long a time may be waves
 LATELY = 8.0  # L/U_0: on another course waves are met otherwise
@@ -118,9 +118,3 @@ def _left_over(track: Track, model: Model) -> np.ndarray:
 def _lately(values: np.ndarray, steps: float) -> np.ndarray:
     """Running mean of every column."""
     return np.column_stack([running_mean(column, max(1, round(steps))) for column in values.T])
-
-
-def running_mean(values: np.ndarray, steps: int) -> np.ndarray:
-    """Mean over the `steps` about each point; fewer at the ends."""
-    window = np.ones(min(steps, values.size))
-    return np.convolve(values, window, "same") / np.convolve(np.ones(values.size), window, "same")

@@ -189,7 +189,7 @@ def smooth_motion(measured: np.ndarray, h: float, ship: Ship) -> tuple[np.ndarra
     north, east = np.gradient(x_s, h), np.gradient(y_s, h)
     u_s, v_s = north * c + east * s, east * c - north * s
     state = np.column_stack([x_s, y_s, psi_s, u_s, v_s, r_s])
-    log = [(u_r - u_s) - _running_mean(u_r - u_s, 41), (v_r - v_s) - _running_mean(v_r - v_s, 41)]
+    log = [(u_r - u_s) - running_mean(u_r - u_s, 41), (v_r - v_s) - running_mean(v_r - v_s, 41)]
     residuals = [*(measured[:, :6] - state).T, *log]
     found = [
         max(1.4826 * np.nanmedian(np.abs(e)) if np.isfinite(e).any() else np.nan, floor[name])
@@ -198,7 +198,8 @@ def smooth_motion(measured: np.ndarray, h: float, ship: Ship) -> tuple[np.ndarra
     return state, np.array(found)
 
 
-def _running_mean(values: np.ndarray, width: int) -> np.ndarray:
+def running_mean(values: np.ndarray, width: int) -> np.ndarray:
+    """Mean over the `width` about each point, of those that are there; fewer at the ends."""
     ok = np.isfinite(values)
     kernel = np.ones(min(width, values.size))
     weight = np.convolve(ok, kernel, "same")
