@@ -188,7 +188,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
-    fitted, held_out, words = split(read_all(args.voyages, ship), read_all(args.held_out, ship))
+    every = read_all(args.voyages, ship)
+    fitted, held_out, words = split(every, read_all(args.held_out, ship))
 
     def tell(text: str) -> None:
         print(f"{text} ...", file=sys.stderr)
@@ -196,7 +197,7 @@ def run(args: argparse.Namespace) -> int:
     done = calibrate(fitted, held_out, ship, tell)
     if words == LAST:
         tell("once more, with every voyage")
-        done = calibrate(read_all(args.voyages, ship), held_out, ship, tell, done.result["fitted_by"]).with_errors_of(done)
+        done = calibrate(every, held_out, ship, tell, done.result["fitted_by"]).with_errors_of(done)
     save(done.ship, args.output)
     r = done.result
     found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
