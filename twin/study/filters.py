@@ -5,14 +5,23 @@ what carries them on. X holds its mean and how that depends on each unknown, C i
 step, and carried on to the next.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import product
 
 import numpy as np
 
 MOTION, SPEEDS, SLOW, FLOW = slice(0, 6), slice(3, 6), slice(6, 9), slice(9, 11)  # places in the state
-WAVE, CARRIER = slice(11, 14), slice(14, 17)
-STATES, AT_SEA = 11, 17
+WAVE = slice(11, 14)  # and behind it, axis by axis, what carries the waves on
+STATES, AT_SEA = 11, 23
 DIAGONAL = np.arange(AT_SEA)
+LIGHT = np.float32  # of the many tangents; covariances and sums need more
+
+
+def swinging() -> Iterator[tuple[tuple[int, slice], tuple[int, slice]]]:
+    """Every pair of the waves' states of an axis, each with its place among all states (of the three axes together)."""
+    places = [slice(a, a + 3) for a in range(STATES, AT_SEA, 3)]
+    return product(enumerate(places), repeat=2)
 
 
 @dataclass(frozen=True)
@@ -26,7 +35,7 @@ class Stretches:
     turn: np.ndarray  # (T, S, 3, 3) body velocities to d(x, y, psi)/dt
     A: np.ndarray  # (T, S, 3, P)
     R: np.ndarray  # (T, S, 8, P)
-    fresh: np.ndarray | None = None  # (T, S, 3, 2, 2) of wave and carrier, the share of variance that is new after a step
+    fresh: np.ndarray | None = None  # (T, S, 3, 4, 4) of each axis' waves, the share of variance that is new after a step
 
 
 @dataclass(frozen=True)
@@ -49,41 +58,41 @@ class Filters:
 
     def __init__(self, told: Stretches, noise: Noise, C: np.ndarray) -> None:
         self.told, self.noise, self.C = told, noise, C
-        self.X = np.zeros((*C.shape[:2], 1 + told.A.shape[-1]))
+        self.X = np.zeros((*C.shape[:2], 1 + told.A.shape[-1]), LIGHT)
+        self.F, self.H, self.turn = (x.astype(LIGHT) for x in (told.F, told.H, told.turn))
 
     def correct(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """By the readings of step k; gives the whitened innovations with their tangents (K, 8, 1 + P), the root of their covariance, and
         which readings there were (K, 8)."""
         told, row = self.told, self.noise.row
         here = np.isfinite(told.e[k])[row]
-        H = told.H[k][row] * here[:, :, None]
-        E = -(H @ self.X)
+        E = -(self.H[k][row] @ self.X)
         E[:, :, 0] += np.where(here, told.e[k][row], 0.0)
-        E[:, :, 1:] -= told.R[k][row] * here[:, :, None]
+        E[:, :, 1:] -= told.R[k][row]
+        E *= here[:, :, None]
+        H = told.H[k][row] * here[:, :, None]
         HC = H @ self.C
         S = HC @ H.transpose(0, 2, 1)
         S[:, DIAGONAL[:8], DIAGONAL[:8]] += np.where(here, self.noise.reading, 1.0)
         L = np.linalg.cholesky(S)
-        both = np.linalg.inv(L) @ np.concatenate([E, HC], axis=2)
-        white, V = both[:, :, : E.shape[2]], both[:, :, E.shape[2] :]
-        VT = V.transpose(0, 2, 1)
-        self.X = self.X + VT @ white
-        self.C = self.C - VT @ V
+        inverse = np.linalg.inv(L)
+        white, V = inverse.astype(LIGHT) @ E, inverse @ HC
+        self.X += V.transpose(0, 2, 1).astype(LIGHT) @ white
+        self.C -= V.transpose(0, 2, 1) @ V
         return white, L, here
 
     def advance(self, k: int) -> None:
         """From step k to the next: by the linear ship, what the unknowns push, and noise."""
         told, noise, row = self.told, self.noise, self.noise.row
-        F, h = told.F[k][row], noise.h[:, None, None]
+        F, h = told.F[k][row], noise.h[:, None, None].astype(LIGHT)
         push = h * told.A[k][row]
-        self.X = F @ self.X
+        self.X = self.F[k][row] @ self.X
         self.X[:, MOTION, 0] += told.defect[k][row]
         self.X[:, SPEEDS, 1:] += push
-        self.X[:, 0:3, 1:] += 0.5 * h * (told.turn[k][row] @ push)
+        self.X[:, 0:3, 1:] += 0.5 * h * (self.turn[k][row] @ push)
         self.C = F @ self.C @ F.transpose(0, 2, 1)
         for part, variance in ((SPEEDS, noise.fast), (SLOW, noise.new_b[:, None] * noise.slow[k]), (FLOW, (noise.new_c * noise.flow)[:, None])):
             self.C[:, DIAGONAL[part], DIAGONAL[part]] += variance
         if told.fresh is not None and noise.wave is not None:
-            for i, a in enumerate((WAVE, CARRIER)):
-                for j, b in enumerate((WAVE, CARRIER)):
-                    self.C[:, DIAGONAL[a], DIAGONAL[b]] += told.fresh[k][row][:, :, i, j] * noise.wave[k]
+            for (i, a), (j, b) in swinging():
+                self.C[:, DIAGONAL[a], DIAGONAL[b]] += told.fresh[k][row][:, :, i, j] * noise.wave[k]

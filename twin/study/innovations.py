@@ -227,6 +227,6 @@ def _start(model: Model, noise: Noise) -> np.ndarray:
     ship = model.ship
     L, U, time = float(ship.L_pp), float(ship.scale("speed")), float(ship.scale("time"))
     motion = np.array([0.05 * L, 0.05 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time]) ** 2
-    swell = () if noise.wave is None else (noise.wave[0], noise.wave[0])
-    diagonal = np.column_stack([np.tile(motion, (len(noise.row), 1)), noise.slow[0], noise.flow, noise.flow, *swell])
-    return np.eye(diagonal.shape[1]) * diagonal[:, None, :]
+    diagonal = np.column_stack([np.tile(motion, (len(noise.row), 1)), noise.slow[0], noise.flow, noise.flow])
+    C = np.eye(STATES) * diagonal[:, None, :]
+    return C if noise.wave is None else waves.in_covariance(C, noise.wave[0])

@@ -50,7 +50,7 @@ class Sums:
 
     def _fold(self) -> None:
         if self.held:
-            W = np.concatenate(self.held, axis=1)
+            W = np.concatenate(self.held, axis=1, dtype=float)
             self.M += W.transpose(0, 2, 1) @ W
             self.held = []
 

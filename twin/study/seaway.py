@@ -32,9 +32,10 @@ SLOW = 1.0  # L/U_0: what swings with a longer period may be the ship's own doin
 SEEN = 0.5  # share of what is swift in what is left over of sway or yaw, from which waves are looked for
 SEA = 0.003  # wave height in ship lengths from which a measured sea may move her
 MOST_SEGMENTS = 12  # by which a sea is judged
-STRENGTHS = (0.5, 1.0, 2.0)  # of the waves, in units of what is seen of them
+STRENGTHS = (1.0, 2.0, 4.0, 8.0)  # of the waves, in units of what the smooth path shows of them
 WHITES = (1.0, 8.0, 32.0)  # and of the noise that might be there instead
 CLEAR = 20.0  # log evidence, tempered, that waves must add
+BEYOND = 3.0  # times as strong as is likeliest: one wave swings all axes and the rudder follows it, so that nothing is believed in their band
 
 
 def swung(track: Track, model: Model) -> Track:
@@ -66,7 +67,7 @@ def _likeliest(track: Track, model: Model, unknowns: Sequence[Unknown]) -> Track
 
     as_strong = {k: likely(replace(lines[1], track=_times(lines[1].track, k))) for k in STRENGTHS}
     best = max(as_strong, key=lambda k: as_strong[k])
-    return _times(rough, best) if as_strong[best] > likely(lines[0]) + CLEAR * TEMPER else track
+    return _times(rough, BEYOND * best) if as_strong[best] > likely(lines[0]) + CLEAR * TEMPER else track
 
 
 def _times(track: Track, strength: float) -> Track:

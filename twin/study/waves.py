@@ -1,32 +1,47 @@
 """Waves as states of the filter: of surge, sway and yaw each an acceleration in a narrow band, beside what is slow.
 
-    w'' + 2 zeta omega w' + omega^2 w = noise'
+    p' = -2 zeta omega_1 p - omega_1 q + noise,   q' = omega_1 p
+    w' = -2 zeta omega_2 w - omega_2 o + omega p, o' = omega_2 w      omega_1, omega_2 = omega (1 -+ APART)
 
-Its spectrum is zero at omega = 0, as no wave pushes for long. Beside w goes its carrier, in units in which both scatter alike, so that
-frequency and size (`Track.swell`, seen in `seaway.py`) may change from step to step.
+Two resonances, one behind the other: the spectrum of w falls off with the square of frequency towards omega = 0, as no wave pushes for
+long, and what she does slower than the waves is seen as well as in calm water. (w, o, p, q) are in units in which w has variance one
+and omega, so that frequency and size (`Track.swell`, seen in `seaway.py`) may change from step to step.
 Source: Fossen (2021) Handbook of Marine Craft, sec. 10.2 and 13.2.
 """
 
 import numpy as np
+from scipy.linalg import solve_continuous_lyapunov
 
-from .filters import AT_SEA, CARRIER, SLOW, STATES, WAVE
+from .filters import AT_SEA, SLOW, STATES, WAVE, swinging
 from .track import Track
 
 DAMPING = 0.1  # zeta: how broad a band waves swing her in
+APART = 0.1  # of the resonances from the middle of the band, as a share of its frequency
+
+
+def _band() -> tuple[np.ndarray, np.ndarray]:
+    """(4, 4) rate of (w, o, p, q) per omega, and (4, 4) its covariance as long as waves last, w having variance one."""
+    first, second = 1.0 - APART, 1.0 + APART
+    rate = np.zeros((4, 4))
+    rate[0], rate[1, 0] = (-2.0 * DAMPING * second, -second, 1.0, 0.0), second
+    rate[2, 2:], rate[3, 2] = (-2.0 * DAMPING * first, -first), first
+    lasting = solve_continuous_lyapunov(rate, -np.diag([0.0, 0.0, 1.0, 0.0]))
+    return rate, lasting / lasting[0, 0]
+
+
+RATE, LASTING = _band()
+TONES, SHAPES = np.linalg.eig(RATE)
 
 
 def carried(track: Track) -> np.ndarray:
-    """(N, 3, 2, 2) what takes each wave and its carrier one step on."""
+    """(N, 3, 4, 4) what takes the waves of each axis one step on."""
     x = track.h * (np.zeros((len(track), 3)) if track.swell is None else track.swell[:, :3])
-    swings = np.sqrt(1.0 - DAMPING**2)
-    c, s = np.cos(swings * x), np.sin(swings * x) / swings
-    on = np.array([[c - DAMPING * s, -s], [s, c + DAMPING * s]])
-    return np.exp(-DAMPING * x)[:, :, None, None] * np.moveaxis(on, (0, 1), (2, 3))
+    return ((SHAPES * np.exp(x[:, :, None, None] * TONES)) @ np.linalg.inv(SHAPES)).real
 
 
 def fresh(carried: np.ndarray) -> np.ndarray:
-    """(N, 3, 2, 2) the share of their covariance that is new after a step, so that they stay as strong as they are."""
-    return np.eye(2) - carried @ carried.transpose(0, 1, 3, 2)
+    """(N, 3, 4, 4) what of their covariance is new after a step, so that they stay as strong as they are."""
+    return LASTING - carried @ LASTING @ np.swapaxes(carried, -1, -2)
 
 
 def variance(track: Track) -> np.ndarray:
@@ -35,16 +50,23 @@ def variance(track: Track) -> np.ndarray:
 
 
 def in_system(F: np.ndarray, carried: np.ndarray) -> np.ndarray:
-    """(N, 17, 17) what takes the ship (N, 11, 11) and the waves one step on: they push her as what is slow does."""
+    """(N, 23, 23) what takes the ship (N, 11, 11) and the waves one step on: they push her as what is slow does."""
     out = np.zeros((len(F), AT_SEA, AT_SEA))
     out[:, :STATES, :STATES], out[:, :STATES, WAVE] = F, F[:, :, SLOW]
     out[:, SLOW, WAVE] = 0.0
-    for i, a in enumerate((WAVE, CARRIER)):
-        for j, b in enumerate((WAVE, CARRIER)):
-            out[:, a, b] = np.eye(3) * carried[:, :, i, j, None]
+    for (i, a), (j, b) in swinging():
+        out[:, a, b] = np.eye(3) * carried[:, :, i, j, None]
+    return out
+
+
+def in_covariance(C: np.ndarray, variance: np.ndarray) -> np.ndarray:
+    """(K, 23, 23) what is not known of the ship (K, 11, 11) and of waves of such a variance (K, 3)."""
+    out = np.pad(C, ((0, 0), (0, AT_SEA - STATES), (0, AT_SEA - STATES)))
+    for (i, a), (j, b) in swinging():
+        out[:, a, b] = np.eye(3) * LASTING[i, j] * variance[:, :, None]
     return out
 
 
 def in_reader(H: np.ndarray) -> np.ndarray:
-    """(N, 8, 17) the same readings: no instrument shows a wave by itself."""
+    """(N, 8, 23) the same readings: no instrument shows a wave by itself."""
     return np.pad(H, ((0, 0), (0, 0), (0, AT_SEA - STATES)))

@@ -11,7 +11,7 @@ from twin.study.openloop import coarse
 from twin.study.seaway import at_sea, levelled, swung
 from twin.study.start import steadied, told_of_waves, wave_period_s, waves_on
 from twin.study.track import track
-from twin.study.waves import carried, fresh
+from twin.study.waves import LASTING, RATE, carried, fresh
 
 PERIOD_S = 12.0
 YAW, SWAY = 0.01, 0.3  # amplitudes [rad, m/s]
@@ -102,15 +102,21 @@ def test_a_prediction_begins_in_the_motion_without_waves(rough, calm, tanker):
     assert steadied(calm) is calm
 
 
-def test_what_carries_waves_on_keeps_their_strength_and_pushes_nobody_for_long(rough):
-    """P = Phi P Phi' + (1 - Phi Phi') holds for P = 1; and a steady push on the carrier moves the wave's acceleration nowhere."""
-    on = carried(rough)[100, 1]
-    assert np.linalg.eigvalsh(fresh(carried(rough))[100, 1]).min() > -1e-12
-    x = float(rough.h * rough.swell[100, 1])
-    rate = np.array([[-0.2, -1.0], [1.0, 0.0]]) * x  # zeta = 0.1
-    powers = [np.eye(2)]
+def test_what_carries_waves_on_keeps_their_strength(rough):
+    """P = Phi P Phi' + Q with a Q that can be, and Phi = exp(omega h A) by its series."""
+    on, new = carried(rough)[100, 1], fresh(carried(rough))[100, 1]
+    np.testing.assert_allclose(on @ LASTING @ on.T + new, LASTING, atol=1e-12)
+    assert np.linalg.eigvalsh(new).min() > -1e-12 and LASTING[0, 0] == 1.0
+    powers = [np.eye(4)]
     for k in range(1, 20):
-        powers.append(powers[-1] @ rate / k)
+        powers.append(powers[-1] @ RATE * float(rough.h * rough.swell[100, 1]) / k)
     np.testing.assert_allclose(on, sum(powers), atol=1e-12)
-    gain = np.linalg.solve(-rate, [1.0, 0.0])  # of noise on the wave, at omega = 0
+
+
+def test_waves_push_nobody_for_long():
+    """|w / noise| = |s / (s2 + 2 zeta o1 s + o1^2)| |s / (s2 + 2 zeta o2 s + o2^2)|: a fifth of their frequency shows a thousandth of its middle."""
+    gain = [abs(np.linalg.solve(1j * x * np.eye(4) - RATE, [0.0, 0.0, 1.0, 0.0])[0]) for x in (0.0, 0.2, 1.0)]
     assert gain[0] == pytest.approx(0.0, abs=1e-12)
+    by_hand = np.prod([x / abs((o**2 - x**2) + 0.2j * o * x) for x in (0.2,) for o in (0.9, 1.1)])
+    assert gain[1] == pytest.approx(by_hand, rel=1e-9)
+    assert (gain[1] / gain[2]) ** 2 < 0.002
