@@ -5,23 +5,17 @@ what carries them on. X holds its mean and how that depends on each unknown, C i
 step, and carried on to the next.
 """
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
 MOTION, SPEEDS, SLOW, FLOW = slice(0, 6), slice(3, 6), slice(6, 9), slice(9, 11)  # places in the state
-WAVE = slice(11, 14)  # and behind it, axis by axis, what carries the waves on
+WAVE = slice(11, 14)  # of each axis; behind it what carries the waves on
 STATES, AT_SEA = 11, 23
 DIAGONAL = np.arange(AT_SEA)
+SWINGING = tuple(product(enumerate(slice(a, a + 3) for a in range(STATES, AT_SEA, 3)), repeat=2))  # pairs of waves' states: number, place of all axes
 LIGHT = np.float32  # of the many tangents; covariances and sums need more
-
-
-def swinging() -> Iterator[tuple[tuple[int, slice], tuple[int, slice]]]:
-    """Every pair of the waves' states of an axis, each with its place among all states (of the three axes together)."""
-    places = [slice(a, a + 3) for a in range(STATES, AT_SEA, 3)]
-    return product(enumerate(places), repeat=2)
 
 
 @dataclass(frozen=True)
@@ -94,5 +88,5 @@ class Filters:
         for part, variance in ((SPEEDS, noise.fast), (SLOW, noise.new_b[:, None] * noise.slow[k]), (FLOW, (noise.new_c * noise.flow)[:, None])):
             self.C[:, DIAGONAL[part], DIAGONAL[part]] += variance
         if told.fresh is not None and noise.wave is not None:
-            for (i, a), (j, b) in swinging():
+            for (i, a), (j, b) in SWINGING:
                 self.C[:, DIAGONAL[a], DIAGONAL[b]] += told.fresh[k][row][:, :, i, j] * noise.wave[k]

@@ -12,7 +12,7 @@ Source: Fossen (2021) Handbook of Marine Craft, sec. 10.2 and 13.2.
 import numpy as np
 from scipy.linalg import solve_continuous_lyapunov
 
-from .filters import AT_SEA, SLOW, STATES, WAVE, swinging
+from .filters import AT_SEA, SLOW, STATES, SWINGING, WAVE
 from .track import Track
 
 DAMPING = 0.1  # zeta: how broad a band waves swing her in
@@ -54,7 +54,7 @@ def in_system(F: np.ndarray, carried: np.ndarray) -> np.ndarray:
     out = np.zeros((len(F), AT_SEA, AT_SEA))
     out[:, :STATES, :STATES], out[:, :STATES, WAVE] = F, F[:, :, SLOW]
     out[:, SLOW, WAVE] = 0.0
-    for (i, a), (j, b) in swinging():
+    for (i, a), (j, b) in SWINGING:
         out[:, a, b] = np.eye(3) * carried[:, :, i, j, None]
     return out
 
@@ -62,7 +62,7 @@ def in_system(F: np.ndarray, carried: np.ndarray) -> np.ndarray:
 def in_covariance(C: np.ndarray, variance: np.ndarray) -> np.ndarray:
     """(K, 23, 23) what is not known of the ship (K, 11, 11) and of waves of such a variance (K, 3)."""
     out = np.pad(C, ((0, 0), (0, AT_SEA - STATES), (0, AT_SEA - STATES)))
-    for (i, a), (j, b) in swinging():
+    for (i, a), (j, b) in SWINGING:
         out[:, a, b] = np.eye(3) * LASTING[i, j] * variance[:, :, None]
     return out
 
