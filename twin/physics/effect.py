@@ -5,7 +5,7 @@ a state of its own. A SensorFault leaves the ship alone and changes what an inst
 """
 
 from dataclasses import MISSING, dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from twin.errors import SettingsError
 
@@ -93,7 +93,7 @@ class Effect:
     def values(self) -> dict[str, Number]:
         return {p.name: getattr(self, p.name) for p in self.params()}
 
-    def but(self, **values: Number) -> "Effect":
+    def but(self, **values: Number) -> Self:
         """The same effect with some of its numbers changed."""
         return replace(self, **values)  # type: ignore[type-var]
 

@@ -86,7 +86,8 @@ def test_a_force_that_stands_alone_is_too_small_to_show_where_she_is_led_already
     case, found = judged
     led = {(): replace(found, off_m=0.9, floor_m=1.0), ("RudderWear",): replace(found, off_m=0.9, floor_m=1.0)}
     assert too_small(case, led, ("RudderWear",))
-    assert not too_small(case, led | {("RudderWear",): replace(found, off_m=0.91, floor_m=1.0)}, ("RudderWear",))  # it leads her astray
+    assert too_small(case, led | {("RudderWear",): replace(found, off_m=0.99, floor_m=1.0)}, ("RudderWear",))  # no less near than a true one
+    assert not too_small(case, led | {("RudderWear",): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",))  # it leads her astray
     assert not too_small(case, led | {(): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",))
     pair = ("RudderWear", "Wind")
     assert not too_small(case, led | {("Wind",): led[()], pair: led["RudderWear",]}, pair)
