@@ -70,6 +70,7 @@ class Effect:
     needs: ClassVar[tuple[str, ...]] = ()  # fields of Situation without which the effect is switched off
     needs_ship: ClassVar[tuple[str, ...]] = ()  # particulars without which it cannot be sized
     holds: ClassVar[tuple[str, ...]] = ()  # effects that are a part of this one, so that beside it they say nothing
+    irregular: ClassVar[bool] = False  # whether it comes and goes with what no input shows
     source: ClassVar[str] = ""
 
     def __init_subclass__(cls, **kwargs: Any) -> None:

@@ -24,7 +24,7 @@ from .track import Track, track
 from .voyage import Voyage
 
 Progress = Callable[[str], None]
-KNOWN = 0.1  # share of the force of an effect in the model that may be something else
+KNOWN, COMES_AND_GOES = 0.1, 0.5  # share of the force of an effect in the model that may be something else, usually and of an irregular one
 
 
 def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage] = (), progress: Progress = lambda text: None) -> Case:
@@ -104,7 +104,7 @@ def _roughly_known(t: Track, model: Model) -> np.ndarray:
     out, calibrated = np.zeros((len(t), 3)), model.ship.notes.get("structural", {}).get("beside_effects", ())
     for effect in (e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in calibrated):
         without = Model(model.ship, tuple(e for e in model.effects if e is not effect))
-        out += np.square(KNOWN * (respond(t, model)[0] - respond(t, without)[0]))
+        out += np.square((COMES_AND_GOES if effect.irregular else KNOWN) * (respond(t, model)[0] - respond(t, without)[0]))
     return np.sqrt(out)
 
 

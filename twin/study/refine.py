@@ -18,6 +18,7 @@ from .innovations import Linear, linearise, standard
 from .respond import respond
 
 DOUBTS = (0.2, 0.1, 0.05)
+IRREGULAR = (1.0, 0.5)  # and of one that comes and goes with what no input shows
 Sets = tuple[str, ...]
 NEWTON = 8  # steps, at most
 FARTHER = (2.0, 4.0)  # times the linear guess, where Newton begins again when it ended in no plain world, or at nothing
@@ -126,8 +127,9 @@ def _judged(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> tuple[list
 
 def _doubt(case: Case, chosen: Sets, lines: Sequence[Linear], world: str, at: np.ndarray) -> float:
     """The share of DOUBTS under which the voyages are most probable."""
-    reduced = case.reduced(lines, [case.worlds([world], share)[0] for share in DOUBTS], at)
-    return DOUBTS[int(np.argmax([posterior(r, chosen).log_evidence for r in reduced]))]
+    shares = (*IRREGULAR, *DOUBTS) if any(case.catalogue[name].irregular for name in chosen) else DOUBTS
+    reduced = case.reduced(lines, [case.worlds([world], share)[0] for share in shares], at)
+    return shares[int(np.argmax([posterior(r, chosen).log_evidence for r in reduced]))]
 
 
 def _beside(case: Case, chosen: Sets, reduced: dict[str, Reduced], wider: Sequence[str]) -> list[Hypothesis]:

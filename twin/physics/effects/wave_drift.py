@@ -4,7 +4,8 @@
     X = q B sqrt(B/L)  c_x cos(chi)
     Y = q L            c_y |sin(chi)| sin(chi)
     N = q L^2          c_n sin(2 chi)
-A vertical wall that reflects everything has c_y = 1; long waves pass under the keel, which R takes off.
+A vertical wall that reflects everything has c_y = 1; long waves pass under the keel, which R takes off. Waves come in groups, and the
+force with them: it follows the square of their envelope, which in a narrow band scatters as much as its mean is (Newman 1974).
 """
 
 from math import pi
@@ -21,6 +22,7 @@ class WaveDrift(Force):
     """The sea pushes the ship slowly along with the waves, slows her in head seas and turns her across them."""
 
     needs = ("H_s", "wave_to")  # T_p is used where it is known
+    irregular = True
     source = "Faltinsen (1990) Sea Loads on Ships and Offshore Structures, ch. 5 (wall reflection); ITTC 7.5-04-01-01.2 STAWAVE-1 (c_x = 1)"
 
     c_x: float = param(1.0, unit="-", lo=0.0, hi=6.0, sd=1.2, doc="added resistance in head sea, in units of STAWAVE-1")
