@@ -17,7 +17,7 @@ from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, WEATHER, from_references, from_ship, lasting, nuisance_unknowns, temper_of, usual_unknowns
 from .respond import respond
-from .seaway import levelled, swung
+from .seaway import levelled, stirred, swung
 from .segments import read_parts
 from .structure import floor_beside, floor_of, structural_floor
 from .track import Track, track
@@ -93,10 +93,12 @@ def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue
 def _lines(
     tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], most: int | None = None
 ) -> tuple[Linear, ...]:
-    """The tracks with what waves do to them taken for that, linearised where they will be read (`most` segments)."""
+    """The tracks with what waves do to them taken for that, linearised where they will be read (`most` segments); what waves change of
+    the ship's own forces, and what is only roughly known, no hypothesis takes away."""
     models = [model.without_inputs(t.missing())[0] for t in tracks]
     parts = read_parts([levelled(t, m) for t, m in zip(tracks, models, strict=True)], float(model.ship.scale("time")), most)
-    return tuple(replace(linearise(p, m, unknowns, catalogue), slack=_roughly_known(p, m)) for p, m in zip(parts, models, strict=True))
+    slack = [np.hypot(stirred(t, m)[p.steps()], _roughly_known(p, m)) for t, p, m in zip(tracks, parts, models, strict=True)]
+    return tuple(replace(linearise(p, m, unknowns, catalogue), slack=s) for p, m, s in zip(parts, models, slack, strict=True))
 
 
 def _roughly_known(t: Track, model: Model) -> np.ndarray:

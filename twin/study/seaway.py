@@ -22,7 +22,7 @@ from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, nuisance_unknowns
 from .respond import respond
 from .segments import read_parts, segments
-from .start import wave_period_s
+from .start import steadied, wave_period_s
 from .structure import floor_of
 from .track import Track, running_mean
 
@@ -103,6 +103,18 @@ def levelled(track: Track, model: Model) -> Track:
         return replace(track, weather=weather)
     delta, n = (np.where(track.whole, running_mean(x, steps), x) for x in (track.delta, track.n))
     return replace(track, weather=weather, delta=delta, n=n)
+
+
+def stirred(track: Track, model: Model) -> np.ndarray:
+    """(N, 3) acceleration by which waves change the mean of what hull, rudder and propeller do, for drag is not in proportion to speed:
+    halfway between both ends of the swing, less the middle [m/s2, m/s2, rad/s2]."""
+    if track.swell is None:
+        return np.zeros((len(track), 3))
+    swing = track.state[:, 3:] - steadied(track).state[:, 3:]
+    swing = np.sqrt(2.0 * _lately(swing**2, LATELY * float(model.ship.scale("time")) / track.h))
+    there, back = (np.column_stack([track.state[:, :3], track.state[:, 3:] + sign * swing]) for sign in (1.0, -1.0))
+    at = [respond(replace(track, state=state), model)[0] for state in (there, back, track.state)]
+    return 0.5 * (at[0] + at[1]) - at[2]
 
 
 def at_sea(track: Track, model: Model) -> bool:

@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.study import seaway
 from twin.study.openloop import coarse
-from twin.study.seaway import at_sea, levelled, swung
+from twin.study.seaway import at_sea, levelled, stirred, swung
 from twin.study.start import steadied, told_of_waves, wave_period_s, waves_on
 from twin.study.track import track
 from twin.study.waves import LASTING, RATE, carried, fresh
@@ -120,3 +121,16 @@ def test_waves_push_nobody_for_long():
     by_hand = np.prod([x / abs((o**2 - x**2) + 0.2j * o * x) for x in (0.2,) for o in (0.9, 1.1)])
     assert gain[1] == pytest.approx(by_hand, rel=1e-9)
     assert (gain[1] / gain[2]) ** 2 < 0.002
+
+
+def test_waves_stir_the_mean_of_what_drag_does_and_nothing_without_waves(rough, calm, tanker):
+    """Half of |v + a| (v + a) + |v - a| (v - a) is more than |v| v by a^2 sign v: of cross-flow drag with swings of 0.5 m/s about 1 m/s."""
+    model = Model.of(tanker)
+    assert not stirred(calm, model).any()
+    swing = 0.5 * np.sin(2.0 * np.pi / PERIOD_S * rough.t)
+    drifting = np.column_stack([rough.state[:, :4], 1.0 + swing, 0.0 * swing])
+    drag = replace(model, effects=(find("CrossFlowDrag")(c_d=0.4),))
+    more = (stirred(replace(rough, state=drifting), m) for m in (drag, model))
+    added = np.median((next(more) - next(more))[200:-200, 1])
+    by_hand = -0.5 * float(tanker.rho) * float(tanker.L_pp) * float(tanker.T) * 0.4 * 0.5**2 / drag.c.m_v
+    assert added == pytest.approx(by_hand, rel=0.15)
