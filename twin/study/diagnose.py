@@ -17,7 +17,7 @@ from .effects import INPUTS
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import explains, helpful, too_small
+from .leftover import astray, explains, helpful, too_small
 from .manoeuvres import next_manoeuvre
 from .overtime import over_time
 from .read import read_voyage
@@ -62,7 +62,7 @@ def diagnose(
         leads += [n for n in w.best.effects if w.effects[n] >= SURE]
     like = {name: alike(case, weighed, name) for name in w.best.effects}
     verdict, missing = judge(
-        weighed, w, like, leads, excited=case.excited, sharp=shows(seen), explained=explained, tossed=any(at_sea(t, case.model) for t in case.tracks)
+        weighed, w, like, leads, excited=case.excited, sharp=shows(seen) and not astray(found[()]), explained=explained, tossed=any(at_sea(t, case.model) for t in case.tracks)
     )  # fmt: skip
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
@@ -82,6 +82,7 @@ def diagnose(
         "one_of": group(weighed, w) if verdict == "undecided" and case.excited else [],
         "probabilities": {"nothing_missing": w.nothing, "unknown": w.unknown if explained else 1.0 - w.nothing},
         "candidates": [c for c in candidates if c],
+        "path": {"horizon_s": horizon_s(case.tracks[0], case.model), "error_without": found[()].off_m, "error_floor": found[()].floor_m},
         "next_manoeuvre": _next(case, found, verdict, missing, candidates, {n: w.effects[n] for n, can in seen.items() if can}, progress),
         "not_judged": _not_judged(case),
         "not_visible": [n for n, can in seen.items() if not can and n not in missing],

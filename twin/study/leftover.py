@@ -18,7 +18,7 @@ from .refine import Found, Sets, standing
 from .seaway import at_sea
 
 MOSTLY = 1.0 / 3.0  # of the error without it that may be left whatever else is
-ASTRAY = 2.0  # times the floor that the best explanation may end away from where she went, if it leads her half of the way
+ASTRAY = 2.0  # times the floor that an answer may end away from where she went, one that names a cause if it leads her half of the way
 NEARLY = 1.5  # and if it does not
 BETTER = 0.05  # share by which a force must bring her nearer to where she went
 RESTLESS = 4  # times the fast part of the floor
@@ -39,6 +39,11 @@ def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: F
     if own[0].log_weight - plain.log_weight > CLEAR and not found.off_m <= found.floor_m:  # a rough world that leads her astray nowhere is none
         return False
     return WORLDS[plain.world].flow > 1.0 or quiet(case, found)
+
+
+def astray(nothing: Found) -> bool:
+    """Whether the model alone leads her so far from where she went that nobody may say that nothing is missing."""
+    return nothing.off_m > ASTRAY * nothing.floor_m
 
 
 def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:

@@ -2,10 +2,10 @@
 
 from typing import Any
 
-from .leftover import BETTER
+from .leftover import ASTRAY, BETTER
 from .overtime import changes
 from .start import told_of_waves
-from .verdict import SURE
+from .verdict import ACQUITTED, SURE
 
 SMALL = "It is too small to show in where these voyages led her: `twin add` may ask for others."
 NEAR = 0.5  # probability from which an effect is told as the nearest one when none explains the voyages
@@ -59,6 +59,12 @@ def sentence(result: dict[str, Any]) -> str:
         return (
             f"Undecided: step by step the readings say {_likely(by_name, c['effect'])}, but it does not lead her to where she went any better "
             f"({c['error_with']:.3g} m off with it, {c['error_without']:.3g} m without)."
+        )
+    path = result["path"]
+    if result["probabilities"]["nothing_missing"] >= ACQUITTED and path["error_without"] > ASTRAY * path["error_floor"]:
+        return (
+            f"Undecided: no effect that I know is likely, but in {path['horizon_s']:.0f} s the model ends {path['error_without']:.3g} m from where she "
+            f"went ({path['error_floor']:.3g} m would be usual)."
         )
     return "Undecided: these voyages cannot tell what, if anything, is missing."
 
