@@ -61,9 +61,8 @@ def diagnose(
     if too_small(case, found, w.best.effects):
         leads += [n for n in w.best.effects if w.effects[n] >= SURE]
     like = {name: alike(case, weighed, name) for name in w.best.effects}
-    verdict, missing = judge(
-        weighed, w, like, leads, excited=case.excited, sharp=shows(seen) and not astray(found[()]), explained=explained, tossed=any(at_sea(t, case.model) for t in case.tracks)
-    )  # fmt: skip
+    sharp, tossed = shows(seen) and not astray(found[()]), any(at_sea(t, case.model) for t in case.tracks)
+    verdict, missing = judge(weighed, w, like, leads, excited=case.excited, sharp=sharp, explained=explained, tossed=tossed)
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")

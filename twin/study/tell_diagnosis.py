@@ -63,8 +63,8 @@ def sentence(result: dict[str, Any]) -> str:
     path = result["path"]
     if result["probabilities"]["nothing_missing"] >= ACQUITTED and path["error_without"] > ASTRAY * path["error_floor"]:
         return (
-            f"Undecided: no effect that I know is likely, but in {path['horizon_s']:.0f} s the model ends {path['error_without']:.3g} m from where she "
-            f"went ({path['error_floor']:.3g} m would be usual)."
+            f"Undecided: no effect that I know is likely, but after {path['horizon_s']:.0f} s the model ends {path['error_without']:.3g} m from "
+            f"where she went ({path['error_floor']:.3g} m would be usual)."
         )
     return "Undecided: these voyages cannot tell what, if anything, is missing."
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.leftover import ASTRAY, CLEAR, explains, helpful, quiet, too_small
+from twin.study.leftover import ASTRAY, CLEAR, astray, explains, helpful, quiet, too_small
 from twin.study.search import search
+from twin.study.tell_diagnosis import sentence
 
 
 @pytest.fixture(scope="module")
@@ -96,3 +97,16 @@ def test_a_force_that_stands_alone_is_too_small_to_show_where_she_is_led_already
     tossed = replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),))
     assert not too_small(tossed, led, ("RudderWear",))
     assert too_small(tossed, led | {("WaveDrift",): led["RudderWear",]}, ("WaveDrift",))
+
+
+def test_where_the_model_alone_ends_twice_as_far_off_as_is_usual_nobody_is_acquitted(judged):
+    _, found = judged
+    assert astray(replace(found, off_m=2.01, floor_m=1.0)) and not astray(replace(found, off_m=1.99, floor_m=1.0))
+
+
+def test_and_it_is_said_how_far_off_that_is():
+    path = {"horizon_s": 120.0, "error_without": 31.6, "error_floor": 12.4}
+    silent = {"nothing_missing": 0.9, "unknown": 0.0}
+    result = {"verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "probabilities": silent, "path": path}
+    assert "after 120 s the model ends 31.6 m from where she went (12.4 m would be usual)" in sentence(result)
+    assert "what, if anything" in sentence(result | {"path": path | {"error_without": 13.0}})
