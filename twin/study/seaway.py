@@ -3,7 +3,7 @@
 The motion of first order in a seaway is large and swings about zero. A filter that takes it for noise that forgets itself from one
 reading to the next believes far too much, or trusts nothing. So the filter carries the waves' accelerations in narrow bands of their
 own (`waves.py`), as fast and as strong as this voyage shows them: what the model leaves over along the path that is swifter than
-a ship manoeuvres. Whether that is a sea at all, the readings say.
+a ship manoeuvres. Whether that is a sea at all, the readings say; and whatever lies in the bands, no cause is read from.
 Separation of wave-frequency and low-frequency motion: Fossen (2021), sec. 13.2.
 """
 
