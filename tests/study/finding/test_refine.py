@@ -1,12 +1,13 @@
 """Where the parameters of a hypothesis come to stand."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.refine import DOUBTS, _bends, _climb, _lost, _told, about, refine
+from twin.study.refine import DOUBTS, IRREGULAR, _bends, _climb, _doubt, _lost, _told, about, refine
 
 
 @pytest.fixture(scope="module")
@@ -67,3 +68,12 @@ def test_a_slow_gear_is_found_however_far_out_it_stands(case):
         z[mine] = start
         other = _climb(case, ("SteeringLag",), mine, "usual", z)[1]
         assert abs(other[mine] - found.posterior.z[mine]).max() < 0.5
+
+
+@pytest.mark.parametrize("chosen, most", [(("WaveDrift",), IRREGULAR[0]), (("RudderWear", "WaveDrift"), IRREGULAR[0]), (("RudderWear",), DOUBTS[0])])
+def test_what_comes_and_goes_with_wave_groups_may_be_something_else_as_a_whole(case, monkeypatch, chosen, most):
+    asked = []
+    monkeypatch.setattr(type(case), "reduced", lambda self, lines, floors, at: asked.extend(floors) or [None] * len(floors))
+    monkeypatch.setattr("twin.study.refine.posterior", lambda r, chosen: SimpleNamespace(log_evidence=0.0))
+    _doubt(case, chosen, case.lines, "usual", np.zeros(len(case.effects)))
+    assert max(floor.doubt for floor in asked) == most and min(floor.doubt for floor in asked) == DOUBTS[-1]
