@@ -53,11 +53,15 @@ def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
 
 
 def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
-    """Whether a single effect cannot show in where she went, for with it and without any she is led as nearly as a true hypothesis leads:
-    then the readings decide, in a sea of the sea's own force alone (of others, they take a wave's pull for a ship's)."""
-    if len(chosen) != 1 or not max(found[()].off_m, found[chosen].off_m) <= found[chosen].floor_m:
+    """Whether a single effect cannot show in where she went, for without any she is led there already, and with it no farther off: then
+    the readings decide. In a sea they do of the sea's own force alone (of others, they take a wave's pull for a ship's), which may lead
+    her anywhere within the floor: it comes and goes."""
+    if len(chosen) != 1:
         return False
-    return "H_s" in case.catalogue[chosen[0]].needs or not any(at_sea(t, case.model) for t in case.tracks)
+    off, nothing, floor = found[chosen].off_m, found[()].off_m, found[chosen].floor_m
+    if case.catalogue[chosen[0]].irregular:
+        return max(off, nothing) <= floor
+    return off <= nothing <= floor and not any(at_sea(t, case.model) for t in case.tracks)
 
 
 def _leads(found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:
