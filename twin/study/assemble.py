@@ -11,7 +11,7 @@ from twin.physics.effects import catalogue as known_effects
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
-from .case import MOST_SEGMENTS, ODDS, ODDS_MEASURED, Case, settle
+from .case import COMES_AND_GOES, MOST_SEGMENTS, ODDS, ODDS_MEASURED, Case, settle
 from .columns import FORM, Unknown, core_unknowns, effect_unknowns, lateness_unknowns
 from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
@@ -24,7 +24,7 @@ from .track import Track, track
 from .voyage import Voyage
 
 Progress = Callable[[str], None]
-KNOWN, COMES_AND_GOES = 0.1, 0.5  # share of the force of an effect in the model that may be something else, usually and of an irregular one
+KNOWN = 0.1  # share of the force of an effect in the model that may be something else
 
 
 def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage] = (), progress: Progress = lambda text: None) -> Case:

@@ -42,6 +42,7 @@ WORLDS: dict[str, World] = {
     "strange": World(4.0, 1.0, 0.015, alone=True, unknown=True),
     "stranger": World(8.0, 4.0, 0.005, alone=True, unknown=True),
 }
+COMES_AND_GOES = 0.5  # share of an irregular effect's force, and of what it does to the path, that no size of it explains
 ODDS = 0.03  # of an effect about which nothing is known
 ODDS_WEAK = 0.002  # when it needs a cause that was measured to be too weak to show
 ODDS_MEASURED = 0.25  # when its cause was measured to be strong

@@ -12,7 +12,7 @@ import numpy as np
 
 from twin.physics.model import Model
 
-from .case import MOST_SEGMENTS, WORLDS, Case
+from .case import COMES_AND_GOES, MOST_SEGMENTS, WORLDS, Case
 from .columns import with_values
 from .evidence import Hypothesis, given, posterior, reduce
 from .innovations import Floor, innovate
@@ -34,10 +34,11 @@ class Led:
     found: Mapping[Sets, Found]  # with `off_m`; "nothing" is among them
     floor: Mapping[str, float]  # [m], by world
     windows: float  # that do not overlap, and no more than MOST
+    irregular: frozenset[str]  # effects that come and go
 
     def log_probability(self, h: Hypothesis) -> float:
         """Of the path under a hypothesis; one that was not asked leads no worse than the best part of it that was."""
-        own, floor = self.found.get(h.effects), _floor(h, self.floor, self.found[()].off_m)
+        own, floor = self.found.get(h.effects), _floor(h, self.floor, self.found[()].off_m, self.irregular)
         error = own.off_m if own else min(f.off_m for s, f in self.found.items() if set(s) <= set(h.effects))
         return self._path(error, floor)
 
@@ -60,9 +61,10 @@ def led(case: Case, found: Mapping[Sets, Found]) -> Led:
     steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
     least = max(steps["coarse"], _measured(case))  # what is run free is a core alone, and no better than it was when nothing was wrong
     floor = {name: max(m, least) for name, m in steps.items()}
-    asked = {s: replace(found[s], off_m=m, floor_m=_floor(_plain(found[s].hypothesis), floor, off[()])) for s, m in off.items()}
+    irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular)
+    asked = {s: replace(found[s], off_m=m, floor_m=_floor(_plain(found[s].hypothesis), floor, off[()], irregular)) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
-    return Led(asked, floor, windows)
+    return Led(asked, floor, windows, irregular)
 
 
 def _plain(h: Hypothesis) -> Hypothesis:
@@ -70,9 +72,11 @@ def _plain(h: Hypothesis) -> Hypothesis:
     return h if WORLDS[h.world].plain else replace(h, world=next(n for n, w in WORLDS.items() if w.plain and w.flow == WORLDS[h.world].flow))
 
 
-def _floor(h: Hypothesis, floor: Mapping[str, float], nothing_m: float) -> float:
-    """How far off a true hypothesis may be [m]: nature writes an effect otherwise, so a part of what it does is left."""
-    return float(np.hypot(floor[h.world], FORM * nothing_m if h.effects else 0.0))
+def _floor(h: Hypothesis, floor: Mapping[str, float], nothing_m: float, irregular: frozenset[str]) -> float:
+    """How far off a true hypothesis may be [m]: nature writes an effect otherwise, so a part of what it does is left; more of one that
+    comes and goes."""
+    left = COMES_AND_GOES if irregular.intersection(h.effects) else FORM if h.effects else 0.0
+    return float(np.hypot(floor[h.world], left * nothing_m))
 
 
 def horizon_s(track: Track, model: Model) -> float:

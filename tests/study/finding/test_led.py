@@ -20,7 +20,7 @@ def asked(**off_m):
     """What a few hypotheses were off by [m] at a floor of 8 m in the usual world and of 16 m in a rough one."""
     sets = {tuple(n for n in name.split("_") if n != "nothing"): off for name, off in off_m.items()}
     found = {s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off, FLOOR_M) for s, off in sets.items()}
-    return Led(found, {"usual": 8.0, "rough": 16.0}, TEN)
+    return Led(found, {"usual": 8.0, "rough": 16.0}, TEN, frozenset(["WaveDrift"]))
 
 
 def says(*effects, world="usual"):
@@ -52,6 +52,12 @@ def test_the_form_of_an_effect_may_miss_a_part_of_what_it_does_to_the_path():
         path = asked(nothing=nothing, Wind=floor)
         assert path.log_probability(says("Wind")) == pytest.approx(0.0)
         assert path.log_probability(says()) == pytest.approx(-2.0 * TEN * np.log(nothing / 8.0))
+
+
+def test_a_force_that_comes_and_goes_leaves_half_of_what_it_does_to_the_path():
+    at = np.hypot(8.0, 0.5 * 20.0)
+    path = asked(nothing=20.0, WaveDrift=at, Wind=at)
+    assert path.log_probability(says("WaveDrift")) == pytest.approx(0.0) and path.log_probability(says("Wind")) < -1.0
 
 
 def test_a_hypothesis_that_was_not_asked_leads_as_well_as_the_best_part_of_it():
