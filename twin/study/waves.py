@@ -3,7 +3,7 @@
     p' = -2 zeta omega_1 p - omega_1 q + noise,   q' = omega_1 p
     w' = -2 zeta omega_2 w - omega_2 o + omega p, o' = omega_2 w      omega_1, omega_2 = omega (1 -+ APART)
 
-Two resonances, one behind the other: the spectrum of w falls off with the square of frequency towards omega = 0, as no wave pushes for
+Two resonances, one behind the other: the spectrum of w falls off with frequency to the fourth towards omega = 0, as no wave pushes for
 long, and what she does slower than the waves is seen as well as in calm water. (w, o, p, q) are in units in which w has variance one
 and omega, so that frequency and size (`Track.swell`, seen in `seaway.py`) may change from step to step.
 Source: Fossen (2021) Handbook of Marine Craft, sec. 10.2 and 13.2.
