@@ -77,17 +77,25 @@ def test_deeper_and_heavier_by_hand(ship):
     loaded = find("Loading")(mass=0.1, draught=0.2, x_G=2.0).alter(ship)
     assert (loaded.m, loaded.T, loaded.x_G) == (pytest.approx(7.7e6), pytest.approx(6.0), pytest.approx(1.0))
     assert loaded.I_z == pytest.approx(1.1 * 4.4e9 + 7.7e6 * (1.0**2 - 1.0**2))
-    assert loaded.c.Y_vdot == pytest.approx(1.2**2 * ship.c.Y_vdot)  # a slender body's added mass goes with T^2
+    assert loaded.c.N_vdot == pytest.approx(1.2**2 * ship.c.N_vdot)  # a slender body's added mass goes with T^2
+    assert loaded.c.Y_vdot == pytest.approx(1.2 * (1.2 + 0.448) / 1.448 * ship.c.Y_vdot)  # with a B/T = 0.16 x 0.7 x 4 = 0.448 beside it
     assert loaded.c.X_udot == pytest.approx(1.1 * ship.c.X_udot)
     assert loaded.c.Y_vv == pytest.approx(1.2 * ship.c.Y_vv)
     assert loaded.c.X_uu == pytest.approx((1.7 * 6 + 0.7 * 20) / (1.7 * 5 + 0.7 * 20) * ship.c.X_uu)
     assert (pytest.approx(200 - 20 * 1.0), pytest.approx(1000 - 100 * 1.0)) == (loaded.A_F, loaded.A_L)
+    # C_wp = 0.8, C_IL = 0.224 - 0.324 + 0.146 = 0.046: 2 m ahead trim her by -2 x 0.7/(0.046 x 100) = -0.304348 draughts, by the head
+    assert loaded.c.Y_uv == pytest.approx((lift := 1.2 * (1.2 + 1.12) / 2.12) * (1 - 0.67 * 0.304348) * ship.c.Y_uv, rel=1e-5)
+    assert loaded.c.N_uv == pytest.approx(1.44 * ship.c.N_uv + lift * 0.27 * 0.304348 * 100 * ship.c.Y_uv, rel=1e-5)
+    turn = 1.2 * (1.2 + 0.64) / 1.64
+    assert loaded.c.Y_ur == pytest.approx(turn * (1 - 0.8 * 0.304348) * ship.c.Y_ur, rel=1e-5)
+    assert loaded.c.N_ur == pytest.approx(turn * (1 - 0.3 * 0.304348) * ship.c.N_ur, rel=1e-5)
+    assert loaded.c.N_uv < 1.44 * ship.c.N_uv  # and she turns across more
 
 
 def test_a_bank_to_starboard_by_hand(ship):
-    # e = 20/(20 + 2 x 30) - 20/(20 + 2 x 90) = 0.25 - 0.1 = 0.15; 1/2 1000 100 5 x 4^2 = 4 MN
-    Y, N = force("Bank", ship, Situation(u_r=4.0, bank_port=90.0, bank_starboard=30.0), suction=0.03, bow_out=0.008)[1:]
-    assert (pytest.approx(4e6 * 0.03 * 0.15), pytest.approx(-4e8 * 0.008 * 0.15)) == (Y, N)
+    # eta = 20/(20 + 2 x 30) = 0.25 and 20/(20 + 2 x 90) = 0.1; half steep 0.25 (1 - 0.125) - 0.1 (1 - 0.35) = 0.15375; 1/2 1000 100 5 x 4^2 = 4 MN
+    Y, N = force("Bank", ship, Situation(u_r=4.0, bank_port=90.0, bank_starboard=30.0), suction=0.03, bow_out=0.008, steep=0.5)[1:]
+    assert (pytest.approx(4e6 * 0.03 * 0.15375), pytest.approx(-4e8 * 0.008 * 0.15375)) == (Y, N)
 
 
 def test_tow_and_shore_line_by_hand(ship):

@@ -11,13 +11,14 @@ import numpy as np
 from twin.physics.ship import Ship, load
 
 from . import identifiability
+from .altered import sized
 from .assemble import assemble, unjudged_because
 from .case import Case
 from .effects import INPUTS
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import astray, explains, helpful, too_small
+from .leftover import answer, astray, helpful, too_small
 from .manoeuvres import next_manoeuvre
 from .overtime import over_time
 from .read import read_voyage
@@ -57,9 +58,10 @@ def diagnose(
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed)
     best = found[w.best.effects]
-    explained, leads = not w.best.effects or explains(case, weighed, best, found[()]), helpful(case, found, w.best.effects)
-    if too_small(case, found, w.best.effects):
-        leads += [n for n in w.best.effects if w.effects[n] >= SURE]
+    explain = answer(case, weighed, found, w.best.effects)
+    explained, leads = bool(explain) or not w.best.effects, helpful(case, found, explain)
+    if too_small(case, found, explain):
+        leads += [n for n in explain if w.effects[n] >= SURE]
     like = {name: alike(case, weighed, name) for name in w.best.effects}
     sharp, tossed = shows(seen) and not astray(found[()]), any(at_sea(t, case.model) for t in case.tracks)
     verdict, missing = judge(weighed, w, like, leads, excited=case.excited, sharp=sharp, explained=explained, tossed=tossed)
@@ -106,7 +108,7 @@ def _candidate(
     return {
         "effect": name,
         "probability": probability,
-        "parameters": parameters(case, best.posterior, name),
+        "parameters": parameters(case, sized(case, best), name),
         "typical_force": typical_force(case, best.model, name),
         "error_horizon_s": horizon_s(case.tracks[0], case.model),
         "error_without": found[()].off_m,

@@ -62,12 +62,12 @@ def led(case: Case, found: Mapping[Sets, Found]) -> Led:
     least = max(steps["coarse"], _measured(case))  # what is run free is a core alone, and no better than it was when nothing was wrong
     floor = {name: max(m, least) for name, m in steps.items()}
     irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular)
-    asked = {s: replace(found[s], off_m=m, floor_m=_floor(_plain(found[s].hypothesis), floor, off[()], irregular)) for s, m in off.items()}
+    asked = {s: replace(found[s], off_m=m, floor_m=_floor(plain(found[s].hypothesis), floor, off[()], irregular)) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
     return Led(asked, floor, windows, irregular)
 
 
-def _plain(h: Hypothesis) -> Hypothesis:
+def plain(h: Hypothesis) -> Hypothesis:
     """The same in a world that is no rougher than on the reference voyages."""
     return h if WORLDS[h.world].plain else replace(h, world=next(n for n, w in WORLDS.items() if w.plain and w.flow == WORLDS[h.world].flow))
 

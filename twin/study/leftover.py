@@ -14,16 +14,28 @@ from .case import WORLDS, Case
 from .evidence import Hypothesis, posterior
 from .innovations import standard
 from .led import FORM
+from .own_force import otherwise
 from .refine import Found, Sets, standing
 from .seaway import at_sea
 
 MOSTLY = 1.0 / 3.0  # of the error without it that may be left whatever else is
-ASTRAY = 2.0  # times the floor that an answer may end away from where she went, one that names a cause if it leads her half of the way
+ASTRAY = 2.0  # times the floor that an answer may end away from where she went, one that names a cause if it leads her some of the way
 NEARLY = 1.5  # and if it does not
+SOME = 0.75  # of the error without it
 BETTER = 0.05  # share by which a force must bring her nearer to where she went
 RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
 CLEAR = 3.0  # log evidence by which the voyages must be restless
+
+
+def answer(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found], chosen: Sets) -> Sets:
+    """The effects of a set that explain the voyages: all of them, if each force is what its name says; those without which the others do
+    as well, if one is not (of two forms that are only roughly right, one mends the other); or none."""
+    if not chosen or not explains(case, weighed, found[chosen], found[()]):
+        return ()
+    odd = otherwise(case, found[chosen])
+    rest = tuple(name for name in chosen if name not in odd)
+    return chosen if not odd else answer(case, weighed, found, rest) if rest in found else ()
 
 
 def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: Found) -> bool:
@@ -34,7 +46,7 @@ def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: F
         return True
     own = [h for h in weighed if h.effects == found.hypothesis.effects]
     plain = next((h for h in own if WORLDS[h.world].plain), None)
-    if plain is None or found.off_m > (ASTRAY if found.off_m <= 0.5 * nothing.off_m else NEARLY) * found.floor_m:
+    if plain is None or found.off_m > (ASTRAY if found.off_m <= SOME * nothing.off_m else NEARLY) * found.floor_m:
         return False
     if own[0].log_weight - plain.log_weight > CLEAR and not found.off_m <= found.floor_m:  # a rough world that leads her astray nowhere is none
         return False
@@ -53,15 +65,11 @@ def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
 
 
 def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
-    """Whether a single effect cannot show in where she went, for without any she is led there already, and with it no farther off: then
-    the readings decide. In a sea they do of the sea's own force alone (of others, they take a wave's pull for a ship's), which may lead
-    her anywhere within the floor: it comes and goes."""
-    if len(chosen) != 1:
+    """Whether a single effect cannot show in where she went, for she is led there with it and without: then the readings decide. In a sea they
+    do of the sea's own force alone: of others, they take a wave's pull for a ship's."""
+    if len(chosen) != 1 or not max(found[chosen].off_m, found[()].off_m) <= found[chosen].floor_m:
         return False
-    off, nothing, floor = found[chosen].off_m, found[()].off_m, found[chosen].floor_m
-    if case.catalogue[chosen[0]].irregular:
-        return max(off, nothing) <= floor
-    return off <= nothing <= floor and not any(at_sea(t, case.model) for t in case.tracks)
+    return case.catalogue[chosen[0]].irregular or not any(at_sea(t, case.model) for t in case.tracks)
 
 
 def _leads(found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:

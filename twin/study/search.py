@@ -9,10 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from .altered import floats
 from .case import ODDS_WEAK, WORLDS, Case
 from .evidence import Hypothesis, Reduced, posterior, weigh_all
 from .led import Led, led
-from .leftover import NEARLY, explains
+from .leftover import NEARLY, answer
 from .nuisance import DAILY
 from .refine import Found, Sets, boxed, refine
 
@@ -59,7 +60,7 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
 
 def _explained(case: Case, weighed: list[Hypothesis], found: dict[Sets, Found]) -> bool:
     best, nothing = weighed[0].effects, found[()]
-    return explains(case, weighed, found[best], nothing) if best else nothing.off_m <= NEARLY * nothing.floor_m
+    return bool(answer(case, weighed, found, best)) if best else nothing.off_m <= NEARLY * nothing.floor_m
 
 
 def visible(reduced: Reduced, name: str) -> bool:
@@ -153,9 +154,11 @@ class _Book:
                 self._enter(h)
 
     def _hollow(self, chosen: Sets) -> bool:
-        """Whether an effect of this set ended at nothing: it would help only with sizes that cannot be, and the set says no more than the rest."""
+        """Whether an effect of this set ended at nothing, or is a load that cannot be: it would help only with sizes that cannot be, and the
+        set says no more than the rest."""
         z = boxed(self.case, self.found[chosen].posterior.z)
-        return any(not np.any(z[[i for i, u in enumerate(self.case.effects) if u.owner == name]]) for name in chosen)
+        nothing = any(not np.any(z[[i for i, u in enumerate(self.case.effects) if u.owner == name]]) for name in chosen)
+        return nothing or not floats(self.case, self.found[chosen])
 
     def _nearer(self, chosen: Sets, wider: Hypothesis) -> bool:
         """Whether no other part of the wider set was judged so far, or none about which the whole explains more: a slow gear is nothing

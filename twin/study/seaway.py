@@ -34,31 +34,36 @@ SEA = 0.003  # wave height in ship lengths from which a measured sea may move he
 MOST_SEGMENTS = 12  # by which a sea is judged
 STRENGTHS = (1.0, 2.0, 4.0, 8.0)  # of the waves, in units of what the smooth path shows of them
 WHITES = (1.0, 8.0, 32.0)  # and of the noise that might be there instead
-CLEAR = 20.0  # log evidence, tempered, that waves must add
+CLEAR = 20.0  # log evidence, tempered, that waves must add where no sea was measured
 BEYOND = 3.0  # times as strong as is likeliest: one wave swings all axes and the rudder follows it, so that nothing is believed in their band
 
 
 def swung(track: Track, model: Model) -> Track:
-    """The track with what waves do to her, if that is likelier than any noise would be, whatever else may be wrong with her; else without."""
+    """The track with what waves do to her, if that is likelier than any noise or a slow gear would be, whatever else may be wrong with her; else
+    without. A sea that was measured need not be proved, but must be the likelier."""
     track = track if track.swell is None else replace(track, swell=None)
     usable, known = model.without_inputs(track.missing())[0], catalogue()
     unknowns = nuisance_unknowns(usable, known)
     try:
-        rough = _likeliest(track, usable, unknowns)
-        if rough.swell is None:
+        rough, sea, calm = _likeliest(track, usable, unknowns)
+        enough = TEMPER * (0.0 if at_sea(track, model) else CLEAR)
+        if rough.swell is None or (sea <= calm + enough and not at_sea(track, model)):
             return track
         part = read_parts([track], float(model.ship.scale("time")), MOST_SEGMENTS)
         slow = geared(usable, part, unknowns, known, TEMPER)  # a gear that lags leaves swift accelerations, too, and is nothing to first order
-        return rough if slow is usable else _likeliest(track, slow, unknowns)
+        if slow is not usable:
+            other, more, less = _likeliest(track, slow, unknowns)
+            rough, sea, calm = rough if sea > more else other, max(sea, more), max(calm, less)
+        return rough if sea > calm + enough else track
     except np.linalg.LinAlgError:  # a model that no filter can follow says nothing of waves
         return track
 
 
-def _likeliest(track: Track, model: Model, unknowns: Sequence[Unknown]) -> Track:
-    """The track in waves as strong as the readings ask for, or in none."""
+def _likeliest(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple[Track, float, float]:
+    """The track in waves as strong as the readings ask for, if anything swings her; log evidence of that, and of no waves."""
     floor, rough = floor_of(model.ship) or Floor(), _swinging(track, model)
     if rough.swell is None:
-        return track
+        return track, -np.inf, 0.0
     parts = [read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0] for t in (track, levelled(rough, model))]
     lines, sd = [linearise(p, model, unknowns, catalogue()) for p in parts], np.array([u.sd for u in unknowns])
 
@@ -67,7 +72,7 @@ def _likeliest(track: Track, model: Model, unknowns: Sequence[Unknown]) -> Track
 
     as_strong = {k: likely(replace(lines[1], track=_times(lines[1].track, k))) for k in STRENGTHS}
     best = max(as_strong, key=lambda k: as_strong[k])
-    return _times(rough, BEYOND * best) if as_strong[best] > likely(lines[0]) + CLEAR * TEMPER else track
+    return _times(rough, BEYOND * best), as_strong[best], likely(lines[0])
 
 
 def _times(track: Track, strength: float) -> Track:

@@ -93,7 +93,7 @@ def _candidate(c: dict[str, Any]) -> list[str]:
     force = c["typical_force"]
     if _force(force):
         lines.append(f"          typically    {_force(force)}")
-    floor = f" (floor {c['error_floor']:.3g} m)" if c["error_floor"] is not None else ""
+    floor = f" (a true cause may leave {c['error_floor']:.3g} m)" if c["error_floor"] is not None else ""
     lines.append(
         f"          {c['error_horizon_s']:.0f} s error  {c['error_without']:.3g} m without, {c['error_with']:.3g} m with it{floor}, "
         "on parts not used for the fit"

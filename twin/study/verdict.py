@@ -11,6 +11,7 @@ from twin.physics.model import Model
 from .case import WORLDS, Case
 from .evidence import Hypothesis, Posterior, probabilities
 from .nuisance import SURROUNDINGS
+from .own_force import without
 from .respond import respond
 
 SURE = 0.8  # probability from which an effect is named
@@ -81,14 +82,15 @@ def judge(
     """The verdict, and the effects to add, first the one that explains most. One that others could stand in for (`like`) is named
     when one of them is surely there, and only if it leads her better (`leads`). Voyages without a manoeuvre decide nothing (`excited`);
     those that would not have shown most effects, or on which the model alone leads her astray, acquit nobody (`sharp`); what the best
-    hypothesis leaves over is unknown (`explained`), but a restlessness for which there was a sea decides nothing (`tossed`)."""
+    hypothesis leaves over, or has otherwise than its form, is unknown (`explained`), but decides nothing where there was a sea (`tossed`)."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
     named = [n for n in w.best.effects if n in leads and (w.effects[n] >= SURE or one_of(weighed, [n, *like[n]]) >= SURE_GROUP)]
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
     named = [n for i, n in enumerate(named) if i == 0 or w.effects[n] >= SURE_TOO]
-    if not excited or (tossed and w.unknown >= LOST):
+    strange = w.unknown >= LOST or not explained
+    if not excited or (tossed and strange):
         return "undecided", []
-    if w.unknown >= LOST or not explained:
+    if strange:
         return "unknown", []
     if w.nothing >= ACQUITTED and sharp:
         return "nothing_missing", []
@@ -120,11 +122,10 @@ def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object
 
 def typical_force(case: Case, model: Model, name: str) -> dict[str, float]:
     """Root mean square of the force by which the model changes when this effect is taken out, or put back to what it was [N, N, N m]."""
-    before = (e for e in case.model.effects if type(e).__name__ == name)
-    without = Model(model.ship, (*(e for e in model.effects if type(e).__name__ != name), *before))
+    bare = without(model, case.model, name)
     total, count = np.zeros(3), 0
     for track in case.tracks:
-        a, b = (respond(track, m.without_inputs(track.missing())[0])[0] for m in (model, without))
+        a, b = (respond(track, m.without_inputs(track.missing())[0])[0] for m in (model, bare))
         u, v, r = (a - b).T
         force = np.column_stack(core.force_for(u, v, r, model.c))
         total, count = total + (force**2).sum(0), count + len(track)

@@ -13,6 +13,7 @@ HIDDEN = {
     "Current": (("Current", 1.0),),
     "RudderWear": (("RudderWear", 1.0),),
     "SteeringLag": (("SteeringLag", 1.0),),
+    "IceLike": (("IceLike", 1.0),),
 }
 
 

@@ -58,12 +58,12 @@ def test_what_leads_her_elsewhere_explains_nothing_however_quiet_it_leaves_her(j
     assert not explains(case, [found.hypothesis], replace(found, off_m=(ASTRAY + 0.1), floor_m=1.0), nothing)
 
 
-def test_what_leaves_half_of_the_way_must_end_nearer_to_where_she_went(judged):
+def test_what_leads_her_little_of_the_way_must_end_nearer_to_where_she_went(judged):
     case, found = judged
-    half = replace(found, off_m=1.8, floor_m=1.0)
-    assert explains(case, [found.hypothesis], half, replace(found, off_m=3.7))
-    assert not explains(case, [found.hypothesis], half, replace(found, off_m=3.5))
-    assert explains(case, [found.hypothesis], replace(half, off_m=1.4), replace(found, off_m=1.5))
+    far = replace(found, off_m=1.8, floor_m=1.0)
+    assert explains(case, [found.hypothesis], far, replace(found, off_m=2.5))
+    assert not explains(case, [found.hypothesis], far, replace(found, off_m=2.3))
+    assert explains(case, [found.hypothesis], replace(far, off_m=1.4), replace(found, off_m=1.5))
 
 
 def test_what_leads_her_most_of_the_way_explains_whatever_is_left(judged):
@@ -87,7 +87,8 @@ def test_a_force_that_stands_alone_is_too_small_to_show_where_she_is_led_already
     case, found = judged
     led = {(): replace(found, off_m=0.9, floor_m=1.0), ("RudderWear",): replace(found, off_m=0.9, floor_m=1.0)}
     assert too_small(case, led, ("RudderWear",))
-    assert not too_small(case, led | {("RudderWear",): replace(found, off_m=0.91, floor_m=1.0)}, ("RudderWear",))  # it leads her farther off
+    assert too_small(case, led | {("RudderWear",): replace(found, off_m=0.99, floor_m=1.0)}, ("RudderWear",))
+    assert not too_small(case, led | {("RudderWear",): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",))  # it leads her astray
     assert not too_small(case, led | {(): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",))
     pair = ("RudderWear", "Wind")
     assert not too_small(case, led | {("Wind",): led[()], pair: led["RudderWear",]}, pair)

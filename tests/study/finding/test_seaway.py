@@ -54,6 +54,14 @@ def test_a_sea_that_was_measured_but_moves_nobody_is_no_sea(calm, tanker):
     assert swung(measured, Model.of(tanker)) is measured
 
 
+@pytest.mark.parametrize("gain, measured, believed", [(1.0, True, True), (-1.0, True, False), (1.0, False, False), (99.0, False, True)])
+def test_a_sea_that_was_measured_need_only_be_the_likelier(monkeypatch, calm, tanker, gain, measured, believed):
+    rough = in_waves(calm)
+    recorded = replace(calm, weather=dict(calm.weather) | ({"H_s": np.full(len(calm), 3.0)} if measured else {}))
+    monkeypatch.setattr(seaway, "_likeliest", lambda *_: (replace(rough, swell=np.ones((len(calm), 6))), gain, 0.0))
+    assert (swung(recorded, Model.of(tanker)).swell is not None) is believed
+
+
 def test_a_slow_gear_is_no_sea(tanker, voyages):
     lagging = track(voyages["SteeringLag"], tanker)
     assert swung(lagging, Model.of(tanker)).swell is None

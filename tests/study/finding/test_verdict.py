@@ -51,6 +51,11 @@ def test_a_restless_world_is_unknown():
     assert verdict(["Loading"], unknown=0.8, Loading=1.0) == ("unknown", [])
 
 
+def test_what_is_left_over_or_otherwise_than_its_name_is_unknown_but_decides_nothing_where_there_was_a_sea():
+    assert verdict(["Loading"], Loading=1.0, how=("explained",)) == ("unknown", [])
+    assert verdict(["Loading"], Loading=1.0, how=("explained", "tossed")) == ("undecided", [])
+
+
 def test_voyages_without_a_manoeuvre_decide_nothing():
     without = ("excited",)
     assert verdict(["HullFouling"], HullFouling=1.0, how=without) == ("undecided", [])

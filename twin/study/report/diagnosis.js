@@ -22,7 +22,7 @@ function candidate(c) {
   const left = el("div", null, el("h3", null, c.effect), el("div", null, bar(c.probability || 0), `${num(100 * (c.probability || 0), 2)} %`));
   const said = [["X_N", "ahead", "N"], ["Y_N", "aside", "N"], ["N_Nm", "turning", "N m"]].filter(([k]) => force[k]).map(([k, w, u]) => `${si(Math.abs(force[k]), u)} ${w}`);
   const right = el("div", null, said.length ? el("div", null, said.join(", ")) : null, (c.parameters || []).map(parameter));
-  if (c.error_without !== undefined && c.error_with !== undefined && c.error_without !== null) right.append(el("p.note", null, `error ${num(c.error_without)} m without it, ${num(c.error_with)} m with it${c.error_floor ? `, floor ${num(c.error_floor)} m` : ""}`));
+  if (c.error_without !== undefined && c.error_with !== undefined && c.error_without !== null) right.append(el("p.note", null, `error ${num(c.error_without)} m without it, ${num(c.error_with)} m with it${c.error_floor ? `; a true cause may leave ${num(c.error_floor)} m` : ""}`));
   if ((c.cannot_be_told_from || []).length) right.append(el("div", null, el("span.note", null, "cannot be told from "), c.cannot_be_told_from.map((n) => el("span.chip", null, n))));
   if ((c.over_time || []).length > 1) right.append(el("div", null, el("span.note", null, "part by part (1 is the size above) "), c.over_time.map((p) => el("span.chip", null, `${clock(p.start_s)} to ${clock(p.end_s)}: ${num(p.share, 2)} ± ${num(p.sd, 2)}`))));
   if (!weak && !(RESULT.missing || []).includes(c.effect)) right.append(command(addCommand(c.effect)));

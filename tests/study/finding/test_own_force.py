@@ -1,0 +1,62 @@
+"""Whether a force is what its name says, or only of the size that suits the voyages best."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from twin.study import leftover
+from twin.study.assemble import assemble
+from twin.study.leftover import answer
+from twin.study.own_force import otherwise, without
+from twin.study.refine import refine
+from twin.study.search import search
+
+
+def about_its_size(voyage, ship, name):
+    case = assemble([voyage], ship)
+    return case, refine(case, (name,), "usual", np.ones(len(case.effects)), ())[0]
+
+
+@pytest.fixture(scope="module")
+def worn(tanker, voyages):
+    return about_its_size(voyages["RudderWear"], tanker, "RudderWear")
+
+
+def test_a_true_cause_is_what_it_says_though_nature_writes_it_otherwise(worn):
+    assert otherwise(*worn) == []
+
+
+def test_drag_that_depends_on_the_place_is_no_tow(tanker, voyages):
+    assert otherwise(*about_its_size(voyages["IceLike"], tanker, "TowForce")) == ["TowForce"]
+
+
+def test_what_only_an_instrument_shows_has_no_force_to_ask_about(tanker, voyages):
+    assert otherwise(*about_its_size(voyages["IceLike"], tanker, "HeadingBias")) == []
+
+
+def test_an_effect_that_the_ship_had_is_put_back_to_what_it_was(worn):
+    case, found = worn
+    (effect,) = found.model.effects
+    before = case.model.but(effect.but(loss=0.05))
+    assert without(found.model, before, "RudderWear").effects == before.effects
+    assert without(found.model, case.model, "RudderWear").effects == ()
+
+
+@pytest.mark.parametrize("odd, explains", [
+    ([], ("RudderWear", "SteeringLag")), (["SteeringLag"], ("RudderWear",)), (["RudderWear"], ()), (["RudderWear", "SteeringLag"], ()),
+])  # fmt: skip
+def test_of_two_the_one_that_is_what_it_says_is_left_if_it_explains_the_voyages_alone(monkeypatch, worn, odd, explains):
+    case, found = worn
+    pair, alone = ("RudderWear", "SteeringLag"), ("RudderWear",)
+    known = {s: replace(found, hypothesis=replace(found.hypothesis, effects=s)) for s in ((), alone, pair)}
+    monkeypatch.setattr(leftover, "explains", lambda *_: True)
+    monkeypatch.setattr(leftover, "otherwise", lambda _, f: odd if f.hypothesis.effects == pair else [])
+    assert answer(case, [], known, pair) == explains
+    assert answer(case, [], known, ()) == ()
+
+
+def test_where_the_best_that_is_known_is_no_tow_the_answer_is_that_nobody_knows(tanker, voyages):
+    case = assemble([voyages["IceLike"]], tanker)
+    weighed, found, _ = search(case)
+    assert answer(case, weighed, found, weighed[0].effects) == ()

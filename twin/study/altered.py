@@ -1,0 +1,83 @@
+"""A ship that is loaded otherwise has other derivatives, which regressions over many hulls give: for any one hull they are only roughly right.
+
+How much heavier, deeper or trimmed she is, is then known no better than those regressions let it be. So the numbers of an effect that
+alters the ship are told with each derivative that it changes free to change by a share of that more or less. And it is a load only if
+something of it still shows then, and if she floats with it: what is heavier lies deeper, by the area of her waterplane.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from twin.physics.effect import Effect, Force
+from twin.physics.effects.loading import waterplane
+from twin.physics.model import Model
+
+from .case import Case
+from .columns import with_values
+from .evidence import Nuisance, Posterior, posterior
+from .refine import Found, about, boxed
+
+HULL = ("X_", "Y_", "N_")
+SCATTER = 0.5  # of single hulls about a regression, as a share of what it says
+SHOWS = 8.0  # chi squared of a load's numbers from which they are more than derivatives that differ (95 % of three)
+AFLOAT = 0.02  # share of her draught by which mass and draught may disagree: other water, a waterplane that is not as usual
+SURE = 2.5  # standard deviations beyond which they do
+
+
+def sized(case: Case, found: Found) -> Posterior:
+    """What the voyages say of a hypothesis' numbers; of one that alters the ship, beside derivatives that scatter."""
+    moved = _moved(case, found.model)
+    if not moved.any():
+        return found.posterior
+    z = boxed(case, found.posterior.z)
+    mine = np.array([i for i, u in enumerate(case.effects) if u.owner in found.hypothesis.effects])
+    at = np.zeros_like(z)
+    at[mine] = z[mine]
+    lines = about(case, at, mine, case.unknowns)[1]
+    wider = replace(case, nuisance=_scattered(case.nuisance, SCATTER * moved))
+    reduced = wider.reduced(lines, case.worlds([found.hypothesis.world], found.doubt), at)[0]
+    return posterior(reduced, found.hypothesis.effects)
+
+
+def floats(case: Case, found: Found) -> bool:
+    """Whether what alters the ship under a hypothesis can be a load; what does not alter her can be what it says."""
+    own = [u for u in case.effects if u.owner in found.hypothesis.effects and _alters(case.catalogue[u.owner])]
+    if not own:
+        return True
+    known, mine = sized(case, found), [case.effects.index(u) for u in own]
+    z, C = known.z[mine], known.covariance[np.ix_(mine, mine)]
+    if z @ np.linalg.solve(C, z) < SHOWS:
+        return False
+    before = case.model.loaded
+
+    def deeper(z: np.ndarray) -> float:
+        """Than her mass would have her, as a share of her draught."""
+        after = with_values(case.model, own, [u.centre + u.sd * x for u, x in zip(own, z, strict=True)], case.catalogue).loaded
+        return float(after.T / before.T - 1.0 - (after.m / before.m - 1.0) * before.C_b / waterplane(before))
+
+    slope = np.array([deeper(z + step) - deeper(z - step) for step in 0.01 * np.eye(z.size)]) / 0.02
+    return abs(deeper(z)) < SURE * float(np.hypot(np.sqrt(slope @ C @ slope), AFLOAT))
+
+
+def _alters(kind: type[Effect]) -> bool:
+    return issubclass(kind, Force) and kind.alter is not Force.alter
+
+
+def _moved(case: Case, model: Model) -> np.ndarray:
+    """(C,) how far the effects move each of the nuisance's numbers, in its own unit: derivatives over the draught of the ship as she was."""
+    before, after = case.model.loaded, model.loaded
+    deeper = float(after.T) / float(before.T)
+
+    def change(name: str) -> float:
+        return deeper * float(getattr(after.derivatives, name)) - float(getattr(before.derivatives, name))
+
+    return np.array([change(u.name) if u.owner == "core" and u.name[:2] in HULL else 0.0 for u in case.nuisance.unknowns])
+
+
+def _scattered(nuisance: Nuisance, extra: np.ndarray) -> Nuisance:
+    """The same knowledge with so much more doubt in each number [its own unit]."""
+    covariance = np.linalg.inv(nuisance.information)
+    mean = covariance @ nuisance.pull
+    information = np.linalg.inv(covariance + np.diag((extra / [u.sd for u in nuisance.unknowns]) ** 2))
+    return replace(nuisance, information=information, pull=information @ mean)
