@@ -16,7 +16,7 @@ from twin.physics.model import Model
 from .case import Case
 from .columns import with_values
 from .evidence import Nuisance, Posterior, posterior
-from .refine import Found, about, boxed
+from .refine import Found, standing
 
 HULL = ("X_", "Y_", "N_")
 SCATTER = 0.5  # of single hulls about a regression, as a share of what it says
@@ -30,11 +30,7 @@ def sized(case: Case, found: Found) -> Posterior:
     moved = _moved(case, found.model)
     if not moved.any():
         return found.posterior
-    z = boxed(case, found.posterior.z)
-    mine = np.array([i for i, u in enumerate(case.effects) if u.owner in found.hypothesis.effects])
-    at = np.zeros_like(z)
-    at[mine] = z[mine]
-    lines = about(case, at, mine, case.unknowns)[1]
+    lines, at = standing(case, found, case.unknowns)
     wider = replace(case, nuisance=_scattered(case.nuisance, SCATTER * moved))
     reduced = wider.reduced(lines, case.worlds([found.hypothesis.world], found.doubt), at)[0]
     return posterior(reduced, found.hypothesis.effects)

@@ -41,7 +41,7 @@ def answer(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found
 def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: Found) -> bool:
     """Whether no more is left under this hypothesis than a true one would leave (`weighed`: all of them, best first). It is explanation
     enough to lead her most of the way to where she went; a sea that was measured may be the reason for more, and a stream that changes
-    for restlessness."""
+    for restlessness, which counts only where it leads her astray."""
     if found.off_m <= MOSTLY * nothing.off_m or any(at_sea(t, case.model) for t in case.tracks):
         return True
     own = [h for h in weighed if h.effects == found.hypothesis.effects]
@@ -50,7 +50,7 @@ def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: F
         return False
     if own[0].log_weight - plain.log_weight > CLEAR and not found.off_m <= found.floor_m:  # a rough world that leads her astray nowhere is none
         return False
-    return WORLDS[plain.world].flow > 1.0 or quiet(case, found)
+    return found.off_m <= found.floor_m or WORLDS[plain.world].flow > 1.0 or quiet(case, found)
 
 
 def astray(nothing: Found) -> bool:

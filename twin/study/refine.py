@@ -169,9 +169,10 @@ def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown])
     return model, lines
 
 
-def standing(case: Case, found: Found) -> tuple[list[Linear], np.ndarray]:
-    """The tracks linearised where a hypothesis was found to stand, and that place, in prior widths."""
+def standing(case: Case, found: Found, fresh: Sequence[Unknown] = ()) -> tuple[list[Linear], np.ndarray]:
+    """The tracks linearised where a hypothesis was found to stand (columns of its own numbers, or of all that are to be `fresh`), and that
+    place, in prior widths."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in found.hypothesis.effects], dtype=int)
     at = np.zeros(len(case.effects))
     at[mine] = boxed(case, found.posterior.z)[mine]
-    return about(case, at, mine, [case.effects[i] for i in mine])[1], at
+    return about(case, at, mine, fresh or [case.effects[i] for i in mine])[1], at
