@@ -21,36 +21,36 @@ from .seaway import at_sea
 MOSTLY = 1.0 / 3.0  # of the error without it that may be left whatever else is
 ASTRAY = 2.0  # times the floor that an answer may end away from where she went, one that names a cause if it leads her some of the way
 NEARLY = 1.5  # and if it does not
-SOME = 0.75  # of the error without it
+SOME, HALF = 0.75, 0.5  # of the error without it: what she may be left with, and as long as others may do better
 BETTER = 0.05  # share by which a force must bring her nearer to where she went
 RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
 CLEAR = 3.0  # log evidence by which the voyages must be restless
 
 
-def answer(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found], chosen: Sets) -> Sets:
+def answer(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found], chosen: Sets, strict: bool = False) -> Sets:
     """The effects of a set that explain the voyages: all of them, if each force is what its name says; those without which the others do
-    as well, if one is not (of two forms that are only roughly right, one mends the other); or none."""
-    if not chosen or not explains(case, weighed, found[chosen], found[()]):
+    as well, if one is not (of two forms that are only roughly right, one mends the other); or none. (`strict`: as `explains`.)"""
+    if not chosen or not explains(case, weighed, found[chosen], found[()], strict):
         return ()
     odd = otherwise(case, found[chosen])
     rest = tuple(name for name in chosen if name not in odd)
-    return chosen if not odd else answer(case, weighed, found, rest) if rest in found else ()
+    return chosen if not odd else answer(case, weighed, found, rest, strict) if rest in found else ()
 
 
-def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: Found) -> bool:
+def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: Found, strict: bool = False) -> bool:
     """Whether no more is left under this hypothesis than a true one would leave (`weighed`: all of them, best first). It is explanation
     enough to lead her most of the way to where she went; a sea that was measured may be the reason for more, and a stream that changes
-    for restlessness, which counts only where it leads her astray."""
+    for restlessness, which counts only where it leads her astray. As long as others may do better (`strict`), more is asked."""
     if found.off_m <= MOSTLY * nothing.off_m or any(at_sea(t, case.model) for t in case.tracks):
         return True
     own = [h for h in weighed if h.effects == found.hypothesis.effects]
     plain = next((h for h in own if WORLDS[h.world].plain), None)
-    if plain is None or found.off_m > (ASTRAY if found.off_m <= SOME * nothing.off_m else NEARLY) * found.floor_m:
+    if plain is None or found.off_m > (ASTRAY if found.off_m <= (HALF if strict else SOME) * nothing.off_m else NEARLY) * found.floor_m:
         return False
     if own[0].log_weight - plain.log_weight > CLEAR and not found.off_m <= found.floor_m:  # a rough world that leads her astray nowhere is none
         return False
-    return found.off_m <= found.floor_m or WORLDS[plain.world].flow > 1.0 or quiet(case, found)
+    return (found.off_m <= found.floor_m and not strict) or WORLDS[plain.world].flow > 1.0 or quiet(case, found)
 
 
 def astray(nothing: Found) -> bool:

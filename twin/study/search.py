@@ -60,7 +60,7 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
 
 def _explained(case: Case, weighed: list[Hypothesis], found: dict[Sets, Found]) -> bool:
     best, nothing = weighed[0].effects, found[()]
-    return bool(answer(case, weighed, found, best)) if best else nothing.off_m <= NEARLY * nothing.floor_m
+    return bool(answer(case, weighed, found, best, strict=True)) if best else nothing.off_m <= NEARLY * nothing.floor_m
 
 
 def visible(reduced: Reduced, name: str) -> bool:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.study import leftover
 from twin.study.assemble import assemble
 from twin.study.leftover import ASTRAY, CLEAR, astray, explains, helpful, quiet, too_small
 from twin.study.search import search
@@ -71,6 +72,18 @@ def test_what_leads_her_most_of_the_way_explains_whatever_is_left(judged):
     far = replace(found, off_m=10.0, floor_m=1.0, hypothesis=replace(found.hypothesis, world="rough"))
     assert explains(case, [far.hypothesis], far, replace(found, off_m=30.5))
     assert not explains(case, [far.hypothesis], far, replace(found, off_m=29.5))
+
+
+def test_as_long_as_others_may_do_better_more_is_asked(monkeypatch, judged):
+    case, found = judged
+    far = replace(found, off_m=1.8, floor_m=1.0)
+    assert explains(case, [found.hypothesis], far, replace(found, off_m=3.7), strict=True)
+    assert not explains(case, [found.hypothesis], far, replace(found, off_m=3.5), strict=True)
+    monkeypatch.setattr(leftover, "quiet", lambda *_: False)  # restless one step ahead, and led where she went
+    near, nothing = replace(found, off_m=0.9, floor_m=1.0), replace(found, off_m=1.5)
+    assert explains(case, [found.hypothesis], near, nothing)
+    assert not explains(case, [found.hypothesis], near, nothing, strict=True)
+    assert not explains(case, [found.hypothesis], replace(near, off_m=1.1), nothing)
 
 
 @pytest.mark.parametrize("effects, off, named", [
