@@ -125,3 +125,12 @@ def test_a_place_that_cannot_be_written_is_said(tmp_path, capsys):
     arguments = ["--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5"]
     assert main(["init", "X", *arguments, "-o", str(tmp_path / "none" / "x.toml")]) == 1
     assert "cannot be written" in capsys.readouterr().err
+
+
+def test_a_fine_hull_that_would_not_go_straight_and_two_fullnesses_are_said(tmp_path, capsys):
+    said = ["--length-pp-m", "175", "--beam-m", "25.4", "--draught-m", "8.5", "--mass-kg", "21752550"]
+    assert main(["init", "S175", *said, "--block-coefficient", "0.559", "-o", str(tmp_path / "a.toml")]) == 0
+    page = capsys.readouterr().out
+    assert "so fine a hull (C_b 0.56)" in page and "gives C_b = 0.5617, which is used" in page and "many full ships" not in page
+    assert main(["init", "S175", *said, "-o", str(tmp_path / "b.toml")]) == 0
+    assert "which is used" not in capsys.readouterr().out

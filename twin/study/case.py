@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import compress
 
 import numpy as np
 
@@ -74,6 +75,16 @@ class Case:
     def worlds(self, names: Sequence[str], doubt: float = 0.0) -> list[Floor]:
         floors = ((self.path if w.alone else self.floor).scaled(w.share, flow=w.flow) for w in map(WORLDS.__getitem__, names))
         return [replace(floor, doubt=doubt) for floor in floors]
+
+    def narrowed(self, chosen: Sequence[str]) -> tuple["Case", np.ndarray]:
+        """The same without the numbers of other effects that no usual day brings (a hundredth of a prior width each, which steers nothing), and
+        which of `effects` are left."""
+        usual = {u.label for u in self.nuisance.unknowns} | set(self.nuisance.daily)
+        needed = [u.owner in chosen or u.label in usual for u in self.unknowns]
+        kept = np.array([u.owner in chosen or u.label in usual for u in self.effects])
+        unknowns, effects = tuple(compress(self.unknowns, needed)), tuple(compress(self.effects, kept))
+        lines = tuple(replace(x, A=x.A[:, :, needed], R=x.R[:, :, needed]) for x in self.lines)
+        return replace(self, unknowns=unknowns, effects=effects, lines=lines), kept
 
     def log_prior(self, chosen: Sequence[str], world: str) -> float:
         if (world == "flooding" and "VaryingCurrent" not in chosen) or self._twice(chosen):

@@ -37,6 +37,7 @@ OPTIONS: tuple[tuple[str, str, float, float], ...] = (
     ("lateral-area-m2", "lateral area above the water", 1e-4, 20000.0),
 )
 REQUIRED = ("length-pp-m", "beam-m", "draught-m")
+FULL = 0.7  # block coefficient from which ships often do not go straight by themselves
 Given = Mapping[str, float | None]
 Numbers = dict[str, tuple[float, str]]  # name -> value, source
 
@@ -53,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
     given = {option: getattr(args, option.replace("-", "_")) for option, *_ in OPTIONS}
     ship, warnings = first_model(args.name, given)
     figures = sea_trial(ship)
-    warnings += doubts(figures)
+    warnings += doubts(figures, ship.C_b)
     save(ship, args.output)
     out = sys.stderr if args.json == "-" else sys.stdout
     print(summary(ship, figures, warnings), file=out)
@@ -85,7 +86,15 @@ def first_model(name: str, given: Given) -> tuple[Ship, list[str]]:
     _in_ranges(ship)
     rough = [k for k, (_, s) in p.items() if s == "ROUGH"]
     guessed = [f"{', '.join(rough)}: guessed by size only; give them if you can"] if rough else []
-    return ship, reg.outside(h) + guessed
+    return ship, reg.outside(h) + guessed + _two_fullnesses(given, ship)
+
+
+def _two_fullnesses(given: Given, ship: Ship) -> list[str]:
+    """Mass and block coefficient say the same twice."""
+    C_b = given["block-coefficient"]
+    if given["mass-kg"] is None or C_b is None or abs(ship.C_b - C_b) < 5e-4:
+        return []
+    return [f"--mass-kg gives C_b = {ship.C_b:.4g}, which is used; --block-coefficient {C_b:g} is not"]
 
 
 def _ship(name: str, particulars: Numbers, derivatives: Numbers) -> Ship:
@@ -229,9 +238,11 @@ def sea_trial(ship: Ship) -> dict[str, Any]:
     return {k: None if v is None else float(f"{v:.4g}") for k, v in figures.items()}
 
 
-def doubts(figures: Mapping[str, Any]) -> list[str]:
-    """In words, what is unusual about a trial."""
+def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
+    """In words, what is unusual about a trial of so full a ship."""
     out = []
+    if figures["straight_line_stability"] <= 0 and C_b < FULL:
+        out.append(f"that so fine a hull (C_b {C_b:.2f}) does not go straight by herself is rare: calibrate before you trust how she turns")
     if not 1.8 <= figures["tactical_diameter_L"] <= 6.5:
         out.append(
             f"tactical diameter {figures['tactical_diameter_L']:.1f} L is unusual (2 to 6 L): check rudder area and speed, and calibrate"
@@ -251,7 +262,8 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str]) -> str:
         source = notes[f.name]["source"]
         mark = "" if source == "given" else f"estimated: {reg.SOURCES.get(source, source).split(':')[0]}"
         lines.append(f"  {f.name:5} {getattr(ship, f.name):>12.5g} {f.metadata['unit']:6} {f.metadata['doc']:38} {mark}".rstrip())
-    stable = "goes straight by herself" if figures["straight_line_stability"] > 0 else "does not go straight by herself, as many full ships"
+    unstable = "does not go straight by herself" + ", as many full ships" * (ship.C_b >= FULL)
+    stable = "goes straight by herself" if figures["straight_line_stability"] > 0 else unstable
     over = figures["overshoot_20_20_deg"]
     lines += [
         "", "  sea trial of this model",

@@ -46,23 +46,34 @@ def refine(
     `hoped` for to first order. What was found; and, about it, the hypothesis in every world, and every one that has one of `wider`
     beside it."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
-    best, at = _climb(case, chosen, mine, world, z)
-    first = boxed(case, z)
-    first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
-    for factor in FARTHER:
-        lost = _lost(case, mine, at, best.log_weight < hoped)
-        if WORLDS[best.world].plain and not lost:
-            break
-        first[[i for i in lost if at[i] == 0.0]] = 1.0
-        best, at = max((best, at), _climb(case, chosen, mine, "usual", factor * first), key=lambda end: end[0].log_weight)
-    if all(case.catalogue[name].kind == "Lag" for name in chosen):  # about none, a slow gear is seen by its delay alone
-        best, at = max((best, at), _climb(case, chosen, mine, "usual", np.full_like(z, FARTHER[-1])), key=lambda end: end[0].log_weight)
+    narrow, kept = case.narrowed(chosen)
+    at = np.zeros_like(z)
+    best, at[kept] = _place(narrow, chosen, world, z[kept], hoped)
     model, lines = about(case, at, mine, case.unknowns)
     doubt = _doubt(case, chosen, lines, best.world, at)
     reduced = _everywhere(case, chosen, lines, at, doubt)
     judged, own = _judged(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
     return Found(best, own[best.world], model, doubt), [*judged, *_beside(case, chosen, reduced, wider)]
+
+
+def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float) -> tuple[Hypothesis, np.ndarray]:
+    """The best of the climbs that `refine` speaks of: the hypothesis there, and the place."""
+    mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
+    best, at = _climb(case, chosen, mine, world, z)
+    first = boxed(case, z)
+    first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
+    for k, factor in enumerate(FARTHER):
+        plain, fallen = WORLDS[best.world].plain, best.log_weight < hoped
+        bent = [] if plain and not fallen and at[mine].all() else _bent(case, mine, at)
+        lost = [i for i in bent if fallen or at[i] == 0.0]
+        if not lost and (plain or (k and not bent)):  # numbers that work in proportion have one best place, which the first climb from afar found
+            break
+        first[[i for i in lost if at[i] == 0.0]] = 1.0
+        best, at = max((best, at), _climb(case, chosen, mine, "usual", factor * first), key=lambda end: end[0].log_weight)
+    if all(case.catalogue[name].kind == "Lag" for name in chosen):  # about none, a slow gear is seen by its delay alone
+        best, at = max((best, at), _climb(case, chosen, mine, "usual", np.full_like(z, FARTHER[-1])), key=lambda end: end[0].log_weight)
+    return best, at
 
 
 def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray) -> tuple[Hypothesis, np.ndarray]:
@@ -93,12 +104,11 @@ def _told(case: Case, lines: Sequence[Linear], world: str, at: np.ndarray) -> Re
         return None
 
 
-def _lost(case: Case, mine: np.ndarray, at: np.ndarray, fallen: bool) -> list[int]:
-    """Parameters that ended at nothing, or (when the whole has `fallen` short) anywhere, although what they do is not in proportion to
-    them: about nothing, they could not be seen."""
+def _bent(case: Case, mine: np.ndarray, at: np.ndarray) -> list[int]:
+    """Parameters of which what they do is not in proportion to them: about nothing they may not be seen, and a climb may end on a lower top."""
     own = [case.effects[i] for i in mine]
     model = with_values(case.model, own, [u.centre + u.sd * at[i] for i, u in zip(mine, own, strict=True)], case.catalogue)
-    return [int(i) for i, u in zip(mine, own, strict=True) if (fallen or at[i] == 0.0) and _bends(case, model, u)]
+    return [int(i) for i, u in zip(mine, own, strict=True) if _bends(case, model, u)]
 
 
 def _bends(case: Case, model: Model, unknown: Unknown) -> bool:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.refine import DOUBTS, IRREGULAR, _bends, _climb, _doubt, _lost, _told, about, refine
+from twin.study.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _told, about, refine
 
 
 @pytest.fixture(scope="module")
@@ -26,13 +26,21 @@ def test_a_gears_travel_time_is_not_in_proportion_to_what_it_does_and_a_rudders_
     assert not _bends(case, case.model, by_label["PropellerWear.loss"])
 
 
-def test_only_what_bends_is_looked_for_farther_out_when_it_ended_at_nothing_or_fell_short(case):
-    mine, at = rows(case, "SteeringLag"), np.zeros(len(case.effects))
-    assert {case.effects[i].name for i in _lost(case, mine, at, False)} >= {"travel_time"}
-    at[mine] = 1.0
-    assert _lost(case, mine, at, False) == []
-    assert {case.effects[i].name for i in _lost(case, mine, at, True)} >= {"travel_time"}
-    assert _lost(case, rows(case, "RudderOffset"), np.zeros(len(case.effects)), True) == []
+def test_only_what_bends_is_looked_for_far_out(case):
+    gear, offset = rows(case, "SteeringLag"), rows(case, "RudderOffset")
+    for size in (0.0, 1.0):
+        assert {case.effects[i].name for i in _bent(case, gear, np.full(len(case.effects), size))} >= {"travel_time"}
+        assert _bent(case, offset, np.full(len(case.effects), size)) == []
+
+
+def test_what_no_day_brings_steers_no_climb(case):
+    narrow, kept = case.narrowed(("SteeringLag",))
+    z = np.zeros(len(case.effects))
+    z[rows(case, "SteeringLag")] = 1.0
+    _, whole = _climb(case, ("SteeringLag",), rows(case, "SteeringLag"), "usual", z)
+    _, alone = _climb(narrow, ("SteeringLag",), rows(narrow, "SteeringLag"), "usual", z[kept])
+    assert len(narrow.unknowns) < 0.8 * len(case.unknowns) and kept.sum() == len(narrow.effects)
+    assert alone == pytest.approx(whole[kept], abs=0.02)
 
 
 @pytest.mark.parametrize("start", [0.3, 1.0, 3.0])

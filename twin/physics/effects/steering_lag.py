@@ -1,5 +1,7 @@
 """The steering gear: after a dead time the rudder follows its order at no more than its greatest rate.
 
+Only where the recorded rudder is the order: an angle that is measured behind the gear hides it.
+
 delta(t + h) = delta + clip(order(t - delay) - delta, -rate h, rate h),   rate = 65 deg / travel_time
 """
 
