@@ -18,7 +18,7 @@ from .effects import INPUTS
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import answer, astray, helpful, too_small
+from .leftover import answer, astray, helpful, too_small, undone
 from .manoeuvres import next_manoeuvre
 from .overtime import over_time
 from .read import read_voyage
@@ -59,12 +59,13 @@ def diagnose(
     w = weights(case, weighed)
     best = found[w.best.effects]
     explain = answer(case, weighed, found, w.best.effects)
-    explained, leads = bool(explain) or not w.best.effects, helpful(case, found, explain)
+    no_pair, leads = undone(case, best), helpful(case, found, explain)
+    explained = not w.best.effects or (bool(explain) and not no_pair)
     if too_small(case, found, explain):
         leads += [n for n in explain if w.effects[n] >= SURE]
     like = {name: alike(case, weighed, name) for name in w.best.effects}
-    sharp, tossed = shows(seen) and not astray(found[()]), any(at_sea(t, case.model) for t in case.tracks)
-    verdict, missing = judge(weighed, w, like, leads, excited=case.excited, sharp=sharp, explained=explained, tossed=tossed)
+    sharp, blurred = shows(seen) and not astray(found[()]), no_pair or any(at_sea(t, case.model) for t in case.tracks)
+    verdict, missing = judge(weighed, w, like, leads, excited=case.excited, sharp=sharp, explained=explained, blurred=blurred)
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
@@ -83,6 +84,7 @@ def diagnose(
         "one_of": group(weighed, w) if verdict == "undecided" and case.excited else [],
         "probabilities": {"nothing_missing": w.nothing, "unknown": w.unknown if explained else 1.0 - w.nothing},
         "candidates": [c for c in candidates if c],
+        "undo_each_other": list(w.best.effects) if no_pair else [],
         "path": {"horizon_s": horizon_s(case.tracks[0], case.model), "error_without": found[()].off_m, "error_floor": found[()].floor_m},
         "next_manoeuvre": _next(case, found, verdict, missing, candidates, {n: w.effects[n] for n, can in seen.items() if can}, progress),
         "not_judged": _not_judged(case),

@@ -10,12 +10,15 @@ from dataclasses import replace
 
 import numpy as np
 
+from twin.physics.model import Model
+
 from .case import WORLDS, Case
 from .evidence import Hypothesis, posterior
 from .innovations import standard
 from .led import FORM
-from .own_force import otherwise
+from .own_force import otherwise, without
 from .refine import Found, Sets, standing
+from .respond import respond
 from .seaway import at_sea
 
 MOSTLY = 1.0 / 3.0  # of the error without it that may be left whatever else is
@@ -25,6 +28,7 @@ SOME, HALF = 0.75, 0.5  # of the error without it: what she may be left with, an
 BETTER = 0.05  # share by which a force must bring her nearer to where she went
 RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
+UNDONE = 0.5  # of what either fault alone does to where she is seen, that two together must do
 CLEAR = 3.0  # log evidence by which the voyages must be restless
 
 
@@ -70,6 +74,25 @@ def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
     if len(chosen) != 1 or not max(found[chosen].off_m, found[()].off_m) <= found[chosen].floor_m:
         return False
     return case.catalogue[chosen[0]].irregular or not any(at_sea(t, case.model) for t in case.tracks)
+
+
+def undone(case: Case, found: Found) -> bool:
+    """Whether two faults of the instruments mostly take back what each does to where she is seen. Two that are there do not agree so; a little
+    of another kind, which adds up in her place, is easily written like that (a late position and an antenna ahead, at an even speed)."""
+    chosen = found.hypothesis.effects
+    if len(chosen) < 2 or any(case.catalogue[name].kind != "SensorFault" for name in chosen):
+        return False
+    both, *each = (_shown(case, model) for model in (found.model, *(without(found.model, case.model, name) for name in chosen)))
+    return both < UNDONE * min(each)
+
+
+def _shown(case: Case, model: Model) -> float:
+    """How far a model moves the place that the satellites show, over all that was read of the voyages [m]."""
+    moved = 0.0
+    for line in case.lines:
+        there, before = (respond(line.track, m.without_inputs(line.track.missing())[0])[1][:, :2] for m in (model, case.model))
+        moved += float(np.square(there - before).sum())
+    return float(np.sqrt(moved))
 
 
 def _leads(found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:

@@ -54,6 +54,9 @@ def sentence(result: dict[str, Any]) -> str:
     likely = [c for c in result["candidates"] if c["probability"] >= SURE]
     if not result["voyages_hold_a_manoeuvre"]:
         return "Undecided: no manoeuvre was sailed, and a ship that holds her course and speed tells one cause from no other."
+    if result["undo_each_other"]:
+        first, second = result["undo_each_other"]
+        return f"Undecided: {first} and {second} would fit, but each takes back most of what the other does, as two faults hardly ever do."
     if likely and not nearer(likely[0]):
         c = likely[0]
         return (

@@ -7,7 +7,8 @@ import pytest
 
 from twin.study import leftover
 from twin.study.assemble import assemble
-from twin.study.leftover import ASTRAY, CLEAR, astray, explains, helpful, quiet, too_small
+from twin.study.columns import with_values
+from twin.study.leftover import ASTRAY, CLEAR, astray, explains, helpful, quiet, too_small, undone
 from twin.study.search import search
 from twin.study.tell_diagnosis import sentence
 
@@ -121,6 +122,30 @@ def test_where_the_model_alone_ends_twice_as_far_off_as_is_usual_nobody_is_acqui
 def test_and_it_is_said_how_far_off_that_is():
     path = {"horizon_s": 120.0, "error_without": 31.6, "error_floor": 12.4}
     silent = {"nothing_missing": 0.9, "unknown": 0.0}
-    result = {"verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "probabilities": silent, "path": path}
+    result = {"verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "undo_each_other": []}
+    result |= {"probabilities": silent, "path": path}
     assert "after 120 s the model ends 31.6 m from where she went (12.4 m would be usual)" in sentence(result)
     assert "what, if anything" in sentence(result | {"path": path | {"error_without": 13.0}})
+
+
+@pytest.mark.parametrize(("ahead_m", "no_pair"), [(16.0, True), (-16.0, False), (60.0, False)])
+def test_a_late_position_and_an_antenna_as_far_ahead_as_she_sails_meanwhile_are_no_pair(judged, ahead_m, no_pair):
+    case, found = judged
+    pair = ("AntennaOffset", "SensorDelay")
+    delay_s = 16.0 / float(np.mean(case.tracks[0].state[:, 3]))
+    sizes = {"AntennaOffset.ahead": ahead_m, "SensorDelay.delay": delay_s, "SensorDelay.turned": delay_s}
+    own = [u for u in case.effects if u.label in sizes]
+    model = with_values(case.model, own, [sizes[u.label] for u in own], case.catalogue)
+    both = replace(found, model=model, hypothesis=replace(found.hypothesis, effects=pair))
+    assert undone(case, both) is no_pair
+    assert not undone(case, replace(both, hypothesis=replace(found.hypothesis, effects=("RudderWear", "SensorDelay"))))
+    said = sentence({"verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "undo_each_other": list(pair)})
+    assert "AntennaOffset and SensorDelay would fit, but each takes back" in said
+
+
+def test_two_faults_of_a_log_may_undo_each_other_for_they_do_not_move_her(judged):
+    case, found = judged
+    sizes = {"SpeedLogBias.bias": 0.5, "SpeedLogScale.scale": -0.5 / float(np.mean(case.tracks[0].state[:, 3]))}
+    own = [u for u in case.effects if u.label in sizes]
+    model = with_values(case.model, own, [sizes[u.label] for u in own], case.catalogue)
+    assert not undone(case, replace(found, model=model, hypothesis=replace(found.hypothesis, effects=("SpeedLogBias", "SpeedLogScale"))))

@@ -7,7 +7,7 @@ import pytest
 from twin.study.evidence import Hypothesis
 from twin.study.verdict import Weights, group, judge
 
-YES = ("tossed",)
+YES = ("blurred",)
 
 
 def verdict(effects=(), nothing=0.0, unknown=0.0, how=(), leads=None, **sure):
@@ -53,7 +53,7 @@ def test_a_restless_world_is_unknown():
 
 def test_what_is_left_over_or_otherwise_than_its_name_is_unknown_but_decides_nothing_where_there_was_a_sea():
     assert verdict(["Loading"], Loading=1.0, how=("explained",)) == ("unknown", [])
-    assert verdict(["Loading"], Loading=1.0, how=("explained", "tossed")) == ("undecided", [])
+    assert verdict(["Loading"], Loading=1.0, how=("explained", "blurred")) == ("undecided", [])
 
 
 def test_voyages_without_a_manoeuvre_decide_nothing():
@@ -74,8 +74,8 @@ def test_what_does_not_lead_her_better_is_not_named():
 
 
 def test_a_restlessness_for_which_there_was_a_sea_decides_nothing():
-    assert verdict(["SteeringLag"], unknown=0.9, SteeringLag=1.0, how=("tossed",)) == ("undecided", [])
-    assert verdict(["WaveDrift"], unknown=0.1, WaveDrift=1.0, how=("tossed",)) == ("missing", ["WaveDrift"])
+    assert verdict(["SteeringLag"], unknown=0.9, SteeringLag=1.0, how=("blurred",)) == ("undecided", [])
+    assert verdict(["WaveDrift"], unknown=0.1, WaveDrift=1.0, how=("blurred",)) == ("missing", ["WaveDrift"])
 
 
 def test_two_effects_that_leave_her_restless_are_unknown():
