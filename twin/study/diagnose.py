@@ -85,6 +85,7 @@ def diagnose(
         "probabilities": {"nothing_missing": w.nothing, "unknown": w.unknown if explained else 1.0 - w.nothing},
         "candidates": [c for c in candidates if c],
         "undo_each_other": list(w.best.effects) if no_pair else [],
+        "unclear": [n for n in explain if n not in leads and case.catalogue[n].kind == "SensorFault"],
         "path": {"horizon_s": horizon_s(case.tracks[0], case.model), "error_without": found[()].off_m, "error_floor": found[()].floor_m},
         "next_manoeuvre": _next(case, found, verdict, missing, candidates, {n: w.effects[n] for n, can in seen.items() if can}, progress),
         "not_judged": _not_judged(case),

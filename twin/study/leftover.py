@@ -28,6 +28,7 @@ SOME, HALF = 0.75, 0.5  # of the error without it: what she may be left with, an
 BETTER = 0.05  # share by which a force must bring her nearer to where she went
 RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
+SURELY = 3.0  # standard deviations of an instrument's fault from none
 UNDONE = 0.5  # of what either fault alone does to where she is seen, that two together must do
 CLEAR = 3.0  # log evidence by which the voyages must be restless
 
@@ -64,14 +65,14 @@ def astray(nothing: Found) -> bool:
 
 def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
     """Those of a set of effects with which she is led better than without, as `twin add` will ask; one that only changes what the
-    instruments read need not lead her."""
-    return [n for n in chosen if case.catalogue[n].kind == "SensorFault" or _leads(found, chosen, n)]
+    instruments read need not lead her, but one of its numbers must be clear."""
+    return [n for n in chosen if (_clear(case, found[chosen], n) if case.catalogue[n].kind == "SensorFault" else _leads(found, chosen, n))]
 
 
 def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
     """Whether a single effect cannot show in where she went, for she is led there with it and without: then the readings decide. In a sea they
     do of the sea's own force alone: of others, they take a wave's pull for a ship's."""
-    if len(chosen) != 1 or not max(found[chosen].off_m, found[()].off_m) <= found[chosen].floor_m:
+    if len(chosen) != 1 or case.catalogue[chosen[0]].kind == "SensorFault" or not max(found[chosen].off_m, found[()].off_m) <= found[chosen].floor_m:
         return False
     return case.catalogue[chosen[0]].irregular or not any(at_sea(t, case.model) for t in case.tracks)
 
@@ -93,6 +94,14 @@ def _shown(case: Case, model: Model) -> float:
         there, before = (respond(line.track, m.without_inputs(line.track.missing())[0])[1][:, :2] for m in (model, case.model))
         moved += float(np.square(there - before).sum())
     return float(np.sqrt(moved))
+
+
+def _clear(case: Case, found: Found, name: str) -> bool:
+    """Whether one number of an effect is surely not that of none. Two that together are may be no fault at all: what a late position with
+    as late a compass leaves over is the form of the ship's own sway."""
+    own = np.array([i for i, u in enumerate(case.effects) if u.owner == name])
+    sd = np.sqrt(np.diag(found.posterior.covariance)[own])
+    return bool((np.abs(found.posterior.z[own]) > SURELY * sd).any())
 
 
 def _leads(found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:

@@ -57,6 +57,8 @@ def sentence(result: dict[str, Any]) -> str:
     if result["undo_each_other"]:
         first, second = result["undo_each_other"]
         return f"Undecided: {first} and {second} would fit, but each takes back most of what the other does, as two faults hardly ever do."
+    if likely and likely[0]["effect"] in result["unclear"]:
+        return f"Undecided: the readings ask for {_likely(by_name, likely[0]['effect'])}, but not one of its numbers is clearly other than none."
     if likely and not nearer(likely[0]):
         c = likely[0]
         return (

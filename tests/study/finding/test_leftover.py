@@ -93,8 +93,25 @@ def test_as_long_as_others_may_do_better_more_is_asked(monkeypatch, judged):
 ])  # fmt: skip
 def test_a_force_must_lead_her_better_than_without_it_and_a_fault_of_an_instrument_need_not(judged, effects, off, named):
     case, found = judged
-    led = {s: replace(found, off_m=1.0, floor_m=0.5) for s in ((), ("GyroBias",), ("RudderWear",))} | {effects: replace(found, off_m=off, floor_m=0.5)}
+    clear = replace(found.posterior, z=np.ones(len(case.effects)), covariance=0.01 * np.eye(len(case.effects)))
+    found = replace(found, off_m=1.0, floor_m=0.5, posterior=clear)
+    led = {s: found for s in ((), ("GyroBias",), ("RudderWear",))} | {effects: replace(found, off_m=off)}
     assert helpful(case, led, effects) == list(named)
+
+
+def test_an_instruments_fault_is_named_only_if_one_of_its_numbers_is_clear(judged):
+    case, found = judged
+    rows = [i for i, u in enumerate(case.effects) if u.owner == "SensorDelay"]
+    z, covariance = np.zeros(len(case.effects)), np.eye(len(case.effects))
+    covariance[np.ix_(rows, rows)] = [[0.04, 0.039], [0.039, 0.04]]  # each to 0.2, their difference to 0.045
+    alone = ("SensorDelay",)
+    for delay, turned, named in ((0.3, 0.0, []), (0.3, -0.5, []), (0.7, 0.7, ["SensorDelay"]), (0.7, 0.0, ["SensorDelay"])):
+        z[rows] = delay, turned
+        led = {s: replace(found, off_m=0.9, floor_m=1.0, posterior=replace(found.posterior, z=z.copy(), covariance=covariance)) for s in ((), alone)}
+        assert helpful(case, led, alone) == named and not too_small(case, led, alone)
+    undecided = {"verdict": "undecided", "one_of": [], "voyages_hold_a_manoeuvre": True, "undo_each_other": [], "unclear": ["SensorDelay"]}
+    one = {"effect": "SensorDelay", "probability": 0.99, "parameters": [], "error_with": 1.0, "error_without": 1.0}
+    assert "SensorDelay (99%), but not one of its numbers is clearly" in sentence(undecided | {"candidates": [one]})
 
 
 def test_a_force_that_stands_alone_is_too_small_to_show_where_she_is_led_already_but_not_in_a_sea(judged):
@@ -122,7 +139,7 @@ def test_where_the_model_alone_ends_twice_as_far_off_as_is_usual_nobody_is_acqui
 def test_and_it_is_said_how_far_off_that_is():
     path = {"horizon_s": 120.0, "error_without": 31.6, "error_floor": 12.4}
     silent = {"nothing_missing": 0.9, "unknown": 0.0}
-    result = {"verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "undo_each_other": []}
+    result = {"verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "undo_each_other": [], "unclear": []}
     result |= {"probabilities": silent, "path": path}
     assert "after 120 s the model ends 31.6 m from where she went (12.4 m would be usual)" in sentence(result)
     assert "what, if anything" in sentence(result | {"path": path | {"error_without": 13.0}})
