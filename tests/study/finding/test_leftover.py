@@ -95,7 +95,7 @@ def test_a_force_must_lead_her_better_than_without_it_and_a_fault_of_an_instrume
     case, found = judged
     clear = replace(found.posterior, z=np.ones(len(case.effects)), covariance=0.01 * np.eye(len(case.effects)))
     found = replace(found, off_m=1.0, floor_m=0.5, posterior=clear)
-    led = {s: found for s in ((), ("GyroBias",), ("RudderWear",))} | {effects: replace(found, off_m=off)}
+    led = dict.fromkeys(((), ("GyroBias",), ("RudderWear",)), found) | {effects: replace(found, off_m=off)}
     assert helpful(case, led, effects) == list(named)
 
 
