@@ -6,6 +6,7 @@ import pytest
 
 from twin.physics import core
 from twin.physics.effects import find
+from twin.physics.model import Model
 from twin.physics.state import Situation
 
 
@@ -129,10 +130,17 @@ def test_current_and_tide_by_hand(ship):
 
 def test_shallow_water_by_hand(ship):
     # T/h = 5/7.5 = 2/3: g = (4/9)/(1/3) = 4/3
-    water = find("ShallowWater")(surge=0.09, sway=0.75, yaw=0.3, heavier=0.6).water(Situation(depth=7.5), ship)
-    assert water == (0.0, 0.0, pytest.approx(0.12), pytest.approx(1.0), pytest.approx(0.4), pytest.approx(0.8))
+    water = find("ShallowWater")(surge=0.09, sway=0.75, yaw=0.3, heavier=0.6, thrust=0.45).water(Situation(depth=7.5), ship)
+    assert water == (0.0, 0.0, *(pytest.approx(k) for k in (0.12, 1.0, 0.4, 0.8, 0.2)))
     aground = find("ShallowWater")(surge=0.09, sway=0.75, yaw=0.3, heavier=0.6).water(Situation(depth=1.0), ship)
     assert aground.k_v == pytest.approx(0.75 * (1 / 1.05) ** 2 / (1 - 1 / 1.05))
+
+
+def test_a_bottom_takes_thrust_from_the_ship_and_none_from_her_rudder(ship):
+    model = Model(ship, (find("ShallowWater")(thrust=0.45),))
+    deep, shallow = (model.known(Situation(u=5.0, n=1.5, delta=0.2, depth=h)) for h in (1e4, 7.5))
+    assert pytest.approx(0.8 * deep["propeller"].X, rel=1e-4) == shallow["propeller"].X
+    assert shallow["rudder"] == deep["rudder"]
 
 
 def test_heavier_water_slows_every_answer_by_the_mass_it_adds(ship):

@@ -78,7 +78,7 @@ class Model:
         return [
             (X * (1.0 + w.k_u), Y * (1.0 + w.k_v), N + w.k_r * (N + munk)),
             turning,
-            core.propeller(thrust, c),
+            core.propeller(thrust * (1.0 - w.k_t), c),
             core.rudder(u, v, r, s.delta, thrust, c),
             *[push.force(s, ship) for push in self.pushes],
         ]
