@@ -8,6 +8,7 @@ import pytest
 from twin.errors import DataError, SettingsError
 from twin.physics.effects import find
 from twin.physics.ship import load
+from twin.study.headers import GROUND
 from twin.study.map_file import parse_map
 from twin.study.read import read_voyage
 from twin.study.track import READINGS, track
@@ -213,6 +214,30 @@ def test_a_column_by_another_name_is_said_to_be_missing_with_a_guess(columns, wr
         "'rudder' is not used (did you mean 'rudder_angle_deg'?)",
         "--map",
     )
+
+
+@pytest.mark.parametrize("frame", ["course", "earth"])
+def test_velocities_over_ground_by_course_or_by_north_and_east_need_no_map(columns, write_csv, frame):
+    psi, u, v = np.radians(columns["heading_true_north_deg"]), columns["surge_velocity_mps"], columns["sway_velocity_mps"]
+    north, east = u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
+    ground = {"earth": (north, east), "course": (np.hypot(north, east), np.degrees(np.arctan2(east, north)) % 360.0)}[frame]
+    others = {n: x for n, x in columns.items() if "surge" not in n and "sway" not in n}
+    voyage = read_voyage(write_csv(others | dict(zip(GROUND[frame], ground, strict=True))))
+    np.testing.assert_allclose(voyage["surge_velocity_mps"], u, atol=1e-6)
+    np.testing.assert_allclose(voyage["sway_velocity_mps"], v, atol=1e-6)
+    beside = read_voyage(write_csv(columns | dict(zip(GROUND[frame], ground, strict=True))))
+    assert "is not used (what is read as velocity over ground: surge_velocity_mps and" in " ".join(beside.meta["notes"])
+    np.testing.assert_allclose(beside["surge_velocity_mps"], u)
+
+
+def test_an_optional_column_may_be_absent_and_any_other_may_not(columns, write_csv):
+    path = write_csv(columns)
+    by = {"columns": {n: n for n in columns if n != "time_s"} | {"roll_deg": {"column": "Heel", "optional": True}}}
+    voyage = read_voyage(path, parse_map(by, "m.toml"))
+    assert not voyage.has("roll_deg") and "the optional column 'Heel' is not there" in voyage.meta["notes"]
+    refused(path, "no column 'Heel'", by=parse_map(by | {"columns": by["columns"] | {"roll_deg": "Heel"}}, "m.toml"))
+    with pytest.raises(SettingsError, match="cannot be optional"):
+        parse_map({"columns": {"surge_velocity_mps": {"column": "u", "optional": True}}}, "m.toml")
 
 
 def test_every_required_column_is_asked_for(columns, write_csv):

@@ -1,21 +1,29 @@
 """A header without a map: contract names are taken, near misses refused, other columns named as unused."""
 
 import difflib
+from collections.abc import Collection
 from pathlib import Path
 
 from twin.errors import DataError
-from twin.study.mapping import NAMES, Column, Layout, Map, TimeColumn, nearest
+from twin.study.mapping import FRAMED, NAMES, Column, Layout, Map, TimeColumn, nearest
 from twin.study.sheet import Sheet, open_text
 
 TIMES = ("time_s", "time_utc")
-ALLOWED = (*NAMES, *TIMES)
+GROUND = {  # what stands for the velocities in the ship's axes, by the frame that a map would name
+    "course": ("speed_over_ground_mps", "course_over_ground_deg"),
+    "earth": ("velocity_north_mps", "velocity_east_mps"),
+}
+ALLOWED = (*NAMES, *TIMES, *(name for pair in GROUND.values() for name in pair))
+OVER_GROUND = ("sog", "cog", "course", "over_ground", "velocity_north", "velocity_east")
 MISSPELT = 0.85  # a name this much alike is a slip of the pen, not another quantity
 
 
 def own_names(path: Path) -> tuple[Map, tuple[str, ...]]:
     """(the map of the contract's own names, one sentence for each column that is not used)."""
     names = column_names(path)
-    unused = tuple(unknown(path, name) for name in names if name and name not in ALLOWED)
+    columns = {n: Column(n) for n in names if n in NAMES} | over_ground(names)
+    used = {*TIMES, *(c.column for c in columns.values())}
+    unused = tuple(unknown(path, name) for name in names if name and name not in used)
     times = [name for name in TIMES if name in names]
     if not times:
         raise DataError(
@@ -23,7 +31,16 @@ def own_names(path: Path) -> tuple[Map, tuple[str, ...]]:
             "Rename it, or say in a map which column is the time (--map)."
         )
     time = TimeColumn(times[0], "iso" if times[0] == "time_utc" else "s")
-    return Map(time=time, columns={n: Column(n) for n in names if n in NAMES}), unused
+    return Map(time=time, columns=columns), unused
+
+
+def over_ground(names: Collection[str]) -> dict[str, Column]:
+    """The velocities over ground by course or by the earth's axes, where they are not there by the ship's."""
+    if not any(name in names for name in FRAMED):
+        for frame, pair in GROUND.items():
+            if all(name in names for name in pair):
+                return {own: Column(name, frame=frame) for own, name in zip(FRAMED, pair, strict=True)}
+    return {}
 
 
 def column_names(path: Path) -> list[str]:
@@ -40,6 +57,9 @@ def column_names(path: Path) -> list[str]:
 
 def unknown(path: Path, name: str) -> str:
     """What to say of a column that the contract does not know; DataError when it is a slip of the pen."""
+    if any(word in name.lower() for word in OVER_GROUND):
+        pairs = ", or else ".join(" and ".join(pair) for pair in (FRAMED, *GROUND.values()))
+        return f"{name!r} is not used (what is read as velocity over ground: {pairs})"
     near = nearest(name, ALLOWED)
     if near and difflib.SequenceMatcher(None, name, near).ratio() >= MISSPELT:
         raise DataError(f"{path}: no column is called {name!r}. Did you mean {near!r}? Rename it, or use a map (--map).")

@@ -58,7 +58,8 @@ def run(args: argparse.Namespace) -> int:
     save(ship, args.output)
     out = sys.stderr if args.json == "-" else sys.stdout
     print(summary(ship, figures, warnings), file=out)
-    print(f"\nwritten: {args.output}\nnext:    twin calibrate CALM.mcap --ship {args.output} -o {_next(args.output)}", file=out)
+    print(f"\nwritten: {args.output}", file=out)
+    print(f"next:    twin import each reference voyage, then twin calibrate REF-*.mcap --ship {args.output} -o {_next(args.output)}", file=out)
     if args.json:
         write_json({"schema_version": 1, "ship": ship.name, "file": str(args.output), "trial": figures, "warnings": warnings}, args.json)
     return 0

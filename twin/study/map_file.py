@@ -34,7 +34,7 @@ KINDS: dict[str, tuple[type, ...]] = {
     "decimal": (str,), "encoding": (str,), "missing": (list,), 
     "column": (str, int, list), "unit": (str,), "format": (str,),
     "rebuild": (bool, int, float), "sign": (int,), "offset": (int, float), "frame": (str,),
-    "direction": (str,), "despike": (bool,),
+    "direction": (str,), "despike": (bool,), "optional": (bool,),
 }  # fmt: skip
 
 
@@ -84,6 +84,8 @@ def column(name: str, entry: Any, where: str) -> Column:
     one_of(out.sign, (1, -1), f"{where}: {name}: sign")
     if out.frame != "body" and name not in FRAMED:
         raise SettingsError(f"{where}: {name}: frame is for {' and '.join(FRAMED)} only. Remove it.")
+    if out.optional and name in FRAMED:
+        raise SettingsError(f"{where}: {name}: a velocity has two parts and cannot be optional. Write a map without it.")
     if out.unit is not None and not (name in PLACES and out.unit == "ddmm"):
         factor(target(name, out), out.unit, where)
     return out

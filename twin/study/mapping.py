@@ -54,6 +54,7 @@ class Column:
     frame: str = "body"  # velocities: body; earth (north, east); course (speed over ground, course over ground)
     direction: str = "from"  # wind and waves: where they come from, or go "to"
     despike: bool = False
+    optional: bool = False  # a file without this column is read without it
 
 
 @dataclass(frozen=True)

@@ -85,10 +85,11 @@ def from_text(path: Path, by: Map | None) -> Raw:
     spec = by.time or TimeColumn()
     stamps: tuple[Key, ...] = spec.column if isinstance(spec.column, tuple) else (spec.column,)
     wanted = [c.column for c in by.columns.values()]
-    table = read_table(path, by.layout, [*({} if spec.is_text else stamps), *wanted], stamps if spec.is_text else ())
+    optional = [c.column for c in by.columns.values() if c.optional]
+    table = read_table(path, by.layout, [*({} if spec.is_text else stamps), *wanted], stamps if spec.is_text else (), optional)
     clock = read_clock(path, table, stamps, spec)
     notes = [*table.notes, *unused]
-    columns = {name: converted(name, table, c, by.name, notes) for name, c in by.columns.items()}
+    columns = {name: converted(name, table, c, by.name, notes) for name, c in by.columns.items() if c.column in table.numbers}
     columns |= {name: np.full(table.lines.shape, x) for name, x in by.constant.items()}
     columns, facts, said = placed(clock.time_s, scaled(columns, by), by)
     slower = froude("time_s", by.froude_scale)

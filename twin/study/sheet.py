@@ -48,6 +48,10 @@ class Sheet:
             raise DataError(f"{self.path}: has no column {key!r}. Columns: {', '.join(self.names) or 'unnamed'}.")
         return self.names.index(key)
 
+    def has(self, key: Key) -> bool:
+        """Whether there is such a column."""
+        return 1 <= key <= self.width if isinstance(key, int) else key in self.names
+
     def rows(self) -> Iterator[Row]:
         """(line, cells) of every row that is not blank; a line cut off at the end of the file is left out."""
         for line, text in chain(self._again, self._lines):

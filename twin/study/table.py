@@ -4,7 +4,7 @@ Whatever is wrong is said with file, line, column and value.
 """
 
 import re
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
@@ -31,11 +31,13 @@ class Table:
     notes: tuple[str, ...] = ()
 
 
-def read_table(path: Path, layout: Layout, numbers: Sequence[Key], texts: Sequence[Key] = ()) -> Table:
-    """The named columns of a file; `numbers` become floats with NaN for empty cells, `texts` stay text."""
+def read_table(path: Path, layout: Layout, numbers: Sequence[Key], texts: Sequence[Key] = (), optional: Collection[Key] = ()) -> Table:
+    """The named columns of a file; `numbers` become floats with NaN for empty cells, `texts` stay text. Only an optional column may be absent."""
     with open_text(path, layout.encoding) as stream:
         sheet = Sheet(path, stream, layout)
-        return collect(sheet, numbers, texts)
+        absent = [key for key in optional if not sheet.has(key)]
+        sheet.notes += [f"the optional column {key!r} is not there" for key in absent]
+        return collect(sheet, [key for key in numbers if key not in absent], texts)
 
 
 def collect(sheet: Sheet, numbers: Sequence[Key], texts: Sequence[Key]) -> Table:

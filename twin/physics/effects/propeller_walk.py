@@ -10,7 +10,7 @@ from twin.physics.state import Situation
 
 
 class PropellerWalk(Force):
-    """The single screw pushes her stern to one side, so she needs helm to go straight and turns easier one way."""
+    """The single screw pushes her stern to one side, the more the harder it turns: helm to go straight, at any speed."""
 
     source = "Brix (1993) Manoeuvring Technical Manual (side force of a single screw)"
 

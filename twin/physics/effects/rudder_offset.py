@@ -11,7 +11,7 @@ from twin.physics.state import Situation
 
 
 class RudderOffset(Force):
-    """The rudder's zero is not where the indicator says, so she needs helm to go straight and turns easier one way."""
+    """The rudder's zero is not where the indicator says, so she needs the same angle to go straight at every speed."""
 
     source = "IMO MSC/Circ.1053 (2002), neutral rudder angle; Yasukawa & Yoshimura (2015) eq. (20)-(27)"
 

@@ -10,7 +10,7 @@ from twin.physics.state import Situation
 
 
 class TowForce(Force):
-    """Something pulls at her that turns with her: a tow, a thruster left on, a dragging anchor, a list."""
+    """Something pulls at her that turns with her: a tow, a thruster left on, a dragging anchor, a list that nobody recorded."""
 
     source = "Newton's second law; size: shares of her own resistance"
 

@@ -21,7 +21,7 @@ def rudder_sign(view: View) -> Check:
     name = "rudder_sign"
     same, against = held_turns(view)
     if same + against and min(same, against) == 0:
-        return sign_seen(name, f"with the rudder held over the ship turns {same + against} times", same > 0, True)
+        return sign_seen(name, f"with the rudder held over ({same + against} x) the ship turns", same > 0, True)
     share, b = best_gain(view)
     saw = f"the rudder explains {100 * share:.0f} % of the changes of yaw rate"
     if share < RUDDER_SHARE:

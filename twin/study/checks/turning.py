@@ -33,7 +33,7 @@ def yaw_rate(view: View) -> Check:
     if not np.isfinite(k) or (turn < 0.5 and np.degrees(rms(summed)) < 5.0):
         return cannot_tell(name, f"the heading changes by {turn:.2g} deg in a window; a turn would show it.")
     ratio, said, fix = min(RATES, key=lambda c: abs(np.log(abs(k / c[0]))) if k * c[0] > 0 else np.inf)
-    saw = f"the heading turns {k:.3g} times the summed yaw rate"
+    saw = f"the heading turns by {k:.3g} x the summed yaw rate"
     if left > 0.5 or error > 0.3 * abs(k):
         if rms(summed) < 3.0 * rms(swung) and turn < 2.0:
             return cannot_tell(name, f"the heading changes by {turn:.2g} deg in a window, too little beside the noise.")
