@@ -11,7 +11,7 @@ from twin.physics.effects import catalogue as known_effects
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
-from .case import COMES_AND_GOES, MOST_SEGMENTS, ODDS, ODDS_MEASURED, Case, settle
+from .case import CERTAIN, COMES_AND_GOES, MOST_SEGMENTS, ODDS, ODDS_MEASURED, Case, settle
 from .columns import FORM, Unknown, core_unknowns, effect_unknowns, lateness_unknowns
 from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
@@ -22,6 +22,7 @@ from .segments import read_parts
 from .structure import floor_beside, floor_of, structural_floor
 from .track import Track, track
 from .voyage import Voyage
+from .weather import as_usual, strengths
 
 Progress = Callable[[str], None]
 KNOWN = 0.1  # share of the force of an effect in the model that may be something else
@@ -35,6 +36,7 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     progress("smoothing tracks")
     tracks = tuple(swung(track(v, ship), model) for v in voyages)
     candidates = judgeable(tracks, model, catalogue)
+    no_news = as_usual(strengths(tracks, model, catalogue), _felt_before(references, model, catalogue))
     effects = tuple(u for name in candidates for u in effect_unknowns(catalogue[name], model))
     nuisance = nuisance_unknowns(model, catalogue)
     core = [u for u in nuisance if u.owner in ("core", FORM)]
@@ -56,10 +58,18 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
         known = from_ship(model, nuisance)
     progress("linearising")
     case = Case(
-        tracks, model, catalogue, candidates, unknowns, effects, known, floor, path, temper, _odds(tracks, candidates, ship),
-        _lines(tracks, model, unknowns, catalogue, MOST_SEGMENTS), any(manoeuvred(t, ship) for t in tracks), floor.white,
+        tracks, model, catalogue, candidates, unknowns, effects, known, floor, path, temper,
+        _odds(tracks, candidates, ship) | dict.fromkeys(no_news, CERTAIN),
+        _lines(tracks, model, unknowns, catalogue, MOST_SEGMENTS), any(manoeuvred(t, ship) for t in tracks), floor.white, no_news,
     )  # fmt: skip
     return settle(case)
+
+
+def _felt_before(references: Sequence[Voyage], model: Model, catalogue: dict[str, type[Effect]]) -> dict[str, float]:
+    """How hard measured weather pushed her on the reference voyages, or on those of her calibration."""
+    if references:
+        return strengths([track(v, model.ship) for v in references], model, catalogue)
+    return dict(model.ship.notes.get("structural", {}).get("weather", {}))
 
 
 def _temper(ship: Ship) -> float:

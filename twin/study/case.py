@@ -46,6 +46,7 @@ WORLDS: dict[str, World] = {
 COMES_AND_GOES = 0.5  # share of an irregular effect's force, and of what it does to the path, that no size of it explains
 ODDS = 0.03  # of an effect about which nothing is known
 ODDS_WEAK = 0.002  # when it needs a cause that was measured to be too weak to show
+CERTAIN = 1.0  # when it was as strong on the reference voyages
 ODDS_MEASURED = 0.25  # when its cause was measured to be strong
 
 
@@ -67,6 +68,11 @@ class Case:
     lines: tuple[Linear, ...]  # of what is read of each track
     excited: bool  # whether one of the voyages holds a manoeuvre
     white: float  # fast part of the floor on the reference voyages, before `settle`
+    no_news: tuple[str, ...] = ()  # weather that the reference voyages felt as much: part of a hypothesis, never of the answer
+
+    def news(self, chosen: Sequence[str]) -> tuple[str, ...]:
+        """Those of a set of effects that may be the answer."""
+        return tuple(name for name in chosen if name not in self.no_news)
 
     def reduced(self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None) -> list[Reduced]:
         normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))

@@ -60,11 +60,12 @@ def diagnose(
     best = found[w.best.effects]
     explain = answer(case, weighed, found, w.best.effects)
     no_pair, leads = undone(case, best), helpful(case, found, explain)
-    explained = not w.best.effects or (bool(explain) and not no_pair)
+    explained = not case.news(w.best.effects) or (bool(explain) and not no_pair)
     if too_small(case, found, explain):
-        leads += [n for n in explain if w.effects[n] >= SURE]
-    like = {name: alike(case, weighed, name) for name in w.best.effects}
-    sharp, blurred = shows(seen) and not astray(found[()]), no_pair or any(at_sea(t, case.model) for t in case.tracks)
+        leads += [n for n in case.news(explain) if w.effects[n] >= SURE]
+    like = {name: alike(case, weighed, name) for name in case.news(w.best.effects)}
+    sharp = shows(seen) and not astray(found[()] if case.news(w.best.effects) else best)
+    blurred = no_pair or any(at_sea(t, case.model) for t in case.tracks)
     verdict, missing = judge(weighed, w, like, leads, excited=case.excited, sharp=sharp, explained=explained, blurred=blurred)
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
@@ -87,9 +88,10 @@ def diagnose(
         "undo_each_other": list(w.best.effects) if no_pair else [],
         "unclear": [n for n in explain if n not in leads and case.catalogue[n].kind == "SensorFault"],
         "path": {"horizon_s": horizon_s(case.tracks[0], case.model), "error_without": found[()].off_m, "error_floor": found[()].floor_m},
-        "next_manoeuvre": _next(case, found, verdict, missing, candidates, {n: w.effects[n] for n, can in seen.items() if can}, progress),
+        "next_manoeuvre": _next(case, found, verdict, missing, candidates, {n: p for n, p in w.effects.items() if seen[n]}, progress),
         "not_judged": _not_judged(case),
-        "not_visible": [n for n, can in seen.items() if not can and n not in missing],
+        "as_on_references": list(case.no_news),
+        "not_visible": [n for n, can in seen.items() if not can and n not in [*missing, *case.no_news]],
         "floor": {"share_surge_sway_yaw": case.floor.share, "sensor_factor": case.floor.sensor, "temper": case.temper},
         "voyages": [v.name for v in voyages],
         "waves": waves_on(case.tracks),

@@ -10,7 +10,7 @@ from itertools import product
 
 import numpy as np
 
-MOTION, SPEEDS, SLOW, FLOW = slice(0, 6), slice(3, 6), slice(6, 9), slice(9, 11)  # places in the state
+MOTION, PLACE, SPEEDS, SLOW, FLOW = slice(0, 6), slice(0, 2), slice(3, 6), slice(6, 9), slice(9, 11)  # places in the state
 WAVE = slice(11, 14)  # of each axis; behind it what carries the waves on
 STATES, AT_SEA = 11, 23
 DIAGONAL = np.arange(AT_SEA)
@@ -42,6 +42,7 @@ class Noise:
     fast: np.ndarray  # (K, 3) of velocity, in one step
     slow: np.ndarray  # (T, K, 3) of b
     flow: np.ndarray  # (K,) of c
+    wander: np.ndarray  # (K,) of the place shown, in one step
     new_b: np.ndarray  # (K,)
     new_c: np.ndarray  # (K,)
     wave: np.ndarray | None = None  # (T, K, 3) of the waves' accelerations
@@ -85,7 +86,8 @@ class Filters:
         self.X[:, SPEEDS, 1:] += push
         self.X[:, 0:3, 1:] += 0.5 * h * (self.turn[k][row] @ push)
         self.C = F @ self.C @ F.transpose(0, 2, 1)
-        for part, variance in ((SPEEDS, noise.fast), (SLOW, noise.new_b[:, None] * noise.slow[k]), (FLOW, (noise.new_c * noise.flow)[:, None])):
+        slow, flow = noise.new_b[:, None] * noise.slow[k], (noise.new_c * noise.flow)[:, None]
+        for part, variance in ((PLACE, noise.wander[:, None]), (SPEEDS, noise.fast), (SLOW, slow), (FLOW, flow)):
             self.C[:, DIAGONAL[part], DIAGONAL[part]] += variance
         if told.fresh is not None and noise.wave is not None:
             for (i, a), (j, b) in SWINGING:

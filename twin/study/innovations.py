@@ -38,8 +38,9 @@ class Floor:
 
     `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller cause at that moment,
     in surge, sway, yaw; `calm`: the same share of a standard acceleration, there even when nothing happens; `white`: fast
-    part; `flow`: scatter of the water's own motion, as a share of U_0; `sensor`: factor on the readings' scatter; `doubt`: share of
-    the force of the effects under judgement that may be something else (none on a reference voyage).
+    part; `flow`: scatter of the water's own motion, as a share of U_0; `sensor`: factor on the readings' scatter; `wander`: how far the
+    position that satellites show strays from itself in one second, and sqrt(t) times as far in t [m/sqrt(s)]; `doubt`: share of the force
+    of the effects under judgement that may be something else (none on a reference voyage).
     """
 
     share: tuple[float, float, float] = (0.05, 0.05, 0.05)
@@ -47,6 +48,7 @@ class Floor:
     white: float = 0.05
     flow: float = 0.004
     sensor: float = 1.3
+    wander: float = 0.0
     doubt: float = 0.0
 
     def scaled(self, factor: float = 1.0, white: float = 1.0, flow: float = 1.0) -> "Floor":
@@ -195,6 +197,7 @@ def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> No
     model, row = lines[0].model, np.tile(np.arange(len(where)), len(floors))
     time, speed = float(model.ship.scale("time")), float(model.ship.scale("speed"))
     h = np.array([lines[i].track.h for i, _, _ in where])[row]
+    wander = np.repeat([f.wander for f in floors], len(where))
     scatter = np.stack([lines[i].track.sd for i, _, _ in where])[row]
     sensor, white, flow = (np.repeat([getattr(f, name) for f in floors], len(where)) for name in ("sensor", "white", "flow"))
     return Noise(
@@ -203,6 +206,7 @@ def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> No
         fast=(white[:, None] * standard(model)) ** 2 * (h * time)[:, None],
         slow=np.concatenate([_abreast([_slow(x, f) for x in lines], where) for f in floors], axis=1),
         flow=(flow * speed) ** 2,
+        wander=wander**2 * h,
         new_b=1.0 - np.exp(-2.0 * h / (MEMORY_B * time)), new_c=1.0 - np.exp(-2.0 * h / (MEMORY_C * time)),
         wave=_abreast([waves.variance(x.track) for x in lines], where)[:, row] if _in_waves(lines) else None,
     )  # fmt: skip

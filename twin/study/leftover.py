@@ -72,9 +72,10 @@ def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
 def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
     """Whether a single effect cannot show in where she went, for she is led there with it and without: then the readings decide. In a sea they
     do of the sea's own force alone: of others, they take a wave's pull for a ship's."""
-    if len(chosen) != 1 or case.catalogue[chosen[0]].kind == "SensorFault" or not max(found[chosen].off_m, found[()].off_m) <= found[chosen].floor_m:
+    single = [case.catalogue[name] for name in case.news(chosen)]
+    if len(single) != 1 or single[0].kind == "SensorFault" or not max(found[chosen].off_m, found[()].off_m) <= found[chosen].floor_m:
         return False
-    return case.catalogue[chosen[0]].irregular or not any(at_sea(t, case.model) for t in case.tracks)
+    return single[0].irregular or not any(at_sea(t, case.model) for t in case.tracks)
 
 
 def undone(case: Case, found: Found) -> bool:

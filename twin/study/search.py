@@ -17,7 +17,7 @@ from .leftover import NEARLY, answer
 from .nuisance import DAILY
 from .refine import Found, Sets, boxed, refine
 
-MOST = 2  # effects at once
+MOST = 2  # effects at once that would be news
 ROUNDS = 20  # hypotheses judged about their own size, at most
 SINGLES = 3  # of which so many single effects first, unless nothing at all explains the voyages
 LAST = 6  # and so many more single effects, when nothing plain was found, or what was found (nothing, too) leaves too much
@@ -35,7 +35,7 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
     progress("every effect and every pair")
     worlds = dict(zip(WORLDS, case.reduced(case.lines, case.worlds(list(WORLDS))), strict=True))
     seen = {name: visible(worlds["usual"], name) for name in case.candidates}
-    weak = [name for name, can in seen.items() if not can and case.catalogue[name].needs]
+    weak = [name for name in case.news(case.candidates) if not seen[name] and case.catalogue[name].needs]
     case = replace(case, odds=dict(case.odds) | dict.fromkeys(weak, ODDS_WEAK))
     book = _Book(case, worlds)
     searched = _searched(book, progress, seen)
@@ -114,7 +114,7 @@ class _Book:
         return [(name,) for name, width in usual.items() if width > MUCH]
 
     def next(self) -> Sets | None:
-        """What to judge about its own size next; each effect of a pair alone before the pair: it may do what took two."""
+        """What to judge about its own size next; each effect of a set alone before the set, and beside what is no news: it may do what took two."""
         while self.first:
             if (chosen := self.first.pop(0)) not in self.found:
                 return chosen
@@ -123,7 +123,7 @@ class _Book:
             if ranked[0].log_weight - h.log_weight > CLOSE:
                 break
             if h.effects not in self.found:
-                return next(((name,) for name in h.effects if (name,) not in self.found), h.effects)
+                return next((part for part in self._parts(h.effects) if part not in self.found), h.effects)
         for simpler in self._simpler(ranked[0].effects):
             if simpler not in self.found:
                 return simpler
@@ -131,6 +131,11 @@ class _Book:
             if (chosen := self.last.pop(0)) not in self.found:
                 return chosen
         return None
+
+    def _parts(self, effects: Sets) -> list[Sets]:
+        """Each effect of a set by itself, and what would be left of the set without it if that is enough to be asked for."""
+        without = [tuple(n for n in effects if n != name) for name in effects]
+        return [*((name,) for name in effects), *(rest for rest in without if len(rest) >= MOST and len(self.case.news(rest)) < len(rest))]
 
     def _simpler(self, effects: Sets) -> list[Sets]:
         """The same set with a part in the place of an effect that holds it: a current that does not change is a steady one."""
@@ -144,7 +149,7 @@ class _Book:
         z = posterior(self.worlds[mine[0].world], chosen).z
         known = [i for i, u in enumerate(self.case.effects) if u.owner in start.hypothesis.effects]
         z[known] = start.posterior.z[known]  # where a part of the set was found to stand
-        wider = self.case.candidates if len(chosen) < MOST else ()
+        wider = self.case.candidates if len(self.case.news(chosen)) < MOST else self.case.no_news
         self.found[chosen], judged = refine(self.case, chosen, mine[0].world, z, wider, mine[0].log_weight)
         if self._hollow(chosen):
             self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}

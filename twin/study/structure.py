@@ -5,6 +5,7 @@ uncertainty integrated out (cross-validated likelihood; Rasmussen & Williams 200
 """
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,7 +17,8 @@ from .innovations import Floor, Linear, Normal, innovate
 
 MOST_SEGMENTS = 40
 FEWER = 20  # where many columns make each dear
-BOUNDS = {"share": (0.01, 0.5), "calm": (0.1, 4.0), "white": (0.002, 1.0), "flow": (0.002, 0.05), "sensor": (0.7, 4.0)}
+BOUNDS = {"share": (0.01, 0.5), "calm": (0.1, 4.0), "white": (0.002, 1.0), "flow": (0.002, 0.05), "sensor": (0.7, 4.0), "wander": (5e-4, 0.5)}
+WANDER = 4e-3  # where the climb begins, m/sqrt(s)
 BESIDE = 0.4  # how far the slow part may fall beside more unknowns, as a share of what a core alone is ever trusted with
 
 
@@ -38,7 +40,7 @@ def floor_beside(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Fl
 
 
 def _climbed(lines: Sequence[Linear], unknowns: Sequence[Unknown], floor: Floor, least: float, most: int) -> Floor:
-    sd, step = np.array([u.sd for u in unknowns]), 2.0
+    sd, step, floor = np.array([u.sd for u in unknowns]), 2.0, replace(floor, wander=floor.wander or WANDER)
     best = _scores(lines, [floor], sd, most)[0]
     while step > 1.2:
         trials = [(i, t) for i, change in enumerate(CHANGES) for k in (step, 1.0 / step) if _inside(t := change(floor, k), least)]
@@ -68,7 +70,7 @@ def _together(floor: Floor, moves: Sequence[Floor]) -> Floor:
 
 
 def _logs(floor: Floor) -> np.ndarray:
-    return np.log([*floor.share, floor.calm, floor.white, floor.flow, floor.sensor])
+    return np.log([*floor.share, floor.calm, floor.white, floor.flow, floor.sensor, floor.wander])
 
 
 def _scores(lines: Sequence[Linear], floors: Sequence[Floor], sd: np.ndarray, most: int) -> list[float]:
@@ -99,7 +101,7 @@ def _change(i: int) -> Callable[[Floor, float], Floor]:
     return change
 
 
-CHANGES = tuple(_change(i) for i in range(7))
+CHANGES = tuple(_change(i) for i in range(8))
 
 
 def _inside(floor: Floor, least: float) -> bool:

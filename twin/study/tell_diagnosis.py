@@ -24,6 +24,7 @@ def told(result: dict[str, Any]) -> list[str]:
         m = result["next_manoeuvre"]
         lines += ["", f"To tell {m['separates'][0]} from {m['separates'][1]}, sail: {m['manoeuvre']} ({m['why']})."]
     lines += [f"{n['effect']} cannot be judged: no {' and no '.join(n['lacks'])} was recorded." for n in result["not_judged"]]
+    lines += [f"{n} was no stronger than on the reference voyages: it is reckoned with, and not called missing." for n in result["as_on_references"]]
     lines += told_of_waves(result["waves"])
     if result["not_visible"]:
         lines.append(f"Too small to be seen in these voyages, even at a plausible size: {', '.join(result['not_visible'])}.")

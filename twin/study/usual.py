@@ -17,6 +17,7 @@ from .nuisance import from_references, nuisance_unknowns, temper_of, usual_unkno
 from .sailed import fed
 from .structure import floor_beside
 from .track import Track
+from .weather import strengths
 
 CLEAR = 4.0  # standard errors
 
@@ -40,6 +41,7 @@ def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
         "between_voyages": between,
         "beside": plain(asdict(beside)),
         "temper_beside": temper,
+        "weather": strengths(tracks, model, known),
     }
 
 

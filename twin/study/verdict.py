@@ -26,7 +26,7 @@ ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
 
 @dataclass(frozen=True)
 class Weights:
-    """Probability of every answer, and of every effect."""
+    """Probability of every answer, and of every effect that would be news."""
 
     nothing: float
     unknown: float
@@ -36,13 +36,13 @@ class Weights:
 
 def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
     p = probabilities(weighed)
-    effects = dict.fromkeys(case.candidates, 0.0)
+    effects = dict.fromkeys(case.news(case.candidates), 0.0)
     nothing = unknown = 0.0
     for h, share in zip(weighed, p, strict=True):
-        for name in h.effects:
+        for name in case.news(h.effects):
             effects[name] += float(share)
         unknown += float(share) * WORLDS[h.world].unknown
-        nothing += float(share) * (not h.effects and not WORLDS[h.world].unknown)
+        nothing += float(share) * (not case.news(h.effects) and not WORLDS[h.world].unknown)
     return Weights(nothing, unknown, effects, weighed[0])
 
 
@@ -51,7 +51,7 @@ def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
     best = next(h for h in weighed if name in h.effects)
     rest = set(best.effects) - {name}
     out = []
-    for other in case.candidates:
+    for other in case.news(case.candidates):
         if other in best.effects:
             continue
         swapped = next((h for h in weighed if set(h.effects) == rest | {other}), None)
@@ -85,7 +85,7 @@ def judge(
     hypothesis leaves over, or has otherwise than its form, is unknown (`explained`), but decides nothing where there was a sea, or faults that undo
     each other (`blurred`)."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
-    named = [n for n in w.best.effects if n in leads and (w.effects[n] >= SURE or one_of(weighed, [n, *like[n]]) >= SURE_GROUP)]
+    named = [n for n in w.best.effects if n in w.effects and n in leads and (w.effects[n] >= SURE or one_of(weighed, [n, *like[n]]) >= SURE_GROUP)]
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
     named = [n for i, n in enumerate(named) if i == 0 or w.effects[n] >= SURE_TOO]
     strange = w.unknown >= LOST or not explained

@@ -14,6 +14,8 @@ HIDDEN = {
     "RudderWear": (("RudderWear", 1.0),),
     "SteeringLag": (("SteeringLag", 1.0),),
     "IceLike": (("IceLike", 1.0),),
+    "Wind": (("Wind", 1.0),),
+    "Wind again": (("Wind", 1.0),),
 }
 
 

@@ -92,6 +92,14 @@ def test_a_voyage_too_short_to_judge_exits_with_4_and_one_line(tanker, voyages, 
     assert "nothing: 59 s" in said and "ship lengths" in said
 
 
+def test_a_wind_is_news_unless_it_blew_as_hard_on_the_reference_voyages(tanker, voyages):
+    news = diagnose([voyages["Wind"]], tanker).result
+    assert (news["missing"], news["as_on_references"]) == (["Wind"], []), "\n".join(told(news))
+    known = diagnose([voyages["Wind"]], tanker, [voyages["calm"], voyages["Wind again"]]).result
+    assert "Wind" not in known["missing"] and known["as_on_references"] == ["Wind"], "\n".join(told(known))
+    assert "Wind was no stronger than on the reference voyages: it is reckoned with, and not called missing." in told(known)
+
+
 def test_references_given_on_the_command_count_like_a_calibration(tanker, voyages):
     result = diagnose([voyages["HeadingBias"]], tanker, [voyages["calm"], voyages["calm too"]]).result
     assert result["missing"][:1] == ["HeadingBias"], "\n".join(told(result))

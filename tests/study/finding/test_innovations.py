@@ -10,6 +10,7 @@ from twin.physics.model import Model
 from twin.study.columns import core_unknowns, effect_unknowns, with_values
 from twin.study.innovations import Floor, innovate, linearise
 from twin.study.segments import read_parts, segments
+from twin.study.structure import floor_of, structural_floor
 from twin.study.track import READINGS, track
 
 
@@ -46,10 +47,21 @@ def test_floors_side_by_side_are_floors_one_at_a_time(judged):
 
 def test_innovations_of_a_calibrated_ship_are_no_larger_than_promised(judged):
     t, model, unknowns = judged
-    from twin.study.structure import floor_of
-
     normal = innovate([linearise(t, model, unknowns, catalogue())], [floor_of(model.ship)])[0]
     assert 0.5 < normal.ee.sum() / normal.count.sum() < 1.6
+
+
+@pytest.mark.parametrize("wander", [0.0, 0.1])
+def test_how_far_the_position_that_satellites_show_strays_is_found(judged, wander):
+    """Test: position with white noise, and with one that strays by 10 cm in a second, 77 cm in a minute. Expected: found within a third."""
+    t, model, unknowns = judged
+    rng = np.random.default_rng(7)
+    steps = wander * np.sqrt(t.h) * rng.standard_normal((len(t), 2))
+    shown = t.measured.copy()
+    shown[:, :2] = t.state[:, :2] + 0.1 * rng.standard_normal((len(t), 2)) + np.cumsum(steps, axis=0)
+    strayed = replace(t, measured=shown, sd=np.r_[0.1, 0.1, t.sd[2:]])
+    found = structural_floor([linearise(strayed, model, unknowns, catalogue())], unknowns, floor_of(model.ship)).wander
+    assert found < 0.03 if wander == 0.0 else found == pytest.approx(wander, rel=0.35)
 
 
 def test_a_hole_in_the_controls_ends_a_segment(judged):
