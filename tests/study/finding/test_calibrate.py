@@ -39,7 +39,7 @@ def test_the_ship_file_carries_standard_errors_and_what_remains(calibrated):
     structural = ship.notes["structural"]
     size = len(structural["labels"])
     assert len(structural["offset"]) == size and len(structural["covariance"]) == size
-    assert set(structural["floor"]) == {"share", "calm", "white", "flow", "sensor", "doubt"}
+    assert set(structural["floor"]) == {"share", "calm", "white", "flow", "sensor", "wander", "doubt"}
     assert structural["by_regime"] and said["floor"]["share"]
 
 
