@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from twin.errors import SettingsError
 from twin.physics.ship import Ship
 
 from .columns import Unknown
@@ -26,7 +27,13 @@ def floor_of(ship: Ship, name: str = "floor") -> Floor | None:
     """The floor that calibration left in the ship file, None when she was never calibrated: what the model alone leaves (`floor`), or what
     is left beside all that is usual on this ship (`beside`)."""
     table = ship.notes.get("structural", {}).get(name)
-    return Floor(**(dict(table) | {"share": tuple(table["share"])})) if table else None
+    if not table:
+        return None
+    try:
+        surge, sway, yaw = (float(share) for share in table["share"])
+        return Floor(**{key: float(value) for key, value in table.items() if key != "share"}, share=(surge, sway, yaw))
+    except (TypeError, ValueError, KeyError) as error:
+        raise SettingsError(f"{ship.name}: [structural] {name} in the ship file is damaged ({error}). Calibrate her again.") from None
 
 
 def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor | None = None) -> Floor:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.errors import SettingsError
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.study.columns import core_unknowns, effect_unknowns, with_values
@@ -62,6 +63,12 @@ def test_how_far_the_position_that_satellites_show_strays_is_found(judged, wande
     strayed = replace(t, measured=shown, sd=np.r_[0.1, 0.1, t.sd[2:]])
     found = structural_floor([linearise(strayed, model, unknowns, catalogue())], unknowns, floor_of(model.ship)).wander
     assert found < 0.03 if wander == 0.0 else found == pytest.approx(wander, rel=0.35)
+
+
+def test_a_damaged_floor_in_the_ship_file_is_one_line(tanker):
+    table = {**tanker.notes["structural"], "floor": {**tanker.notes["structural"]["floor"], "wander": "far"}}
+    with pytest.raises(SettingsError, match=r"\[structural\] floor in the ship file is damaged .*'far'.*Calibrate her again"):
+        floor_of(replace(tanker, notes={**tanker.notes, "structural": table}))
 
 
 def test_a_hole_in_the_controls_ends_a_segment(judged):
