@@ -172,6 +172,8 @@ def test_instruments_by_hand(ship):
     assert (mast.x, mast.y) == (pytest.approx(10 + 17.32051 - 2), pytest.approx(20 + 10 + 3.46410))
     assert (mast.u, mast.v) == (pytest.approx(4 - 0.08), pytest.approx(-0.5 + 0.4))
     late = find("SensorDelay")(delay=0.5, turned=0.5).read(s, ship)
-    assert (late.x, late.y) == (pytest.approx(10 - 0.5 * (3.464102 + 0.25)), pytest.approx(20 - 0.5 * (2 - 0.433013)))
+    there = 0.5 * (3.975 * 0.8685145 + 0.4875 * 0.4956637), 0.5 * (3.975 * 0.4956637 - 0.4875 * 0.8685145)  # 0.25 s ago: 29.71352 deg
+    assert (late.x, late.y) == (pytest.approx(10 - there[0]), pytest.approx(20 - there[1]))
+    assert find("SensorDelay")(delay=0.5, turned=0.5).prompt() == (0.5, find("SensorDelay")(delay=0.0, turned=0.5))
     assert (late.u, late.v) == (pytest.approx(4 - 0.05 - 0.005), pytest.approx(-0.5 + 0.025 - 0.04))
     assert find("GyroBias")(bias=0.001).read(s, ship).r == pytest.approx(0.021)

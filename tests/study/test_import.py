@@ -6,6 +6,7 @@ import json
 import numpy as np
 import pytest
 
+from twin.cli import main
 from twin.errors import DataError, SettingsError
 from twin.study import import_voyage as verb
 from twin.study.read import read_voyage
@@ -15,6 +16,21 @@ def run(*words):
     parser = argparse.ArgumentParser()
     verb.add_arguments(parser)
     return verb.run(parser.parse_args([str(w) for w in words]))
+
+
+def test_a_check_that_cannot_tell_is_not_marked_ok(sail, write_csv, tmp_path, capsys):
+    columns = {name: values for name, values in sail().items() if "wind" not in name}
+    assert run(write_csv(columns), "-o", tmp_path / "v.mcap") == 0
+    said = [line.split() for line in capsys.readouterr().out.splitlines()]
+    marks = {words[1].rstrip(":"): words[0] for words in said if words and words[0] in ("ok", "?", "look")}
+    assert marks["wind"] == "?" and marks["time_stamps"] == "ok"
+
+
+def test_the_reference_voyage_of_a_new_ship_is_for_her_calibration(sail, write_csv, tmp_path, capsys):
+    ship, out = tmp_path / "alma.toml", tmp_path / "v.mcap"
+    main(["init", "MV Alma", "--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5", "-o", str(ship)])
+    assert run(write_csv(sail()), "--ship", ship, "--accept", "propeller_rate", "--accept", "ship_size", "-o", out) == 0
+    assert f"then twin calibrate {out} ... --ship {ship}" in capsys.readouterr().out
 
 
 def test_a_good_file_goes_in_and_the_next_command_is_named(sail, write_csv, tmp_path, capsys):

@@ -71,6 +71,11 @@ def test_it_writes_a_ship_file_that_says_what_was_given_and_what_was_estimated(t
     assert told["schema_version"] == 1 and told["trial"]["tactical_diameter_L"] > 1
 
 
+def test_her_inertia_is_hers_where_it_is_known():
+    ship, _ = first_model("A", given(1.2, 0.29, 0.105, {"mass-kg": 23.8, "yaw-inertia-kgm2": 1.76}))
+    assert ship.I_z == 1.76 and ship.notes["particulars"]["I_z"]["source"] == "given"
+
+
 def test_a_shaft_speed_sets_the_thrust(tmp_path):
     from twin.study.trial import shaft_speed
 
@@ -101,6 +106,7 @@ BAD = {
     "length and beam swapped": ("--length-pp-m 30 --beam-m 80 --draught-m 10", 5, "Check the order"),
     "mass in tonnes": ("--length-pp-m 180 --beam-m 30 --draught-m 10 --mass-kg 43000", 5, "Check the mass"),
     "two masses": ("--length-pp-m 180 --beam-m 30 --draught-m 10 --mass-kg 4e7 --block-coefficient .5", 5, "Leave one of them out"),
+    "a spinning top": ("--length-pp-m 180 --beam-m 30 --draught-m 10 --yaw-inertia-kgm2 1e9", 5, "is a radius of 0.03 L"),
     "nan": ("--length-pp-m nan --beam-m 30 --draught-m 10", 5, "--length-pp-m nan"),
     "a shaft that races": ("--length-pp-m 180 --beam-m 30 --draught-m 10 --shaft-speed-rpm 5000 --propeller-diameter-m 5", 5, "no usual pitch"),
 }  # fmt: skip

@@ -161,3 +161,8 @@ class SensorFault(Effect):
     def read(self, s: Situation, ship: "Ship") -> Situation:
         """What the instruments say (a changed copy) of a ship that is truly in situation s."""
         raise NotImplementedError
+
+    def prompt(self) -> "tuple[Number, SensorFault]":
+        """How old place and speed over ground are when they are shown [s], and the same fault were they not: who has the whole voyage need
+        not undo that to the order to which `read` gives it."""
+        return 0.0, self

@@ -53,6 +53,12 @@ class Model:
         names = {type(e) for e in effects}
         return replace(self, effects=(*(e for e in self.effects if type(e) not in names), *effects))
 
+    def prompt(self) -> tuple[float, "Model"]:
+        """How late place and speed over ground are shown in all [s], and the same model without that."""
+        late = [fault.prompt() for fault in self.faults]
+        late_s = float(sum(seconds for seconds, _ in late))
+        return late_s, self.but(*(fault for _, fault in late)) if late_s else self
+
     def without_inputs(self, missing: set[str]) -> tuple["Model", tuple[Effect, ...]]:
         """The model without the effects that need an input that is missing, and those effects."""
         off = tuple(e for e in self.effects if missing.intersection(e.needs))

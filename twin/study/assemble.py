@@ -80,8 +80,8 @@ def _temper(ship: Ship) -> float:
 
 def _of_core(lines: Sequence[Linear], unknowns: Sequence[Unknown]) -> list[Linear]:
     """The same with the core's columns alone."""
-    core = [i for i, u in enumerate(unknowns) if u.owner == "core"]
-    return [replace(line, A=line.A[:, :, core], R=line.R[:, :, core]) for line in lines]
+    core = np.array([i for i, u in enumerate(unknowns) if u.owner == "core"])
+    return [line.only(core) for line in lines]
 
 
 def judgeable(tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]) -> tuple[str, ...]:

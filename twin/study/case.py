@@ -89,7 +89,7 @@ class Case:
         needed = [u.owner in chosen or u.label in usual for u in self.unknowns]
         kept = np.array([u.owner in chosen or u.label in usual for u in self.effects])
         unknowns, effects = tuple(compress(self.unknowns, needed)), tuple(compress(self.effects, kept))
-        lines = tuple(replace(x, A=x.A[:, :, needed], R=x.R[:, :, needed]) for x in self.lines)
+        lines = tuple(x.only(np.flatnonzero(needed)) for x in self.lines)
         return replace(self, unknowns=unknowns, effects=effects, lines=lines), kept
 
     def log_prior(self, chosen: Sequence[str], world: str) -> float:

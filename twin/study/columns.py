@@ -14,7 +14,7 @@ from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES
 
 from . import form
-from .respond import respond
+from .respond import faulty, respond
 from .track import Track
 
 
@@ -101,6 +101,23 @@ def columns(
         a, r = respond(track, changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue))
         A[:, :, j], R[:, :, j] = (a - acceleration) / step, (r - reading) / step
     return A, R
+
+
+def turns(
+    track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None
+) -> dict[int, np.ndarray]:
+    """Of each number of a fault that the model's instruments have (its column): (N, 8, 8) what one unit of it changes of the readings per unit
+    of what they show beside the smooth motion. That motion holds a little of the instruments' noise: alone it would tell a fault wrongly that
+    turns, scales or delays what they show. (Of one they do not have yet: what they show beside it may be that fault's own doing.)"""
+    own, present, out = np.linalg.inv(faulty(track, model)), {type(fault).__name__ for fault in model.faults}, {}
+    for j, unknown in enumerate(unknowns):
+        if unknown.owner not in present:
+            continue
+        here = (at or {}).get(unknown.label)
+        step = _step(unknown, here, True)
+        other = changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue)
+        out[j] = ((faulty(track, other) - faulty(track, model)) @ own / step).astype(np.float32)
+    return out
 
 
 def _step(unknown: Unknown, here: float | None, fine: bool) -> float:

@@ -130,8 +130,9 @@ def page(effects: list[type[Effect]]) -> str:
         "# The catalogue of effects", "",
         "Made by `twin effects --markdown docs/effects.md`; a test holds it current. Symbols: [notation](notation.md). "
         "To add one of your own: [tutorial](tutorials/own-effect.md).", "",
-        f"A size that stands with a letter is a multiple of the ship's own. {SCALES_SAID} The prior of a parameter is normal about the "
-        "value at which the effect is not there (zero), half-normal where its box has one side.", "",
+        f"A size that stands with a letter is a multiple of the ship's own. {SCALES_SAID} Plausible: what one would "
+        "expect where the effect is clearly there (what `twin effects NAME` and a ship file that gives no number take). Prior sd: how far a "
+        "parameter may lie from none before it counts as unlikely; the prior is normal about none, and one-sided where the box ends there.", "",
     ]  # fmt: skip
     for kind, means in KINDS.items():
         lines += [f"## {kind}", "", f"{means.capitalize()}.", ""]

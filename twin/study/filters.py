@@ -29,6 +29,7 @@ class Stretches:
     turn: np.ndarray  # (T, S, 3, 3) body velocities to d(x, y, psi)/dt
     A: np.ndarray  # (T, S, 3, P)
     R: np.ndarray  # (T, S, 8, P)
+    turns: dict[int, np.ndarray]  # column -> (T, S, 8, 8)
     fresh: np.ndarray | None = None  # (T, S, 3, 4, 4) of each axis' waves, the share of variance that is new after a step
 
 
@@ -62,6 +63,9 @@ class Filters:
         told, row = self.told, self.noise.row
         here = np.isfinite(told.e[k])[row]
         E = -(self.H[k][row] @ self.X)
+        shown = E[:, :, :1].copy()
+        for column, turn in told.turns.items():
+            E[:, :, 1 + column] += (turn[k][row] @ shown)[:, :, 0]
         E[:, :, 0] += np.where(here, told.e[k][row], 0.0)
         E[:, :, 1:] -= told.R[k][row]
         E *= here[:, :, None]

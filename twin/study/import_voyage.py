@@ -84,9 +84,15 @@ def run(args: argparse.Namespace) -> int:
         write_json(found.as_json() | {"output": None if refused else str(args.output)}, args.json)
     if refused:
         raise DataError(refusal(args.file, refused))
-    again = f"twin compare {args.output} --ship {args.ship or 'SHIP.toml'}"
-    print(f"wrote {args.output}\nnext: {again}", file=page)
+    print(f"wrote {args.output}\nnext: {_next(args.output, args.ship)}", file=page)
     return 0
+
+
+def _next(voyage: str, ship: str | None) -> str:
+    """A ship that was never calibrated is, on her reference voyages, before anything is compared with her."""
+    if ship and "structural" not in load(ship).notes:
+        return f"import her other reference voyages, then twin calibrate {voyage} ... --ship {ship} -o {Path(ship).stem}-calibrated.toml"
+    return f"twin compare {voyage} --ship {ship or 'SHIP.toml'}"
 
 
 def summary(found: Imported) -> list[str]:
@@ -99,7 +105,7 @@ def summary(found: Imported) -> list[str]:
 
 
 def mark(check: Check) -> str:
-    return "ok" if check.ok else "WRONG" if check.unusable else "look"
+    return "WRONG" if check.unusable else "look" if not check.ok else "ok" if check.told else "?"
 
 
 def refusal(path: str, refused: Sequence[Check]) -> str:

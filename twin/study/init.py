@@ -19,22 +19,23 @@ from .trial import shaft_speed, straight_line_stability, turning_circle, zigzag
 
 # option, what it is, unit, smallest and largest that is not a slip of the pen
 OPTIONS: tuple[tuple[str, str, float, float], ...] = (
-    ("length-pp-m", "length between perpendiculars", 0.2, 500.0),
+    ("length-pp-m", "length between perpendiculars; where nobody knows it, 0.96 of the waterline", 0.2, 500.0),
     ("beam-m", "beam at the waterline", 0.05, 90.0),
     ("draught-m", "mean draught", 0.01, 40.0),
-    ("mass-kg", "mass (displacement)", 0.05, 1e9),
+    ("mass-kg", "mass (displacement); default: by the block coefficient", 0.05, 1e9),
     ("block-coefficient", "block coefficient C_b", 0.2, 0.99),
     ("service-speed-mps", "service speed", 0.05, 40.0),
-    ("shaft-speed-rpm", "propeller rate at service speed: sets the thrust", 1.0, 10000.0),
-    ("x-g-m", "centre of gravity ahead of midship", -60.0, 60.0),
+    ("shaft-speed-rpm", "propeller rate at service speed in calm water: sets the thrust", 1.0, 10000.0),
+    ("x-g-m", "centre of gravity ahead of midship (half of L_pp); default 0", -60.0, 60.0),
+    ("yaw-inertia-kgm2", "moment of inertia in yaw about midship; default: a radius of 0.25 L", 1e-4, 1e14),
     ("rho-kg-m3", "density of the water", 900.0, 1100.0),
     ("propellers", "how many propellers turn alike; default 1", 1.0, 4.0),
     ("propeller-diameter-m", "diameter of each propeller", 0.005, 15.0),
     ("pitch-ratio", "propeller pitch over diameter", 0.3, 2.0),
     ("rudder-area-m2", "moveable area of all rudders, one behind each propeller", 1e-5, 250.0),
-    ("rudder-height-m", "height of each rudder", 0.005, 20.0),
-    ("frontal-area-m2", "frontal area above the water", 1e-4, 5000.0),
-    ("lateral-area-m2", "lateral area above the water", 1e-4, 20000.0),
+    ("rudder-height-m", "height (span) of each rudder", 0.005, 20.0),
+    ("frontal-area-m2", "frontal area above the water, for Wind; default B^2/2", 1e-4, 5000.0),
+    ("lateral-area-m2", "lateral area above the water, for Wind; default 0.06 L^2", 1e-4, 20000.0),
 )
 REQUIRED = ("length-pp-m", "beam-m", "draught-m")
 FULL = 0.7  # block coefficient from which ships often do not go straight by themselves
@@ -131,7 +132,10 @@ def _particulars(given: Given) -> Numbers:
     x_G = given["x-g-m"] or 0.0
     if abs(x_G) > 0.1 * L:
         raise SettingsError(f"--x-g-m {x_G:g} is more than a tenth of the length from midship. Check it.")
+    I_z = given["yaw-inertia-kgm2"]
     m = mass if mass is not None else rho * C * box
+    if I_z is not None and not 0.15 <= (I_z / m) ** 0.5 / L <= 0.4:
+        raise SettingsError(f"--yaw-inertia-kgm2 {I_z:g} is a radius of {(I_z / m) ** 0.5 / L:.2f} L; a ship has 0.2 to 0.3. Check it.")
 
     def said(option: str, estimate: float, source: str) -> tuple[float, str]:
         value = given[option]
@@ -140,7 +144,8 @@ def _particulars(given: Given) -> Numbers:
     p = {
         "L_pp": (L, "given"), "B": (B, "given"), "T": (T, "given"),
         "m": (m, "given" if mass is not None else fullness[1]), "C_b": fullness,
-        "x_G": said("x-g-m", 0.0, "ZERO"), "I_z": (m * ((0.25 * L) ** 2 + x_G**2), "GYR"), "rho": said("rho-kg-m3", rho, "SEA"),
+        "x_G": said("x-g-m", 0.0, "ZERO"), "I_z": said("yaw-inertia-kgm2", m * ((0.25 * L) ** 2 + x_G**2), "GYR"),
+        "rho": said("rho-kg-m3", rho, "SEA"),
         "U_0": said("service-speed-mps", reg.service_speed(L, C), "ALEX"),
         "D_P": said("propeller-diameter-m", T * min(0.85, max(0.35, 1.386 - 1.126 * C)), "RULE"),
         "A_R": said("rudder-area-m2", 0.01 * T * L * (1.0 + 25.0 * (B / L) ** 2), "DNV"),
@@ -267,7 +272,7 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str]) -> str:
     stable = "goes straight by herself" if figures["straight_line_stability"] > 0 else unstable
     over = figures["overshoot_20_20_deg"]
     lines += [
-        "", "  sea trial of this model",
+        "", "  sea trial of this model (estimates; how she turns is only roughly right until she is calibrated)",
         f"    {figures['shaft_speed_rpm']:.0f} rpm at {ship.U_0:.3g} m/s ({ship.U_0 / 0.514444:.1f} kn): compare it with the bridge's",
         f"    turning circle 35 deg: advance {figures['advance_L']:.1f} L, tactical diameter {figures['tactical_diameter_L']:.1f} L,"
         f" {100 * figures['speed_left']:.0f} % of the speed left",

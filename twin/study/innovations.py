@@ -20,10 +20,10 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 
 from . import waves
-from .columns import LATE, Unknown, columns
+from .columns import LATE, Unknown, columns, turns
 from .filters import FLOW, MOTION, SLOW, SPEEDS, STATES, Filters, Noise, Stretches
 from .normal import Normal, Sums
-from .respond import advance, faulty, jacobian, lagged, respond
+from .respond import advance, faulty, jacobian, lagged, later, respond
 from .segments import segments
 from .start import undone
 from .track import Track
@@ -67,10 +67,16 @@ class Linear:
     e: np.ndarray  # (N, 8): measured minus read, NaN where there was none
     A: np.ndarray  # (N, 3, P) float32, m/s2 per unit of each unknown
     R: np.ndarray  # (N, 8, P) float32
+    turns: dict[int, np.ndarray]  # column of a faulty instrument's number -> (N, 8, 8) float32 (see `columns.turns`)
     busy: np.ndarray  # (N, 3): acceleration that hull, rudder and propeller cause
     model: Model = field(repr=False)
     doubted: np.ndarray | float = 0.0  # (N, 3): acceleration by the effects under judgement, whose forms are only roughly right
     slack: np.ndarray | float = 0.0  # (N, 3): and one that no hypothesis takes away, of effects in the model
+
+    def only(self, columns: np.ndarray) -> "Linear":
+        """The same with some of the unknowns (places, in the order that is wanted)."""
+        turns = {k: self.turns[j] for k, j in enumerate(columns.tolist()) if j in self.turns}
+        return replace(self, A=self.A[:, :, columns], R=self.R[:, :, columns], turns=turns)
 
 
 def linearise(
@@ -79,8 +85,10 @@ def linearise(
     """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model already holds), about the
     motion as it was if the model's sensor faults are there."""
     track = undone(track, model)
-    _, reading = respond(track, model)
+    late_s, prompt = model.prompt()  # what is late shows another moment: no slope of this one says a wave two seconds ago
+    reading = later(track, respond(track, prompt)[1], late_s)
     A, R = columns(track, model, unknowns, catalogue, at)
+    turned = turns(track, model, unknowns, catalogue, at)
     e = track.measured - reading
     for j, unknown in enumerate(unknowns):
         if unknown.owner == LATE:  # no model holds it: what is known of it is taken off the readings
@@ -89,8 +97,11 @@ def linearise(
     defect = advance(track, model)
     defect[:-1] -= track.state[1:]
     defect[-1] = 0.0
-    system, reader = _system(track, model), _reader(track, model)
-    return Linear(track, system, defect, reader, e, A.astype(np.float32), R.astype(np.float32), busy(track, model), model)
+    system, reader = _system(track, model), _reader(track)
+    if model.faults:
+        shown = faulty(track, prompt)
+        track, reader = waves.as_shown(track, shown), shown @ reader
+    return Linear(track, system, defect, reader, e, A.astype(np.float32), R.astype(np.float32), turned, busy(track, model), model)
 
 
 def _system(track: Track, model: Model) -> np.ndarray:
@@ -118,14 +129,14 @@ def _by_current(track: Track, model: Model) -> np.ndarray:
     return columns(track, _without_current(model), axes, {"Current": find("Current")})[0]
 
 
-def _reader(track: Track, model: Model) -> np.ndarray:
-    """(N, 8, 11) what the instruments show of the state: each its own, the log the speed through water, as far as none is faulty."""
+def _reader(track: Track) -> np.ndarray:
+    """(N, 8, 11) what right instruments show of the state: each its own, the log the speed through water."""
     c, s = np.cos(track.state[:, 2]), np.sin(track.state[:, 2])
     H = np.zeros((len(track), 8, STATES))
     H[:, MOTION, MOTION] = np.eye(6)
     H[:, 6, 3] = H[:, 7, 4] = 1.0
     H[:, 6, 9], H[:, 6, 10], H[:, 7, 9], H[:, 7, 10] = -c, -s, s, -c
-    return faulty(track, model) @ H if model.faults else H
+    return H
 
 
 def _without_current(model: Model) -> Model:
@@ -177,6 +188,7 @@ def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
         F=_abreast(F, where), H=_abreast(H, where), e=_abreast([x.e for x in lines], where, np.nan),
         defect=_abreast([x.defect for x in lines], where), turn=_abreast([_turn(x) for x in lines], where),
         A=_abreast([x.A for x in lines], where), R=_abreast([x.R for x in lines], where), fresh=fresh,
+        turns={j: _abreast([x.turns[j] for x in lines], where) for j in lines[0].turns},
     )  # fmt: skip
 
 

@@ -175,7 +175,8 @@ def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown])
         A[:, :, place], R[:, :, place] = new.A, new.R
         sure = line.model.but(*(flow for flow in here.flows if flow.stream))
         moved = np.abs(respond(line.track, here)[0] - respond(line.track, sure)[0])
-        lines.append(replace(new, A=A, R=R, doubted=moved, slack=line.slack))
+        turns = line.turns | {place[j]: turn for j, turn in new.turns.items()}
+        lines.append(replace(new, A=A, R=R, turns=turns, doubted=moved, slack=line.slack))
     return model, lines
 
 

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -24,6 +25,25 @@ def readings(s: Situation, model: Model) -> np.ndarray:
     for fault in model.faults:
         s = fault.read(replace(s), model.loaded)
     return np.column_stack([np.broadcast_to(getattr(s, name), np.shape(s.psi)) for name in READINGS])
+
+
+LATE = [READINGS.index(name) for name in ("x", "y", "u", "v")]
+
+
+def later(track: Track, shown: np.ndarray, late_s: float) -> np.ndarray:
+    """The readings (N, 8), those of the satellites as they were so long ago: on each stretch of consecutive steps, along a straight line
+    before its first and behind its last."""
+    if not late_s:
+        return shown
+    out = shown.copy()
+    for a, b in pairwise([0, *(np.flatnonzero(np.diff(track.steps()) != 1) + 1), len(track)]):
+        steps = np.arange(b - a)
+        at = steps - late_s / track.h
+        for j in LATE if b - a > 1 else ():
+            x = shown[a:b, j]
+            before, behind = np.minimum(at, 0.0), np.maximum(at - steps[-1], 0.0)
+            out[a:b, j] = np.interp(at, steps, x) + before * (x[1] - x[0]) + behind * (x[-1] - x[-2])
+    return out
 
 
 GEARS = 16  # steering gears whose rudder a track remembers

@@ -10,6 +10,7 @@ from scipy.signal import savgol_filter
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
+from .respond import later
 from .track import STATE, Track, smooth_motion
 
 ABOUT = 2.5  # periods of the waves
@@ -20,20 +21,30 @@ ROUNDS = 3  # of the fixed point: faults of place, heading and wind together
 def true_motion(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray | None]:
     """(N, 6) the smooth motion as it would be without the model's sensor faults, and the wind's direction (N,) likewise.
 
-    Place and heading are corrected until the faulty instruments would show what they showed; speeds follow from them. What a fault
-    depends on beyond them (a late receiver, on the speed) is taken from the motion shown: differences of differences would blow
-    up whatever is faster than the delay.
+    Late places are shown earlier; then place and heading are corrected until the faulty instruments would show what they showed; speeds
+    follow from them. What a fault depends on beyond them is taken from the motion shown: differences of differences would blow up
+    whatever is fast.
     """
     wind_to = track.weather.get("wind_to")
     if not _moved(track, model, wind_to):
         return track.state, wind_to
-    place, shown = track.state[:, :3].copy(), track.state[:, :3]
+    late_s, model = model.prompt()
+    shown = _earlier(track, late_s)
+    place = shown[:, :3].copy()
     for _ in range(ROUNDS):
-        read = _read(track, model, _turned(track.state, place), wind_to)
-        place += shown - np.column_stack([read.x, read.y, read.psi])
+        read = _read(track, model, _turned(shown, place), wind_to)
+        place += shown[:, :3] - np.column_stack([read.x, read.y, read.psi])
         if wind_to is not None:
             wind_to = wind_to + track.weather["wind_to"] - read.wind_to
     return kinematics(place, track.h), wind_to
+
+
+def _earlier(track: Track, late_s: float) -> np.ndarray:
+    """(N, 6) the smooth motion, whose places are shown so late, as it was at the time."""
+    if not late_s:
+        return track.state
+    place = later(track, track.state[:, [0, 1, 2, 3, 4, 5, 3, 4]], -late_s)[:, :2]
+    return kinematics(np.column_stack([place, track.state[:, 2]]), track.h)
 
 
 def steadied(track: Track) -> Track:

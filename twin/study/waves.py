@@ -9,6 +9,8 @@ and omega, so that frequency and size (`Track.swell`, seen in `seaway.py`) may c
 Source: Fossen (2021) Handbook of Marine Craft, sec. 10.2 and 13.2.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from scipy.linalg import solve_continuous_lyapunov
 
@@ -31,6 +33,14 @@ def _band() -> tuple[np.ndarray, np.ndarray]:
 
 RATE, LASTING = _band()
 TONES, SHAPES = np.linalg.eig(RATE)
+
+
+def as_shown(track: Track, shown: np.ndarray) -> Track:
+    """The track with waves as strong as a log must have met them that shows so much more of everything (N, 8, 8): how strong a sea is was
+    only seen, and taken for more (seaway.py); a log that shows less is not likelier because it shows less of that."""
+    if track.swell is None:
+        return track
+    return replace(track, swell=track.swell / np.column_stack([np.ones((len(track), 3)), shown[:, 6, 6], shown[:, 7, 7], np.ones(len(track))]))
 
 
 def carried(track: Track) -> np.ndarray:

@@ -10,9 +10,10 @@ from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.study.columns import core_unknowns, effect_unknowns, with_values
 from twin.study.innovations import Floor, innovate, linearise
+from twin.study.respond import later
 from twin.study.segments import read_parts, segments
 from twin.study.structure import floor_of, structural_floor
-from twin.study.track import READINGS, track
+from twin.study.track import READINGS, smooth_motion, track
 
 
 @pytest.fixture(scope="module")
@@ -33,6 +34,38 @@ def test_tangents_say_what_a_changed_model_would_leave_over(judged):
     predicted = ee - 2.0 * float(b @ theta) + float(theta @ A @ theta)
     assert really != pytest.approx(ee, rel=1e-3)
     assert predicted == pytest.approx(really, rel=5e-3)
+
+
+@pytest.mark.parametrize("late_s", [2.0, 6.0])
+def test_how_late_positions_are_is_told_however_rough_the_path_through_them(judged, late_s):
+    """Test: positions with 0.1 m of scatter and so late, a log with 2 cm/s, asked where the receiver is that late. Expected: there it stays,
+    within three standard errors (the path alone, which holds a little of that scatter, would move it by five)."""
+    t, model, _ = judged
+    rng = np.random.default_rng(5)
+    before = np.minimum(t.t - late_s, 0.0)  # she sailed straight
+    place = np.column_stack([np.interp(t.t - late_s, t.t, x) + before * (x[1] - x[0]) / t.h for x in t.state[:, :2].T])
+    log = t.state[:, 3:5] + 0.02 * rng.standard_normal((len(t), 2))
+    shown = np.column_stack([place + 0.1 * rng.standard_normal(place.shape), t.state[:, 2], np.full((len(t), 2), np.nan), t.state[:, 5], log])
+    state, sd = smooth_motion(shown, t.h, model.ship)
+    unknowns = [u for u in effect_unknowns(catalogue()["SensorDelay"], model) if u.name == "delay"]
+    late = model.but(catalogue()["SensorDelay"].absent(model.ship).but(delay=late_s))
+    line = linearise(replace(t, measured=shown, state=state, sd=sd), late, unknowns, catalogue(), {unknowns[0].label: late_s})
+    A, b, _ = innovate([line], [floor_of(model.ship)])[0].total()
+    assert abs(float(b[0] / A[0, 0])) < 3.0 / float(A[0, 0]) ** 0.5
+
+
+def test_a_late_receiver_shows_a_wave_as_it_was_then_on_each_stretch_by_itself(judged):
+    t, *_ = judged
+    late_s, omega = 2.0, 2.0 * np.pi / 6.0
+    moments = t.t[np.r_[0:200, 300:500]]
+    part = t.where(np.r_[0:200, 300:500])
+    shown = np.column_stack([np.sin(omega * moments)] * 8)
+    then = later(part, shown, late_s)
+    np.testing.assert_array_equal(then[:, [2, 5, 6, 7]], shown[:, [2, 5, 6, 7]])  # compass, gyro and log are in time
+    settled = np.r_[5:200, 205:400]
+    assert np.abs(then[settled, 0] - np.sin(omega * (moments[settled] - late_s))).max() < 0.25  # straight lines between steps of 1.25 s
+    assert np.abs(then[:, 0]).max() < 3.0  # before a stretch begins, along a straight line
+    assert later(part, shown, 0.0) is shown
 
 
 def test_floors_side_by_side_are_floors_one_at_a_time(judged):

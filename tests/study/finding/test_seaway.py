@@ -12,7 +12,7 @@ from twin.study.openloop import coarse
 from twin.study.seaway import at_sea, levelled, stirred, swung
 from twin.study.start import steadied, told_of_waves, wave_period_s, waves_on
 from twin.study.track import track
-from twin.study.waves import LASTING, RATE, carried, fresh
+from twin.study.waves import LASTING, RATE, as_shown, carried, fresh
 
 PERIOD_S = 12.0
 YAW, SWAY = 0.01, 0.3  # amplitudes [rad, m/s]
@@ -42,6 +42,14 @@ def in_waves(t, yaw=YAW, sway=SWAY, period_s=PERIOD_S):
 @pytest.fixture(scope="module")
 def rough(calm, tanker):
     return swung(in_waves(calm), Model.of(tanker))
+
+
+def test_a_log_that_shows_less_met_a_stronger_sea(calm, rough):
+    shown = np.tile(np.eye(8), (len(rough), 1, 1))
+    shown[:, 6, 6], shown[:, 7, 7] = 0.9, 0.8
+    strength = as_shown(rough, shown).swell / rough.swell
+    np.testing.assert_allclose(strength[0], [1.0, 1.0, 1.0, 1.0 / 0.9, 1.0 / 0.8, 1.0])
+    assert as_shown(calm, shown) is calm
 
 
 def test_a_calm_track_is_left_as_it_is(calm, tanker):

@@ -1,5 +1,6 @@
 """The antenna is not where it is said to be: position and velocity over ground are those of another point of the ship.
 
+a_x ahead, a_y to starboard, from the point whose position the settings promise (midship; docs/import.md):
 x_m = x + a_x cos(psi) - a_y sin(psi),   y_m = y + a_x sin(psi) + a_y cos(psi)
 u_m = u - a_y r,                         v_m = v + a_x r
 """

@@ -21,7 +21,7 @@ class HeadingBias(SensorFault):
     source = "ISO 8728 and IMO A.424(XI) (gyro-compass settle-point error)"
 
     bias: float = param(0.02, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="shown heading less the true one")
-    turned: float = param(0.0, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="the same for the velocity over ground: bias, or 0 (see above)")
+    turned: float = param(0.0, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="by what speed over ground is turned: bias, or 0 (see above)")
 
     def read(self, s: Situation, ship: Ship) -> Situation:
         c, si = cos(self.turned), sin(self.turned)

@@ -1,6 +1,6 @@
-"""GNSS is late: what it says now was true `delay` seconds ago, to first order in the delay.
+"""GNSS is late: what it says now was true `delay` seconds ago; the place to second order in the delay, the velocity to first.
 
-    (x, y)_m = (x, y) - delay R(psi) (u, v)
+    (x, y)_m = (x, y) - delay R(psi - r delay/2) (u - du/dt delay/2, v - dv/dt delay/2)      the velocity of half the delay ago
     u_m = u - delay du/dt + turned r v
     v_m = v - delay dv/dt - turned r u
 `turned` = delay where a late velocity over ground is turned into body axes by the present heading (a compass), and 0 where
@@ -12,7 +12,7 @@ from dataclasses import replace
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
 from twin.physics.particulars import Ship
-from twin.physics.state import Situation
+from twin.physics.state import Number, Situation
 
 
 class SensorDelay(SensorFault):
@@ -21,14 +21,19 @@ class SensorDelay(SensorFault):
     source = "Skog & Haendel (2011) Time synchronization errors in loosely coupled GPS-aided INS, IEEE Trans. ITS 12, 1014-1023"
 
     delay: float = param(0.6, unit="s", lo=0.0, hi=6.0, sd=0.6, doc="age of position and velocity over ground")
-    turned: float = param(0.0, unit="s", lo=0.0, hi=6.0, sd=0.6, doc="the same for the turning of the velocity: delay, or 0 (see above)")
+    turned: float = param(0.0, unit="s", lo=0.0, hi=6.0, sd=0.6, doc="age of the turning of the velocity: delay, or 0 (see above)")
 
     def read(self, s: Situation, ship: Ship) -> Situation:
-        c, si, d, turned = cos(s.psi), sin(s.psi), self.delay, self.turned * s.r
+        d, half, turned = self.delay, 0.5 * self.delay, self.turned * s.r
+        u, v, psi = s.u - half * s.u_dot, s.v - half * s.v_dot, s.psi - half * s.r
+        c, si = cos(psi), sin(psi)
         return replace(
             s,
-            x=s.x - d * (s.u * c - s.v * si),
-            y=s.y - d * (s.u * si + s.v * c),
+            x=s.x - d * (u * c - v * si),
+            y=s.y - d * (u * si + v * c),
             u=s.u - d * s.u_dot + turned * s.v,
             v=s.v - d * s.v_dot - turned * s.u,
         )
+
+    def prompt(self) -> tuple[Number, SensorFault]:
+        return self.delay, self.but(delay=0.0)

@@ -12,6 +12,7 @@ class Check:
     ok: bool
     text: str
     unusable: bool = False
+    told: bool = True  # whether the data could tell at all
 
     def as_json(self) -> dict[str, Any]:
         """The entry of `data_checks`."""
@@ -23,7 +24,7 @@ def good(name: str, text: str) -> Check:
 
 
 def cannot_tell(name: str, why: str) -> Check:
-    return Check(name, True, f"cannot tell: {why}")
+    return Check(name, True, f"cannot tell: {why}", told=False)
 
 
 def doubtful(name: str, text: str) -> Check:

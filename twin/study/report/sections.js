@@ -81,7 +81,7 @@ function checksSection() {
   const list = RESULT.data_checks;
   if (!list || !list.length) return null;
   const bad = list.filter((c) => !c.ok), many = new Set(list.map((c) => c.voyage)).size > 1;
-  const row = (c) => el("tr", null, el("td", null, el(`span.${c.ok ? "good" : "fair"}`, null, c.ok ? "ok" : "look")), many ? el("td", null, c.voyage || "") : null, el("td", null, c.check.replaceAll("_", " ")), el("td", null, c.text));
+  const row = (c) => el("tr", null, el("td", null, el(`span.${c.ok ? "good" : "fair"}`, null, !c.ok ? "look" : c.text.startsWith("cannot tell") ? "?" : "ok")), many ? el("td", null, c.voyage || "") : null, el("td", null, c.check.replaceAll("_", " ")), el("td", null, c.text));
   const heads = ["", ...(many ? ["voyage"] : []), "check", "what it saw"];
   const rest = el("details", null, el("summary", { style: { cursor: "pointer", color: "var(--soft)", fontSize: "13px", marginTop: "8px" } }, `${list.length - bad.length} checks passed`), table(heads, list.filter((c) => c.ok).map(row)));
   return section("Data checks", bad.length ? `${bad.length} to look at` : "nothing speaks against the data", bad.length ? table(heads, bad.map(row)) : null, rest);
