@@ -156,6 +156,9 @@ def test_steering_gear_by_hand():
     assert gear.dead_time() == 1.5
     assert gear.step(0.0, radians(35), 2.0) == pytest.approx(radians(5))
     assert gear.step(0.0, radians(-1), 2.0) == pytest.approx(radians(-1))
+    easing = find("SteeringLag")(delay=1.5, travel_time=26.0, ease=3.0)
+    assert easing.step(radians(2), radians(4), 1.0) == pytest.approx(radians(2.5))  # a quarter of the way
+    assert easing.step(0.0, radians(35), 2.0) == pytest.approx(radians(5))
 
 
 def test_instruments_by_hand(ship):

@@ -57,7 +57,7 @@ def busy(Kind, ship):
 def respond(effect, s, ship):
     """What the effect makes of this moment: accelerations, an actuator's next angle, or what the instruments say."""
     if effect.kind == "Lag":
-        return (effect.step(s.delta, 2.0 * s.delta, 0.1), effect.dead_time())
+        return (effect.step(s.delta, 2.0 * s.delta, 0.1), effect.step(s.delta, 1.001 * s.delta, 0.1), effect.dead_time())
     if effect.kind == "SensorFault":
         read = effect.read(s, ship)
         return tuple(getattr(read, name) for name in READ)
@@ -142,7 +142,7 @@ def test_a_mirrored_ship_does_the_mirrored_thing(Kind, ship, moment):
     mirror = {k: -v if k in ATHWART else v for k, v in moment.items()}
     mirror |= {"bank_port": moment["bank_starboard"], "bank_starboard": moment["bank_port"]}
     true, seen = respond(effect, at(moment), ship), respond(flipped, at(mirror), ship)
-    signs = {"Lag": (-1, 1), "SensorFault": [-1 if name in ATHWART else 1 for name in READ]}.get(Kind.kind, (1, -1, -1))
+    signs = {"Lag": (-1, -1, 1), "SensorFault": [-1 if name in ATHWART else 1 for name in READ]}.get(Kind.kind, (1, -1, -1))
     np.testing.assert_allclose(np.array(signs) * seen, true, rtol=1e-12, atol=1e-15)
 
 

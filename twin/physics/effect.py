@@ -60,7 +60,7 @@ def param(
         "of": of,
         "doc": doc,
     }
-    return field(default=default if of is None else MISSING, metadata=meta, kw_only=True)
+    return field(default=MISSING if of and default else default, metadata=meta, kw_only=True)  # none of it is none on any ship
 
 
 class Effect:

@@ -109,14 +109,15 @@ def turns(
     """Of each number of a fault that the model's instruments have (its column): (N, 8, 8) what one unit of it changes of the readings per unit
     of what they show beside the smooth motion. That motion holds a little of the instruments' noise: alone it would tell a fault wrongly that
     turns, scales or delays what they show. (Of one they do not have yet: what they show beside it may be that fault's own doing.)"""
-    own, present, out = np.linalg.inv(faulty(track, model)), {type(fault).__name__ for fault in model.faults}, {}
-    for j, unknown in enumerate(unknowns):
-        if unknown.owner not in present:
-            continue
+    present = {type(fault).__name__ for fault in model.faults}
+    if not present.intersection(u.owner for u in unknowns):
+        return {}
+    shown, out = faulty(track, model), {}
+    for j, unknown in ((j, u) for j, u in enumerate(unknowns) if u.owner in present):
         here = (at or {}).get(unknown.label)
         step = _step(unknown, here, True)
         other = changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue)
-        out[j] = ((faulty(track, other) - faulty(track, model)) @ own / step).astype(np.float32)
+        out[j] = ((faulty(track, other) - shown) @ np.linalg.inv(shown) / step).astype(np.float32)
     return out
 
 

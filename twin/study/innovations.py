@@ -188,8 +188,14 @@ def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
         F=_abreast(F, where), H=_abreast(H, where), e=_abreast([x.e for x in lines], where, np.nan),
         defect=_abreast([x.defect for x in lines], where), turn=_abreast([_turn(x) for x in lines], where),
         A=_abreast([x.A for x in lines], where), R=_abreast([x.R for x in lines], where), fresh=fresh,
-        turns={j: _abreast([x.turns[j] for x in lines], where) for j in lines[0].turns},
+        turns=_turns(lines, where),
     )  # fmt: skip
+
+
+def _turns(lines: Sequence[Linear], where: Where) -> dict[int, np.ndarray]:
+    """Of every column that any of the tracks has; nothing on one whose instruments lack what is at fault."""
+    some = {j for x in lines for j in x.turns}
+    return {j: _abreast([x.turns.get(j, np.zeros((len(x.track), 8, 8), np.float32)) for x in lines], where) for j in some}
 
 
 def _in_waves(lines: Sequence[Linear]) -> bool:

@@ -15,6 +15,7 @@ from .innovations import Floor, Linear, Normal, innovate
 
 USUAL = 0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
 TEMPER = 3.0  # when no reference voyage tells how far innovations are from white
+SETTLED = 1e6  # information on a number that is not asked, in prior widths
 OF_THE_DAY = ("Current", "VaryingCurrent", "ExternalForce", "TowForce")  # their numbers belong to a voyage, not to the ship
 WEATHER = ("Wind", "WaveDrift", "ShallowWater", "Bank")  # their causes belong to the voyage, their numbers to the ship
 SURROUNDINGS = (*WEATHER, *OF_THE_DAY)
@@ -79,12 +80,13 @@ def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknow
 
 
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
-    """What the ship file's calibration left open; where it says nothing, the priors."""
+    """What the ship file's calibration left open; where it says nothing, the priors, but for a number that an effect it knew has got since:
+    that is as it was then taken to be."""
     stored = model.ship.notes.get("structural", {})
     since = {type(e).__name__ for e in model.effects} - set(stored.get("beside_effects", ()))  # added when she was calibrated already
     place = {label: i for i, label in enumerate(stored.get("labels", [])) if label.split(".")[0] not in since}
-    size = len(unknowns)
-    information, mean = np.eye(size), np.zeros(size)
+    size, known = len(unknowns), {label.split(".")[0] for label in place}
+    information, mean = np.diag([SETTLED if u.owner in known else 1.0 for u in unknowns]), np.zeros(size)
     mine = [i for i, u in enumerate(unknowns) if u.label in place]
     if mine:
         theirs = [place[unknowns[i].label] for i in mine]

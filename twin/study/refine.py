@@ -72,7 +72,8 @@ def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float) ->
         first[[i for i in lost if at[i] == 0.0]] = 1.0
         best, at = max((best, at), _climb(case, chosen, mine, "usual", factor * first), key=lambda end: end[0].log_weight)
     if all(case.catalogue[name].kind == "Lag" for name in chosen):  # about none, a slow gear is seen by its delay alone
-        best, at = max((best, at), _climb(case, chosen, mine, "usual", np.full_like(z, FARTHER[-1])), key=lambda end: end[0].log_weight)
+        for i in mine:
+            best, at = max((best, at), _climb(case, chosen, mine, "usual", FARTHER[-1] * np.eye(z.size)[i]), key=lambda end: end[0].log_weight)
     return best, at
 
 

@@ -27,7 +27,7 @@ def readings(s: Situation, model: Model) -> np.ndarray:
     return np.column_stack([np.broadcast_to(getattr(s, name), np.shape(s.psi)) for name in READINGS])
 
 
-LATE = [READINGS.index(name) for name in ("x", "y", "u", "v")]
+SATELLITES = [READINGS.index(name) for name in ("x", "y", "u", "v")]
 
 
 def later(track: Track, shown: np.ndarray, late_s: float) -> np.ndarray:
@@ -39,7 +39,7 @@ def later(track: Track, shown: np.ndarray, late_s: float) -> np.ndarray:
     for a, b in pairwise([0, *(np.flatnonzero(np.diff(track.steps()) != 1) + 1), len(track)]):
         steps = np.arange(b - a)
         at = steps - late_s / track.h
-        for j in LATE if b - a > 1 else ():
+        for j in SATELLITES if b - a > 1 else ():
             x = shown[a:b, j]
             before, behind = np.minimum(at, 0.0), np.maximum(at - steps[-1], 0.0)
             out[a:b, j] = np.interp(at, steps, x) + before * (x[1] - x[0]) + behind * (x[-1] - x[-2])

@@ -144,13 +144,14 @@ class _Book:
 
     def judge(self, chosen: Sets) -> None:
         """Enter what the voyages say of this set, and of every set with one effect more, about its own size."""
-        mine = [h for h in self.weighed() if h.effects == chosen]
         start = max((self.found[s] for s in self.found if set(s) < set(chosen)), key=lambda f: len(f.hypothesis.effects))
-        z = posterior(self.worlds[mine[0].world], chosen).z
+        guess = next((h for h in self.weighed() if h.effects == chosen), None)  # of three, one in another's place was never weighed
+        world, hoped = (guess.world, guess.log_weight) if guess else (start.hypothesis.world, -np.inf)
+        z = posterior(self.worlds[world], chosen).z
         known = [i for i, u in enumerate(self.case.effects) if u.owner in start.hypothesis.effects]
         z[known] = start.posterior.z[known]  # where a part of the set was found to stand
         wider = self.case.candidates if len(self.case.news(chosen)) < MOST else self.case.no_news
-        self.found[chosen], judged = refine(self.case, chosen, mine[0].world, z, wider, mine[0].log_weight)
+        self.found[chosen], judged = refine(self.case, chosen, world, z, wider, hoped)
         if self._hollow(chosen):
             self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}
             judged = [h for h in judged if h.effects != chosen]

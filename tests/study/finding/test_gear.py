@@ -68,7 +68,7 @@ def test_a_gear_that_became_slower_than_the_ship_file_has_it_is_named_as_a_chang
 def test_an_effect_that_the_ship_has_is_asked_about_from_where_it_stands(ordered):
     model = Model.of(load(ordered[2]))
     (gear,) = model.lags
-    assert [u.centre for u in effect_unknowns(SteeringLag, model)] == [gear.delay, gear.travel_time]
+    assert [u.centre for u in effect_unknowns(SteeringLag, model)] == [gear.delay, gear.travel_time, gear.ease]
 
 
 def test_of_an_effect_added_after_calibration_the_ship_file_knows_nothing_but_its_prior(ordered):

@@ -54,6 +54,16 @@ def test_how_late_positions_are_is_told_however_rough_the_path_through_them(judg
     assert abs(float(b[0] / A[0, 0])) < 3.0 / float(A[0, 0]) ** 0.5
 
 
+def test_a_fault_of_an_instrument_that_one_voyage_lacks_says_nothing_there(judged):
+    t, model, _ = judged
+    log = catalogue()["SpeedLogScale"]
+    unknowns, faulty = effect_unknowns(log, model), model.but(log.absent(model.ship).but(scale=0.05))
+    with_log = linearise(t, faulty, unknowns, catalogue(), {unknowns[0].label: 0.05})
+    silent = linearise(replace(t, measured=np.where(np.arange(8) < 6, t.measured, np.nan)), model, unknowns, catalogue())
+    alone, both = (innovate(lines, [Floor()])[0].total()[0][0, 0] for lines in ([with_log], [silent, with_log]))
+    assert with_log.turns and not silent.turns and both == pytest.approx(alone, rel=1e-6) and alone > 0.0
+
+
 def test_a_late_receiver_shows_a_wave_as_it_was_then_on_each_stretch_by_itself(judged):
     t, *_ = judged
     late_s, omega = 2.0, 2.0 * np.pi / 6.0

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _told, about, refine
+from twin.study.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _place, _told, about
 
 
 @pytest.fixture(scope="module")
@@ -69,13 +69,14 @@ def test_a_ship_that_no_filter_can_follow_is_no_step_to_take(case):
 def test_a_slow_gear_is_found_however_far_out_it_stands(case):
     """From the linear guess, which sees the delay alone, and from far out: no place is more probable than where it is said to stand."""
     mine, guess = rows(case, "SteeringLag"), np.zeros(len(case.effects))
-    guess[mine] = [0.5, 0.2]
-    found, _ = refine(case, ("SteeringLag",), "usual", guess, ())
-    for start in ([2.0, 2.0], [0.5, 4.0]):
+    guess[mine] = [0.5, 0.2, 0.0]
+    best, at = _place(case, ("SteeringLag",), "usual", guess, -np.inf)
+    for start in ([2.0, 2.0, 0.0], [0.5, 4.0, 0.0], [0.0, 0.0, 4.0], [4.0, 4.0, 4.0]):
         z = np.zeros(len(case.effects))
         z[mine] = start
-        other = _climb(case, ("SteeringLag",), mine, "usual", z)[1]
-        assert abs(other[mine] - found.posterior.z[mine]).max() < 0.5
+        other, _ = _climb(case, ("SteeringLag",), mine, "usual", z)
+        assert other.log_weight < best.log_weight + 0.5
+    assert at[mine][1] == pytest.approx(1.57, abs=0.3)  # 65 deg in as long as it sails so many lengths
 
 
 @pytest.mark.parametrize("chosen, most", [(("WaveDrift",), IRREGULAR[0]), (("RudderWear", "WaveDrift"), IRREGULAR[0]), (("RudderWear",), DOUBTS[0])])

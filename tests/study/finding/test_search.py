@@ -47,6 +47,14 @@ def test_every_promising_effect_is_judged_when_what_was_found_leaves_too_much(ta
     assert held.next() == ("Bank",)
 
 
+def test_a_set_that_was_never_weighed_can_be_judged(case):
+    held = book(case)
+    three = tuple(n for n in case.candidates if n in ("Current", "HullFouling", "SteeringLag"))
+    assert not any(h.effects == three for h in held.weighed())
+    held.judge(three)
+    assert three in held.found
+
+
 def test_an_effect_and_a_part_of_it_are_no_pair(case):
     assert case.log_prior(("Current", "VaryingCurrent"), "usual") == -np.inf
     assert np.isfinite(case.log_prior(("VaryingCurrent",), "usual")) and np.isfinite(case.log_prior(("Current", "HullFouling"), "usual"))
