@@ -3,7 +3,12 @@
 import numpy as np
 import pytest
 
+from twin.errors import DataError
+from twin.study.read import read_voyage
+
 STEP_S = 0.1
+REQUIRED = ("time_s", "north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg", "propeller_rate_rpm",
+            "surge_velocity_mps", "sway_velocity_mps", "yaw_rate_degps")  # fmt: skip
 
 
 def sail(
@@ -76,3 +81,31 @@ def write_csv(tmp_path):
         return path
 
     return write
+
+
+@pytest.fixture
+def required():
+    """The columns that no voyage can do without."""
+    return REQUIRED
+
+
+@pytest.fixture
+def columns(sail):
+    full = sail(60.0)
+    return {name: full[name] for name in REQUIRED}
+
+
+@pytest.fixture(name="refused")
+def refused_fixture():
+    return refused
+
+
+def refused(path, *words, by=None):
+    """The message of the DataError, which is one line that names the file and holds the words."""
+    with pytest.raises(DataError) as caught:
+        read_voyage(path, by)
+    message = str(caught.value)
+    assert str(path) in message and "\n" not in message
+    for word in words:
+        assert word in message, message
+    return message

@@ -5,7 +5,6 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from twin.errors import DataError, SettingsError
 from twin.physics.effects import find
 from twin.physics.ship import load
 from twin.study.headers import GROUND
@@ -14,31 +13,11 @@ from twin.study.read import read_voyage
 from twin.study.track import READINGS, track
 from twin.study.write import write_voyage
 
-REQUIRED = ("time_s", "north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg", "propeller_rate_rpm",
-            "surge_velocity_mps", "sway_velocity_mps", "yaw_rate_degps")  # fmt: skip
-
-
-@pytest.fixture
-def columns(sail):
-    full = sail(60.0)
-    return {name: full[name] for name in REQUIRED}
-
 
 def text(tmp_path, content, name="v.csv"):
     path = tmp_path / name
     path.write_bytes(content if isinstance(content, bytes) else content.encode())
     return path
-
-
-def refused(path, *words, by=None):
-    """The message of the DataError, which is one line that names the file and holds the words."""
-    with pytest.raises(DataError) as caught:
-        read_voyage(path, by)
-    message = str(caught.value)
-    assert str(path) in message and "\n" not in message
-    for word in words:
-        assert word in message, message
-    return message
 
 
 @pytest.mark.parametrize(
@@ -89,13 +68,13 @@ def test_latitude_and_longitude_become_north_and_east_across_the_antimeridian(co
     assert v.meta["datum"]["longitude_deg"] == pytest.approx(179.9995)
 
 
-def test_velocities_alone_are_integrated_and_positions_alone_are_differentiated(sail, write_csv):
+def test_velocities_alone_are_integrated_and_positions_alone_are_differentiated(sail, write_csv, required):
     full = sail(120.0, noise=0.0)
-    velocities = {n: full[n] for n in REQUIRED if n not in ("north_m", "east_m")}
+    velocities = {n: full[n] for n in required if n not in ("north_m", "east_m")}
     v = read_voyage(write_csv(velocities))
     assert set(v.meta["derived"]) == {"north_m", "east_m"}
     np.testing.assert_allclose(v["east_m"], full["east_m"], atol=0.05)
-    positions = {n: full[n] for n in REQUIRED if "velocity" not in n and "rate_degps" not in n}
+    positions = {n: full[n] for n in required if "velocity" not in n and "rate_degps" not in n}
     v = read_voyage(write_csv(positions))
     assert set(v.meta["derived"]) == {"surge_velocity_mps", "sway_velocity_mps", "yaw_rate_degps"}
     np.testing.assert_allclose(v["surge_velocity_mps"], full["surge_velocity_mps"], atol=0.05)
@@ -124,11 +103,11 @@ def test_a_row_for_each_instrument_gives_the_same_motion(sail, write_csv, tmp_pa
         np.testing.assert_allclose(v[name][5:-5], full[name][5 : len(v) - 5], atol=size)
 
 
-def test_a_derived_rate_is_no_second_reading(sail, write_csv):
+def test_a_derived_rate_is_no_second_reading(sail, write_csv, required):
     """Test: positions and headings alone. Expected: velocities and yaw rate are shown, but the study does not take them for
     instruments of their own, and no effect of a gyro is judged."""
     full = sail(400.0)
-    v = read_voyage(write_csv({n: full[n] for n in REQUIRED if "velocity" not in n and "rate_degps" not in n}))
+    v = read_voyage(write_csv({n: full[n] for n in required if "velocity" not in n and "rate_degps" not in n}))
     t = track(v, load("container"))
     there = np.isfinite(t.measured).any(0)
     assert [n for n, seen in zip(READINGS, there, strict=True) if seen] == ["x", "y", "psi"]
@@ -174,9 +153,9 @@ def test_an_imported_voyage_reads_back_to_the_last_bit(columns, write_csv, tmp_p
     assert (tmp_path / "v.mcap").read_bytes() == (tmp_path / "w.mcap").read_bytes()
 
 
-def test_a_file_far_larger_than_a_piece_is_read_in_pieces(sail, write_csv):
+def test_a_file_far_larger_than_a_piece_is_read_in_pieces(sail, write_csv, required):
     full = sail(60.0)
-    columns = {name: np.tile(full[name], 150) for name in REQUIRED}
+    columns = {name: np.tile(full[name], 150) for name in required}
     columns["time_s"] = np.arange(columns["north_m"].size) * 0.1
     path = write_csv(columns)
     tracemalloc.start()
@@ -189,7 +168,7 @@ def test_a_file_far_larger_than_a_piece_is_read_in_pieces(sail, write_csv):
 # what cannot be used
 
 
-def test_no_file_a_folder_an_empty_file_and_a_binary_one(tmp_path):
+def test_no_file_a_folder_an_empty_file_and_a_binary_one(tmp_path, refused):
     refused(tmp_path / "none.csv", "there is no such file")
     refused(tmp_path, "is a folder")
     refused(text(tmp_path, ""), "is empty (0 bytes)")
@@ -197,16 +176,16 @@ def test_no_file_a_folder_an_empty_file_and_a_binary_one(tmp_path):
     refused(text(tmp_path, b"PK\x03\x04\x00\x00"), "is not text", "CSV or an MCAP")
 
 
-def test_a_header_without_rows(tmp_path):
-    refused(text(tmp_path, ",".join(REQUIRED) + "\n"), "has a header but no rows")
+def test_a_header_without_rows(tmp_path, refused, required):
+    refused(text(tmp_path, ",".join(required) + "\n"), "has a header but no rows")
 
 
-def test_a_misspelt_column_names_the_nearest(columns, write_csv):
+def test_a_misspelt_column_names_the_nearest(columns, write_csv, refused):
     columns["heading_true_nort_deg"] = columns.pop("heading_true_north_deg")
     refused(write_csv(columns), "'heading_true_nort_deg'", "Did you mean 'heading_true_north_deg'")
 
 
-def test_a_column_by_another_name_is_said_to_be_missing_with_a_guess(columns, write_csv):
+def test_a_column_by_another_name_is_said_to_be_missing_with_a_guess(columns, write_csv, refused):
     columns["rudder"] = columns.pop("rudder_angle_deg")
     refused(
         write_csv(columns),
@@ -230,17 +209,7 @@ def test_velocities_over_ground_by_course_or_by_north_and_east_need_no_map(colum
     np.testing.assert_allclose(beside["surge_velocity_mps"], u)
 
 
-def test_an_optional_column_may_be_absent_and_any_other_may_not(columns, write_csv):
-    path = write_csv(columns)
-    by = {"columns": {n: n for n in columns if n != "time_s"} | {"roll_deg": {"column": "Heel", "optional": True}}}
-    voyage = read_voyage(path, parse_map(by, "m.toml"))
-    assert not voyage.has("roll_deg") and "the optional column 'Heel' is not there" in voyage.meta["notes"]
-    refused(path, "no column 'Heel'", by=parse_map(by | {"columns": by["columns"] | {"roll_deg": "Heel"}}, "m.toml"))
-    with pytest.raises(SettingsError, match="cannot be optional"):
-        parse_map({"columns": {"surge_velocity_mps": {"column": "u", "optional": True}}}, "m.toml")
-
-
-def test_every_required_column_is_asked_for(columns, write_csv):
+def test_every_required_column_is_asked_for(columns, write_csv, refused):
     for name in ("heading_true_north_deg", "rudder_angle_deg", "propeller_rate_rpm"):
         refused(write_csv({n: x for n, x in columns.items() if n != name}), name)
     refused(write_csv({n: x for n, x in columns.items() if n != "time_s"}), "no column time_s or time_utc")
@@ -248,33 +217,33 @@ def test_every_required_column_is_asked_for(columns, write_csv):
     refused(write_csv(nowhere), "north_m and east_m", "latitude_deg", "surge_velocity_mps")
 
 
-def test_a_column_without_a_single_sample_is_not_there(columns, write_csv):
+def test_a_column_without_a_single_sample_is_not_there(columns, write_csv, refused):
     refused(
         write_csv(columns | {"rudder_angle_deg": columns["time_s"] * np.nan}),
         "rudder_angle_deg: no usable sample",
     )
 
 
-def test_a_duplicated_header(columns, write_csv, tmp_path):
+def test_a_duplicated_header(columns, write_csv, tmp_path, refused):
     body = write_csv(columns).read_text().replace("east_m", "north_m", 1)
     refused(text(tmp_path, body), "'north_m' 2 times (columns [2, 3])")
 
 
-def test_a_header_of_numbers(tmp_path):
+def test_a_header_of_numbers(tmp_path, refused):
     refused(text(tmp_path, "0,1,2\n1,2,3\n"), "line 1 has numbers where column names should be", "header = false")
 
 
-def test_a_word_in_a_column_of_numbers(columns, write_csv, tmp_path):
+def test_a_word_in_a_column_of_numbers(columns, write_csv, tmp_path, refused):
     body = write_csv(columns).read_text().splitlines()
     body[41] = body[41].replace(body[41].split(",")[4], "hard over", 1)
     refused(text(tmp_path, "\n".join(body)), "line 42", "'rudder_angle_deg'", "'hard over' is not a number")
 
 
-def test_decimal_commas_between_commas(columns, write_csv):
+def test_decimal_commas_between_commas(columns, write_csv, refused):
     refused(write_csv(columns, decimal=","), "Decimal commas?")
 
 
-def test_a_short_line_in_the_middle_and_one_cut_off_at_the_end(columns, write_csv, tmp_path):
+def test_a_short_line_in_the_middle_and_one_cut_off_at_the_end(columns, write_csv, tmp_path, refused):
     body = write_csv(columns).read_text()
     v = read_voyage(text(tmp_path, body[:-40]))
     assert len(v) == 599 and "line 601 is cut off" in v.meta["notes"][0]
@@ -283,7 +252,7 @@ def test_a_short_line_in_the_middle_and_one_cut_off_at_the_end(columns, write_cs
     refused(text(tmp_path, "".join(lines)), "line 100 has 2 cells")
 
 
-def test_time_that_goes_back_and_time_that_passes_midnight(columns, write_csv):
+def test_time_that_goes_back_and_time_that_passes_midnight(columns, write_csv, refused):
     back = columns["time_s"].copy()
     back[300:] -= 10.0
     refused(write_csv(columns | {"time_s": back}), "line 302: time goes back from 29.9 s to 20 s", "Split or sort")
@@ -291,12 +260,12 @@ def test_time_that_goes_back_and_time_that_passes_midnight(columns, write_csv):
     refused(write_csv(columns | {"time_s": midnight}, digits=14), "passes midnight")
 
 
-def test_a_time_that_is_no_time(columns, write_csv, tmp_path):
+def test_a_time_that_is_no_time(columns, write_csv, tmp_path, refused):
     body = "time_utc" + write_csv(columns).read_text()[len("time_s") :]
     refused(text(tmp_path, body.replace("\n0.3,", "\n12.3.2024,", 1)), "line", "ISO 8601", "format")
 
 
-def test_an_mcap_that_is_none_one_cut_short_and_one_without_measurements(columns, write_csv, tmp_path):
+def test_an_mcap_that_is_none_one_cut_short_and_one_without_measurements(columns, write_csv, tmp_path, refused):
     refused(text(tmp_path, "time_s,north_m\n", "v.mcap"))
     whole = tmp_path / "whole.mcap"
     write_voyage(read_voyage(write_csv(columns)), whole)
@@ -304,93 +273,3 @@ def test_an_mcap_that_is_none_one_cut_short_and_one_without_measurements(columns
     refused(text(tmp_path, data[:300], "cut.mcap"))
     cut = read_voyage(text(tmp_path, data[:-20], "tail.mcap"))
     assert len(cut) == 600 and any("cut off" in n for n in cut.meta["notes"])
-
-
-# maps
-
-
-MAP = {
-    "file": {"skip_lines": 1, "separator": ";", "decimal": ",", "missing": ["-99"]},
-    "time": {"column": ["day", "clock"], "format": "%d.%m.%Y %H:%M:%S.%f"},
-    "columns": {
-        "latitude_deg": {"column": "lat", "unit": "ddmm"},
-        "longitude_deg": "lon",
-        "heading_true_north_deg": {"column": "hdg", "unit": "rad", "offset": 5.0},
-        "surge_velocity_mps": {"column": "sog", "unit": "kn", "frame": "course"},
-        "sway_velocity_mps": {"column": "cog", "frame": "course"},
-        "rudder_angle_deg": {"column": 8, "sign": -1},
-        "propeller_rate_rpm": {"column": "n", "unit": "1/s"},
-        "true_wind_speed_mps": {"column": "w", "unit": "km/h"},
-        "true_wind_direction_deg": {"column": "wd", "direction": "to"},
-    },
-    "constant": {"water_depth_m": 35},
-}
-
-
-def test_a_map_names_columns_units_signs_frames_and_the_clock(tmp_path):
-    rows = ["exported by somebody", "day;clock;lat;lon;hdg;sog;cog;RUD;n;w;wd"]
-    rows += [f"17.05.2024;08:30:{s:02d}.5;5530,00;10,0;0,5;10,0;33,65;-4;1,5;36;{'-99' if s == 3 else '10'}" for s in range(20)]
-    v = read_voyage(text(tmp_path, "\n".join(rows)), parse_map(MAP, "my.toml"))
-    assert v.meta["datum"] == {"latitude_deg": 55.5, "longitude_deg": 10.0} and v.meta["map"] == "my"
-    assert v["heading_true_north_deg"][0] == pytest.approx(np.degrees(0.5) + 5.0)
-    assert v["surge_velocity_mps"][0] == pytest.approx(5.1444, abs=1e-3) and abs(v["sway_velocity_mps"][0]) < 0.01
-    assert v["rudder_angle_deg"][0] == 4.0 and v["propeller_rate_rpm"][0] == 90.0
-    assert v["true_wind_speed_mps"][0] == pytest.approx(10.0) and v["true_wind_direction_deg"][0] == 190.0
-    assert np.isnan(v["true_wind_direction_deg"][3]) and v["water_depth_m"][5] == 35.0
-    assert v.meta["start_time_utc"] == "2024-05-17T08:30:00.500000Z"
-
-
-def test_froudes_law_makes_a_ship_of_a_model(columns, write_csv):
-    names = {n: {"column": n} for n in columns if n != "time_s"}
-    by = parse_map({"time": {"column": "time_s"}, "columns": names, "scale": {"froude": 4.0}}, "m.toml")
-    v = read_voyage(write_csv(columns), by)
-    np.testing.assert_allclose(v.time_s, 2.0 * columns["time_s"])
-    np.testing.assert_allclose(v["north_m"], 4.0 * columns["north_m"], rtol=1e-8)
-    np.testing.assert_allclose(v["surge_velocity_mps"], 2.0 * columns["surge_velocity_mps"], rtol=1e-8)
-    np.testing.assert_allclose(v["yaw_rate_degps"], 0.5 * columns["yaw_rate_degps"], rtol=1e-7, atol=1e-9)
-    np.testing.assert_allclose(v["propeller_rate_rpm"], 0.5 * columns["propeller_rate_rpm"], rtol=1e-8)
-    np.testing.assert_allclose(v["rudder_angle_deg"], columns["rudder_angle_deg"], rtol=1e-7)
-
-
-def test_rounded_stamps_are_rebuilt_but_not_where_rows_are_missing(columns, write_csv):
-    names = {n: {"column": n} for n in columns if n != "time_s"}
-    by = parse_map({"time": {"column": "time_s", "rebuild": True}, "columns": names}, "m.toml")
-    v = read_voyage(write_csv(columns | {"time_s": np.round(columns["time_s"])}), by)
-    np.testing.assert_allclose(v.time_s, columns["time_s"], atol=0.5)
-    assert np.ptp(np.diff(v.time_s)) < 1e-9 and "rebuilt" in v.meta["notes"][-1]
-    holed = columns["time_s"] + np.where(columns["time_s"] > 40.0, 60.0, 0.0)
-    jumpy = columns | {"time_s": np.round(holed)}
-    refused(write_csv(jumpy), "Rows are missing", by=by)
-
-
-@pytest.mark.parametrize(
-    ("table", "words"),
-    [
-        ({"colums": {}}, "Did you mean 'columns'"),
-        ({"columns": {"heading": 3}}, "Did you mean 'heading_true_north_deg'"),
-        ({"columns": {"rudder_angle_deg": {"column": 3, "unit": "degree"}}}, "Did you mean 'deg'"),
-        ({"columns": {"rudder_angle_deg": {"unit": "deg"}}}, "needs column"),
-        ({"columns": {"rudder_angle_deg": {"column": 3, "sign": 2}}}, "sign = 2"),
-        ({"columns": {"rudder_angle_deg": {"column": 3, "frame": "earth"}}}, "frame is for"),
-        ({"columns": {"surge_velocity_mps": {"column": 3, "frame": "earth"}}}, "same frame"),
-        ({"columns": {"rudder_angle_deg": {"column": 1.5}}}, "column = 1.5 must be text or a whole number"),
-        ({"file": {"skip_lines": "two"}}, "skip_lines"),
-        ({"file": {"separator": "/"}}, "separator"),
-        ({"time": {"unit": "weeks"}}, "unit = 'weeks'"),
-        ({"time": {"rebuild": -1.0}}, "rebuild"),
-        ({"scale": {"froude": -3}}, "must be positive"),
-        ({"constant": {"water_depth_m": "deep"}}, "must be a number"),
-    ],
-    ids=str,
-)
-def test_a_wrong_map_is_a_setting_that_says_where(table, words):
-    with pytest.raises(SettingsError, match=r"my\.toml") as caught:
-        parse_map(table, "my.toml")
-    assert words in str(caught.value), str(caught.value)
-
-
-def test_a_map_that_asks_for_a_column_that_is_not_there(columns, write_csv):
-    by = parse_map({"columns": {"rudder_angle_deg": 30}}, "m.toml")
-    refused(write_csv(columns), "has 9 columns, so there is no column 30", by=by)
-    by = parse_map({"columns": {"rudder_angle_deg": "RUD"}}, "m.toml")
-    refused(write_csv(columns), "has no column 'RUD'", by=by)
