@@ -15,17 +15,18 @@ from .innovations import Floor, Linear, Normal, innovate
 
 USUAL = 0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
 TEMPER = 3.0  # when no reference voyage tells how far innovations are from white
-SETTLED = 1e6  # information on a number that is not asked, in prior widths
 OF_THE_DAY = ("Current", "VaryingCurrent", "ExternalForce", "TowForce")  # their numbers belong to a voyage, not to the ship
 WEATHER = ("Wind", "WaveDrift", "ShallowWater", "Bank")  # their causes belong to the voyage, their numbers to the ship
 SURROUNDINGS = (*WEATHER, *OF_THE_DAY)
+AGAIN = ("SteeringLag.ease",)  # to first order what another number of the same effect does: about none, the two would fit a ship's form between them
 DAILY = ("Current.north", "Current.east", "ExternalForce.north", "ExternalForce.east")  # a little on every day, another on the next
 
 
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of each, beside what her file
     says of it."""
-    return [u for name, e in catalogue.items() if name not in SURROUNDINGS for u in effect_unknowns(e, model)]
+    every = (u for name, e in catalogue.items() if name not in SURROUNDINGS for u in effect_unknowns(e, model))
+    return [u for u in every if u.label not in AGAIN]
 
 
 def daily(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
@@ -80,13 +81,12 @@ def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknow
 
 
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
-    """What the ship file's calibration left open; where it says nothing, the priors, but for a number that an effect it knew has got since:
-    that is as it was then taken to be."""
+    """What the ship file's calibration left open; where it says nothing, the priors."""
     stored = model.ship.notes.get("structural", {})
     since = {type(e).__name__ for e in model.effects} - set(stored.get("beside_effects", ()))  # added when she was calibrated already
     place = {label: i for i, label in enumerate(stored.get("labels", [])) if label.split(".")[0] not in since}
-    size, known = len(unknowns), {label.split(".")[0] for label in place}
-    information, mean = np.diag([SETTLED if u.owner in known else 1.0 for u in unknowns]), np.zeros(size)
+    size = len(unknowns)
+    information, mean = np.eye(size), np.zeros(size)
     mine = [i for i, u in enumerate(unknowns) if u.label in place]
     if mine:
         theirs = [place[unknowns[i].label] for i in mine]
