@@ -30,7 +30,8 @@ def test_the_reference_voyage_of_a_new_ship_is_for_her_calibration(sail, write_c
     ship, out = tmp_path / "alma.toml", tmp_path / "v.mcap"
     main(["init", "MV Alma", "--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5", "-o", str(ship)])
     assert run(write_csv(sail()), "--ship", ship, "--accept", "propeller_rate", "--accept", "ship_size", "-o", out) == 0
-    assert f"then twin calibrate {out} ... --ship {ship}" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert f"twin calibrate REF-1.mcap REF-2.mcap ... --ship {ship}" in said and f"twin diagnose {out}" in said
 
 
 def test_a_good_file_goes_in_and_the_next_command_is_named(sail, write_csv, tmp_path, capsys):

@@ -132,7 +132,8 @@ def page(effects: list[type[Effect]]) -> str:
         "To add one of your own: [tutorial](tutorials/own-effect.md).", "",
         f"A size that stands with a letter is a multiple of the ship's own. {SCALES_SAID} Plausible: what one would "
         "expect where the effect is clearly there (what `twin effects NAME` and a ship file that gives no number take). Prior sd: how far a "
-        "parameter may lie from none before it counts as unlikely; the prior is normal about none, and one-sided where the box ends there.", "",
+        "parameter may lie from none before it counts as unlikely; the prior is normal about none, and one-sided where the box ends there. None "
+        "is the ship as `twin calibrate` found her: what acted on the reference voyages alike is hers, and not missing.", "",
     ]  # fmt: skip
     for kind, means in KINDS.items():
         lines += [f"## {kind}", "", f"{means.capitalize()}.", ""]

@@ -47,12 +47,13 @@ class Fit:
 
 def fit(
     tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue, floor: Floor, *,
-    temper: float = 1.0, rounds: int = 4, reach: float = np.inf,
+    temper: float = 1.0, rounds: int = 4, reach: float = np.inf, smooth: bool = False,
 ) -> Fit:  # fmt: skip
     """The most probable values of the unknowns, given the tracks and their priors, after so many steps that made them more probable,
     none of which moves a number by more than `reach` prior widths.
     A step too far is taken back and made shorter (Levenberg & Marquardt), so that a fit of many numbers does not end in a corner of their boxes;
-    the last one is not judged."""
+    the last one is not judged. `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the filter
+    follows is not found yet, and errs by more than they do."""
     centre, sd = np.array([u.centre for u in unknowns]), np.array([u.sd for u in unknowns])
     value = np.array([_present(model, u) for u in unknowns])
     least, promised, damping, steps = np.inf, 0.0, 0.0, 0
@@ -60,7 +61,7 @@ def fit(
         model = with_values(model, unknowns, value.tolist(), catalogue)
         here = {u.label: float(v) for u, v in zip(unknowns, value, strict=True)}
         about = [replace(u, centre=here[u.label]) if u.owner == "core" else u for u in unknowns]
-        trial = [linearise(t, model, about, catalogue, here) for t in tracks]
+        trial = [linearise(t, model, about, catalogue, here, smooth=smooth) for t in tracks]
         told = innovate(trial, [floor])[0]
         z = (value - centre) / sd
         cost = float((told.ee + told.logdet).sum()) / temper + float(z @ z)

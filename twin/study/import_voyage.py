@@ -91,7 +91,11 @@ def run(args: argparse.Namespace) -> int:
 def _next(voyage: str, ship: str | None) -> str:
     """A ship that was never calibrated is, on her reference voyages, before anything is compared with her."""
     if ship and "structural" not in load(ship).notes:
-        return f"import her other reference voyages, then twin calibrate {voyage} ... --ship {ship} -o {Path(ship).stem}-calibrated.toml"
+        better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
+        return (
+            "her model was not calibrated yet. Import the voyages on which nothing was wrong (three or more), then "
+            f"twin calibrate REF-1.mcap REF-2.mcap ... --ship {ship} -o {better}; after that, twin diagnose {voyage} --ship {better}"
+        )
     return f"twin compare {voyage} --ship {ship or 'SHIP.toml'}"
 
 

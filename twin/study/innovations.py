@@ -80,15 +80,16 @@ class Linear:
 
 
 def linearise(
-    track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None
-) -> Linear:
+    track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None,
+    *, smooth: bool = False,
+) -> Linear:  # fmt: skip
     """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model already holds), about the
-    motion as it was if the model's sensor faults are there."""
+    motion as it was if the model's sensor faults are there. `smooth`: these are judged along that motion alone."""
     track = undone(track, model)
     late_s, prompt = model.prompt()  # what is late shows another moment: no slope of this one says a wave two seconds ago
     reading = later(track, respond(track, prompt)[1], late_s)
     A, R = columns(track, model, unknowns, catalogue, at)
-    turned = turns(track, model, unknowns, catalogue, at)
+    turned = {} if smooth else turns(track, model, unknowns, catalogue, at)
     e = track.measured - reading
     for j, unknown in enumerate(unknowns):
         if unknown.owner == LATE:  # no model holds it: what is known of it is taken off the readings

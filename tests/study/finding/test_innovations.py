@@ -9,6 +9,7 @@ from twin.errors import SettingsError
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.study.columns import core_unknowns, effect_unknowns, with_values
+from twin.study.fit import fit
 from twin.study.innovations import Floor, innovate, linearise
 from twin.study.respond import later
 from twin.study.segments import read_parts, segments
@@ -62,6 +63,14 @@ def test_a_fault_of_an_instrument_that_one_voyage_lacks_says_nothing_there(judge
     silent = linearise(replace(t, measured=np.where(np.arange(8) < 6, t.measured, np.nan)), model, unknowns, catalogue())
     alone, both = (innovate(lines, [Floor()])[0].total()[0][0, 0] for lines in ([with_log], [silent, with_log]))
     assert with_log.turns and not silent.turns and both == pytest.approx(alone, rel=1e-6) and alone > 0.0
+
+
+def test_until_the_core_is_found_faults_of_instruments_are_judged_along_the_smooth_path(judged):
+    """Test: a fit with a turned compass in the model, as calibration asks and as adding an effect does. Expected: the filter's path has a say
+    in the second alone."""
+    t, model, unknowns = judged
+    fitted = [fit([t], model, unknowns[-2:], catalogue(), Floor(), rounds=2, smooth=smooth) for smooth in (True, False)]
+    assert [bool(f.lines[0].turns) for f in fitted] == [False, True]
 
 
 def test_a_late_receiver_shows_a_wave_as_it_was_then_on_each_stretch_by_itself(judged):

@@ -1,5 +1,6 @@
 """Wind on hull and superstructure, from the air past the ship in body axes.
 
+V_w, beta_w: speed and direction to which the wind blows, over ground
 u_rw = u - V_w cos(beta_w - psi),  v_rw = v - V_w sin(beta_w - psi),  V_rw = |(u_rw, v_rw)|
 X = -1/2 rho_a A_F  c_x  V_rw u_rw
 Y = -1/2 rho_a A_L  c_y  V_rw v_rw

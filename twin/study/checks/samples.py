@@ -19,7 +19,7 @@ def missing_samples(view: View) -> Check:
     absent = ", ".join(v.absent()) or "nothing"
     if found:
         return doubtful("missing_samples", f"{'; '.join(found)}. Nothing is made up there. Absent altogether: {absent}.")
-    return good("missing_samples", f"no holes. Absent altogether: {absent}.")
+    return good("missing_samples", f"no channel is without a sample for longer than it may be old. Absent altogether: {absent}.")
 
 
 def hole(v: Voyage, name: str) -> str:

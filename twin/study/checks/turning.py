@@ -25,18 +25,19 @@ def yaw_rate(view: View) -> Check:
     name = "yaw_rate"
     if view.derived("yaw_rate_degps"):
         return cannot_tell(name, "no yaw rate was recorded; it is derived from the heading.")
-    first, last = view.windows(np.clip(view.voyage.duration_s / 50.0, 5.0 * view.step_s, 30.0))
+    window_s = float(np.clip(view.voyage.duration_s / 50.0, 5.0 * view.step_s, 30.0))
+    first, last = view.windows(window_s)
     swung = view.psi[last] - view.psi[first]
     summed = view.summed(view.si("yaw_rate_degps"), first, last)
     (k, _), (error, _), left = fit([summed, np.ones(summed.size)], swung)
     turn = np.degrees(rms(swung))
     if not np.isfinite(k) or (turn < 0.5 and np.degrees(rms(summed)) < 5.0):
-        return cannot_tell(name, f"the heading changes by {turn:.2g} deg in a window; a turn would show it.")
+        return cannot_tell(name, f"the heading changes by {turn:.2g} deg in {window_s:.3g} s; a turn would show it.")
     ratio, said, fix = min(RATES, key=lambda c: abs(np.log(abs(k / c[0]))) if k * c[0] > 0 else np.inf)
     saw = f"the heading turns by {k:.3g} x the summed yaw rate"
     if left > 0.5 or error > 0.3 * abs(k):
         if rms(summed) < 3.0 * rms(swung) and turn < 2.0:
-            return cannot_tell(name, f"the heading changes by {turn:.2g} deg in a window, too little beside the noise.")
+            return cannot_tell(name, f"the heading changes by {turn:.2g} deg in {window_s:.3g} s, too little beside the noise.")
         return doubtful(name, f"heading and yaw rate do not tell of the same turning ({100 * left:.0f} % of it is left).")
     if 0.75 < k < 1.33:
         return good(name, f"{saw} (1 expected).")

@@ -23,10 +23,10 @@ def speed_log(view: View) -> Check:
         return cannot_tell(name, "no speed over ground was recorded.")
     ground = view.velocity.real
     k, current, sure = factor(ground, water, view.psi, view.step_s)
-    saw = f"the log shows {k:.3g} of the speed over ground beside a current of {current:.2f} m/s"
+    saw = f"the log shows {k:.3f} times the speed over ground, beside a current of {current:.2f} m/s"
     if not sure:
         k = float(np.nanmedian(water) / np.nanmedian(ground)) if np.nanmedian(ground) else 1.0
-        saw = f"the log shows {k:.3g} of the speed over ground"
+        saw = f"the log shows {k:.3f} times the speed over ground"
     unit = next((u for s, u in SCALES if abs(k / s - 1.0) < 0.12), None)
     apart = float(np.nanmedian(np.abs(water - ground)))
     if sure and k < -0.5:
