@@ -10,7 +10,7 @@ Source: MacKay (2003) Information theory, inference, and learning algorithms, ch
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import combinations
 
@@ -119,6 +119,32 @@ def posterior(reduced: Reduced, effects: Sequence[str]) -> Posterior:
     return Posterior(reduced.at + width * (inverse @ pull), inverse * np.outer(width, width), reduced.base + gain)
 
 
+def boxed(reduced: Reduced, effects: Sequence[str], found: Posterior) -> Posterior:
+    """The same with its most probable place inside the boxes of these effects."""
+    rows, z = reduced.rows(effects), found.z.copy()
+    z[rows], held = _stopped(z[rows], found.covariance[np.ix_(rows, rows)], *reduced.box[:, rows])
+    if held.size:
+        edge = rows[held]
+        z = found.z + found.covariance[:, edge] @ np.linalg.solve(found.covariance[np.ix_(edge, edge)], (z - found.z)[edge])
+        z[edge] = np.clip(z, *reduced.box)[edge]
+    return replace(found, z=z)
+
+
+def _stopped(mean: np.ndarray, covariance: np.ndarray, lo: np.ndarray, hi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(R,) the most probable place of a normal density inside a box, and which numbers stand at its edge: one that would leave it stays there,
+    and the others are what they then would be (two that do for each other may not stand far out, one inside its box and one outside)."""
+    z, held, sd = mean, np.zeros(0, dtype=int), np.sqrt(np.diag(covariance))
+    for _ in mean:
+        beyond = np.abs(z - np.clip(z, lo, hi)) / sd
+        if not beyond.any():
+            break
+        held = np.append(held, np.argmax(beyond))
+        edge = np.clip(z, lo, hi)[held]
+        z = mean + covariance[:, held] @ np.linalg.solve(covariance[np.ix_(held, held)], edge - mean[held])
+        z[held] = edge
+    return z, held
+
+
 def log_evidence(reduced: Reduced, effects: Sequence[str], found: Posterior) -> float:
     """Log evidence of a set of effects: what they explain, less what their freedom costs, inside their boxes."""
     rows = reduced.rows(effects)
@@ -126,10 +152,22 @@ def log_evidence(reduced: Reduced, effects: Sequence[str], found: Posterior) -> 
 
 
 def _inside(reduced: Reduced, rows: np.ndarray, value: np.ndarray, covariance: np.ndarray) -> float:
-    """Log of (posterior mass inside the box) / (prior mass inside it), one parameter at a time."""
+    """Log of (posterior mass inside the box) / (prior mass inside it). Of numbers that stand at an edge, what falls off behind it, each by itself
+    (exact for one); of the others what is inside one at a time, given those."""
     lo, hi = reduced.box[:, rows]
-    s = np.sqrt(np.diag(covariance))
-    return float((_log_mass((lo - value) / s, (hi - value) / s) - _log_mass(lo, hi)).sum())
+    z, held = _stopped(value, covariance, lo, hi)
+    mass = -float(_log_mass(lo, hi).sum())
+    if held.size:
+        inner = np.linalg.inv(covariance[np.ix_(held, held)])
+        off, cross = z[held] - value[held], covariance[:, held]
+        covariance = covariance - cross @ inner @ cross.T
+        root = np.sqrt(np.diag(inner))
+        fall = np.where(z[held] == lo[held], 1.0, -1.0) * (inner @ off) / root
+        mass += 0.5 * float(np.linalg.slogdet(inner)[1]) - 0.5 * float(off @ inner @ off)
+        mass += float((0.5 * fall**2 + log_ndtr(-fall) - np.log(root)).sum())
+    free = np.setdiff1d(np.arange(rows.size), held)
+    s = np.sqrt(np.diag(covariance)[free])
+    return mass + float(_log_mass((lo - z)[free] / s, (hi - z)[free] / s).sum())
 
 
 def _log_mass(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:

@@ -23,7 +23,7 @@ from . import waves
 from .columns import LATE, Unknown, columns, turns
 from .filters import FLOW, MOTION, SLOW, SPEEDS, STATES, Filters, Noise, Stretches
 from .normal import Normal, Sums
-from .respond import advance, faulty, jacobian, lagged, later, respond
+from .respond import advance, faulty, jacobian, lagged, later, respond, when_true
 from .segments import segments
 from .start import undone
 from .track import Track
@@ -90,7 +90,7 @@ def linearise(
     reading = later(track, respond(track, prompt)[1], late_s)
     A, R = columns(track, model, unknowns, catalogue, at)
     turned = {} if smooth else turns(track, model, unknowns, catalogue, at)
-    e = track.measured - reading
+    e = when_true(track, track.measured - reading, late_s)
     for j, unknown in enumerate(unknowns):
         if unknown.owner == LATE:  # no model holds it: what is known of it is taken off the readings
             e -= R[:, :, j] * (at or {}).get(unknown.label, 0.0)

@@ -24,6 +24,7 @@ HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are pre
 LUXURY = 10.0  # log odds against a second effect that the path does not ask for: of two forms that are only roughly right, one mends the other
 MOST = 40.0  # windows that count: what the core misses is the same in all of them, and more of the same tells no more
 FORM = 0.1  # share of what an effect does to the path that its form may miss
+ANY_DAY = 2.0  # standard deviations of what any day brings, that nobody need name
 REACH = 60.0  # log odds behind the best up to which a hypothesis is asked
 
 
@@ -86,11 +87,12 @@ def horizon_s(track: Track, model: Model) -> float:
 
 def held_out_error(case: Case, found: Found) -> float:
     """Mean position error [m] with the effects of a hypothesis, each half of the segments predicted with the parameters that the
-    other half asks for, about where the hypothesis stands. What changes with the clock is taken as the whole voyage has it: no other
-    hour tells of it."""
+    other half asks for, about where the hypothesis stands; what any day brings is there too, as far as it usually goes. What changes with the
+    clock is taken as the whole voyage has it: no other hour tells of it."""
     chosen = found.hypothesis.effects
     lines, at = standing(case, found)
-    mine = [i for i, u in enumerate(case.effects) if u.owner in chosen]
+    mine = [i for i, u in enumerate(case.effects) if u.owner in chosen or u.label in case.nuisance.daily]
+    most = np.array([np.inf if u.owner in chosen else ANY_DAY * case.nuisance.daily.get(u.label, 0.0) / u.sd for u in case.effects])
     lasts = np.array(["t" not in case.catalogue[u.owner].needs for u in case.effects])
     normal = innovate(lines, case.worlds([found.hypothesis.world], found.doubt), MOST_SEGMENTS)[0]
     half = np.arange(len(normal.where)) % 2
@@ -100,6 +102,7 @@ def held_out_error(case: Case, found: Found) -> float:
         if half.any():
             part = reduce(normal.only(half != side), case.nuisance, case.unknowns, case.effects, case.temper, at)
             z[lasts] = posterior(given(part, z, ~lasts), chosen).z
+        z = np.clip(z, -most, most)
         values = [case.effects[i].centre + case.effects[i].sd * z[i] for i in mine]
         model = with_values(case.model, [case.effects[i] for i in mine], values, case.catalogue)
         for i, track in enumerate(case.tracks):

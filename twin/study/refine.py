@@ -13,7 +13,7 @@ from twin.physics.model import Model
 
 from .case import WORLDS, Case
 from .columns import Unknown, changed, with_values
-from .evidence import Hypothesis, Posterior, Reduced, log_evidence, posterior, weigh_with
+from .evidence import Hypothesis, Posterior, Reduced, boxed, log_evidence, posterior, weigh_with
 from .innovations import Linear, linearise, standard
 from .respond import respond
 
@@ -54,14 +54,14 @@ def refine(
     reduced = _everywhere(case, chosen, lines, at, doubt)
     judged, own = _judged(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
-    return Found(best, own[best.world], model, doubt), [*judged, *_beside(case, chosen, reduced, wider)]
+    return Found(best, boxed(reduced[best.world], chosen, own[best.world]), model, doubt), [*judged, *_beside(case, chosen, reduced, wider)]
 
 
 def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float) -> tuple[Hypothesis, np.ndarray]:
     """The best of the climbs that `refine` speaks of: the hypothesis there, and the place."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     best, at = _climb(case, chosen, mine, world, z)
-    first = boxed(case, z)
+    first = clipped(case, z)
     first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
     for k, factor in enumerate(FARTHER):
         plain, fallen = WORLDS[best.world].plain, best.log_weight < hoped
@@ -84,11 +84,11 @@ def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray
     merit, best, aim, share = -np.inf, np.zeros_like(z), z, 1.0
     for _ in range(NEWTON):
         at = np.zeros_like(z)
-        at[mine] = boxed(case, best + share * (aim - best))[mine]
+        at[mine] = clipped(case, best + share * (aim - best))[mine]
         tried = about(case, at, mine, [case.effects[i] for i in mine])[1]
         reduced = _told(case, tried, world, at)
         if reduced and (now := reduced.base - 0.5 * float(at @ at)) > merit:
-            merit, best, lines, share, aim = now, at, tried, 1.0, boxed(case, posterior(reduced, chosen).z)
+            merit, best, lines, share, aim = now, at, tried, 1.0, boxed(reduced, chosen, posterior(reduced, chosen)).z
         else:
             share *= 0.5
         if share * np.max(np.abs(aim - best)[mine]) < STANDS:
@@ -152,7 +152,7 @@ def _beside(case: Case, chosen: Sets, reduced: dict[str, Reduced], wider: Sequen
     return out
 
 
-def boxed(case: Case, z: np.ndarray) -> np.ndarray:
+def clipped(case: Case, z: np.ndarray) -> np.ndarray:
     """Parameters kept inside their boxes, in prior widths."""
     lo = np.array([(u.lo - u.centre) / u.sd for u in case.effects])
     hi = np.array([(u.hi - u.centre) / u.sd for u in case.effects])
@@ -186,5 +186,5 @@ def standing(case: Case, found: Found, fresh: Sequence[Unknown] = ()) -> tuple[l
     place, in prior widths."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in found.hypothesis.effects], dtype=int)
     at = np.zeros(len(case.effects))
-    at[mine] = boxed(case, found.posterior.z)[mine]
+    at[mine] = found.posterior.z[mine]
     return about(case, at, mine, fresh or [case.effects[i] for i in mine])[1], at

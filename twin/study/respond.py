@@ -36,7 +36,7 @@ def later(track: Track, shown: np.ndarray, late_s: float) -> np.ndarray:
     if not late_s:
         return shown
     out = shown.copy()
-    for a, b in pairwise([0, *(np.flatnonzero(np.diff(track.steps()) != 1) + 1), len(track)]):
+    for a, b in stretches(track):
         steps = np.arange(b - a)
         at = steps - late_s / track.h
         for j in SATELLITES if b - a > 1 else ():
@@ -44,6 +44,20 @@ def later(track: Track, shown: np.ndarray, late_s: float) -> np.ndarray:
             before, behind = np.minimum(at, 0.0), np.maximum(at - steps[-1], 0.0)
             out[a:b, j] = np.interp(at, steps, x) + before * (x[1] - x[0]) + behind * (x[-1] - x[-2])
     return out
+
+
+def when_true(track: Track, e: np.ndarray, late_s: float) -> np.ndarray:
+    """What readings (N, 8) are off by, the satellites' at the step at which what they show was true, so that a filter mends the motion of that
+    step by them; on each stretch what was shown before its first step goes to its last ones, that nothing is lost or won by being late."""
+    out, steps = e.copy(), round(late_s / track.h)
+    for a, b in stretches(track) if steps else ():
+        out[a:b, SATELLITES] = np.roll(e[a:b, SATELLITES], -steps, axis=0)
+    return out
+
+
+def stretches(track: Track) -> list[tuple[int, int]]:
+    """From where to where its steps follow each other."""
+    return list(pairwise([0, *(np.flatnonzero(np.diff(track.steps()) != 1) + 1), len(track)]))
 
 
 GEARS = 16  # steering gears whose rudder a track remembers

@@ -11,11 +11,11 @@ import numpy as np
 
 from .altered import floats
 from .case import ODDS_WEAK, WORLDS, Case
-from .evidence import Hypothesis, Reduced, posterior, weigh_all
+from .evidence import Hypothesis, Reduced, boxed, posterior, weigh_all
 from .led import Led, led
 from .leftover import NEARLY, answer
 from .nuisance import DAILY
-from .refine import Found, Sets, boxed, refine
+from .refine import Found, Sets, refine
 
 MOST = 2  # effects at once that would be news
 ROUNDS = 20  # hypotheses judged about their own size, at most
@@ -147,7 +147,7 @@ class _Book:
         start = max((self.found[s] for s in self.found if set(s) < set(chosen)), key=lambda f: len(f.hypothesis.effects))
         guess = next((h for h in self.weighed() if h.effects == chosen), None)  # of three, one in another's place was never weighed
         world, hoped = (guess.world, guess.log_weight) if guess else (start.hypothesis.world, -np.inf)
-        z = posterior(self.worlds[world], chosen).z
+        z = boxed(self.worlds[world], chosen, posterior(self.worlds[world], chosen)).z
         known = [i for i, u in enumerate(self.case.effects) if u.owner in start.hypothesis.effects]
         z[known] = start.posterior.z[known]  # where a part of the set was found to stand
         wider = self.case.candidates if len(self.case.news(chosen)) < MOST else self.case.no_news
@@ -162,7 +162,7 @@ class _Book:
     def _hollow(self, chosen: Sets) -> bool:
         """Whether an effect of this set ended at nothing, or is a load that cannot be: it would help only with sizes that cannot be, and the
         set says no more than the rest."""
-        z = boxed(self.case, self.found[chosen].posterior.z)
+        z = self.found[chosen].posterior.z
         nothing = any(not np.any(z[[i for i, u in enumerate(self.case.effects) if u.owner == name]]) for name in chosen)
         return nothing or not floats(self.case, self.found[chosen])
 

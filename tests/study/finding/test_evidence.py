@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twin.study.columns import Unknown
-from twin.study.evidence import SPIKE, Reduced, given, log_evidence, posterior, weigh_all, weigh_with
+from twin.study.evidence import SPIKE, Reduced, boxed, given, log_evidence, posterior, weigh_all, weigh_with
 
 
 def unknowns():
@@ -78,3 +78,24 @@ def test_what_is_left_given_some_values_is_the_whole_posterior_conditioned_on_th
     along = whole.covariance[~known][:, known] / whole.covariance[known][:, known]
     np.testing.assert_allclose(left.z, whole.z[~known] + along[:, 0] * (z[known] - whole.z[known]), atol=1e-10)
     assert np.abs(left.z - whole.z[~known]).max() > 0.01
+
+
+@pytest.mark.parametrize("pull", [(2.0, -2.0), (1.0, -4.0), (3.0, 1.0), (-0.5, -0.5)])
+def test_of_two_numbers_that_do_for_each_other_none_stands_outside_its_box_for_the_other(pull):
+    """Test: two numbers from 0 to 5 that work alike, of which the readings would have one far out and the other as far below nothing.
+    Expected: the most probable place, and the evidence, that a fine grid over the box finds (within a tenth of what leaving the box cost)."""
+    own = (Unknown("A", "a", "-", 0.0, 1.0, 0.0, 5.0), Unknown("A", "b", "-", 0.0, 1.0, 0.0, 5.0))
+    A = 40.0 * np.array([[1.0, 0.95], [0.95, 1.0]])
+    reduced = Reduced(A, A @ np.array(pull), 0.0, own, np.zeros(2))
+    found = posterior(reduced, ("A",))
+    grid = np.linspace(0.0, 5.0, 2001)
+    a, b = np.meshgrid(grid, grid, indexing="ij")
+    log_density = a * reduced.b[0] + b * reduced.b[1] - 0.5 * (A[0, 0] * a**2 + 2.0 * A[0, 1] * a * b + A[1, 1] * b**2) - 0.5 * (a**2 + b**2)
+    top = np.unravel_index(np.argmax(log_density), log_density.shape)
+    np.testing.assert_allclose(boxed(reduced, ("A",), found).z, [a[top], b[top]], atol=5e-3)
+    weight = np.exp(log_density - log_density.max())
+    edges = np.where((grid == 0.0) | (grid == 5.0), 0.5, 1.0)
+    mass = float(edges @ weight @ edges) * (grid[1] - grid[0]) ** 2
+    exact = np.log(mass) + log_density.max() - np.log(2.0 * np.pi) + 2.0 * np.log(2.0)  # half-normal priors
+    cost = found.log_evidence + 2.0 * np.log(2.0) - exact
+    assert log_evidence(reduced, ("A",), found) == pytest.approx(exact, abs=max(0.1, 0.1 * cost))

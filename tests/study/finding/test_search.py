@@ -73,16 +73,15 @@ def test_what_an_effect_holds_is_in_the_catalogue():
 
 
 def test_an_effect_that_ended_at_nothing_says_no_more_than_the_rest(case, monkeypatch):
-    """A loss below nothing cannot be: whatever it would explain, the set leaves the list."""
+    """A loss below nothing cannot be: it stays at nothing, and whatever it would explain, the set leaves the list."""
     held = book(case)
 
-    def below_nothing(case, chosen, world, z, wider, hoped):
+    def at_nothing(case, chosen, world, z, wider, hoped):
         none = held.found[()]
-        z = np.array([-1.0 if u.owner == "RudderWear" else 0.0 for u in case.effects])
         h = replace(none.hypothesis, effects=chosen, log_evidence=1e6)
-        return Found(h, replace(none.posterior, z=z), case.model), [h]
+        return Found(h, replace(none.posterior, z=np.zeros(len(case.effects))), case.model), [h]
 
-    monkeypatch.setattr("twin.study.search.refine", below_nothing)
+    monkeypatch.setattr("twin.study.search.refine", at_nothing)
     held.judge(("RudderWear",))
     assert ("RudderWear",) in held.found
     assert ("RudderWear",) not in {h.effects for h in held.weighed()}
