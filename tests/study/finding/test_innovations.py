@@ -55,6 +55,23 @@ def test_how_late_positions_are_is_told_however_rough_the_path_through_them(judg
     assert abs(float(b[0] / A[0, 0])) < 3.0 / float(A[0, 0]) ** 0.5
 
 
+def test_to_call_a_receiver_late_that_is_not_explains_nothing(judged):
+    """Test: positions with 0.3 m of scatter that are in time, judged about a receiver that is late by whole steps. Expected: the best that any
+    lateness makes of them is no better than without (a path that runs ahead of its own scatter would gain a hundred nats)."""
+    t, model, _ = judged
+    shown = t.measured.copy()
+    shown[:, :2] = t.state[:, :2] + 0.3 * np.random.default_rng(7).standard_normal((len(t), 2))
+    state, sd = smooth_motion(shown, t.h, model.ship)
+    unknowns, best = [u for u in effect_unknowns(catalogue()["SensorDelay"], model) if u.name == "delay"], []
+    for steps in (0, 1, 2):
+        late = model.but(catalogue()["SensorDelay"].absent(model.ship).but(delay=steps * t.h)) if steps else model
+        line = linearise(replace(t, measured=shown, state=state, sd=sd), late, unknowns, catalogue(), {unknowns[0].label: steps * t.h})
+        told = innovate([line], [floor_of(model.ship)])[0]
+        A, b, ee = told.total()
+        best.append(-0.5 * (ee + float(told.logdet.sum())) + 0.5 * float(b[0] ** 2 / A[0, 0]))
+    assert max(best[1:]) < best[0] + 3.0
+
+
 def test_a_fault_of_an_instrument_that_one_voyage_lacks_says_nothing_there(judged):
     t, model, _ = judged
     log = catalogue()["SpeedLogScale"]

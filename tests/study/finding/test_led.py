@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.evidence import Hypothesis
+from twin.study.evidence import Hypothesis, posterior
 from twin.study.led import FORM, LUXURY, Led, _measured, held_out_error, horizon_s, led
 from twin.study.refine import Found, refine
 from twin.study.search import search
@@ -85,6 +85,22 @@ def test_a_stream_is_not_asked_for_in_hours_that_were_left_out(tanker, voyages):
         found, _ = refine(case, (name,), "usual", np.zeros(len(case.effects)), ())
         elsewhere = replace(found, posterior=replace(found.posterior, z=1.5 * found.posterior.z))
         assert (held_out_error(case, elsewhere) > 1.2 * held_out_error(case, found)) == same
+
+
+def test_a_stream_as_strong_as_any_day_brings_leads_her_without_being_named(tanker, voyages):
+    """Test: a hidden stream, on a ship whose reference voyages met streams of 0 (nobody told), half and twice its size. Expected: nothing missing
+    leads her astray by all of it, by what two such days do not bring, and not at all."""
+    case = assemble([voyages["Current"]], tanker)
+    named, _ = refine(case, ("Current",), "usual", np.zeros(len(case.effects)), ())
+    axes = [i for i, u in enumerate(case.effects) if u.owner == "Current"]
+    size = max(abs(named.posterior.z[i] * case.effects[i].sd) for i in axes)
+    off = []
+    for share in (0.0, 0.25, 1.0):
+        daily = {case.effects[i].label: share * size for i in axes} if share else {}
+        of_the_day = replace(case, nuisance=replace(case.nuisance, daily=daily))
+        told = posterior(of_the_day.reduced(case.lines, case.worlds(["usual"]))[0], ())
+        off.append(held_out_error(of_the_day, Found(says(), told, case.model)))
+    assert off[0] > off[1] > off[2] and off[2] == pytest.approx(held_out_error(case, named), rel=0.3)
 
 
 def test_the_best_come_first():
