@@ -14,6 +14,7 @@ from . import identifiability
 from .altered import sized
 from .assemble import assemble, unjudged_because
 from .case import Case
+from .doubts import coarse_axes
 from .effects import INPUTS
 from .import_voyage import write_json
 from .jsonable import plain
@@ -66,7 +67,9 @@ def diagnose(
     like = {name: alike(case, weighed, name) for name in case.news(w.best.effects)}
     sharp = shows(seen) and not astray(found[()] if case.news(w.best.effects) else best)
     blurred = no_pair or any(at_sea(t, case.model) for t in case.tracks)
-    verdict, missing = judge(weighed, w, like, leads, excited=case.excited, sharp=sharp, explained=explained, blurred=blurred)
+    coarse = coarse_axes(case.path.share)
+    able = case.excited and not coarse
+    verdict, missing = judge(weighed, w, like, leads, able=able, sharp=sharp, explained=explained, blurred=blurred)
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
@@ -82,7 +85,7 @@ def diagnose(
         "ship": ship.name,
         "verdict": verdict,
         "missing": missing,
-        "one_of": group(weighed, w) if verdict == "undecided" and case.excited else [],
+        "one_of": group(weighed, w) if verdict == "undecided" and able else [],
         "probabilities": {"nothing_missing": w.nothing, "unknown": w.unknown if explained else 1.0 - w.nothing},
         "candidates": [c for c in candidates if c],
         "undo_each_other": list(w.best.effects) if no_pair else [],
@@ -96,6 +99,7 @@ def diagnose(
         "voyages": [v.name for v in voyages],
         "waves": waves_on(case.tracks),
         "voyages_hold_a_manoeuvre": case.excited,
+        "calibrated_too_coarsely": coarse,
         "references": [v.name for v in references],
     }
     return Diagnosis(plain(result), case, found)

@@ -56,12 +56,18 @@ def _no_better(held_out: Sequence[Mapping[str, Any]]) -> list[str]:
     ]
 
 
+def coarse_axes(share: Sequence[float]) -> list[str]:
+    """In which the calibration leaves so much of the forces at work unexplained that the model is no witness, in words."""
+    return [f"{100 * s:.0f} % in {axis}" for s, axis in zip(share, AXES, strict=True) if s > LARGE]
+
+
 def _coarse(share: Sequence[float]) -> list[str]:
-    large = [f"{100 * s:.0f} % in {axis}" for s, axis in zip(share, AXES, strict=True) if s > LARGE]
+    large = coarse_axes(share)
     if not large:
         return []
     return [
-        f"{', '.join(large)} of the forces at work stays unexplained, and no smaller effect will be named: more, or calmer, reference voyages help"
+        f"{', '.join(large)} of the forces at work stays unexplained, so twin diagnose will name nothing: give more, or calmer, reference voyages, "
+        "and leave out one that stands apart (twin compare)"
     ]
 
 

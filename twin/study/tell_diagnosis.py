@@ -52,6 +52,12 @@ def sentence(result: dict[str, Any]) -> str:
     if result["one_of"]:
         *others, last = [_likely(by_name, n) for n in result["one_of"]]
         return f"Undecided: something is missing, {', '.join(others)} or {last}; these voyages cannot tell them apart."
+    if result["calibrated_too_coarsely"]:
+        left = ", ".join(result["calibrated_too_coarsely"])
+        return (
+            f"Undecided: on her reference voyages the model left {left} of the forces at work unexplained, and is no witness. Calibrate with more, "
+            "or calmer, voyages, and leave out one that stands apart."
+        )
     likely = [c for c in result["candidates"] if c["probability"] >= SURE]
     if not result["voyages_hold_a_manoeuvre"]:
         return "Undecided: no manoeuvre was sailed, and a ship that holds her course and speed tells one cause from no other."

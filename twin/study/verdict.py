@@ -76,12 +76,12 @@ def group(weighed: Sequence[Hypothesis], w: Weights) -> list[str]:
 
 
 def judge(
-    weighed: Sequence[Hypothesis], w: Weights, like: Mapping[str, Sequence[str]], leads: Sequence[str], *, excited: bool = True,
+    weighed: Sequence[Hypothesis], w: Weights, like: Mapping[str, Sequence[str]], leads: Sequence[str], *, able: bool = True,
     sharp: bool = True, explained: bool = True, blurred: bool = False,
 ) -> tuple[str, list[str]]:  # fmt: skip
     """The verdict, and the effects to add, first the one that explains most. One that others could stand in for (`like`) is named
-    when one of them is surely there, and only if it leads her better (`leads`). Voyages without a manoeuvre decide nothing (`excited`);
-    those that would not have shown most effects, or on which the model alone leads her astray, acquit nobody (`sharp`); what the best
+    when one of them is surely there, and only if it leads her better (`leads`). Voyages without a manoeuvre decide nothing,
+    nor does a model that is no witness (`able`); those that would not have shown most effects, or on which the model alone leads her astray, acquit nobody (`sharp`); what the best
     hypothesis leaves over, or has otherwise than its form, is unknown (`explained`), but decides nothing where there was a sea, or faults that undo
     each other (`blurred`)."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
@@ -89,7 +89,7 @@ def judge(
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
     named = [n for i, n in enumerate(named) if i == 0 or w.effects[n] >= SURE_TOO]
     strange = w.unknown >= LOST or not explained
-    if not excited or (blurred and strange):
+    if not able or (blurred and strange):
         return "undecided", []
     if strange:
         return "unknown", []

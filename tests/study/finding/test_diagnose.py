@@ -1,6 +1,7 @@
 """Plant and find: an effect hidden in a truth of another form is named; with nothing hidden the answer is nothing."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -66,6 +67,15 @@ def test_nothing_hidden_means_nothing_missing(tanker, voyages):
     result = diagnose([voyages["nothing"]], tanker).result
     assert result["verdict"] == "nothing_missing", "\n".join(told(result))
     assert result["missing"] == []
+
+
+def test_a_ship_whose_own_reference_voyages_are_half_unexplained_is_no_witness(tanker, voyages):
+    """Test: a stream that is named else, asked of a ship file that leaves half of what turns her unexplained. Expected: undecided, and why."""
+    notes = tanker.notes["structural"]
+    coarse = notes | {"floor": notes["floor"] | {"share": [0.02, 0.05, 0.52]}}
+    result = diagnose([voyages["Current"]], replace(tanker, notes={**tanker.notes, "structural": coarse})).result
+    assert result["verdict"] == "undecided" and result["missing"] == result["one_of"] == []
+    assert "left 52 % in yaw of the forces at work unexplained" in told(result)[0]
 
 
 def test_a_straight_voyage_is_not_enough_to_acquit_a_ship(tanker, voyages):

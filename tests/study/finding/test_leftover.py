@@ -12,6 +12,11 @@ from twin.study.leftover import ASTRAY, CLEAR, astray, explains, helpful, quiet,
 from twin.study.search import search
 from twin.study.tell_diagnosis import sentence
 
+UNDECIDED = {
+    "verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "calibrated_too_coarsely": [],
+    "undo_each_other": [], "unclear": [],
+}  # fmt: skip
+
 
 @pytest.fixture(scope="module")
 def judged(tanker, voyages):
@@ -109,7 +114,7 @@ def test_an_instruments_fault_is_named_only_if_one_of_its_numbers_is_clear(judge
         z[rows] = delay, turned
         led = {s: replace(found, off_m=0.9, floor_m=1.0, posterior=replace(found.posterior, z=z.copy(), covariance=covariance)) for s in ((), alone)}
         assert helpful(case, led, alone) == named and not too_small(case, led, alone)
-    undecided = {"verdict": "undecided", "one_of": [], "voyages_hold_a_manoeuvre": True, "undo_each_other": [], "unclear": ["SensorDelay"]}
+    undecided = UNDECIDED | {"unclear": ["SensorDelay"]}
     one = {"effect": "SensorDelay", "probability": 0.99, "parameters": [], "error_with": 1.0, "error_without": 1.0}
     assert "SensorDelay (99%), but not one of its numbers is clearly" in sentence(undecided | {"candidates": [one]})
 
@@ -139,8 +144,7 @@ def test_where_the_model_alone_ends_twice_as_far_off_as_is_usual_nobody_is_acqui
 def test_and_it_is_said_how_far_off_that_is():
     path = {"horizon_s": 120.0, "error_without": 31.6, "error_floor": 12.4}
     silent = {"nothing_missing": 0.9, "unknown": 0.0}
-    result = {"verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "undo_each_other": [], "unclear": []}
-    result |= {"probabilities": silent, "path": path}
+    result = UNDECIDED | {"probabilities": silent, "path": path}
     assert "after 120 s the model ends 31.6 m from where she went (12.4 m would be usual)" in sentence(result)
     assert "what, if anything" in sentence(result | {"path": path | {"error_without": 13.0}})
 
@@ -156,7 +160,7 @@ def test_a_late_position_and_an_antenna_as_far_ahead_as_she_sails_meanwhile_are_
     both = replace(found, model=model, hypothesis=replace(found.hypothesis, effects=pair))
     assert undone(case, both) is no_pair
     assert not undone(case, replace(both, hypothesis=replace(found.hypothesis, effects=("RudderWear", "SensorDelay"))))
-    said = sentence({"verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "undo_each_other": list(pair)})
+    said = sentence(UNDECIDED | {"undo_each_other": list(pair)})
     assert "AntennaOffset and SensorDelay would fit, but each takes back" in said
 
 

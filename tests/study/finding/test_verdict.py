@@ -57,7 +57,7 @@ def test_what_is_left_over_or_otherwise_than_its_name_is_unknown_but_decides_not
 
 
 def test_voyages_without_a_manoeuvre_decide_nothing():
-    without = ("excited",)
+    without = ("able",)
     assert verdict(["HullFouling"], HullFouling=1.0, how=without) == ("undecided", [])
     assert verdict(nothing=0.99, how=without) == ("undecided", [])
     assert verdict(unknown=0.99, how=without) == ("undecided", [])
