@@ -10,7 +10,7 @@ from scipy.signal import savgol_filter
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
-from .respond import later
+from .respond import later, stretches
 from .track import STATE, Track, smooth_motion
 
 ABOUT = 2.5  # periods of the waves
@@ -75,9 +75,7 @@ def undone(track: Track, model: Model) -> Track:
     measurements stay what was shown."""
     if not _moved(track, model, track.weather.get("wind_to")):
         return track
-    breaks = np.flatnonzero(np.diff(track.steps()) != 1) + 1
-    stretches = [track.part(a, b) for a, b in zip([0, *breaks], [*breaks, len(track)], strict=True)]
-    state, wind_to = zip(*(true_motion(s, model) for s in stretches), strict=True)
+    state, wind_to = zip(*(true_motion(track.part(a, b), model) for a, b in stretches(track)), strict=True)
     wind = {} if wind_to[0] is None else {"wind_to": np.concatenate(wind_to)}
     return replace(track, state=np.concatenate(state), weather=dict(track.weather) | wind)
 
