@@ -191,4 +191,4 @@ def _about(model: Model, taught: Taught) -> dict[str, object]:
 def _fitted(model: Model, courses: Sequence[Course], effects: Sequence[str]) -> Model:
     """The study's own fit, of the core or of named effects, on tracks in which no current is left."""
     unknowns = [u for name in effects for u in effect_unknowns(find(name), model)] if effects else core_unknowns(model)
-    return fit([c.floating for c in courses], model, unknowns, catalogue(), Floor(), temper=TEMPER, rounds=4).model
+    return fit([c.floating for c in courses], model, unknowns, catalogue(), Floor(), temper=TEMPER).model

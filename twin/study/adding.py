@@ -24,7 +24,6 @@ from .seaway import levelled
 from .structure import floor_of
 from .track import Track
 
-STEPS, REACH = 8, 2.0  # of the fit, and prior widths that one may move: a current of fourteen numbers is not found in one leap
 UNTOUCHED = 0.1  # a number whose doubt shrank by less was not excited
 FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {
     "wind_to": "true_wind_direction_deg",
@@ -82,7 +81,7 @@ def fitted(ship: Ship, effects: Sequence[type[Effect]], tracks: Sequence[Track])
     floor = floor_of(ship) or Floor()
     usable = in_one(base, tracks)
     tracks = [levelled(t, usable) for t in tracks]
-    found = fit(tracks, usable, unknowns, known, floor, temper=_temper(ship), rounds=STEPS, reach=REACH)
+    found = fit(tracks, usable, unknowns, known, floor, temper=_temper(ship))
     sd = _doubt(found, tracks, floor, known, _temper(ship))
     names = {e.__name__ for e in effects}
     made = [_written(e, ship) for e in found.model.effects if type(e).__name__ in names]

@@ -19,7 +19,7 @@ from .columns import core_unknowns
 from .derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
 from .doubts import doubts
 from .fit import Fit, fit
-from .gear import gear_unknowns, geared
+from .gear import with_or_without_gear
 from .held_out import LAST, HeldOut, by_regime, errors, size, split
 from .import_voyage import write_json
 from .innovations import Floor
@@ -99,22 +99,19 @@ def calibrate(
 def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
     model, known = Model.of(ship), catalogue()
     unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
-    progress("fitting the core")
+    progress("fitting the core, and asking whether the rudder that was recorded is its order")
     tracks = [levelled(t, model) for t in sailed]
-    rough = fit(tracks, model, unknowns, known, Floor(), temper=TEMPER, rounds=4, smooth=True)
-    progress("asking whether the rudder that was recorded is its order")
-    if (with_gear := geared(rough.model, tracks, unknowns, known, TEMPER)).lags:
-        unknowns = (*unknowns, *gear_unknowns(model))
-        rough = fit(tracks, with_gear, unknowns, known, Floor(), temper=TEMPER, rounds=4, smooth=True)
+    rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
     progress("asking again whether waves swing her")
     again = [swung(t, rough.model) for t in sailed]
     if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
         tracks = [levelled(t, rough.model) for t in again]
-        rough = fit(tracks, rough.model, unknowns, known, Floor(), temper=TEMPER, rounds=4, smooth=True)
+        rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
+    unknowns = rough.unknowns
     progress("finding the structural floor")
     floor, temper = structural_floor(rough.lines, unknowns), temper_of(rough.normal, unknowns)
     progress("fitting again above the floor")
-    found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, rounds=4, smooth=True)
+    found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, smooth=True)
     kept = tuple(e for e in ship.effects if e not in model.lags)
     numbers = {name: _numbers(found, name, why) for name, why in PARTS.items()}
     return Core(tracks, found.model, told_by(found), (*kept, *found.model.lags), numbers, clearly(found), floor, temper)

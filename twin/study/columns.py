@@ -121,6 +121,19 @@ def turns(
     return out
 
 
+def beside(
+    track: Track, model: Model, unknown: Unknown, catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None
+) -> tuple[Model, float] | None:
+    """The model with a little more of a number, and how much more; None if that moves nothing on this track."""
+    if unknown.owner in (LATE, FORM):
+        return None
+    if unknown.owner != "core" and (catalogue[unknown.owner].kind == "SensorFault" or track.missing().intersection(catalogue[unknown.owner].needs)):
+        return None
+    here = (at or {}).get(unknown.label, unknown.centre)
+    step = 0.1 * unknown.sd if here + 0.1 * unknown.sd <= unknown.hi else -0.1 * unknown.sd
+    return changed(model, unknown, here + step, catalogue), step
+
+
 def _step(unknown: Unknown, here: float | None, fine: bool) -> float:
     """A plausible step that stays in the box: a whole prior width from null (a gear that is a little slow is not slow at all, to first
     order), a tenth of one about a found value, and where the instruments are so `fine` that what is not linear shows: their own faults."""

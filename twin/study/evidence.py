@@ -17,6 +17,7 @@ from itertools import combinations
 import numpy as np
 from scipy.special import log_ndtr
 
+from .box import stopped
 from .columns import Unknown
 from .innovations import Normal
 
@@ -122,27 +123,12 @@ def posterior(reduced: Reduced, effects: Sequence[str]) -> Posterior:
 def boxed(reduced: Reduced, effects: Sequence[str], found: Posterior) -> Posterior:
     """The same with its most probable place inside the boxes of these effects."""
     rows, z = reduced.rows(effects), found.z.copy()
-    z[rows], held = _stopped(z[rows], found.covariance[np.ix_(rows, rows)], *reduced.box[:, rows])
+    z[rows], held = stopped(z[rows], found.covariance[np.ix_(rows, rows)], *reduced.box[:, rows])
     if held.size:
         edge = rows[held]
         z = found.z + found.covariance[:, edge] @ np.linalg.solve(found.covariance[np.ix_(edge, edge)], (z - found.z)[edge])
         z[edge] = np.clip(z, *reduced.box)[edge]
     return replace(found, z=z)
-
-
-def _stopped(mean: np.ndarray, covariance: np.ndarray, lo: np.ndarray, hi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(R,) the most probable place of a normal density inside a box, and which numbers stand at its edge: one that would leave it stays there,
-    and the others are what they then would be (two that do for each other may not stand far out, one inside its box and one outside)."""
-    z, held, sd = mean, np.zeros(0, dtype=int), np.sqrt(np.diag(covariance))
-    for _ in mean:
-        beyond = np.abs(z - np.clip(z, lo, hi)) / sd
-        if not beyond.any():
-            break
-        held = np.append(held, np.argmax(beyond))
-        edge = np.clip(z, lo, hi)[held]
-        z = mean + covariance[:, held] @ np.linalg.solve(covariance[np.ix_(held, held)], edge - mean[held])
-        z[held] = edge
-    return z, held
 
 
 def log_evidence(reduced: Reduced, effects: Sequence[str], found: Posterior) -> float:
@@ -155,7 +141,7 @@ def _inside(reduced: Reduced, rows: np.ndarray, value: np.ndarray, covariance: n
     """Log of (posterior mass inside the box) / (prior mass inside it). Of numbers that stand at an edge, what falls off behind it, each by itself
     (exact for one); of the others what is inside one at a time, given those."""
     lo, hi = reduced.box[:, rows]
-    z, held = _stopped(value, covariance, lo, hi)
+    z, held = stopped(value, covariance, lo, hi)
     mass = -float(_log_mass(lo, hi).sum())
     if held.size:
         inner = np.linalg.inv(covariance[np.ix_(held, held)])

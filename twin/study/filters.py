@@ -11,6 +11,7 @@ from itertools import product
 import numpy as np
 
 MOTION, PLACE, SPEEDS, SLOW, FLOW = slice(0, 6), slice(0, 2), slice(3, 6), slice(6, 9), slice(9, 11)  # places in the state
+BENDS = [2, 3, 4, 5, 9, 10]  # what accelerations depend on: heading, velocities, the water's own
 WAVE = slice(11, 14)  # of each axis; behind it what carries the waves on
 STATES, AT_SEA = 11, 23
 DIAGONAL = np.arange(AT_SEA)
@@ -30,6 +31,7 @@ class Stretches:
     A: np.ndarray  # (T, S, 3, P)
     R: np.ndarray  # (T, S, 8, P)
     turns: dict[int, np.ndarray]  # column -> (T, S, 8, 8)
+    bends: np.ndarray | None = None  # (T, S, 3, 6, P)
     fresh: np.ndarray | None = None  # (T, S, 3, 4, 4) of each axis' waves, the share of variance that is new after a step
 
 
@@ -84,7 +86,10 @@ class Filters:
         """From step k to the next: by the linear ship, what the unknowns push, and noise."""
         told, noise, row = self.told, self.noise, self.noise.row
         F, h = told.F[k][row], noise.h[:, None, None].astype(LIGHT)
-        push = h * told.A[k][row]
+        push = told.A[k][row]
+        if told.bends is not None:
+            push = push + np.einsum("kaip,ki->kap", told.bends[k][row], self.X[:, BENDS, 0])
+        push = h * push
         self.X = self.F[k][row] @ self.X
         self.X[:, MOTION, 0] += told.defect[k][row]
         self.X[:, SPEEDS, 1:] += push

@@ -6,22 +6,25 @@ model leaves over is not white, and a likelihood taken at face value believes it
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 
-from .columns import Unknown, with_values
+from .box import stopped
+from .columns import LATE, Unknown, with_values
 from .innovations import Floor, Linear, Normal, innovate, linearise
 from .track import Track
 
 Catalogue = dict[str, type[Effect]]
-TRIES = 3  # times the steps that are asked for
-POOR = 0.1  # share of the gain that a step promised, below which it went too far
+STEPS = 12
+NEAR = 1.0  # prior widths that no number may move by in the first step
+POOR, GOOD = 0.1, 0.5  # shares of the gain that a step promised: below it went too far, above the next may go further
 LEVEL = 0.5  # by which a step may seem worse: the filter is linearised anew
-SHORTER = 0.1  # of the information, added to it when a step made things worse
 STANDS = 0.02  # prior widths that a step may still move
+NOTHING = 0.1  # of the cost, that a step may still gain
 
 
 @dataclass(frozen=True)
@@ -34,6 +37,7 @@ class Fit:
     covariance: np.ndarray
     lines: tuple[Linear, ...]
     normal: Normal
+    cost: float  # -2 log probability, but for a constant
 
     @property
     def sd(self) -> np.ndarray:
@@ -47,43 +51,117 @@ class Fit:
 
 def fit(
     tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue, floor: Floor, *,
-    temper: float = 1.0, rounds: int = 4, reach: float = np.inf, smooth: bool = False,
+    temper: float = 1.0, smooth: bool = False,
 ) -> Fit:  # fmt: skip
-    """The most probable values of the unknowns, given the tracks and their priors, after so many steps that made them more probable,
-    none of which moves a number by more than `reach` prior widths.
-    A step too far is taken back and made shorter (Levenberg & Marquardt), so that a fit of many numbers does not end in a corner of their boxes;
-    the last one is not judged. `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the filter
-    follows is not found yet, and errs by more than they do."""
-    centre, sd = np.array([u.centre for u in unknowns]), np.array([u.sd for u in unknowns])
-    value = np.array([_present(model, u) for u in unknowns])
-    least, promised, damping, steps = np.inf, 0.0, 0.0, 0
-    for _ in range(TRIES * rounds):
-        model = with_values(model, unknowns, value.tolist(), catalogue)
-        here = {u.label: float(v) for u, v in zip(unknowns, value, strict=True)}
-        about = [replace(u, centre=here[u.label]) if u.owner == "core" else u for u in unknowns]
-        trial = [linearise(t, model, about, catalogue, here, smooth=smooth) for t in tracks]
-        told = innovate(trial, [floor])[0]
-        z = (value - centre) / sd
-        cost = float((told.ee + told.logdet).sum()) / temper + float(z @ z)
-        if least - cost >= POOR * promised - LEVEL:
-            least, damping, steps = cost, 0.1 * damping, steps + 1
-            at, lines, normal = value, trial, told
-            A, b, _ = normal.total()
-            H, pull = A / temper * np.outer(sd, sd) + np.eye(sd.size), b / temper * sd - z
-        else:
-            damping = max(10.0 * damping, SHORTER)
-        step = np.linalg.solve(H + damping * np.diag(np.diag(H)), pull)
-        step *= min(1.0, reach / max(float(np.max(np.abs(step))), STANDS))
-        value = np.clip(at + sd * step, [u.lo for u in unknowns], [u.hi for u in unknowns])
-        step = (value - at) / sd
-        promised = max(0.0, float(2.0 * pull @ step - step @ H @ step))
-        if np.max(np.abs(step)) < STANDS or steps == rounds:
+    """The most probable values of the unknowns, given the tracks and their priors, after at most STEPS steps.
+
+    Each goes to where the equations at the last place are most probable, inside the boxes and no further than they were found to hold: a
+    step that kept its promise lets the next one go twice as far, one that did not is not taken but made shorter (trust region; Nocedal &
+    Wright 2006, sec. 4.1), so that a fit of many numbers that is begun far off does not end in a corner of their boxes.
+    `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the filter follows is not found yet,
+    and errs by more than they do."""
+    problem = _Problem(tracks, model, tuple(unknowns), catalogue, floor, temper, smooth)
+    here, far = problem.at(problem.start()), NEAR
+    for _ in range(STEPS):
+        z, far = problem.better(here, far)
+        if z is here.z:
             break
-    else:
-        value = at
-    model = with_values(model, unknowns, value.tolist(), catalogue)
-    covariance = np.linalg.inv(H) * np.outer(sd, sd)
-    return Fit(model, tuple(unknowns), value, covariance, tuple(lines), normal)
+        here = problem.at(z)
+    return Fit(
+        here.model, problem.unknowns, problem.values(here.z), here.covariance * np.outer(problem.sd, problem.sd), here.lines, here.normal, here.cost
+    )
+
+
+@dataclass(frozen=True)
+class _Here:
+    """The equations at one place, in prior widths."""
+
+    z: np.ndarray
+    model: Model
+    lines: tuple[Linear, ...]
+    normal: Normal
+    H: np.ndarray
+    pull: np.ndarray
+    temper: float
+
+    @cached_property
+    def covariance(self) -> np.ndarray:
+        return np.linalg.inv(self.H)
+
+    @cached_property
+    def cost(self) -> float:
+        return _cost(self.z, self.normal, self.temper)
+
+    def promised(self, z: np.ndarray) -> float:
+        """By how much more probable that place should be, in cost."""
+        step = z - self.z
+        return float(2.0 * self.pull @ step - step @ self.H @ step)
+
+
+def _cost(z: np.ndarray, normal: Normal, temper: float) -> float:
+    return float((normal.ee + normal.logdet).sum()) / temper + float(z @ z)
+
+
+@dataclass(frozen=True)
+class _Problem:
+    """What is fitted to what."""
+
+    tracks: Sequence[Track]
+    model: Model
+    unknowns: tuple[Unknown, ...]
+    catalogue: Catalogue
+    floor: Floor
+    temper: float
+    smooth: bool
+
+    @cached_property
+    def centre(self) -> np.ndarray:
+        return np.array([u.centre for u in self.unknowns])
+
+    @cached_property
+    def sd(self) -> np.ndarray:
+        return np.array([u.sd for u in self.unknowns])
+
+    @cached_property
+    def box(self) -> np.ndarray:
+        """(2, P)"""
+        return (np.array([[u.lo for u in self.unknowns], [u.hi for u in self.unknowns]]) - self.centre) / self.sd
+
+    def start(self) -> np.ndarray:
+        return np.clip((np.array([_present(self.model, u) for u in self.unknowns]) - self.centre) / self.sd, *self.box)
+
+    def values(self, z: np.ndarray) -> np.ndarray:
+        return np.clip(self.centre + self.sd * z, [u.lo for u in self.unknowns], [u.hi for u in self.unknowns])
+
+    def at(self, z: np.ndarray) -> _Here:
+        """Linearised there, with what every unknown does."""
+        model, lines = self._linearised(z, self.unknowns, exact=True)
+        normal = innovate(lines, [self.floor])[0]
+        A, b, _ = normal.total()
+        H = A / self.temper * np.outer(self.sd, self.sd) + np.eye(z.size)
+        return _Here(z, model, lines, normal, H, b / self.temper * self.sd - z, self.temper)
+
+    def better(self, here: _Here, far: float) -> tuple[np.ndarray, float]:
+        """A more probable place, and how far the step after it may go; the same place if there is none."""
+        while True:
+            z, _ = stopped(here.z + here.covariance @ here.pull, here.covariance, *np.clip(self.box, here.z - far, here.z + far))
+            promised = here.promised(z)
+            if promised < NOTHING or np.max(np.abs(z - here.z)) < STANDS:
+                return here.z, far
+            gain = here.cost - self._cost(z)
+            if gain >= POOR * promised - LEVEL:
+                return z, 2.0 * far if gain >= GOOD * promised else far
+            far *= 0.25
+
+    def _cost(self, z: np.ndarray) -> float:
+        _, lines = self._linearised(z, [u for u in self.unknowns if u.owner == LATE])
+        return _cost(z, innovate(lines, [self.floor])[0], self.temper)
+
+    def _linearised(self, z: np.ndarray, unknowns: Sequence[Unknown], exact: bool = False) -> tuple[Model, tuple[Linear, ...]]:
+        model = with_values(self.model, self.unknowns, self.values(z).tolist(), self.catalogue)
+        value = dict(zip((u.label for u in self.unknowns), self.values(z).tolist(), strict=True))
+        about = [replace(u, centre=value[u.label]) if u.owner == "core" else u for u in unknowns]
+        return model, tuple(linearise(t, model, about, self.catalogue, value, smooth=self.smooth, exact=exact) for t in self.tracks)
 
 
 def _present(model: Model, unknown: Unknown) -> float:

@@ -13,7 +13,7 @@ from twin.physics.effects.steering_lag import SteeringLag
 from twin.physics.model import Model
 
 from .columns import Unknown, effect_unknowns
-from .fit import Catalogue, evidence
+from .fit import Catalogue, Fit, evidence, fit
 from .innovations import Floor, innovate, linearise
 from .track import Track
 
@@ -26,10 +26,25 @@ def gear_unknowns(model: Model) -> tuple[Unknown, ...]:
     return tuple(effect_unknowns(SteeringLag, Model(model.ship)))
 
 
-def geared(model: Model, tracks: Sequence[Track], unknowns: Sequence[Unknown], known: Catalogue, temper: float) -> Model:
-    """The model with the most probable steering gear, if the voyages clearly ask for one; a gear that is there already stays."""
+def with_or_without_gear(tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], known: Catalogue, temper: float) -> Fit:
+    """The core's fit (and these other unknowns') with the rudder as it was recorded or, if that makes the voyages clearly more probable, with a
+    steering gear before it. The gear is looked for beside the core as it is at first and, if it is not found there, as it was fitted without
+    one: a core that was fitted to an order has taken on a part of the gear, and the more so the slower that is."""
+
+    def fitted(about: Model) -> Fit:
+        return fit(tracks, about, (*unknowns, *(gear_unknowns(about) if about.lags else ())), known, Floor(), temper=temper, smooth=True)
+
+    without = fitted(model)
     if model.lags:
-        return model
+        return without
+    for begun in (model, without.model):
+        if (with_gear := geared(begun, tracks, unknowns, known, temper)).lags and (found := fitted(with_gear)).cost < without.cost - 2.0 * CLEAR:
+            return found
+    return without
+
+
+def geared(model: Model, tracks: Sequence[Track], unknowns: Sequence[Unknown], known: Catalogue, temper: float) -> Model:
+    """The model with the most probable steering gear, if the voyages clearly ask for one."""
     sd, time = np.array([u.sd for u in unknowns]), float(model.ship.scale("time"))
 
     def with_gear(delay: float, travel: float) -> Model:

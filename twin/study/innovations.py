@@ -20,10 +20,10 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 
 from . import waves
-from .columns import LATE, Unknown, columns, turns
+from .columns import LATE, Unknown, beside, columns, turns
 from .filters import FLOW, MOTION, SLOW, SPEEDS, STATES, Filters, Noise, Stretches
 from .normal import Normal, Sums
-from .respond import advance, faulty, jacobian, lagged, later, respond, when_true
+from .respond import SATELLITES, advance, faulty, jacobian, lagged, later, respond, when_true
 from .segments import segments
 from .start import undone
 from .track import Track
@@ -68,6 +68,7 @@ class Linear:
     A: np.ndarray  # (N, 3, P) float32, m/s2 per unit of each unknown
     R: np.ndarray  # (N, 8, P) float32
     turns: dict[int, np.ndarray]  # column of a faulty instrument's number -> (N, 8, 8) float32 (see `columns.turns`)
+    bends: np.ndarray | None  # (N, 3, 6, P) float32: A by heading, velocities and current
     busy: np.ndarray  # (N, 3): acceleration that hull, rudder and propeller cause
     model: Model = field(repr=False)
     doubted: np.ndarray | float = 0.0  # (N, 3): acceleration by the effects under judgement, whose forms are only roughly right
@@ -76,19 +77,22 @@ class Linear:
     def only(self, columns: np.ndarray) -> "Linear":
         """The same with some of the unknowns (places, in the order that is wanted)."""
         turns = {k: self.turns[j] for k, j in enumerate(columns.tolist()) if j in self.turns}
-        return replace(self, A=self.A[:, :, columns], R=self.R[:, :, columns], turns=turns)
+        bends = None if self.bends is None else self.bends[..., columns]
+        return replace(self, A=self.A[:, :, columns], R=self.R[:, :, columns], turns=turns, bends=bends)
 
 
 def linearise(
     track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None,
-    *, smooth: bool = False,
+    *, smooth: bool = False, exact: bool = False,
 ) -> Linear:  # fmt: skip
     """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model already holds), about the
-    motion as it was if the model's sensor faults are there. `smooth`: these are judged along that motion alone."""
+    motion as it was if the model's sensor faults are there. `smooth`: these are judged along that motion alone. `exact`: what unknowns push
+    is known beside that motion, too, where the filter believes her to be."""
     track = undone(track, model)
     late_s, prompt = model.prompt()  # what is late shows another moment: no slope of this one says a wave two seconds ago
     reading = later(track, respond(track, prompt)[1], late_s)
     A, R = columns(track, model, unknowns, catalogue, at)
+    bent = _bends(track, model, unknowns, catalogue, at) if exact else None
     turned = {} if smooth else turns(track, model, unknowns, catalogue, at)
     e = when_true(track, track.measured - reading, late_s)
     for j, unknown in enumerate(unknowns):
@@ -102,7 +106,10 @@ def linearise(
     if model.faults:
         shown = faulty(track, prompt)
         track, reader = waves.as_shown(track, shown), shown @ reader
-    return Linear(track, system, defect, reader, e, A.astype(np.float32), R.astype(np.float32), turned, busy(track, model), model)
+    if late_s:  # what was true between two steps is read at the nearer one, on her way to the other
+        off = round(late_s / track.h) - late_s / track.h
+        reader[:, SATELLITES] = reader[:, SATELLITES] @ (np.eye(STATES) + off * (system - np.eye(STATES)))
+    return Linear(track, system, defect, reader, e, A.astype(np.float32), R.astype(np.float32), turned, bent, busy(track, model), model)
 
 
 def _system(track: Track, model: Model) -> np.ndarray:
@@ -121,6 +128,21 @@ def _system(track: Track, model: Model) -> np.ndarray:
     F[:, SLOW, SLOW] = np.eye(3) * np.exp(-h / (MEMORY_B * time))
     F[:, FLOW, FLOW] = np.eye(2) * np.exp(-h / (MEMORY_C * time))
     return F
+
+
+def _bends(
+    track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None
+) -> np.ndarray:
+    """(N, 3, 6, P) what one unit of each unknown changes of the slopes of the accelerations, by filters.BENDS."""
+
+    def slopes(m: Model) -> np.ndarray:
+        return np.concatenate([jacobian(track, m)[:, :, 2:], _by_current(track, m)], axis=2)
+
+    out, here = np.zeros((len(track), 3, 6, len(unknowns)), np.float32), slopes(model)
+    for j, unknown in enumerate(unknowns):
+        if (other := beside(track, model, unknown, catalogue, at)) is not None:
+            out[..., j] = (slopes(other[0]) - here) / other[1]
+    return out
 
 
 def _by_current(track: Track, model: Model) -> np.ndarray:
@@ -189,7 +211,7 @@ def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
         F=_abreast(F, where), H=_abreast(H, where), e=_abreast([x.e for x in lines], where, np.nan),
         defect=_abreast([x.defect for x in lines], where), turn=_abreast([_turn(x) for x in lines], where),
         A=_abreast([x.A for x in lines], where), R=_abreast([x.R for x in lines], where), fresh=fresh,
-        turns=_turns(lines, where),
+        turns=_turns(lines, where), bends=None if lines[0].bends is None else _abreast([x.bends for x in lines if x.bends is not None], where),
     )  # fmt: skip
 
 

@@ -86,7 +86,7 @@ def test_until_the_core_is_found_faults_of_instruments_are_judged_along_the_smoo
     """Test: a fit with a turned compass in the model, as calibration asks and as adding an effect does. Expected: the filter's path has a say
     in the second alone."""
     t, model, unknowns = judged
-    fitted = [fit([t], model, unknowns[-2:], catalogue(), Floor(), rounds=2, smooth=smooth) for smooth in (True, False)]
+    fitted = [fit([t], model, unknowns[-2:], catalogue(), Floor(), smooth=smooth) for smooth in (True, False)]
     assert [bool(f.lines[0].turns) for f in fitted] == [False, True]
 
 
