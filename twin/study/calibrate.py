@@ -11,10 +11,10 @@ from twin.physics.effect import Effect
 from twin.physics.effects import catalogue
 from twin.physics.effects.antenna_offset import AntennaOffset
 from twin.physics.effects.steering_lag import SteeringLag
+from twin.physics.effects.wind import Wind
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 
-from .antenna import clearly, placed
 from .columns import core_unknowns
 from .derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
 from .doubts import doubts
@@ -24,7 +24,8 @@ from .held_out import LAST, HeldOut, by_regime, errors, size, split
 from .import_voyage import write_json
 from .innovations import Floor
 from .jsonable import plain
-from .nuisance import TEMPER, instruments, temper_of
+from .nuisance import TEMPER, WEATHER, instruments, temper_of
+from .parts import clearly, placed, with_or_without_wind
 from .rollout import rolled_out
 from .sailed import Sailed, read_all
 from .seaway import levelled, swung
@@ -39,7 +40,9 @@ BETTER = 0.05  # share by which paths must be better than steps: a diagnosis jud
 PARTS = {  # of the ship and not of the core, found with it
     SteeringLag.__name__: "the recorded rudder angle is its order",
     AntennaOffset.__name__: "the place was measured there on the reference voyages",
+    Wind.__name__: "it blew on the reference voyages",
 }
+SAID = {"gear": SteeringLag, "antenna": AntennaOffset, "wind": Wind}  # their numbers in --json
 EPILOG = """Reference voyages are ones on which nothing was wrong and the weather was calm: zigzags, circles, speed changes. Without --held-out
 the last third of the voyages (or of a single voyage) is held back to measure the error. The standard errors, and the structural
 error that remains, are stored in the ship file: they keep an imperfect model from being called a missing effect.
@@ -69,8 +72,8 @@ class Core:
     model: Model
     derivatives: list[Derivative]
     effects: tuple[Effect, ...]  # of the ship file, the steering gear among them when the rudder's order was recorded
-    numbers: dict[str, dict[str, dict[str, Any]]]  # of the gear and of the antenna, with their standard errors
-    antenna: AntennaOffset | None  # where it was found, if not where the ship file has it
+    numbers: dict[str, dict[str, dict[str, Any]]]  # of the gear, the antenna and the wind, with their standard errors
+    parts: tuple[Effect | None, ...]  # antenna and wind as they were found, if not as the ship file has them
     floor: Floor
     temper: float
 
@@ -82,7 +85,10 @@ def calibrate(
     core = _core([s.track for s in fitted], ship, progress)
     tracks = core.tracks
     held_out = [(swung(t, core.model), first) for t, first in held_out]
-    ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
+    found = _beside(ship, core)
+    for part in core.parts:
+        found = placed(found, part, held_out)
+    ships = {"steps": _remembering(found, core, fitted)}
     if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
         progress("fitting to where she went")
         led = rolled_out(tracks, Model.of(ships["steps"]), excited, catalogue()).ship
@@ -107,6 +113,8 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
         tracks = [levelled(t, rough.model) for t in again]
         rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
+    progress("asking whether wind pushed her")
+    rough = with_or_without_wind(tracks, rough, known, TEMPER)
     unknowns = rough.unknowns
     progress("finding the structural floor")
     floor, temper = structural_floor(rough.lines, unknowns), temper_of(rough.normal, unknowns)
@@ -114,7 +122,8 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, smooth=True)
     kept = tuple(e for e in ship.effects if e not in model.lags)
     numbers = {name: _numbers(found, name, why) for name, why in PARTS.items()}
-    return Core(tracks, found.model, told_by(found), (*kept, *found.model.lags), numbers, clearly(found), floor, temper)
+    parts = tuple(clearly(found, part) for part in (AntennaOffset, Wind))
+    return Core(tracks, found.model, told_by(found), (*kept, *found.model.lags), numbers, parts, floor, temper)
 
 
 def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
@@ -135,7 +144,7 @@ def _beside(ship: Ship, core: Core) -> Ship:
 def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
     """The ship with what remains of these voyages, in place of what an earlier calibration left."""
     today, voyages = datetime.date.today().isoformat(), [s.provenance() for s in fitted]
-    names = [type(e).__name__ for e in ship.effects]
+    names = [name for e in ship.effects if (name := type(e).__name__) not in WEATHER]  # tomorrow's wind is another one
     structural = {"floor": plain(asdict(core.floor)), "temper": core.temper, "date": today, "voyages": voyages, "beside_effects": names}
     after = noted(ship, "effects", {name: numbers for name, numbers in core.numbers.items() if numbers and _found_here(name, ship, core)})
     return replace(after, notes={**after.notes, "structural": structural})
@@ -143,7 +152,7 @@ def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
 
 def _found_here(name: str, ship: Ship, core: Core) -> bool:
     """Whether a part of her is in the ship file as this calibration found it."""
-    return name == SteeringLag.__name__ or (core.antenna is not None and core.antenna in ship.effects)
+    return name == SteeringLag.__name__ or any(type(part).__name__ == name and part in ship.effects for part in core.parts if part)
 
 
 def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str, float]]) -> dict[str, Any]:
@@ -155,7 +164,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "derivatives": [_row(d, ship, after) for d in core.derivatives],
         "unexcited": [d.unknown.name for d in core.derivatives if not d.excited],
         "fitted_by": by,
-        **{key: _said(owner, after, core) for key, owner in (("gear", SteeringLag.__name__), ("antenna", AntennaOffset.__name__))},
+        **{key: _said(owner.__name__, after, core) for key, owner in SAID.items()},
         "waves": waves_on(core.tracks),
         "usual": clearly_hers(after, hers), "between_voyages": hers["between_voyages"],
         "floor": asdict(core.floor), "temper": core.temper, "by_regime": hers["by_regime"],
@@ -222,6 +231,8 @@ def told(result: dict[str, Any]) -> list[str]:
         lines.append(f"  rudder_angle_deg is the rudder's order: the gear between them is now part of the model (SteeringLag: {_sizes(gear)})")
     if antenna := result["antenna"]:
         lines.append(f"  place is measured elsewhere than the ship file had it: where is now part of the model (AntennaOffset: {_sizes(antenna)})")
+    if wind := result["wind"]:
+        lines.append(f"  wind pushed her on these voyages: how is now part of the model (Wind: {_sizes(wind)})")
     lines += [f"  {text}" for text in told_of_waves(result["waves"])]
     share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]

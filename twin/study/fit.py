@@ -138,6 +138,7 @@ class _Problem:
         model, lines = self._linearised(z, self.unknowns, exact=True)
         normal = innovate(lines, [self.floor])[0]
         A, b, _ = normal.total()
+        lines = tuple(replace(line, bends=None) for line in lines)  # large, and needed no more
         H = A / self.temper * np.outer(self.sd, self.sd) + np.eye(z.size)
         return _Here(z, model, lines, normal, H, b / self.temper * self.sd - z, self.temper)
 

@@ -23,7 +23,7 @@ from . import waves
 from .columns import LATE, Unknown, beside, columns, turns
 from .filters import FLOW, MOTION, SLOW, SPEEDS, STATES, Filters, Noise, Stretches
 from .normal import Normal, Sums
-from .respond import SATELLITES, advance, faulty, jacobian, lagged, later, respond, when_true
+from .respond import SATELLITES, accelerations, advance, faulty, jacobian, lagged, later, respond, when_true
 from .segments import segments
 from .start import undone
 from .track import Track
@@ -147,9 +147,10 @@ def _bends(
 
 def _by_current(track: Track, model: Model) -> np.ndarray:
     """(N, 3, 2) acceleration per m/s of current to the north and to the east."""
-    U = float(model.ship.scale("speed"))
-    axes = [Unknown("Current", axis, "m/s", 0.0, 0.02 * U, -U, U) for axis in ("north", "east")]
-    return columns(track, _without_current(model), axes, {"Current": find("Current")})[0]
+    current, still, step = find("Current").absent(model.ship), _without_current(model), 0.02 * float(model.ship.scale("speed"))
+    here = accelerations(track, still)
+    there = [accelerations(track, still.but(current.but(**{axis: step}))) for axis in ("north", "east")]
+    return np.stack([(a - here) / step for a in there], axis=2)
 
 
 def _reader(track: Track) -> np.ndarray:

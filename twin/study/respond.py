@@ -16,8 +16,18 @@ from .track import READINGS, STATE, Track
 def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3) accelerations [m/s2, m/s2, rad/s2] and (N, 8) readings (see READINGS) of a ship that moves along the track."""
     s = track.situation(delta=lagged(track, model))
-    s.u_dot, s.v_dot, r_dot = (np.broadcast_to(a, track.t.shape) for a in model.nu_dot(s))
-    return np.column_stack([s.u_dot, s.v_dot, r_dot]), readings(s, model)
+    nu_dot = _nu_dot(s, model)
+    s.u_dot, s.v_dot, _ = nu_dot.T
+    return nu_dot, readings(s, model)
+
+
+def accelerations(track: Track, model: Model) -> np.ndarray:
+    """(N, 3) accelerations alone."""
+    return _nu_dot(track.situation(delta=lagged(track, model)), model)
+
+
+def _nu_dot(s: Situation, model: Model) -> np.ndarray:
+    return np.column_stack([np.broadcast_to(a, np.shape(s.psi)) for a in model.nu_dot(s)])
 
 
 def readings(s: Situation, model: Model) -> np.ndarray:
@@ -112,7 +122,7 @@ def jacobian(track: Track, model: Model) -> np.ndarray:
         for sign in (1.0, -1.0):
             s = track.situation(delta=delta)
             setattr(s, STATE[j], getattr(s, STATE[j]) + sign * size)
-            sides.append(np.column_stack([np.broadcast_to(a, track.t.shape) for a in model.nu_dot(s)]))
+            sides.append(_nu_dot(s, model))
         out[:, :, j] = (sides[0] - sides[1]) / (2.0 * size)
     return out
 

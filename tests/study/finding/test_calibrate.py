@@ -4,7 +4,9 @@ import json
 
 import pytest
 
+from bench.bundled import recorded
 from bench.real_faults import antenna_elsewhere
+from bench.reference import Case, simulate
 from twin import cli
 from twin.physics.ship import load
 from twin.study.doubts import doubts
@@ -119,3 +121,21 @@ def test_an_antenna_that_stands_elsewhere_on_the_references_becomes_a_part_of_th
 def test_a_ship_whose_antenna_is_where_her_file_has_it_gets_none(calibrated):
     ship, said = calibrated
     assert said["antenna"] == {} and not ship.effects
+
+
+def test_wind_that_blew_on_the_references_becomes_a_part_of_the_ship_and_none_does_that_did_not(calibrated, tmp_path):
+    """Test: three voyages of the 2 m boat in a wind that was recorded; the tanker's in a calm. Expected: how it pushes the boat, clearly, and that
+    no calibration of it is taken for one of any other day's wind; of the tanker nothing."""
+    sailed = simulate([Case("usv", m, hidden=(("Wind", 0.6),), seed=980 + i, duration_s=600.0) for i, m in enumerate(("zigzag_20", "mixed", "speed_changes"))])
+    paths = [tmp_path / f"{i}.mcap" for i in range(3)]
+    for path, r in zip(paths, sailed, strict=True):
+        write_voyage(recorded(path.stem, r.columns, every=2), path)
+    out, said = tmp_path / "better.toml", tmp_path / "said.json"
+    words = ["calibrate", *map(str, paths[:2]), "--held-out", str(paths[2]), "--ship", "usv", "-o", str(out), "--json", str(said)]
+    assert cli.main(words) == 0
+    ship, result = load(out), json.loads(said.read_text())
+    (wind,) = [e for e in ship.effects if type(e).__name__ == "Wind"]
+    sd = ship.notes["effects"]["Wind"]["c_y"]["sd"]
+    assert wind.c_y > 4.0 * sd and result["wind"]["c_y"]["value"] == wind.c_y
+    assert "Wind" not in ship.notes["structural"]["beside_effects"] and "Wind" not in ship.notes["structural"]["weather"]
+    assert calibrated[1]["wind"] == {}

@@ -37,6 +37,31 @@ def test_tangents_say_what_a_changed_model_would_leave_over(judged):
     assert predicted == pytest.approx(really, rel=5e-3)
 
 
+def test_what_numbers_push_beside_the_smooth_motion_is_what_they_push_there(judged):
+    """Test: a motion that is off by 3 degrees, by 0.1 m/s ahead and abeam and by 0.01 deg/s; what derivatives and a wind push along it. Expected:
+    what they push along the smooth motion and, by its slopes, beside it, within a twentieth of the difference."""
+    t, model, _ = judged
+    t = replace(t, weather=t.weather | {"wind_speed": np.full(len(t), 12.0), "wind_to": np.full(len(t), 0.7)})
+    off, known = np.array([0.05, 0.1, 0.1, 2e-4]), catalogue()
+    unknowns = [*(u for u in core_unknowns(model) if u.name in ("Y_uv", "N_ur", "N_vv", "C_L")), *effect_unknowns(known["Wind"], model)]
+    other = replace(t, state=t.state + np.concatenate([[0.0, 0.0], off]))
+    line, there = (linearise(x, model, unknowns, known, exact=True) for x in (t, other))
+    sd = np.array([u.sd for u in unknowns])
+    change, told = (there.A - line.A) * sd, np.einsum("kaip,i->kap", line.bends[:, :, :4], off) * sd
+    for j, unknown in enumerate(unknowns):
+        assert np.abs(told - change)[..., j].max() < 0.05 * np.abs(change)[..., j].max(), unknown.label
+
+
+def test_a_fit_that_is_begun_far_off_arrives_where_one_does_that_is_begun_near(judged):
+    """Test: a hull and a rudder begun three prior widths from the ship file's. Expected: found within a tenth of one."""
+    t, model, _ = judged
+    unknowns, known = [u for u in core_unknowns(model) if u.name in ("Y_uv", "Y_ur", "N_uv", "N_ur", "C_L")], catalogue()
+    far = with_values(model, unknowns, [u.centre + k * u.sd for u, k in zip(unknowns, (3.0, -3.0, 3.0, -3.0, 3.0), strict=True)], known)
+    near_by, far_off = (fit([t], begun, unknowns, known, floor_of(model.ship)) for begun in (model, far))
+    assert np.abs((far_off.value - near_by.value) / [u.sd for u in unknowns]).max() < 0.1
+    assert np.abs((far_off.value - near_by.value) / near_by.sd).max() < 1.0
+
+
 @pytest.mark.parametrize("late_s", [2.0, 6.0])
 def test_how_late_positions_are_is_told_however_rough_the_path_through_them(judged, late_s):
     """Test: positions with 0.1 m of scatter and so late, a log with 2 cm/s, asked where the receiver is that late. Expected: there it stays,

@@ -122,7 +122,7 @@ def alone(name: str, view: View, true: bool) -> Check:
         )
     return good(
         name,
-        f"the wind direction does not turn with the heading ({followed:.2f}); from or to cannot be told.",
+        f"the wind direction does not turn with the heading ({followed:.2f}). From or to, only the apparent wind beside it would show.",
     )
 
 

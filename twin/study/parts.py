@@ -1,0 +1,54 @@
+"""Parts of the ship that are found with her core, if the reference voyages ask for them: where her antenna stands, and how wind pushes her.
+
+Nothing is wrong on a reference voyage, so an antenna that clearly stands elsewhere was never where the file has it (a receiver that
+reports her centre of gravity, a lever arm left at zero). Wind that was recorded there pushed her, and a small ship seldom has a calm;
+left out, it would bend the core, and the floor would grow until it hides what is missing. Kept in mind alone, either would leave every
+prediction off.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from twin.physics.effect import Effect
+from twin.physics.effects.wind import Wind
+from twin.physics.model import Model
+from twin.physics.ship import Ship
+
+from .columns import effect_unknowns
+from .fit import Catalogue, Fit, fit
+from .gear import CLEAR as CLEARLY_BETTER
+from .held_out import HeldOut, errors, size
+from .innovations import Floor
+from .track import Track
+from .weather import strengths
+
+CLEAR = 4.0  # standard errors
+BETTER = 0.05  # share by which predictions of what was not used for the fit must be better with it
+PUSHED = 0.03  # of the standard acceleration, by a plausible wind: less is not asked about
+
+
+def with_or_without_wind(tracks: Sequence[Track], without: Fit, known: Catalogue, temper: float) -> Fit:
+    """The fit with wind beside the core, if it was recorded on every voyage and makes them clearly more probable."""
+    pushed = strengths(tracks, without.model, known).get(Wind.__name__, 0.0) > PUSHED
+    if not pushed or any(t.missing().intersection(Wind.needs) for t in tracks):
+        return without
+    unknowns = (*without.unknowns, *effect_unknowns(Wind, Model(without.model.ship)))
+    found = fit(tracks, without.model, unknowns, known, Floor(), temper=temper, smooth=True)
+    return found if found.cost < without.cost - 2.0 * CLEARLY_BETTER else without
+
+
+def clearly(found: Fit, part: type[Effect]) -> Effect | None:
+    """The part as it was found, if that is clearly not as the fit began."""
+    numbers = [(u, v, sd) for u, v, sd in zip(found.unknowns, found.value, found.sd, strict=True) if u.owner == part.__name__]
+    if not any(abs(v - u.centre) > CLEAR * sd for u, v, sd in numbers):
+        return None
+    return part(**{u.name: float(v) for u, v, _ in numbers})
+
+
+def placed(ship: Ship, part: Effect | None, held_out: HeldOut) -> Ship:
+    """The ship with this part, if so she is predicted better."""
+    if part is None:
+        return ship
+    moved = replace(ship, effects=(*(e for e in ship.effects if type(e) is not type(part)), part))
+    before, after = (size(errors(Model.of(s), held_out)) for s in (ship, moved))
+    return moved if after < before - BETTER else ship
