@@ -42,6 +42,7 @@ PARTS = {  # of the ship and not of the core, found with it
     AntennaOffset.__name__: "the place was measured there on the reference voyages",
     Wind.__name__: "it blew on the reference voyages",
 }
+ASKED_FOR = (SteeringLag.__name__, Wind.__name__)  # by the probability of the voyages; the antenna by predictions
 SAID = {"gear": SteeringLag, "antenna": AntennaOffset, "wind": Wind}  # their numbers in --json
 EPILOG = """Reference voyages are ones on which nothing was wrong and the weather was calm: zigzags, circles, speed changes. Without --held-out
 the last third of the voyages (or of a single voyage) is held back to measure the error. The standard errors, and the structural
@@ -71,9 +72,9 @@ class Core:
     tracks: list[Track]  # with what waves do to her taken for that
     model: Model
     derivatives: list[Derivative]
-    effects: tuple[Effect, ...]  # of the ship file, the steering gear among them when the rudder's order was recorded
+    effects: tuple[Effect, ...]  # of the ship file; a steering gear and wind among them if the voyages asked for these
     numbers: dict[str, dict[str, dict[str, Any]]]  # of the gear, the antenna and the wind, with their standard errors
-    parts: tuple[Effect | None, ...]  # antenna and wind as they were found, if not as the ship file has them
+    antenna: AntennaOffset | None  # where it was found, if not where the ship file has it
     floor: Floor
     temper: float
 
@@ -85,10 +86,7 @@ def calibrate(
     core = _core([s.track for s in fitted], ship, progress)
     tracks = core.tracks
     held_out = [(swung(t, core.model), first) for t, first in held_out]
-    found = _beside(ship, core)
-    for part in core.parts:
-        found = placed(found, part, held_out)
-    ships = {"steps": _remembering(found, core, fitted)}
+    ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
     if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
         progress("fitting to where she went")
         led = rolled_out(tracks, Model.of(ships["steps"]), excited, catalogue()).ship
@@ -120,10 +118,10 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     floor, temper = structural_floor(rough.lines, unknowns), temper_of(rough.normal, unknowns)
     progress("fitting again above the floor")
     found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, smooth=True)
-    kept = tuple(e for e in ship.effects if e not in model.lags)
+    asked = tuple(e for e in found.model.effects if type(e).__name__ in ASKED_FOR)
+    kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
     numbers = {name: _numbers(found, name, why) for name, why in PARTS.items()}
-    parts = tuple(clearly(found, part) for part in (AntennaOffset, Wind))
-    return Core(tracks, found.model, told_by(found), (*kept, *found.model.lags), numbers, parts, floor, temper)
+    return Core(tracks, found.model, told_by(found), (*kept, *asked), numbers, clearly(found), floor, temper)
 
 
 def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
@@ -137,7 +135,7 @@ def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
 
 
 def _beside(ship: Ship, core: Core) -> Ship:
-    """The ship with the fitted derivatives, and the steering gear if one was found."""
+    """The ship with the fitted derivatives, and the steering gear and the wind if they were found."""
     return replace(with_derivatives(ship, core.derivatives), effects=core.effects)
 
 
@@ -152,7 +150,7 @@ def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
 
 def _found_here(name: str, ship: Ship, core: Core) -> bool:
     """Whether a part of her is in the ship file as this calibration found it."""
-    return name == SteeringLag.__name__ or any(type(part).__name__ == name and part in ship.effects for part in core.parts if part)
+    return name in ASKED_FOR or (core.antenna is not None and core.antenna in ship.effects)
 
 
 def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str, float]]) -> dict[str, Any]:

@@ -9,7 +9,7 @@ prediction off.
 from collections.abc import Sequence
 from dataclasses import replace
 
-from twin.physics.effect import Effect
+from twin.physics.effects.antenna_offset import AntennaOffset
 from twin.physics.effects.wind import Wind
 from twin.physics.model import Model
 from twin.physics.ship import Ship
@@ -37,18 +37,18 @@ def with_or_without_wind(tracks: Sequence[Track], without: Fit, known: Catalogue
     return found if found.cost < without.cost - 2.0 * CLEARLY_BETTER else without
 
 
-def clearly(found: Fit, part: type[Effect]) -> Effect | None:
-    """The part as it was found, if that is clearly not as the fit began."""
-    numbers = [(u, v, sd) for u, v, sd in zip(found.unknowns, found.value, found.sd, strict=True) if u.owner == part.__name__]
+def clearly(found: Fit) -> AntennaOffset | None:
+    """Where the antenna was found, if that is clearly not where the fit began."""
+    numbers = [(u, v, sd) for u, v, sd in zip(found.unknowns, found.value, found.sd, strict=True) if u.owner == AntennaOffset.__name__]
     if not any(abs(v - u.centre) > CLEAR * sd for u, v, sd in numbers):
         return None
-    return part(**{u.name: float(v) for u, v, _ in numbers})
+    return AntennaOffset(**{u.name: float(v) for u, v, _ in numbers})
 
 
-def placed(ship: Ship, part: Effect | None, held_out: HeldOut) -> Ship:
-    """The ship with this part, if so she is predicted better."""
-    if part is None:
+def placed(ship: Ship, antenna: AntennaOffset | None, held_out: HeldOut) -> Ship:
+    """The ship with her antenna there, if so she is predicted better."""
+    if antenna is None:
         return ship
-    moved = replace(ship, effects=(*(e for e in ship.effects if type(e) is not type(part)), part))
+    moved = replace(ship, effects=(*(e for e in ship.effects if not isinstance(e, AntennaOffset)), antenna))
     before, after = (size(errors(Model.of(s), held_out)) for s in (ship, moved))
     return moved if after < before - BETTER else ship
