@@ -44,7 +44,9 @@ def with_or_without_gear(tracks: Sequence[Track], model: Model, unknowns: Sequen
 
 
 def geared(model: Model, tracks: Sequence[Track], unknowns: Sequence[Unknown], known: Catalogue, temper: float) -> Model:
-    """The model with the most probable steering gear, if the voyages clearly ask for one."""
+    """The model with the most probable steering gear, if the voyages clearly ask for one; a gear that is there already stays."""
+    if model.lags:
+        return model
     sd, time = np.array([u.sd for u in unknowns]), float(model.ship.scale("time"))
 
     def with_gear(delay: float, travel: float) -> Model:
