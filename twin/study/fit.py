@@ -57,19 +57,18 @@ def fit(
 
     Each goes to where the equations at the last place are most probable, inside the boxes and no further than they were found to hold: a
     step that kept its promise lets the next one go twice as far, one that did not is not taken but made shorter (trust region; Nocedal &
-    Wright 2006, sec. 4.1), so that a fit of many numbers that is begun far off does not end in a corner of their boxes.
+    Wright 2006, sec. 4.1), so that a fit of many numbers that is begun far off does not end in a corner of their boxes; the last one is not judged.
     `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the filter follows is not found yet,
     and errs by more than they do."""
     problem = _Problem(tracks, model, tuple(unknowns), catalogue, floor, temper, smooth)
     here, far = problem.at(problem.start()), NEAR
     for _ in range(STEPS):
         z, far = problem.better(here, far)
-        if z is here.z:
+        if here.as_good_as(z):
             break
         here = problem.at(z)
-    return Fit(
-        here.model, problem.unknowns, problem.values(here.z), here.covariance * np.outer(problem.sd, problem.sd), here.lines, here.normal, here.cost
-    )
+    covariance = here.covariance * np.outer(problem.sd, problem.sd)
+    return Fit(problem.with_values(z), problem.unknowns, problem.values(z), covariance, here.lines, here.normal, here.cost)
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,6 @@ class _Here:
     """The equations at one place, in prior widths."""
 
     z: np.ndarray
-    model: Model
     lines: tuple[Linear, ...]
     normal: Normal
     H: np.ndarray
@@ -96,6 +94,10 @@ class _Here:
         """By how much more probable that place should be, in cost."""
         step = z - self.z
         return float(2.0 * self.pull @ step - step @ self.H @ step)
+
+    def as_good_as(self, z: np.ndarray) -> bool:
+        """Whether nothing is left to be gained by going there."""
+        return self.promised(z) < NOTHING or float(np.max(np.abs(z - self.z))) < STANDS
 
 
 def _cost(z: np.ndarray, normal: Normal, temper: float) -> float:
@@ -135,34 +137,36 @@ class _Problem:
 
     def at(self, z: np.ndarray) -> _Here:
         """Linearised there, with what every unknown does."""
-        model, lines = self._linearised(z, self.unknowns, exact=True)
+        lines = self._linearised(z, self.unknowns, exact=True)
         normal = innovate(lines, [self.floor])[0]
         A, b, _ = normal.total()
         lines = tuple(replace(line, bends=None) for line in lines)  # large, and needed no more
         H = A / self.temper * np.outer(self.sd, self.sd) + np.eye(z.size)
-        return _Here(z, model, lines, normal, H, b / self.temper * self.sd - z, self.temper)
+        return _Here(z, lines, normal, H, b / self.temper * self.sd - z, self.temper)
 
     def better(self, here: _Here, far: float) -> tuple[np.ndarray, float]:
-        """A more probable place, and how far the step after it may go; the same place if there is none."""
+        """A more probable place (or one that is as good as here), and how far the step after it may go."""
         while True:
             z, _ = stopped(here.z + here.covariance @ here.pull, here.covariance, *np.clip(self.box, here.z - far, here.z + far))
-            promised = here.promised(z)
-            if promised < NOTHING or np.max(np.abs(z - here.z)) < STANDS:
-                return here.z, far
-            gain = here.cost - self._cost(z)
+            if here.as_good_as(z):
+                return z, far
+            promised, gain = here.promised(z), here.cost - self._cost(z)
             if gain >= POOR * promised - LEVEL:
                 return z, 2.0 * far if gain >= GOOD * promised else far
             far *= 0.25
 
+    def with_values(self, z: np.ndarray) -> Model:
+        return with_values(self.model, self.unknowns, self.values(z).tolist(), self.catalogue)
+
     def _cost(self, z: np.ndarray) -> float:
-        _, lines = self._linearised(z, [u for u in self.unknowns if u.owner == LATE])
+        lines = self._linearised(z, [u for u in self.unknowns if u.owner == LATE])
         return _cost(z, innovate(lines, [self.floor])[0], self.temper)
 
-    def _linearised(self, z: np.ndarray, unknowns: Sequence[Unknown], exact: bool = False) -> tuple[Model, tuple[Linear, ...]]:
-        model = with_values(self.model, self.unknowns, self.values(z).tolist(), self.catalogue)
+    def _linearised(self, z: np.ndarray, unknowns: Sequence[Unknown], exact: bool = False) -> tuple[Linear, ...]:
+        model = self.with_values(z)
         value = dict(zip((u.label for u in self.unknowns), self.values(z).tolist(), strict=True))
         about = [replace(u, centre=value[u.label]) if u.owner == "core" else u for u in unknowns]
-        return model, tuple(linearise(t, model, about, self.catalogue, value, smooth=self.smooth, exact=exact) for t in self.tracks)
+        return tuple(linearise(t, model, about, self.catalogue, value, smooth=self.smooth, exact=exact) for t in self.tracks)
 
 
 def _present(model: Model, unknown: Unknown) -> float:
