@@ -24,9 +24,9 @@ class Force(NamedTuple):
 class Water(NamedTuple):
     """The water an effect makes the ship feel.
 
-    (u, v): its velocity in body axes [m/s]. (k_u, k_v, k_r): by how much it holds the hull harder in surge, sway and yaw, as
-    shares of the hull's damping, in yaw of the whole moment, Munk's included (a bottom squeezes the stream past her; propeller
-    and rudder, in the wake, do not feel it). k_m: by how much more of it sways and turns with her, as a share of the added mass.
+    (u, v): its velocity in body axes [m/s]. (k_u, k_v, k_r): by how much it holds the hull harder in surge, sway and turning, as
+    shares of the hull's damping; k_n: by how much harder drift turns her, Munk's moment included (a bottom squeezes the stream past
+    her; propeller and rudder, in the wake, do not feel it). k_m: by how much more of it sways and turns with her, as a share of the added mass.
     k_t: share of the thrust that drives her by which it takes the ship back (thrust deduction).
     """
 
@@ -35,6 +35,7 @@ class Water(NamedTuple):
     k_u: Number = 0.0
     k_v: Number = 0.0
     k_r: Number = 0.0
+    k_n: Number = 0.0
     k_m: Number = 0.0
     k_t: Number = 0.0
 

@@ -13,6 +13,7 @@ from .columns import Unknown
 from .evidence import Nuisance, Reduced, posterior, reduce
 from .innovations import Floor, Linear, innovate
 from .track import Track
+from .unrest import shaken
 
 MOST_SEGMENTS = 20  # of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
 
@@ -43,6 +44,8 @@ WORLDS: dict[str, World] = {
     "strange": World(4.0, 1.0, 0.015, alone=True, unknown=True),
     "stranger": World(8.0, 4.0, 0.005, alone=True, unknown=True),
 }
+UNEVEN = 20.0  # log evidence that a scatter of its own at every moment must add
+WAVES = 1.0  # fast part of the floor, of a standard acceleration, in the worst of weather
 COMES_AND_GOES = 0.5  # share of an irregular effect's force, and of what it does to the path, that no size of it explains
 ODDS = 0.03  # of an effect about which nothing is known
 ODDS_WEAK = 0.002  # when it needs a cause that was measured to be too weak to show
@@ -107,11 +110,18 @@ def settle(case: Case) -> Case:
 
     Judged with every effect allowed, so that no cause is mistaken for noise.
     """
-    grid = [(white, sensor) for sensor in (1.0, 3.0) for white in (1.0, 2.0, 4.0, 8.0, 32.0)]
-    floors = [_rougher(case.floor, w, s) for w, s in grid]
-    scores = [posterior(r, case.candidates).log_evidence for r in case.reduced(case.lines, floors)]
-    best = int(np.argmax(scores))
-    return replace(case, floor=floors[best], path=_rougher(case.path, *grid[best]))
+    white, time = case.floor.white, float(case.model.ship.scale("time"))
+    grid = [(float(k), sensor) for sensor in (1.0, 3.0) for k in np.geomspace(1.0, max(WAVES / white, 4.0), 5)]
+    floors = [_rougher(case.floor, *factors) for factors in grid]
+    uneven = tuple(replace(x, track=shaken(x.track, time)) for x in case.lines)
+
+    def scores(lines: Sequence[Linear]) -> list[float]:
+        return [posterior(r, case.candidates).log_evidence for r in case.reduced(lines, floors)]
+
+    even, shaky = scores(case.lines), scores(uneven)
+    lines, told = (uneven, shaky) if max(shaky) > max(even) + UNEVEN else (case.lines, even)
+    best = int(np.argmax(told))
+    return replace(case, lines=lines, floor=floors[best], path=_rougher(case.path, *grid[best]))
 
 
 def _rougher(floor: Floor, white: float, sensor: float) -> Floor:

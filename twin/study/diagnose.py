@@ -19,7 +19,7 @@ from .effects import INPUTS
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import answer, astray, helpful, too_small, undone
+from .leftover import answer, astray, helpful, missed, too_small, undone
 from .manoeuvres import next_manoeuvre
 from .overtime import over_time
 from .read import read_voyage
@@ -66,7 +66,7 @@ def diagnose(
         leads += [n for n in case.news(explain) if w.effects[n] >= SURE]
     like = {name: alike(case, weighed, name) for name in case.news(w.best.effects)}
     sharp = shows(seen) and not astray(found[()] if case.news(w.best.effects) else best)
-    blurred = no_pair or any(at_sea(t, case.model) for t in case.tracks)
+    blurred = no_pair or any(at_sea(t, case.model) for t in case.tracks) or (not explained and not missed(found[()]))
     coarse = coarse_axes(case.path.share)
     able = case.excited and not coarse
     verdict, missing = judge(weighed, w, like, leads, able=able, sharp=sharp, explained=explained, blurred=blurred)

@@ -41,7 +41,7 @@ class Noise:
 
     row: np.ndarray  # (K,) places among the segments
     h: np.ndarray  # (K,)
-    reading: np.ndarray  # (K, 8)
+    reading: np.ndarray  # (T, K, 8)
     fast: np.ndarray  # (K, 3) of velocity, in one step
     slow: np.ndarray  # (T, K, 3) of b
     flow: np.ndarray  # (K,) of c
@@ -74,7 +74,7 @@ class Filters:
         H = told.H[k][row] * here[:, :, None]
         HC = H @ self.C
         S = HC @ H.transpose(0, 2, 1)
-        S[:, DIAGONAL[:8], DIAGONAL[:8]] += np.where(here, self.noise.reading, 1.0)
+        S[:, DIAGONAL[:8], DIAGONAL[:8]] += np.where(here, self.noise.reading[k], 1.0)
         L = np.linalg.cholesky(S)
         inverse = np.linalg.inv(L)
         white, V = inverse.astype(LIGHT) @ E, inverse @ HC

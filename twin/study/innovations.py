@@ -240,11 +240,10 @@ def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> No
     time, speed = float(model.ship.scale("time")), float(model.ship.scale("speed"))
     h = np.array([lines[i].track.h for i, _, _ in where])[row]
     wander = np.repeat([f.wander for f in floors], len(where))
-    scatter = np.stack([lines[i].track.sd for i, _, _ in where])[row]
-    sensor, white, flow = (np.repeat([getattr(f, name) for f in floors], len(where)) for name in ("sensor", "white", "flow"))
+    white, flow = (np.repeat([getattr(f, name) for f in floors], len(where)) for name in ("white", "flow"))
     return Noise(
         row, h,
-        reading=(sensor[:, None] * scatter) ** 2,
+        reading=np.concatenate([_abreast([_reading(x.track, f) for x in lines], where) for f in floors], axis=1),
         fast=(white[:, None] * standard(model)) ** 2 * (h * time)[:, None],
         slow=np.concatenate([_abreast([_slow(x, f) for x in lines], where) for f in floors], axis=1),
         flow=(flow * speed) ** 2,
@@ -266,6 +265,11 @@ def _slow(line: Linear, floor: Floor) -> np.ndarray:
     """(N, 3) variance of the slowly varying acceleration error."""
     calm = floor.calm * standard(line.model)
     return (np.array(floor.share) ** 2) * (line.busy**2 + calm**2) + np.square(floor.doubt * line.doubted) + np.square(line.slack)
+
+
+def _reading(track: Track, floor: Floor) -> np.ndarray:
+    """(N, 8) variance of each reading."""
+    return np.square(floor.sensor * np.broadcast_to(track.sd if track.unrest is None else track.sd * track.unrest, (len(track), 8)))
 
 
 def _start(model: Model, noise: Noise) -> np.ndarray:

@@ -63,6 +63,11 @@ def astray(nothing: Found) -> bool:
     return nothing.off_m > ASTRAY * nothing.floor_m
 
 
+def missed(nothing: Found) -> bool:
+    """Whether the model alone leads her farther from where she went than it did when nothing was wrong."""
+    return nothing.off_m > nothing.floor_m
+
+
 def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
     """Those of a set of effects with which she is led better than without, as `twin add` will ask; one that only changes what the
     instruments read need not lead her, but one of its numbers must be clear."""

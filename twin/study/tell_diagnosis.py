@@ -5,7 +5,7 @@ from typing import Any
 from .leftover import ASTRAY, BETTER
 from .overtime import changes
 from .start import told_of_waves
-from .verdict import ACQUITTED, SURE
+from .verdict import ACQUITTED, LOST, SURE
 
 SMALL = "It is too small to show in where these voyages led her: `twin add` may ask for others."
 NEAR = 0.5  # probability from which an effect is told as the nearest one when none explains the voyages
@@ -73,6 +73,11 @@ def sentence(result: dict[str, Any]) -> str:
             f"({c['error_with']:.3g} m off with it, {c['error_without']:.3g} m without)."
         )
     path = result["path"]
+    if result["probabilities"]["unknown"] >= LOST and path["error_without"] <= path["error_floor"]:
+        return (
+            f"Undecided: the readings are not what they usually are, as no effect explains, but the model leads her where she went "
+            f"({path['error_without']:.3g} m off after {path['horizon_s']:.0f} s, {path['error_floor']:.3g} m would be usual)."
+        )
     if result["probabilities"]["nothing_missing"] >= ACQUITTED and path["error_without"] > ASTRAY * path["error_floor"]:
         return (
             f"Undecided: no effect that I know is likely, but after {path['horizon_s']:.0f} s the model ends {path['error_without']:.3g} m from "

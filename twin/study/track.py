@@ -50,6 +50,7 @@ class Track:
     sd: np.ndarray  # (8,): scatter of each reading about the smooth motion
     whole: np.ndarray  # (N,) bool: controls known, so that the model can be run through
     swell: np.ndarray | None = None  # (N, 6): in surge, sway, yaw how fast waves swing her [rad/s], and their accelerations (seaway.py)
+    unrest: np.ndarray | None = None  # (N, 8): times its usual scatter that each reading has at that moment (unrest.py)
     rudder: dict[Any, np.ndarray] = field(init=False, repr=False, compare=False, default_factory=dict)  # behind each steering gear
 
     def __len__(self) -> int:
@@ -74,7 +75,7 @@ class Track:
         return Track(
             self.name, self.t[keep], self.h, self.state[keep], self.delta[keep], self.n[keep],
             {k: w[keep] for k, w in self.weather.items()}, self.measured[keep], self.sd, self.whole[keep],
-            None if self.swell is None else self.swell[keep],
+            *(None if x is None else x[keep] for x in (self.swell, self.unrest)),
         )  # fmt: skip
 
     def steps(self) -> np.ndarray:

@@ -1,0 +1,43 @@
+"""Readings that scatter more at some times than at others are trusted less then, and make nothing else of the voyage rougher."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from twin.study.assemble import assemble
+from twin.study.track import READINGS, track
+from twin.study.unrest import shaken
+
+GYRO = READINGS.index("r")
+PERIOD_S, SWING_DEGPS = 4.0, 0.15  # shorter than what the smooth motion of a tanker holds; forty times her gyro's usual scatter
+
+
+def rippled(voyage):
+    """The same voyage with ripples that only the gyro shows, on the courses of the second half."""
+    late = voyage.time_s > 0.5 * (voyage.time_s[0] + voyage.time_s[-1])
+    swing = SWING_DEGPS * np.sin(2.0 * np.pi * voyage.time_s / PERIOD_S) * late
+    return replace(voyage, columns=dict(voyage.columns) | {"yaw_rate_degps": voyage["yaw_rate_degps"] + swing})
+
+
+@pytest.fixture(scope="module")
+def ripples(voyages):
+    return rippled(voyages["RudderWear"])
+
+
+def test_each_reading_has_its_own_scatter_at_each_moment(ripples, tanker):
+    quiet_s = 8.0 * float(tanker.scale("time"))
+    t = track(ripples, tanker)
+    seen, half = shaken(t, float(tanker.scale("time"))).unrest, 0.5 * t.t[-1]
+    calm, rough = t.t < half - quiet_s, t.t > half + quiet_s
+    shown = seen[:, GYRO] * t.sd[GYRO]
+    assert shown[rough].mean() == pytest.approx(np.radians(SWING_DEGPS) / np.sqrt(2.0), rel=0.2)
+    assert shown[calm].max() < 0.3 * shown[rough].min()
+    assert seen[:, :GYRO].max() < 1.5 and seen.min() == 1.0
+
+
+def test_ripples_that_one_instrument_shows_are_no_rough_world_and_the_cause_is_found_in_them(ripples, voyages, tanker):
+    still, rippling = (assemble([v], tanker) for v in (voyages["RudderWear"], ripples))
+    assert all(x.track.unrest is None for x in still.lines)
+    assert all(x.track.unrest is not None for x in rippling.lines)
+    assert rippling.floor == still.floor
