@@ -29,6 +29,7 @@ from .start import undone
 from .track import Track
 
 Where = Sequence[tuple[int, int, int]]  # segments: track, first step, last step
+EVERY = 4  # grid steps, an eighth of a ship length, over which slopes change little
 MEMORY_B, MEMORY_C = 3.0, 12.0  # correlation times of b and c, in ship lengths sailed
 
 
@@ -133,16 +134,22 @@ def _system(track: Track, model: Model) -> np.ndarray:
 def _bends(
     track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None
 ) -> np.ndarray:
-    """(N, 3, 6, P) what one unit of each unknown changes of the slopes of the accelerations, by filters.BENDS."""
+    """(N, 3, 6, P) what one unit of each unknown changes of the slopes of the accelerations, by filters.BENDS: at some steps, and along straight
+    lines between them."""
+    steps = np.unique(np.append(np.arange(0, len(track), EVERY), len(track) - 1))
+    some = track.where(steps)
 
     def slopes(m: Model) -> np.ndarray:
-        return np.concatenate([jacobian(track, m)[:, :, 2:], _by_current(track, m)], axis=2)
+        some.rudder[m.lags] = lagged(track, m)[steps]  # a gear is stepped through all of them
+        return np.concatenate([jacobian(some, m)[:, :, 2:], _by_current(some, m)], axis=2)
 
-    out, here = np.zeros((len(track), 3, 6, len(unknowns)), np.float32), slopes(model)
+    out, here = np.zeros((steps.size, 3, 6, len(unknowns)), np.float32), slopes(model)
     for j, unknown in enumerate(unknowns):
         if (other := beside(track, model, unknown, catalogue, at)) is not None:
             out[..., j] = (slopes(other[0]) - here) / other[1]
-    return out
+    after = np.searchsorted(steps, np.arange(len(track)), "right").clip(1, steps.size - 1)
+    share = ((np.arange(len(track)) - steps[after - 1]) / (steps[after] - steps[after - 1])).astype(np.float32)[:, None, None, None]
+    return (1.0 - share) * out[after - 1] + share * out[after]
 
 
 def _by_current(track: Track, model: Model) -> np.ndarray:

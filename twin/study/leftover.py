@@ -64,8 +64,8 @@ def astray(nothing: Found) -> bool:
 
 
 def missed(nothing: Found) -> bool:
-    """Whether the model alone leads her farther from where she went than it did when nothing was wrong."""
-    return nothing.off_m > nothing.floor_m
+    """Whether the model alone leads her clearly farther from where she went than it did when nothing was wrong."""
+    return nothing.off_m > NEARLY * nothing.floor_m
 
 
 def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:

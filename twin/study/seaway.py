@@ -97,8 +97,8 @@ def _swinging(track: Track, model: Model) -> Track:
 
 
 def levelled(track: Track, model: Model) -> Track:
-    """The track with its roll, and rudder and shaft if she manoeuvres slower than they swing, averaged over one period of the waves:
-    what a helmsman does against a wave, and how she heels to it, would be taken for its cause."""
+    """The track with its roll, and rudder (behind its gear, which follows every order) and shaft if she manoeuvres slower than they swing,
+    averaged over one period of the waves: what a helmsman does against a wave, and how she heels to it, would be taken for its cause."""
     if track.swell is None:
         return track
     period_s = wave_period_s(track)
@@ -106,8 +106,7 @@ def levelled(track: Track, model: Model) -> Track:
     weather = {name: running_mean(values, steps) if name == "phi" else values for name, values in track.weather.items()}
     if period_s > SLOW * float(model.ship.scale("time")):
         return replace(track, weather=weather)
-    delta, n = (np.where(track.whole, running_mean(x, steps), x) for x in (track.delta, track.n))
-    return replace(track, weather=weather, delta=delta, n=n)
+    return replace(track, weather=weather, n=np.where(track.whole, running_mean(track.n, steps), track.n), levelled=steps)
 
 
 def stirred(track: Track, model: Model) -> np.ndarray:

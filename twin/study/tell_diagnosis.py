@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from .leftover import ASTRAY, BETTER
+from .leftover import ASTRAY, BETTER, NEARLY
 from .overtime import changes
 from .start import told_of_waves
 from .verdict import ACQUITTED, LOST, SURE
@@ -73,7 +73,7 @@ def sentence(result: dict[str, Any]) -> str:
             f"({c['error_with']:.3g} m off with it, {c['error_without']:.3g} m without)."
         )
     path = result["path"]
-    if result["probabilities"]["unknown"] >= LOST and path["error_without"] <= path["error_floor"]:
+    if result["probabilities"]["unknown"] >= LOST and path["error_without"] <= NEARLY * path["error_floor"]:
         return (
             f"Undecided: the readings are not what they usually are, as no effect explains, but the model leads her where she went "
             f"({path['error_without']:.3g} m off after {path['horizon_s']:.0f} s, {path['error_floor']:.3g} m would be usual)."

@@ -5,7 +5,7 @@ agrees with the measured positions, headings and rates. The study linearises alo
 """
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -51,6 +51,7 @@ class Track:
     whole: np.ndarray  # (N,) bool: controls known, so that the model can be run through
     swell: np.ndarray | None = None  # (N, 6): in surge, sway, yaw how fast waves swing her [rad/s], and their accelerations (seaway.py)
     unrest: np.ndarray | None = None  # (N, 8): times its usual scatter that each reading has at that moment (unrest.py)
+    levelled: int = 1  # steps over which the rudder is averaged, behind its gear (seaway.py)
     rudder: dict[Any, np.ndarray] = field(init=False, repr=False, compare=False, default_factory=dict)  # behind each steering gear
 
     def __len__(self) -> int:
@@ -72,10 +73,10 @@ class Track:
 
     def where(self, keep: slice | np.ndarray) -> "Track":
         """Some of the grid steps; where others are left out between them, `whole` must be False on one side."""
-        return Track(
-            self.name, self.t[keep], self.h, self.state[keep], self.delta[keep], self.n[keep],
-            {k: w[keep] for k, w in self.weather.items()}, self.measured[keep], self.sd, self.whole[keep],
-            *(None if x is None else x[keep] for x in (self.swell, self.unrest)),
+        swell, unrest = (None if x is None else x[keep] for x in (self.swell, self.unrest))
+        return replace(
+            self, t=self.t[keep], state=self.state[keep], delta=self.delta[keep], n=self.n[keep], whole=self.whole[keep],
+            weather={k: w[keep] for k, w in self.weather.items()}, measured=self.measured[keep], swell=swell, unrest=unrest,
         )  # fmt: skip
 
     def steps(self) -> np.ndarray:

@@ -39,7 +39,7 @@ def test_tangents_say_what_a_changed_model_would_leave_over(judged):
 
 def test_what_numbers_push_beside_the_smooth_motion_is_what_they_push_there(judged):
     """Test: a motion that is off by 3 degrees, by 0.1 m/s ahead and abeam and by 0.01 deg/s; what derivatives and a wind push along it. Expected:
-    what they push along the smooth motion and, by its slopes, beside it, within a twentieth of the difference."""
+    what they push along the smooth motion and, by its slopes, beside it, within a tenth of the difference."""
     t, model, _ = judged
     t = replace(t, weather=t.weather | {"wind_speed": np.full(len(t), 12.0), "wind_to": np.full(len(t), 0.7)})
     off, known = np.array([0.05, 0.1, 0.1, 2e-4]), catalogue()
@@ -49,7 +49,7 @@ def test_what_numbers_push_beside_the_smooth_motion_is_what_they_push_there(judg
     sd = np.array([u.sd for u in unknowns])
     change, told = (there.A - line.A) * sd, np.einsum("kaip,i->kap", line.bends[:, :, :4], off) * sd
     for j, unknown in enumerate(unknowns):
-        assert np.abs(told - change)[..., j].max() < 0.05 * np.abs(change)[..., j].max(), unknown.label
+        assert np.abs(told - change)[..., j].max() < 0.1 * np.abs(change)[..., j].max(), unknown.label
 
 
 def test_a_fit_that_is_begun_far_off_arrives_where_one_does_that_is_begun_near(judged):
