@@ -3,7 +3,8 @@
 A wrong name may lead a ship most of the way, for its size is what suits the voyages best. But it pulls in moments when nothing does,
 and a squall that is taken for a load, or a play of the gear for a slow gear, is explained by it here and there only. Then the voyages
 are more probable if most of what the effect does is left open at every moment. Nature writes a true effect otherwise than a catalogue
-does, by a fifth of it at most (DOUBTS, refine.py): to leave more open makes true voyages less probable.
+does, by a fifth of it as a rule (DOUBTS, refine.py): to leave more open makes true voyages less probable. Now and then its form is farther
+off; then it still leads her where she went, and voyages on which it were not at work at all would be less probable.
 """
 
 from dataclasses import replace
@@ -19,7 +20,7 @@ from .refine import DOUBTS, Found, standing
 from .respond import respond
 
 PUSH = ("Force", "Lag")  # kinds that are judged by what they do to her
-MOST_OF_IT = (0.4, 0.8, 1.6)  # shares that no true effect leaves open
+MOST_OF_IT = (0.4, 0.8, 1.6)  # shares that no true effect leaves open; the last is more than all of it
 CLEAR = 3.0  # log evidence by which the voyages must ask for one of them
 
 
@@ -30,7 +31,8 @@ def otherwise(case: Case, found: Found) -> list[str]:
     if not asked:
         return []
     lines, at = standing(case, found)
-    shares, world = np.array([*DOUBTS, *MOST_OF_IT]), plain(found.hypothesis).world
+    too_much = MOST_OF_IT[-1:] if found.off_m <= found.floor_m else MOST_OF_IT
+    shares, world = np.array([*DOUBTS, *too_much]), plain(found.hypothesis).world
     out = []
     for name in asked:
         bare = without(found.model, case.model, name)

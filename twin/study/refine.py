@@ -43,8 +43,8 @@ def refine(
 ) -> tuple[Found, list[Hypothesis]]:
     """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand; begun again farther out when
     that explains nothing plainly, or when a number whose effect is bent ended at nothing, or the whole below the log weight that was
-    `hoped` for to first order. What was found; and, about it, the hypothesis in every world, and every one that has one of `wider`
-    beside it."""
+    `hoped` for to first order. What was found; and, about it, the hypothesis in every world, every one that has one of `wider`
+    beside it, and every one without what any day brings."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     narrow, kept = case.narrowed(chosen)
     at = np.zeros_like(z)
@@ -54,7 +54,8 @@ def refine(
     reduced = _everywhere(case, chosen, lines, at, doubt)
     judged, own = _judged(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
-    return Found(best, boxed(reduced[best.world], chosen, own[best.world]), model, doubt), [*judged, *_beside(case, chosen, reduced, wider)]
+    others = [*_beside(case, chosen, reduced, wider), *_any_day(case, chosen, reduced)]
+    return Found(best, boxed(reduced[best.world], chosen, own[best.world]), model, doubt), [*judged, *others]
 
 
 def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float) -> tuple[Hypothesis, np.ndarray]:
@@ -149,6 +150,15 @@ def _beside(case: Case, chosen: Sets, reduced: dict[str, Reduced], wider: Sequen
         for name, evidence in weigh_with(r, chosen, wider):
             both = tuple(n for n in case.candidates if n in (*chosen, name))
             out.append(Hypothesis(both, world, evidence, case.log_prior(both, world)))
+    return out
+
+
+def _any_day(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> list[Hypothesis]:
+    """The hypotheses that leave one of these effects to what any day brings of it, about the size that it has today."""
+    daily = {u.owner for u in case.effects if u.label in case.nuisance.daily}
+    out = []
+    for rest in (tuple(n for n in chosen if n != name) for name in chosen if name in daily):
+        out += [h for h in _judged(case, rest, reduced)[0] if np.isfinite(h.log_prior)]
     return out
 
 

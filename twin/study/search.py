@@ -156,7 +156,7 @@ class _Book:
             self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}
             judged = [h for h in judged if h.effects != chosen]
         for h in judged:
-            if h.effects == chosen or (h.effects not in self.found and self._nearer(chosen, h)):
+            if self._counts(chosen, h):
                 self._enter(h)
 
     def _hollow(self, chosen: Sets) -> bool:
@@ -165,6 +165,16 @@ class _Book:
         z = self.found[chosen].posterior.z
         nothing = any(not np.any(z[[i for i, u in enumerate(self.case.effects) if u.owner == name]]) for name in chosen)
         return nothing or not floats(self.case, self.found[chosen])
+
+    def _counts(self, chosen: Sets, h: Hypothesis) -> bool:
+        """Whether what was said about the size of `chosen` is the better word on this hypothesis: on that set itself; on what leaves a part of
+        it to what any day brings, if it is likelier so; and on a wider set that was not judged about its own size, if this part is nearer."""
+        if h.effects == chosen:
+            return True
+        if set(h.effects) < set(chosen):
+            before = self.entries.get((h.effects, h.world))
+            return before is not None and h.log_weight > before.log_weight
+        return h.effects not in self.found and self._nearer(chosen, h)
 
     def _nearer(self, chosen: Sets, wider: Hypothesis) -> bool:
         """Whether no other part of the wider set was judged so far, or none about which the whole explains more: a slow gear is nothing

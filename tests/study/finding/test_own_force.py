@@ -5,11 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from twin.study import leftover
+from twin.study import leftover, own_force
 from twin.study.assemble import assemble
+from twin.study.evidence import Posterior
 from twin.study.leftover import answer
-from twin.study.own_force import otherwise, without
-from twin.study.refine import refine
+from twin.study.own_force import MOST_OF_IT, otherwise, without
+from twin.study.refine import DOUBTS, refine
 from twin.study.search import search
 
 
@@ -29,6 +30,19 @@ def test_a_true_cause_is_what_it_says_though_nature_writes_it_otherwise(worn):
 
 def test_drag_that_depends_on_the_place_is_no_tow(tanker, voyages):
     assert otherwise(*about_its_size(voyages["IceLike"], tanker, "TowForce")) == ["TowForce"]
+
+
+def test_one_that_leads_her_where_she_went_may_be_farther_off_its_form_but_not_be_something_else_altogether(tanker, voyages, monkeypatch):
+    """Test: shares of its own force that the voyages would rather have open, made up; led within the floor, and not. Expected: eight tenths of it
+    count against one that is not, and against one that is only more than all of it."""
+    case, found = about_its_size(voyages["RudderWear"], tanker, "RudderWear")
+    led = {within: replace(found, off_m=off_m, floor_m=10.0) for within, off_m in ((True, 9.0), (False, 11.0))}
+    for likeliest, odd in ((0.8, {True: [], False: ["RudderWear"]}), (1.6, {True: ["RudderWear"], False: ["RudderWear"]})):
+        says = [Posterior(np.zeros(0), np.zeros((0, 0)), 100.0 if k == likeliest else 0.0) for k in (*DOUBTS, *MOST_OF_IT)]
+        for within, named in odd.items():
+            asked = iter(says if not within else [*says[: len(DOUBTS)], says[-1]])
+            monkeypatch.setattr(own_force, "posterior", lambda *_, asked=asked: next(asked))
+            assert otherwise(case, led[within]) == named, (likeliest, within)
 
 
 def test_what_only_an_instrument_shows_has_no_force_to_ask_about(tanker, voyages):

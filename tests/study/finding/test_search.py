@@ -10,6 +10,7 @@ from twin.study.assemble import assemble
 from twin.study.case import WORLDS
 from twin.study.refine import Found
 from twin.study.search import _Book, search
+from twin.study.verdict import weights
 
 PAIR = ("RudderWear", "SteeringLag")
 
@@ -95,3 +96,20 @@ def test_what_any_day_brings_much_of_is_judged_about_its_own_size_without_having
         usual = replace(case, nuisance=replace(case.nuisance, daily=daily))
         assert book(usual)._of_the_day() == judged
         assert [s for s in book(usual).first if s == ("Current",)][:1] == judged
+
+
+def test_what_any_day_brings_is_no_news_where_it_stands_today(tanker, voyages):
+    """Test: a stream as strong as any day's, and a ship that knows that and one that does not. Expected: that it is nothing new is likelier once
+    it was judged where it stands, and nobody calls it missing; to the ship that knows no streams it is one."""
+    case = assemble([voyages["Current"]], tanker)
+    daily = dict.fromkeys(("Current.north", "Current.east"), 0.5)
+    usual = replace(case, nuisance=replace(case.nuisance, daily=daily))
+    nothing = {}
+    for name, told in (("knows", usual), ("knows not", case)):
+        held = book(told)
+        before = max(h.log_weight for h in held.weighed() if not h.effects)
+        held.judge(("Current",))
+        nothing[name] = max(h.log_weight for h in held.weighed() if not h.effects) - before
+    assert nothing["knows"] > 1.0 and nothing["knows not"] == 0.0
+    weighed, _, _ = search(usual)
+    assert weights(usual, weighed).effects["Current"] < 0.5
