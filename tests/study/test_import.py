@@ -31,7 +31,7 @@ def test_the_reference_voyage_of_a_new_ship_is_for_her_calibration(sail, write_c
     main(["init", "MV Alma", "--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5", "-o", str(ship)])
     assert run(write_csv(sail()), "--ship", ship, "--accept", "propeller_rate", "--accept", "ship_size", "-o", out) == 0
     said = capsys.readouterr().out
-    assert f"twin calibrate REF-1.mcap REF-2.mcap ... --ship {ship}" in said and f"twin diagnose {out}" in said
+    assert f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship}" in said and f"twin diagnose {out}" in said
 
 
 def test_a_good_file_goes_in_and_the_next_command_is_named(sail, write_csv, tmp_path, capsys):

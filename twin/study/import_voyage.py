@@ -94,7 +94,7 @@ def _next(voyage: str, ship: str | None) -> str:
         better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
         return (
             "her model was not calibrated yet. Import the voyages on which nothing was wrong (three or more), then "
-            f"twin calibrate REF-1.mcap REF-2.mcap ... --ship {ship} -o {better}; after that, twin diagnose {voyage} --ship {better}"
+            f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship} -o {better}; after that, twin diagnose {voyage} --ship {better}"
         )
     return f"twin compare {voyage} --ship {ship or 'SHIP.toml'}"
 

@@ -32,7 +32,7 @@ OPTIONS: tuple[tuple[str, str, float, float], ...] = (
     ("propellers", "how many propellers turn alike; default 1", 1.0, 4.0),
     ("propeller-diameter-m", "diameter of each propeller", 0.005, 15.0),
     ("pitch-ratio", "propeller pitch over diameter", 0.3, 2.0),
-    ("rudder-area-m2", "moveable area of all rudders, one behind each propeller", 1e-5, 250.0),
+    ("rudder-area-m2", "moveable area of all rudders together", 1e-5, 250.0),
     ("rudder-height-m", "height (span) of each rudder", 0.005, 20.0),
     ("frontal-area-m2", "frontal area above the water, for Wind; default B^2/2", 1e-4, 5000.0),
     ("lateral-area-m2", "lateral area above the water, for Wind; default 0.06 L^2", 1e-4, 20000.0),

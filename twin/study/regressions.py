@@ -71,7 +71,7 @@ def outside(h: Hull) -> list[str]:
     for source, name, lo, hi in VALIDITY:
         if not lo <= h.ratios[name] <= hi:
             found.setdefault(name, []).append(f"{SOURCES[source].split(')')[0]}) {lo:g} to {hi:g}")
-    return [f"{name} = {h.ratios[name]:.3g} is unlike the hulls of {', '.join(where)}" for name, where in found.items()]
+    return [f"{name} = {h.ratios[name]:.3g} is unlike the hulls of {', '.join(where)}: rougher until calibrated" for name, where in found.items()]
 
 
 def nearest(h: Hull) -> Hull:
