@@ -8,17 +8,29 @@ faster than a ship manoeuvres; whether that is likelier than an even one, the vo
 from dataclasses import replace
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from .track import Track, running_mean
 
 SWIFT = 0.5  # L/U_0: what swings about the mean over so long a time no ship does by her rudder
 LATELY = 8.0  # L/U_0: on another course waves are met otherwise
+CLEAR = 1.5  # times its usual scatter, from which a reading scatters more
+NORMAL = 1.4826  # standard deviations in a median of sizes; one wild reading is none
 
 
 def shaken(track: Track, time: float) -> Track:
-    """The track with its readings' scatter as it was at each moment, and nowhere less than its usual one (`time`: L/U_0)."""
+    """The track with its readings' scatter as it was at each moment, where that was clearly more than its usual one (`time`: L/U_0)."""
     beside = track.measured - track.state[:, [0, 1, 2, 3, 4, 5, 3, 4]]
     swift, lately = (max(3, round(k * time / track.h)) for k in (SWIFT, LATELY))
-    fast = np.column_stack([np.where(np.isfinite(e), e - running_mean(e, swift), np.nan) for e in beside.T])
-    size = np.sqrt(np.column_stack([running_mean(e**2, lately) for e in fast.T]))
-    return replace(track, unrest=np.maximum(size / track.sd, 1.0))
+    size = np.column_stack([_lately(np.abs(e - running_mean(e, swift)), lately) for e in beside.T])
+    more = NORMAL * size / track.sd
+    return replace(track, unrest=np.where(more > CLEAR, more, 1.0))
+
+
+def _lately(values: np.ndarray, steps: int) -> np.ndarray:
+    """Median over the readings within so many steps of each; none where there are none."""
+    there = np.flatnonzero(np.isfinite(values))
+    if not there.size:
+        return np.zeros(values.size)
+    width = max(3, round(steps * there.size / values.size))
+    return np.interp(np.arange(values.size), there, median_filter(values[there], width, mode="reflect"))
