@@ -8,7 +8,7 @@ import pytest
 from twin.study import leftover
 from twin.study.assemble import assemble
 from twin.study.columns import with_values
-from twin.study.leftover import ASTRAY, CLEAR, astray, explains, helpful, quiet, too_small, undone
+from twin.study.leftover import ASTRAY, CLEAR, astray, explains, helpful, missed, quiet, too_small, undone
 from twin.study.search import search
 from twin.study.tell_diagnosis import sentence
 
@@ -147,6 +147,18 @@ def test_and_it_is_said_how_far_off_that_is():
     result = UNDECIDED | {"probabilities": silent, "path": path}
     assert "after 120 s the model ends 31.6 m from where she went (12.4 m would be usual)" in sentence(result)
     assert "what, if anything" in sentence(result | {"path": path | {"error_without": 13.0}})
+
+
+def test_something_unknown_is_missing_only_on_a_ship_that_does_not_go_where_the_model_leads_her(judged):
+    _, found = judged
+    assert missed(replace(found, off_m=1.51, floor_m=1.0)) and not missed(replace(found, off_m=1.49, floor_m=1.0))
+
+
+def test_and_else_it_is_said_that_she_goes_where_she_is_led():
+    path = {"horizon_s": 48.0, "error_without": 1.93, "error_floor": 1.93}
+    result = UNDECIDED | {"probabilities": {"nothing_missing": 0.0, "unknown": 1.0}, "path": path}
+    assert "leads her where she went (1.93 m off after 48 s, 1.93 m would be usual)" in sentence(result)
+    assert "where she went (" not in sentence(result | {"path": path | {"error_without": 3.0}})
 
 
 @pytest.mark.parametrize(("ahead_m", "no_pair"), [(16.0, True), (-16.0, False), (60.0, False)])
