@@ -14,7 +14,7 @@ import torch
 
 from twin.physics import core
 from twin.physics.model import CORE, Model
-from twin.physics.state import Force, Number, Situation
+from twin.physics.state import LIGHT, Force, Growth, Situation
 
 from .network import Residual
 
@@ -31,9 +31,9 @@ class Held:
         return self.force
 
 
-def needed(model: Model, rate: torch.Tensor, k_m: Number = 0.0) -> torch.Tensor:
-    """(B, 3) M nu_dot in newtons, where the added mass has grown by the share k_m."""
-    return torch.stack(core.force_for(*rate.unbind(-1), model.c, k_m), -1)  # type: ignore[arg-type]
+def needed(model: Model, rate: torch.Tensor, grown: Growth = LIGHT) -> torch.Tensor:
+    """(B, 3) M nu_dot in newtons, where the added mass has `grown`."""
+    return torch.stack(core.force_for(*rate.unbind(-1), model.c, grown), -1)  # type: ignore[arg-type]
 
 
 def known(model: Model, s: Situation) -> torch.Tensor:
@@ -45,7 +45,7 @@ def known(model: Model, s: Situation) -> torch.Tensor:
 def left_over(model: Model, s: Situation, rate: torch.Tensor, scale: torch.Tensor) -> torch.Tensor:
     """(B, 3) what the known forces leave, in units of the force scale; sets the speeds through water of s."""
     forces = known(model, s)  # first: it finds how her added mass has grown
-    return (needed(model, rate, s.k_m) - forces) / scale
+    return (needed(model, rate, s.grown) - forces) / scale
 
 
 def acceleration(network: Residual, zeta: torch.Tensor, d: torch.Tensor, size: torch.Tensor) -> torch.Tensor:

@@ -129,7 +129,7 @@ def test_an_effect_gives_the_unit_it_should(Kind, world):
         altered = effect.alter(ship)
         assert all(getattr(altered, f.name).unit == UNITS[f.metadata["unit"]] for f in PARTICULARS)
     elif Kind.kind == "Flow":
-        for component, unit in zip(effect.water(s, ship), ("m/s", "m/s", *"-----"), strict=True):
+        for component, unit in zip(effect.water(s, ship), ("m/s", "m/s", *"------"), strict=True):
             assert not isinstance(component, Quantity) or component.unit == UNITS[unit]
     elif Kind.kind == "SensorFault":
         read = effect.read(s, ship)

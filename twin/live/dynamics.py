@@ -15,7 +15,7 @@ from twin.physics.effect import Effect, Flow, Lag
 from twin.physics.maths import cos, sin
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-from twin.physics.state import WEATHER, Force, Number, Rates, Situation, Water
+from twin.physics.state import LIGHT, WEATHER, Force, Growth, Number, Rates, Situation, Water
 
 Forces = Sequence[core.Tau]
 NONE = Force(0.0, 0.0, 0.0)
@@ -57,7 +57,7 @@ class Known:
         X, Y, N = learned
         for x, y, n in forces:
             X, Y, N = X + x, Y + y, N + n
-        u_dot, v_dot, r_dot = core.accelerations(X, Y, N, self.model.c, s.k_m)
+        u_dot, v_dot, r_dot = core.accelerations(X, Y, N, self.model.c, s.grown)
         r = s.r
         return Rates(u_dot + r * (s.v - s.v_r), v_dot - r * (s.u - s.u_r), r_dot)
 
@@ -88,9 +88,9 @@ class Known:
             (k1[2] + 2.0 * (k2[2] + k3[2]) + k4[2]) / 6.0,
         )
 
-    def force_for(self, u_dot: Number, v_dot: Number, r_dot: Number, k_m: Number = 0.0) -> Force:
-        """The force that an acceleration takes, where her added mass has grown by the share k_m."""
-        return Force(*core.force_for(u_dot, v_dot, r_dot, self.model.c, k_m))
+    def force_for(self, u_dot: Number, v_dot: Number, r_dot: Number, grown: Growth = LIGHT) -> Force:
+        """The force that an acceleration takes, where her added mass has `grown`."""
+        return Force(*core.force_for(u_dot, v_dot, r_dot, self.model.c, grown))
 
 
 class Dynamics:

@@ -139,7 +139,7 @@ def contribution(model: Model, s: Situation, names: frozenset[str]) -> tuple[Any
     for name, (x, y, n) in zip(model.names, model.forces(s, water), strict=True):
         if name in names:
             X, Y, N = X + x, Y + y, N + n
-    u_dot, v_dot, r_dot = core.accelerations(X, Y, N, model.c, water.k_m)
+    u_dot, v_dot, r_dot = core.accelerations(X, Y, N, model.c, (water.k_m, water.k_j))
     if "hull" in names:
         u_dot, v_dot = u_dot + s.r * water.v, v_dot - s.r * water.u
     return u_dot, v_dot, r_dot

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 
 from twin.live.dynamics import Known
 from twin.physics.ship import Ship
-from twin.physics.state import Force, Rates
+from twin.physics.state import LIGHT, Force, Growth, Rates
 
 Three = tuple[float, float, float]
 SETTLED = 5.0  # time constants until d may be used: what both filters began with is 4 % by then
@@ -50,7 +50,7 @@ class Evidence:
 
     def feed(
         self, nu: Three, known: Rates, learned: Three, trained: Three, regressors: Sequence[float], physics: Known, dt: float,
-        k_m: float = 0.0,
+        grown: Growth = LIGHT,
     ) -> None:  # fmt: skip
         """Measured nu, accelerations the known forces give, learned and trained force [S], seconds since
         the last time, growth of the added mass."""
@@ -61,7 +61,7 @@ class Evidence:
         self._low = low = _low_passed(self._low, new, a)
         lam = self.lam / (1.0 - a)  # exact for steps of dt: the low-pass has already taken in a share a of the newest nu
         u, v, r = (lam * (y - f) - F for y, f, F in zip(nu, low[:3], low[3:6], strict=True))
-        X, Y, N = physics.force_for(u, v, r, k_m)
+        X, Y, N = physics.force_for(u, v, r, grown)
         x, y, n = X / self.scale.X, Y / self.scale.Y, N / self.scale.N
         once = [x, y, n, *low[6:]]
         self._twice = _low_passed(self._twice if self._heard_s else once, once, a)

@@ -116,7 +116,7 @@ class LearnedForce:
         if named:
             columns = named.columns.at(s, forces, physics, learned.force)
             regressors = [*regressors, *columns, *named.shift(columns)]
-        evidence.feed(nu, physics.rates_of(s, forces), learned.shadow, learned.trained, regressors, physics, dt, s.k_m)
+        evidence.feed(nu, physics.rates_of(s, forces), learned.shadow, learned.trained, regressors, physics, dt, s.grown)
         if evidence.ready:
             self._doubt_the_helm(s, forces, dt)
         frozen = frozen or self.helm.stuck or self.helm.resting

@@ -89,14 +89,14 @@ class Columns:
         if physics.model is not self._model:
             self._model, self._probes = physics.model, [self.probe(physics.model, n) for n in self.numbers]
         u, v, r = physics.rates_of(s, forces, learned)
-        out, s, k_m = [], copy(s), s.k_m
+        out, s, grown = [], copy(s), s.grown
         for probe in self._probes:
             if probe is None:
                 out += [0.0, 0.0, 0.0]
                 continue
             model, share = probe
             rates = Known(model, physics.current).rates(s, learned)
-            push = physics.force_for(rates.u - u, rates.v - v, rates.r - r, k_m)
+            push = physics.force_for(rates.u - u, rates.v - v, rates.r - r, grown)
             out += [_cut(x / size / share) for x, size in zip(push, self.scale, strict=True)]
         return out
 

@@ -11,7 +11,7 @@ from math import pi
 from typing import TYPE_CHECKING
 
 from .maths import cos, positive, sin, sqrt
-from .state import Number
+from .state import LIGHT, Growth, Number
 
 if TYPE_CHECKING:
     from .ship import Ship
@@ -141,14 +141,14 @@ def rudder(u: Number, v: Number, r: Number, delta: Number, thrust: Number, c: Co
     return -c.drag_R * normal * si, c.side_R * athwart, c.lever_R * athwart
 
 
-def force_for(u_dot: Number, v_dot: Number, r_dot: Number, c: Coefficients, k_m: Number = 0.0) -> Tau:
+def force_for(u_dot: Number, v_dot: Number, r_dot: Number, c: Coefficients, grown: Growth = LIGHT) -> Tau:
     """M nu_dot: the force that an acceleration takes, the other way round of `accelerations`."""
-    m_v, m_r = c.m_v - k_m * c.Y_vdot, c.m_r - k_m * c.N_rdot
+    m_v, m_r = c.m_v - grown[0] * c.Y_vdot, c.m_r - grown[1] * c.N_rdot
     return c.m_u * u_dot, m_v * v_dot + c.m_vr * r_dot, c.m_rv * v_dot + m_r * r_dot
 
 
-def accelerations(X: Number, Y: Number, N: Number, c: Coefficients, k_m: Number = 0.0) -> Tau:
-    """M^-1 tau by components: surge stands alone, sway and yaw are a 2 x 2 system. k_m: growth of their added mass, as a share."""
-    m_v, m_r = c.m_v - k_m * c.Y_vdot, c.m_r - k_m * c.N_rdot
+def accelerations(X: Number, Y: Number, N: Number, c: Coefficients, grown: Growth = LIGHT) -> Tau:
+    """M^-1 tau by components: surge stands alone, sway and yaw are a 2 x 2 system. `grown`: by how much their added mass has."""
+    m_v, m_r = c.m_v - grown[0] * c.Y_vdot, c.m_r - grown[1] * c.N_rdot
     det = m_v * m_r - c.m_vr * c.m_rv
     return X / c.m_u, (m_r * Y - c.m_vr * N) / det, (m_v * N - c.m_rv * Y) / det

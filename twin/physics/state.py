@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 Number = Any
+Growth = tuple[Number, Number]  # of the added mass in sway and of the added inertia in yaw, as shares of them
+LIGHT: Growth = (0.0, 0.0)
 
 
 class Force(NamedTuple):
@@ -24,9 +26,10 @@ class Force(NamedTuple):
 class Water(NamedTuple):
     """The water an effect makes the ship feel.
 
-    (u, v): its velocity in body axes [m/s]. (k_u, k_v, k_r): by how much it holds the hull harder in surge, sway and turning, as
-    shares of the hull's damping; k_n: by how much harder drift turns her, Munk's moment included (a bottom squeezes the stream past
-    her; propeller and rudder, in the wake, do not feel it). k_m: by how much more of it sways and turns with her, as a share of the added mass.
+    (u, v): its velocity in body axes [m/s]. (k_u, k_v, k_r): by how much it holds the hull harder in surge, sway and yaw, as
+    shares of the hull's damping, in yaw of the whole moment, Munk's included (a bottom squeezes the stream past her; propeller
+    and rudder, in the wake, do not feel it). k_m, k_j: by how much more of it sways and turns with her, as shares of the added
+    mass in sway and of the added inertia in yaw.
     k_t: share of the thrust that drives her by which it takes the ship back (thrust deduction).
     """
 
@@ -35,8 +38,8 @@ class Water(NamedTuple):
     k_u: Number = 0.0
     k_v: Number = 0.0
     k_r: Number = 0.0
-    k_n: Number = 0.0
     k_m: Number = 0.0
+    k_j: Number = 0.0
     k_t: Number = 0.0
 
 
@@ -67,7 +70,7 @@ class Situation:
     r: Number = 0.0
     u_r: Number = 0.0
     v_r: Number = 0.0
-    k_m: Number = 0.0  # by how much the added mass in sway and yaw has grown, as a share of it
+    grown: Number = LIGHT  # Growth: by how much the added mass in sway and yaw has grown, as shares of it
     delta: Number = 0.0  # rudder [rad], positive turns to starboard
     n: Number = 0.0  # propeller [1/s], positive ahead
     t: Number = 0.0  # time since the voyage began [s]

@@ -11,6 +11,7 @@ import numpy as np
 
 from twin.physics import core
 from twin.physics.model import Model
+from twin.physics.state import Growth
 
 from .respond import lagged
 from .start import noisy, true_motion
@@ -51,13 +52,13 @@ def _energy(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray, np.ndar
     physics = replace(model, residual=None)
     known = physics.known(s)
     rates = np.column_stack([np.broadcast_to(a, track.t.shape) for a in physics.nu_dot(s)])
-    k_m = float(np.mean(s.k_m))
+    grown = float(np.mean(s.grown[0])), float(np.mean(s.grown[1]))
     learned = np.zeros_like(rates)
     if model.residual is not None:
         learned = np.column_stack([np.broadcast_to(f, track.t.shape) for f in model.residual(s)])
     noise = noisy(track, model, np.random.default_rng(0))[:, 3:]
-    missing = _force(_slope(state[:, 3:], track.h, width) - _mean(rates, width), model, k_m) - _mean(learned, width)
-    shaken = _force(_slope(noise, track.h, width), model, k_m)
+    missing = _force(_slope(state[:, 3:], track.h, width) - _mean(rates, width), model, grown) - _mean(learned, width)
+    shaken = _force(_slope(noise, track.h, width), model, grown)
     whole = _mean(track.whole[:, None].astype(float), width) > 0.999
     each = np.array([sum(np.broadcast_to(np.square(f[i]), track.t.shape)[track.whole].sum() for f in known.values()) for i in range(3)])
     square = np.where(whole, np.square(missing) - np.square(shaken), 0.0)
@@ -75,6 +76,6 @@ def _mean(values: np.ndarray, width: int) -> np.ndarray:
     return (total[width:] - total[:-width]) / width
 
 
-def _force(a: np.ndarray, model: Model, k_m: float) -> np.ndarray:
+def _force(a: np.ndarray, model: Model, grown: Growth) -> np.ndarray:
     u, v, r = a.T
-    return np.column_stack(core.force_for(u, v, r, model.c, k_m))
+    return np.column_stack(core.force_for(u, v, r, model.c, grown))
