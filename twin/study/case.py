@@ -118,8 +118,9 @@ def settle(case: Case) -> Case:
     def scores(lines: Sequence[Linear]) -> list[float]:
         return [posterior(r, case.candidates).log_evidence for r in case.reduced(lines, floors)]
 
-    even, shaky = scores(case.lines), scores(uneven)
-    lines, told = (uneven, shaky) if max(shaky) > max(even) + UNEVEN else (case.lines, even)
+    lines, told = case.lines, scores(case.lines)
+    if any(x.track.unrest is not None for x in uneven) and max(shaky := scores(uneven)) > max(told) + UNEVEN:
+        lines, told = uneven, shaky
     best = int(np.argmax(told))
     return replace(case, lines=lines, floor=floors[best], path=_rougher(case.path, *grid[best]))
 

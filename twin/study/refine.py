@@ -156,10 +156,8 @@ def _beside(case: Case, chosen: Sets, reduced: dict[str, Reduced], wider: Sequen
 def _any_day(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> list[Hypothesis]:
     """The hypotheses that leave one of these effects to what any day brings of it, about the size that it has today."""
     daily = {u.owner for u in case.effects if u.label in case.nuisance.daily}
-    out = []
-    for rest in (tuple(n for n in chosen if n != name) for name in chosen if name in daily):
-        out += [h for h in _judged(case, rest, reduced)[0] if np.isfinite(h.log_prior)]
-    return out
+    left = [tuple(n for n in chosen if n != name) for name in chosen if name in daily]
+    return [h for rest in left for h in _judged(case, rest, reduced)[0]]
 
 
 def clipped(case: Case, z: np.ndarray) -> np.ndarray:

@@ -39,7 +39,7 @@ def test_one_wild_reading_is_no_unrest(voyages, tanker):
     t, time = track(voyages["RudderWear"], tanker), float(tanker.scale("time"))
     wild = t.measured.copy()
     wild[len(t) // 2, :GYRO] += 1000.0 * t.sd[:GYRO]
-    np.testing.assert_allclose(shaken(replace(t, measured=wild), time).unrest, shaken(t, time).unrest, rtol=0.2)
+    assert shaken(t, time).unrest is None and shaken(replace(t, measured=wild), time).unrest is None
 
 
 def test_ripples_that_one_instrument_shows_are_no_rough_world_and_the_cause_is_found_in_them(ripples, voyages, tanker):
