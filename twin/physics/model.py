@@ -73,9 +73,9 @@ class Model:
         return total
 
     def forces(self, s: Situation, w: Water) -> list[core.Tau]:
-        """Every known force, in the order of `names`. Sets s.u_r, s.v_r and s.grown."""
+        """Every known force, in the order of `names`. Sets s.u_r, s.v_r, s.k_m and s.k_j."""
         s.u_r, s.v_r = u, v = s.u - w.u, s.v - w.v
-        s.grown = w.k_m, w.k_j
+        s.k_m, s.k_j = w.k_m, w.k_j
         c, r, ship = self.c, s.r, self.loaded
         thrust = core.thrust(u, s.n, c)
         X, Y, N = core.damping(u, v, r, c)
@@ -103,7 +103,7 @@ class Model:
         X = Y = N = 0.0
         for x, y, n in forces:
             X, Y, N = X + x, Y + y, N + n
-        u_dot, v_dot, r_dot = core.accelerations(X, Y, N, self.c, s.grown)
+        u_dot, v_dot, r_dot = core.accelerations(X, Y, N, self.c, (w.k_m, w.k_j))
         return Rates(u_dot + s.r * w.v, v_dot - s.r * w.u, r_dot)  # the ship turns in a current that does not
 
     def derivative(self, state: Eta_nu, s: Situation) -> Eta_nu:

@@ -70,7 +70,8 @@ class Situation:
     r: Number = 0.0
     u_r: Number = 0.0
     v_r: Number = 0.0
-    grown: Number = LIGHT  # Growth: by how much the added mass in sway and yaw has grown, as shares of it
+    k_m: Number = 0.0  # by how much the added mass in sway has grown, as a share of it
+    k_j: Number = 0.0  # and the added inertia in yaw
     delta: Number = 0.0  # rudder [rad], positive turns to starboard
     n: Number = 0.0  # propeller [1/s], positive ahead
     t: Number = 0.0  # time since the voyage began [s]
@@ -86,6 +87,10 @@ class Situation:
     phi: Number = None  # roll [rad], starboard side down positive
     u_dot: Number = 0.0  # acceleration over ground in body axes [m/s2], where it was worked out: only a late sensor asks for it
     v_dot: Number = 0.0
+
+    @property
+    def grown(self) -> Growth:
+        return self.k_m, self.k_j
 
 
 WEATHER = (

@@ -38,7 +38,7 @@ def answer(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found
     as well, if one is not (of two forms that are only roughly right, one mends the other); or none. (`strict`: as `explains`.)"""
     if not chosen or not explains(case, weighed, found[chosen], found[()], strict):
         return ()
-    odd = otherwise(case, found[chosen])
+    odd = otherwise(case, found[chosen], found[()])
     rest = tuple(name for name in chosen if name not in odd)
     return chosen if not odd else answer(case, weighed, found, rest, strict) if rest in found else ()
 

@@ -4,7 +4,8 @@ A wrong name may lead a ship most of the way, for its size is what suits the voy
 and a squall that is taken for a load, or a play of the gear for a slow gear, is explained by it here and there only. Then the voyages
 are more probable if most of what the effect does is left open at every moment. Nature writes a true effect otherwise than a catalogue
 does, by a fifth of it as a rule (DOUBTS, refine.py): to leave more open makes true voyages less probable. Now and then its form is farther
-off; then it still leads her where she went, and voyages on which it were not at work at all would be less probable.
+off; then it still leads her where she went, as the model alone does not, and voyages on which it were not at work at all would be less
+probable.
 """
 
 from dataclasses import replace
@@ -24,15 +25,16 @@ MOST_OF_IT = (0.4, 0.8, 1.6)  # shares that no true effect leaves open; the last
 CLEAR = 3.0  # log evidence by which the voyages must ask for one of them
 
 
-def otherwise(case: Case, found: Found) -> list[str]:
-    """The effects of a hypothesis whose force the voyages would clearly rather have otherwise, whatever the others explain."""
+def otherwise(case: Case, found: Found, nothing: Found) -> list[str]:
+    """The effects of a hypothesis whose force the voyages would clearly rather have otherwise, whatever the others explain (`nothing`: the
+    hypothesis without any)."""
     kinds = ((name, case.catalogue[name]) for name in found.hypothesis.effects)
     asked = [name for name, kind in kinds if kind.kind in PUSH and not kind.irregular]
     if not asked:
         return []
     lines, at = standing(case, found)
-    too_much = MOST_OF_IT[-1:] if found.off_m <= found.floor_m else MOST_OF_IT
-    shares, world = np.array([*DOUBTS, *too_much]), plain(found.hypothesis).world
+    led = found.off_m <= found.floor_m and nothing.off_m > nothing.floor_m
+    shares, world = np.array([*DOUBTS, *(MOST_OF_IT[-1:] if led else MOST_OF_IT)]), plain(found.hypothesis).world
     out = []
     for name in asked:
         bare = without(found.model, case.model, name)

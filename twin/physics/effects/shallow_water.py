@@ -1,11 +1,11 @@
 """Shallow water: the bottom squeezes the stream past the hull, whose damping and added mass grow.
 
     F = T/h,  g(F) = F^2/(1 - F):   X, Y, N of the hull times 1 + surge g, 1 + sway g, 1 + yaw g
-    added mass in sway times 1 + heavier a, in yaw times 1 + slower a, with a(F) = (F/(1 - F))^0.82
+    added mass in sway times 1 + heavier g, in yaw times 1 + slower g
     of the thrust 1 - thrust F^2 drives her (and at the rudder it is what it was)
 N is the whole moment of the hull, Munk's included. With sway = 0.75 the side force grows x1.4, x2.0 and x4.2 at h/T = 2, 1.5 and
-1.2, as Kijima's regression 1/(1-F)^n - F gives for a full tanker (n = 0.9); with heavier = 1 the added mass x2, x2.8 and x4.7. Li & Wu's
-regression has 1 to 2.5 for it and a third of that in yaw, slender bodies half of it and as much in yaw.
+1.2, as Kijima's regression 1/(1-F)^n - F gives for a full tanker (n = 0.9); with heavier = 1 the added mass x1.5, x2.3 and x5.2. Li & Wu's
+regression has 1.5 to 3 for it and a third of that in yaw, slender bodies 0.5 for both.
 The propeller draws harder at the stern of a hull that the bottom holds: with thrust = 0.35 it drives her by 9, 16 and 24 % less,
 as (1 - t)/(1 - 0.2 F + 0.7295 F^2) has it. Below h/T = 1.05 the growth is held.
 """
@@ -30,14 +30,13 @@ class ShallowWater(Flow):
     sway: float = param(0.75, unit="-", lo=0.0, hi=3.0, sd=0.6, doc="how fast the side force grows with g(T/h)")
     yaw: float = param(0.35, unit="-", lo=0.0, hi=2.0, sd=0.3, doc="how fast the yaw moment grows with g(T/h)")
 
-    heavier: float = param(1.0, unit="-", lo=0.0, hi=6.0, sd=0.6, doc="how fast the added mass in sway grows with a(T/h)")
-    slower: float = param(0.4, unit="-", lo=0.0, hi=3.0, sd=0.4, doc="how fast the added inertia in yaw grows with a(T/h)")
+    heavier: float = param(1.0, unit="-", lo=0.0, hi=6.0, sd=1.0, doc="how fast the added mass in sway grows with g(T/h)")
+    slower: float = param(0.4, unit="-", lo=0.0, hi=3.0, sd=0.6, doc="how fast the added inertia in yaw grows with g(T/h)")
     thrust: float = param(0.35, unit="-", lo=0.0, hi=1.0, sd=0.3, doc="share of the driving thrust that is lost, over (T/h)^2")
 
     def water(self, s: Situation, ship: Ship) -> Water:
         F = ship.T / maximum(s.depth, 1.05 * ship.T)
         g = F * F / (1.0 - F)
-        a = (F / (1.0 - F)) ** 0.82
         return Water(
-            k_u=self.surge * g, k_v=self.sway * g, k_r=self.yaw * g, k_m=self.heavier * a, k_j=self.slower * a, k_t=self.thrust * F * F
+            k_u=self.surge * g, k_v=self.sway * g, k_r=self.yaw * g, k_m=self.heavier * g, k_j=self.slower * g, k_t=self.thrust * F * F
         )  # fmt: skip
