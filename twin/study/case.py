@@ -113,7 +113,7 @@ def settle(case: Case) -> Case:
     white, time = case.floor.white, float(case.model.ship.scale("time"))
     grid = [(float(k), sensor) for sensor in (1.0, 3.0) for k in np.geomspace(1.0, max(WAVES / white, 4.0), 5)]
     floors = [_rougher(case.floor, *factors) for factors in grid]
-    uneven = tuple(replace(x, track=shaken(x.track, time)) for x in case.lines)
+    uneven = tuple(_uneven(x, time) for x in case.lines)
 
     def scores(lines: Sequence[Linear]) -> list[float]:
         return [posterior(r, case.candidates).log_evidence for r in case.reduced(lines, floors)]
@@ -123,6 +123,11 @@ def settle(case: Case) -> Case:
         lines, told = uneven, shaky
     best = int(np.argmax(told))
     return replace(case, lines=lines, floor=floors[best], path=_rougher(case.path, *grid[best]))
+
+
+def _uneven(line: Linear, time: float) -> Linear:
+    shown = shaken(line.shown, time)
+    return replace(line, shown=shown, track=replace(line.track, unrest=shown.unrest))
 
 
 def _rougher(floor: Floor, white: float, sensor: float) -> Floor:

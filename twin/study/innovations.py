@@ -61,7 +61,8 @@ class Floor:
 class Linear:
     """One track, linearised about its smooth motion and a model: all that the filter needs, for any floor."""
 
-    track: Track
+    track: Track  # with the model's faults of instruments taken out of the motion
+    shown: Track  # with them in it
     F: np.ndarray  # (N, 11, 11)
     defect: np.ndarray  # (N, 6): model's step minus the smooth motion's
     H: np.ndarray  # (N, 8, 11)
@@ -89,7 +90,7 @@ def linearise(
     """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model already holds), about the
     motion as it was if the model's sensor faults are there. `smooth`: these are judged along that motion alone. `exact`: what unknowns push
     is known beside that motion, too, where the filter believes her to be."""
-    track = undone(track, model)
+    shown, track = track, undone(track, model)
     late_s, prompt = model.prompt()  # what is late shows another moment: no slope of this one says a wave two seconds ago
     reading = later(track, respond(track, prompt)[1], late_s)
     A, R = columns(track, model, unknowns, catalogue, at)
@@ -105,12 +106,12 @@ def linearise(
     defect[-1] = 0.0
     system, reader = _system(track, model), _reader(track)
     if model.faults:
-        shown = faulty(track, prompt)
-        track, reader = waves.as_shown(track, shown), shown @ reader
+        slopes = faulty(track, prompt)
+        track, reader = waves.as_shown(track, slopes), slopes @ reader
     if late_s:  # what was true between two steps is read at the nearer one, on her way to the other
         off = round(late_s / track.h) - late_s / track.h
         reader[:, SATELLITES] = reader[:, SATELLITES] @ (np.eye(STATES) + off * (system - np.eye(STATES)))
-    return Linear(track, system, defect, reader, e, A.astype(np.float32), R.astype(np.float32), turned, bent, busy(track, model), model)
+    return Linear(track, shown, system, defect, reader, e, A.astype(np.float32), R.astype(np.float32), turned, bent, busy(track, model), model)
 
 
 def _system(track: Track, model: Model) -> np.ndarray:

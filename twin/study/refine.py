@@ -179,7 +179,7 @@ def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown])
     lines = []
     for line in case.lines:
         here, _ = model.without_inputs(line.track.missing())
-        new = linearise(line.track, here, fresh, case.catalogue, at)
+        new = linearise(line.shown, here, fresh, case.catalogue, at)
         A, R = line.A.copy(), line.R.copy()
         A[:, :, place], R[:, :, place] = new.A, new.R
         sure = line.model.but(*(flow for flow in here.flows if flow.stream))

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from twin.physics.effects import find
 from twin.study.assemble import assemble
 from twin.study.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _place, _told, about
 
@@ -86,3 +87,13 @@ def test_what_comes_and_goes_with_wave_groups_may_be_something_else_as_a_whole(c
     monkeypatch.setattr("twin.study.refine.posterior", lambda r, chosen: SimpleNamespace(log_evidence=0.0))
     _doubt(case, chosen, case.lines, "usual", np.zeros(len(case.effects)))
     assert max(floor.doubt for floor in asked) == most and min(floor.doubt for floor in asked) == DOUBTS[-1]
+
+
+def test_an_antenna_that_the_ship_file_knows_is_taken_out_of_the_motion_once(tanker, voyages):
+    """Expected: about nothing, what the readings are off by is what it was: not the antenna's place once more."""
+    antenna = find("AntennaOffset").absent(tanker).but(ahead=0.1 * tanker.L_pp)
+    case = assemble([voyages["SteeringLag"]], tanker.with_effects(*tanker.effects, antenna))
+    mine = rows(case, "SensorDelay")
+    for before, after in zip(case.lines, about(case, np.zeros(len(case.effects)), mine, [case.effects[i] for i in mine])[1], strict=True):
+        assert after.e == pytest.approx(before.e, abs=1e-9, nan_ok=True) and after.shown is before.shown
+        assert np.hypot(*(before.track.state - before.shown.state).T[:2]) == pytest.approx(0.1 * tanker.L_pp, rel=1e-6)
