@@ -37,10 +37,10 @@ def test_a_ship_that_is_tossed_about_is_not_quiet(judged):
     case, found = judged
     (line,) = case.lines
     swing = 0.2 * np.sin(2.0 * np.pi / 20.0 * line.track.t)
-    state, measured = line.track.state.copy(), line.track.measured.copy()
+    state, measured = line.shown.state.copy(), line.shown.measured.copy()
     for column in (state[:, 4], measured[:, 4], measured[:, 7]):
         column += swing
-    assert not quiet(replace(case, lines=(replace(line, track=replace(line.track, state=state, measured=measured)),)), found)
+    assert not quiet(replace(case, lines=(replace(line, shown=replace(line.shown, state=state, measured=measured)),)), found)
 
 
 def test_a_world_that_is_clearly_rougher_is_no_explanation_unless_a_sea_was_measured(judged):
