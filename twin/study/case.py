@@ -70,7 +70,7 @@ class Case:
     odds: Mapping[str, float]
     lines: tuple[Linear, ...]  # of what is read of each track
     excited: bool  # whether one of the voyages holds a manoeuvre
-    white: float  # fast part of the floor on the reference voyages, before `settle`
+    white: tuple[float, float, float]  # fast part of the floor on the reference voyages, before `settle`
     no_news: tuple[str, ...] = ()  # weather that the reference voyages felt as much: part of a hypothesis, never of the answer
 
     def news(self, chosen: Sequence[str]) -> tuple[str, ...]:
@@ -111,7 +111,7 @@ def settle(case: Case) -> Case:
     Judged with every effect allowed, so that no cause is mistaken for noise.
     """
     white, time = case.floor.white, float(case.model.ship.scale("time"))
-    grid = [(float(k), sensor) for sensor in (1.0, 3.0) for k in np.geomspace(1.0, max(WAVES / white, 4.0), 5)]
+    grid = [(float(level), sensor) for sensor in (1.0, 3.0) for level in np.geomspace(min(white), max(WAVES, 4.0 * max(white)), 5)]
     floors = [_rougher(case.floor, *factors) for factors in grid]
     uneven = tuple(_uneven(x, time) for x in case.lines)
 
@@ -131,4 +131,6 @@ def _uneven(line: Linear, time: float) -> Linear:
 
 
 def _rougher(floor: Floor, white: float, sensor: float) -> Floor:
-    return replace(floor, white=white * floor.white, sensor=sensor * floor.sensor)
+    """The floor with a fast part of at least `white` in each axis, and so many times the readings' scatter."""
+    surge, sway, yaw = (max(white, w) for w in floor.white)
+    return replace(floor, white=(surge, sway, yaw), sensor=sensor * floor.sensor)

@@ -38,23 +38,23 @@ class Floor:
     """What a correct model of this kind still leaves unexplained on this ship: the structural floor.
 
     `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller cause at that moment,
-    in surge, sway, yaw; `calm`: the same share of a standard acceleration, there even when nothing happens; `white`: fast
-    part; `flow`: scatter of the water's own motion, as a share of U_0; `sensor`: factor on the readings' scatter; `wander`: how far the
-    position that satellites show strays from itself in one second, and sqrt(t) times as far in t [m/sqrt(s)]; `doubt`: share of the force
-    of the effects under judgement that may be something else (none on a reference voyage).
+    in surge, sway, yaw; `calm`: the same share of a standard acceleration, there even when nothing happens; `white` (3,): fast part, of
+    a standard acceleration; `flow`: scatter of the water's own motion, as a share of U_0; `sensor`: factor on the readings' scatter;
+    `wander`: how far the position that satellites show strays from itself in one second, and sqrt(t) times as far in t [m/sqrt(s)];
+    `doubt`: share of the force of the effects under judgement that may be something else (none on a reference voyage).
     """
 
     share: tuple[float, float, float] = (0.05, 0.05, 0.05)
     calm: float = 0.5
-    white: float = 0.05
+    white: tuple[float, float, float] = (0.05, 0.05, 0.05)
     flow: float = 0.004
     sensor: float = 1.3
     wander: float = 0.0
     doubt: float = 0.0
 
     def scaled(self, factor: float = 1.0, white: float = 1.0, flow: float = 1.0) -> "Floor":
-        surge, sway, yaw = (factor * s for s in self.share)
-        return replace(self, share=(surge, sway, yaw), white=white * self.white, flow=flow * self.flow)
+        (a, b, c), (d, e, f) = self.share, self.white
+        return replace(self, share=(factor * a, factor * b, factor * c), white=(white * d, white * e, white * f), flow=flow * self.flow)
 
 
 @dataclass(frozen=True)
@@ -191,8 +191,9 @@ def busy(track: Track, model: Model) -> np.ndarray:
 
 
 def standard(model: Model) -> np.ndarray:
-    """(3,) accelerations by the ship's own force and moment scale [m/s2, m/s2, rad/s2]."""
-    c: core.Coefficients = model.c
+    """(3,) accelerations by the force and moment scale of the ship as her file has her [m/s2, m/s2, rad/s2]: no hypothesis is likelier for
+    what it makes of the noise."""
+    c: core.Coefficients = model.ship.c
     force, moment = float(model.ship.scale("force")), float(model.ship.scale("moment"))
     return np.array([force / c.m_u, force / c.m_v, 0.3 * moment / c.m_r])
 
@@ -248,11 +249,11 @@ def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> No
     time, speed = float(model.ship.scale("time")), float(model.ship.scale("speed"))
     h = np.array([lines[i].track.h for i, _, _ in where])[row]
     wander = np.repeat([f.wander for f in floors], len(where))
-    white, flow = (np.repeat([getattr(f, name) for f in floors], len(where)) for name in ("white", "flow"))
+    white, flow = (np.repeat([getattr(f, name) for f in floors], len(where), axis=0) for name in ("white", "flow"))
     return Noise(
         row, h,
         reading=np.concatenate([_abreast([_reading(x.track, f) for x in lines], where) for f in floors], axis=1),
-        fast=(white[:, None] * standard(model)) ** 2 * (h * time)[:, None],
+        fast=(white * standard(model)) ** 2 * (h * time)[:, None],
         slow=np.concatenate([_abreast([_slow(x, f) for x in lines], where) for f in floors], axis=1),
         flow=(flow * speed) ** 2,
         wander=wander**2 * h,

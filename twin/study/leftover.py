@@ -120,8 +120,8 @@ def quiet(case: Case, found: Found) -> bool:
     from moment to moment."""
     lines, at = standing(case, found)
     forces = np.concatenate([np.broadcast_to(line.doubted, (len(line.track), 3)) for line in lines]) / standard(case.model)
-    usual = float(np.hypot(case.white, FORM * np.sqrt(np.mean(forces**2))))
+    usual = np.hypot(case.white, FORM * np.sqrt(np.mean(forces**2)))
     world = found.hypothesis.world if WORLDS[found.hypothesis.world].plain else "coarse"
-    floors = [replace(f, white=float(k) * usual) for f in case.worlds([world], found.doubt) for k in FACTORS]
+    floors = [replace(f, white=tuple(k * usual)) for f in case.worlds([world], found.doubt) for k in FACTORS]
     says = np.array([posterior(r, found.hypothesis.effects).log_evidence for r in case.reduced(lines, floors, at)])
     return bool(says[FACTORS >= RESTLESS].max() < says[FACTORS < RESTLESS].max() + CLEAR)

@@ -185,7 +185,7 @@ def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown])
         sure = line.model.but(*(flow for flow in here.flows if flow.stream))
         moved = np.abs(respond(line.track, here)[0] - respond(line.track, sure)[0])
         turns = line.turns | {place[j]: turn for j, turn in new.turns.items()}
-        lines.append(replace(new, A=A, R=R, turns=turns, doubted=moved, slack=line.slack))
+        lines.append(replace(new, A=A, R=R, turns=turns, doubted=moved, slack=line.slack, busy=line.busy))
     return model, lines
 
 

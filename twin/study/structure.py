@@ -6,6 +6,7 @@ uncertainty integrated out (cross-validated likelihood; Rasmussen & Williams 200
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -30,10 +31,16 @@ def floor_of(ship: Ship, name: str = "floor") -> Floor | None:
     if not table:
         return None
     try:
-        surge, sway, yaw = (float(share) for share in table["share"])
-        return Floor(**{key: float(value) for key, value in table.items() if key != "share"}, share=(surge, sway, yaw))
+        rest: dict[str, Any] = {key: _by_axis(v) if key == "white" else float(v) for key, v in table.items() if key != "share"}
+        return Floor(_by_axis(table["share"]), **rest)
     except (TypeError, ValueError, KeyError) as error:
         raise SettingsError(f"{ship.name}: [structural] {name} in the ship file is damaged ({error}). Calibrate her again.") from None
+
+
+def _by_axis(value: float | Sequence[float]) -> tuple[float, float, float]:
+    """One number for surge, sway and yaw, or one for each."""
+    surge, sway, yaw = (float(v) for v in np.broadcast_to(value, 3))
+    return surge, sway, yaw
 
 
 def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor | None = None) -> Floor:
@@ -72,12 +79,16 @@ def _together(floor: Floor, moves: Sequence[Floor]) -> Floor:
     start, out = _logs(floor), _logs(floor)
     for move in moves:
         out = out + (_logs(move) - start)
-    share, rest = np.exp(out[:3]), np.exp(out[3:])
-    return Floor((float(share[0]), float(share[1]), float(share[2])), *(float(r) for r in rest))
+    return _floor(out)
 
 
 def _logs(floor: Floor) -> np.ndarray:
-    return np.log([*floor.share, floor.calm, floor.white, floor.flow, floor.sensor, floor.wander])
+    return np.log([*floor.share, *floor.white, floor.calm, floor.flow, floor.sensor, floor.wander])
+
+
+def _floor(logs: np.ndarray) -> Floor:
+    a, b, c, d, e, f, calm, flow, sensor, wander = np.exp(logs).tolist()
+    return Floor((a, b, c), calm, (d, e, f), flow, sensor, wander)
 
 
 def _scores(lines: Sequence[Linear], floors: Sequence[Floor], sd: np.ndarray, most: int) -> list[float]:
@@ -101,17 +112,17 @@ def predictive(normal: Normal, sd: np.ndarray) -> float:
 def _change(i: int) -> Callable[[Floor, float], Floor]:
     def change(floor: Floor, factor: float) -> Floor:
         logs = _logs(floor)
-        logs[i] += np.log(factor) * (0.5 if i == 6 else 1.0)
-        values = np.exp(logs).tolist()
-        return Floor((values[0], values[1], values[2]), *values[3:])
+        logs[i] += np.log(factor) * (0.5 if i == SENSOR else 1.0)
+        return _floor(logs)
 
     return change
 
 
-CHANGES = tuple(_change(i) for i in range(8))
+SENSOR = 8  # the place of the readings' scatter in `_logs`
+CHANGES = tuple(_change(i) for i in range(10))
 
 
 def _inside(floor: Floor, least: float) -> bool:
     low = {"share": least, "calm": least}
-    values = {name: floor.share if name == "share" else (getattr(floor, name),) for name in BOUNDS}
+    values = {name: np.atleast_1d(getattr(floor, name)) for name in BOUNDS}
     return all(low.get(name, 1.0) * lo <= v <= hi for name, (lo, hi) in BOUNDS.items() for v in values[name])

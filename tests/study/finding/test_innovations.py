@@ -165,6 +165,24 @@ def test_a_damaged_floor_in_the_ship_file_is_one_line(tanker):
         floor_of(replace(tanker, notes={**tanker.notes, "structural": table}))
 
 
+def test_a_floor_of_one_fast_part_is_that_of_every_axis(tanker):
+    """Test: ship files of before 2026-11-24 hold one number. Expected: the same floor as three alike."""
+    stored = dict(tanker.notes["structural"]["floor"])
+    one, three = (floor_of(replace(tanker, notes={"structural": {"floor": stored | {"white": white}}})) for white in (0.1, [0.1, 0.1, 0.1]))
+    assert one == three and one.white == (0.1, 0.1, 0.1)
+
+
+def test_each_axis_has_a_fast_part_of_its_own(judged):
+    """Test: a place and a speed that swing by 8 cm and 5 cm/s about the path, a heading that does not. Expected: surge and sway are restless,
+    and the yaw is trusted as before."""
+    t, model, unknowns = judged
+    rng, shown = np.random.default_rng(7), t.measured.copy()
+    speed = 0.05 * rng.standard_normal((len(t), 2))
+    shown[:, 3:5] = t.state[:, 3:5] + np.cumsum(speed, axis=0) - np.column_stack([np.convolve(np.cumsum(s), np.ones(9) / 9, "same") for s in speed.T])
+    before, after = (structural_floor([linearise(x, model, unknowns, catalogue())], unknowns) for x in (t, replace(t, measured=shown)))
+    assert min(after.white[:2]) > 3.0 * max(before.white[:2]) and after.white[2] <= 2.0 * before.white[2]
+
+
 def test_a_hole_in_the_controls_ends_a_segment(judged):
     t, model, unknowns = judged
     line = linearise(t, model, unknowns, catalogue())

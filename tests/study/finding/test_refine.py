@@ -8,6 +8,7 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.assemble import assemble
+from twin.study.innovations import standard
 from twin.study.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _place, _told, about
 
 
@@ -87,6 +88,15 @@ def test_what_comes_and_goes_with_wave_groups_may_be_something_else_as_a_whole(c
     monkeypatch.setattr("twin.study.refine.posterior", lambda r, chosen: SimpleNamespace(log_evidence=0.0))
     _doubt(case, chosen, case.lines, "usual", np.zeros(len(case.effects)))
     assert max(floor.doubt for floor in asked) == most and min(floor.doubt for floor in asked) == DOUBTS[-1]
+
+
+def test_no_hypothesis_is_likelier_for_what_it_makes_of_the_noise(case):
+    """Expected: a ship half as heavy again errs, in m/s2, by what the ship of the file was found to err by."""
+    mine, z = rows(case, "Loading"), np.zeros(len(case.effects))
+    z[mine[0]] = 0.5 / case.effects[mine[0]].sd
+    model, lines = about(case, z, mine, [case.effects[i] for i in mine])
+    assert model.c.m_v > 1.2 * case.model.c.m_v and standard(model) == pytest.approx(standard(case.model))
+    assert all(np.array_equal(after.busy, before.busy) for before, after in zip(case.lines, lines, strict=True))
 
 
 def test_an_antenna_that_the_ship_file_knows_is_taken_out_of_the_motion_once(tanker, voyages):
