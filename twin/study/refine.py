@@ -4,8 +4,8 @@ An effect is granted that its form is only roughly right: a share of its own for
 which the voyages are most probable (no share of what the ship meets because a stream carries her: that is the hull's own force).
 """
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -36,66 +36,97 @@ class Found:
     doubt: float = 0.0  # share of its own force that may be something else
     off_m: float = float("nan")  # held-out position error, when it was asked (led.py)
     floor_m: float = float("nan")  # and what it would be were this the truth, in a world as it was on the reference voyages
+    reduced: Reduced | None = field(default=None, repr=False)  # what the voyages say about that place, in its world
 
 
 def refine(
-    case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[str], hoped: float = -np.inf
+    case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[str], hoped: float = -np.inf, known: Sets = ()
 ) -> tuple[Found, list[Hypothesis]]:
     """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand; begun again farther out when
     that explains nothing plainly, or when a number whose effect is bent ended at nothing, or the whole below the log weight that was
-    `hoped` for to first order. What was found; and, about it, the hypothesis in every world, every one that has one of `wider`
-    beside it, and every one without what any day brings."""
+    `hoped` for to first order (not those of effects that were found already, `known`: they were looked for far out when they were). What was
+    found; and, about it, the hypothesis in every world, every one that has one of `wider` beside it, and every one without what any day
+    brings."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     narrow, kept = case.narrowed(chosen)
     at = np.zeros_like(z)
-    best, at[kept] = _place(narrow, chosen, world, z[kept], hoped)
+    best, at[kept] = _place(narrow, chosen, world, z[kept], hoped, known)
     model, lines = about(case, at, mine, case.unknowns)
     doubt = _doubt(case, chosen, lines, best.world, at)
     reduced = _everywhere(case, chosen, lines, at, doubt)
     judged, own = _judged(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
     others = [*_beside(case, chosen, reduced, wider), *_any_day(case, chosen, reduced)]
-    return Found(best, boxed(reduced[best.world], chosen, own[best.world]), model, doubt), [*judged, *others]
+    here = reduced[best.world]
+    return Found(best, boxed(here, chosen, own[best.world]), model, doubt, reduced=here), [*judged, *others]
 
 
-def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float) -> tuple[Hypothesis, np.ndarray]:
+def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float, known: Sets = ()) -> tuple[Hypothesis, np.ndarray]:
     """The best of the climbs that `refine` speaks of: the hypothesis there, and the place."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
-    best, at = _climb(case, chosen, mine, world, z)
+    new = np.array([i for i in mine if case.effects[i].owner not in known], dtype=int)
+    top = _Top.of(case, chosen, *_climb(case, chosen, mine, world, z)[1:])
     first = clipped(case, z)
     first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
     for k, factor in enumerate(FARTHER):
-        plain, fallen = WORLDS[best.world].plain, best.log_weight < hoped
-        bent = [] if plain and not fallen and at[mine].all() else _bent(case, mine, at)
-        lost = [i for i in bent if fallen or at[i] == 0.0]
+        plain, fallen = WORLDS[top.best.world].plain, top.best.log_weight < hoped
+        bent = [] if plain and not fallen and top.at[new].all() else _bent(case, new, top.at)
+        lost = [i for i in bent if fallen or top.at[i] == 0.0]
         if not lost and (plain or (k and not bent)):  # numbers that work in proportion have one best place, which the first climb from afar found
             break
-        first[[i for i in lost if at[i] == 0.0]] = 1.0
-        best, at = max((best, at), _climb(case, chosen, mine, "usual", factor * first), key=lambda end: end[0].log_weight)
+        first[[i for i in lost if top.at[i] == 0.0]] = 1.0
+        far = z.copy()
+        far[new] = factor * first[new]
+        top = top.or_from(case, chosen, mine, far)
     if all(case.catalogue[name].kind == "Lag" for name in chosen):  # about none, a slow gear is seen by its delay alone
         for i in mine:
-            best, at = max((best, at), _climb(case, chosen, mine, "usual", FARTHER[-1] * np.eye(z.size)[i]), key=lambda end: end[0].log_weight)
-    return best, at
+            top = top.or_from(case, chosen, mine, FARTHER[-1] * np.eye(z.size)[i])
+    return top.best, top.at
 
 
-def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray) -> tuple[Hypothesis, np.ndarray]:
-    """Where the effects' parameters come to stand, and the hypothesis there in its best world (by columns of its own alone). A step after
-    which the voyages are less probable is taken back by half, and by half again: what is bent may lead a whole step astray."""
+@dataclass(frozen=True)
+class _Top:
+    """The best place that was climbed to so far, and the hypothesis there in every world (by columns of its own alone)."""
+
+    at: np.ndarray
+    judged: Mapping[str, Hypothesis]
+
+    @classmethod
+    def of(cls, case: Case, chosen: Sets, at: np.ndarray, lines: Sequence[Linear]) -> "_Top":
+        return cls(at, {h.world: h for h in _judged(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0]))[0]})
+
+    @property
+    def best(self) -> Hypothesis:
+        return max(self.judged.values(), key=lambda h: h.log_weight)
+
+    def or_from(self, case: Case, chosen: Sets, mine: np.ndarray, z: np.ndarray) -> "_Top":
+        """This place, or a better one to which a climb in the usual world leads from `z`; other worlds are asked only if that one is better."""
+        here, at, lines = _climb(case, chosen, mine, "usual", z)
+        if here.log_weight <= self.judged["usual"].log_weight:
+            return self
+        return max(self, _Top.of(case, chosen, at, lines), key=lambda top: top.best.log_weight)
+
+
+def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray) -> tuple[Hypothesis, np.ndarray, Sequence[Linear]]:
+    """Where the effects' parameters come to stand: the hypothesis there (in that world, by columns of its own alone), the place, and the tracks
+    about it. A step after which the voyages are less probable is taken back by half, and by half again: what is bent may lead a whole step
+    astray."""
     lines: Sequence[Linear] = case.lines
-    merit, best, aim, share = -np.inf, np.zeros_like(z), z, 1.0
+    merit, best, aim, share, here = -np.inf, np.zeros_like(z), z, 1.0, Hypothesis(chosen, world, -np.inf, 0.0)
     for _ in range(NEWTON):
         at = np.zeros_like(z)
         at[mine] = clipped(case, best + share * (aim - best))[mine]
         tried = about(case, at, mine, [case.effects[i] for i in mine])[1]
         reduced = _told(case, tried, world, at)
         if reduced and (now := reduced.base - 0.5 * float(at @ at)) > merit:
-            merit, best, lines, share, aim = now, at, tried, 1.0, boxed(reduced, chosen, posterior(reduced, chosen)).z
+            own = posterior(reduced, chosen)
+            here = Hypothesis(chosen, world, log_evidence(reduced, chosen, own), case.log_prior(chosen, world))
+            merit, best, lines, share, aim = now, at, tried, 1.0, boxed(reduced, chosen, own).z
         else:
             share *= 0.5
         if share * np.max(np.abs(aim - best)[mine]) < STANDS:
             break
-    judged, _ = _judged(case, chosen, _everywhere(case, chosen, lines, best, DOUBTS[0]))
-    return max(judged, key=lambda h: h.log_weight), best
+    return here, best, lines
 
 
 def _told(case: Case, lines: Sequence[Linear], world: str, at: np.ndarray) -> Reduced | None:

@@ -12,7 +12,7 @@ import numpy as np
 from .altered import floats
 from .case import ODDS_WEAK, WORLDS, Case
 from .evidence import Hypothesis, Reduced, boxed, posterior, weigh_all
-from .led import Led, led
+from .led import REACH, Led, led
 from .leftover import NEARLY, answer
 from .nuisance import DAILY
 from .refine import Found, Sets, refine
@@ -133,9 +133,16 @@ class _Book:
         return None
 
     def _parts(self, effects: Sets) -> list[Sets]:
-        """Each effect of a set by itself, and what would be left of the set without it if that is enough to be asked for."""
+        """Each effect of a set by itself, and what would be left of the set without it if that is enough to be asked for; of what is beside
+        weather that is no news only what is not hopeless: that weather does in proportion what it does, and would be seen to do it."""
         without = [tuple(n for n in effects if n != name) for name in effects]
-        return [*((name,) for name in effects), *(rest for rest in without if len(rest) >= MOST and len(self.case.news(rest)) < len(rest))]
+        parts: list[Sets] = [*((name,) for name in effects), *(rest for rest in without if len(rest) >= MOST)]
+        return [part for part in parts if len(self.case.news(part)) == len(part) == 1 or self._reaches(part)]
+
+    def _reaches(self, part: Sets) -> bool:
+        """Whether a set that holds weather that is no news may be as likely as the best."""
+        mine = [h.log_weight for h in self.entries.values() if h.effects == part]
+        return len(self.case.news(part)) < len(part) and max(mine, default=-np.inf) > self.weighed()[0].log_weight - REACH
 
     def _simpler(self, effects: Sets) -> list[Sets]:
         """The same set with a part in the place of an effect that holds it: a current that does not change is a steady one."""
@@ -144,14 +151,14 @@ class _Book:
 
     def judge(self, chosen: Sets) -> None:
         """Enter what the voyages say of this set, and of every set with one effect more, about its own size."""
-        start = max((self.found[s] for s in self.found if set(s) < set(chosen)), key=lambda f: len(f.hypothesis.effects))
+        start = max((self.found[s] for s in self.found if set(s) < set(chosen)), key=lambda f: (len(f.hypothesis.effects), f.hypothesis.log_weight))
         guess = next((h for h in self.weighed() if h.effects == chosen), None)  # of three, one in another's place was never weighed
         world, hoped = (guess.world, guess.log_weight) if guess else (start.hypothesis.world, -np.inf)
-        z = boxed(self.worlds[world], chosen, posterior(self.worlds[world], chosen)).z
-        known = [i for i, u in enumerate(self.case.effects) if u.owner in start.hypothesis.effects]
-        z[known] = start.posterior.z[known]  # where a part of the set was found to stand
+        part = start.hypothesis.effects
+        about = start.reduced if part and start.reduced else self.worlds[world]  # where a part of the set was found to stand
+        z = boxed(about, chosen, posterior(about, chosen)).z
         wider = self.case.candidates if len(self.case.news(chosen)) < MOST else self.case.no_news
-        self.found[chosen], judged = refine(self.case, chosen, world, z, wider, hoped)
+        self.found[chosen], judged = refine(self.case, chosen, world, z, wider, hoped, part)
         if self._hollow(chosen):
             self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}
             judged = [h for h in judged if h.effects != chosen]

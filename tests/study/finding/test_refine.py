@@ -39,8 +39,8 @@ def test_what_no_day_brings_steers_no_climb(case):
     narrow, kept = case.narrowed(("SteeringLag",))
     z = np.zeros(len(case.effects))
     z[rows(case, "SteeringLag")] = 1.0
-    _, whole = _climb(case, ("SteeringLag",), rows(case, "SteeringLag"), "usual", z)
-    _, alone = _climb(narrow, ("SteeringLag",), rows(narrow, "SteeringLag"), "usual", z[kept])
+    whole = _climb(case, ("SteeringLag",), rows(case, "SteeringLag"), "usual", z)[1]
+    alone = _climb(narrow, ("SteeringLag",), rows(narrow, "SteeringLag"), "usual", z[kept])[1]
     assert len(narrow.unknowns) < 0.8 * len(case.unknowns) and kept.sum() == len(narrow.effects)
     assert alone == pytest.approx(whole[kept], abs=0.02)
 
@@ -76,7 +76,7 @@ def test_a_slow_gear_is_found_however_far_out_it_stands(case):
     for start in ([2.0, 2.0, 0.0], [0.5, 4.0, 0.0], [0.0, 0.0, 4.0], [4.0, 4.0, 4.0]):
         z = np.zeros(len(case.effects))
         z[mine] = start
-        other, _ = _climb(case, ("SteeringLag",), mine, "usual", z)
+        other = _climb(case, ("SteeringLag",), mine, "usual", z)[0]
         assert other.log_weight < best.log_weight + 0.5
     assert at[mine][1] == pytest.approx(1.57, abs=0.3)  # 65 deg in as long as it sails so many lengths
 

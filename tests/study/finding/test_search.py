@@ -77,7 +77,7 @@ def test_an_effect_that_ended_at_nothing_says_no_more_than_the_rest(case, monkey
     """A loss below nothing cannot be: it stays at nothing, and whatever it would explain, the set leaves the list."""
     held = book(case)
 
-    def at_nothing(case, chosen, world, z, wider, hoped):
+    def at_nothing(case, chosen, world, z, wider, hoped, known):
         none = held.found[()]
         h = replace(none.hypothesis, effects=chosen, log_evidence=1e6)
         return Found(h, replace(none.posterior, z=np.zeros(len(case.effects))), case.model), [h]
