@@ -6,6 +6,7 @@ import pytest
 
 from twin.physics import core
 from twin.physics.effects import find
+from twin.physics.effects.rudder_play import RudderPlay
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
@@ -159,6 +160,15 @@ def test_steering_gear_by_hand():
     easing = find("SteeringLag")(delay=1.5, travel_time=26.0, ease=3.0)
     assert easing.step(radians(2), radians(4), 1.0) == pytest.approx(radians(2.5))  # a quarter of the way
     assert easing.step(0.0, radians(35), 2.0) == pytest.approx(radians(5))
+
+
+def test_a_rudder_that_hangs_loose_by_hand():
+    loose = RudderPlay(gap=radians(2))
+    assert loose.dead_time() == 0.0
+    assert loose.step(0.0, radians(10), 1.0) == pytest.approx(radians(8))  # shown 10 deg, and two behind
+    assert loose.step(radians(8), radians(7), 1.0) == pytest.approx(radians(8))  # turned back inside the play: nothing moves
+    assert loose.step(radians(8), radians(3), 1.0) == pytest.approx(radians(5))
+    assert loose.step(radians(8), radians(-10), 1.0) == pytest.approx(radians(-8))
 
 
 def test_instruments_by_hand(ship):

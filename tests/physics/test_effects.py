@@ -8,7 +8,7 @@ import pytest
 import sympy
 import torch
 
-from twin.physics.effects import BUILT_IN
+from twin.physics.effects import BUILT_IN, UNNAMED
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
@@ -46,7 +46,7 @@ MIRRORED = {  # parameters that do so too
     "AntennaOffset": {"starboard"}, "GyroBias": {"bias"},
     "VaryingCurrent": {"east"} | {f"east_{wave}{k}" for wave in "cs" for k in "123"},
 }  # fmt: skip
-each = pytest.mark.parametrize("Kind", BUILT_IN, ids=lambda kind: kind.__name__)
+each = pytest.mark.parametrize("Kind", (*BUILT_IN, *UNNAMED), ids=lambda kind: kind.__name__)
 
 
 def busy(Kind, ship):

@@ -7,11 +7,12 @@ import numpy as np
 
 from twin.errors import DataError
 from twin.physics.effect import Effect
+from twin.physics.effects import UNNAMED
 from twin.physics.effects import catalogue as known_effects
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
-from .case import CERTAIN, COMES_AND_GOES, MOST_SEGMENTS, ODDS, ODDS_MEASURED, Case, settle
+from .case import CERTAIN, COMES_AND_GOES, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, settle
 from .columns import FORM, Unknown, core_unknowns, effect_unknowns, lateness_unknowns
 from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
@@ -35,9 +36,10 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     model, catalogue = Model.of(ship), known_effects()
     progress("smoothing tracks")
     tracks = tuple(swung(track(v, ship), model) for v in voyages)
-    candidates = judgeable(tracks, model, catalogue)
+    judged = catalogue | {e.__name__: e for e in UNNAMED}
+    candidates = judgeable(tracks, model, judged)
     no_news = as_usual(strengths(tracks, model, catalogue), _felt_before(references, model, catalogue))
-    effects = tuple(u for name in candidates for u in effect_unknowns(catalogue[name], model))
+    effects = tuple(u for name in candidates for u in effect_unknowns(judged[name], model))
     nuisance = nuisance_unknowns(model, catalogue)
     core = [u for u in nuisance if u.owner in ("core", FORM)]
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
@@ -58,9 +60,10 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
         known = from_ship(model, nuisance)
     progress("linearising")
     case = Case(
-        tracks, model, catalogue, candidates, unknowns, effects, known, floor, path, temper,
-        _odds(tracks, candidates, ship) | dict.fromkeys(no_news, CERTAIN),
-        _lines(tracks, model, unknowns, catalogue, MOST_SEGMENTS), any(manoeuvred(t, ship) for t in tracks), floor.white, no_news,
+        tracks, model, judged, candidates, unknowns, effects, known, floor, path, temper,
+        _odds(tracks, candidates, ship) | dict.fromkeys(no_news, CERTAIN) | dict.fromkeys(judged.keys() - catalogue, ODDS_UNNAMED),
+        _lines(tracks, model, unknowns, judged, MOST_SEGMENTS), any(manoeuvred(t, ship) for t in tracks), floor.white, no_news,
+        tuple(judged.keys() - catalogue),
     )  # fmt: skip
     return settle(case)
 

@@ -10,7 +10,7 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 
 from .columns import Unknown
-from .evidence import Nuisance, Reduced, posterior, reduce
+from .evidence import Hypothesis, Nuisance, Reduced, posterior, reduce
 from .innovations import Floor, Linear, innovate
 from .track import Track
 from .unrest import shaken
@@ -48,6 +48,7 @@ UNEVEN = 20.0  # log evidence that a scatter of its own at every moment must add
 WAVES = 1.0  # fast part of the floor, of a standard acceleration, in the worst of weather
 COMES_AND_GOES = 0.5  # share of an irregular effect's force, and of what it does to the path, that no size of it explains
 ODDS = 0.03  # of an effect about which nothing is known
+ODDS_UNNAMED = 0.01  # of what is no member of the catalogue
 ODDS_WEAK = 0.002  # when it needs a cause that was measured to be too weak to show
 CERTAIN = 1.0  # when it was as strong on the reference voyages
 ODDS_MEASURED = 0.25  # when its cause was measured to be strong
@@ -72,10 +73,19 @@ class Case:
     excited: bool  # whether one of the voyages holds a manoeuvre
     white: tuple[float, float, float]  # fast part of the floor on the reference voyages, before `settle`
     no_news: tuple[str, ...] = ()  # weather that the reference voyages felt as much: part of a hypothesis, never of the answer
+    unnamed: tuple[str, ...] = ()  # what is known by its form alone: part of a hypothesis that is then something unknown
 
     def news(self, chosen: Sequence[str]) -> tuple[str, ...]:
-        """Those of a set of effects that may be the answer."""
+        """Those of a set of effects that were not there on the reference voyages."""
         return tuple(name for name in chosen if name not in self.no_news)
+
+    def names(self, chosen: Sequence[str]) -> tuple[str, ...]:
+        """And those of them that may be the answer."""
+        return tuple(name for name in self.news(chosen) if name not in self.unnamed)
+
+    def unknown(self, h: Hypothesis) -> bool:
+        """Whether something that has no name is at work under a hypothesis."""
+        return WORLDS[h.world].unknown or not set(h.effects).isdisjoint(self.unnamed)
 
     def reduced(self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None) -> list[Reduced]:
         normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))

@@ -35,9 +35,9 @@ SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
 LEAST = 0.05
 EPILOG = """Verdicts: missing (named, with size and interval, and with what cannot be told from it), nothing_missing, unknown (something is there
-that no effect of the catalogue explains), undecided (the voyages cannot tell; one_of: the few of which one is surely there; next_manoeuvre:
-what to sail). Reference voyages are those of the same ship on which nothing was wrong: they set the floor below which an imperfect model
-is not called a missing effect.
+that no effect of the catalogue explains; resembles: what it looks like, where that is known by its form), undecided (the voyages cannot
+tell; one_of: the few of which one is surely there; next_manoeuvre: what to sail). Reference voyages are those of the same ship on which
+nothing was wrong: they set the floor below which an imperfect model is not called a missing effect.
 Exit code 4: a voyage cannot be used; 5: the ship file is not valid.
 """
 
@@ -63,8 +63,8 @@ def diagnose(
     no_pair, leads = undone(case, best), helpful(case, found, explain)
     explained = not case.news(w.best.effects) or (bool(explain) and not no_pair)
     if too_small(case, found, explain):
-        leads += [n for n in case.news(explain) if w.effects[n] >= SURE]
-    like = {name: alike(case, weighed, name) for name in case.news(w.best.effects)}
+        leads += [n for n in case.names(explain) if w.effects[n] >= SURE]
+    like = {name: alike(case, weighed, name) for name in case.names(w.best.effects)}
     sharp = shows(seen) and not astray(found[()] if case.news(w.best.effects) else best)
     blurred = no_pair or any(at_sea(t, case.model) for t in case.tracks) or (not explained and not missed(found[()]))
     coarse = coarse_axes(case.path.share)
@@ -74,6 +74,7 @@ def diagnose(
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
     candidates = [_candidate(case, weighed, found, missing, name, w.effects[name]) for name in likely]
+    resembles = [_candidate(case, weighed, found, missing, name, p) for name, p in w.unnamed.items() if p >= SURE]
     if w.best.effects:
         progress("asking each part of the voyages")
         parts = over_time(case, best, w.best.effects)
@@ -88,6 +89,7 @@ def diagnose(
         "one_of": group(weighed, w) if verdict == "undecided" and able else [],
         "probabilities": {"nothing_missing": w.nothing, "unknown": w.unknown if explained else 1.0 - w.nothing},
         "candidates": [c for c in candidates if c],
+        "resembles": resembles if verdict == "unknown" else [],
         "undo_each_other": list(w.best.effects) if no_pair else [],
         "unclear": [n for n in explain if n not in leads and case.catalogue[n].kind == "SensorFault"],
         "path": {"horizon_s": horizon_s(case.tracks[0], case.model), "error_without": found[()].off_m, "error_floor": found[()].floor_m},

@@ -11,7 +11,7 @@ from typing import Any
 
 from twin import whole
 from twin.physics.effect import Effect, Param
-from twin.physics.effects import BUILT_IN, catalogue, find
+from twin.physics.effects import BUILT_IN, UNNAMED, catalogue, find
 from twin.physics.ship import Ship, load
 
 KINDS = {
@@ -139,6 +139,13 @@ def page(effects: list[type[Effect]]) -> str:
         lines += [f"## {kind}", "", f"{means.capitalize()}.", ""]
         for effect in (e for e in effects if e.kind == kind):
             lines += _entry(effect)
+    lines += [
+        "## Known by their form alone", "",
+        "No members of the catalogue, and not to be added to a ship file: what a repair mends is no part of a ship. `twin diagnose` asks for them, "
+        "so that nothing else is named in their place; where one explains the voyages best the answer is `unknown`, and what it resembles.", "",
+    ]  # fmt: skip
+    for effect in UNNAMED:
+        lines += _entry(effect)
     return "\n".join(lines)
 
 

@@ -34,8 +34,8 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
     had it its plausible size, would have shown."""
     progress("every effect and every pair")
     worlds = dict(zip(WORLDS, case.reduced(case.lines, case.worlds(list(WORLDS))), strict=True))
-    seen = {name: visible(worlds["usual"], name) for name in case.candidates}
-    weak = [name for name in case.news(case.candidates) if not seen[name] and case.catalogue[name].needs]
+    seen = {name: visible(worlds["usual"], name) for name in case.names(case.candidates)}
+    weak = [name for name in seen if not seen[name] and case.catalogue[name].needs]
     case = replace(case, odds=dict(case.odds) | dict.fromkeys(weak, ODDS_WEAK))
     book = _Book(case, worlds)
     searched = _searched(book, progress, seen)

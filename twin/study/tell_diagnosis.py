@@ -14,6 +14,8 @@ NEAR = 0.5  # probability from which an effect is told as the nearest one when n
 def told(result: dict[str, Any]) -> list[str]:
     """Lines for the terminal."""
     lines = [sentence(result), ""]
+    for c in result["resembles"]:
+        lines += _candidate(c)
     if result["verdict"] == "unknown" and result["candidates"]:
         lines.append("were it one of the effects I know:")
     for c in result["candidates"]:
@@ -47,6 +49,10 @@ def sentence(result: dict[str, Any]) -> str:
         return "Nothing is missing: what the model cannot explain is no more than it left unexplained on good voyages."
     if result["verdict"] == "unknown":
         near = [c["effect"] for c in result["candidates"] if c["probability"] >= NEAR]
+        if result["resembles"]:
+            like = result["resembles"][0]
+            beside = f" Beside it: {' with '.join(near)}." if near else ""
+            return f"Something is missing that is none of the effects of the catalogue. It looks like {like['effect']}: {like['says']}{beside}"
         nearest = f" Nearest, but not enough: {' with '.join(near)}." if near else ""
         return f"Something is missing, but none of the effects I know explains it.{nearest}"
     if result["one_of"]:

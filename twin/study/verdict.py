@@ -1,14 +1,14 @@
 """From weighed hypotheses to an answer: missing, nothing missing, unknown or undecided, with numbers an engineer can check."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from twin.physics import core
 from twin.physics.model import Model
 
-from .case import WORLDS, Case
+from .case import Case
 from .evidence import Hypothesis, Posterior, probabilities
 from .nuisance import SURROUNDINGS
 from .own_force import without
@@ -32,18 +32,19 @@ class Weights:
     unknown: float
     effects: dict[str, float]
     best: Hypothesis
+    unnamed: Mapping[str, float] = field(default_factory=dict)  # of what is known by its form alone
 
 
 def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
     p = probabilities(weighed)
-    effects = dict.fromkeys(case.news(case.candidates), 0.0)
+    effects, unnamed = (dict.fromkeys(names, 0.0) for names in (case.names(case.candidates), case.unnamed))
     nothing = unknown = 0.0
     for h, share in zip(weighed, p, strict=True):
         for name in case.news(h.effects):
-            effects[name] += float(share)
-        unknown += float(share) * WORLDS[h.world].unknown
-        nothing += float(share) * (not case.news(h.effects) and not WORLDS[h.world].unknown)
-    return Weights(nothing, unknown, effects, weighed[0])
+            (unnamed if name in unnamed else effects)[name] += float(share)
+        unknown += float(share) * case.unknown(h)
+        nothing += float(share) * (not case.news(h.effects) and not case.unknown(h))
+    return Weights(nothing, unknown, effects, weighed[0], unnamed)
 
 
 def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
@@ -51,7 +52,7 @@ def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
     best = next(h for h in weighed if name in h.effects)
     rest = set(best.effects) - {name}
     out = []
-    for other in case.news(case.candidates):
+    for other in case.names(case.candidates):
         if other in best.effects:
             continue
         swapped = next((h for h in weighed if set(h.effects) == rest | {other}), None)

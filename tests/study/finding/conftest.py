@@ -16,6 +16,7 @@ HIDDEN = {
     "IceLike": (("IceLike", 1.0),),
     "Wind": (("Wind", 1.0),),
     "Wind again": (("Wind", 1.0),),
+    "RudderBacklash": (("RudderBacklash", 1.0),),
 }
 
 

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 from twin import cli
+from twin.physics.effects import catalogue
 from twin.study.diagnose import diagnose
 from twin.study.read import read_voyage
 from twin.study.story import MONDAY, SHIP, TUESDAY
-from twin.study.tell_diagnosis import told
+from twin.study.tell_diagnosis import sentence, told
 from twin.study.voyage import Voyage
 
 
@@ -67,6 +68,17 @@ def test_nothing_hidden_means_nothing_missing(tanker, voyages):
     result = diagnose([voyages["nothing"]], tanker).result
     assert result["verdict"] == "nothing_missing", "\n".join(told(result))
     assert result["missing"] == []
+
+
+def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_resembles_is_said(tanker, voyages):
+    """Test: a rudder that hangs loose by 2.5 deg to either side. Expected: unknown, and not a worn rudder; what it looks like, with its size."""
+    result = diagnose([voyages["RudderBacklash"]], tanker).result
+    assert result["verdict"] == "unknown" and result["missing"] == []
+    (like,) = result["resembles"]
+    assert like["effect"] == "RudderPlay" and "RudderPlay" not in catalogue()
+    (gap,) = like["parameters"]
+    assert gap["low95"] <= np.radians(2.5) <= gap["high95"] and gap["unit"] == "rad"
+    assert "looks like RudderPlay: The rudder hangs loose" in sentence(result) and any("gap" in line for line in told(result))
 
 
 def test_a_ship_whose_own_reference_voyages_are_half_unexplained_is_no_witness(tanker, voyages):

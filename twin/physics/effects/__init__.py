@@ -21,6 +21,7 @@ from .propeller_walk import PropellerWalk
 from .propeller_wear import PropellerWear
 from .roll_coupling import RollCoupling
 from .rudder_offset import RudderOffset
+from .rudder_play import RudderPlay
 from .rudder_wear import RudderWear
 from .sensor_delay import SensorDelay
 from .shallow_water import ShallowWater
@@ -40,6 +41,7 @@ BUILT_IN: tuple[type[Effect], ...] = (
     SteeringLag,
     HeadingBias, SpeedLogBias, SpeedLogScale, SpeedLogMisalignment, AntennaOffset, SensorDelay, GyroBias,
 )  # fmt: skip
+UNNAMED: tuple[type[Effect], ...] = (RudderPlay,)  # known by their form, so that a diagnosis names nothing of the catalogue in their place
 
 
 @lru_cache(maxsize=1)
