@@ -80,7 +80,7 @@ def fitted(ship: Ship, effects: Sequence[type[Effect]], tracks: Sequence[Track])
     unknowns = [u for e in effects for u in effect_unknowns(e, Model(ship))]
     floor = floor_of(ship) or Floor()
     usable = in_one(base, tracks)
-    tracks = [levelled(t, usable) for t in tracks]
+    tracks = [levelled(t) for t in tracks]
     found = fit(tracks, usable, unknowns, known, floor, temper=_temper(ship))
     sd = _doubt(found, tracks, floor, known, _temper(ship))
     names = {e.__name__ for e in effects}

@@ -109,7 +109,7 @@ def _lines(
     """The tracks with what waves do to them taken for that, linearised where they will be read (`most` segments); what waves change of
     the ship's own forces, and what is only roughly known, no hypothesis takes away."""
     models = [model.without_inputs(t.missing())[0] for t in tracks]
-    parts = read_parts([levelled(t, m) for t, m in zip(tracks, models, strict=True)], float(model.ship.scale("time")), most)
+    parts = read_parts([levelled(t) for t in tracks], float(model.ship.scale("time")), most)
     slack = [np.hypot(stirred(t, m)[p.steps()], _roughly_known(p, m)) for t, p, m in zip(tracks, parts, models, strict=True)]
     return tuple(replace(linearise(p, m, unknowns, catalogue), slack=s) for p, m, s in zip(parts, models, slack, strict=True))
 

@@ -104,12 +104,12 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     model, known = Model.of(ship), catalogue()
     unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
     progress("fitting the core, and asking whether the rudder that was recorded is its order")
-    tracks = [levelled(t, model) for t in sailed]
+    tracks = [levelled(t) for t in sailed]
     rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
     progress("asking again whether waves swing her")
     again = [swung(t, rough.model) for t in sailed]
     if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
-        tracks = [levelled(t, rough.model) for t in again]
+        tracks = [levelled(t) for t in again]
         rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
     progress("asking whether wind pushed her")
     rough = with_or_without_wind(tracks, rough, known, TEMPER)

@@ -120,6 +120,24 @@ def posterior(reduced: Reduced, effects: Sequence[str]) -> Posterior:
     return Posterior(reduced.at + width * (inverse @ pull), inverse * np.outer(width, width), reduced.base + gain)
 
 
+def likeliest(
+    normal: Normal, nuisance: Nuisance, all_unknowns: Sequence[Unknown], effects: Sequence[Unknown], temper: float, at: np.ndarray,
+    chosen: Sequence[str],
+) -> np.ndarray:  # fmt: skip
+    """(P,) how far each of `all_unknowns` most probably is from where the equations were linearised [its own unit], when the `chosen` effects are
+    there: what the effects leave to core and instruments, and the effects' own share."""
+    A, b, _ = normal.total()
+    place = {u.label: i for i, u in enumerate(all_unknowns)}
+    usual, own = ([place[u.label] for u in some] for some in (nuisance.unknowns, effects))
+    sd, moved = np.array([u.sd for u in nuisance.unknowns]), np.array([u.sd for u in effects])
+    moved = moved * (posterior(reduce(normal, nuisance, all_unknowns, effects, temper, at), chosen).z - at)
+    pull = sd * (b[usual] - A[np.ix_(usual, own)] @ moved) / temper + nuisance.pull
+    theta = np.zeros(len(all_unknowns))
+    theta[own] = moved  # an instrument's fault and its usual error share a column
+    theta[usual] += sd * np.linalg.solve(A[np.ix_(usual, usual)] * np.outer(sd, sd) / temper + nuisance.information, pull)
+    return theta
+
+
 def boxed(reduced: Reduced, effects: Sequence[str], found: Posterior) -> Posterior:
     """The same with its most probable place inside the boxes of these effects."""
     rows, z = reduced.rows(effects), found.z.copy()

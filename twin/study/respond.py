@@ -10,7 +10,7 @@ from twin.physics.effect import Lag
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
-from .track import READINGS, STATE, Track, running_mean
+from .track import READINGS, STATE, Track
 
 
 def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
@@ -92,8 +92,6 @@ def _behind(track: Track, gears: Sequence[Lag]) -> np.ndarray:
         for k, wanted in enumerate(order.tolist()):
             out[k] = actual = gear.step(actual, wanted, h)
         delta = out
-    if track.levelled > 1:
-        delta = np.concatenate([running_mean(delta[a:b], track.levelled) for a, b in stretches(track)])
     return delta
 
 

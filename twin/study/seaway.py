@@ -28,7 +28,6 @@ from .track import Track, running_mean
 
 SWIFT = 3.0  # L/U_0: what swings about the mean over so long a time may be waves
 LATELY = 8.0  # L/U_0: on another course waves are met otherwise
-SLOW = 1.0  # L/U_0: what swings with a longer period may be the ship's own doing
 SEEN = 0.5  # share of what is swift in what is left over of sway or yaw, from which waves are looked for
 SEA = 0.003  # wave height in ship lengths from which a measured sea may move her
 MOST_SEGMENTS = 12  # by which a sea is judged
@@ -64,7 +63,7 @@ def _likeliest(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple
     floor, rough = floor_of(model.ship) or Floor(), _swinging(track, model)
     if rough.swell is None:
         return track, -np.inf, 0.0
-    parts = [read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0] for t in (track, levelled(rough, model))]
+    parts = [read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0] for t in (track, levelled(rough))]
     lines, sd = [linearise(p, model, unknowns, catalogue()) for p in parts], np.array([u.sd for u in unknowns])
 
     def likely(line: Linear) -> float:
@@ -96,17 +95,12 @@ def _swinging(track: Track, model: Model) -> Track:
     return replace(track, swell=np.column_stack([omega, np.sqrt(size)]))
 
 
-def levelled(track: Track, model: Model) -> Track:
-    """The track with its roll, and rudder (behind its gear, which follows every order) and shaft if she manoeuvres slower than they swing,
-    averaged over one period of the waves: what a helmsman does against a wave, and how she heels to it, would be taken for its cause."""
-    if track.swell is None:
+def levelled(track: Track) -> Track:
+    """The track with its roll averaged over one period of the waves: how she heels to a wave would be taken for its cause."""
+    if track.swell is None or "phi" not in track.weather:
         return track
-    period_s = wave_period_s(track)
-    steps = max(1, round(period_s / track.h))
-    weather = {name: running_mean(values, steps) if name == "phi" else values for name, values in track.weather.items()}
-    if period_s > SLOW * float(model.ship.scale("time")):
-        return replace(track, weather=weather)
-    return replace(track, weather=weather, n=np.where(track.whole, running_mean(track.n, steps), track.n), levelled=steps)
+    steps = max(1, round(wave_period_s(track) / track.h))
+    return replace(track, weather={**track.weather, "phi": running_mean(track.weather["phi"], steps)})
 
 
 def stirred(track: Track, model: Model) -> np.ndarray:

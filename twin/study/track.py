@@ -51,7 +51,6 @@ class Track:
     whole: np.ndarray  # (N,) bool: controls known, so that the model can be run through
     swell: np.ndarray | None = None  # (N, 6): in surge, sway, yaw how fast waves swing her [rad/s], and their accelerations (seaway.py)
     unrest: np.ndarray | None = None  # (N, 8): times its usual scatter that each reading has at that moment (unrest.py)
-    levelled: int = 1  # steps over which the rudder is averaged, behind its gear (seaway.py)
     rudder: dict[Any, np.ndarray] = field(init=False, repr=False, compare=False, default_factory=dict)  # behind each steering gear
 
     def __len__(self) -> int:

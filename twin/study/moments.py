@@ -1,0 +1,84 @@
+"""Moments at which something pushed her that was not there before and after: a ship that passed, a gust, a net that was caught and lost.
+
+What lasts all voyage is an effect. What lasts a few ship lengths is lost in the whole of it, and a ship with which nothing else is wrong
+would be acquitted. So, beside the best hypothesis, each stretch of a few lengths is asked whether it is likelier with a push of its own: a
+constant acceleration in surge, sway and yaw of about the size of the ship's own forces, integrated out.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .case import MOST_SEGMENTS, Case
+from .evidence import likeliest
+from .innovations import Floor, Linear, innovate, standard
+from .led import plain
+from .refine import Found, standing
+
+LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before
+CLEAR = 20.0  # log evidence, tempered, that a push of its own must add
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A stretch of a voyage, how much likelier it is with a push of its own, and that push in standard accelerations of surge, sway, yaw."""
+
+    voyage: str
+    start_s: float
+    end_s: float
+    log_evidence: float
+    push: np.ndarray
+
+
+def moments(case: Case, found: Found) -> list[Moment]:
+    """The stretches that clearly had a push of their own under a hypothesis, the likeliest first; none that overlaps a likelier one."""
+    out: list[Moment] = []
+    for m in sorted(stretches(case, found), key=lambda m: -m.log_evidence):
+        if m.log_evidence > CLEAR and not any(m.voyage == o.voyage and m.start_s < o.end_s and o.start_s < m.end_s for o in out):
+            out.append(m)
+    return out
+
+
+def stretches(case: Case, found: Found) -> list[Moment]:
+    """Every stretch of each length, with what it says."""
+    lines, at = standing(case, found)
+    floor = case.worlds([plain(found.hypothesis).world], found.doubt)[0]
+    normal = innovate(lines, [floor], MOST_SEGMENTS)[0]
+    theta = likeliest(normal, case.nuisance, case.unknowns, case.effects, case.temper, at, found.hypothesis.effects)
+    known = [_in_one(line, theta) for line in lines]
+    return [m for lengths in LENGTHS for m in _asked(case, known, floor, lengths)]
+
+
+def _in_one(line: Linear, theta: np.ndarray) -> Linear:
+    """The track with all that is known of the unknowns as a single column."""
+    turns = {0: sum(theta[j] * turn for j, turn in line.turns.items())} if line.turns else {}
+    return replace(line, A=line.A @ theta[:, None], R=line.R @ theta[:, None], turns=turns)
+
+
+def _asked(case: Case, lines: Sequence[Linear], floor: Floor, lengths: float) -> list[Moment]:
+    steps = max(4, round(lengths * float(case.model.ship.scale("time")) / lines[0].track.h))
+    where = innovate(lines, [floor], MOST_SEGMENTS)[0].where
+    begins = range(0, max(b - a for _, a, b in where), steps // 2)
+    pushed = [_pushed(case, line, [(a, b) for j, a, b in where if j == i], begins, steps) for i, line in enumerate(lines)]
+    normal, out = innovate(pushed, [floor], MOST_SEGMENTS)[0], []
+    for (i, a, b), A, pull in zip(where, normal.A / case.temper, normal.b / case.temper, strict=True):
+        for k, begin in enumerate(begins):
+            first, last, own = a + begin, min(a + begin + steps, b) - 1, slice(3 * k + 1, 3 * k + 4)
+            if last - first >= steps // 2:
+                e, H = pull[own] - A[own, 0], A[own, own] + np.eye(3)
+                push, t = np.linalg.solve(H, e), lines[i].track.t
+                gain = 0.5 * float(e @ push) - 0.5 * float(np.linalg.slogdet(H)[1])
+                out.append(Moment(lines[i].track.name, float(t[first]), float(t[last]), gain, push))
+    return out
+
+
+def _pushed(case: Case, line: Linear, segments: Sequence[tuple[int, int]], begins: Sequence[int], steps: int) -> Linear:
+    """The track with, behind its own column, three more for each stretch of its segments: a push of one standard acceleration in each axis."""
+    A = np.zeros((len(line.track), 3, 1 + 3 * len(begins)), line.A.dtype)
+    R = np.zeros((len(line.track), line.R.shape[1], A.shape[2]), line.R.dtype)
+    A[:, :, :1], R[:, :, :1] = line.A, line.R
+    for a, b in segments:
+        for k, begin in enumerate(begins):
+            A[a + begin : min(a + begin + steps, b), range(3), range(3 * k + 1, 3 * k + 4)] = standard(case.model)
+    return replace(line, A=A, R=R)
