@@ -12,7 +12,7 @@ from twin.physics.effects import catalogue as known_effects
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
-from .case import CERTAIN, COMES_AND_GOES, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, settle
+from .case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, roughly_known, settle
 from .columns import FORM, Unknown, core_unknowns, effect_unknowns, lateness_unknowns
 from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
@@ -26,7 +26,6 @@ from .voyage import Voyage
 from .weather import as_usual, strengths
 
 Progress = Callable[[str], None]
-KNOWN = 0.1  # share of the force of an effect in the model that may be something else
 
 
 def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage] = (), progress: Progress = lambda text: None) -> Case:
@@ -116,10 +115,9 @@ def _lines(
 
 def _roughly_known(t: Track, model: Model) -> np.ndarray:
     """(N, 3) acceleration error of the effects that were added since calibration: their forms, too, are only roughly right."""
-    out, calibrated = np.zeros((len(t), 3)), model.ship.notes.get("structural", {}).get("beside_effects", ())
-    for effect in (e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in calibrated):
-        without = Model(model.ship, tuple(e for e in model.effects if e is not effect))
-        out += np.square((COMES_AND_GOES if effect.irregular else KNOWN) * (respond(t, model)[0] - respond(t, without)[0]))
+    out = np.zeros((len(t), 3))
+    for without, share in roughly_known(model):
+        out += np.square(share * (respond(t, model)[0] - respond(t, without)[0]))
     return np.sqrt(out)
 
 

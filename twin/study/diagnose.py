@@ -21,6 +21,7 @@ from .jsonable import plain
 from .led import held_out_error, horizon_s
 from .leftover import answer, astray, helpful, missed, too_small, undone
 from .manoeuvres import next_manoeuvre
+from .moments import moments
 from .overtime import over_time
 from .read import read_voyage
 from .refine import Found
@@ -67,9 +68,10 @@ def diagnose(
     like = {name: alike(case, weighed, name) for name in case.names(w.best.effects)}
     sharp = shows(seen) and not astray(found[()] if case.news(w.best.effects) else best)
     blurred = no_pair or any(at_sea(t, case.model) for t in case.tracks) or (not explained and not missed(found[()]))
-    coarse = coarse_axes(case.path.share)
+    coarse, happened = coarse_axes(case.path.share), moments(case, best)
     able = case.excited and not coarse
-    verdict, missing = judge(weighed, w, like, leads, able=able, sharp=sharp, explained=explained, blurred=blurred)
+    verdict, missing = judge(weighed, w, like, leads, able=able, sharp=sharp, explained=explained, blurred=blurred, pushed=bool(happened))
+    nothing = 0.0 if happened and verdict == "unknown" else w.nothing
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
@@ -87,11 +89,12 @@ def diagnose(
         "verdict": verdict,
         "missing": missing,
         "one_of": group(weighed, w) if verdict == "undecided" and able else [],
-        "probabilities": {"nothing_missing": w.nothing, "unknown": w.unknown if explained else 1.0 - w.nothing},
+        "probabilities": {"nothing_missing": nothing, "unknown": w.unknown + w.nothing - nothing if explained else 1.0 - nothing},
         "candidates": [c for c in candidates if c],
         "resembles": resembles if verdict == "unknown" else [],
         "undo_each_other": list(w.best.effects) if no_pair else [],
         "unclear": [n for n in explain if n not in leads and case.catalogue[n].kind == "SensorFault"],
+        "moments": [m.told(case.model) for m in happened],
         "path": {"horizon_s": horizon_s(case.tracks[0], case.model), "error_without": found[()].off_m, "error_floor": found[()].floor_m},
         "next_manoeuvre": _next(case, found, verdict, missing, candidates, {n: p for n, p in w.effects.items() if seen[n]}, progress),
         "not_judged": _not_judged(case),

@@ -12,7 +12,7 @@ import numpy as np
 
 from twin.physics.model import Model
 
-from .case import COMES_AND_GOES, MOST_SEGMENTS, WORLDS, Case
+from .case import COMES_AND_GOES, MOST_SEGMENTS, WORLDS, Case, roughly_known
 from .columns import with_values
 from .evidence import Hypothesis, given, posterior, reduce
 from .innovations import Floor, innovate
@@ -61,7 +61,7 @@ def led(case: Case, found: Mapping[Sets, Found]) -> Led:
     off = {s: held_out_error(case, f) for s, f in found.items() if not s or f.hypothesis.log_weight > best - REACH}
     steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
     least = max(steps["coarse"], _measured(case))  # what is run free is a core alone, and no better than it was when nothing was wrong
-    floor = {name: max(m, least) for name, m in steps.items()}
+    floor = {name: float(np.hypot(max(m, least), _roughly(case))) for name, m in steps.items()}
     irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular)
     asked = {s: replace(found[s], off_m=m, floor_m=_floor(plain(found[s].hypothesis), floor, off[()], irregular)) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
@@ -124,6 +124,18 @@ def _usual(case: Case, floor: Floor) -> float:
         model = case.model.without_inputs(track.missing())[0]
         errors.append(_errors(predict(track, model, [horizon_s(track, case.model)], leads=1, floor=floor), STRUCTURE))
     return max(float(np.nanmean(np.concatenate(errors))), 1e-9)
+
+
+def _roughly(case: Case) -> float:
+    """How far off [m] the forms of effects may leave her that are in the model since she was calibrated: a share of where she would be without."""
+    left = [share * _astray(case, without) for without, share in roughly_known(case.model)]
+    return float(np.hypot.reduce([0.0, *left]))
+
+
+def _astray(case: Case, model: Model) -> float:
+    """Mean position error [m] of a model over all of the voyages."""
+    errors = (_errors(coarse(t, model.without_inputs(t.missing())[0], horizon_s(t, case.model), leads=1), MODEL) for t in case.tracks)
+    return float(np.nanmean(np.concatenate(list(errors))))
 
 
 def _measured(case: Case) -> float:

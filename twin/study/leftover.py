@@ -16,7 +16,7 @@ from .case import WORLDS, Case
 from .evidence import Hypothesis, posterior
 from .innovations import standard
 from .led import FORM
-from .own_force import otherwise, without
+from .own_force import leads_her, otherwise, without
 from .refine import Found, Sets, standing
 from .respond import respond
 from .seaway import at_sea
@@ -35,12 +35,14 @@ CLEAR = 3.0  # log evidence by which the voyages must be restless
 
 def answer(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found], chosen: Sets, strict: bool = False) -> Sets:
     """The effects of a set that explain the voyages: all of them, if each force is what its name says; those without which the others do
-    as well, if one is not (of two forms that are only roughly right, one mends the other); or none. (`strict`: as `explains`.)"""
+    as well, if one is not (of two forms that are only roughly right, one mends the other); or none, unless all of them lead her where she went
+    and the model alone does not. (`strict`: as `explains`.)"""
     if not chosen or not explains(case, weighed, found[chosen], found[()], strict):
         return ()
     odd = otherwise(case, found[chosen], found[()])
     rest = tuple(name for name in chosen if name not in odd)
-    return chosen if not odd else answer(case, weighed, found, rest, strict) if rest in found else ()
+    alone = () if not odd or rest not in found else answer(case, weighed, found, rest, strict)
+    return chosen if not odd or (not alone and leads_her(found[chosen], found[()])) else alone
 
 
 def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: Found, strict: bool = False) -> bool:

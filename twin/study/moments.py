@@ -7,8 +7,12 @@ constant acceleration in surge, sway and yaw of about the size of the ship's own
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+
+from twin.physics import core
+from twin.physics.model import Model
 
 from .case import MOST_SEGMENTS, Case
 from .evidence import likeliest
@@ -17,7 +21,7 @@ from .led import plain
 from .refine import Found, standing
 
 LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before
-CLEAR = 20.0  # log evidence, tempered, that a push of its own must add
+CLEAR = 15.0  # log evidence, tempered, that a push of its own must add
 
 
 @dataclass(frozen=True)
@@ -29,6 +33,12 @@ class Moment:
     end_s: float
     log_evidence: float
     push: np.ndarray
+
+    def told(self, model: Model) -> dict[str, Any]:
+        """With the push as a force on this ship [N, N, N m]."""
+        surge, sway, yaw = (standard(model) * self.push).tolist()
+        X, Y, N = core.force_for(surge, sway, yaw, model.c)
+        return {"voyage": self.voyage, "start_s": self.start_s, "end_s": self.end_s, "X_N": float(X), "Y_N": float(Y), "N_Nm": float(N)}
 
 
 def moments(case: Case, found: Found) -> list[Moment]:

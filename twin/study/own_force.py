@@ -33,8 +33,8 @@ def otherwise(case: Case, found: Found, nothing: Found) -> list[str]:
     if not asked:
         return []
     lines, at = standing(case, found)
-    led = found.off_m <= found.floor_m and nothing.off_m > nothing.floor_m
-    shares, world = np.array([*DOUBTS, *(MOST_OF_IT[-1:] if led else MOST_OF_IT)]), plain(found.hypothesis).world
+    shares = np.array([*DOUBTS, *(MOST_OF_IT[-1:] if leads_her(found, nothing) else MOST_OF_IT)])
+    world = plain(found.hypothesis).world
     out = []
     for name in asked:
         bare = without(found.model, case.model, name)
@@ -47,6 +47,11 @@ def otherwise(case: Case, found: Found, nothing: Found) -> list[str]:
         if says[len(DOUBTS) :].max() > says[: len(DOUBTS)].max() + CLEAR:
             out.append(name)
     return out
+
+
+def leads_her(found: Found, nothing: Found) -> bool:
+    """Whether a hypothesis leads her within what is usual of where she went, as the model alone does not."""
+    return found.off_m <= found.floor_m and nothing.off_m > nothing.floor_m
 
 
 def without(model: Model, before: Model, name: str) -> Model:

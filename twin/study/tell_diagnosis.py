@@ -7,6 +7,7 @@ from .overtime import changes
 from .start import told_of_waves
 from .verdict import ACQUITTED, LOST, SURE
 
+PUSHED = 3  # moments that are told
 SMALL = "It is too small to show in where these voyages led her: `twin add` may ask for others."
 NEAR = 0.5  # probability from which an effect is told as the nearest one when none explains the voyages
 
@@ -14,6 +15,7 @@ NEAR = 0.5  # probability from which an effect is told as the nearest one when n
 def told(result: dict[str, Any]) -> list[str]:
     """Lines for the terminal."""
     lines = [sentence(result), ""]
+    lines += [_moment(m) for m in result["moments"][:PUSHED]]
     for c in result["resembles"]:
         lines += _candidate(c)
     if result["verdict"] == "unknown" and result["candidates"]:
@@ -53,6 +55,12 @@ def sentence(result: dict[str, Any]) -> str:
             like = result["resembles"][0]
             beside = f" Beside it: {' with '.join(near)}." if near else ""
             return f"Something is missing that is none of the effects of the catalogue. It looks like {like['effect']}: {like['says']}{beside}"
+        if result["moments"] and not near:
+            first = result["moments"][0]
+            return (
+                f"Something is missing that no effect I know would do: it pushed her from {_clock(first['start_s']).strip()} to "
+                f"{_clock(first['end_s']).strip()} on {first['voyage']} as it did not before."
+            )
         nearest = f" Nearest, but not enough: {' with '.join(near)}." if near else ""
         return f"Something is missing, but none of the effects I know explains it.{nearest}"
     if result["one_of"]:
@@ -90,6 +98,11 @@ def sentence(result: dict[str, Any]) -> str:
             f"where she went ({path['error_floor']:.3g} m would be usual)."
         )
     return "Undecided: these voyages cannot tell what, if anything, is missing."
+
+
+def _moment(m: dict[str, Any]) -> str:
+    when = f"from {_clock(m['start_s']).strip()} to {_clock(m['end_s']).strip()} on {m['voyage']}"
+    return f"{when} something pushed her that was not there before and after: {_force(m)}"
 
 
 def nearer(candidate: dict[str, Any]) -> bool:
@@ -139,7 +152,8 @@ def _clock(seconds: float) -> str:
 
 def _force(force: dict[str, float]) -> str:
     """The components that are there, in words."""
-    return ", ".join(f"{key[0]} {_si(value, 'N m' if key == 'N_Nm' else 'N')}" for key, value in force.items() if abs(value) > 1e-9)
+    forces = {key: force[key] for key in ("X_N", "Y_N", "N_Nm")}
+    return ", ".join(f"{key[0]} {_si(value, 'N m' if key == 'N_Nm' else 'N')}" for key, value in forces.items() if abs(value) > 1e-9)
 
 
 def _si(value: float, unit: str) -> str:

@@ -14,7 +14,7 @@ from twin.study.tell_diagnosis import sentence
 
 UNDECIDED = {
     "verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "calibrated_too_coarsely": [],
-    "undo_each_other": [], "unclear": [],
+    "undo_each_other": [], "unclear": [], "moments": [], "resembles": [],
 }  # fmt: skip
 
 

@@ -1,0 +1,86 @@
+"""Moments at which something pushed her."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from bench.bundled import recorded
+from bench.reference import Case, simulate
+from twin.study.assemble import assemble
+from twin.study.columns import Unknown
+from twin.study.diagnose import diagnose
+from twin.study.evidence import Hypothesis, Nuisance, likeliest, posterior
+from twin.study.moments import CLEAR, moments, stretches
+from twin.study.refine import Found, refine
+from twin.study.tell_diagnosis import sentence, told
+
+
+def as_she_is(case):
+    told = posterior(case.reduced(case.lines, case.worlds(["usual"]))[0], ())
+    return Found(Hypothesis((), "usual", told.log_evidence, 0.0), told, case.model)
+
+
+def test_a_ship_with_which_nothing_is_wrong_had_no_push_of_its_own(tanker, voyages):
+    case = assemble([voyages["nothing"]], tanker)
+    asked = stretches(case, as_she_is(case))
+    assert max(m.log_evidence for m in asked) < 0.5 * CLEAR and moments(case, as_she_is(case)) == []
+    assert {m.voyage for m in asked} == {"nothing"} and min(m.start_s for m in asked) < 60.0 and max(m.end_s for m in asked) > 1100.0
+
+
+def test_what_lasts_all_voyage_is_no_moment_once_it_is_known(tanker, voyages):
+    case = assemble([voyages["RudderWear"]], tanker)
+    known, _ = refine(case, ("RudderWear",), "usual", np.ones(len(case.effects)), ())
+    assert moments(case, known) == []
+
+
+@pytest.fixture(scope="module")
+def passed():
+    sailed = simulate([Case("kvlcc2", "zigzag_20", hidden=(("PassingShip", 1.0),), seed=909, duration_s=1200.0)])
+    return recorded("passed", sailed[0].columns, every=10)
+
+
+def test_ships_that_pass_are_seen_when_they_pass_and_nobody_is_acquitted(tanker, passed):
+    """Test: ships that pass every 11 lengths (439 s), each for about one. Expected: unknown, and the times at which they did."""
+    result = diagnose([passed], tanker).result
+    seen = sorted(0.5 * (m["start_s"] + m["end_s"]) for m in result["moments"])
+    assert result["verdict"] == "unknown" and len(seen) >= 2
+    passes = np.array(seen) / (11.0 * float(tanker.scale("time")))
+    assert abs(np.exp(2j * np.pi * passes).mean()) > 0.8 and np.unique(np.rint(passes - passes[0])).size >= 2
+    assert result["probabilities"]["nothing_missing"] < 0.5
+    assert "something pushed her" in "\n".join(told(result)) and "missing" in sentence(result)
+
+
+def test_what_is_most_probable_of_everything_is_where_the_sum_of_squares_stands_still():
+    rng = np.random.default_rng(3)
+    G, e = rng.standard_normal((40, 5)), rng.standard_normal(40)
+    normal = SimpleNamespace(total=lambda: (G.T @ G, G.T @ e, float(e @ e)), logdet=np.zeros(1))
+    widths = {"core.0": 1.0, "core.1": 2.0, "A.2": 0.5, "A.3": 1.0, "B.4": 3.0}
+    every = tuple(Unknown(*label.split("."), "-", 0.0, sd, -9.0, 9.0) for label, sd in widths.items())
+    nuisance = Nuisance(every[:3], np.diag([1.0, 2.0, 4.0]), np.array([0.3, -0.2, 0.1]))  # the third is a fault's number, too
+    at = np.array([0.0, 0.4, 0.0])
+    theta = likeliest(normal, nuisance, every, every[2:], 1.5, at, ("A",))
+
+    def cost(x, z):
+        moved = np.r_[x * [1.0, 2.0, 0.5], 0.0, 0.0] + np.r_[0.0, 0.0, (z - at) * [0.5, 1.0, 3.0]]
+        left, width = e - G @ moved, np.array([1.0, 1.0, 0.01])
+        return 0.5 * left @ left / 1.5 + 0.5 * x @ nuisance.information @ x - nuisance.pull @ x + 0.5 * np.sum((z / width) ** 2), moved
+
+    best = np.zeros(6)
+    step = 1e-4
+    for _ in range(3):  # Newton's steps by differences: the cost is a parabola
+        around = [[cost(*np.split(best + step * (a + b), 2))[0] for b in np.eye(6)] for a in np.eye(6)]
+        one = np.array([cost(*np.split(best + step * a, 2))[0] for a in np.eye(6)])
+        here = cost(*np.split(best, 2))[0]
+        back = np.array([cost(*np.split(best - step * a, 2))[0] for a in np.eye(6)])
+        hessian = (np.array(around) - one[:, None] - one[None, :] + here) / step**2
+        best = best - np.linalg.solve(hessian, (one - back) / (2.0 * step))
+    assert theta == pytest.approx(cost(*np.split(best, 2))[1], abs=1e-3)
+
+
+def test_a_moment_is_told_as_a_force(tanker, voyages):
+    case = assemble([voyages["nothing"]], tanker)
+    moment = replace(stretches(case, as_she_is(case))[0], push=np.array([1.0, 0.0, 0.0]))
+    said = moment.told(case.model)
+    assert said["X_N"] == pytest.approx(tanker.scale("force")) and said["Y_N"] == said["N_Nm"] == 0.0
