@@ -7,6 +7,7 @@ import pytest
 
 from twin.physics.ship import load
 from twin.study.checks import CHECKS, run_checks
+from twin.study.checks.water import factor
 from twin.study.read import Raw, finished
 
 SURGE, SWAY, HEADING = "surge_velocity_mps", "sway_velocity_mps", "heading_true_north_deg"
@@ -153,6 +154,18 @@ def test_the_yaw_rate_of_a_constant_heading_cannot_be_told(sail):
     assert all(c.ok for c in found.values())
     for name in ("yaw_rate", "rudder_sign", "wind", "speed_log", "ship_size"):
         assert found[name].text.startswith("cannot tell")
+
+
+def test_a_speed_over_ground_that_scatters_does_not_make_a_log_short():
+    """Test: a right log in a stream of 0.3 m/s; the speed over ground is the slope of positions and scatters by 0.35 m/s. Expected: 1.00 and
+    that stream. (With the speed over ground as the cause: 0.7 and a stream of a metre and more, that was never there.)"""
+    rng, t = np.random.default_rng(5), np.arange(0.0, 2400.0)
+    psi, true = 0.4 * np.sin(t / 90.0) + t / 700.0, 6.0 + 0.8 * np.sin(t / 300.0)
+    log = true - 0.3 * np.cos(psi - 1.0) + 0.04 * rng.standard_normal(t.size)
+    k, current, sure = factor(true + 0.35 * rng.standard_normal(t.size), log, psi, 1.0, rough=True)
+    assert sure and k == pytest.approx(1.0, abs=0.02) and current == pytest.approx(0.3, abs=0.05)
+    k, current, sure = factor(true, log, psi, 1.0)
+    assert sure and k == pytest.approx(1.0, abs=0.02) and current == pytest.approx(0.3, abs=0.05)
 
 
 def test_five_minutes_are_too_short_and_say_so(sail):

@@ -106,6 +106,7 @@ BAD = {
     "length and beam swapped": ("--length-pp-m 30 --beam-m 80 --draught-m 10", 5, "Check the order"),
     "mass in tonnes": ("--length-pp-m 180 --beam-m 30 --draught-m 10 --mass-kg 43000", 5, "Check the mass"),
     "two masses": ("--length-pp-m 180 --beam-m 30 --draught-m 10 --mass-kg 4e7 --block-coefficient .5", 5, "Leave one of them out"),
+    "a centre of gravity in the bow": ("--length-pp-m 180 --beam-m 30 --draught-m 10 --x-g-m 40", 5, "more than 0.15 of the length from midship"),
     "a spinning top": ("--length-pp-m 180 --beam-m 30 --draught-m 10 --yaw-inertia-kgm2 1e9", 5, "is a radius of 0.03 L"),
     "nan": ("--length-pp-m nan --beam-m 30 --draught-m 10", 5, "--length-pp-m nan"),
     "a shaft that races": ("--length-pp-m 180 --beam-m 30 --draught-m 10 --shaft-speed-rpm 5000 --propeller-diameter-m 5", 5, "no usual pitch"),

@@ -17,6 +17,8 @@ from .import_voyage import write_json
 from .modulus import modulus_form, slipstream
 from .trial import shaft_speed, straight_line_stability, turning_circle, zigzag
 
+FARTHEST_G = 0.15  # of L: centres of gravity lie within a few per cent of midship, of a slender naval vessel 0.10 astern
+
 # option, what it is, unit, smallest and largest that is not a slip of the pen
 OPTIONS: tuple[tuple[str, str, float, float], ...] = (
     ("length-pp-m", "length between perpendiculars; where nobody knows it, 0.96 of the waterline", 0.2, 500.0),
@@ -26,7 +28,7 @@ OPTIONS: tuple[tuple[str, str, float, float], ...] = (
     ("block-coefficient", "block coefficient C_b", 0.2, 0.99),
     ("service-speed-mps", "service speed", 0.05, 40.0),
     ("shaft-speed-rpm", "propeller rate at service speed in calm water: sets the thrust", 1.0, 10000.0),
-    ("x-g-m", "centre of gravity ahead of midship (half of L_pp); default 0", -60.0, 60.0),
+    ("x-g-m", "centre of gravity ahead of midship (half of L_pp; negative: astern of it), by 0.15 L at most; default 0", -60.0, 60.0),
     ("yaw-inertia-kgm2", "moment of inertia in yaw about midship; default: a radius of 0.25 L", 1e-4, 1e14),
     ("rho-kg-m3", "density of the water", 900.0, 1100.0),
     ("propellers", "how many propellers turn alike; default 1", 1.0, 4.0),
@@ -130,8 +132,8 @@ def _particulars(given: Given) -> Numbers:
     fullness = (given_fullness, "given") if given_fullness is not None else reg.typical_block_coefficient(L, speed)
     C = fullness[0]
     x_G = given["x-g-m"] or 0.0
-    if abs(x_G) > 0.1 * L:
-        raise SettingsError(f"--x-g-m {x_G:g} is more than a tenth of the length from midship. Check it.")
+    if abs(x_G) > FARTHEST_G * L:
+        raise SettingsError(f"--x-g-m {x_G:g} is more than {FARTHEST_G:g} of the length from midship (half of L_pp, ahead positive). Check it.")
     I_z = given["yaw-inertia-kgm2"]
     m = mass if mass is not None else rho * C * box
     if I_z is not None and not 0.15 <= (I_z / m) ** 0.5 / L <= 0.4:

@@ -25,7 +25,7 @@ def rudder_sign(view: View) -> Check:
     share, b = best_gain(view)
     saw = f"the rudder explains {100 * share:.0f} % of the changes of yaw rate"
     if share < RUDDER_SHARE:
-        return cannot_tell(name, f"{saw}; a zigzag or a turn would show it.")
+        return cannot_tell(name, f"{saw}; held over until she has turned by {HELD_TURN_DEG:.0f} deg it would show.")
     return sign_seen(name, saw, b > 0.0, share > PROOF_SHARE)
 
 

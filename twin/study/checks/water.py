@@ -22,7 +22,7 @@ def speed_log(view: View) -> Check:
     if view.derived("surge_velocity_mps") and not view.voyage.has("north_m"):
         return cannot_tell(name, "no speed over ground was recorded.")
     ground = view.velocity.real
-    k, current, sure = factor(ground, water, view.psi, view.step_s)
+    k, current, sure = factor(ground, water, view.psi, view.step_s, view.derived("surge_velocity_mps"))
     saw = f"the log shows {k:.3f} times the speed over ground, beside a current of {current:.2f} m/s"
     if not sure:
         k = float(np.nanmedian(water) / np.nanmedian(ground)) if np.nanmedian(ground) else 1.0
@@ -39,13 +39,23 @@ def speed_log(view: View) -> Check:
     return good(name, f"{saw}.{doubt}")
 
 
-def factor(ground: np.ndarray, water: np.ndarray, psi: np.ndarray, step_s: float) -> tuple[float, float, bool]:
-    """(k, size of the current [m/s], whether k stands by itself)."""
-    x, error, _ = fit([ground, -np.cos(psi), -np.sin(psi)], water)
-    shape = np.stack([ground, np.cos(psi), np.sin(psi)], axis=1)
+def factor(ground: np.ndarray, water: np.ndarray, psi: np.ndarray, step_s: float, rough: bool = False) -> tuple[float, float, bool]:
+    """(k, size of the current [m/s], whether k stands by itself). A speed over ground that is the slope of positions scatters more than a log
+    (`rough`), and what scatters must not be the cause in a fit: it would come out too small, and a current would stand in for the rest."""
+    if rough:
+        inverse, north, east, sure = _fitted(water, ground, psi, step_s)
+        return 1.0 / (inverse or np.nan), float(np.hypot(north, east)), sure
+    k, north, east, sure = _fitted(ground, water, psi, step_s)
+    return k, float(np.hypot(north, east) / max(abs(k), 1e-9)), sure
+
+
+def _fitted(cause: np.ndarray, shown: np.ndarray, psi: np.ndarray, step_s: float) -> tuple[float, float, float, bool]:
+    """shown = x cause - a cos psi - b sin psi: (x, a, b, whether x stands by itself)."""
+    x, error, _ = fit([cause, -np.cos(psi), -np.sin(psi)], shown)
+    shape = np.stack([cause, np.cos(psi), np.sin(psi)], axis=1)
     shape = shape[np.isfinite(shape).all(axis=1)]
     shape = shape / np.maximum(np.sqrt(np.mean(shape**2, axis=0)), 1e-9)
     alone = shape.shape[0] > 10 and np.linalg.svd(shape, compute_uv=False)[-1] > 0.1 * np.sqrt(shape.shape[0])
     spread = error[0] * np.sqrt(max(ALIKE_S / step_s, 1.0))
     sure = bool(alone and spread < 0.1 * max(abs(x[0]), 0.1))
-    return float(x[0]), float(np.hypot(x[1], x[2]) / max(abs(x[0]), 1e-9)), sure
+    return float(x[0]), float(x[1]), float(x[2]), sure
