@@ -6,6 +6,7 @@ function addCommand(names) {
 
 function rankingSection() {
   const list = RESULT.candidates || [], out = [];
+  for (const c of RESULT.resembles || []) out.push(el("p.note", null, `It looks like this, which is no effect of the catalogue. ${c.says}`), candidate(c));
   for (const c of list) out.push(candidate(c));
   if (!out.length) out.push(el("p.note", null, "No candidate is worth a line."));
   const missing = RESULT.missing || [];
@@ -25,8 +26,16 @@ function candidate(c) {
   if (c.error_without !== undefined && c.error_with !== undefined && c.error_without !== null) right.append(el("p.note", null, `error ${num(c.error_without)} m without it, ${num(c.error_with)} m with it${c.error_floor ? `; a true cause may leave ${num(c.error_floor)} m` : ""}`));
   if ((c.cannot_be_told_from || []).length) right.append(el("div", null, el("span.note", null, "cannot be told from "), c.cannot_be_told_from.map((n) => el("span.chip", null, n))));
   if ((c.over_time || []).length > 1) right.append(el("div", null, el("span.note", null, "part by part (1 is the size above) "), c.over_time.map((p) => el("span.chip", null, `${clock(p.start_s)} to ${clock(p.end_s)}: ${num(p.share, 2)} ± ${num(p.sd, 2)}`))));
-  if (!weak && !(RESULT.missing || []).includes(c.effect)) right.append(command(addCommand(c.effect)));
+  if (!weak && !(RESULT.missing || []).includes(c.effect) && !(RESULT.resembles || []).includes(c)) right.append(command(addCommand(c.effect)));
   return el(weak ? ".candidate.weak" : ".candidate", null, left, right);
+}
+
+/** Stretches on which something pushed her that was not there before and after. */
+function momentsSection() {
+  const list = RESULT.moments || [];
+  if (!list.length) return null;
+  const rows = list.map((m) => stretchRow(m, el("td.n", null, si(m.X_N, "N")), el("td.n", null, si(m.Y_N, "N")), el("td.n", null, si(m.N_Nm, "N m"))));
+  return section("Moments at which something pushed her", "and not before or after; click one to see it in the plots", table([...(DATA.voyages.length > 1 ? ["voyage"] : []), "when", ">ahead", ">to starboard", ">turning to starboard"], rows));
 }
 
 /** A number with its 95 % interval; the dashed mark is zero. */

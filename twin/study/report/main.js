@@ -99,7 +99,7 @@ function build() {
   const wish = (location.hash.match(/theme=(dark|light)/) || [])[1];
   document.documentElement.dataset.theme = wish || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
   document.title = DATA.title;
-  const own = { compare: [], diagnose: [rankingSection(), manoeuvreSection()], add: [fittedSection(), ladderSection()] }[DATA.kind] || [];
+  const own = { compare: [], diagnose: [rankingSection(), momentsSection(), manoeuvreSection()], add: [fittedSection(), ladderSection()] }[DATA.kind] || [];
   const parts = [head(), ...own.filter(Boolean), errorsSection(), next(), el(".two", null, whereSection(), worstSection()), DATA.voyages.length ? voyageParts() : null, channelsSection(), checksSection(), provenanceSection()];
   document.getElementById("page").append(...parts.filter(Boolean), el("footer", null, "shiptwin · this page is whole: it asks nothing of any network"));
   const stretch = location.hash.match(/t=([\d.]+),([\d.]+)/);

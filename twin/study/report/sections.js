@@ -64,10 +64,15 @@ function bar(share) {
   return el("span.bar100", null, el("i", { style: { width: `${100 * Math.min(share, 1)}%` } }));
 }
 
+/** A row about a stretch of a voyage: a click shows it in the plots. */
+function stretchRow(w, ...cells) {
+  const go = () => { pickVoyage(Math.max(DATA.voyages.findIndex((v) => v.name === w.voyage), 0)); const pad = 0.25 * (w.end_s - w.start_s); setZoom(w.start_s - pad, w.end_s + pad); document.getElementById("plots").scrollIntoView({ behavior: "smooth" }); };
+  return el("tr.go", { onclick: go, tabIndex: 0, onkeydown: (e) => e.key === "Enter" && go() }, DATA.voyages.length > 1 ? el("td", null, w.voyage || "") : null, el("td", null, `${clock(w.start_s)} to ${clock(w.end_s)}`), ...cells);
+}
+
 function worstSection() {
-  const go = (w) => () => { pickVoyage(Math.max(DATA.voyages.findIndex((v) => v.name === w.voyage), 0)); const pad = 0.25 * (w.end_s - w.start_s); setZoom(w.start_s - pad, w.end_s + pad); document.getElementById("plots").scrollIntoView({ behavior: "smooth" }); };
   const many = DATA.voyages.length > 1;
-  const rows = (RESULT.worst_windows || []).map((w) => el("tr.go", { onclick: go(w), tabIndex: 0, onkeydown: (e) => e.key === "Enter" && go(w)() }, many ? el("td", null, w.voyage || "") : null, el("td", null, `${clock(w.start_s)} to ${clock(w.end_s)}`), el("td.n", null, w.position_m === undefined ? "" : num(w.position_m)), el("td.n", null, w.heading_deg === undefined ? "" : num(w.heading_deg, 2)), el("td.n", null, `×${num(w.error_ratio, 2)}`)));
+  const rows = (RESULT.worst_windows || []).map((w) => stretchRow(w, el("td.n", null, w.position_m === undefined ? "" : num(w.position_m)), el("td.n", null, w.heading_deg === undefined ? "" : num(w.heading_deg, 2)), el("td.n", null, `×${num(w.error_ratio, 2)}`)));
   return section("Worst windows", "click one to see it in the plots", table([...(many ? ["voyage"] : []), "when", ">off [m]", ">[deg]", ">of the mean"], rows));
 }
 
