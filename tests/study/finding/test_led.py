@@ -5,9 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.physics.effects import find
 from twin.study.assemble import assemble
+from twin.study.case import KNOWN, roughly_known
 from twin.study.evidence import Hypothesis, posterior
-from twin.study.led import FORM, LUXURY, Led, _measured, held_out_error, horizon_s, led
+from twin.study.led import FORM, LUXURY, Led, _astray, _measured, _roughly, held_out_error, horizon_s, led
 from twin.study.refine import Found, refine
 from twin.study.search import search
 from twin.study.verdict import weights
@@ -25,6 +27,18 @@ def asked(**off_m):
 
 def says(*effects, world="usual"):
     return Hypothesis(effects, world, -100.0, -1.0)
+
+
+def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_too(tanker, voyages):
+    """Test: a model that holds the wind since she was calibrated, on a windy voyage; the same calibrated with it. Expected: a tenth of where she
+    would end without it belongs to the floor, and nothing."""
+    windy = tanker.with_effects(find("Wind").plausible(tanker))
+    hers = replace(windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}})
+    case, known = (assemble([voyages["Wind"]], ship) for ship in (windy, hers))
+    (without, share), *others = roughly_known(case.model)
+    assert share == KNOWN and not others and roughly_known(known.model) == []
+    assert _roughly(case) == pytest.approx(KNOWN * _astray(case, without)) and _roughly(known) == 0.0
+    assert without.effects == tanker.effects
 
 
 def test_what_is_no_farther_off_than_noise_and_structure_would_be_is_not_judged_by_it():

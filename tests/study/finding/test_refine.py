@@ -9,7 +9,7 @@ import pytest
 from twin.physics.effects import find
 from twin.study.assemble import assemble
 from twin.study.innovations import standard
-from twin.study.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _place, _told, about
+from twin.study.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _place, _told, _Top, about
 
 
 @pytest.fixture(scope="module")
@@ -79,6 +79,19 @@ def test_a_slow_gear_is_found_however_far_out_it_stands(case):
         other = _climb(case, ("SteeringLag",), mine, "usual", z)[0]
         assert other.log_weight < best.log_weight + 0.5
     assert at[mine][1] == pytest.approx(1.57, abs=0.3)  # 65 deg in as long as it sails so many lengths
+
+
+def test_a_climb_that_got_no_higher_is_asked_in_no_other_world(case, monkeypatch):
+    mine = rows(case, "RudderWear")
+    z = np.zeros(len(case.effects))
+    z[mine] = 0.5
+    top = _Top.of(case, ("RudderWear",), *_climb(case, ("RudderWear",), mine, "usual", z)[1:])
+    asked = []
+    monkeypatch.setattr(_Top, "of", classmethod(lambda cls, *_: asked.append(1) or top))
+    higher = {**top.judged, "usual": replace(top.judged["usual"], log_evidence=1e9)}
+    assert replace(top, judged=higher).or_from(case, ("RudderWear",), mine, z).judged is higher and not asked
+    lower = {**top.judged, "usual": replace(top.judged["usual"], log_evidence=-1e9)}
+    assert replace(top, judged=lower).or_from(case, ("RudderWear",), mine, z) is top and asked
 
 
 @pytest.mark.parametrize("chosen, most", [(("WaveDrift",), IRREGULAR[0]), (("RudderWear", "WaveDrift"), IRREGULAR[0]), (("RudderWear",), DOUBTS[0])])

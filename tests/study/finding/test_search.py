@@ -40,6 +40,33 @@ def test_a_pair_is_weighed_about_the_part_where_it_explains_more_whichever_was_j
     assert max(slow.values()) > max(worn.values())
 
 
+def test_a_pair_begins_where_the_likelier_of_its_parts_was_found_and_that_is_not_looked_for_again(case, monkeypatch):
+    held = book(case)
+    held.judge(PAIR[:1])
+    held.judge(PAIR[1:])
+    worn, slow = (held.found[(name,)].hypothesis.log_weight for name in PAIR)
+    began = {}
+
+    def begins(case, chosen, world, z, wider, hoped, known):
+        began.update(z=z, known=known)
+        return replace(held.found[PAIR[1:]], hypothesis=replace(held.found[PAIR[1:]].hypothesis, effects=chosen)), []
+
+    monkeypatch.setattr("twin.study.search.refine", begins)
+    held.judge(PAIR)
+    gear = [i for i, u in enumerate(case.effects) if u.owner == "SteeringLag"]
+    assert slow > worn and began["known"] == ("SteeringLag",)
+    assert began["z"][gear] == pytest.approx(held.found[PAIR[1:]].posterior.z[gear], abs=0.3)
+
+
+def test_beside_weather_that_is_no_news_only_what_is_not_hopeless_is_judged(case):
+    held = book(replace(case, no_news=("Wind",)))
+    best, three = held.weighed()[0], ("Wind", "RudderWear", "SteeringLag")
+    for part, behind in ((("Wind", "SteeringLag"), 10.0), (("Wind", "RudderWear"), 100.0), (("Wind",), 100.0)):
+        held.entries = {key: h for key, h in held.entries.items() if key[0] != part}
+        held._enter(replace(best, effects=part, log_evidence=best.log_weight - behind, log_prior=0.0))
+    assert held._parts(three) == [("RudderWear",), ("SteeringLag",), ("Wind", "SteeringLag")]
+
+
 def test_every_promising_effect_is_judged_when_what_was_found_leaves_too_much(tanker, voyages):
     held = book(assemble([voyages["nothing"]], tanker))
     held.last = [("Bank",)]
