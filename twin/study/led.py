@@ -55,10 +55,12 @@ class Led:
         return -2.0 * self.windows * float(np.log(max(error, floor) / floor))
 
 
-def led(case: Case, found: Mapping[Sets, Found]) -> Led:
-    """Run nothing and every hypothesis that could still be the answer over the held-out parts."""
-    best = max(f.hypothesis.log_weight for f in found.values())
-    off = {s: held_out_error(case, f) for s, f in found.items() if not s or f.hypothesis.log_weight > best - REACH}
+def led(case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis]) -> Led:
+    """Run nothing and every hypothesis that could still be the answer over the held-out parts (`weighed`: what is known of all of them by now;
+    one is likelier than where it was found if it leaves to any day what another had found)."""
+    likely = {s: max((h.log_weight for h in weighed if h.effects == s), default=-np.inf) for s in found}
+    best = max(likely.values())
+    off = {s: held_out_error(case, f) for s, f in found.items() if not s or likely[s] > best - REACH}
     steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
     least = max(steps["coarse"], _measured(case))  # what is run free is a core alone, and no better than it was when nothing was wrong
     floor = {name: float(np.hypot(max(m, least), _roughly(case))) for name, m in steps.items()}

@@ -20,6 +20,7 @@ from .own_force import leads_her, otherwise, without
 from .refine import Found, Sets, standing
 from .respond import respond
 from .seaway import at_sea
+from .verdict import SURE
 
 MOSTLY = 1.0 / 3.0  # of the error without it that may be left whatever else is
 ASTRAY = 2.0  # times the floor that an answer may end away from where she went, one that names a cause if it leads her some of the way
@@ -74,6 +75,13 @@ def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
     """Those of a set of effects with which she is led better than without, as `twin add` will ask; one that only changes what the
     instruments read need not lead her, but one of its numbers must be clear."""
     return [n for n in chosen if (_clear(case, found[chosen], n) if case.catalogue[n].kind == "SensorFault" else _leads(found, chosen, n))]
+
+
+def asked_for(case: Case, found: Mapping[Sets, Found], sure: Mapping[str, float], names: Sequence[str]) -> list[str]:
+    """Those of some effects that the path, the readings of an instrument, or a probability of its own asks for: where the model alone leads her
+    within what is usual, no force is named for a group that it belongs to."""
+    led = found[()].off_m <= found[()].floor_m
+    return [n for n in names if not led or case.catalogue[n].kind == "SensorFault" or sure[n] >= SURE]
 
 
 def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:

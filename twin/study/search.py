@@ -54,7 +54,7 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
         progress("judging " + " + ".join(chosen) + " about its own size")
         book.judge(chosen)
     progress("asking where each would have led her")
-    asked = led(book.case, book.found)
+    asked = led(book.case, book.found, book.weighed())
     return book.proved(asked), book.found | dict(asked.found), seen
 
 

@@ -8,7 +8,7 @@ import pytest
 from twin.study import leftover
 from twin.study.assemble import assemble
 from twin.study.columns import with_values
-from twin.study.leftover import ASTRAY, CLEAR, astray, explains, helpful, missed, quiet, too_small, undone
+from twin.study.leftover import ASTRAY, CLEAR, asked_for, astray, explains, helpful, missed, quiet, too_small, undone
 from twin.study.search import search
 from twin.study.tell_diagnosis import sentence
 
@@ -26,6 +26,14 @@ def judged(tanker, voyages):
 
 def test_under_its_true_cause_a_ship_is_as_quiet_as_on_her_reference_voyages(judged):
     assert quiet(*judged)
+
+
+@pytest.mark.parametrize("off_m, asked", [(0.9, ["RudderWear", "HeadingBias"]), (1.1, ["RudderWear", "TowForce", "HeadingBias"])])
+def test_where_the_model_alone_leads_her_no_force_is_named_for_the_group_it_belongs_to(judged, off_m, asked):
+    case, found = judged
+    nothing = {(): replace(found, off_m=off_m, floor_m=1.0)}
+    sure = {"RudderWear": 0.9, "TowForce": 0.4, "HeadingBias": 0.4}
+    assert asked_for(case, nothing, sure, list(sure)) == asked
 
 
 def as_if(found, **worlds):
