@@ -35,7 +35,8 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     model, catalogue = Model.of(ship), known_effects()
     progress("smoothing tracks")
     tracks = tuple(swung(track(v, ship), model) for v in voyages)
-    judged = catalogue | {e.__name__: e for e in UNNAMED}
+    unnamed = {e.__name__: e for e in UNNAMED}
+    judged = catalogue | unnamed
     candidates = judgeable(tracks, model, judged)
     no_news = as_usual(strengths(tracks, model, catalogue), _felt_before(references, model, catalogue))
     effects = tuple(u for name in candidates for u in effect_unknowns(judged[name], model))
@@ -60,9 +61,9 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     progress("linearising")
     case = Case(
         tracks, model, judged, candidates, unknowns, effects, known, floor, path, temper,
-        _odds(tracks, candidates, ship) | dict.fromkeys(no_news, CERTAIN) | dict.fromkeys(judged.keys() - catalogue, ODDS_UNNAMED),
+        _odds(tracks, candidates, ship) | dict.fromkeys(no_news, CERTAIN) | dict.fromkeys(unnamed, ODDS_UNNAMED),
         _lines(tracks, model, unknowns, judged, MOST_SEGMENTS), any(manoeuvred(t, ship) for t in tracks), floor.white, no_news,
-        tuple(judged.keys() - catalogue),
+        tuple(unnamed),
     )  # fmt: skip
     return settle(case)
 
