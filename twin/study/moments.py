@@ -19,6 +19,7 @@ from .evidence import likeliest
 from .innovations import Floor, Linear, innovate, standard
 from .led import plain
 from .refine import Found, standing
+from .segments import segments
 
 LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before
 CLEAR = 15.0  # log evidence, tempered, that a push of its own must add
@@ -67,15 +68,17 @@ def _in_one(line: Linear, theta: np.ndarray) -> Linear:
 
 
 def _asked(case: Case, lines: Sequence[Linear], floor: Floor, lengths: float) -> list[Moment]:
-    steps = max(4, round(lengths * float(case.model.ship.scale("time")) / lines[0].track.h))
-    where = innovate(lines, [floor], MOST_SEGMENTS)[0].where
-    begins = range(0, max(b - a for _, a, b in where), steps // 2)
-    pushed = [_pushed(case, line, [(a, b) for j, a, b in where if j == i], begins, steps) for i, line in enumerate(lines)]
+    time = float(case.model.ship.scale("time"))
+    where = segments([line.track for line in lines], time, MOST_SEGMENTS)
+    steps = [max(4, round(lengths * time / line.track.h)) for line in lines]
+    most = max(-(-(b - a) // (steps[i] // 2)) for i, a, b in where)
+    pushed = [_pushed(case, x, [(a, b) for j, a, b in where if j == i], steps[i], most) for i, x in enumerate(lines)]
     normal, out = innovate(pushed, [floor], MOST_SEGMENTS)[0], []
     for (i, a, b), A, pull in zip(where, normal.A / case.temper, normal.b / case.temper, strict=True):
-        for k, begin in enumerate(begins):
-            first, last, own = a + begin, min(a + begin + steps, b) - 1, slice(3 * k + 1, 3 * k + 4)
-            if last - first >= steps // 2:
+        for k in range(most):
+            first, own = a + k * (steps[i] // 2), slice(3 * k + 1, 3 * k + 4)
+            last = min(first + steps[i], b) - 1
+            if last - first >= steps[i] // 2:
                 e, H = pull[own] - A[own, 0], A[own, own] + np.eye(3)
                 push, t = np.linalg.solve(H, e), lines[i].track.t
                 gain = 0.5 * float(e @ push) - 0.5 * float(np.linalg.slogdet(H)[1])
@@ -83,12 +86,12 @@ def _asked(case: Case, lines: Sequence[Linear], floor: Floor, lengths: float) ->
     return out
 
 
-def _pushed(case: Case, line: Linear, segments: Sequence[tuple[int, int]], begins: Sequence[int], steps: int) -> Linear:
+def _pushed(case: Case, line: Linear, where: Sequence[tuple[int, int]], steps: int, most: int) -> Linear:
     """The track with, behind its own column, three more for each stretch of its segments: a push of one standard acceleration in each axis."""
-    A = np.zeros((len(line.track), 3, 1 + 3 * len(begins)), line.A.dtype)
+    A = np.zeros((len(line.track), 3, 1 + 3 * most), line.A.dtype)
     R = np.zeros((len(line.track), line.R.shape[1], A.shape[2]), line.R.dtype)
     A[:, :, :1], R[:, :, :1] = line.A, line.R
-    for a, b in segments:
-        for k, begin in enumerate(begins):
-            A[a + begin : min(a + begin + steps, b), range(3), range(3 * k + 1, 3 * k + 4)] = standard(case.model)
+    for a, b in where:
+        for k, first in enumerate(range(a, b, steps // 2)):
+            A[first : min(first + steps, b), range(3), range(3 * k + 1, 3 * k + 4)] = standard(case.model)
     return replace(line, A=A, R=R)

@@ -84,3 +84,15 @@ def test_a_moment_is_told_as_a_force(tanker, voyages):
     moment = replace(stretches(case, as_she_is(case))[0], push=np.array([1.0, 0.0, 0.0]))
     said = moment.told(case.model)
     assert said["X_N"] == pytest.approx(tanker.scale("force")) and said["Y_N"] == said["N_Nm"] == 0.0
+
+
+def test_voyages_that_were_logged_at_different_rates_are_asked_side_by_side(tanker, voyages):
+    every = voyages["nothing"]
+    seldom = replace(every, name="seldom", time_s=every.time_s[::6], columns={name: x[::6] for name, x in every.columns.items()})
+    case = assemble([every, seldom], tanker)
+    asked = stretches(case, as_she_is(case))
+    assert case.tracks[1].h > 2.0 * case.tracks[0].h
+    for name in ("nothing", "seldom"):
+        lasts = [m.end_s - m.start_s for m in asked if m.voyage == name]
+        assert max(lasts) == pytest.approx(4.0 * float(tanker.scale("time")), rel=0.1)
+        assert max(m.end_s for m in asked if m.voyage == name) > 1100.0
