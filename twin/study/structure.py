@@ -39,7 +39,7 @@ def floor_of(ship: Ship, name: str = "floor") -> Floor | None:
 
 def _by_axis(value: float | Sequence[float]) -> tuple[float, float, float]:
     """One number for surge, sway and yaw, or one for each."""
-    surge, sway, yaw = (float(v) for v in np.broadcast_to(value, 3))
+    surge, sway, yaw = (float(v) for v in (value if isinstance(value, Sequence) else (value,) * 3))
     return surge, sway, yaw
 
 
