@@ -56,11 +56,7 @@ def sentence(result: dict[str, Any]) -> str:
             beside = f" Beside it: {' with '.join(near)}." if near else ""
             return f"Something is missing that is none of the effects of the catalogue. It looks like {like['effect']}: {like['says']}{beside}"
         if result["moments"] and not near:
-            first = result["moments"][0]
-            return (
-                f"Something is missing that no effect I know would do: it pushed her from {_clock(first['start_s']).strip()} to "
-                f"{_clock(first['end_s']).strip()} on {first['voyage']} as it did not before."
-            )
+            return f"Something is missing that no effect I know would do: it pushed her {_when(result['moments'][0])} as it did not before."
         nearest = f" Nearest, but not enough: {' with '.join(near)}." if near else ""
         return f"Something is missing, but none of the effects I know explains it.{nearest}"
     if result["one_of"]:
@@ -101,8 +97,11 @@ def sentence(result: dict[str, Any]) -> str:
 
 
 def _moment(m: dict[str, Any]) -> str:
-    when = f"from {_clock(m['start_s']).strip()} to {_clock(m['end_s']).strip()} on {m['voyage']}"
-    return f"{when} something pushed her that was not there before and after: {_force(m)}"
+    return f"{_when(m)} something pushed her that was not there before and after: {_force(m)}"
+
+
+def _when(m: dict[str, Any]) -> str:
+    return f"from {_clock(m['start_s']).strip()} to {_clock(m['end_s']).strip()} on {m['voyage']}"
 
 
 def nearer(candidate: dict[str, Any]) -> bool:
