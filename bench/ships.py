@@ -76,7 +76,7 @@ NOTES = {
     "X_u": "none was published", "Y_v": "none was published", "N_r": "none was published",
     "K_T0": "K_T(J) as a straight line over 0.05 < J < 0.8", "K_T1": "see K_T0",
     "epsilon": "inflow at the rudder as eps^2 (u_a^2 + kappa 8T/(pi rho D^2))", "kappa": "see epsilon",
-    "gamma_v": "mean of both sides", "gamma_r": "mean of both sides times l_R", "x_R": "at the aft perpendicular",
+    "gamma_v": "mean of both sides", "gamma_r": "mean of both sides times l_R", "gamma_a": "mean of both sides", "x_R": "at the aft perpendicular",
 }  # fmt: skip
 
 

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from .ship import Ship
 
 GRAVITY = 9.80665  # m/s2
+EVEN = 0.1  # flow across the rudder over that along it, from which both sides differ in proportion to it
 Tau = tuple[Number, Number, Number]  # (X, Y, N), as plain a tuple as can be: the loop makes thousands
 
 
@@ -67,6 +68,7 @@ class Coefficients:
     lever_R: Number  # x_R + a_H x_H [m]
     gamma_v: Number
     gamma_r: Number  # times L [m]
+    gamma_a: Number
 
 
 def coefficients(ship: "Ship") -> Coefficients:
@@ -92,7 +94,7 @@ def coefficients(ship: "Ship") -> Coefficients:
         T_nn=d.K_T0 * n_scale, T_nu=d.K_T1 * n_scale / D, thrust_share=1.0 - d.t, wake_share=1.0 - d.w,
         slipstream=d.kappa * 8.0 / (pi * rho * D**2), inflow=d.epsilon**2, rudder=0.5 * rho * ship.A_R * d.C_L,
         drag_R=1.0 - d.t_R, side_R=1.0 + d.a_H, lever_R=(d.x_R + d.a_H * d.x_H) * L,
-        gamma_v=d.gamma_v, gamma_r=d.gamma_r * L,
+        gamma_v=d.gamma_v, gamma_r=d.gamma_r * L, gamma_a=d.gamma_a,
     )  # fmt: skip
 
 
@@ -130,12 +132,16 @@ def propeller(thrust: Number, c: Coefficients) -> Tau:
 def rudder(u: Number, v: Number, r: Number, delta: Number, thrust: Number, c: Coefficients) -> Tau:
     """Rudder force in the propeller's slipstream (momentum theory), with the flow that drift and turning send across it.
 
-    q = eps^2 (u_a |u_a| + kappa 8 T/(pi rho D^2)),  F = 1/2 rho A_R C_L (q sin(delta) + sqrt|q| (gamma_v v + gamma_r L r) cos(delta))
+    q = eps^2 (u_a |u_a| + kappa 8 T/(pi rho D^2)),  F = 1/2 rho A_R C_L (q sin(delta) + sqrt|q| (w + gamma_a even(w)) cos(delta)),
+    w = gamma_v v + gamma_r L r, even(w) = sqrt(w^2 + e^2) - e, e = EVEN sqrt|q|: behind a single screw more of it arrives from one side
+    than from the other [Yasukawa & Yoshimura 2015: gamma_R of each side].
     """
     u_a = c.wake_share * u
     q = c.inflow * (u_a * abs(u_a) + c.slipstream * positive(thrust))
     si, co = sin(delta), cos(delta)
-    across = sqrt(abs(q) + 1e-9) * (c.gamma_v * v + c.gamma_r * r)
+    w, inflow = c.gamma_v * v + c.gamma_r * r, sqrt(abs(q) + 1e-9)
+    corner = EVEN * inflow
+    across = inflow * (w + c.gamma_a * (sqrt(w * w + corner * corner) - corner))
     normal = c.rudder * (q * si + across * co)
     athwart = -normal * co
     return -c.drag_R * normal * si, c.side_R * athwart, c.lever_R * athwart

@@ -63,6 +63,7 @@ class Derivatives:
     x_H: Number = number(-0.46, "L", -0.7, 0.5, "where the hull's share of the side force acts", sd=0.1)
     gamma_v: Number = number(0.45, "-", -0.2, 1.5, "how much of the drift reaches the rudder", sd=0.12)
     gamma_r: Number = number(-0.35, "-", -1.2, 0.2, "how much of the turning reaches the rudder", sd=0.1)
+    gamma_a: Number = number(0.0, "-", -0.9, 0.9, "how much more of both while the stern drifts to starboard, less to port", sd=0.15)
 
 
 @dataclass(frozen=True)

@@ -49,7 +49,10 @@ def answer(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found
 def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: Found, strict: bool = False) -> bool:
     """Whether no more is left under this hypothesis than a true one would leave (`weighed`: all of them, best first). It is explanation
     enough to lead her most of the way to where she went; a sea that was measured may be the reason for more, and a stream that changes
-    for restlessness, which counts only where it leads her astray. As long as others may do better (`strict`), more is asked."""
+    for restlessness, which counts only where it leads her astray. As long as others may do better (`strict`), more is asked. What is so unlikely
+    that nobody asked where it leads her explains nothing."""
+    if np.isnan(found.off_m):
+        return False
     if found.off_m <= MOSTLY * nothing.off_m or any(at_sea(t, case.model) for t in case.tracks):
         return True
     own = [h for h in weighed if h.effects == found.hypothesis.effects]

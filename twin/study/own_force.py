@@ -50,8 +50,9 @@ def otherwise(case: Case, found: Found, nothing: Found) -> list[str]:
 
 
 def leads_her(found: Found, nothing: Found) -> bool:
-    """Whether a hypothesis leads her within what is usual of where she went, as the model alone does not."""
-    return found.off_m <= found.floor_m and nothing.off_m > nothing.floor_m
+    """Whether a hypothesis leads her within what is usual of where she went, as the model alone does not (to each its own floor would make
+    the water restless for who needs it so)."""
+    return found.off_m <= found.floor_m < nothing.off_m
 
 
 def without(model: Model, before: Model, name: str) -> Model:
