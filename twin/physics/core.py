@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from .ship import Ship
 
 GRAVITY = 9.80665  # m/s2
-EVEN = 0.1  # flow across the rudder over that along it, from which both sides differ in proportion to it
+EVEN = 0.02  # flow across the rudder over that along it, about one degree, from which both sides differ in proportion to it
 Tau = tuple[Number, Number, Number]  # (X, Y, N), as plain a tuple as can be: the loop makes thousands
 
 
