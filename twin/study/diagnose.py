@@ -19,7 +19,7 @@ from .effects import INPUTS
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import answer, asked_for, astray, helpful, missed, too_small, undone
+from .leftover import asked_for, astray, explaining, helpful, missed, too_small, undone
 from .manoeuvres import next_manoeuvre
 from .moments import moments
 from .overtime import over_time
@@ -60,7 +60,7 @@ def diagnose(
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed)
     best = found[w.best.effects]
-    explain = answer(case, weighed, found, w.best.effects)
+    explain = explaining(case, weighed, found)
     no_pair, leads = undone(case, best), asked_for(case, found, w.effects, case.names(helpful(case, found, explain)))
     explained = not case.news(w.best.effects) or (bool(explain) and not no_pair)
     if too_small(case, found, explain):

@@ -20,7 +20,7 @@ from .own_force import leads_her, otherwise, without
 from .refine import Found, Sets, standing
 from .respond import respond
 from .seaway import at_sea
-from .verdict import SURE
+from .verdict import ALIKE, SURE
 
 MOSTLY = 1.0 / 3.0  # of the error without it that may be left whatever else is
 ASTRAY = 2.0  # times the floor that an answer may end away from where she went, one that names a cause if it leads her some of the way
@@ -44,6 +44,14 @@ def answer(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found
     rest = tuple(name for name in chosen if name not in odd)
     alone = () if not odd or rest not in found else answer(case, weighed, found, rest, strict)
     return chosen if not odd or (not alone and leads_her(found[chosen], found[()])) else alone
+
+
+def explaining(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found]) -> Sets:
+    """The effects that explain the voyages: those of the best hypothesis (`answer`), or, where these leave too much, of a part of it that
+    cannot be told from it and leaves no more than it may."""
+    best = weighed[0]
+    close = (h.effects for h in weighed if best.log_weight - h.log_weight < ALIKE and set(h.effects) <= set(best.effects) and h.effects in found)
+    return next((told for part in dict.fromkeys(close) if (told := answer(case, weighed, found, part))), ())
 
 
 def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: Found, strict: bool = False) -> bool:

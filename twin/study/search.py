@@ -16,6 +16,7 @@ from .led import REACH, Led, led
 from .leftover import NEARLY, answer
 from .nuisance import DAILY
 from .refine import Found, Sets, refine
+from .steady import steady
 
 MOST = 2  # effects at once that would be news
 ROUNDS = 20  # hypotheses judged about their own size, at most
@@ -77,6 +78,7 @@ class _Book:
         self.case, self.worlds = case, worlds
         self.wide = False  # whether every promising effect is judged, because the best so far leaves too much
         self.entries: dict[tuple[Sets, str], Hypothesis] = {}
+        self.steady: list[Sets] = []  # with a stream that may change and did not: no set that holds one of these is asked again
         for world, reduced in worlds.items():
             for chosen, evidence in weigh_all(reduced, case.candidates, MOST):
                 self._enter(Hypothesis(chosen, world, evidence, case.log_prior(chosen, world)))
@@ -89,7 +91,7 @@ class _Book:
         self.last = singles[first : first + LAST]
 
     def _enter(self, h: Hypothesis) -> None:
-        if np.isfinite(h.log_weight):
+        if np.isfinite(h.log_weight) and not any(set(s) <= set(h.effects) for s in self.steady):
             self.entries[h.effects, h.world] = h
 
     def weighed(self) -> list[Hypothesis]:
@@ -162,6 +164,9 @@ class _Book:
         if self._hollow(chosen):
             self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}
             judged = [h for h in judged if h.effects != chosen]
+        if steady(self.case, self.found[chosen]):
+            self.steady.append(chosen)
+            self.entries = {key: h for key, h in self.entries.items() if not set(chosen) <= set(key[0])}
         for h in judged:
             if self._counts(chosen, h):
                 self._enter(h)

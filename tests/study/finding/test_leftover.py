@@ -8,7 +8,7 @@ import pytest
 from twin.study import leftover
 from twin.study.assemble import assemble
 from twin.study.columns import with_values
-from twin.study.leftover import ASTRAY, CLEAR, asked_for, astray, explains, helpful, missed, quiet, too_small, undone
+from twin.study.leftover import ASTRAY, CLEAR, asked_for, astray, explaining, explains, helpful, missed, quiet, too_small, undone
 from twin.study.search import search
 from twin.study.tell_diagnosis import sentence
 
@@ -64,6 +64,24 @@ def test_a_world_that_is_clearly_rougher_is_no_explanation_unless_a_sea_was_meas
     (track,) = case.tracks
     waves = np.full(len(track), 0.01 * case.model.ship.L_pp)
     assert explains(replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),)), [rough], off, nothing)
+
+
+def test_what_was_so_unlikely_that_nobody_asked_where_it_leads_her_explains_nothing(judged):
+    case, found = judged
+    assert not explains(case, [found.hypothesis], replace(found, off_m=np.nan), replace(found, off_m=1.5))
+
+
+def test_where_the_best_leaves_too_much_a_part_that_cannot_be_told_from_it_may_explain(judged):
+    case, found = judged
+    best = replace(found.hypothesis, effects=("RudderWear", "SteeringLag"), world="usual", log_evidence=0.0)
+    part = replace(found.hypothesis, world="usual", log_evidence=best.log_weight - found.hypothesis.log_prior - 1.0)
+    sets = {
+        (): replace(found, hypothesis=replace(part, effects=()), off_m=1.5, floor_m=0.9),
+        best.effects: replace(found, hypothesis=best, off_m=2.5, floor_m=1.0),
+        part.effects: replace(found, hypothesis=part, off_m=0.9, floor_m=1.0),
+    }
+    assert explaining(case, [best, part], sets) == part.effects
+    assert explaining(case, [best, replace(part, log_evidence=part.log_evidence - 3.0)], sets) == ()
 
 
 def test_what_leads_her_elsewhere_explains_nothing_however_quiet_it_leaves_her(judged):

@@ -1,0 +1,50 @@
+"""A stream that hardly changes is a steady one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from twin.physics.effects.current import Current
+from twin.physics.effects.varying_current import VaryingCurrent
+from twin.physics.model import Model
+from twin.study.assemble import assemble
+from twin.study.case import WORLDS
+from twin.study.search import _Book, search
+from twin.study.steady import EDDIES, changes, steady
+
+
+@pytest.fixture(scope="module")
+def case(tanker, voyages):
+    return assemble([voyages["Current"]], tanker)
+
+
+def test_what_changes_is_told_as_a_share_of_the_whole_stream(case):
+    (track,) = case.tracks
+    still, turning = VaryingCurrent(north=0.3, east=0.4), VaryingCurrent(north_c3=0.3)
+    assert changes(still, case.model, case.tracks) == pytest.approx(0.0, abs=1e-6)
+    north = 0.3 * np.cos(3.0 * 2.0 * np.pi / 3600.0 * track.t)
+    assert changes(turning, case.model, case.tracks) == pytest.approx(north.std() / np.sqrt((north**2).mean()))
+
+
+def judged(case, stream):
+    found = search(case)[1][()]
+    hypothesis = replace(found.hypothesis, effects=(type(stream).__name__,))
+    return replace(found, hypothesis=hypothesis, model=Model(case.model.ship, (*case.model.effects, stream)))
+
+
+def test_only_a_stream_that_may_change_and_does_not_is_called_steady(case):
+    assert steady(case, judged(case, VaryingCurrent(north=0.4, north_c3=0.4 * EDDIES)))
+    assert not steady(case, judged(case, VaryingCurrent(north=0.1, north_c3=0.4)))
+    assert not steady(case, judged(case, Current(north=0.4)))
+
+
+def test_a_set_with_a_stream_that_did_not_change_is_not_asked_again_nor_any_that_holds_it(case, monkeypatch):
+    names = list(WORLDS)
+    held = _Book(case, dict(zip(names, case.reduced(case.lines, case.worlds(names)), strict=True)))
+    monkeypatch.setattr("twin.study.search.steady", lambda case, found: "VaryingCurrent" in found.hypothesis.effects)
+    assert any("VaryingCurrent" in s for s, _ in held.entries)
+    held.judge(("VaryingCurrent",))
+    held.judge(("HullFouling",))
+    assert not any("VaryingCurrent" in s for s, _ in held.entries)
+    assert any(s == ("Current",) for s, _ in held.entries)
