@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import compress
 
 import numpy as np
@@ -10,6 +11,7 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 
 from .columns import Unknown
+from .directions import directions
 from .evidence import Hypothesis, Nuisance, Reduced, posterior, reduce
 from .innovations import Floor, Linear, innovate
 from .track import Track
@@ -96,15 +98,21 @@ class Case:
         floors = ((self.path if w.alone else self.floor).scaled(w.share, flow=w.flow) for w in map(WORLDS.__getitem__, names))
         return [replace(floor, doubt=doubt) for floor in floors]
 
-    def narrowed(self, chosen: Sequence[str]) -> tuple["Case", np.ndarray]:
-        """The same without the numbers of other effects that no usual day brings (a hundredth of a prior width each, which steers nothing), and
-        which of `effects` are left."""
-        usual = {u.label for u in self.nuisance.unknowns} | set(self.nuisance.daily)
-        needed = [u.owner in chosen or u.label in usual for u in self.unknowns]
-        kept = np.array([u.owner in chosen or u.label in usual for u in self.effects])
-        unknowns, effects = tuple(compress(self.unknowns, needed)), tuple(compress(self.effects, kept))
-        lines = tuple(x.only(np.flatnonzero(needed)) for x in self.lines)
-        return replace(self, unknowns=unknowns, effects=effects, lines=lines), kept
+    @cached_property
+    def told(self) -> np.ndarray:
+        """(P, P) what these voyages tell of all unknowns, where they were linearised."""
+        return innovate(self.lines, self.worlds(["usual"]), MOST_SEGMENTS)[0].total()[0]
+
+    def along(self, lines: Sequence[Linear], chosen: Sequence[str] = ()) -> tuple["Case", np.ndarray]:
+        """The same with these lines and few columns: the directions in the place of the nuisance's own, and the numbers of all effects, or
+        of those that are `chosen` or that any day brings (others have a hundredth of a prior width each, which steers nothing); and which of
+        `effects` are left. Not where the model has faults of instruments, whose columns turn what is shown."""
+        kept = np.array([not chosen or u.owner in chosen or u.label in self.nuisance.daily for u in self.effects])
+        effects, column = tuple(compress(self.effects, kept)), {u.label: i for i, u in enumerate(self.unknowns)}
+        others = [column[u.label] for u in effects]
+        along = directions(self.told, self.nuisance, self.unknowns, self.temper, chosen)
+        few = tuple(along.line(x, others) for x in lines)
+        return replace(self, unknowns=(*along.nuisance.unknowns, *effects), effects=effects, lines=few, nuisance=along.nuisance), kept
 
     def log_prior(self, chosen: Sequence[str], world: str) -> float:
         if (world == "flooding" and "VaryingCurrent" not in chosen) or self._twice(chosen):

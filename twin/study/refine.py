@@ -48,12 +48,13 @@ def refine(
     found; and, about it, the hypothesis in every world, every one that has one of `wider` beside it, and every one without what any day
     brings."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
-    narrow, kept = case.narrowed(chosen)
+    narrow, kept = case.along(case.lines, chosen)
     at = np.zeros_like(z)
     best, at[kept] = _place(narrow, chosen, world, z[kept], hoped, known)
     model, lines = about(case, at, mine, case.unknowns)
-    doubt = _doubt(case, chosen, lines, best.world, at)
-    reduced = _everywhere(case, chosen, lines, at, doubt)
+    whole, _ = case.along(lines)
+    doubt = _doubt(whole, chosen, whole.lines, best.world, at)
+    reduced = _everywhere(whole, chosen, whole.lines, at, doubt)
     judged, own = _judged(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
     others = [*_beside(case, chosen, reduced, wider), *_any_day(case, chosen, reduced)]

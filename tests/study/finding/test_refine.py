@@ -36,13 +36,13 @@ def test_only_what_bends_is_looked_for_far_out(case):
 
 
 def test_what_no_day_brings_steers_no_climb(case):
-    narrow, kept = case.narrowed(("SteeringLag",))
+    narrow, kept = case.along(case.lines, ("SteeringLag",))
     z = np.zeros(len(case.effects))
     z[rows(case, "SteeringLag")] = 1.0
     whole = _climb(case, ("SteeringLag",), rows(case, "SteeringLag"), "usual", z)[1]
     alone = _climb(narrow, ("SteeringLag",), rows(narrow, "SteeringLag"), "usual", z[kept])[1]
-    assert len(narrow.unknowns) < 0.8 * len(case.unknowns) and kept.sum() == len(narrow.effects)
-    assert alone == pytest.approx(whole[kept], abs=0.1)  # prior widths, along a ridge of the gear's own numbers
+    assert len(narrow.unknowns) < 0.5 * len(case.unknowns) and kept.sum() == len(narrow.effects)
+    assert alone == pytest.approx(whole[kept], abs=0.15)  # prior widths, along a ridge of the gear's own numbers
 
 
 @pytest.mark.parametrize("start", [0.3, 1.0, 3.0])
