@@ -28,4 +28,4 @@ def changes(stream: Flow, model: Model, tracks: tuple[Track, ...]) -> float:
     """What of a stream is not its mean over these voyages, as a share of all of it."""
     north_up = (stream.water(Situation(t=t.t, psi=np.zeros(len(t))), model.ship) for t in tracks)
     velocity = np.concatenate([np.column_stack([w.u, w.v]) for w in north_up])
-    return float(np.linalg.norm(velocity - velocity.mean(0)) / max(np.linalg.norm(velocity), 1e-12))
+    return float(np.linalg.norm(velocity - velocity.mean(0))) / max(float(np.linalg.norm(velocity)), 1e-12)
