@@ -14,7 +14,7 @@ from .columns import Unknown
 from .evidence import Nuisance
 from .innovations import Linear
 
-TELLS = 0.05  # information in the voyages over what is known beforehand, from which a direction is asked about
+TELLS = 0.02  # information in the voyages over what is known beforehand, from which a direction is asked about
 SURE = 1e6  # information about what is not asked about
 
 

@@ -48,6 +48,11 @@ class Nuisance:
     pull: np.ndarray  # (C,)
     daily: Mapping[str, float] = field(default_factory=dict)
 
+    @cached_property
+    def log_norm(self) -> float:
+        """By which the log of its density stays one of probability, in whatever unknowns it is written."""
+        return 0.5 * float(np.linalg.slogdet(self.information)[1]) - 0.5 * float(self.pull @ np.linalg.solve(self.information, self.pull))
+
 
 @dataclass(frozen=True)
 class Reduced:
@@ -83,7 +88,7 @@ def reduce(
     L = np.linalg.cholesky(A[:C, :C] + nuisance.information)
     half = np.linalg.solve(L, np.column_stack([A[:C, C:], b[:C] + nuisance.pull]))
     cross, mean = half[:, :-1], half[:, -1]
-    base = -0.5 * (ee + float(normal.logdet.sum())) / temper + 0.5 * float(mean @ mean) - float(np.log(np.diag(L)).sum())
+    base = -0.5 * (ee + float(normal.logdet.sum())) / temper + 0.5 * float(mean @ mean) - float(np.log(np.diag(L)).sum()) + nuisance.log_norm
     spike = np.array([np.clip(nuisance.daily.get(u.label, 0.0) / u.sd, SPIKE, 1.0) for u in effects])
     return Reduced(A[C:, C:] - cross.T @ cross, b[C:] - cross.T @ mean, base, tuple(effects), np.zeros(len(effects)) if at is None else at, spike)
 

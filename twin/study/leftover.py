@@ -85,7 +85,7 @@ def missed(nothing: Found) -> bool:
 def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
     """Those of a set of effects with which she is led better than without, as `twin add` will ask; one that only changes what the
     instruments read need not lead her, but one of its numbers must be clear."""
-    return [n for n in chosen if (_clear(case, found[chosen], n) if case.catalogue[n].kind == "SensorFault" else _leads(found, chosen, n))]
+    return [n for n in chosen if (_clear if case.catalogue[n].kind == "SensorFault" else _leads)(case, found, chosen, n)]
 
 
 def asked_for(case: Case, found: Mapping[Sets, Found], sure: Mapping[str, float], names: Sequence[str]) -> list[str]:
@@ -123,17 +123,18 @@ def _shown(case: Case, model: Model) -> float:
     return float(np.sqrt(moved))
 
 
-def _clear(case: Case, found: Found, name: str) -> bool:
+def _clear(case: Case, found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:
     """Whether one number of an effect is surely not that of none. Two that together are may be no fault at all: what a late position with
     as late a compass leaves over is the form of the ship's own sway."""
     own = np.array([i for i, u in enumerate(case.effects) if u.owner == name])
-    sd = np.sqrt(np.diag(found.posterior.covariance)[own])
-    return bool((np.abs(found.posterior.z[own]) > SURELY * sd).any())
+    known = found[chosen].posterior
+    return bool((np.abs(known.z[own]) > SURELY * np.sqrt(np.diag(known.covariance)[own])).any())
 
 
-def _leads(found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:
-    without = found.get(tuple(n for n in chosen if n != name))
-    return without is None or not found[chosen].off_m > (1.0 - BETTER) * without.off_m
+def _leads(case: Case, found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:
+    """Whether a force brings her nearer to where she went; one that comes and goes hardly can, where what it does not explain tosses her on."""
+    without, better = found.get(tuple(n for n in chosen if n != name)), 0.0 if case.catalogue[name].irregular else BETTER
+    return without is None or not found[chosen].off_m > (1.0 - better) * without.off_m
 
 
 def quiet(case: Case, found: Found) -> bool:
