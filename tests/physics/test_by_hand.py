@@ -47,6 +47,22 @@ def test_fouling_by_hand(ship):
     assert force("HullFouling", ship, Situation(u_r=4.0), extra=0.3)[0] == pytest.approx(-0.3 * (3914.45 + 5000 * 4) * 4, rel=1e-6)
 
 
+def test_more_of_the_flow_from_one_side_turns_her_alike_whichever_way_she_drifts(ship):
+    # as below: q = 29.3718, sqrt(q) = 5.41958; w = 0.4 x -0.4 - 0.3 x 100 x 0.01 = -0.46, corner 0.02 x 5.41958 = 0.108392
+    # even(w) = sqrt(0.2116 + 0.0117488) - 0.108392 = 0.364206; more across: 5.41958 x -0.25 x 0.364206 = -0.493464
+    # amidships F = -12 500 x 0.493464 = -6168.3 N more, whatever the sign of w: Y = 1.2 x 6168.3, N = -58 x 6168.3
+    uneven = ship.with_derivatives(gamma_a=-0.25)
+    for v, r in ((-0.4, 0.01), (0.4, -0.01)):
+        s = Situation(u_r=4.0, v_r=v, r=r, n=2.0)
+        more = [a - b for a, b in zip(rudder_force(uneven, s), rudder_force(ship, s), strict=True)]
+        assert more == pytest.approx([0.0, 7401.96, -357761.0], rel=1e-4)
+
+
+def rudder_force(ship, s):
+    thrust = core.thrust(s.u_r, s.n, ship.c)
+    return core.rudder(s.u_r, s.v_r, s.r, s.delta, thrust, ship.c)
+
+
 def test_rudder_and_what_wear_and_offset_do_to_it_by_hand(ship):
     # u_a = 0.75 x 4 = 3; T = 1000 x 4^4 x 0.4 x 2^2 - 1000 x 4^3 x 0.4 x 2 x 3 = 409 600 - 153 600 = 256 000 N
     # q = 9 + 0.5 x 8 x 256 000/(pi 1000 16) = 9 + 20.3718 = 29.3718; across = sqrt(q) (0.4 x -0.4 - 0.3 x 100 x 0.01) = -2.49300

@@ -106,7 +106,7 @@ class Case:
     def along(self, lines: Sequence[Linear], chosen: Sequence[str] = ()) -> tuple["Case", np.ndarray]:
         """The same with these lines and few columns: the directions in the place of the nuisance's own, and the numbers of all effects, or
         of those that are `chosen` or that any day brings (others have a hundredth of a prior width each, which steers nothing); and which of
-        `effects` are left. Not where the model has faults of instruments, whose columns turn what is shown."""
+        `effects` are left."""
         kept = np.array([not chosen or u.owner in chosen or u.label in self.nuisance.daily for u in self.effects])
         effects, column = tuple(compress(self.effects, kept)), {u.label: i for i, u in enumerate(self.unknowns)}
         others = [column[u.label] for u in effects]

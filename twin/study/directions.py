@@ -27,7 +27,8 @@ class Directions:
     columns: np.ndarray  # (C, 1 + K) those numbers [their own units] for one unit of each of the new unknowns
 
     def line(self, line: Linear, others: Sequence[int]) -> Linear:
-        """A track with the columns of these directions, and behind them some of those that it has."""
+        """A track with the columns of these directions, and behind them some of those that it has. (What a fault that the instruments have
+        turns of what they show counts in its own column alone: of its usual error that is next to nothing.)"""
         A, R = (np.concatenate([M[:, :, self.place] @ self.columns.astype(M.dtype), M[:, :, others]], axis=2) for M in (line.A, line.R))
         turns = {self.columns.shape[1] + k: line.turns[j] for k, j in enumerate(others) if j in line.turns}
         return replace(line, A=A, R=R, turns=turns)
