@@ -182,6 +182,9 @@ def test_M13_a_residual_of_another_ship_or_model_is_never_used(kvlcc2, parts):
     with pytest.raises(WrongShip, match="another model"):
         check(*parts, kvlcc2.with_derivatives(X_uu=-0.03))
     assert ship_hash(kvlcc2) == ship_hash(load_ship("kvlcc2"))
+    assert ship_hash(kvlcc2) == json.loads(parts[1])["ship"]["hash"]  # made before the core knew two sides of a rudder's inflow
+    with pytest.raises(WrongShip, match="another model"):
+        check(*parts, kvlcc2.with_derivatives(gamma_a=-0.1))
 
 
 def test_M7_outside_its_envelope_the_learned_force_shrinks_smoothly_to_nothing(kvlcc2):
