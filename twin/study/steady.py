@@ -1,7 +1,8 @@
 """Whether a stream that may change did: no water on earth stands quite still beside its mean, and an eddying stream is a steady one.
 
 What changes with the clock has a number for every twenty minutes, and where a core or another effect is only roughly right these find
-something to mend: a full `Current` of the 2 m boat was a `VaryingCurrent` by 35 in log evidence, for changes of 3 to 4 % of it; of true ones two thirds and more change.
+something to mend: a full `Current` of the 2 m boat was a `VaryingCurrent` by 35 in log evidence, for changes of 3 to 4 % of it; of true
+ones two thirds and more change.
 """
 
 import numpy as np
