@@ -9,18 +9,18 @@ from twin.study.directions import TELLS, directions
 from twin.study.evidence import Nuisance, posterior, reduce
 from twin.study.innovations import innovate
 
-RNG = np.random.default_rng(7)
 C, Q = 12, 3  # numbers of the nuisance, and of the effects
 
 
 def equations():
     """Normal equations of columns that are alike in part, with a nuisance of which some is known well and some not."""
-    G = RNG.normal(size=(60, C + Q)) * np.geomspace(3.0, 1e-3, C + Q)[RNG.permutation(C + Q)]
-    e = RNG.normal(size=60)
+    rng = np.random.default_rng(7)
+    G = rng.normal(size=(60, C + Q)) * np.geomspace(3.0, 1e-3, C + Q)[rng.permutation(C + Q)]
+    e = rng.normal(size=60)
     unknowns = tuple(Unknown("core" if i < C else "Effect", str(i), "", 0.0, 1.0, -9.0, 9.0) for i in range(C + Q))
-    root = RNG.normal(size=(C, C))
+    root = rng.normal(size=(C, C))
     information = root @ root.T + np.eye(C)
-    return G, e, unknowns, Nuisance(unknowns[:C], information, information @ RNG.normal(size=C))
+    return G, e, unknowns, Nuisance(unknowns[:C], information, information @ rng.normal(size=C))
 
 
 class Told:
