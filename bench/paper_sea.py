@@ -8,6 +8,7 @@ import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -78,17 +79,16 @@ def lessons(plan: Plan) -> list[Case]:
     ]
 
 
-def zigzags(count: int, seed: int, scenarios: Sequence[str] = SCENARIOS, **changes: object) -> list[Case]:
+def zigzags(count: int, seed: int, scenarios: Sequence[str] = SCENARIOS, angles: Sequence[int] = (10, 20), **changes: Any) -> list[Case]:
     """`count` zigzags of each of `angles` (10/10 and 20/20) in each scenario."""
-    angles = changes.pop("angles", (10, 20))
     return [
         replace(
             Case("kvlcc2", f"zigzag_{angle}", ts, seed=seed + 100 * i + 10 * j + 1, duration_s=RUN_S),
             **changes,
-        )  # type: ignore[arg-type]
+        )
         for i in range(count)
         for j, ts in enumerate(scenarios)
-        for angle in angles  # type: ignore[attr-defined]
+        for angle in angles
     ]
 
 

@@ -43,7 +43,8 @@ def wilcoxon(ours: np.ndarray, theirs: np.ndarray, group: np.ndarray) -> tuple[f
         return 1.0, 1.0
     _, index = np.unique(group, return_inverse=True)
     means = [np.bincount(index, x) / np.bincount(index) for x in (ours, theirs)]
-    return tuple(float(stats.wilcoxon(a, b, alternative="less").pvalue) for a, b in ((ours, theirs), means))  # type: ignore[return-value]
+    alone, together = (float(stats.wilcoxon(a, b, alternative="less").pvalue) for a, b in ((ours, theirs), means))
+    return alone, together
 
 
 def cliff(ours: np.ndarray, theirs: np.ndarray) -> float:

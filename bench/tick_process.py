@@ -54,18 +54,18 @@ class FastClock:
             self._rested_s = time.monotonic()
         at = self._index * self.period_s
         if self._mark is not None:
-            self._wait_for_feed(self._wall_s + at - LAG_S)
+            self._wait_for_feed(self._mark, self._wall_s + at - LAG_S)
         self._index += 1
         return Instant(self._index - 1, self._start_s + at, self._wall_s + at)
 
     def slack_s(self) -> None:
         return None
 
-    def _wait_for_feed(self, wall_s: float) -> None:
+    def _wait_for_feed(self, mark: Mark, wall_s: float) -> None:
         if self._index * self.period_s <= LAG_S:
             return
         until = time.monotonic() + FEED_S
-        while self._mark.read() < wall_s:  # type: ignore[union-attr]
+        while mark.read() < wall_s:
             if time.monotonic() > until:
                 raise SystemExit("the feed has stopped")
             time.sleep(5e-5)

@@ -19,6 +19,8 @@ from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 from twin.physics.zeta import inputs
 
+from .data import Leg
+
 LAYERS, WIDTH = 4, 64
 CALM = ("surge", "sway", "yaw", "rudder", "propeller")
 AIR = ("air_ahead", "air_starboard")
@@ -83,9 +85,9 @@ class Residual(torch.nn.Module):
             self.bound.fill_(1.2 * float(torch.quantile(self.f(zeta).norm(dim=-1), 0.999)) + 1e-3)
 
 
-def names_for(legs: Sequence[object], model: Model) -> tuple[str, ...]:
+def names_for(legs: Sequence[Leg], model: Model) -> tuple[str, ...]:
     """Which inputs the voyages can feed: her motion and controls; the air too where every voyage measured it, unless the wind has
     its name in the model already (few voyages would teach the network their weathers by heart)."""
-    measured = all("wind_speed" in leg.inputs for leg in legs)  # type: ignore[attr-defined]
+    measured = all("wind_speed" in leg.inputs for leg in legs)
     named = any(isinstance(effect, Wind) for effect in model.effects)
     return CALM + AIR if measured and not named else CALM
