@@ -7,6 +7,7 @@ import pytest
 from twin.physics import core
 from twin.physics.effects import find
 from twin.physics.effects.rudder_play import RudderPlay
+from twin.physics.effects.swaying_mass import SwayingMass
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
@@ -185,6 +186,17 @@ def test_a_rudder_that_hangs_loose_by_hand():
     assert loose.step(radians(8), radians(7), 1.0) == pytest.approx(radians(8))  # turned back inside the play: nothing moves
     assert loose.step(radians(8), radians(3), 1.0) == pytest.approx(radians(5))
     assert loose.step(radians(8), radians(-10), 1.0) == pytest.approx(radians(-8))
+
+
+def test_what_swings_aside_with_her_by_hand(ship):
+    """Test: a tenth of her mass, swinging about a fifth of her length ahead. Expected: Y and N of that mass, carried along aside; nothing ahead."""
+    s, c, L = Situation(u=5.0, v=0.6, r=0.02, n=1.5, delta=0.2), ship.c, ship.L_pp
+    tau = [sum(force) for force in zip(*Model(ship).known(s).values(), strict=True)]
+    u_dot, v_dot, r_dot = Model(ship, (SwayingMass(share=0.1, place=0.2 * L, inertia=0.005),)).nu_dot(s)
+    aside = v_dot + 5.0 * 0.02
+    assert c.m_u * u_dot == pytest.approx(tau[0])
+    assert c.m_v * v_dot + c.m_vr * r_dot == pytest.approx(tau[1] - ship.m * (0.1 * aside + 0.02 * L * r_dot))
+    assert c.m_rv * v_dot + c.m_r * r_dot == pytest.approx(tau[2] - ship.m * (0.02 * L * aside + 0.005 * L**2 * r_dot))
 
 
 def test_instruments_by_hand(ship):

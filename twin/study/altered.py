@@ -27,7 +27,7 @@ SURE = 2.5  # standard deviations beyond which they do
 
 def sized(case: Case, found: Found) -> Posterior:
     """What the voyages say of a hypothesis' numbers; of one that alters the ship, beside derivatives that scatter."""
-    moved = _moved(case, found.model)
+    moved = _moved(case, Model(found.model.ship, tuple(e for e in found.model.effects if type(e).__name__ not in case.unnamed)))
     if not moved.any():
         return found.posterior
     lines, at = standing(case, found, case.unknowns)
@@ -38,7 +38,7 @@ def sized(case: Case, found: Found) -> Posterior:
 
 def floats(case: Case, found: Found) -> bool:
     """Whether what alters the ship under a hypothesis can be a load; what does not alter her can be what it says."""
-    own = [u for u in case.effects if u.owner in found.hypothesis.effects and _alters(case.catalogue[u.owner])]
+    own = [u for u in case.effects if u.owner in found.hypothesis.effects and u.owner not in case.unnamed and _alters(case.catalogue[u.owner])]
     if not own:
         return True
     known, mine = sized(case, found), [case.effects.index(u) for u in own]

@@ -44,10 +44,17 @@ class Led:
         return self._path(error, floor)
 
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """The same hypotheses with this evidence too, best first. As far as one effect leads her there alone, two are a luxury."""
+        """The same hypotheses with this evidence too, best first, but for those that spoil what a part of them does. As far as one effect leads
+        her there alone, two are a luxury."""
         luxury = max(0.0, LUXURY + max((self._path(f.off_m, f.floor_m) for s, f in self.found.items() if len(s) == 1), default=-LUXURY))
-        extra = (self.log_probability(h) - luxury * (len(h.effects) > 1) for h in weighed)
-        return sorted((replace(h, log_evidence=h.log_evidence + e) for h, e in zip(weighed, extra, strict=True)), key=lambda h: -h.log_weight)
+        kept = [h for h in weighed if not self._spoils(h.effects)]
+        extra = (self.log_probability(h) - luxury * (len(h.effects) > 1) for h in kept)
+        return sorted((replace(h, log_evidence=h.log_evidence + e) for h, e in zip(kept, extra, strict=True)), key=lambda h: -h.log_weight)
+
+    def _spoils(self, effects: Sets) -> bool:
+        """Whether a set leads her farther off than is usual where a part of it leads her there: one that mends a form's steps and spoils its path."""
+        own, parts = self.found.get(effects), (f for s, f in self.found.items() if s and set(s) < set(effects))
+        return own is not None and own.off_m > own.floor_m and any(f.off_m <= f.floor_m for f in parts)
 
     def _path(self, error: float, floor: float) -> float:
         """Log probability of ending so far off where the floor is all that a true hypothesis would leave: two directions, a normal error of

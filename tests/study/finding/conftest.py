@@ -17,6 +17,7 @@ HIDDEN = {
     "Wind": (("Wind", 1.0),),
     "Wind again": (("Wind", 1.0),),
     "RudderBacklash": (("RudderBacklash", 1.0),),
+    "Sloshing": (("Sloshing", 1.0),),
 }
 
 

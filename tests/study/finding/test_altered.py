@@ -76,3 +76,8 @@ def test_a_load_shows_and_sinks_her_by_the_area_of_her_waterplane(monkeypatch, c
 
 def test_what_does_not_alter_her_can_be_what_it_says(case):
     assert floats(case, judged(case, "RudderWear"))
+
+
+def test_what_alters_her_and_is_no_load_need_not_float_and_its_numbers_are_no_regressions(case):
+    found = judged(case, "SwayingMass")
+    assert floats(case, found) and sized(case, found) is found.posterior

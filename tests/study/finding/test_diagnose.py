@@ -81,6 +81,15 @@ def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_res
     assert "looks like RudderPlay: The rudder hangs loose" in sentence(result) and any("gap" in line for line in told(result))
 
 
+def test_liquid_that_swings_in_a_slack_tank_is_no_load(tanker, voyages):
+    """Test: a tank of an eighth of her mass, forward or aft, whose liquid swings aside. Expected: unknown, no name, and what it looks like."""
+    result = diagnose([voyages["Sloshing"]], tanker).result
+    assert result["verdict"] == "unknown" and result["missing"] == [], "\n".join(told(result))
+    (like,) = result["resembles"]
+    share, *_ = like["parameters"]
+    assert like["effect"] == "SwayingMass" and share["name"] == "share" and 0.06 < share["value"] < 0.2
+
+
 def test_a_ship_whose_own_reference_voyages_are_half_unexplained_is_no_witness(tanker, voyages):
     """Test: a stream that is named else, asked of a ship file that leaves half of what turns her unexplained. Expected: undecided, and why."""
     notes = tanker.notes["structural"]

@@ -156,3 +156,12 @@ def test_the_floor_is_no_lower_than_what_the_calibration_measured_on_other_voyag
     weighed, found, _ = search(case)
     floor = led(asked_of, found, weighed).floor
     assert list(floor.values()) == pytest.approx([500.0] * len(floor))
+
+
+def test_two_that_lead_her_astray_where_one_of_them_leads_her_there_are_no_hypothesis():
+    """Test: a gear alone ends 5 m off, with a second beside it 9 m, at a floor of 8.2 m. Expected: the two are dropped; not where the gear alone is
+    astray as well, nor where they end within the floor."""
+    both = says("SteeringLag", "Loading")
+    for alone, together, kept in ((5.0, 9.0, False), (8.5, 9.0, True), (5.0, 8.0, True)):
+        path = asked(nothing=20.0, SteeringLag=alone, SteeringLag_Loading=together)
+        assert (both.effects in [h.effects for h in path.weigh([both, says("SteeringLag"), says()])]) is kept

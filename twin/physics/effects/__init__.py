@@ -29,6 +29,7 @@ from .speed_log_bias import SpeedLogBias
 from .speed_log_misalignment import SpeedLogMisalignment
 from .speed_log_scale import SpeedLogScale
 from .steering_lag import SteeringLag
+from .swaying_mass import SwayingMass
 from .tow_force import TowForce
 from .varying_current import VaryingCurrent
 from .wave_drift import WaveDrift
@@ -41,7 +42,7 @@ BUILT_IN: tuple[type[Effect], ...] = (
     SteeringLag,
     HeadingBias, SpeedLogBias, SpeedLogScale, SpeedLogMisalignment, AntennaOffset, SensorDelay, GyroBias,
 )  # fmt: skip
-UNNAMED: tuple[type[Effect], ...] = (RudderPlay,)  # known by their form, so that a diagnosis names nothing of the catalogue in their place
+UNNAMED: tuple[type[Effect], ...] = (RudderPlay, SwayingMass)  # known by their form, so that nothing of the catalogue is named in their place
 
 
 @lru_cache(maxsize=1)
