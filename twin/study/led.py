@@ -25,6 +25,7 @@ LUXURY = 10.0  # log odds against a second effect that the path does not ask for
 MOST = 40.0  # windows that count: what the core misses is the same in all of them, and more of the same tells no more
 FORM = 0.1  # share of what an effect does to the path that its form may miss
 ANY_DAY = 2.0  # standard deviations of what any day brings, that nobody need name
+SPOILT = 0.05  # share by which two effects lead her farther off than one of them, so that the other is none
 REACH = 60.0  # log odds behind the best up to which a hypothesis is asked
 
 
@@ -52,9 +53,10 @@ class Led:
         return sorted((replace(h, log_evidence=h.log_evidence + e) for h, e in zip(kept, extra, strict=True)), key=lambda h: -h.log_weight)
 
     def _spoils(self, effects: Sets) -> bool:
-        """Whether a set leads her farther off than is usual where a part of it leads her there: one that mends a form's steps and spoils its path."""
-        own, parts = self.found.get(effects), (f for s, f in self.found.items() if s and set(s) < set(effects))
-        return own is not None and own.off_m > own.floor_m and any(f.off_m <= f.floor_m for f in parts)
+        """Whether a set leads her farther off than is usual, and than a part of it does: of two that are there, neither leads her from where she went;
+        what mends the steps of another's form does."""
+        own, parts = self.found.get(effects), (f.off_m for s, f in self.found.items() if s and set(s) < set(effects))
+        return own is not None and own.off_m > own.floor_m and min(parts, default=np.inf) < (1.0 - SPOILT) * own.off_m
 
     def _path(self, error: float, floor: float) -> float:
         """Log probability of ending so far off where the floor is all that a true hypothesis would leave: two directions, a normal error of

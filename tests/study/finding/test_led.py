@@ -158,10 +158,10 @@ def test_the_floor_is_no_lower_than_what_the_calibration_measured_on_other_voyag
     assert list(floor.values()) == pytest.approx([500.0] * len(floor))
 
 
-def test_two_that_lead_her_astray_where_one_of_them_leads_her_there_are_no_hypothesis():
-    """Test: a gear alone ends 5 m off, with a second beside it 9 m, at a floor of 8.2 m. Expected: the two are dropped; not where the gear alone is
-    astray as well, nor where they end within the floor."""
+def test_two_that_lead_her_farther_astray_than_one_of_them_are_no_hypothesis():
+    """Test: a gear alone, and with a second effect, at a floor of 8.2 m. Expected: the two are dropped where they end outside it and farther off than
+    the gear; not where both end alike, nor where the two end within the floor."""
     both = says("SteeringLag", "Loading")
-    for alone, together, kept in ((5.0, 9.0, False), (8.5, 9.0, True), (5.0, 8.0, True)):
+    for alone, together, kept in ((5.0, 9.0, False), (12.0, 14.0, False), (13.8, 14.0, True), (5.0, 8.0, True)):
         path = asked(nothing=20.0, SteeringLag=alone, SteeringLag_Loading=together)
         assert (both.effects in [h.effects for h in path.weigh([both, says("SteeringLag"), says()])]) is kept
