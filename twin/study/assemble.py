@@ -13,7 +13,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 
 from .case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, roughly_known, settle
-from .columns import FORM, Unknown, core_unknowns, effect_unknowns, lateness_unknowns
+from .columns import FORM, SEA, Unknown, core_unknowns, effect_unknowns, lateness_unknowns
 from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
 from .nuisance import TEMPER, WEATHER, from_references, from_ship, lasting, nuisance_unknowns, temper_of, usual_unknowns
@@ -41,7 +41,7 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     no_news = as_usual(strengths(tracks, model, catalogue), _felt_before(references, model, catalogue))
     effects = tuple(u for name in candidates for u in effect_unknowns(judged[name], model))
     nuisance = nuisance_unknowns(model, catalogue)
-    core = [u for u in nuisance if u.owner in ("core", FORM)]
+    core = [u for u in nuisance if u.owner in ("core", FORM, SEA)]
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
     path = floor_of(ship) or Floor()

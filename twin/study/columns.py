@@ -13,7 +13,7 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES
 
-from . import form
+from . import form, tossed
 from .respond import faulty, respond
 from .track import Track
 
@@ -40,6 +40,8 @@ FIXED = ("t", "w", "x_R", "epsilon")  # scale other derivatives one for one: the
 
 LATE = "late"  # owner of the instruments' usual lateness: a column, but no part of any model
 FORM = "form"  # owner of what the core leaves out of calm water (form.py): the same
+SEA = "sea"  # owner of what one wave does at once (tossed.py): the same
+NO_MODEL = (LATE, FORM, SEA)
 LATENESS = {"log": [6, 7], "compass": [2], "gyro": [5]}  # instrument -> its readings
 
 
@@ -50,7 +52,16 @@ def lateness_unknowns() -> list[Unknown]:
 
 def form_unknowns() -> list[Unknown]:
     """How much of each term that the core does not have a ship may have [prime units]."""
-    return [Unknown(FORM, name, "", 0.0, sd, -10.0 * sd, 10.0 * sd) for name, sd in form.TERMS.items()]
+    return _beside_the_model(FORM, form.TERMS)
+
+
+def sea_unknowns() -> list[Unknown]:
+    """How much of what swings her in time with the waves is the helm's, and goes with the yaw."""
+    return _beside_the_model(SEA, tossed.TERMS)
+
+
+def _beside_the_model(owner: str, terms: dict[str, float]) -> list[Unknown]:
+    return [Unknown(owner, name, "", 0.0, sd, -10.0 * sd, 10.0 * sd) for name, sd in terms.items()]
 
 
 def core_unknowns(model: Model) -> list[Unknown]:
@@ -91,8 +102,9 @@ def columns(
             late = LATENESS[unknown.name]
             R[:, late, j] = -np.gradient(reading[:, late], track.h, axis=0)
             continue
-        if unknown.owner == FORM:
-            A[:, :, j], R[:, :, j] = form.accelerations(track, model, unknown.name), form.readings(track, model, unknown.name)
+        if unknown.owner in (FORM, SEA):
+            terms = form if unknown.owner == FORM else tossed
+            A[:, :, j], R[:, :, j] = terms.accelerations(track, model, unknown.name), terms.readings(track, model, unknown.name)
             continue
         if unknown.owner != "core" and missing.intersection(catalogue[unknown.owner].needs):
             continue  # without its input the effect does nothing on this track
@@ -125,7 +137,7 @@ def beside(
     track: Track, model: Model, unknown: Unknown, catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None
 ) -> tuple[Model, float] | None:
     """The model with a little more of a number, and how much more; None if that moves nothing on this track."""
-    if unknown.owner in (LATE, FORM):
+    if unknown.owner in NO_MODEL:
         return None
     if unknown.owner != "core" and (catalogue[unknown.owner].kind == "SensorFault" or track.missing().intersection(catalogue[unknown.owner].needs)):
         return None
@@ -144,7 +156,7 @@ def _step(unknown: Unknown, here: float | None, fine: bool) -> float:
 
 def changed(model: Model, unknown: Unknown, value: float, catalogue: dict[str, type[Effect]]) -> Model:
     """The model with one number changed; an effect that is not in it yet is put in at null first."""
-    if unknown.owner in (LATE, FORM):
+    if unknown.owner in NO_MODEL:
         return model
     if unknown.owner == "core":
         return Model(model.ship.with_derivatives(**{unknown.name: value}), model.effects)

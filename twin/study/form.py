@@ -1,28 +1,22 @@
-"""What the core leaves out: terms of higher order, of the heel, and of the helm in waves, each a column of its own and no part of any model.
+"""What the core leaves out of calm water: terms of higher order, and of the heel, each a column of its own and no part of any model.
 
 A hull in Norrbin's modulus form is a good one to predict with, and not the truth. What it leaves out has the same sign all through
 a voyage, so that a diagnosis would sooner or later take it for an effect. Reference voyages tell how much of each term this ship
 has; what they leave open is kept in mind when another voyage is judged.
 
-In a sea the helmsman answers each wave, and a wave passes the rudder: what she does in time with the waves is then read as her answer to the
-helm, stronger or later than it is (identification in closed loop, Ljung 1999, sec. 13.4). How strong it is, and when, is left open; what
-the rudder does more slowly is not.
-
 Forms: cubic hull and its scale, Yasukawa & Yoshimura (2015); wake that thins with drift, ibid.; heel, Son & Nomoto (1981).
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from twin.physics import core
 from twin.physics.model import Model
 
-from .respond import accelerations as accelerations_of
 from .respond import lagged
-from .start import steadied, wave_period_s
-from .track import READINGS, Track, running_mean
+from .track import READINGS, Track
 
 SLOWEST = 0.01  # of U_0: a speed to divide by, however slow the ship
 ROLLED = 0.15  # of L/U_0: window over which the measured heel is smoothed before its rates are taken
@@ -62,18 +56,12 @@ RUDDER: dict[str, tuple[float, Term]] = {  # name: prior width, times the rudder
     "q_vv": (1.0, lambda a: a.v**2),
     "q_rr": (1.0, lambda a: a.r**2),
 }
-HELM = {"helm": 0.5, "helm_late": 0.5}  # share, of what the rudder does in time with the waves: more of it, and of it a quarter of a period earlier
-SWING = {  # how one wave's swing in sway (ahead) or surge (starboard) goes with its swing in yaw [L], at once or a quarter of a period earlier
-    "swing_ahead": 0.1, "swing_ahead_late": 0.1, "swing_starboard": 0.1, "swing_starboard_late": 0.1,
-}  # fmt: skip
 HEIGHT = "z_antenna"  # of the satellite receiver above the axis of roll [B]
-TERMS = {name: width for name, (_, width, _) in HULL.items()} | {name: width for name, (width, _) in RUDDER.items()} | HELM | SWING | {HEIGHT: 0.5}
+TERMS = {name: width for name, (_, width, _) in HULL.items()} | {name: width for name, (width, _) in RUDDER.items()} | {HEIGHT: 0.5}
 
 
 def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
     """(N, 3) [m/s2, m/s2, rad/s2] of one unit of a term."""
-    if name in HELM:
-        return _helm(track, model, late=name == "helm_late")
     ship, a, zero = model.ship, _along(track, model), np.zeros(len(track))
     if name in HULL:
         axis, _, term = HULL[name]
@@ -88,28 +76,9 @@ def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
     return np.column_stack([np.broadcast_to(x, zero.shape) for x in core.accelerations(*tau, model.c)])
 
 
-def _helm(track: Track, model: Model, late: bool) -> np.ndarray:
-    """(N, 3) what the rudder does in time with the waves, or that and a quarter of their period earlier; nothing where no waves swing her."""
-    if track.swell is None:
-        return np.zeros((len(track), 3))
-    period_s = wave_period_s(track)
-    mean = replace(track, delta=running_mean(track.delta, max(1, round(period_s / track.h))))
-    swift = accelerations_of(track, model) - accelerations_of(mean, model)
-    return np.gradient(swift, track.h, axis=0) * period_s / (2.0 * np.pi) if late else swift
-
-
 def readings(track: Track, model: Model, name: str) -> np.ndarray:
     """(N, 8) of one unit of a term: a receiver above the axis of roll is carried aside by heel."""
     out = np.zeros((len(track), 8))
-    if name in SWING and track.swell is not None:
-        swing = track.state - steadied(track).state
-        psi_w, r_w, omega = swing[:, 2], swing[:, 5], 2.0 * np.pi / wave_period_s(track)
-        if name.endswith("late"):
-            psi_w, r_w = r_w / omega, np.gradient(r_w, track.h) / omega
-        L, c, s = float(model.ship.L_pp), np.cos(track.state[:, 2]), np.sin(track.state[:, 2])
-        ahead, aside = (0.0, 1.0) if "ahead" in name else (-1.0, 0.0)
-        for reading, value in (("x", (c * ahead - s * aside) * psi_w), ("y", (s * ahead + c * aside) * psi_w), ("u", ahead * r_w), ("v", aside * r_w)):
-            out[:, READINGS.index(reading)] = value * L
     if name == HEIGHT:
         a, B, psi = _along(track, model), float(model.ship.B), track.state[:, 2]
         out[:, READINGS.index("x")], out[:, READINGS.index("y")] = -np.sin(psi) * a.phi * B, np.cos(psi) * a.phi * B

@@ -53,8 +53,8 @@ class Led:
         return sorted((replace(h, log_evidence=h.log_evidence + e) for h, e in zip(kept, extra, strict=True)), key=lambda h: -h.log_weight)
 
     def _spoils(self, effects: Sets) -> bool:
-        """Whether a set leads her farther off than is usual, and than a part of it does: of two that are there, neither leads her from where she went;
-        what mends the steps of another's form does."""
+        """Whether a set leads her farther off than is usual, and than a part of it does: of two that are there neither does that, but one that mends
+        the steps of another's form."""
         own, parts = self.found.get(effects), (f.off_m for s, f in self.found.items() if s and set(s) < set(effects))
         return own is not None and own.off_m > own.floor_m and min(parts, default=np.inf) < (1.0 - SPOILT) * own.off_m
 

@@ -9,7 +9,7 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 
 from .between import scattered, ship_of, voyages
-from .columns import Unknown, core_unknowns, effect_unknowns, form_unknowns, lateness_unknowns
+from .columns import Unknown, core_unknowns, effect_unknowns, form_unknowns, lateness_unknowns, sea_unknowns
 from .evidence import Nuisance
 from .innovations import Floor, Linear, Normal, innovate
 
@@ -41,9 +41,10 @@ def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknow
 
 
 def nuisance_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
-    """Core derivatives and what they leave out, what a healthy ship usually shows of every lasting effect, and how late her instruments are."""
+    """Core derivatives and what they leave out, in calm water and in waves, what a healthy ship usually shows of every lasting effect, and how late
+    her instruments are."""
     usual = (replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue))
-    return (*core_unknowns(model), *form_unknowns(), *usual, *lateness_unknowns())
+    return (*core_unknowns(model), *form_unknowns(), *sea_unknowns(), *usual, *lateness_unknowns())
 
 
 def usual_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:

@@ -1,0 +1,52 @@
+"""What one wave does at once, in columns: a helmsman who answers it, and sway and surge that swing with the yaw. No part of any model.
+
+The filter carries waves in a band of each axis (`waves.py`) that knows nothing of the others, nor of the rudder. But the helm follows each wave
+and a wave passes the rudder, so that what she does in time with the waves is read as her answer to the helm, stronger or later than it is: a
+slow gear (identification in closed loop, Ljung 1999, sec. 13.4). And one wave swings her in sway and surge as it does in yaw, a quarter of a period
+apart or not at all: as if she were watched from elsewhere on board. How strong, and when, is left open here for what is in time with the waves;
+what she does more slowly is not touched.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from twin.physics.model import Model
+
+from .respond import accelerations as pushed
+from .start import steadied, wave_period_s
+from .track import READINGS, Track, running_mean
+
+EARLIER = "_earlier"  # a quarter of a period before
+HELM = {"helm": 0.5, "helm" + EARLIER: 0.5}  # prior width, as a share of what the rudder does in time with the waves
+SWING = {"sway": 0.1, "sway" + EARLIER: 0.1, "surge": 0.1, "surge" + EARLIER: 0.1}  # swing in it over the swing in yaw [L]
+TERMS = HELM | SWING
+
+
+def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
+    """(N, 3) [m/s2, m/s2, rad/s2] of one unit of a term; nothing where no waves swing her."""
+    if track.swell is None or name not in HELM:
+        return np.zeros((len(track), 3))
+    period_s = wave_period_s(track)
+    mean = replace(track, delta=running_mean(track.delta, max(1, round(period_s / track.h))))
+    swift = pushed(track, model) - pushed(mean, model)
+    return _earlier(swift, track, period_s) if name.endswith(EARLIER) else swift
+
+
+def readings(track: Track, model: Model, name: str) -> np.ndarray:
+    """(N, 8) of one unit of a term: where she is and how fast, aside or ahead, in time with her yaw."""
+    out = np.zeros((len(track), len(READINGS)))
+    if track.swell is None or name not in SWING:
+        return out
+    swing = (track.state - steadied(track).state)[:, [2, 5]] * float(model.ship.L_pp)
+    by, rate = (_earlier(swing, track, wave_period_s(track)) if name.endswith(EARLIER) else swing).T
+    c, s = np.cos(track.state[:, 2]), np.sin(track.state[:, 2])
+    moved = {"x": -s * by, "y": c * by, "v": rate} if name.startswith("sway") else {"x": c * by, "y": s * by, "u": rate}
+    for reading, value in moved.items():
+        out[:, READINGS.index(reading)] = value
+    return out
+
+
+def _earlier(values: np.ndarray, track: Track, period_s: float) -> np.ndarray:
+    """A quarter of a period before, as slopes tell it of what swings."""
+    return np.gradient(values, track.h, axis=0) * period_s / (2.0 * np.pi)
