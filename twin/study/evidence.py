@@ -148,9 +148,9 @@ def boxed(reduced: Reduced, effects: Sequence[str], found: Posterior) -> Posteri
     rows, z = reduced.rows(effects), found.z.copy()
     z[rows], held = stopped(z[rows], found.covariance[np.ix_(rows, rows)], *reduced.box[:, rows])
     if held.size:
-        edge = rows[held]
-        z = found.z + found.covariance[:, edge] @ np.linalg.solve(found.covariance[np.ix_(edge, edge)], (z - found.z)[edge])
-        z[edge] = np.clip(z, *reduced.box)[edge]
+        edge, there = rows[held], z[rows[held]]
+        z = found.z + found.covariance[:, edge] @ np.linalg.solve(found.covariance[np.ix_(edge, edge)], there - found.z[edge])
+        z[edge] = there  # to the last digit: what stands at nothing is nothing
     return replace(found, z=z)
 
 

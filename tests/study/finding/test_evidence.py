@@ -99,3 +99,12 @@ def test_of_two_numbers_that_do_for_each_other_none_stands_outside_its_box_for_t
     exact = np.log(mass) + log_density.max() - np.log(2.0 * np.pi) + 2.0 * np.log(2.0)  # half-normal priors
     cost = found.log_evidence + 2.0 * np.log(2.0) - exact
     assert log_evidence(reduced, ("A",), found) == pytest.approx(exact, abs=max(0.1, 0.1 * cost))
+
+
+def test_what_stands_at_the_edge_of_its_box_stands_there_to_the_last_digit():
+    """Test: three numbers, two of them pulled below nothing. Expected: exactly nothing (0.4e-15 before), for an effect that ended there is none."""
+    numbers = tuple(Unknown("A", name, "", 0.0, 1.0, 0.0, 10.0) for name in "abc")
+    A = np.array([[54.0, -19.5, -16.5], [-19.5, 21.9, 18.4], [-16.5, 18.4, 23.0]])
+    reduced = Reduced(A, np.array([14.0, -24.0, -13.0]), 0.0, numbers, np.zeros(3))
+    z = boxed(reduced, ("A",), posterior(reduced, ("A",))).z
+    assert z[0] > 0.2 and z[1] == z[2] == 0.0
