@@ -90,9 +90,10 @@ def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
 
 def asked_for(case: Case, found: Mapping[Sets, Found], sure: Mapping[str, float], names: Sequence[str]) -> list[str]:
     """Those of some effects that the path, the readings of an instrument, or a probability of its own asks for: where the model alone leads her
-    within what is usual, no force is named for a group that it belongs to."""
-    led = found[()].off_m <= found[()].floor_m
-    return [n for n in names if not led or case.catalogue[n].kind == "SensorFault" or sure[n] >= SURE]
+    within what is usual, no force is named for a group that it belongs to, and in a sea none but the sea's own (`too_small`)."""
+    led, sea = found[()].off_m <= found[()].floor_m, any(at_sea(t, case.model) for t in case.tracks)
+    kinds = {n: case.catalogue[n] for n in names}
+    return [n for n, kind in kinds.items() if not led or kind.kind == "SensorFault" or (sure[n] >= SURE and (kind.irregular or not sea))]
 
 
 def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:

@@ -66,6 +66,14 @@ def test_a_world_that_is_clearly_rougher_is_no_explanation_unless_a_sea_was_meas
     assert explains(replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),)), [rough], off, nothing)
 
 
+@pytest.mark.parametrize("off_m, asked", [(0.9, ["WaveDrift", "HeadingBias"]), (1.1, ["CrossFlowDrag", "WaveDrift", "HeadingBias"])])
+def test_in_a_sea_in_which_the_model_alone_leads_her_no_force_but_the_seas_own_is_named(monkeypatch, judged, off_m, asked):
+    case, found = judged
+    monkeypatch.setattr(leftover, "at_sea", lambda *_: True)
+    sure = dict.fromkeys(["CrossFlowDrag", "WaveDrift", "HeadingBias"], 0.99)
+    assert asked_for(case, {(): replace(found, off_m=off_m, floor_m=1.0)}, sure, list(sure)) == asked
+
+
 def test_what_was_so_unlikely_that_nobody_asked_where_it_leads_her_explains_nothing(judged):
     case, found = judged
     assert not explains(case, [found.hypothesis], replace(found, off_m=np.nan), replace(found, off_m=1.5))
