@@ -10,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from twin.cli import main
-from twin.physics.effects import BUILT_IN
-from twin.study.effects import overview, page
+from twin.errors import SettingsError
+from twin.physics.effects import BUILT_IN, UNNAMED, find
+from twin.study.effects import overview, page, sentence
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = (ROOT / "docs" / "tutorials" / "own-effect.md").read_text(encoding="utf-8")
@@ -56,6 +57,15 @@ def blocks():
     files = dict(re.findall(r"^`(\S+)`\n```\w+\n(.*?)^```", TUTORIAL, re.M | re.S))
     check = re.findall(r"```python\n(.*?)```", TUTORIAL, re.S)[-1]
     return files, check
+
+
+@pytest.mark.parametrize("Kind", UNNAMED)
+def test_what_is_known_by_its_form_alone_is_told_but_never_added(Kind, capsys):
+    assert main(["effects", Kind.__name__]) == 0
+    said = capsys.readouterr().out
+    assert sentence(Kind)[:30] in said and "twin add" not in said
+    with pytest.raises(SettingsError, match=f"no part of a ship file.*twin effects {Kind.__name__}"):
+        find(Kind.__name__)
 
 
 def test_the_tutorial_runs(tmp_path):

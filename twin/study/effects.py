@@ -39,7 +39,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     ship = load(args.ship) if args.ship else None
-    chosen = [find(args.name)] if args.name else list(catalogue().values())
+    by_form = [e for e in UNNAMED if e.__name__ == args.name]
+    chosen = by_form or ([find(args.name)] if args.name else list(catalogue().values()))
     if args.json:
         _write(args.json, json.dumps({"schema_version": 1, "effects": [as_table(e, ship) for e in chosen]}, indent=2, ensure_ascii=False))
     if args.markdown:
@@ -110,7 +111,8 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
     needs = ", ".join(inputs(effect)) or "nothing beyond the ship's own motion"
     lines += ["", f"needs     {needs}"] + ([f"of a ship {', '.join(effect.needs_ship)}"] if effect.needs_ship else [])
     lines += [textwrap.fill(f"source    {effect.source}", width, subsequent_indent=" " * 10)]
-    return "\n".join([*lines, "", f"next: twin add {effect.__name__} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"])
+    add = f"next: twin add {effect.__name__} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"
+    return "\n".join([*lines, "", "next: mend it; no ship file holds it" if effect in UNNAMED else add])
 
 
 def row(p: Param, ship: Ship | None) -> tuple[str, str, str, str, str, str]:

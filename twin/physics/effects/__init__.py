@@ -61,6 +61,8 @@ def find(name: str) -> type[Effect]:
     for effect in BUILT_IN:
         if effect.__name__ == name:
             return effect
+    if name in (e.__name__ for e in UNNAMED):
+        raise SettingsError(f"{name} is known by its form alone: what a repair mends is no part of a ship file. What it is: twin effects {name}.")
     known = catalogue()
     if name not in known:
         raise SettingsError(f"Unknown effect {name!r}.{did_you_mean(name, known)}")
