@@ -144,6 +144,19 @@ def test_wrapping_headings_are_no_mistake(sail):
         assert all(c.ok for c in answers(columns | {HEADING: wrapped}).values())
 
 
+def test_a_true_wind_that_follows_from_the_apparent_one_is_not_said_to_be_absent(sail):
+    columns = {name: x for name, x in sail().items() if name not in (WIND, WIND_FROM)}
+    assert WIND not in answers(columns)["missing_samples"].text
+    without = {name: x for name, x in columns.items() if name != AIR_FROM}
+    assert WIND in answers(without)["missing_samples"].text
+
+
+def test_velocities_that_are_slopes_of_the_position_prove_nothing(sail):
+    columns = {name: x for name, x in sail().items() if name not in (SURGE, SWAY)}
+    found = answers(columns)["velocity_frame"]
+    assert found.ok and not found.told and "not independent" in found.text
+
+
 def test_the_yaw_rate_of_a_constant_heading_cannot_be_told(sail):
     columns = sail()
     t = columns["time_s"]

@@ -73,6 +73,11 @@ def inputs(effect: type[Effect]) -> list[str]:
     return [INPUTS.get(name, name) for name in effect.needs]
 
 
+def _instead(effect: type[Effect]) -> str:
+    """What may be recorded in the place of what it needs, in words."""
+    return " (or the apparent wind, from which `twin import` finds them)" if "wind_to" in effect.needs else ""
+
+
 def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:
     """Everything that is declared of it; with a ship, sizes in SI instead of multiples of the ship's own scales."""
     params = []
@@ -108,7 +113,7 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
     lines += ["  " + "".join(f"{cell:{w}}" for cell, w in zip(r, (*widths, 0), strict=True)).rstrip() for r in rows]
     if ship is None and any(p.of for p in effect.params()):
         lines += ["", *(f"  {line}" for line in textwrap.wrap(SCALES_SAID, width - 2))]
-    needs = ", ".join(inputs(effect)) or "nothing beyond the ship's own motion"
+    needs = (", ".join(inputs(effect)) or "nothing beyond the ship's own motion") + _instead(effect)
     lines += ["", f"needs     {needs}"] + ([f"of a ship {', '.join(effect.needs_ship)}"] if effect.needs_ship else [])
     lines += [textwrap.fill(f"source    {effect.source}", width, subsequent_indent=" " * 10)]
     add = f"next: twin add {effect.__name__} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"
@@ -152,7 +157,7 @@ def page(effects: list[type[Effect]]) -> str:
 
 
 def _entry(effect: type[Effect]) -> list[str]:
-    needs = ", ".join(f"`{name}`" for name in inputs(effect)) or "nothing beyond the ship's own motion"
+    needs = (", ".join(f"`{name}`" for name in inputs(effect)) or "nothing beyond the ship's own motion") + _instead(effect)
     if effect.needs_ship:
         needs += f"; of the ship {', '.join(effect.needs_ship)}"
     rows = [

@@ -83,18 +83,18 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         write_json(found.as_json() | {"output": None if refused else str(args.output)}, args.json)
     if refused:
-        raise DataError(refusal(args.file, refused))
+        raise DataError(refusal(args.file, refused, args.map))
     print(f"wrote {args.output}\nnext: {_next(args.output, args.ship)}", file=page)
     return 0
 
 
 def _next(voyage: str, ship: str | None) -> str:
-    """A ship that was never calibrated is, on her reference voyages, before anything is compared with her."""
+    """A ship that was never calibrated is, on her reference voyages, before anything is compared with her; whether this is one, nobody knows."""
     if ship and "structural" not in load(ship).notes:
         better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
         return (
             "her model was not calibrated yet. Import the voyages on which nothing was wrong (three or more), then "
-            f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship} -o {better}; after that, twin diagnose {voyage} --ship {better}"
+            f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship} -o {better}; after that, twin diagnose LATER.mcap --ship {better}"
         )
     return f"twin compare {voyage} --ship {ship or 'SHIP.toml'}"
 
@@ -112,11 +112,12 @@ def mark(check: Check) -> str:
     return "WRONG" if check.unusable else "look" if not check.ok else "ok" if check.told else "?"
 
 
-def refusal(path: str, refused: Sequence[Check]) -> str:
+def refusal(path: str, refused: Sequence[Check], map_path: str | None = None) -> str:
     """One line: what is wrong, and the two ways out."""
+    mend = f"Correct {map_path}" if map_path else "Write that into a map (docs/import.md) and give it with --map"
     accept = " ".join(f"--accept {c.name}" for c in refused)
     said = " ".join(f"{c.name}: {c.text}" for c in refused)
-    return f"{path}: not imported. {said} Correct the map, or import it as it is with {accept}."
+    return f"{path}: not imported. {said} {mend}, or import it as it is with {accept}."
 
 
 def known_checks(names: Sequence[str]) -> None:

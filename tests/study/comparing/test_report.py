@@ -102,13 +102,14 @@ def test_the_page_of_an_unknown_cause_says_when_it_pushed_her_and_what_it_resemb
     track = sailed(stream).track
     moment = {"voyage": track.name, "start_s": 60.0, "end_s": 95.0, "X_N": -6e4, "Y_N": 7.24e5, "N_Nm": -1.17e7}
     loose = {"effect": "RudderPlay", "probability": 0.99, "parameters": [], "typical_force": {"X_N": 0.0, "Y_N": 1e5, "N_Nm": 0.0}, "says": "It hangs loose."}
-    result = {"schema_version": 1, "verdict": "unknown", "missing": [], "candidates": [], "moments": [moment], "resembles": [loose]}
+    stream_too = {"effect": "Current", "probability": 0.23, "parameters": []}
+    result = {"schema_version": 1, "verdict": "unknown", "missing": [], "candidates": [stream_too], "moments": [moment], "resembles": [loose]}
     report.write(tmp_path / "d.html", "diagnose", result, [track], Model.of(kvlcc2))
     dom, complaints = opened(tmp_path / "d.html")
     assert complaints == []
     for words in ("Moments at which something pushed her", "1:00 to 1:35", "724 kN", "-11.7 MN m", "It hangs loose.", "RudderPlay"):
         assert words in dom
-    assert "twin add RudderPlay" not in dom  # no effect of the catalogue
+    assert "twin add Current" not in dom and "twin add RudderPlay" not in dom  # which does not explain it; and is no effect of the catalogue
 
 
 def test_the_page_of_add_shows_before_and_after(verb, on_disk, stream, tmp_path):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.study.checks.answer import Check, cannot_tell, doubtful, good, wrong
+from twin.study.checks.answer import Check, cannot_tell, doubtful, wrong
 from twin.study.checks.view import View, rms
 
 FASTEST_MPS = 40.0
@@ -37,4 +37,4 @@ def course_against_heading(name: str, view: View) -> Check:
             name,
             f"the ship moves {mean:.0f} deg off her heading on average: are heading, north and east right?",
         )
-    return good(name, f"{saw}; position and velocities are not independent, so no more can be said.")
+    return cannot_tell(name, f"position and velocities are not independent ({saw}).")

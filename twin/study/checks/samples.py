@@ -16,10 +16,15 @@ def missing_samples(view: View) -> Check:
     """Holes and tails longer than a channel may be old."""
     v = view.voyage
     found = [text for name in v.columns if (text := hole(v, name))]
-    absent = ", ".join(v.absent()) or "nothing"
+    absent = ", ".join(name for name in v.absent() if not _follows(v, name)) or "nothing"
     if found:
         return doubtful("missing_samples", f"{'; '.join(found)}. Nothing is made up there. Absent altogether: {absent}.")
     return good("missing_samples", f"no channel is without a sample for longer than it may be old. Absent altogether: {absent}.")
+
+
+def _follows(v: Voyage, name: str) -> bool:
+    """Whether an absent channel is found from others: the true wind from the apparent one and her own motion."""
+    return name.startswith("true_wind_") and v.has("apparent_wind_speed_mps") and v.has("apparent_wind_angle_deg")
 
 
 def hole(v: Voyage, name: str) -> str:

@@ -26,8 +26,14 @@ function candidate(c) {
   if (c.error_without !== undefined && c.error_with !== undefined && c.error_without !== null) right.append(el("p.note", null, `error ${num(c.error_without)} m without it, ${num(c.error_with)} m with it${c.error_floor ? `; a true cause may leave ${num(c.error_floor)} m` : ""}`));
   if ((c.cannot_be_told_from || []).length) right.append(el("div", null, el("span.note", null, "cannot be told from "), c.cannot_be_told_from.map((n) => el("span.chip", null, n))));
   if ((c.over_time || []).length > 1) right.append(el("div", null, el("span.note", null, "part by part (1 is the size above) "), c.over_time.map((p) => el("span.chip", null, `${clock(p.start_s)} to ${clock(p.end_s)}: ${num(p.share, 2)} ± ${num(p.sd, 2)}`))));
-  if (!weak && !(RESULT.missing || []).includes(c.effect) && !(RESULT.resembles || []).includes(c)) right.append(command(addCommand(c.effect)));
+  if (!weak && worthTrying(c.effect)) right.append(command(addCommand(c.effect)));
   return el(weak ? ".candidate.weak" : ".candidate", null, left, right);
+}
+
+/** Whether an effect that is not named may be added all the same: one of several when the voyages could not tell, or a rival of what is named. */
+function worthTrying(effect) {
+  const named = (RESULT.candidates || []).filter((c) => (RESULT.missing || []).includes(c.effect));
+  return RESULT.verdict === "undecided" || named.some((c) => (c.cannot_be_told_from || []).includes(effect));
 }
 
 /** Stretches on which something pushed her that was not there before and after. */
