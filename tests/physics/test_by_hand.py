@@ -43,6 +43,13 @@ def test_cross_flow_on_a_ship_that_drifts_and_turns_by_hand(ship):
     assert pytest.approx(-0.5 * 1000 * 5 * 10 * 0.4 * 165.0) == N
 
 
+def test_cross_flow_that_the_stern_holds_harder_by_hand(ship):
+    # as above; twice 0.1 x/L more or less of it: squares times x/L sum to 1.65, times (x/L)^2 to 0.9459 (and once more x 100 m in the moment)
+    Y, N = force("CrossFlowDrag", ship, Situation(v_r=1.0, r=0.01), c_d=0.0, c_aft=0.1)[1:]
+    assert pytest.approx(0.5 * 1000 * 5 * 10 * 0.2 * 1.65) == Y
+    assert pytest.approx(0.5 * 1000 * 5 * 10 * 0.2 * 0.945863 * 100.0) == N
+
+
 def test_fouling_by_hand(ship):
     # X_uu = -0.02 x 1/2 1000 100 5 = -5000, X_u = -0.0005 x 250 000 x sqrt(9.80665 x 100) = -3914.45; at 4 m/s
     assert force("HullFouling", ship, Situation(u_r=4.0), extra=0.3)[0] == pytest.approx(-0.3 * (3914.45 + 5000 * 4) * 4, rel=1e-6)

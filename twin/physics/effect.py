@@ -15,6 +15,7 @@ from .state import Number, Situation, Water
 if TYPE_CHECKING:
     from .ship import Ship
 
+FORM = 0.1  # by how much of its size a number may be off because nature writes the effect otherwise, unless more is known
 SCALES = ("force", "moment", "speed", "time", "length")
 
 
@@ -23,7 +24,8 @@ class Param(NamedTuple):
 
     `lo, hi` is the box of fits and of the adaptation; `sd` the width of the prior around `null`, the value at which the
     effect is not there (half-normal where the box has one side). With `of`, the four are multiples of one of the ship's
-    own scales (see Ship.scale), so that one declaration serves a 2 m boat and a 320 m tanker.
+    own scales (see Ship.scale), so that one declaration serves a 2 m boat and a 320 m tanker. `form` is by how much of its
+    size it may be off (one standard deviation) because nature writes the effect otherwise than the catalogue does.
     """
 
     name: str
@@ -34,6 +36,7 @@ class Param(NamedTuple):
     sd: float
     null: float
     of: str | None
+    form: float
     doc: str
 
     def scale(self, ship: "Ship") -> float:
@@ -45,9 +48,10 @@ class Param(NamedTuple):
 
 
 def param(
-    default: float, *, unit: str, lo: float, hi: float, doc: str, sd: float | None = None, null: float = 0.0, of: str | None = None
-) -> Any:
-    """Declare a parameter: its plausible value when the effect is there, unit, box, prior width and meaning."""
+    default: float, *, unit: str, lo: float, hi: float, doc: str, sd: float | None = None, null: float = 0.0, of: str | None = None,
+    form: float = FORM,
+) -> Any:  # fmt: skip
+    """Declare a parameter: its plausible value when the effect is there, unit, box, prior width, doubt about its form and meaning."""
     if of is not None and of not in SCALES:
         raise ValueError(f"of={of!r}: one of {SCALES}")
     meta = {
@@ -58,6 +62,7 @@ def param(
         "sd": abs(default - null) if sd is None else sd,
         "null": null,
         "of": of,
+        "form": form,
         "doc": doc,
     }
     return field(default=MISSING if of and default else default, metadata=meta, kw_only=True)  # none of it is none on any ship

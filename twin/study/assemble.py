@@ -12,12 +12,12 @@ from twin.physics.effects import catalogue as known_effects
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
-from .case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, roughly_known, settle
-from .columns import FORM, SEA, Unknown, core_unknowns, effect_unknowns, lateness_unknowns
+from .case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, settle
+from .columns import FORM, ROUGH, SEA, Unknown, core_unknowns, effect_unknowns, lateness_unknowns, rough_unknowns
 from .excitation import manoeuvred
 from .innovations import Floor, Linear, innovate, linearise
-from .nuisance import TEMPER, WEATHER, from_references, from_ship, lasting, nuisance_unknowns, temper_of, usual_unknowns
-from .respond import respond
+from .nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, of_known_weather, temper_of, usual_unknowns
+from .rough import doubted
 from .seaway import levelled, stirred, swung
 from .segments import read_parts
 from .structure import floor_beside, floor_of, structural_floor
@@ -40,8 +40,8 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     candidates = judgeable(tracks, model, judged)
     no_news = as_usual(strengths(tracks, model, catalogue), _felt_before(references, model, catalogue))
     effects = tuple(u for name in candidates for u in effect_unknowns(judged[name], model))
-    nuisance = nuisance_unknowns(model, catalogue)
-    core = [u for u in nuisance if u.owner in ("core", FORM, SEA)]
+    nuisance, rough = nuisance_unknowns(model, catalogue), rough_unknowns(model)
+    core = [u for u in (*nuisance, *rough) if u.owner in ("core", FORM, SEA, ROUGH)]
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
     path = floor_of(ship) or Floor()
@@ -58,6 +58,7 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
         known, _ = from_references(lines, usual, floor, temper)
     else:
         known = from_ship(model, nuisance)
+    known = replace(known.beside(rough), daily=dict(known.daily) | of_known_weather(model, catalogue))
     progress("linearising")
     case = Case(
         tracks, model, judged, candidates, unknowns, effects, known, floor, path, temper,
@@ -88,10 +89,8 @@ def _of_core(lines: Sequence[Linear], unknowns: Sequence[Unknown]) -> list[Linea
 
 
 def judgeable(tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]) -> tuple[str, ...]:
-    """Effects whose inputs at least one voyage holds; of one that the ship has already, a change of it, unless the weather or the water's
-    bounds bring it: their force is only roughly right on any other day, and is doubted instead."""
-    present = {type(e).__name__ for e in model.effects}.intersection(WEATHER)
-    return tuple(name for name in catalogue if name not in present and not unjudged_because(name, tracks, model, catalogue))
+    """Effects whose inputs at least one voyage holds; of one that the ship has already, a change of it."""
+    return tuple(name for name in catalogue if not unjudged_because(name, tracks, model, catalogue))
 
 
 def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]) -> tuple[str, ...]:
@@ -110,16 +109,8 @@ def _lines(
     the ship's own forces, and what is only roughly known, no hypothesis takes away."""
     models = [model.without_inputs(t.missing())[0] for t in tracks]
     parts = read_parts([levelled(t) for t in tracks], float(model.ship.scale("time")), most)
-    slack = [np.hypot(stirred(t, m)[p.steps()], _roughly_known(p, m)) for t, p, m in zip(tracks, parts, models, strict=True)]
+    slack = [np.hypot(stirred(t, m)[p.steps()], doubted(p, m)) for t, p, m in zip(tracks, parts, models, strict=True)]
     return tuple(replace(linearise(p, m, unknowns, catalogue), slack=s) for p, m, s in zip(parts, models, slack, strict=True))
-
-
-def _roughly_known(t: Track, model: Model) -> np.ndarray:
-    """(N, 3) acceleration error of the effects that were added since calibration: their forms, too, are only roughly right."""
-    out = np.zeros((len(t), 3))
-    for without, share in roughly_known(model):
-        out += np.square(share * (respond(t, model)[0] - respond(t, without)[0]))
-    return np.sqrt(out)
 
 
 def _odds(tracks: Sequence[Track], candidates: Sequence[str], ship: Ship) -> dict[str, float]:

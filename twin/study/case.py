@@ -48,8 +48,6 @@ WORLDS: dict[str, World] = {
 }
 UNEVEN = 20.0  # log evidence that a scatter of its own at every moment must add
 WAVES = 1.0  # fast part of the floor, of a standard acceleration, in the worst of weather
-KNOWN = 0.1  # share of the force of an effect in the model that may be something else
-COMES_AND_GOES = 0.5  # share of an irregular effect's force, and of what it does to the path, that no size of it explains
 ODDS = 0.03  # of an effect about which nothing is known
 ODDS_UNNAMED = 0.01  # of what is no member of the catalogue
 ODDS_WEAK = 0.002  # when it needs a cause that was measured to be too weak to show
@@ -122,14 +120,6 @@ class Case:
     def _twice(self, chosen: Sequence[str]) -> bool:
         """Whether one of these effects is a part of another: together they say no more than that one."""
         return any(part in chosen for name in chosen for part in self.catalogue[name].holds)
-
-
-def roughly_known(model: Model) -> list[tuple[Model, float]]:
-    """Of every effect of the model that was not there when she was calibrated: the model without it, and by what share of its force its form may
-    be wrong on another day."""
-    calibrated = model.ship.notes.get("structural", {}).get("beside_effects", ())
-    since = [e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in calibrated]
-    return [(Model(model.ship, tuple(o for o in model.effects if o is not e)), COMES_AND_GOES if e.irregular else KNOWN) for e in since]
 
 
 def settle(case: Case) -> Case:

@@ -13,7 +13,7 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES
 
-from . import form, tossed
+from . import form, rough, tossed
 from .respond import faulty, respond
 from .track import Track
 
@@ -41,7 +41,8 @@ FIXED = ("t", "w", "x_R", "epsilon")  # scale other derivatives one for one: the
 LATE = "late"  # owner of the instruments' usual lateness: a column, but no part of any model
 FORM = "form"  # owner of what the core leaves out of calm water (form.py): the same
 SEA = "sea"  # owner of what one wave does at once (tossed.py): the same
-NO_MODEL = (LATE, FORM, SEA)
+ROUGH = "rough"  # owner of what the forms of effects that were added since calibration miss (rough.py): the same
+NO_MODEL = (LATE, FORM, SEA, ROUGH)
 LATENESS = {"log": [6, 7], "compass": [2], "gyro": [5]}  # instrument -> its readings
 
 
@@ -58,6 +59,11 @@ def form_unknowns() -> list[Unknown]:
 def sea_unknowns() -> list[Unknown]:
     """How much of what swings her in time with the waves is the helm's, and goes with the yaw."""
     return _beside_the_model(SEA, tossed.TERMS)
+
+
+def rough_unknowns(model: Model) -> list[Unknown]:
+    """How much the forms of effects that were added since calibration miss, in units of what they may."""
+    return _beside_the_model(ROUGH, dict.fromkeys(rough.TERMS, 1.0)) if rough.added(model) else []
 
 
 def _beside_the_model(owner: str, terms: dict[str, float]) -> list[Unknown]:
@@ -96,8 +102,11 @@ def columns(
     acceleration, reading = respond(track, model)
     A = np.zeros((len(track), 3, len(unknowns)))
     R = np.zeros((len(track), 8, len(unknowns)))
-    missing = track.missing()
+    missing, missed = track.missing(), rough.accelerations(track, model) if any(u.owner == ROUGH for u in unknowns) else {}
     for j, unknown in enumerate(unknowns):
+        if unknown.owner == ROUGH:
+            A[:, :, j] = missed[unknown.name]
+            continue
         if unknown.owner == LATE:
             late = LATENESS[unknown.name]
             R[:, late, j] = -np.gradient(reading[:, late], track.h, axis=0)

@@ -10,7 +10,7 @@ import textwrap
 from typing import Any
 
 from twin import whole
-from twin.physics.effect import Effect, Param
+from twin.physics.effect import FORM, Effect, Param
 from twin.physics.effects import BUILT_IN, UNNAMED, catalogue, find
 from twin.physics.ship import Ship, load
 
@@ -124,7 +124,8 @@ def row(p: Param, ship: Ship | None) -> tuple[str, str, str, str, str, str]:
     """A parameter in a table: name, unit, plausible size, box, prior width, meaning."""
     k, times = (p.scale(ship), "") if ship else (1.0, f" {SCALES[p.of]}" if p.of else "")
     says = lambda x: f"{x * k:.4g}" + (times if x else "")  # noqa: E731
-    return p.name, p.unit, says(p.default), f"{says(p.lo)} .. {says(p.hi)}", says(p.sd), p.doc
+    form = "" if p.form == FORM else f" (its form may be off by {p.form:.0%})"
+    return p.name, p.unit, says(p.default), f"{says(p.lo)} .. {says(p.hi)}", says(p.sd), p.doc + form
 
 
 def bold(text: str) -> str:

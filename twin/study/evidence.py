@@ -48,6 +48,13 @@ class Nuisance:
     pull: np.ndarray  # (C,)
     daily: Mapping[str, float] = field(default_factory=dict)
 
+    def beside(self, others: Sequence[Unknown]) -> "Nuisance":
+        """The same with others beside, of which nothing but their priors is known."""
+        size = len(self.unknowns)
+        information = np.eye(size + len(others))
+        information[:size, :size] = self.information
+        return replace(self, unknowns=(*self.unknowns, *others), information=information, pull=np.pad(self.pull, (0, len(others))))
+
     @cached_property
     def log_norm(self) -> float:
         """By which the log of its density stays one of probability, in whatever unknowns it is written."""

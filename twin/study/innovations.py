@@ -14,7 +14,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from twin.physics import core
 from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
@@ -23,7 +22,7 @@ from . import waves
 from .columns import LATE, Unknown, beside, columns, turns
 from .filters import FLOW, MOTION, SLOW, SPEEDS, STATES, Filters, Noise, Stretches
 from .normal import Normal, Sums
-from .respond import SATELLITES, accelerations, advance, faulty, jacobian, lagged, later, respond, when_true
+from .respond import SATELLITES, accelerations, advance, faulty, jacobian, lagged, later, respond, standard, when_true
 from .segments import segments
 from .start import undone
 from .track import Track
@@ -188,14 +187,6 @@ def busy(track: Track, model: Model) -> np.ndarray:
         mean = np.convolve(square, np.ones(width) / width, "same")
         out[:, i] = np.sqrt(mean) / (model.c.m_u, model.c.m_v, model.c.m_r)[i]
     return out
-
-
-def standard(model: Model) -> np.ndarray:
-    """(3,) accelerations by the force and moment scale of the ship as her file has her [m/s2, m/s2, rad/s2]: no hypothesis is likelier for
-    what it makes of the noise."""
-    c: core.Coefficients = model.ship.c
-    force, moment = float(model.ship.scale("force")), float(model.ship.scale("moment"))
-    return np.array([force / c.m_u, force / c.m_v, 0.3 * moment / c.m_r])
 
 
 def innovate(lines: Sequence[Linear], floors: Sequence[Floor], most: int | None = None) -> list[Normal]:

@@ -12,12 +12,14 @@ import numpy as np
 
 from twin.physics.model import Model
 
-from .case import COMES_AND_GOES, MOST_SEGMENTS, WORLDS, Case, roughly_known
+from .case import MOST_SEGMENTS, WORLDS, Case
 from .columns import with_values
 from .evidence import Hypothesis, given, posterior, reduce
 from .innovations import Floor, innovate
+from .nuisance import DAILY
 from .openloop import MODEL, STRUCTURE, Windows, coarse, predict
 from .refine import Found, Sets, standing
+from .rough import COMES_AND_GOES, added
 from .track import Track
 
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
@@ -73,7 +75,8 @@ def led(case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis]) 
     steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
     least = max(steps["coarse"], _measured(case))  # what is run free is a core alone, and no better than it was when nothing was wrong
     floor = {name: float(np.hypot(max(m, least), _roughly(case))) for name, m in steps.items()}
-    irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular)
+    present = {type(e).__name__ for e in case.model.effects}  # what is left of these is in the floor already
+    irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular and name not in present)
     asked = {s: replace(found[s], off_m=m, floor_m=_floor(plain(found[s].hypothesis), floor, off[()], irregular)) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
     return Led(asked, floor, windows, irregular)
@@ -97,13 +100,14 @@ def horizon_s(track: Track, model: Model) -> float:
 
 
 def held_out_error(case: Case, found: Found) -> float:
-    """Mean position error [m] with the effects of a hypothesis, each half of the segments predicted with the parameters that the
-    other half asks for, about where the hypothesis stands; what any day brings is there too, as far as it usually goes. What changes with the
+    """Mean position error [m] with the effects of a hypothesis, each half of the segments predicted with the parameters that the other half
+    asks for, about where the hypothesis stands; the water and air of any day are there too, as far as they usually go. What changes with the
     clock is taken as the whole voyage has it: no other hour tells of it."""
     chosen = found.hypothesis.effects
     lines, at = standing(case, found)
-    mine = [i for i, u in enumerate(case.effects) if u.owner in chosen or u.label in case.nuisance.daily]
-    most = np.array([np.inf if u.owner in chosen else ANY_DAY * case.nuisance.daily.get(u.label, 0.0) / u.sd for u in case.effects])
+    day = {label: width for label, width in case.nuisance.daily.items() if label in DAILY}
+    mine = [i for i, u in enumerate(case.effects) if u.owner in chosen or u.label in day]
+    most = np.array([np.inf if u.owner in chosen else ANY_DAY * day.get(u.label, 0.0) / u.sd for u in case.effects])
     lasts = np.array(["t" not in case.catalogue[u.owner].needs for u in case.effects])
     normal = innovate(lines, case.worlds([found.hypothesis.world], found.doubt), MOST_SEGMENTS)[0]
     half = np.arange(len(normal.where)) % 2
@@ -139,7 +143,7 @@ def _usual(case: Case, floor: Floor) -> float:
 
 def _roughly(case: Case) -> float:
     """How far off [m] the forms of effects may leave her that are in the model since she was calibrated: a share of where she would be without."""
-    left = [share * _astray(case, without) for without, share in roughly_known(case.model)]
+    left = [share * _astray(case, without) for without, share in added(case.model)]
     return float(np.hypot.reduce([0.0, *left]))
 
 

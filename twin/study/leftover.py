@@ -14,11 +14,12 @@ from twin.physics.model import Model
 
 from .case import WORLDS, Case
 from .evidence import Hypothesis, posterior
-from .innovations import standard
 from .led import FORM
+from .nuisance import WEATHER
 from .own_force import leads_her, otherwise, without
 from .refine import Found, Sets, standing
-from .respond import respond
+from .respond import respond, standard
+from .rough import beside
 from .seaway import at_sea
 from .verdict import ALIKE, SURE
 
@@ -90,19 +91,31 @@ def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
 
 def asked_for(case: Case, found: Mapping[Sets, Found], sure: Mapping[str, float], names: Sequence[str]) -> list[str]:
     """Those of some effects that the path, the readings of an instrument, or a probability of its own asks for: where the model alone leads her
-    within what is usual, no force is named for a group that it belongs to, and in a sea none but the sea's own (`too_small`)."""
-    led, sea = found[()].off_m <= found[()].floor_m, any(at_sea(t, case.model) for t in case.tracks)
-    kinds = {n: case.catalogue[n] for n in names}
-    return [n for n, kind in kinds.items() if not led or kind.kind == "SensorFault" or (sure[n] >= SURE and (kind.irregular or not sea))]
+    within what is usual, no force is named for a group that it belongs to; in rough weather, where it does not lead her clearly astray, none but
+    the sea's own (`too_small`)."""
+    rough = weathered(case)
+    led = not missed(found[()]) if rough else found[()].off_m <= found[()].floor_m
+    return [n for n in names if not led or case.catalogue[n].kind == "SensorFault" or (sure[n] >= SURE and (not rough or _of_the_sea(case, n)))]
+
+
+def _of_the_sea(case: Case, name: str) -> bool:
+    """Whether an effect is the sea's own force, of which the model knows nothing."""
+    return case.catalogue[name].irregular and not any(type(e).__name__ == name for e in case.model.effects)
+
+
+def weathered(case: Case) -> bool:
+    """Whether weather is at work that is known only roughly: a sea, or what came into the model since she was calibrated."""
+    since = {name for name in WEATHER if name in {type(e).__name__ for e in case.model.effects} - beside(case.model)}
+    return any(at_sea(t, case.model) or any(not t.missing().intersection(case.catalogue[n].needs) for n in since) for t in case.tracks)
 
 
 def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
-    """Whether a single effect cannot show in where she went, for she is led there with it and without: then the readings decide. In a sea they
-    do of the sea's own force alone: of others, they take a wave's pull for a ship's."""
-    single = [case.catalogue[name] for name in case.news(chosen)]
-    if len(single) != 1 or single[0].kind == "SensorFault" or not max(found[chosen].off_m, found[()].off_m) <= found[chosen].floor_m:
+    """Whether a single effect cannot show in where she went, for she is led there with it and without: then the readings decide. In rough
+    weather they do of the sea's own force alone: of others, they take a wave's pull for a ship's."""
+    single = case.news(chosen)
+    if len(single) != 1 or case.catalogue[single[0]].kind == "SensorFault" or not max(found[chosen].off_m, found[()].off_m) <= found[chosen].floor_m:
         return False
-    return single[0].irregular or not any(at_sea(t, case.model) for t in case.tracks)
+    return _of_the_sea(case, single[0]) or not weathered(case)
 
 
 def undone(case: Case, found: Found) -> bool:

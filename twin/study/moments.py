@@ -16,9 +16,10 @@ from twin.physics.model import Model
 
 from .case import MOST_SEGMENTS, Case
 from .evidence import likeliest
-from .innovations import Floor, Linear, innovate, standard
+from .innovations import Floor, Linear, innovate
 from .led import plain
 from .refine import Found, standing
+from .respond import standard
 from .segments import segments
 
 LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before

@@ -34,6 +34,13 @@ def daily(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     return [u for name in OF_THE_DAY if name in catalogue for u in effect_unknowns(catalogue[name], model) if u.label in DAILY]
 
 
+def of_known_weather(model: Model, catalogue: dict[str, type[Effect]]) -> dict[str, float]:
+    """By how much [its own unit] each number of weather that the ship's file knows is usually otherwise: its form is only roughly right, and another
+    wind or sea shows what is not."""
+    present = {type(e).__name__ for e in model.effects}.intersection(WEATHER)
+    return {u.label: USUAL * u.sd for name in present if name in catalogue for u in effect_unknowns(catalogue[name], model)}
+
+
 def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     """Core derivatives aside, what a calibration fits: the instruments' usual errors, and how late they are."""
     faults = [replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue) if catalogue[u.owner].kind == "SensorFault"]

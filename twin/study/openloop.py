@@ -18,8 +18,8 @@ from twin.physics.effects.current import Current
 from twin.physics.model import Model
 from twin.physics.state import Force, Situation
 
-from .innovations import MEMORY_B, Floor, busy, standard
-from .respond import lagged, readings
+from .innovations import MEMORY_B, Floor, busy
+from .respond import lagged, readings, standard
 from .start import noisy, seen, steadied, true_motion
 from .track import READINGS, STATE, Track
 

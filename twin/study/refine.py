@@ -12,10 +12,10 @@ import numpy as np
 from twin.physics.model import Model
 
 from .case import WORLDS, Case
-from .columns import Unknown, changed, with_values
+from .columns import ROUGH, Unknown, changed, with_values
 from .evidence import Hypothesis, Posterior, Reduced, boxed, log_evidence, posterior, weigh_with
-from .innovations import Linear, linearise, standard
-from .respond import respond
+from .innovations import Linear, linearise
+from .respond import respond, standard
 
 DOUBTS = (0.2, 0.1, 0.05)
 IRREGULAR = (1.0, 0.5)  # and of one that comes and goes with what no input shows
@@ -207,6 +207,7 @@ def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown])
     model = with_values(case.model, own, values, case.catalogue)
     at = {u.label: v for u, v in zip(own, values, strict=True)}
     column = {u.label: i for i, u in enumerate(case.unknowns)}
+    fresh = [u for u in fresh if u.owner != ROUGH]  # what is known roughly does not change with what is asked
     place = [column[u.label] for u in fresh]
     lines = []
     for line in case.lines:

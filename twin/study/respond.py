@@ -6,6 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from twin.physics import core
 from twin.physics.effect import Lag
 from twin.physics.model import Model
 from twin.physics.state import Situation
@@ -24,6 +25,14 @@ def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
 def accelerations(track: Track, model: Model) -> np.ndarray:
     """(N, 3) accelerations alone."""
     return _nu_dot(track.situation(delta=lagged(track, model)), model)
+
+
+def standard(model: Model) -> np.ndarray:
+    """(3,) accelerations by the force and moment scale of the ship as her file has her [m/s2, m/s2, rad/s2]: no hypothesis is likelier for
+    what it makes of the noise."""
+    c: core.Coefficients = model.ship.c
+    force, moment = float(model.ship.scale("force")), float(model.ship.scale("moment"))
+    return np.array([force / c.m_u, force / c.m_v, 0.3 * moment / c.m_r])
 
 
 def _nu_dot(s: Situation, model: Model) -> np.ndarray:

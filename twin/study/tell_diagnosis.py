@@ -82,6 +82,11 @@ def sentence(result: dict[str, Any]) -> str:
             f"Undecided: step by step the readings say {_likely(by_name, c['effect'])}, but it does not lead her to where she went any better "
             f"({c['error_with']:.3g} m off with it, {c['error_without']:.3g} m without)."
         )
+    if result["moments"] and not likely:
+        return (
+            f"Undecided: {_when(result['moments'][0])} something pushed her as it did not before and after. Where waves toss her that may be a group "
+            "of them."
+        )
     path = result["path"]
     if result["probabilities"]["unknown"] >= LOST and path["error_without"] <= NEARLY * path["error_floor"]:
         return (

@@ -19,7 +19,6 @@ SURE_GROUP = 0.95  # and from which one is named with those that these voyages c
 LARGEST_GROUP = 4  # effects that may stand for each other and still be an answer
 LOST = 0.5  # probability of something unknown from which no name is given
 SURE_TOO = 0.9  # another beside it when that is nearly certain: of two forms that are only roughly right, one may mend the other
-FORM = 0.1  # how far from the truth a size may be because nature writes the effect otherwise, as a share of it
 ACQUITTED = 0.8  # probability from which nothing is said to be missing
 ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
 
@@ -111,11 +110,11 @@ def shows(seen: dict[str, bool]) -> bool:
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:
     """Each parameter of one effect with its 95 % interval, inside its box; that the form is only roughly right is part of it. Of an effect
     that the ship has already, also what her file says."""
-    out, present = [], {type(e).__name__ for e in case.model.effects}
+    out, present, form = [], {type(e).__name__ for e in case.model.effects}, {p.name: p.form for p in case.catalogue[name].params()}
     for i, u in enumerate(case.effects):
         if u.owner == name:
             value = u.centre + u.sd * found.z[i]
-            sd = u.sd * float(np.hypot(np.sqrt(found.covariance[i, i]), FORM * found.z[i]))
+            sd = u.sd * float(np.hypot(np.sqrt(found.covariance[i, i]), form[u.name] * found.z[i]))
             low, high = value - 1.96 * sd, value + 1.96 * sd
             out.append(
                 {"name": u.name, "value": float(np.clip(value, u.lo, u.hi)), "low95": float(np.clip(low, u.lo, u.hi)),

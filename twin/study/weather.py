@@ -10,9 +10,8 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 
-from .innovations import standard
 from .nuisance import WEATHER
-from .respond import respond
+from .respond import respond, standard
 from .track import Track
 
 FAINT = 0.03  # of the standard acceleration: nobody would feel it

@@ -7,10 +7,10 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.assemble import assemble
-from twin.study.case import KNOWN, roughly_known
 from twin.study.evidence import Hypothesis, posterior
 from twin.study.led import FORM, LUXURY, Led, _astray, _measured, _roughly, held_out_error, horizon_s, led
 from twin.study.refine import Found, refine
+from twin.study.rough import KNOWN, added
 from twin.study.search import search
 from twin.study.verdict import weights
 
@@ -35,8 +35,8 @@ def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_to
     windy = tanker.with_effects(find("Wind").plausible(tanker))
     hers = replace(windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}})
     case, known = (assemble([voyages["Wind"]], ship) for ship in (windy, hers))
-    (without, share), *others = roughly_known(case.model)
-    assert share == KNOWN and not others and roughly_known(known.model) == []
+    (without, share), *others = added(case.model)
+    assert share == KNOWN and not others and added(known.model) == []
     assert _roughly(case) == pytest.approx(KNOWN * _astray(case, without)) and _roughly(known) == 0.0
     assert without.effects == tanker.effects
 

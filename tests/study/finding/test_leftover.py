@@ -5,10 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.physics.effects import find
 from twin.study import leftover
 from twin.study.assemble import assemble
 from twin.study.columns import with_values
-from twin.study.leftover import ASTRAY, CLEAR, asked_for, astray, explaining, explains, helpful, missed, quiet, too_small, undone
+from twin.study.leftover import ASTRAY, CLEAR, asked_for, astray, explaining, explains, helpful, missed, quiet, too_small, undone, weathered
 from twin.study.search import search
 from twin.study.tell_diagnosis import sentence
 
@@ -16,6 +17,12 @@ UNDECIDED = {
     "verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "calibrated_too_coarsely": [],
     "undo_each_other": [], "unclear": [], "moments": [], "resembles": [],
 }  # fmt: skip
+
+
+def test_a_push_where_waves_toss_her_is_told_with_its_time_and_decides_nothing():
+    pushed = {"voyage": "june", "start_s": 600.0, "end_s": 655.0, "X_N": -8e4, "Y_N": 0.0, "N_Nm": 0.0}
+    said = sentence(UNDECIDED | {"moments": [pushed], "probabilities": {"unknown": 0.9, "nothing_missing": 0.1}})
+    assert said.startswith("Undecided: from 10:00 to 10:55 on june something pushed her") and "waves" in said
 
 
 @pytest.fixture(scope="module")
@@ -66,12 +73,23 @@ def test_a_world_that_is_clearly_rougher_is_no_explanation_unless_a_sea_was_meas
     assert explains(replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),)), [rough], off, nothing)
 
 
-@pytest.mark.parametrize("off_m, asked", [(0.9, ["WaveDrift", "HeadingBias"]), (1.1, ["CrossFlowDrag", "WaveDrift", "HeadingBias"])])
-def test_in_a_sea_in_which_the_model_alone_leads_her_no_force_but_the_seas_own_is_named(monkeypatch, judged, off_m, asked):
+@pytest.mark.parametrize("off_m, asked", [(1.4, ["WaveDrift", "HeadingBias"]), (1.6, ["CrossFlowDrag", "WaveDrift", "HeadingBias"])])
+def test_in_a_sea_in_which_the_model_alone_leads_her_nearly_no_force_but_the_seas_own_is_named(monkeypatch, judged, off_m, asked):
     case, found = judged
     monkeypatch.setattr(leftover, "at_sea", lambda *_: True)
     sure = dict.fromkeys(["CrossFlowDrag", "WaveDrift", "HeadingBias"], 0.99)
-    assert asked_for(case, {(): replace(found, off_m=off_m, floor_m=1.0)}, sure, list(sure)) == asked
+    nothing = {(): replace(found, off_m=off_m, floor_m=1.0)}
+    assert asked_for(case, nothing, sure, list(sure)) == asked
+    knows = replace(case, model=case.model.but(find("WaveDrift").plausible(case.model.ship)))
+    assert asked_for(knows, nothing, sure, list(sure)) == [n for n in asked if n != "WaveDrift" or off_m > 1.5]
+
+
+def test_weather_that_came_into_the_model_since_she_was_calibrated_is_known_roughly(tanker, voyages):
+    windy = tanker.with_effects(find("Wind").plausible(tanker))
+    hers = replace(windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}})
+    roughly, well = (assemble([voyages["Wind"]], ship) for ship in (windy, hers))
+    assert weathered(roughly) and not weathered(well)
+    assert not weathered(replace(roughly, tracks=tuple(replace(t, weather={}) for t in roughly.tracks)))
 
 
 def test_what_was_so_unlikely_that_nobody_asked_where_it_leads_her_explains_nothing(judged):

@@ -8,8 +8,8 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.assemble import assemble
-from twin.study.innovations import standard
 from twin.study.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _place, _told, _Top, about
+from twin.study.respond import standard
 
 
 @pytest.fixture(scope="module")

@@ -15,7 +15,7 @@ class PropellerWear(Force):
 
     source = "Carlton (2018) Marine Propellers and Propulsion, 4th ed. (blade roughness and damage in service)"
 
-    loss: float = param(0.1, unit="-", lo=0.0, hi=0.7, sd=0.1, doc="share of the thrust that is lost")
+    loss: float = param(0.1, unit="-", lo=0.0, hi=0.7, sd=0.1, form=0.2, doc="share of the thrust that is lost, alike at every advance")
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:
         c = ship.c

@@ -1,0 +1,51 @@
+"""What an effect's form may miss that the ship's file got after her calibration."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from twin.physics.effects import find
+from twin.study.assemble import assemble
+from twin.study.columns import ROUGH
+from twin.study.respond import respond, standard
+from twin.study.rough import KNOWN, TERMS, accelerations, doubted
+
+
+@pytest.fixture(scope="module")
+def windy(tanker, voyages):
+    """A voyage in wind, by a ship whose file knows the wind since she was calibrated."""
+    return assemble([voyages["Wind"]], tanker.with_effects(find("Wind").plausible(tanker)))
+
+
+def test_a_tenth_of_a_known_wind_is_doubted_at_each_moment_and_for_each_course(windy):
+    (track,), model = windy.tracks, windy.model
+    force = respond(track, model)[0] - respond(track, replace(model, effects=()))[0]
+    np.testing.assert_allclose(doubted(track, model), KNOWN * np.abs(force))
+    size = KNOWN * np.linalg.norm(force / standard(model), axis=1)
+    terms = accelerations(track, model)
+    assert tuple(terms) == TERMS
+    np.testing.assert_allclose(terms["sway_sin"][:, 1], size * np.sin(track.state[:, 2]) * standard(model)[1])
+    assert not terms["sway_sin"][:, [0, 2]].any()
+
+
+def test_only_a_ship_that_learned_an_effect_after_her_calibration_has_such_columns(windy, tanker, voyages):
+    assert sum(u.owner == ROUGH for u in windy.unknowns) == len(TERMS) == sum(u.owner == ROUGH for u in windy.nuisance.unknowns)
+    case = assemble([voyages["nothing"]], tanker)
+    assert not any(u.owner == ROUGH for u in case.unknowns)
+
+
+def test_a_steady_pull_that_a_known_wind_may_have_missed_tells_little(windy):
+    """Test: what a voyage in a known wind says of a constant force over ground, with and without the doubt about the wind's form. Expected: much less
+    with it, for the wind blew from one side; and as much of a compass that is off."""
+    sure = replace(windy, nuisance=_sure(windy.nuisance))
+    with_doubt, without = (case.reduced(case.lines, case.worlds(["usual"]))[0] for case in (windy, sure))
+    pull, compass = (with_doubt.rows((name,)) for name in ("ExternalForce", "HeadingBias"))
+    tells = lambda reduced, rows: float(np.trace(reduced.A[np.ix_(rows, rows)]))  # noqa: E731
+    assert tells(with_doubt, pull) < 0.7 * tells(without, pull)
+    assert tells(with_doubt, compass) > 0.8 * tells(without, compass)
+
+
+def _sure(nuisance):
+    certain = np.array([1e8 if u.owner == ROUGH else 0.0 for u in nuisance.unknowns])
+    return replace(nuisance, information=nuisance.information + np.diag(certain))

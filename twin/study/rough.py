@@ -1,0 +1,48 @@
+"""Effects that were added to the ship since she was calibrated: their forms are only roughly right, and another wind or sea shows it.
+
+What such a form misses changes from moment to moment (the filter's slack), and it lasts: of a wind that blows from one side all voyage, and whose
+force is known to a tenth, a tenth is left over that would be a tow, a drag or a list. So a share of the known force may stand in each axis, as a
+Fourier series in the heading: each term a column of its own, and no part of any model.
+"""
+
+import numpy as np
+
+from twin.physics.model import Model
+
+from .respond import respond, standard
+from .track import Track
+
+KNOWN = 0.1  # share of the force of an effect in the model that may be something else
+COMES_AND_GOES = 0.5  # share of an irregular effect's force, and of what it does to the path, that no size of it explains
+AXES = ("surge", "sway", "yaw")
+COURSES = ("always", "cos", "sin", "cos_twice", "sin_twice")  # of the heading
+TERMS = tuple(f"{axis}_{course}" for axis in AXES for course in COURSES)
+
+
+def beside(model: Model) -> set[str]:
+    """The effects that were there when she was calibrated."""
+    return set(model.ship.notes.get("structural", {}).get("beside_effects", ()))
+
+
+def added(model: Model) -> list[tuple[Model, float]]:
+    """Of every effect of the model that was not there when she was calibrated: the model without it, and by what share of its force its form may
+    be wrong on another day."""
+    since = [e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in beside(model)]
+    return [(Model(model.ship, tuple(o for o in model.effects if o is not e)), COMES_AND_GOES if e.irregular else KNOWN) for e in since]
+
+
+def doubted(track: Track, model: Model) -> np.ndarray:
+    """(N, 3) [m/s2, m/s2, rad/s2] by which the accelerations of these effects may be wrong at each moment."""
+    out = np.zeros((len(track), 3))
+    for without, share in added(model):
+        out += np.square(share * (respond(track, model)[0] - respond(track, without)[0]))
+    return np.sqrt(out)
+
+
+def accelerations(track: Track, model: Model) -> dict[str, np.ndarray]:
+    """(N, 3) of one unit of each term: as much in one axis as all axes of what is doubted together, in standard accelerations."""
+    size = np.sqrt(np.square(doubted(track, model) / standard(model)).sum(axis=1))
+    psi = track.state[:, 2]
+    courses = (np.ones_like(psi), np.cos(psi), np.sin(psi), np.cos(2.0 * psi), np.sin(2.0 * psi))
+    each = (np.outer(size * course, np.eye(3)[axis] * standard(model)) for axis in range(3) for course in courses)
+    return dict(zip(TERMS, each, strict=True))
