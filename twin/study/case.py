@@ -12,7 +12,7 @@ from twin.physics.model import Model
 
 from .columns import Unknown
 from .directions import directions
-from .evidence import Hypothesis, Nuisance, Reduced, posterior, reduce
+from .evidence import Nuisance, Reduced, posterior, reduce
 from .innovations import Floor, Linear, innovate
 from .track import Track
 from .unrest import shaken
@@ -83,10 +83,6 @@ class Case:
     def names(self, chosen: Sequence[str]) -> tuple[str, ...]:
         """And those of them that may be the answer."""
         return tuple(name for name in self.news(chosen) if name not in self.unnamed)
-
-    def unknown(self, h: Hypothesis) -> bool:
-        """Whether something that has no name is at work under a hypothesis."""
-        return WORLDS[h.world].unknown or not set(h.effects).isdisjoint(self.unnamed)
 
     def reduced(self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None) -> list[Reduced]:
         normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))

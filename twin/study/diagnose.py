@@ -92,7 +92,7 @@ def diagnose(
         "one_of": group(weighed, w) if verdict == "undecided" and able else [],
         "probabilities": {"nothing_missing": nothing, "unknown": w.unknown + w.nothing - nothing if explained else 1.0 - nothing},
         "candidates": [c for c in candidates if c],
-        "resembles": resembles if verdict == "unknown" else [],
+        "resembles": resembles if verdict in ("unknown", "missing") else [],
         "undo_each_other": list(w.best.effects) if no_pair else [],
         "unclear": [n for n in explain if n not in leads and case.catalogue[n].kind == "SensorFault"],
         "moments": [m.told(case.model) for m in happened],

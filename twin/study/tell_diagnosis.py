@@ -46,7 +46,8 @@ def sentence(result: dict[str, Any]) -> str:
         rivals = [_likely(by_name, n) for n in first["cannot_be_told_from"]]
         doubt = f" These voyages cannot tell it from {' or '.join(rivals)}." if rivals else ""
         small = f" {SMALL}" if size and len(result["missing"]) == 1 and not nearer(first) else ""
-        return f"Missing: {names}. {first['says']}{size}{doubt}{small}"
+        more = "".join(f" Beside it is something like {c['effect']}, or its form is another than nature's." for c in result["resembles"])
+        return f"Missing: {names}. {first['says']}{size}{doubt}{small}{more}"
     if result["verdict"] == "nothing_missing":
         return "Nothing is missing: what the model cannot explain is no more than it left unexplained on good voyages."
     if result["verdict"] == "unknown":

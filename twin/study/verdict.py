@@ -8,8 +8,9 @@ import numpy as np
 from twin.physics import core
 from twin.physics.model import Model
 
-from .case import Case
+from .case import WORLDS, Case
 from .evidence import Hypothesis, Posterior, probabilities
+from .led import LUXURY
 from .nuisance import SURROUNDINGS
 from .own_force import without
 from .respond import respond
@@ -37,13 +38,23 @@ class Weights:
 def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
     p = probabilities(weighed)
     effects, unnamed = (dict.fromkeys(names, 0.0) for names in (case.names(case.candidates), case.unnamed))
+    alone = {h.effects[0]: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
     nothing = unknown = 0.0
     for h, share in zip(weighed, p, strict=True):
+        nameless = _nameless(case, h, alone)
         for name in case.news(h.effects):
             (unnamed if name in unnamed else effects)[name] += float(share)
-        unknown += float(share) * case.unknown(h)
-        nothing += float(share) * (not case.news(h.effects) and not case.unknown(h))
+        unknown += float(share) * nameless
+        nothing += float(share) * (not case.news(h.effects) and not nameless)
     return Weights(nothing, unknown, effects, weighed[0], unnamed)
+
+
+def _nameless(case: Case, h: Hypothesis, alone: Mapping[str, float]) -> bool:
+    """Whether what is at work under a hypothesis has no name: the world is so restless, or what is known by its form alone is there and does not
+    merely mend the form of an effect that does clearly more `alone` (log weight of each effect by itself)."""
+    known = [alone.get(name, -np.inf) for name in case.names(h.effects)]
+    formed = [alone.get(name, -np.inf) for name in h.effects if name in case.unnamed]
+    return WORLDS[h.world].unknown or (bool(formed) and max(known, default=-np.inf) <= max(formed) + LUXURY)
 
 
 def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:

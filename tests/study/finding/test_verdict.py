@@ -1,11 +1,12 @@
 """From weights to words: when something is named, when the ship is acquitted, and when the answer is that nobody can tell."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 
 from twin.study.evidence import Hypothesis
-from twin.study.verdict import Weights, group, judge
+from twin.study.verdict import Weights, group, judge, weights
 
 YES = ("blurred",)
 
@@ -96,3 +97,17 @@ def test_an_undecided_answer_still_says_of_which_few_effects_one_is_surely_there
     weighed = [Hypothesis((name,) if name else (), "usual", math.log(p), 0.0) for name, p in chances.items()]
     w = Weights(chances.get("", 0.0), 0.0, {n: p for n, p in chances.items() if n}, weighed[0])
     assert group(weighed, w) == names
+
+
+@pytest.mark.parametrize("tank, unknown", [(-300.0, 0.0), (-105.0, 1.0)])
+def test_what_is_known_by_its_form_alone_beside_an_effect_that_does_most_only_mends_its_form(tank, unknown):
+    """Test: heel with a slack tank is 50 nats likelier than heel alone; the tank alone far less likely than heel, or nearly as likely. Expected: heel is
+    named in the first case, and in the second something has no name."""
+    case = SimpleNamespace(
+        candidates=("RollCoupling", "SwayingMass"), unnamed=("SwayingMass",), news=lambda chosen: tuple(chosen),
+        names=lambda chosen: tuple(n for n in chosen if n != "SwayingMass"),
+    )  # fmt: skip
+    said = {("RollCoupling", "SwayingMass"): -50.0, ("RollCoupling",): -100.0, ("SwayingMass",): tank, (): -900.0}
+    w = weights(case, [Hypothesis(effects, "usual", says, 0.0) for effects, says in said.items()])
+    assert w.unknown == pytest.approx(unknown) and w.effects["RollCoupling"] == pytest.approx(1.0)
+    assert w.unnamed["SwayingMass"] == pytest.approx(1.0)
