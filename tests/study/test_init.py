@@ -96,8 +96,10 @@ def test_two_propellers_push_twice_as_hard_and_each_rudder_feels_one_of_them():
 def test_it_warns_where_the_regressions_know_no_such_hull():
     _, warnings = first_model("Cat", given(2.0, 1.08, 0.14, {"mass-kg": 65.0}))
     assert any("L/B = 1.85" in w and "Clarke" in w for w in warnings)
-    _, quiet = first_model("V", given(320.0, 58.0, 20.8, {"block-coefficient": 0.81, "frontal-area-m2": 1200.0, "lateral-area-m2": 3300.0}))
-    assert quiet == []
+    told = {"block-coefficient": 0.81, "frontal-area-m2": 1200.0, "lateral-area-m2": 3300.0, "service-speed-mps": 7.97}
+    assert first_model("V", given(320.0, 58.0, 20.8, told))[1] == []
+    (guessed,) = first_model("V", given(320.0, 58.0, 20.8, told | {"service-speed-mps": None}))[1]
+    assert "U_0: guessed by size only" in guessed
 
 
 BAD = {
@@ -141,3 +143,12 @@ def test_a_fine_hull_that_would_not_go_straight_and_two_fullnesses_are_said(tmp_
     assert "so fine a hull (C_b 0.56)" in page and "gives C_b = 0.5617, which is used" in page and "many full ships" not in page
     assert main(["init", "S175", *said, "-o", str(tmp_path / "b.toml")]) == 0
     assert "which is used" not in capsys.readouterr().out
+
+
+def test_what_is_given_and_is_no_particular_is_told_as_given(tmp_path, capsys):
+    main(["init", "MV Alma", *["--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5"], "--shaft-speed-rpm", "110", "--rudder-height-m", "7", "-o", str(tmp_path / "a.toml")])
+    said = capsys.readouterr().out
+    assert "--shaft-speed-rpm 110, --rudder-height-m 7" in said and "110 rpm" in said and "as given" in said
+    main(["init", "MV Alma", *["--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5"], "-o", str(tmp_path / "b.toml")])
+    said = capsys.readouterr().out
+    assert "compare it with the bridge's" in said and "also given" not in said

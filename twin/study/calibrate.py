@@ -44,8 +44,8 @@ PARTS = {  # of the ship and not of the core, found with it
 }
 ASKED_FOR = (SteeringLag.__name__, Wind.__name__)  # by the probability of the voyages; the antenna by predictions
 SAID = {"gear": SteeringLag, "antenna": AntennaOffset, "wind": Wind}  # their numbers in --json
-EPILOG = """Reference voyages are ones on which nothing was wrong and the weather was calm: zigzags, circles, speed changes. Without --held-out
-the last third of the voyages (or of a single voyage) is held back to measure the error. The standard errors, and the structural
+EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weather or with the wind recorded: zigzags, circles, speed changes.
+Without --held-out the last third of the voyages (or of a single voyage) is held back to measure the error. The standard errors, and the structural
 error that remains, are stored in the ship file: they keep an imperfect model from being called a missing effect.
 Exit code 4: a voyage cannot be used; 5: the ship file is not valid.
 """
@@ -183,7 +183,7 @@ def _row(d: Derivative, ship: Ship, after: Ship) -> dict[str, Any]:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = f"{parser.epilog or ''}\n\n{EPILOG}"
-    parser.add_argument("voyages", metavar="VOYAGE", nargs="+", help="reference voyages: calm, nothing wrong, manoeuvring")
+    parser.add_argument("voyages", metavar="VOYAGE", nargs="+", help="reference voyages: nothing wrong, manoeuvring, calm or with the wind recorded")
     parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the ship file to start from, or a bundled ship's name")
     parser.add_argument("-o", "--output", metavar="SHIP2.toml", required=True, help="the calibrated ship file")
     parser.add_argument("--held-out", metavar="VOYAGE", nargs="+", default=[], help="voyages on which the error is measured")

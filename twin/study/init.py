@@ -40,6 +40,7 @@ OPTIONS: tuple[tuple[str, str, float, float], ...] = (
     ("lateral-area-m2", "lateral area above the water, for Wind; default 0.06 L^2", 1e-4, 20000.0),
 )
 REQUIRED = ("length-pp-m", "beam-m", "draught-m")
+INSIDE = ("shaft-speed-rpm", "propellers", "pitch-ratio", "rudder-height-m")  # what is given, and is no particular of the ship file
 FULL = 0.7  # block coefficient from which ships often do not go straight by themselves
 Given = Mapping[str, float | None]
 Numbers = dict[str, tuple[float, str]]  # name -> value, source
@@ -60,7 +61,7 @@ def run(args: argparse.Namespace) -> int:
     warnings += doubts(figures, ship.C_b)
     save(ship, args.output)
     out = sys.stderr if args.json == "-" else sys.stdout
-    print(summary(ship, figures, warnings), file=out)
+    print(summary(ship, figures, warnings, given), file=out)
     print(f"\nwritten: {args.output}", file=out)
     print(f"next:    twin import each reference voyage, then twin calibrate REF-*.mcap --ship {args.output} -o {_next(args.output)}", file=out)
     if args.json:
@@ -88,7 +89,7 @@ def first_model(name: str, given: Given) -> tuple[Ship, list[str]]:
     notes["sources"] = {key: text for key, text in reg.SOURCES.items() if key in used}
     ship = replace(_ship(name.strip(), p, d), notes=notes)
     _in_ranges(ship)
-    rough = [k for k, (_, s) in p.items() if s == "ROUGH"]
+    rough = [k for k, (_, s) in p.items() if s in ("ROUGH", "ALEX")]
     guessed = [f"{', '.join(rough)}: guessed by size only; give them if you can"] if rough else []
     return ship, reg.outside(h) + guessed + _two_fullnesses(given, ship)
 
@@ -250,7 +251,10 @@ def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
     """In words, what is unusual about a trial of so full a ship."""
     out = []
     if figures["straight_line_stability"] <= 0 and C_b < FULL:
-        out.append(f"that so fine a hull (C_b {C_b:.2f}) does not go straight by herself is rare: calibrate before you trust how she turns")
+        out.append(
+            f"that so fine a hull (C_b {C_b:.2f}) does not go straight by herself is rare, and more likely an error of these regressions than of "
+            "your numbers: calibrate before you trust how she turns"
+        )
     if not 1.8 <= figures["tactical_diameter_L"] <= 6.5:
         out.append(
             f"tactical diameter {figures['tactical_diameter_L']:.1f} L is unusual (2 to 6 L): check rudder area and speed, and calibrate"
@@ -262,7 +266,7 @@ def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
     return out
 
 
-def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str]) -> str:
+def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: Given) -> str:
     """What was given, what was estimated and from where, and the sea trial."""
     notes = ship.notes["particulars"]
     lines = [f"{ship.name}: a first model from her main particulars", ""]
@@ -270,12 +274,15 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str]) -> str:
         source = notes[f.name]["source"]
         mark = "" if source == "given" else f"estimated: {reg.SOURCES.get(source, source).split(':')[0]}"
         lines.append(f"  {f.name:5} {getattr(ship, f.name):>12.5g} {f.metadata['unit']:6} {f.metadata['doc']:38} {mark}".rstrip())
+    others = [f"--{option} {given[option]:g}" for option in INSIDE if given[option] is not None]
+    lines += ["", f"  also given, and in her derivatives: {', '.join(others)}"] if others else []
+    bridge = "as given" if given["shaft-speed-rpm"] else "compare it with the bridge's"
     unstable = "does not go straight by herself" + ", as many full ships" * (ship.C_b >= FULL)
     stable = "goes straight by herself" if figures["straight_line_stability"] > 0 else unstable
     over = figures["overshoot_20_20_deg"]
     lines += [
         "", "  sea trial of this model (estimates; how she turns is only roughly right until she is calibrated)",
-        f"    {figures['shaft_speed_rpm']:.0f} rpm at {ship.U_0:.3g} m/s ({ship.U_0 / 0.514444:.1f} kn): compare it with the bridge's",
+        f"    {figures['shaft_speed_rpm']:.0f} rpm at {ship.U_0:.3g} m/s ({ship.U_0 / 0.514444:.1f} kn): {bridge}",
         f"    turning circle 35 deg: advance {figures['advance_L']:.1f} L, tactical diameter {figures['tactical_diameter_L']:.1f} L,"
         f" {100 * figures['speed_left']:.0f} % of the speed left",
         f"    zigzag 20/20: first overshoot {'none' if over is None else f'{over:.0f} deg'};  {stable}",
