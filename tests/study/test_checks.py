@@ -151,6 +151,11 @@ def test_a_true_wind_that_follows_from_the_apparent_one_is_not_said_to_be_absent
     assert WIND in answers(without)["missing_samples"].text
 
 
+def test_an_apparent_wind_alone_proves_nothing(sail):
+    columns = {name: x for name, x in sail().items() if name not in (WIND, WIND_FROM)}
+    assert not answers(columns)["wind"].told
+
+
 def test_velocities_that_are_slopes_of_the_position_prove_nothing(sail):
     columns = {name: x for name, x in sail().items() if name not in (SURGE, SWAY)}
     found = answers(columns)["velocity_frame"]

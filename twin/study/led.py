@@ -74,7 +74,7 @@ def led(case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis]) 
     off = {s: held_out_error(case, f) for s, f in found.items() if not s or likely[s] > best - REACH}
     steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
     least = max(steps["coarse"], _measured(case))  # what is run free is a core alone, and no better than it was when nothing was wrong
-    floor = {name: float(np.hypot(max(m, least), _roughly(case))) for name, m in steps.items()}
+    floor = {name: float(np.hypot(max(m, least), roughly(case))) for name, m in steps.items()}
     present = {type(e).__name__ for e in case.model.effects}  # what is left of these is in the floor already
     irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular and name not in present)
     asked = {s: replace(found[s], off_m=m, floor_m=_floor(plain(found[s].hypothesis), floor, off[()], irregular)) for s, m in off.items()}
@@ -141,7 +141,7 @@ def _usual(case: Case, floor: Floor) -> float:
     return max(float(np.nanmean(np.concatenate(errors))), 1e-9)
 
 
-def _roughly(case: Case) -> float:
+def roughly(case: Case) -> float:
     """How far off [m] the forms of effects may leave her that are in the model since she was calibrated: a share of where she would be without."""
     left = [share * _astray(case, without) for without, share in added(case.model)]
     return float(np.hypot.reduce([0.0, *left]))

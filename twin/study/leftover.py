@@ -14,12 +14,10 @@ from twin.physics.model import Model
 
 from .case import WORLDS, Case
 from .evidence import Hypothesis, posterior
-from .led import FORM
-from .nuisance import WEATHER
+from .led import FORM, roughly
 from .own_force import leads_her, otherwise, without
 from .refine import Found, Sets, standing
 from .respond import respond, standard
-from .rough import beside
 from .seaway import at_sea
 from .verdict import ALIKE, SURE
 
@@ -33,6 +31,7 @@ FACTORS = np.array([1, 2, 4, 8, 16, 32])
 SURELY = 3.0  # standard deviations of an instrument's fault from none
 UNDONE = 0.5  # of what either fault alone does to where she is seen, that two together must do
 CLEAR = 3.0  # log evidence by which the voyages must be restless
+ROUGHLY = 1.0 / 3.0  # share of the path's floor that is due to forces known only roughly, from which they matter
 
 
 def answer(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found], chosen: Sets, strict: bool = False) -> Sets:
@@ -93,7 +92,7 @@ def asked_for(case: Case, found: Mapping[Sets, Found], sure: Mapping[str, float]
     """Those of some effects that the path, the readings of an instrument, or a probability of its own asks for: where the model alone leads her
     within what is usual, no force is named for a group that it belongs to; in rough weather, where it does not lead her clearly astray, none but
     the sea's own (`too_small`)."""
-    rough = weathered(case)
+    rough = weathered(case, found[()])
     led = not missed(found[()]) if rough else found[()].off_m <= found[()].floor_m
     return [n for n in names if not led or case.catalogue[n].kind == "SensorFault" or (sure[n] >= SURE and (not rough or _of_the_sea(case, n)))]
 
@@ -103,10 +102,9 @@ def _of_the_sea(case: Case, name: str) -> bool:
     return case.catalogue[name].irregular and not any(type(e).__name__ == name for e in case.model.effects)
 
 
-def weathered(case: Case) -> bool:
-    """Whether weather is at work that is known only roughly: a sea, or what came into the model since she was calibrated."""
-    since = {name for name in WEATHER if name in {type(e).__name__ for e in case.model.effects} - beside(case.model)}
-    return any(at_sea(t, case.model) or any(not t.missing().intersection(case.catalogue[n].needs) for n in since) for t in case.tracks)
+def weathered(case: Case, nothing: Found) -> bool:
+    """Whether weather may mislead: a sea, or forces known only roughly that matter to where she went."""
+    return any(at_sea(t, case.model) for t in case.tracks) or roughly(case) > ROUGHLY * nothing.floor_m
 
 
 def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
@@ -115,7 +113,7 @@ def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
     single = case.news(chosen)
     if len(single) != 1 or case.catalogue[single[0]].kind == "SensorFault" or not max(found[chosen].off_m, found[()].off_m) <= found[chosen].floor_m:
         return False
-    return _of_the_sea(case, single[0]) or not weathered(case)
+    return _of_the_sea(case, single[0]) or not weathered(case, found[()])
 
 
 def undone(case: Case, found: Found) -> bool:

@@ -21,8 +21,10 @@ from .led import plain
 from .refine import Found, standing
 from .respond import standard
 from .segments import segments
+from .start import wave_period_s
 
 LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before
+GROUP = 5.0  # wave periods: where waves toss her, what pushes her for less is one of them
 CLEAR = 15.0  # log evidence, tempered, that a push of its own must add
 
 
@@ -76,7 +78,7 @@ def _asked(case: Case, lines: Sequence[Linear], floor: Floor, lengths: float) ->
     pushed = [_pushed(case, x, [(a, b) for j, a, b in where if j == i], steps[i], most) for i, x in enumerate(lines)]
     normal, out = innovate(pushed, [floor], MOST_SEGMENTS)[0], []
     for (i, a, b), A, pull in zip(where, normal.A / case.temper, normal.b / case.temper, strict=True):
-        for k in range(most):
+        for k in range(most) if lengths * time >= GROUP * wave_period_s(lines[i].track) else ():
             first, own = a + k * (steps[i] // 2), slice(3 * k + 1, 3 * k + 4)
             last = min(first + steps[i], b) - 1
             if last - first >= steps[i] // 2:

@@ -19,15 +19,11 @@ COURSES = ("always", "cos", "sin", "cos_twice", "sin_twice")  # of the heading
 TERMS = tuple(f"{axis}_{course}" for axis in AXES for course in COURSES)
 
 
-def beside(model: Model) -> set[str]:
-    """The effects that were there when she was calibrated."""
-    return set(model.ship.notes.get("structural", {}).get("beside_effects", ()))
-
-
 def added(model: Model) -> list[tuple[Model, float]]:
     """Of every effect of the model that was not there when she was calibrated: the model without it, and by what share of its force its form may
     be wrong on another day."""
-    since = [e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in beside(model)]
+    calibrated = model.ship.notes.get("structural", {}).get("beside_effects", ())
+    since = [e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in calibrated]
     return [(Model(model.ship, tuple(o for o in model.effects if o is not e)), COMES_AND_GOES if e.irregular else KNOWN) for e in since]
 
 

@@ -8,7 +8,7 @@ import pytest
 from twin.physics.effects import find
 from twin.study.assemble import assemble
 from twin.study.evidence import Hypothesis, posterior
-from twin.study.led import FORM, LUXURY, Led, _astray, _measured, _roughly, held_out_error, horizon_s, led
+from twin.study.led import FORM, LUXURY, Led, _astray, _measured, held_out_error, horizon_s, led, roughly
 from twin.study.refine import Found, refine
 from twin.study.rough import KNOWN, added
 from twin.study.search import search
@@ -37,7 +37,7 @@ def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_to
     case, known = (assemble([voyages["Wind"]], ship) for ship in (windy, hers))
     (without, share), *others = added(case.model)
     assert share == KNOWN and not others and added(known.model) == []
-    assert _roughly(case) == pytest.approx(KNOWN * _astray(case, without)) and _roughly(known) == 0.0
+    assert roughly(case) == pytest.approx(KNOWN * _astray(case, without)) and roughly(known) == 0.0
     assert without.effects == tanker.effects
 
 

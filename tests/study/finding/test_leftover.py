@@ -9,7 +9,10 @@ from twin.physics.effects import find
 from twin.study import leftover
 from twin.study.assemble import assemble
 from twin.study.columns import with_values
+from twin.study.evidence import Hypothesis
+from twin.study.led import roughly
 from twin.study.leftover import ASTRAY, CLEAR, asked_for, astray, explaining, explains, helpful, missed, quiet, too_small, undone, weathered
+from twin.study.refine import Found
 from twin.study.search import search
 from twin.study.tell_diagnosis import sentence
 
@@ -84,12 +87,14 @@ def test_in_a_sea_in_which_the_model_alone_leads_her_nearly_no_force_but_the_sea
     assert asked_for(knows, nothing, sure, list(sure)) == [n for n in asked if n != "WaveDrift" or off_m > 1.5]
 
 
-def test_weather_that_came_into_the_model_since_she_was_calibrated_is_known_roughly(tanker, voyages):
+def test_a_known_wind_misleads_where_a_tenth_of_it_matters_to_where_she_went(tanker, voyages):
     windy = tanker.with_effects(find("Wind").plausible(tanker))
     hers = replace(windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}})
-    roughly, well = (assemble([voyages["Wind"]], ship) for ship in (windy, hers))
-    assert weathered(roughly) and not weathered(well)
-    assert not weathered(replace(roughly, tracks=tuple(replace(t, weather={}) for t in roughly.tracks)))
+    since, then = (assemble([voyages["Wind"]], ship) for ship in (windy, hers))
+    nothing = lambda floor_m: Found(Hypothesis((), "usual", 0.0, 0.0), None, since.model, 0.0, floor_m, floor_m)  # noqa: E731
+    matters = roughly(since)
+    assert matters > 0.0 and weathered(since, nothing(2.0 * matters)) and not weathered(since, nothing(4.0 * matters))
+    assert not weathered(then, nothing(2.0 * matters))
 
 
 def test_what_was_so_unlikely_that_nobody_asked_where_it_leads_her_explains_nothing(judged):

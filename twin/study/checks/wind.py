@@ -109,7 +109,7 @@ def alone(name: str, view: View, true: bool) -> Check:
     if raw.max() <= 2.0 * np.pi and np.std(raw) > 1.0:
         return wrong(name, f'{column} stays within 0 and {raw.max():.2f}: radians. In the map: unit = "rad" for it.')
     if not true:
-        return good(name, "only the apparent wind was recorded; the true wind follows from it and the ship's motion.")
+        return cannot_tell(name, "only the apparent wind was recorded; the true wind follows from it and the ship's motion.")
     if np.degrees(np.nanstd(view.psi)) < 15.0:
         return cannot_tell(name, "only the true wind was recorded, and the ship hardly turns.")
     followed = follows_heading(view.si(column), view.psi)
