@@ -67,8 +67,7 @@ def diagnose(
         leads += [n for n in case.names(explain) if w.effects[n] >= SURE]
     like = {name: alike(case, weighed, name) for name in case.names(w.best.effects)}
     sharp = shows(seen) and not astray(found[()] if case.news(w.best.effects) else best)
-    tossed = any(t.swell is not None or at_sea(t, case.model) for t in case.tracks)
-    blurred = no_pair or tossed or (not explained and not missed(found[()]))
+    blurred = no_pair or any(at_sea(t, case.model) for t in case.tracks) or (not explained and not missed(found[()]))
     coarse, happened = coarse_axes(case.path.share), moments(case, best)
     able = case.excited and not coarse
     verdict, missing = judge(weighed, w, like, leads, able=able, sharp=sharp, explained=explained, blurred=blurred, pushed=bool(happened))

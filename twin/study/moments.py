@@ -24,8 +24,9 @@ from .segments import segments
 from .start import wave_period_s
 
 LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before
-GROUP = 5.0  # wave periods: where waves toss her, what pushes her for less is one of them
 CLEAR = 15.0  # log evidence, tempered, that a push of its own must add
+TOSSED = 30.0  # and where waves toss her: a group of them pushes, too
+SWELL_S = 25.0  # the longest waves; what swings her more slowly may be what is asked for
 
 
 @dataclass(frozen=True)
@@ -48,8 +49,9 @@ class Moment:
 def moments(case: Case, found: Found) -> list[Moment]:
     """The stretches that clearly had a push of their own under a hypothesis, the likeliest first; none that overlaps a likelier one."""
     out: list[Moment] = []
+    enough = {t.name: TOSSED if 0.0 < wave_period_s(t) < SWELL_S else CLEAR for t in case.tracks}
     for m in sorted(stretches(case, found), key=lambda m: -m.log_evidence):
-        if m.log_evidence > CLEAR and not any(m.voyage == o.voyage and m.start_s < o.end_s and o.start_s < m.end_s for o in out):
+        if m.log_evidence > enough[m.voyage] and not any(m.voyage == o.voyage and m.start_s < o.end_s and o.start_s < m.end_s for o in out):
             out.append(m)
     return out
 
@@ -78,7 +80,7 @@ def _asked(case: Case, lines: Sequence[Linear], floor: Floor, lengths: float) ->
     pushed = [_pushed(case, x, [(a, b) for j, a, b in where if j == i], steps[i], most) for i, x in enumerate(lines)]
     normal, out = innovate(pushed, [floor], MOST_SEGMENTS)[0], []
     for (i, a, b), A, pull in zip(where, normal.A / case.temper, normal.b / case.temper, strict=True):
-        for k in range(most) if lengths * time >= GROUP * wave_period_s(lines[i].track) else ():
+        for k in range(most):
             first, own = a + k * (steps[i] // 2), slice(3 * k + 1, 3 * k + 4)
             last = min(first + steps[i], b) - 1
             if last - first >= steps[i] // 2:

@@ -8,11 +8,12 @@ import pytest
 
 from bench.bundled import recorded
 from bench.reference import Case, simulate
+from twin.study import moments as moment_of
 from twin.study.assemble import assemble
 from twin.study.columns import Unknown
 from twin.study.diagnose import diagnose
 from twin.study.evidence import Hypothesis, Nuisance, likeliest, posterior
-from twin.study.moments import CLEAR, moments, stretches
+from twin.study.moments import CLEAR, Moment, moments, stretches
 from twin.study.refine import Found, refine
 from twin.study.tell_diagnosis import sentence, told
 
@@ -50,6 +51,17 @@ def test_ships_that_pass_are_seen_when_they_pass_and_nobody_is_acquitted(tanker,
     assert abs(np.exp(2j * np.pi * passes).mean()) > 0.8 and np.unique(np.rint(passes - passes[0])).size >= 2
     assert result["probabilities"]["nothing_missing"] < 0.5
     assert "something pushed her" in "\n".join(told(result)) and "missing" in sentence(result)
+
+
+def test_where_waves_toss_her_more_is_asked_of_a_push(monkeypatch, tanker, voyages):
+    """Test: a healthy voyage of which one stretch is 20 nats likelier with a push, what swings her slowly, and waves.
+    Expected: a moment, but in waves none."""
+    case = assemble([voyages["nothing"]], tanker)
+    monkeypatch.setattr(moment_of, "stretches", lambda *_: [Moment("nothing", 60.0, 90.0, 20.0, np.ones(3))])
+    (track,) = case.tracks
+    slow, swift = (np.full((len(track), 6), 2.0 * np.pi / period_s) for period_s in (40.0, 10.0))
+    calm, slow, swift = (moments(replace(case, tracks=(replace(track, swell=x),)), as_she_is(case)) for x in (None, slow, swift))
+    assert len(calm) == len(slow) == 1 and swift == []
 
 
 def test_what_is_most_probable_of_everything_is_where_the_sum_of_squares_stands_still():
