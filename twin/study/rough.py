@@ -14,6 +14,7 @@ from .track import Track
 
 KNOWN = 0.1  # share of the force of an effect in the model that may be something else
 COMES_AND_GOES = 0.5  # share of an irregular effect's force, and of what it does to the path, that no size of it explains
+TINY = 1e-12
 AXES = ("surge", "sway", "yaw")
 COURSES = ("always", "cos", "sin", "cos_twice", "sin_twice")  # of the heading
 TERMS = tuple(f"{axis}_{course}" for axis in AXES for course in COURSES)
@@ -36,9 +37,11 @@ def doubted(track: Track, model: Model) -> np.ndarray:
 
 
 def accelerations(track: Track, model: Model) -> dict[str, np.ndarray]:
-    """(N, 3) of one unit of each term: as much in one axis as all axes of what is doubted together, in standard accelerations."""
-    size = np.sqrt(np.square(doubted(track, model) / standard(model)).sum(axis=1))
+    """(N, 3) of one unit of each term: in each axis what is doubted of it as a rule, stronger where all of it together is stronger."""
+    each = doubted(track, model)
+    strength, usual = np.linalg.norm(each / standard(model), axis=1), np.sqrt(np.mean(each**2, axis=0))
+    size = strength / max(float(np.sqrt(np.mean(strength**2))), TINY)
     psi = track.state[:, 2]
     courses = (np.ones_like(psi), np.cos(psi), np.sin(psi), np.cos(2.0 * psi), np.sin(2.0 * psi))
-    each = (np.outer(size * course, np.eye(3)[axis] * standard(model)) for axis in range(3) for course in courses)
-    return dict(zip(TERMS, each, strict=True))
+    columns = (np.outer(size * course, np.eye(3)[axis] * usual) for axis in range(3) for course in courses)
+    return dict(zip(TERMS, columns, strict=True))
