@@ -19,14 +19,13 @@ from .effects import INPUTS
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import asked_for, astray, explaining, helpful, missed, too_small, undone
+from .leftover import asked_for, astray, explaining, helpful, missed, too_small, undone, weathered
 from .manoeuvres import next_manoeuvre
 from .moments import moments
 from .overtime import over_time
 from .read import read_voyage
 from .refine import Found
 from .search import search
-from .seaway import at_sea
 from .start import waves_on
 from .tell_diagnosis import sentence, told
 from .verdict import SURE, alike, group, judge, parameters, shows, typical_force, weights
@@ -67,7 +66,7 @@ def diagnose(
         leads += [n for n in case.names(explain) if w.effects[n] >= SURE]
     like = {name: alike(case, weighed, name) for name in case.names(w.best.effects)}
     sharp = shows(seen) and not astray(found[()] if case.news(w.best.effects) else best)
-    blurred = no_pair or any(at_sea(t, case.model) for t in case.tracks) or (not explained and not missed(found[()]))
+    blurred = no_pair or weathered(case, found[()]) or (not explained and not missed(found[()]))
     coarse, happened = coarse_axes(case.path.share), moments(case, best)
     able = case.excited and not coarse
     verdict, missing = judge(weighed, w, like, leads, able=able, sharp=sharp, explained=explained, blurred=blurred, pushed=bool(happened))

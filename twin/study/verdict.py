@@ -93,8 +93,8 @@ def judge(
     """The verdict, and the effects to add, first the one that explains most. One that others could stand in for (`like`) is named
     when one of them is surely there, and only if it leads her better (`leads`). Voyages without a manoeuvre decide nothing, nor does a model
     that is no witness (`able`); those that would not have shown most effects, or on which the model alone leads her astray, acquit nobody
-    (`sharp`); what the best hypothesis leaves over, or has otherwise than its form, is unknown (`explained`), but decides nothing where there
-    was a sea, or faults that undo each other, or where the model alone leads her as near as it ever did (`blurred`). Who was `pushed` for a moment
+    (`sharp`); what the best hypothesis leaves over, or has otherwise than its form, is unknown (`explained`), but decides nothing where weather
+    may mislead, or faults that undo each other, or where the model alone leads her as near as it ever did (`blurred`). Who was `pushed` for a moment
     by something that no effect gives is not acquitted either: that is unknown."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
     named = [n for n in w.best.effects if n in w.effects and n in leads and (w.effects[n] >= SURE or one_of(weighed, [n, *like[n]]) >= SURE_GROUP)]
