@@ -62,7 +62,7 @@ def sea_unknowns() -> list[Unknown]:
 
 
 def rough_unknowns(model: Model) -> list[Unknown]:
-    """How much the forms of effects that were added since calibration miss, in units of what they may."""
+    """How much the forms of weather, and of effects that were added since calibration, miss, in units of what they may."""
     return _beside_the_model(ROUGH, dict.fromkeys(rough.TERMS, 1.0)) if rough.added(model) else []
 
 

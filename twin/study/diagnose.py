@@ -66,7 +66,8 @@ def diagnose(
         leads += [n for n in case.names(explain) if w.effects[n] >= SURE]
     like = {name: alike(case, weighed, name) for name in case.names(w.best.effects)}
     sharp = shows(seen) and not astray(found[()] if case.news(w.best.effects) else best)
-    blurred = no_pair or weathered(case, found[()]) or (not explained and not missed(found[()]))
+    rough = weathered(case, found[()])
+    blurred = no_pair or rough or (not explained and not missed(found[()]))
     coarse, happened = coarse_axes(case.path.share), moments(case, best)
     able = case.excited and not coarse
     verdict, missing = judge(weighed, w, like, leads, able=able, sharp=sharp, explained=explained, blurred=blurred, pushed=bool(happened))
@@ -102,6 +103,7 @@ def diagnose(
         "floor": {"share_surge_sway_yaw": case.floor.share, "sensor_factor": case.floor.sensor, "temper": case.temper},
         "voyages": [v.name for v in voyages],
         "waves": waves_on(case.tracks),
+        "weather_may_mislead": rough,
         "voyages_hold_a_manoeuvre": case.excited,
         "calibrated_too_coarsely": coarse,
         "references": [v.name for v in references],

@@ -1,4 +1,4 @@
-"""Effects that were added to the ship since she was calibrated: their forms are only roughly right, and another wind or sea shows it.
+"""Weather that the model knows, and effects that were added since she was calibrated: their forms are only roughly right, and another day shows it.
 
 What such a form misses changes from moment to moment (the filter's slack), and it lasts: of a wind that blows from one side all voyage, and whose
 force is known to a tenth, a tenth is left over that would be a tow, a drag or a list. So a share of the known force may stand in each axis, as a
@@ -21,8 +21,8 @@ TERMS = tuple(f"{axis}_{course}" for axis in AXES for course in COURSES)
 
 
 def added(model: Model) -> list[tuple[Model, float]]:
-    """Of every effect of the model that was not there when she was calibrated: the model without it, and by what share of its force its form may
-    be wrong on another day."""
+    """Of every effect of the model that was not there when she was calibrated, and of weather (another one on each day): the model without it, and
+    by what share of its force its form may be wrong."""
     calibrated = model.ship.notes.get("structural", {}).get("beside_effects", ())
     since = [e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in calibrated]
     return [(Model(model.ship, tuple(o for o in model.effects if o is not e)), COMES_AND_GOES if e.irregular else KNOWN) for e in since]

@@ -83,6 +83,11 @@ def sentence(result: dict[str, Any]) -> str:
             f"Undecided: step by step the readings say {_likely(by_name, c['effect'])}, but it does not lead her to where she went any better "
             f"({c['error_with']:.3g} m off with it, {c['error_without']:.3g} m without)."
         )
+    if likely and result["weather_may_mislead"]:
+        return (
+            f"Undecided: the readings say {_likely(by_name, likely[0]['effect'])}, but in weather like this, whose force the model knows only "
+            "roughly, that may be the weather's doing. A calmer voyage would tell."
+        )
     if result["moments"] and not likely:
         return (
             f"Undecided: {_when(result['moments'][0])} something pushed her as it did not before and after. Where waves toss her that may be a group "

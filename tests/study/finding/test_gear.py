@@ -15,7 +15,7 @@ from twin.physics.model import Model
 from twin.physics.ship import load, save
 from twin.study.assemble import judgeable
 from twin.study.columns import effect_unknowns
-from twin.study.nuisance import from_ship, nuisance_unknowns
+from twin.study.nuisance import USUAL, from_ship, nuisance_unknowns, of_known_weather
 from twin.study.track import track
 from twin.study.write import write_voyage
 
@@ -82,8 +82,11 @@ def test_of_an_effect_added_after_calibration_the_ship_file_knows_nothing_but_it
     assert known.information[labels.index("SteeringLag.delay")].max() > 1.0
 
 
-def test_no_change_is_asked_of_what_the_weather_brings(tanker, voyages):
+def test_a_change_is_asked_of_what_she_has_and_of_the_weather_that_she_knows(tanker, voyages):
     tracks, known = [track(voyages["nothing"], tanker)], catalogue()
     assert {"Wind", "RudderWear"} <= set(judgeable(tracks, Model.of(tanker), known))
     has = Model.of(tanker).but(known["Wind"].plausible(tanker), known["RudderWear"].plausible(tanker))
-    assert "Wind" not in judgeable(tracks, has, known) and "RudderWear" in judgeable(tracks, has, known)
+    assert {"Wind", "RudderWear"} <= set(judgeable(tracks, has, known))
+    assert of_known_weather(Model.of(tanker), known) == {}
+    usual = of_known_weather(has, known)
+    assert usual and {label.split(".")[0] for label in usual} == {"Wind"} and usual["Wind.c_y"] == pytest.approx(USUAL * 0.8)

@@ -18,7 +18,7 @@ from twin.study.tell_diagnosis import sentence
 
 UNDECIDED = {
     "verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "calibrated_too_coarsely": [],
-    "undo_each_other": [], "unclear": [], "moments": [], "resembles": [],
+    "undo_each_other": [], "unclear": [], "moments": [], "resembles": [], "weather_may_mislead": False,
 }  # fmt: skip
 
 
@@ -26,6 +26,12 @@ def test_a_push_where_waves_toss_her_is_told_with_its_time_and_decides_nothing()
     pushed = {"voyage": "june", "start_s": 600.0, "end_s": 655.0, "X_N": -8e4, "Y_N": 0.0, "N_Nm": 0.0}
     said = sentence(UNDECIDED | {"moments": [pushed], "probabilities": {"unknown": 0.9, "nothing_missing": 0.1}})
     assert said.startswith("Undecided: from 10:00 to 10:55 on june something pushed her") and "waves" in said
+
+
+def test_what_the_readings_say_in_weather_that_may_mislead_is_told_with_that():
+    likely = {"effect": "CrossFlowDrag", "probability": 0.99, "error_with": 4.0, "error_without": 6.0, "parameters": []}
+    said = sentence(UNDECIDED | {"candidates": [likely], "weather_may_mislead": True})
+    assert "CrossFlowDrag (99%)" in said and "calmer" in said
 
 
 @pytest.fixture(scope="module")
