@@ -110,8 +110,9 @@ class Effect:
             lo, hi = p.box(ship)
             value = getattr(self, p.name)
             if not lo <= value <= hi:
+                unit = "" if p.unit == "-" else f" {p.unit}"
                 raise SettingsError(
-                    f"{where}effects.{name}.{p.name} = {value:g} {p.unit} lies outside its box [{lo:g}, {hi:g}]. "
+                    f"{where}effects.{name}.{p.name} = {value:g}{unit} lies outside its box [{lo:g}, {hi:g}]. "
                     f"Correct the number, or remove [effects.{name}]."
                 )
         for particular in self.needs_ship:

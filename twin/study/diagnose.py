@@ -60,13 +60,13 @@ def diagnose(
     w = weights(case, weighed)
     best = found[w.best.effects]
     explain = explaining(case, weighed, found)
-    no_pair, leads = undone(case, best), asked_for(case, found, w.effects, case.names(helpful(case, found, explain)))
+    no_pair, rough = undone(case, best), weathered(case, found[()])
+    leads = asked_for(case, found, w.effects, case.names(helpful(case, found, explain)), rough)
     explained = not case.news(w.best.effects) or (bool(explain) and not no_pair)
-    if too_small(case, found, explain):
+    if too_small(case, found, explain, rough):
         leads += [n for n in case.names(explain) if w.effects[n] >= SURE]
     like = {name: alike(case, weighed, name) for name in case.names(w.best.effects)}
     sharp = shows(seen) and not astray(found[()] if case.news(w.best.effects) else best)
-    rough = weathered(case, found[()])
     blurred = no_pair or rough or (not explained and not missed(found[()]))
     coarse, happened = coarse_axes(case.path.share), moments(case, best)
     able = case.excited and not coarse

@@ -83,7 +83,7 @@ def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:
     params = []
     for p in effect.params():
         k = p.scale(ship) if ship else 1.0
-        sizes = {key: getattr(p, key) * k for key in ("default", "lo", "hi", "sd", "null")}
+        sizes = {key: getattr(p, key) * k for key in ("default", "lo", "hi", "sd", "null")} | {"form": p.form}
         params.append({"name": p.name, "unit": p.unit, **sizes, "times": SCALES[p.of] if p.of and not ship else None, "doc": p.doc})
     return {
         "name": effect.__name__, "kind": effect.kind, "doc": sentence(effect), "formula": formula(effect), "needs": inputs(effect),

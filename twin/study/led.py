@@ -74,7 +74,8 @@ def led(case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis]) 
     off = {s: held_out_error(case, f) for s, f in found.items() if not s or likely[s] > best - REACH}
     steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
     least = max(steps["coarse"], _measured(case))  # what is run free is a core alone, and no better than it was when nothing was wrong
-    floor = {name: float(np.hypot(max(m, least), roughly(case))) for name, m in steps.items()}
+    known = roughly(case)
+    floor = {name: float(np.hypot(max(m, least), known)) for name, m in steps.items()}
     present = {type(e).__name__ for e in case.model.effects}  # what is left of these is in the floor already
     irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular and name not in present)
     asked = {s: replace(found[s], off_m=m, floor_m=_floor(plain(found[s].hypothesis), floor, off[()], irregular)) for s, m in off.items()}

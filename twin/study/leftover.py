@@ -88,11 +88,10 @@ def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
     return [n for n in chosen if (_clear if case.catalogue[n].kind == "SensorFault" else _leads)(case, found, chosen, n)]
 
 
-def asked_for(case: Case, found: Mapping[Sets, Found], sure: Mapping[str, float], names: Sequence[str]) -> list[str]:
+def asked_for(case: Case, found: Mapping[Sets, Found], sure: Mapping[str, float], names: Sequence[str], rough: bool) -> list[str]:
     """Those of some effects that the path, the readings of an instrument, or a probability of its own asks for: where the model alone leads her
-    within what is usual, no force is named for a group that it belongs to; in rough weather, where it does not lead her clearly astray, none but
-    the sea's own (`too_small`)."""
-    rough = weathered(case, found[()])
+    within what is usual, no force is named for a group that it belongs to; in `rough` weather (`weathered`), where it does not lead her clearly
+    astray, none but the sea's own (`too_small`)."""
     led = not missed(found[()]) if rough else found[()].off_m <= found[()].floor_m
     return [n for n in names if not led or case.catalogue[n].kind == "SensorFault" or (sure[n] >= SURE and (not rough or _of_the_sea(case, n)))]
 
@@ -107,13 +106,13 @@ def weathered(case: Case, nothing: Found) -> bool:
     return any(at_sea(t, case.model) for t in case.tracks) or roughly(case) > ROUGHLY * nothing.floor_m
 
 
-def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> bool:
-    """Whether a single effect cannot show in where she went, for she is led there with it and without: then the readings decide. In rough
+def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets, rough: bool) -> bool:
+    """Whether a single effect cannot show in where she went, for she is led there with it and without: then the readings decide. In `rough`
     weather they do of the sea's own force alone: of others, they take a wave's pull for a ship's."""
     single = case.news(chosen)
     if len(single) != 1 or case.catalogue[single[0]].kind == "SensorFault" or not max(found[chosen].off_m, found[()].off_m) <= found[chosen].floor_m:
         return False
-    return _of_the_sea(case, single[0]) or not weathered(case, found[()])
+    return _of_the_sea(case, single[0]) or not rough
 
 
 def undone(case: Case, found: Found) -> bool:

@@ -49,7 +49,7 @@ def test_where_the_model_alone_leads_her_no_force_is_named_for_the_group_it_belo
     case, found = judged
     nothing = {(): replace(found, off_m=off_m, floor_m=1.0)}
     sure = {"RudderWear": 0.9, "TowForce": 0.4, "HeadingBias": 0.4}
-    assert asked_for(case, nothing, sure, list(sure)) == asked
+    assert asked_for(case, nothing, sure, list(sure), rough=False) == asked
 
 
 def as_if(found, **worlds):
@@ -83,14 +83,13 @@ def test_a_world_that_is_clearly_rougher_is_no_explanation_unless_a_sea_was_meas
 
 
 @pytest.mark.parametrize("off_m, asked", [(1.4, ["WaveDrift", "HeadingBias"]), (1.6, ["CrossFlowDrag", "WaveDrift", "HeadingBias"])])
-def test_in_a_sea_in_which_the_model_alone_leads_her_nearly_no_force_but_the_seas_own_is_named(monkeypatch, judged, off_m, asked):
+def test_in_a_sea_in_which_the_model_alone_leads_her_nearly_no_force_but_the_seas_own_is_named(judged, off_m, asked):
     case, found = judged
-    monkeypatch.setattr(leftover, "at_sea", lambda *_: True)
     sure = dict.fromkeys(["CrossFlowDrag", "WaveDrift", "HeadingBias"], 0.99)
     nothing = {(): replace(found, off_m=off_m, floor_m=1.0)}
-    assert asked_for(case, nothing, sure, list(sure)) == asked
+    assert asked_for(case, nothing, sure, list(sure), rough=True) == asked
     knows = replace(case, model=case.model.but(find("WaveDrift").plausible(case.model.ship)))
-    assert asked_for(knows, nothing, sure, list(sure)) == [n for n in asked if n != "WaveDrift" or off_m > 1.5]
+    assert asked_for(knows, nothing, sure, list(sure), rough=True) == [n for n in asked if n != "WaveDrift" or off_m > 1.5]
 
 
 def test_a_known_wind_misleads_where_a_tenth_of_it_matters_to_where_she_went(tanker, voyages):
@@ -176,7 +175,7 @@ def test_an_instruments_fault_is_named_only_if_one_of_its_numbers_is_clear(judge
     for delay, turned, named in ((0.3, 0.0, []), (0.3, -0.5, []), (0.7, 0.7, ["SensorDelay"]), (0.7, 0.0, ["SensorDelay"])):
         z[rows] = delay, turned
         led = {s: replace(found, off_m=0.9, floor_m=1.0, posterior=replace(found.posterior, z=z.copy(), covariance=covariance)) for s in ((), alone)}
-        assert helpful(case, led, alone) == named and not too_small(case, led, alone)
+        assert helpful(case, led, alone) == named and not too_small(case, led, alone, rough=False)
     undecided = UNDECIDED | {"unclear": ["SensorDelay"]}
     one = {"effect": "SensorDelay", "probability": 0.99, "parameters": [], "error_with": 1.0, "error_without": 1.0}
     assert "SensorDelay (99%), but not one of its numbers is clearly" in sentence(undecided | {"candidates": [one]})
@@ -185,18 +184,19 @@ def test_an_instruments_fault_is_named_only_if_one_of_its_numbers_is_clear(judge
 def test_a_force_that_stands_alone_is_too_small_to_show_where_she_is_led_already_but_not_in_a_sea(judged):
     case, found = judged
     led = {(): replace(found, off_m=0.9, floor_m=1.0), ("RudderWear",): replace(found, off_m=0.9, floor_m=1.0)}
-    assert too_small(case, led, ("RudderWear",))
-    assert too_small(case, led | {("RudderWear",): replace(found, off_m=0.99, floor_m=1.0)}, ("RudderWear",))
-    assert not too_small(case, led | {("RudderWear",): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",))  # it leads her astray
-    assert not too_small(case, led | {(): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",))
+    assert too_small(case, led, ("RudderWear",), rough=False)
+    assert too_small(case, led | {("RudderWear",): replace(found, off_m=0.99, floor_m=1.0)}, ("RudderWear",), rough=False)
+    assert not too_small(case, led | {("RudderWear",): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",), rough=False)  # it leads her astray
+    assert not too_small(case, led | {(): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",), rough=False)
     pair = ("RudderWear", "Wind")
-    assert not too_small(case, led | {("Wind",): led[()], pair: led["RudderWear",]}, pair)
+    assert not too_small(case, led | {("Wind",): led[()], pair: led["RudderWear",]}, pair, rough=False)
     (track,) = case.tracks
     waves = np.full(len(track), 0.01 * case.model.ship.L_pp)
     tossed = replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),))
-    assert not too_small(tossed, led, ("RudderWear",))
+    assert weathered(tossed, led[()]) and not weathered(case, led[()])
+    assert not too_small(tossed, led, ("RudderWear",), rough=True)
     for off_m, small in ((0.9, True), (0.99, True), (1.01, False)):  # waves' own force comes and goes, and leads her anywhere within the floor
-        assert too_small(tossed, led | {("WaveDrift",): replace(found, off_m=off_m, floor_m=1.0)}, ("WaveDrift",)) is small
+        assert too_small(tossed, led | {("WaveDrift",): replace(found, off_m=off_m, floor_m=1.0)}, ("WaveDrift",), rough=True) is small
 
 
 def test_where_the_model_alone_ends_twice_as_far_off_as_is_usual_nobody_is_acquitted(judged):
