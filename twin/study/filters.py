@@ -2,102 +2,101 @@
 
 The state is delta = (x, y, psi, u, v, r), b and c as in innovations.py, and in a sea that was seen to work the waves' accelerations with
 what carries them on. X holds its mean and how that depends on each unknown, C its covariance; both are corrected by the readings of a
-step, and carried on to the next.
+step, and carried on to the next. All that is the same at every step is made ready before the first.
 """
 
 from dataclasses import dataclass
-from itertools import product
 
 import numpy as np
 
 MOTION, PLACE, SPEEDS, SLOW, FLOW = slice(0, 6), slice(0, 2), slice(3, 6), slice(6, 9), slice(9, 11)  # places in the state
 BENDS = [2, 3, 4, 5, 9, 10]  # what accelerations depend on: heading, velocities, the water's own
-WAVE = slice(11, 14)  # of each axis; behind it what carries the waves on
-STATES, AT_SEA = 11, 23
-DIAGONAL = np.arange(AT_SEA)
-SWINGING = tuple(product(enumerate(slice(a, a + 3) for a in range(STATES, AT_SEA, 3)), repeat=2))  # pairs of waves' states: number, place of all axes
+STATES = 11
+SHIP, WAVE, WAVES = slice(0, STATES), slice(11, 14), slice(11, 23)  # in a sea; WAVE is what pushes her in each axis
 LIGHT = np.float32  # of the many tangents; covariances and sums need more
 
 
 @dataclass(frozen=True)
 class Stretches:
-    """Segments begun together, of T steps and S of them; what is not there (a reading, a segment's end) is NaN in e."""
+    """Segments begun together, of T steps and S of them. What is not there (a reading, a segment's end) shows nothing: its rows are zero."""
 
-    F: np.ndarray  # (T, S, n, n): n is STATES, or AT_SEA
-    H: np.ndarray  # (T, S, 8, n)
-    e: np.ndarray  # (T, S, 8)
-    defect: np.ndarray  # (T, S, 6)
-    turn: np.ndarray  # (T, S, 3, 3) body velocities to d(x, y, psi)/dt
-    A: np.ndarray  # (T, S, 3, P)
-    R: np.ndarray  # (T, S, 8, P)
+    F: np.ndarray  # (T, S, 11, 11)
+    H: np.ndarray  # (T, S, 8, 11): no instrument shows a wave by itself
+    here: np.ndarray  # (T, S, 8) which readings there were
+    shown: np.ndarray  # (T, S, 8, 1 + P) measured less read along the smooth motion, and less what one of each unknown makes of it
+    pushed: np.ndarray  # (T, S, 6, 1 + P) what a step adds to the motion: the model's defect, and what one of each unknown pushes
+    spread: np.ndarray  # (T, S, 6, 3) accelerations to what they add to the motion in a step
     turns: dict[int, np.ndarray]  # column -> (T, S, 8, 8)
     bends: np.ndarray | None = None  # (T, S, 3, 6, P)
-    fresh: np.ndarray | None = None  # (T, S, 3, 4, 4) of each axis' waves, the share of variance that is new after a step
+    swing: np.ndarray | None = None  # (T, S, 12, 12) what takes the waves a step on
 
 
 @dataclass(frozen=True)
 class Noise:
-    """Of each filter: its segment, its step [s], and variances; of b and c also the share that is renewed in one step."""
+    """Of every floor (W) and every segment: variances."""
 
-    row: np.ndarray  # (K,) places among the segments
-    h: np.ndarray  # (K,)
-    reading: np.ndarray  # (T, K, 8)
-    fast: np.ndarray  # (K, 3) of velocity, in one step
-    slow: np.ndarray  # (T, K, 3) of b
-    flow: np.ndarray  # (K,) of c
-    wander: np.ndarray  # (K,) of the place shown, in one step
-    new_b: np.ndarray  # (K,)
-    new_c: np.ndarray  # (K,)
-    wave: np.ndarray | None = None  # (T, K, 3) of the waves' accelerations
+    reading: np.ndarray  # (T, W, S, 8)
+    new: np.ndarray  # (T, W, S, 11) of each of the ship's states, in one step
+    waves: np.ndarray | None = None  # (T, S, 12, 12) of the waves' own, in one step
 
 
 class Filters:
-    """K filters at the same step of their segments."""
+    """A filter for every floor and segment, all at the same step; begun with the covariance C (W, S, n, n), n being 11, or 23 at sea."""
 
     def __init__(self, told: Stretches, noise: Noise, C: np.ndarray) -> None:
         self.told, self.noise, self.C = told, noise, C
-        self.X = np.zeros((*C.shape[:2], 1 + told.A.shape[-1]), LIGHT)
-        self.F, self.H, self.turn = (x.astype(LIGHT) for x in (told.F, told.H, told.turn))
+        self.X = np.zeros((*C.shape[:3], told.shown.shape[-1]), LIGHT)
+        self.H, self.unread = told.H.astype(LIGHT), np.where(told.here[:, None], noise.reading, 1.0)
+        self.on = _On(told.F, told.swing)
+        self.light = _On(*(None if M is None else M.astype(LIGHT) for M in (told.F, told.swing)))
 
-    def correct(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """By the readings of step k; gives the whitened innovations with their tangents (K, 8, 1 + P), the root of their covariance, and
-        which readings there were (K, 8)."""
-        told, row = self.told, self.noise.row
-        here = np.isfinite(told.e[k])[row]
-        E = -(self.H[k][row] @ self.X)
-        shown = E[:, :, :1].copy()
+    def correct(self, k: int) -> tuple[np.ndarray, np.ndarray]:
+        """By the readings of step k; gives the whitened innovations with their tangents (W, S, 8, 1 + P), and the diagonal of the root of their
+        covariance (W, S, 8)."""
+        told, H = self.told, self.told.H[k]
+        E = told.shown[k] - self.H[k] @ self.X[..., SHIP, :]
         for column, turn in told.turns.items():
-            E[:, :, 1 + column] += (turn[k][row] @ shown)[:, :, 0]
-        E[:, :, 0] += np.where(here, told.e[k][row], 0.0)
-        E[:, :, 1:] -= told.R[k][row]
-        E *= here[:, :, None]
-        H = told.H[k][row] * here[:, :, None]
-        HC = H @ self.C
-        S = HC @ H.transpose(0, 2, 1)
-        S[:, DIAGONAL[:8], DIAGONAL[:8]] += np.where(here, self.noise.reading[k], 1.0)
+            E[..., 1 + column] += (turn[k] @ (E[..., :1] - told.shown[k][..., :1]))[..., 0]
+        HC = H @ self.C[..., SHIP, :]
+        S = HC[..., SHIP] @ H.swapaxes(-1, -2)
+        _diagonal(S)[...] += self.unread[k]
         L = np.linalg.cholesky(S)
         inverse = np.linalg.inv(L)
         white, V = inverse.astype(LIGHT) @ E, inverse @ HC
-        self.X += V.transpose(0, 2, 1).astype(LIGHT) @ white
-        self.C -= V.transpose(0, 2, 1) @ V
-        return white, L, here
+        self.X += V.swapaxes(-1, -2).astype(LIGHT) @ white
+        self.C -= V.swapaxes(-1, -2) @ V
+        return white, _diagonal(L)
 
     def advance(self, k: int) -> None:
         """From step k to the next: by the linear ship, what the unknowns push, and noise."""
-        told, noise, row = self.told, self.noise, self.noise.row
-        F, h = told.F[k][row], noise.h[:, None, None].astype(LIGHT)
-        push = told.A[k][row]
-        if told.bends is not None:
-            push = push + np.einsum("kaip,ki->kap", told.bends[k][row], self.X[:, BENDS, 0])
-        push = h * push
-        self.X = self.F[k][row] @ self.X
-        self.X[:, MOTION, 0] += told.defect[k][row]
-        self.X[:, SPEEDS, 1:] += push
-        self.X[:, 0:3, 1:] += 0.5 * h * (self.turn[k][row] @ push)
-        self.C = F @ self.C @ F.transpose(0, 2, 1)
-        slow, flow = noise.new_b[:, None] * noise.slow[k], (noise.new_c * noise.flow)[:, None]
-        for part, variance in ((PLACE, noise.wander[:, None]), (SPEEDS, noise.fast), (SLOW, slow), (FLOW, flow)):
-            self.C[:, DIAGONAL[part], DIAGONAL[part]] += variance
-        if told.fresh is not None and noise.wave is not None:
-            for (i, a), (j, b) in SWINGING:
-                self.C[:, DIAGONAL[a], DIAGONAL[b]] += told.fresh[k][row][:, :, i, j] * noise.wave[k]
+        told = self.told
+        bent = None if told.bends is None else told.spread[k] @ np.einsum("kaip,wki->wkap", told.bends[k], self.X[..., BENDS, 0])
+        self.X = self.light(k, self.X)
+        self.X[..., MOTION, :] += told.pushed[k]
+        if bent is not None:
+            self.X[..., MOTION, 1:] += bent
+        self.C = self.on(k, self.on(k, self.C).swapaxes(-1, -2))
+        _diagonal(self.C)[..., SHIP] += self.noise.new[k]
+        if self.noise.waves is not None:
+            self.C[..., WAVES, WAVES] += self.noise.waves[k]
+
+
+class _On:
+    """What takes states a step on: the ship by F, pushed by the waves as by what is slow; the waves by themselves."""
+
+    def __init__(self, F: np.ndarray, swing: np.ndarray | None) -> None:
+        self.F, self.swing, self.pushed = F, swing, F[..., SLOW].copy()
+        self.pushed[..., SLOW, :] = 0.0
+
+    def __call__(self, k: int, M: np.ndarray) -> np.ndarray:
+        """Of M (W, S, n, ...) at step k."""
+        ship = self.F[k] @ M[..., SHIP, :]
+        if self.swing is None:
+            return ship
+        ship += self.pushed[k] @ M[..., WAVE, :]
+        return np.concatenate([ship, self.swing[k] @ M[..., WAVES, :]], axis=-2)
+
+
+def _diagonal(M: np.ndarray) -> np.ndarray:
+    """(..., n) the diagonals of (..., n, n), to be written to."""
+    return np.einsum("...ii->...i", M)

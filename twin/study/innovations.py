@@ -20,7 +20,7 @@ from twin.physics.model import Model
 
 from . import waves
 from .columns import LATE, Unknown, beside, columns, turns
-from .filters import FLOW, MOTION, SLOW, SPEEDS, STATES, Filters, Noise, Stretches
+from .filters import FLOW, LIGHT, MOTION, PLACE, SHIP, SLOW, SPEEDS, STATES, WAVES, Filters, Noise, Stretches
 from .normal import Normal, Sums
 from .respond import SATELLITES, accelerations, advance, faulty, jacobian, lagged, later, respond, standard, when_true
 from .segments import segments
@@ -116,7 +116,7 @@ def linearise(
 def _system(track: Track, model: Model) -> np.ndarray:
     """(N, 11, 11) what takes the state one step on: the ship's own slopes, and b and c that fade."""
     h, time = track.h, float(model.ship.scale("time"))
-    rate = np.zeros((len(track), STATES, STATES))  # the continuous system matrix
+    rate = np.zeros((len(track), 6, STATES))  # the continuous system matrix, but for b and c, which fade
     psi, u, v = track.state[:, 2], track.state[:, 3], track.state[:, 4]
     c, s = np.cos(psi), np.sin(psi)
     rate[:, 0, 2], rate[:, 0, 3], rate[:, 0, 4] = -u * s - v * c, c, -s
@@ -125,7 +125,8 @@ def _system(track: Track, model: Model) -> np.ndarray:
     rate[:, SPEEDS, MOTION] = jacobian(track, model)
     rate[:, SPEEDS, SLOW] = np.eye(3)
     rate[:, SPEEDS, FLOW] = _by_current(track, model)
-    F = np.eye(STATES) + h * rate + 0.5 * h * h * rate @ rate
+    F = np.zeros((len(track), STATES, STATES))
+    F[:, MOTION] = np.eye(6, STATES) + h * rate + 0.5 * h * h * rate[..., MOTION] @ rate
     F[:, SLOW, SLOW] = np.eye(3) * np.exp(-h / (MEMORY_B * time))
     F[:, FLOW, FLOW] = np.eye(2) * np.exp(-h / (MEMORY_C * time))
     return F
@@ -194,25 +195,24 @@ def innovate(lines: Sequence[Linear], floors: Sequence[Floor], most: int | None 
     for each floor."""
     where = segments([line.track for line in lines], float(lines[0].model.ship.scale("time")), most)
     told, noise = _stretches(lines, where), _noise(lines, floors, where)
-    filters, sums = Filters(told, noise, _start(lines[0].model, noise)), Sums(len(noise.row), told.A.shape[-1])
-    for k in range(len(told.e)):
+    filters, sums = Filters(told, noise, _start(lines, floors, where)), Sums(len(floors), len(where), told.shown.shape[-1] - 1)
+    for k in range(len(told.here)):
         sums.add(*filters.correct(k))
         filters.advance(k)
-    whole = sums.normal(tuple(where) * len(floors))
-    return [whole.only(np.arange(len(noise.row)) // len(where) == w) for w in range(len(floors))]
+    return sums.normals(told.here, tuple(where))
 
 
 def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
-    F, H, fresh = [x.F for x in lines], [x.H for x in lines], None
-    if _in_waves(lines):
-        carried = [waves.carried(x.track) for x in lines]
-        F, H = [waves.in_system(f, c) for f, c in zip(F, carried, strict=True)], [waves.in_reader(h) for h in H]
-        fresh = _abreast([waves.fresh(c) for c in carried], where)
+    e, spread = _abreast([x.e for x in lines], where, np.nan), _abreast([_spread(x) for x in lines], where)
+    here = np.isfinite(e)
+    shown = np.concatenate([np.where(here, e, 0.0)[..., None], -_abreast([x.R for x in lines], where)], axis=3, dtype=LIGHT)
+    pushed = np.concatenate([_abreast([x.defect for x in lines], where)[..., None], spread @ _abreast([x.A for x in lines], where)], axis=3, dtype=LIGHT)
     return Stretches(
-        F=_abreast(F, where), H=_abreast(H, where), e=_abreast([x.e for x in lines], where, np.nan),
-        defect=_abreast([x.defect for x in lines], where), turn=_abreast([_turn(x) for x in lines], where),
-        A=_abreast([x.A for x in lines], where), R=_abreast([x.R for x in lines], where), fresh=fresh,
-        turns=_turns(lines, where), bends=None if lines[0].bends is None else _abreast([x.bends for x in lines if x.bends is not None], where),
+        F=_abreast([x.F for x in lines], where), H=_abreast([x.H for x in lines], where) * here[..., None], here=here,
+        shown=shown * here[..., None], pushed=pushed, spread=spread,
+        turns={j: turn * here[..., None] for j, turn in _turns(lines, where).items()},
+        bends=None if lines[0].bends is None else _abreast([x.bends for x in lines if x.bends is not None], where),
+        swing=_abreast([waves.swinging(x.track) for x in lines], where) if _in_waves(lines) else None,
     )  # fmt: skip
 
 
@@ -236,29 +236,35 @@ def _abreast(arrays: Sequence[np.ndarray], where: Where, fill: float = 0.0) -> n
 
 def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> Noise:
     """Every floor in turn, over all segments."""
-    model, row = lines[0].model, np.tile(np.arange(len(where)), len(floors))
-    time, speed = float(model.ship.scale("time")), float(model.ship.scale("speed"))
-    h = np.array([lines[i].track.h for i, _, _ in where])[row]
-    wander = np.repeat([f.wander for f in floors], len(where))
-    white, flow = (np.repeat([getattr(f, name) for f in floors], len(where), axis=0) for name in ("white", "flow"))
-    return Noise(
-        row, h,
-        reading=np.concatenate([_abreast([_reading(x.track, f) for x in lines], where) for f in floors], axis=1),
-        fast=(white * standard(model)) ** 2 * (h * time)[:, None],
-        slow=np.concatenate([_abreast([_slow(x, f) for x in lines], where) for f in floors], axis=1),
-        flow=(flow * speed) ** 2,
-        wander=wander**2 * h,
-        new_b=1.0 - np.exp(-2.0 * h / (MEMORY_B * time)), new_c=1.0 - np.exp(-2.0 * h / (MEMORY_C * time)),
-        wave=_abreast([waves.variance(x.track) for x in lines], where)[:, row] if _in_waves(lines) else None,
-    )  # fmt: skip
+    ship, h = lines[0].model.ship, _steps(lines, where)
+    time, speed = float(ship.scale("time")), float(ship.scale("speed"))
+    new_b, new_c = 1.0 - np.exp(-2.0 * h / (MEMORY_B * time)), 1.0 - np.exp(-2.0 * h / (MEMORY_C * time))
+    new = []
+    for floor in floors:
+        slow = new_b[:, None] * _abreast([_slow(x, floor) for x in lines], where)
+        out = np.zeros((*slow.shape[:2], STATES))
+        out[..., PLACE] = (floor.wander**2 * h)[:, None]
+        out[..., SPEEDS] = (np.array(floor.white) * standard(lines[0].model)) ** 2 * (h * time)[:, None]
+        out[..., SLOW], out[..., FLOW] = slow, (new_c * (floor.flow * speed) ** 2)[:, None]
+        new.append(out)
+    reading = [_abreast([_reading(x.track, f) for x in lines], where) for f in floors]
+    swell = _abreast([waves.renewed(x.track) for x in lines], where) if _in_waves(lines) else None
+    return Noise(np.stack(reading, axis=1), np.stack(new, axis=1), swell)
 
 
-def _turn(line: Linear) -> np.ndarray:
-    """(N, 3, 3) body velocities to d(x, y, psi)/dt."""
-    c, s = np.cos(line.track.state[:, 2]), np.sin(line.track.state[:, 2])
-    out = np.zeros((c.size, 3, 3))
+def _steps(lines: Sequence[Linear], where: Where) -> np.ndarray:
+    """(S,) of each segment [s]."""
+    return np.array([lines[i].track.h for i, _, _ in where])
+
+
+def _spread(line: Linear) -> np.ndarray:
+    """(N, 6, 3) float32: body accelerations to what they add to (x, y, psi, u, v, r) in a step."""
+    h, c, s = line.track.h, np.cos(line.track.state[:, 2]), np.sin(line.track.state[:, 2])
+    out = np.zeros((c.size, 6, 3))
     out[:, 0, 0], out[:, 0, 1], out[:, 1, 0], out[:, 1, 1], out[:, 2, 2] = c, -s, s, c, 1.0
-    return out
+    out *= 0.5 * h * h
+    out[:, SPEEDS] = h * np.eye(3)
+    return out.astype(LIGHT)
 
 
 def _slow(line: Linear, floor: Floor) -> np.ndarray:
@@ -272,11 +278,17 @@ def _reading(track: Track, floor: Floor) -> np.ndarray:
     return np.square(floor.sensor * np.broadcast_to(track.sd if track.unrest is None else track.sd * track.unrest, (len(track), 8)))
 
 
-def _start(model: Model, noise: Noise) -> np.ndarray:
-    """(K, n, n) covariance at the start of each segment: the motion nearly unknown, b, c and the waves as they usually are."""
-    ship = model.ship
+def _start(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> np.ndarray:
+    """(W, S, n, n) covariance at the start of each segment: the motion nearly unknown, b, c and the waves as they usually are."""
+    ship, first = lines[0].model.ship, [(i, a, a + 1) for i, a, _ in where]
     L, U, time = float(ship.L_pp), float(ship.scale("speed")), float(ship.scale("time"))
-    motion = np.array([0.05 * L, 0.05 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time]) ** 2
-    diagonal = np.column_stack([np.tile(motion, (len(noise.row), 1)), noise.slow[0], noise.flow, noise.flow])
-    C = np.eye(STATES) * diagonal[:, None, :]
-    return C if noise.wave is None else waves.in_covariance(C, noise.wave[0])
+    diagonal = np.zeros((len(floors), len(where), STATES))
+    diagonal[..., MOTION] = np.array([0.05 * L, 0.05 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time]) ** 2
+    for usual, floor in zip(diagonal, floors, strict=True):
+        usual[:, SLOW], usual[:, FLOW] = _abreast([_slow(x, floor) for x in lines], first)[0], (floor.flow * U) ** 2
+    C = np.eye(STATES) * diagonal[..., None, :]
+    if not _in_waves(lines):
+        return C
+    out = np.zeros((*C.shape[:2], WAVES.stop, WAVES.stop))
+    out[..., SHIP, SHIP], out[..., WAVES, WAVES] = C, _abreast([waves.lasting(x.track) for x in lines], first)[0]
+    return out

@@ -66,21 +66,27 @@ class Led:
         return -2.0 * self.windows * float(np.log(max(error, floor) / floor))
 
 
-def led(case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis]) -> Led:
+def led(case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis], before: Led | None = None) -> Led:
     """Run nothing and every hypothesis that could still be the answer over the held-out parts (`weighed`: what is known of all of them by now;
-    one is likelier than where it was found if it leaves to any day what another had found)."""
+    one is likelier than where it was found if it leaves to any day what another had found). What was asked `before` is not run again."""
+    known = {s: f.off_m for s, f in before.found.items()} if before else {}
     likely = {s: max((h.log_weight for h in weighed if h.effects == s), default=-np.inf) for s in found}
     best = max(likely.values())
-    off = {s: held_out_error(case, f) for s, f in found.items() if not s or likely[s] > best - REACH}
-    steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
-    least = max(steps["coarse"], _measured(case))  # what is run free is a core alone, and no better than it was when nothing was wrong
-    known = roughly(case)
-    floor = {name: float(np.hypot(max(m, least), known)) for name, m in steps.items()}
+    off = {s: known[s] if s in known else held_out_error(case, f) for s, f in found.items() if not s or likely[s] > best - REACH}
+    floor = before.floor if before else _floors(case)
     present = {type(e).__name__ for e in case.model.effects}  # what is left of these is in the floor already
     irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular and name not in present)
     asked = {s: replace(found[s], off_m=m, floor_m=_floor(plain(found[s].hypothesis), floor, off[()], irregular)) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
     return Led(asked, floor, windows, irregular)
+
+
+def _floors(case: Case) -> dict[str, float]:
+    """[m] by world: what noise and structure alone would make of the path."""
+    steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
+    least = max(steps["coarse"], _measured(case))  # what is run free is a core alone, and no better than it was when nothing was wrong
+    known = roughly(case)
+    return {name: float(np.hypot(max(m, least), known)) for name, m in steps.items()}
 
 
 def plain(h: Hypothesis) -> Hypothesis:
@@ -122,13 +128,11 @@ def held_out_error(case: Case, found: Found) -> float:
         values = [case.effects[i].centre + case.effects[i].sd * z[i] for i in mine]
         model = with_values(case.model, [case.effects[i] for i in mine], values, case.catalogue)
         for i, track in enumerate(case.tracks):
-            windows = coarse(track, model.without_inputs(track.missing())[0], horizon_s(track, case.model), leads=1)
-            inside = np.zeros(windows.start.size, bool)
-            steps = lines[i].track.steps()
-            for t, a, b in (w for w, s in zip(normal.where, half, strict=True) if s == side):
-                if t == i:
-                    inside |= (windows.start >= steps[a]) & (windows.start <= steps[b - 1])
-            errors = _errors(windows, MODEL)[inside]
+            begins, steps = np.zeros(len(track), bool), lines[i].track.steps()
+            for _, a, b in (w for w, s in zip(normal.where, half, strict=True) if s == side and w[0] == i):
+                begins[steps[a] : steps[b - 1] + 1] = True
+            here = model.without_inputs(track.missing())[0]
+            errors = _errors(coarse(track, here, horizon_s(track, case.model), leads=1, begins=begins), MODEL)
             total, count = total + float(np.nansum(errors)), count + int(np.isfinite(errors).sum())
     return total / max(count, 1)
 

@@ -32,29 +32,29 @@ class Normal:
 
 
 class Sums:
-    """Running sums of whitened innovations by segment."""
+    """Running sums of whitened innovations by floor and segment: W and S of them, with P unknowns."""
 
-    def __init__(self, S: int, P: int) -> None:
-        self.M = np.zeros((S, 1 + P, 1 + P))
-        self.logdet, self.count, self.energy = np.zeros(S), np.zeros(S), np.zeros((S, 8))
-        self.held: list[np.ndarray] = []
+    def __init__(self, W: int, S: int, P: int) -> None:
+        self.M, self.logdet, self.energy = np.zeros((W, S, 1 + P, 1 + P)), np.zeros((W, S)), np.zeros((W, S, 8))
+        self.held: list[tuple[np.ndarray, np.ndarray]] = []
 
-    def add(self, white: np.ndarray, L: np.ndarray, here: np.ndarray) -> None:
-        """One step: innovations with their tangents (S, 8, 1 + P), the root of their covariance, and which readings there were (S, 8)."""
-        self.held.append(white)
+    def add(self, white: np.ndarray, root: np.ndarray) -> None:
+        """One step: innovations with their tangents (W, S, 8, 1 + P), and the diagonal of the root of their covariance (W, S, 8)."""
+        self.held.append((white, root))
         if len(self.held) == FOLD:
             self._fold()
-        self.logdet += 2.0 * np.log(np.diagonal(L, axis1=1, axis2=2)).sum(1)
-        self.count += here.sum(1)
-        self.energy += white[:, :, 0] ** 2 * here
 
     def _fold(self) -> None:
         if self.held:
-            W = np.concatenate(self.held, axis=1, dtype=float)
-            self.M += W.transpose(0, 2, 1) @ W
+            white = np.concatenate([w for w, _ in self.held], axis=2)
+            self.M += white.swapaxes(-1, -2) @ white
+            self.energy += np.square(white[..., 0]).reshape(*self.logdet.shape, -1, 8).sum(2)
+            self.logdet += 2.0 * np.log([root for _, root in self.held]).sum((0, 3))
             self.held = []
 
-    def normal(self, where: tuple[tuple[int, int, int], ...]) -> Normal:
+    def normals(self, here: np.ndarray, where: tuple[tuple[int, int, int], ...]) -> list[Normal]:
+        """One for each floor; `here` (T, S, 8): which readings there were."""
         self._fold()
-        M = self.M
-        return Normal(M[:, 1:, 1:], -M[:, 1:, 0], M[:, 0, 0], self.logdet, self.count, self.energy, where)
+        count = here.sum((0, 2)).astype(float)
+        told = zip(self.M, self.logdet, self.energy, strict=True)
+        return [Normal(M[:, 1:, 1:], -M[:, 1:, 0], M[:, 0, 0], logdet, count, energy, where) for M, logdet, energy in told]

@@ -92,12 +92,16 @@ def predict(
     return Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
 
 
-def coarse(track: Track, model: Model, horizon_s: float, leads: int, stride_s: float = STRIDE_S) -> Windows:
-    """Run the model alone: `predict` without its noise floors, and in steps of L/U_0 over COARSE, as a fit asks for thousands."""
+def coarse(
+    track: Track, model: Model, horizon_s: float, leads: int, stride_s: float = STRIDE_S, begins: np.ndarray | None = None
+) -> Windows:  # fmt: skip
+    """Run the model alone: `predict` without its noise floors, and in steps of L/U_0 over COARSE, as a fit asks for thousands. `begins` (N,):
+    the steps of the track at which windows may begin, if not at all."""
     steps = max(1, int(float(model.ship.scale("time")) / COARSE / track.h))
     lead = steps * np.unique(np.linspace(0.0, horizon_s / track.h / steps, leads + 1)[1:].round().clip(1).astype(int))
     measured = seen(track)
     start = _starts(track, np.isfinite(measured[:, :3]).all(1), int(lead[-1]), stride_s)
+    start = start if begins is None else start[begins[start]]
     state, wind_to = true_motion(steadied(track), model)
     with np.errstate(all="ignore"):
         kept = _Run(track, model, start, wind_to, None).through(tuple(state[start].T), lead, steps)

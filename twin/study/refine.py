@@ -23,6 +23,8 @@ Sets = tuple[str, ...]
 NEWTON = 8  # steps, at most
 FARTHER = (2.0, 4.0)  # times the linear guess, where Newton begins again when it ended in no plain world, or at nothing
 BENT = 0.3  # share of what a number does that is not in proportion to it
+BEHIND = 60.0  # log odds behind the likeliest world from which a restless one is out of the question
+LEAST = 0.2  # of a step that a climb tries: of 345 climbs four got higher by less
 STANDS = 0.05  # prior widths that a step may still move
 
 
@@ -50,20 +52,22 @@ def refine(
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     narrow, kept = case.along(case.lines, chosen)
     at = np.zeros_like(z)
-    best, at[kept] = _place(narrow, chosen, world, z[kept], hoped, known)
+    top = _place(narrow, chosen, world, z[kept], hoped, known)
+    at[kept] = top.at
     model, lines = about(case, at, mine, case.unknowns)
     whole, _ = case.along(lines)
-    doubt = _doubt(whole, chosen, whole.lines, best.world, at)
-    reduced = _everywhere(whole, chosen, whole.lines, at, doubt)
+    doubt = _doubt(narrow, chosen, top)
+    reduced = _everywhere(whole, chosen, whole.lines, at, doubt, top.near)
     judged, own = _judged(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
+    far = [h for world, h in top.judged.items() if world not in reduced]
     others = [*_beside(case, chosen, reduced, wider), *_any_day(case, chosen, reduced)]
     here = reduced[best.world]
-    return Found(best, boxed(here, chosen, own[best.world]), model, doubt, reduced=here), [*judged, *others]
+    return Found(best, boxed(here, chosen, own[best.world]), model, doubt, reduced=here), [*judged, *far, *others]
 
 
-def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float, known: Sets = ()) -> tuple[Hypothesis, np.ndarray]:
-    """The best of the climbs that `refine` speaks of: the hypothesis there, and the place."""
+def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float, known: Sets = ()) -> "_Top":
+    """The best of the climbs that `refine` speaks of."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     new = np.array([i for i in mine if case.effects[i].owner not in known], dtype=int)
     top = _Top.of(case, chosen, *_climb(case, chosen, mine, world, z)[1:])
@@ -82,19 +86,26 @@ def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float, kn
     if all(case.catalogue[name].kind == "Lag" for name in chosen):  # about none, a slow gear is seen by its delay alone
         for i in mine:
             top = top.or_from(case, chosen, mine, FARTHER[-1] * np.eye(z.size)[i])
-    return top.best, top.at
+    return top
 
 
 @dataclass(frozen=True)
 class _Top:
-    """The best place that was climbed to so far, and the hypothesis there in every world (by columns of its own alone)."""
+    """The best place that was climbed to so far, the tracks about it, and the hypothesis there in every world (by columns of its own alone)."""
 
     at: np.ndarray
+    lines: Sequence[Linear] = field(repr=False)
     judged: Mapping[str, Hypothesis]
 
     @classmethod
     def of(cls, case: Case, chosen: Sets, at: np.ndarray, lines: Sequence[Linear]) -> "_Top":
-        return cls(at, {h.world: h for h in _judged(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0]))[0]})
+        names = [n for n in WORLDS if np.isfinite(case.log_prior(chosen, n))]
+        return cls(at, lines, {h.world: h for h in _judged(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0], names))[0]})
+
+    @property
+    def near(self) -> list[str]:
+        """The worlds that may still be the likeliest once others are beside it: the plain ones, and those that are not far behind."""
+        return [n for n, h in self.judged.items() if WORLDS[n].plain or h.log_weight > self.best.log_weight - BEHIND]
 
     @property
     def best(self) -> Hypothesis:
@@ -125,7 +136,7 @@ def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray
             merit, best, lines, share, aim = now, at, tried, 1.0, boxed(reduced, chosen, own).z
         else:
             share *= 0.5
-        if share * np.max(np.abs(aim - best)[mine]) < STANDS:
+        if share < LEAST or share * np.max(np.abs(aim - best)[mine]) < STANDS:
             break
     return here, best, lines
 
@@ -158,9 +169,8 @@ def _bends(case: Case, model: Model, unknown: Unknown) -> bool:
     return False
 
 
-def _everywhere(case: Case, chosen: Sets, lines: Sequence[Linear], at: np.ndarray, doubt: float) -> dict[str, Reduced]:
-    """In every world in which this set may be."""
-    names = [n for n in WORLDS if np.isfinite(case.log_prior(chosen, n))]
+def _everywhere(case: Case, chosen: Sets, lines: Sequence[Linear], at: np.ndarray, doubt: float, names: Sequence[str]) -> dict[str, Reduced]:
+    """In each of these worlds."""
     return dict(zip(names, case.reduced(lines, case.worlds(names, doubt), at), strict=True))
 
 
@@ -169,10 +179,10 @@ def _judged(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> tuple[list
     return [Hypothesis(chosen, n, log_evidence(r, chosen, own[n]), case.log_prior(chosen, n)) for n, r in reduced.items()], own
 
 
-def _doubt(case: Case, chosen: Sets, lines: Sequence[Linear], world: str, at: np.ndarray) -> float:
+def _doubt(case: Case, chosen: Sets, top: _Top) -> float:
     """The share of DOUBTS under which the voyages are most probable."""
     shares = (*IRREGULAR, *DOUBTS) if any(case.catalogue[name].irregular for name in chosen) else DOUBTS
-    reduced = case.reduced(lines, [case.worlds([world], share)[0] for share in shares], at)
+    reduced = case.reduced(top.lines, [case.worlds([top.best.world], share)[0] for share in shares], top.at)
     return shares[int(np.argmax([posterior(r, chosen).log_evidence for r in reduced]))]
 
 

@@ -14,7 +14,6 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import solve_continuous_lyapunov
 
-from .filters import AT_SEA, SLOW, STATES, SWINGING, WAVE
 from .track import Track
 
 DAMPING = 0.1  # zeta: how broad a band waves swing her in
@@ -49,9 +48,20 @@ def carried(track: Track) -> np.ndarray:
     return ((SHAPES * np.exp(x[:, :, None, None] * TONES)) @ np.linalg.inv(SHAPES)).real
 
 
-def fresh(carried: np.ndarray) -> np.ndarray:
-    """(N, 3, 4, 4) what of their covariance is new after a step, so that they stay as strong as they are."""
-    return LASTING - carried @ LASTING @ np.swapaxes(carried, -1, -2)
+def swinging(track: Track) -> np.ndarray:
+    """(N, 12, 12) the same of all axes together."""
+    return _together(carried(track))
+
+
+def renewed(track: Track) -> np.ndarray:
+    """(N, 12, 12) what of the waves' covariance is new after a step, so that they stay as strong as they are."""
+    by = carried(track)
+    return _together((LASTING - by @ LASTING @ np.swapaxes(by, -1, -2)) * variance(track)[:, :, None, None])
+
+
+def lasting(track: Track) -> np.ndarray:
+    """(N, 12, 12) their covariance."""
+    return _together(LASTING * variance(track)[:, :, None, None])
 
 
 def variance(track: Track) -> np.ndarray:
@@ -59,24 +69,9 @@ def variance(track: Track) -> np.ndarray:
     return np.zeros((len(track), 3)) if track.swell is None else np.square(track.swell[:, 3:])
 
 
-def in_system(F: np.ndarray, carried: np.ndarray) -> np.ndarray:
-    """(N, 23, 23) what takes the ship (N, 11, 11) and the waves one step on: they push her as what is slow does."""
-    out = np.zeros((len(F), AT_SEA, AT_SEA))
-    out[:, :STATES, :STATES], out[:, :STATES, WAVE] = F, F[:, :, SLOW]
-    out[:, SLOW, WAVE] = 0.0
-    for (i, a), (j, b) in SWINGING:
-        out[:, a, b] = np.eye(3) * carried[:, :, i, j, None]
-    return out
-
-
-def in_covariance(C: np.ndarray, variance: np.ndarray) -> np.ndarray:
-    """(K, 23, 23) what is not known of the ship (K, 11, 11) and of waves of such a variance (K, 3)."""
-    out = np.pad(C, ((0, 0), (0, AT_SEA - STATES), (0, AT_SEA - STATES)))
-    for (i, a), (j, b) in SWINGING:
-        out[:, a, b] = np.eye(3) * LASTING[i, j] * variance[:, :, None]
-    return out
-
-
-def in_reader(H: np.ndarray) -> np.ndarray:
-    """(N, 8, 23) the same readings: no instrument shows a wave by itself."""
-    return np.pad(H, ((0, 0), (0, 0), (0, AT_SEA - STATES)))
+def _together(by_axis: np.ndarray) -> np.ndarray:
+    """(N, 3, 4, 4) of each axis as (N, 12, 12): w of all axes, o of all axes, p, q."""
+    out = np.zeros((len(by_axis), 4, 3, 4, 3))
+    for axis in range(3):
+        out[:, :, axis, :, axis] = by_axis[:, axis]
+    return out.reshape(-1, 12, 12)

@@ -8,6 +8,7 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.assemble import assemble
+from twin.study.evidence import Hypothesis
 from twin.study.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _place, _told, _Top, about
 from twin.study.respond import standard
 
@@ -72,13 +73,13 @@ def test_a_slow_gear_is_found_however_far_out_it_stands(case):
     """From the linear guess, which sees the delay alone, and from far out: no place is more probable than where it is said to stand."""
     mine, guess = rows(case, "SteeringLag"), np.zeros(len(case.effects))
     guess[mine] = [0.5, 0.2, 0.0]
-    best, at = _place(case, ("SteeringLag",), "usual", guess, -np.inf)
+    top = _place(case, ("SteeringLag",), "usual", guess, -np.inf)
     for start in ([2.0, 2.0, 0.0], [0.5, 4.0, 0.0], [0.0, 0.0, 4.0], [4.0, 4.0, 4.0]):
         z = np.zeros(len(case.effects))
         z[mine] = start
         other = _climb(case, ("SteeringLag",), mine, "usual", z)[0]
-        assert other.log_weight < best.log_weight + 0.5
-    assert at[mine][1] == pytest.approx(1.57, abs=0.3)  # 65 deg in as long as it sails so many lengths
+        assert other.log_weight < top.best.log_weight + 0.5
+    assert top.at[mine][1] == pytest.approx(1.57, abs=0.3)  # 65 deg in as long as it sails so many lengths
 
 
 def test_a_climb_that_got_no_higher_is_asked_in_no_other_world(case, monkeypatch):
@@ -99,7 +100,7 @@ def test_what_comes_and_goes_with_wave_groups_may_be_something_else_as_a_whole(c
     asked = []
     monkeypatch.setattr(type(case), "reduced", lambda self, lines, floors, at: asked.extend(floors) or [None] * len(floors))
     monkeypatch.setattr("twin.study.refine.posterior", lambda r, chosen: SimpleNamespace(log_evidence=0.0))
-    _doubt(case, chosen, case.lines, "usual", np.zeros(len(case.effects)))
+    _doubt(case, chosen, _Top(np.zeros(len(case.effects)), case.lines, {"usual": Hypothesis(chosen, "usual", 0.0, 0.0)}))
     assert max(floor.doubt for floor in asked) == most and min(floor.doubt for floor in asked) == DOUBTS[-1]
 
 
