@@ -31,7 +31,9 @@ class League:
         self.strengths: Sequence[float] = args.strength or quick["strengths"]
         self.fleet, self.jobs = (args.duration, args.references, not args.quick), args.jobs
         asked = (args.effect, args.quick, args.duration, args.every, args.first_seed)
-        rounds = plan.questions(self.hulls, args.seeds or quick["seeds"], self.strengths, *asked)
+        seeds = args.seeds or quick["seeds"]
+        self.seeds = list(range(args.first_seed, args.first_seed + seeds))
+        rounds = plan.questions(self.hulls, seeds, self.strengths, *asked)
         self.rounds = [[q for q in r if q.kind in args.kind] for r in rounds]
         self.folder, self.log = folder, folder / "answers.jsonl"
         self.ends = time.monotonic() + 60.0 * args.minutes if args.minutes else float("inf")
@@ -92,10 +94,9 @@ class League:
     def facts(self, rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
         """What was run, of what."""
         planned = sum(len(r) for r in self.rounds)
-        seeds = sorted({r["seed"] for r in rows if r["kind"] == "effect"})
         return {
             "references": self.fleet[1],
-            "hulls": list(self.hulls), "strengths": list(self.strengths), "seeds": seeds,
+            "hulls": list(self.hulls), "strengths": list(self.strengths), "seeds": self.seeds,
             "planned": planned, "answered": len(rows), "failed": sum(r["verdict"] == "failed" for r in rows),
         }  # fmt: skip
 

@@ -63,12 +63,14 @@ def head(run: dict[str, Any]) -> str:
 def goals(rows: Sequence[Row], result: dict[str, Any]) -> str:
     """What was found beside what was wanted; shares of few cases say little, so their number stands beside them."""
     single, lines = score.of_kind(rows, "effect"), []
+    intervals = sum(len(r.get("parameters", [])) for r in rows)
     for key, (words, goal) in GOALS.items():
-        value = result[key]
+        value, cases = result[key], intervals if key == "coverage95" else result[COUNTED[key]] if key in COUNTED else len(single)
         shown = tables.number(value) if key.endswith("oracle") else share(value)
-        lines.append([words, f"**{shown}**", goal, result[COUNTED[key]] if key in COUNTED else len(single)])
-    lines.append(["a wrong effect first", share(score.share(single, tables.wrong)), "", len(single)])
-    lines.append(["no effect named", share(score.share(single, lambda r: not r["missing"])), "", len(single)])
+        lines += [[words, f"**{shown}**", goal, cases]] if cases else []
+    if single:
+        lines.append(["a wrong effect first", share(score.share(single, tables.wrong)), "", len(single)])
+        lines.append(["no effect named", share(score.share(single, lambda r: not r["missing"])), "", len(single)])
     return table("## In total", ["measure", "found", "goal", "cases"], lines)
 
 

@@ -48,7 +48,7 @@ class Filters:
         self.X = np.zeros((*C.shape[:3], told.shown.shape[-1]), LIGHT)
         self.H, self.unread = told.H.astype(LIGHT), np.where(told.here[:, None], noise.reading, 1.0)
         self.on = _On(told.F, told.swing)
-        self.light = _On(*(None if M is None else M.astype(LIGHT) for M in (told.F, told.swing)))
+        self.light = _On(told.F.astype(LIGHT), None if told.swing is None else told.swing.astype(LIGHT))
 
     def correct(self, k: int) -> tuple[np.ndarray, np.ndarray]:
         """By the readings of step k; gives the whitened innovations with their tangents (W, S, 8, 1 + P), and the diagonal of the root of their

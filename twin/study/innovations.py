@@ -203,13 +203,14 @@ def innovate(lines: Sequence[Linear], floors: Sequence[Floor], most: int | None 
 
 
 def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
-    e, spread = _abreast([x.e for x in lines], where, np.nan), _abreast([_spread(x) for x in lines], where)
+    e, defect = _abreast([x.e for x in lines], where, np.nan), _abreast([x.defect for x in lines], where)
+    A, R, spread = (_abreast(M, where) for M in ([x.A for x in lines], [x.R for x in lines], [_spread(x) for x in lines]))
     here = np.isfinite(e)
-    shown = np.concatenate([np.where(here, e, 0.0)[..., None], -_abreast([x.R for x in lines], where)], axis=3, dtype=LIGHT)
-    pushed = np.concatenate([_abreast([x.defect for x in lines], where)[..., None], spread @ _abreast([x.A for x in lines], where)], axis=3, dtype=LIGHT)
+    shown = np.concatenate([np.where(here, e, 0.0)[..., None], -R * here[..., None]], axis=3, dtype=LIGHT)
+    pushed = np.concatenate([defect[..., None], spread @ A], axis=3, dtype=LIGHT)
     return Stretches(
         F=_abreast([x.F for x in lines], where), H=_abreast([x.H for x in lines], where) * here[..., None], here=here,
-        shown=shown * here[..., None], pushed=pushed, spread=spread,
+        shown=shown, pushed=pushed, spread=spread,
         turns={j: turn * here[..., None] for j, turn in _turns(lines, where).items()},
         bends=None if lines[0].bends is None else _abreast([x.bends for x in lines if x.bends is not None], where),
         swing=_abreast([waves.swinging(x.track) for x in lines], where) if _in_waves(lines) else None,
