@@ -76,6 +76,7 @@ class Effect:
     needs_ship: ClassVar[tuple[str, ...]] = ()  # particulars without which it cannot be sized
     holds: ClassVar[tuple[str, ...]] = ()  # effects that are a part of this one, so that beside it they say nothing
     irregular: ClassVar[bool] = False  # whether it comes and goes with what no input shows
+    lever: ClassVar[float] = 0.0  # share of her length by which its side force may attack elsewhere than its form has it (one sd)
     source: ClassVar[str] = ""
 
     def __init_subclass__(cls, **kwargs: Any) -> None:

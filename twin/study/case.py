@@ -76,6 +76,11 @@ class Case:
     no_news: tuple[str, ...] = ()  # weather that the reference voyages felt as much: part of a hypothesis, never of the answer
     unnamed: tuple[str, ...] = ()  # what is known by its form alone: part of a hypothesis that is then something unknown
 
+    @cached_property
+    def present(self) -> frozenset[str]:
+        """The effects that the model has: of these a change is asked."""
+        return frozenset(type(e).__name__ for e in self.model.effects)
+
     def news(self, chosen: Sequence[str]) -> tuple[str, ...]:
         """Those of a set of effects that were not there on the reference voyages."""
         return tuple(name for name in chosen if name not in self.no_news)

@@ -155,11 +155,10 @@ def _next(
 
 def _not_judged(case: Case) -> list[dict[str, Any]]:
     """Effects that could not be judged, and for want of which columns or particulars."""
-    present = {type(e).__name__ for e in case.model.effects}
     return [
         {"effect": name, "lacks": [INPUTS.get(n, n) for n in unjudged_because(name, case.tracks, case.model, case.catalogue)]}
         for name in case.catalogue
-        if name not in case.candidates and name not in present
+        if name not in case.candidates and name not in case.present
     ]
 
 

@@ -19,7 +19,7 @@ from .innovations import Floor, innovate
 from .nuisance import DAILY
 from .openloop import MODEL, STRUCTURE, Windows, coarse, predict
 from .refine import Found, Sets, standing
-from .rough import COMES_AND_GOES, added
+from .rough import COMES_AND_GOES, added, elsewhere
 from .track import Track
 
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
@@ -74,8 +74,7 @@ def led(case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis], 
     best = max(likely.values())
     off = {s: known[s] if s in known else held_out_error(case, f) for s, f in found.items() if not s or likely[s] > best - REACH}
     floor = before.floor if before else _floors(case)
-    present = {type(e).__name__ for e in case.model.effects}  # what is left of these is in the floor already
-    irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular and name not in present)
+    irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular and name not in case.present)  # the floor has the others
     asked = {s: replace(found[s], off_m=m, floor_m=_floor(plain(found[s].hypothesis), floor, off[()], irregular)) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
     return Led(asked, floor, windows, irregular)
@@ -147,8 +146,11 @@ def _usual(case: Case, floor: Floor) -> float:
 
 
 def roughly(case: Case) -> float:
-    """How far off [m] the forms of effects may leave her that are in the model since she was calibrated: a share of where she would be without."""
+    """How far off [m] the forms of effects may leave her that are in the model since she was calibrated: a share of where she would be without,
+    and where she would be if their side force attacked elsewhere."""
     left = [share * _astray(case, without) for without, share in added(case.model)]
+    for both in elsewhere(case.model):
+        left.append(np.sqrt(max(0.0, 0.5 * sum(_astray(case, m) ** 2 for m in both) - _astray(case, case.model) ** 2)))
     return float(np.hypot.reduce([0.0, *left]))
 
 

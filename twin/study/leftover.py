@@ -91,14 +91,21 @@ def helpful(case: Case, found: Mapping[Sets, Found], chosen: Sets) -> list[str]:
 def asked_for(case: Case, found: Mapping[Sets, Found], sure: Mapping[str, float], names: Sequence[str], rough: bool) -> list[str]:
     """Those of some effects that the path, the readings of an instrument, or a probability of its own asks for: where the model alone leads her
     within what is usual, no force is named for a group that it belongs to; in `rough` weather (`weathered`), where it does not lead her clearly
-    astray, none but the sea's own (`too_small`)."""
+    astray, none but the sea's own (`too_small`). A change of what the model has must be asked for by the readings as well: led by the file's own
+    numbers she ends astray wherever these were found in another wind (that from ahead turns her otherwise than one from abeam)."""
     led = not missed(found[()]) if rough else found[()].off_m <= found[()].floor_m
+    names = [n for n in names if n not in case.present or _read(found, n)]
     return [n for n in names if not led or case.catalogue[n].kind == "SensorFault" or (sure[n] >= SURE and (not rough or _of_the_sea(case, n)))]
+
+
+def _read(found: Mapping[Sets, Found], name: str) -> bool:
+    """Whether the readings, one step ahead, ask for an effect."""
+    return (name,) in found and found[(name,)].hypothesis.log_weight > found[()].hypothesis.log_weight + CLEAR
 
 
 def _of_the_sea(case: Case, name: str) -> bool:
     """Whether an effect is the sea's own force, of which the model knows nothing."""
-    return case.catalogue[name].irregular and not any(type(e).__name__ == name for e in case.model.effects)
+    return case.catalogue[name].irregular and name not in case.present
 
 
 def weathered(case: Case, nothing: Found) -> bool:

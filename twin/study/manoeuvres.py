@@ -68,7 +68,7 @@ MANOEUVRES: dict[str, tuple[Order, str]] = {
 
 
 def sail(case: Case, model: Model, order: Order) -> Track:
-    """The track of a manoeuvre that the model sails in the weather of the case's first track."""
+    """The track of a manoeuvre that the model sails in the weather of the case's first track; NaN from where it runs away."""
     like = case.tracks[0]
     h = float(model.ship.scale("time")) / STEPS_PER_LENGTH
     steps = LENGTHS * STEPS_PER_LENGTH
@@ -76,8 +76,10 @@ def sail(case: Case, model: Model, order: Order) -> Track:
     weather = {name: float(np.median(values)) for name, values in like.weather.items()}
     state = (0.0, 0.0, 0.0, float(np.median(like.state[:, 3])), 0.0, 0.0)
     helm, L = Helm(), float(model.ship.L_pp)
-    states, orders = np.empty((steps, 6)), np.empty((steps, 2))
+    states, orders = np.full((steps, 6), np.nan), np.zeros((steps, 2))
     for k in range(steps):
+        if not np.isfinite(state).all():
+            break
         delta, power = order(helm)
         states[k], orders[k] = state, (delta, power * usual)
         s = Situation(delta=delta, n=power * usual, t=k * h, **weather)

@@ -5,9 +5,14 @@ force is known to a tenth, a tenth is left over that would be a tow, a drag or a
 Fourier series in the heading: each term a column of its own, and no part of any model.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
+from twin.physics.effect import Effect, Force
 from twin.physics.model import Model
+from twin.physics.state import Force as ForceVector
+from twin.physics.state import Situation
 
 from .respond import respond, standard
 from .track import Track
@@ -23,16 +28,38 @@ TERMS = tuple(f"{axis}_{course}" for axis in AXES for course in COURSES)
 def added(model: Model) -> list[tuple[Model, float]]:
     """Of every effect of the model that was not there when she was calibrated, and of weather (another one on each day): the model without it, and
     by what share of its force its form may be wrong."""
+    return [(_but(model, e), COMES_AND_GOES if e.irregular else KNOWN) for e in _since(model)]
+
+
+def elsewhere(model: Model) -> list[tuple[Model, Model]]:
+    """Of every such effect whose side force may attack elsewhere along her: the model with it farther ahead, and farther aft."""
+    return [(_turned(model, e, 1.0), _turned(model, e, -1.0)) for e in _since(model) if isinstance(e, Force) and e.lever]
+
+
+def _since(model: Model) -> list[Effect]:
     calibrated = model.ship.notes.get("structural", {}).get("beside_effects", ())
-    since = [e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in calibrated]
-    return [(Model(model.ship, tuple(o for o in model.effects if o is not e)), COMES_AND_GOES if e.irregular else KNOWN) for e in since]
+    return [e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in calibrated]
+
+
+def _but(model: Model, effect: Effect) -> Model:
+    return Model(model.ship, tuple(e for e in model.effects if e is not effect))
+
+
+def _turned(model: Model, effect: Force, side: float) -> Model:
+    def moment(s: Situation) -> ForceVector:
+        return ForceVector(N=side * effect.lever * float(model.ship.L_pp) * effect.force(s, model.loaded).Y)
+
+    return replace(model, residual=moment)
 
 
 def doubted(track: Track, model: Model) -> np.ndarray:
-    """(N, 3) [m/s2, m/s2, rad/s2] by which the accelerations of these effects may be wrong at each moment."""
+    """(N, 3) [m/s2, m/s2, rad/s2] by which the accelerations of these effects may be wrong at each moment: a share of each, and of the turning
+    what a push aside makes that attacks elsewhere."""
     out = np.zeros((len(track), 3))
     for without, share in added(model):
         out += np.square(share * (respond(track, model)[0] - respond(track, without)[0]))
+    for ahead, aft in elsewhere(model):
+        out += np.square(0.5 * (respond(track, ahead)[0] - respond(track, aft)[0]))
     return np.sqrt(out)
 
 

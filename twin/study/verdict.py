@@ -121,7 +121,7 @@ def shows(seen: dict[str, bool]) -> bool:
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:
     """Each parameter of one effect with its 95 % interval, inside its box; that the form is only roughly right is part of it. Of an effect
     that the ship has already, also what her file says."""
-    out, present, form = [], {type(e).__name__ for e in case.model.effects}, {p.name: p.form for p in case.catalogue[name].params()}
+    out, form = [], {p.name: p.form for p in case.catalogue[name].params()}
     for i, u in enumerate(case.effects):
         if u.owner == name:
             value = u.centre + u.sd * found.z[i]
@@ -130,7 +130,7 @@ def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object
             out.append(
                 {"name": u.name, "value": float(np.clip(value, u.lo, u.hi)), "low95": float(np.clip(low, u.lo, u.hi)),
                  "high95": float(np.clip(high, u.lo, u.hi)), "unit": u.unit}
-                | ({"in_ship_file": u.centre} if name in present else {})
+                | ({"in_ship_file": u.centre} if name in case.present else {})
             )  # fmt: skip
     return out
 

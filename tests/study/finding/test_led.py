@@ -10,7 +10,7 @@ from twin.study.assemble import assemble
 from twin.study.evidence import Hypothesis, posterior
 from twin.study.led import FORM, LUXURY, Led, _astray, _measured, held_out_error, horizon_s, led, roughly
 from twin.study.refine import Found, refine
-from twin.study.rough import KNOWN, added
+from twin.study.rough import KNOWN, added, elsewhere
 from twin.study.search import search
 from twin.study.verdict import weights
 
@@ -31,13 +31,16 @@ def says(*effects, world="usual"):
 
 def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_too(tanker, voyages):
     """Test: a model that holds the wind since she was calibrated, on a windy voyage; the same calibrated with it. Expected: a tenth of where she
-    would end without it belongs to the floor, and nothing."""
+    would end without it belongs to the floor, with what a wind that pushes a twentieth of her length farther ahead or aft would do; and nothing."""
     windy = tanker.with_effects(find("Wind").plausible(tanker))
     hers = replace(windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}})
     case, known = (assemble([voyages["Wind"]], ship) for ship in (windy, hers))
     (without, share), *others = added(case.model)
     assert share == KNOWN and not others and added(known.model) == []
-    assert roughly(case) == pytest.approx(KNOWN * _astray(case, without)) and roughly(known) == 0.0
+    (ahead, aft), *more = elsewhere(case.model)
+    moved = 0.5 * (_astray(case, ahead) ** 2 + _astray(case, aft) ** 2) - _astray(case, case.model) ** 2
+    assert moved > 0.0 and not more and elsewhere(known.model) == []
+    assert roughly(case) == pytest.approx(np.hypot(KNOWN * _astray(case, without), moved**0.5)) and roughly(known) == 0.0
     assert without.effects == tanker.effects
 
 

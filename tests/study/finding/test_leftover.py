@@ -89,7 +89,17 @@ def test_in_a_sea_in_which_the_model_alone_leads_her_nearly_no_force_but_the_sea
     nothing = {(): replace(found, off_m=off_m, floor_m=1.0)}
     assert asked_for(case, nothing, sure, list(sure), rough=True) == asked
     knows = replace(case, model=case.model.but(find("WaveDrift").plausible(case.model.ship)))
-    assert asked_for(knows, nothing, sure, list(sure), rough=True) == [n for n in asked if n != "WaveDrift" or off_m > 1.5]
+    assert asked_for(knows, nothing, sure, list(sure), rough=True) == [n for n in asked if n != "WaveDrift"]  # a change of it the readings must ask for
+
+
+@pytest.mark.parametrize("more, asked", [(2.0, []), (4.0, ["Wind"])])
+def test_a_change_of_a_wind_that_the_file_knows_must_be_asked_for_by_the_readings_too(judged, more, asked):
+    case, found = judged
+    knows = replace(case, model=case.model.but(find("Wind").plausible(case.model.ship)))
+    before = replace(found, off_m=3.0, floor_m=1.0, hypothesis=Hypothesis((), "usual", 100.0, 0.0))
+    sets = {(): before, ("Wind",): replace(before, off_m=0.9, hypothesis=Hypothesis(("Wind",), "usual", 100.0 + more, 0.0))}
+    assert asked_for(knows, sets, {"Wind": 0.99}, ["Wind"], rough=False) == asked
+    assert asked_for(case, sets, {"Wind": 0.99}, ["Wind"], rough=False) == ["Wind"]
 
 
 def test_a_known_wind_misleads_where_a_tenth_of_it_matters_to_where_she_went(tanker, voyages):

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from twin.physics.effects import find
 from twin.study.assemble import assemble
 from twin.study.manoeuvres import MANOEUVRES, next_manoeuvre, sail
 
@@ -17,6 +18,14 @@ def test_the_ship_sails_every_manoeuvre(case, name):
     t = sail(case, case.model, MANOEUVRES[name][0])
     assert np.isfinite(t.state).all()
     assert t.state[:, 3].max() < 2.0 * float(case.model.ship.U_0)
+
+
+@pytest.mark.parametrize("name", MANOEUVRES)
+def test_a_model_that_runs_away_has_sailed_no_manoeuvre(case, name):
+    """Test: a hull that pushes her on. Expected: a track that ends, and no advice that was made of it."""
+    wild = case.model.but(find("TowForce").absent(case.model.ship).but(ahead=1e300))
+    assert np.isnan(sail(case, wild, MANOEUVRES[name][0]).state[-1]).any()
+    assert next_manoeuvre(case, wild, "HullFouling", "PropellerWear", np.ones(len(case.effects))) is None
 
 
 def test_fouling_and_a_worn_propeller_are_told_apart_by_changing_speed(case):

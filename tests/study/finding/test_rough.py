@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.physics import core
 from twin.physics.effects import find
 from twin.study.assemble import assemble
 from twin.study.columns import ROUGH
@@ -19,11 +20,15 @@ def windy(tanker, voyages):
 
 
 def test_a_tenth_of_a_known_wind_is_doubted_at_each_moment_and_for_each_course(windy):
+    """And where along her it pushes her aside by a twentieth of her length: N = L Y / 20."""
     (track,), model = windy.tracks, windy.model
     force = respond(track, model)[0] - respond(track, replace(model, effects=()))[0]
-    np.testing.assert_allclose(doubted(track, model), KNOWN * np.abs(force))
-    terms, usual = accelerations(track, model), KNOWN * np.sqrt(np.mean(force**2, axis=0))
-    strength = np.linalg.norm(force / standard(model), axis=1)
+    pushed = model.known(track.situation())["Wind"].Y
+    turned = core.accelerations(0.0 * pushed, 0.0 * pushed, 0.05 * model.ship.L_pp * pushed, model.c)
+    doubt = np.hypot(KNOWN * force, np.column_stack(turned))
+    np.testing.assert_allclose(doubted(track, model), doubt)
+    terms, usual = accelerations(track, model), np.sqrt(np.mean(doubt**2, axis=0))
+    strength = np.linalg.norm(doubt / standard(model), axis=1)
     assert tuple(terms) == TERMS
     np.testing.assert_allclose(terms["sway_sin"][:, 1], usual[1] * strength / np.sqrt(np.mean(strength**2)) * np.sin(track.state[:, 2]))
     assert not terms["sway_sin"][:, [0, 2]].any() and np.sqrt(np.mean(terms["yaw_always"][:, 2] ** 2)) == pytest.approx(usual[2])

@@ -24,6 +24,7 @@ class WaveDrift(Force):
 
     needs = ("H_s", "wave_to")  # T_p is used where it is known
     irregular = True
+    lever = 0.05
     source = "Faltinsen (1990) Sea Loads on Ships and Offshore Structures, ch. 5 (wall reflection); ITTC 7.5-04-01-01.2 STAWAVE-1 (c_x = 1)"
 
     c_x: float = param(1.0, unit="-", lo=0.0, hi=6.0, sd=1.2, doc="added resistance in head sea, in units of STAWAVE-1")

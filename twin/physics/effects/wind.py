@@ -21,6 +21,7 @@ class Wind(Force):
 
     needs = ("wind_speed", "wind_to")
     needs_ship = ("A_F", "A_L")
+    lever = 0.05  # it moves along her with the direction, by more than four coefficients say
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.1; Blendermann (1994) coefficient ranges"
 
     c_x: float = param(0.7, unit="-", lo=0.0, hi=1.6, sd=0.7, doc="head-wind drag on the frontal area A_F")
