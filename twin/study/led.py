@@ -5,7 +5,7 @@ two causes that explain the voyages nearly alike. Run free from measured states 
 astray where the true one does not. What noise and structure would do to a true model anyway says nothing.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -37,12 +37,14 @@ class Led:
 
     found: Mapping[Sets, Found]  # with `off_m`; "nothing" is among them
     floor: Mapping[str, float]  # [m], by world
+    levered: Mapping[Sets, float]  # [m] and what each may leave whose side force attacks elsewhere along her
     windows: float  # that do not overlap, and no more than MOST
     irregular: frozenset[str]  # effects that come and go
 
     def log_probability(self, h: Hypothesis) -> float:
         """Of the path under a hypothesis; one that was not asked leads no worse than the best part of it that was."""
-        own, floor = self.found.get(h.effects), _floor(h, self.floor, self.found[()].off_m, self.irregular)
+        own, levered = self.found.get(h.effects), max(m for s, m in self.levered.items() if set(s) <= set(h.effects))
+        floor = _floor(h, self.floor, self.found[()].off_m, self.irregular, levered)
         error = own.off_m if own else min(f.off_m for s, f in self.found.items() if set(s) <= set(h.effects))
         return self._path(error, floor)
 
@@ -75,9 +77,11 @@ def led(case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis], 
     off = {s: known[s] if s in known else held_out_error(case, f) for s, f in found.items() if not s or likely[s] > best - REACH}
     floor = before.floor if before else _floors(case)
     irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular and name not in case.present)  # the floor has the others
-    asked = {s: replace(found[s], off_m=m, floor_m=_floor(plain(found[s].hypothesis), floor, off[()], irregular)) for s, m in off.items()}
+    levered = {s: before.levered[s] if s in known and before else _levered(case, found[s].model, set(s) - case.present) for s in off}
+    ends = {s: _floor(plain(found[s].hypothesis), floor, off[()], irregular, levered[s]) for s in off}
+    asked = {s: replace(found[s], off_m=m, floor_m=ends[s]) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
-    return Led(asked, floor, windows, irregular)
+    return Led(asked, floor, levered, windows, irregular)
 
 
 def _floors(case: Case) -> dict[str, float]:
@@ -93,11 +97,11 @@ def plain(h: Hypothesis) -> Hypothesis:
     return h if WORLDS[h.world].plain else replace(h, world=next(n for n, w in WORLDS.items() if w.plain and w.flow == WORLDS[h.world].flow))
 
 
-def _floor(h: Hypothesis, floor: Mapping[str, float], nothing_m: float, irregular: frozenset[str]) -> float:
+def _floor(h: Hypothesis, floor: Mapping[str, float], nothing_m: float, irregular: frozenset[str], levered_m: float) -> float:
     """How far off a true hypothesis may be [m]: nature writes an effect otherwise, so a part of what it does is left; more of one that
-    comes and goes."""
+    comes and goes, or whose side force may attack elsewhere."""
     left = COMES_AND_GOES if irregular.intersection(h.effects) else FORM if h.effects else 0.0
-    return float(np.hypot(floor[h.world], left * nothing_m))
+    return float(np.hypot.reduce([floor[h.world], left * nothing_m, levered_m]))
 
 
 def horizon_s(track: Track, model: Model) -> float:
@@ -149,9 +153,15 @@ def roughly(case: Case) -> float:
     """How far off [m] the forms of effects may leave her that are in the model since she was calibrated: a share of where she would be without,
     and where she would be if their side force attacked elsewhere."""
     left = [share * _astray(case, without) for without, share in added(case.model)]
-    for both in elsewhere(case.model):
-        left.append(np.sqrt(max(0.0, 0.5 * sum(_astray(case, m) ** 2 for m in both) - _astray(case, case.model) ** 2)))
-    return float(np.hypot.reduce([0.0, *left]))
+    return float(np.hypot.reduce([_levered(case, case.model), *left]))
+
+
+def _levered(case: Case, model: Model, names: Collection[str] | None = None) -> float:
+    """How far off [m] the side forces of a model's effects may leave her that attack elsewhere along her than their forms have it."""
+    left = 0.0
+    for both in elsewhere(model, names):
+        left += max(0.0, 0.5 * sum(_astray(case, m) ** 2 for m in both) - _astray(case, model) ** 2)
+    return float(np.sqrt(left))
 
 
 def _astray(case: Case, model: Model) -> float:

@@ -5,6 +5,7 @@ force is known to a tenth, a tenth is left over that would be a tow, a drag or a
 Fourier series in the heading: each term a column of its own, and no part of any model.
 """
 
+from collections.abc import Collection
 from dataclasses import replace
 
 import numpy as np
@@ -31,9 +32,10 @@ def added(model: Model) -> list[tuple[Model, float]]:
     return [(_but(model, e), COMES_AND_GOES if e.irregular else KNOWN) for e in _since(model)]
 
 
-def elsewhere(model: Model) -> list[tuple[Model, Model]]:
-    """Of every such effect whose side force may attack elsewhere along her: the model with it farther ahead, and farther aft."""
-    return [(_turned(model, e, 1.0), _turned(model, e, -1.0)) for e in _since(model) if isinstance(e, Force) and e.lever]
+def elsewhere(model: Model, names: Collection[str] | None = None) -> list[tuple[Model, Model]]:
+    """Of every such effect (or those of `names`) whose side force may attack elsewhere along her: the model with it farther ahead, and aft."""
+    mine = [e for e in _since(model) if isinstance(e, Force) and e.lever and (names is None or type(e).__name__ in names)]
+    return [(_turned(model, e, 1.0), _turned(model, e, -1.0)) for e in mine]
 
 
 def _since(model: Model) -> list[Effect]:

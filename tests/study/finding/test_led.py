@@ -18,11 +18,11 @@ TEN = 10.0  # windows that do not overlap
 FLOOR_M = float(np.hypot(8.0, FORM * 20.0))  # where nothing is off by 20 m
 
 
-def asked(**off_m):
+def asked(levered=None, **off_m):
     """What a few hypotheses were off by [m] at a floor of 8 m in the usual world and of 16 m in a rough one."""
     sets = {tuple(n for n in name.split("_") if n != "nothing"): off for name, off in off_m.items()}
     found = {s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off, FLOOR_M) for s, off in sets.items()}
-    return Led(found, {"usual": 8.0, "rough": 16.0}, TEN, frozenset(["WaveDrift"]))
+    return Led(found, {"usual": 8.0, "rough": 16.0}, {(): 0.0} | (levered or {}), TEN, frozenset(["WaveDrift"]))
 
 
 def says(*effects, world="usual"):
@@ -42,6 +42,13 @@ def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_to
     assert moved > 0.0 and not more and elsewhere(known.model) == []
     assert roughly(case) == pytest.approx(np.hypot(KNOWN * _astray(case, without), moved**0.5)) and roughly(known) == 0.0
     assert without.effects == tanker.effects
+
+
+def test_a_wind_may_lead_her_as_far_off_as_its_side_force_would_that_attacks_elsewhere():
+    """Test: 10 m off at a floor of hypot(8, 2) m, alone and with what was not run beside it. Expected: no word against either where the lever may
+    leave 6 m."""
+    sure, levered = asked(nothing=20.0, Wind=10.0), asked({("Wind",): 6.0}, nothing=20.0, Wind=10.0)
+    assert all(sure.log_probability(says(*s)) < -3.0 and levered.log_probability(says(*s)) == 0.0 for s in (("Wind",), ("Wind", "Bank")))
 
 
 def test_what_is_no_farther_off_than_noise_and_structure_would_be_is_not_judged_by_it():
