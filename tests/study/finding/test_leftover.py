@@ -102,6 +102,18 @@ def test_a_change_of_a_wind_that_the_file_knows_must_be_asked_for_by_the_reading
     assert asked_for(case, sets, {"Wind": 0.99}, ["Wind"], rough=False) == ["Wind"]
 
 
+@pytest.mark.parametrize("more, asked", [(50.0, []), (70.0, ["RudderWear"])])
+def test_what_stands_far_above_all_that_a_known_wind_misleads_to_is_named_but_not_in_a_sea(judged, more, asked):
+    case, found = judged
+    nothing = replace(found, off_m=1.2, floor_m=1.0, hypothesis=Hypothesis((), "usual", 100.0, 0.0))
+    sets = {(): nothing, ("RudderWear",): replace(nothing, off_m=0.9, hypothesis=Hypothesis(("RudderWear",), "usual", 100.0 + more, 0.0))}
+    assert asked_for(case, sets, {"RudderWear": 0.99}, ["RudderWear"], rough=True) == asked
+    (track,) = case.tracks
+    waves = np.full(len(track), 0.01 * case.model.ship.L_pp)
+    at_sea = replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),))
+    assert asked_for(at_sea, sets, {"RudderWear": 0.99}, ["RudderWear"], rough=True) == []
+
+
 def test_a_known_wind_misleads_where_a_tenth_of_it_matters_to_where_she_went(tanker, voyages):
     windy = tanker.with_effects(find("Wind").plausible(tanker))
     hers = replace(windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}})
