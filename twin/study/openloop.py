@@ -182,7 +182,7 @@ class _Run:
 
     def through(self, state: tuple, lead: np.ndarray, steps: int = 1) -> np.ndarray:
         """(K, runs W, 8) readings at each lead, a multiple of `steps`: grid steps that are taken at once."""
-        self.runs = state[0].size // self.start.size
+        self.runs = state[0].size // max(1, self.start.size)
         kept = []
         for k in range(0, int(lead[-1]) + 1, steps):
             if k:

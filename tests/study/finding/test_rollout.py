@@ -59,3 +59,12 @@ def test_a_core_that_predicts_well_stays_where_it_is(true):
     found = rolled_out([track], true, unknowns, {})
     moved = [abs(getattr(found.ship.derivatives, u.name) - u.centre) / u.sd for u in unknowns]
     assert max(moved) < 0.3 and miss(track, found) <= 1.05 * miss(track, true) + 0.05
+
+
+def test_windows_begin_only_where_they_may_and_perhaps_nowhere():
+    model = Model.of(load("kvlcc2"))
+    t = sailed(model)
+    late = np.arange(len(t)) > len(t) // 2
+    some, every, none = (coarse(t, model, 60.0, leads=1, begins=begins) for begins in (late, None, late & ~late))
+    assert some.start.tolist() == [k for k in every.start if late[k]] and 0 < some.start.size < every.start.size and none.start.size == 0
+    np.testing.assert_array_equal(some.promised[0], every.promised[0][:, late[every.start]])
