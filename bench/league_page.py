@@ -43,7 +43,7 @@ def page(rows: Sequence[Row], result: dict[str, Any], calibrations: dict[str, An
     """The whole page."""
     parts = [head(result["run"]), goals(rows, result)]
     parts += [tables.by(what, rows) for what in ("hull", "strength", "manoeuvre", "seed")]
-    parts += [tables.effects(rows), tables.parameters(rows), tables.nothing(rows), tables.outside(rows)]
+    parts += [tables.effects(rows), tables.gain(rows), tables.parameters(rows), tables.nothing(rows), tables.outside(rows)]
     parts += [tables.pairs(rows), tables.straight(rows), cost(rows), peer(rows), ships(calibrations)]
     parts += [failed(rows)]
     return "\n\n".join(p for p in parts if p) + "\n"

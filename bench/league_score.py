@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.physics.effect import SensorFault
 from twin.physics.effects import find
 
 Row = dict[str, Any]
@@ -21,6 +22,11 @@ def in_group(row: Row) -> bool:
     """It is among the named, or in the group that the data could not tell from the first of them; or, when nothing was named, in the
     small group of which one is surely there."""
     return row["missing_truly"][0] in {*row["missing"], *row["group"]}
+
+
+def of_instruments(row: Row) -> bool:
+    """What is hidden is a fault of an instrument, which need not move the ship."""
+    return all(issubclass(find(n), SensorFault) for n in row["hidden"])
 
 
 def alarm(row: Row) -> bool:

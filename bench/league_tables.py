@@ -8,6 +8,7 @@ from bench import league_score as score
 from bench.league_score import Row
 
 RATES = ["cases", "named", "in its group", "wrong"]
+GAINS = (("less than 5 %", -float("inf"), 0.05), ("5 to 20 %", 0.05, 0.2), ("more", 0.2, 1.0))
 DECOYS = {
     "wind_no_force": "strong wind is measured, none acts",
     "waves_no_force": "high waves are measured, none act",
@@ -65,6 +66,19 @@ def effects(rows: Sequence[Row]) -> str:
         lines.append([name, *rates(mine), *ratios(mine), counted(score.confusion(mine))])
     columns = ["hidden", *RATES, "after/before", "oracle/before", "after/oracle", "called instead"]
     return table("## By effect", columns, lines) if lines else ""
+
+
+def gain(rows: Sequence[Row]) -> str:
+    """Forces, flows and lags by what there is to win: a name that leads her no better is worth little, and can hardly be found."""
+    mine = [r for r in score.of_kind(rows, "effect") if not score.of_instruments(r) and r.get("before") and "oracle" in r]
+    lines = []
+    for words, least, most in GAINS:
+        here = [r for r in mine if least <= 1.0 - r["oracle"] / r["before"] < most]
+        if here:
+            lines.append([words, *rates(here), *ratios(here), counted(score.confusion(here))])
+    columns = ["the true effect takes away", *RATES, "after/before", "oracle/before", "after/oracle", "called instead"]
+    words = "Held-out error that the true effect, added in the catalogue's form, takes away; faults of instruments are left out."
+    return table(f"## By what there is to win\n\n{words}", columns, lines) if lines else ""
 
 
 def counted(answers: "Counter[str]") -> str:

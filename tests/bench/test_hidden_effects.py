@@ -7,6 +7,7 @@ import pytest
 
 from bench import league_plan as plan
 from bench import league_score as score
+from bench import league_tables as tables
 from bench.cli import main
 from bench.league_page import page
 from bench.league_truth import TABLE, beside
@@ -91,6 +92,14 @@ def test_scores_by_hand():
     assert (found["unknown_recognised"], found["pairs_found"]) == (0.5, 0.5)
     assert found["error_after_over_oracle"] == pytest.approx(2.0)
     assert score.confusion(score.of_kind(rows, "effect")) == {"Bank": 2, "nothing_missing": 1}
+
+
+def test_effects_that_the_true_one_mends_little_are_counted_apart():
+    visible = row(hidden=("Wind",), before=10.0, oracle=4.0, after=4.0)
+    hardly = row(hidden=("Wind",), missing=(), before=10.0, oracle=9.9, after=10.0)
+    log = row(hidden=("SpeedLogBias",), missing=("SpeedLogBias",), before=10.0, oracle=10.0, after=10.0)
+    lines = tables.gain([visible, hardly, log]).splitlines()
+    assert "| less than 5 % | 1 | 0 % |" in lines[-2] and "| more | 1 | 100 % |" in lines[-1]
 
 
 def test_an_answer_that_failed_is_an_alarm_and_not_a_name():
