@@ -78,6 +78,11 @@ def _instead(effect: type[Effect]) -> str:
     return " (or the apparent wind, from which `twin import` finds them)" if "wind_to" in effect.needs else ""
 
 
+def _attacks(effect: type[Effect]) -> str:
+    """How well it is known where along her it attacks, in words."""
+    return f"within {effect.lever:.0%} of her length of where the form has it (one standard deviation)"
+
+
 def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:
     """Everything that is declared of it; with a ship, sizes in SI instead of multiples of the ship's own scales."""
     params = []
@@ -87,7 +92,7 @@ def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:
         params.append({"name": p.name, "unit": p.unit, **sizes, "times": SCALES[p.of] if p.of and not ship else None, "doc": p.doc})
     return {
         "name": effect.__name__, "kind": effect.kind, "doc": sentence(effect), "formula": formula(effect), "needs": inputs(effect),
-        "needs_ship": list(effect.needs_ship), "source": effect.source, "parameters": params,
+        "needs_ship": list(effect.needs_ship), "lever": effect.lever, "source": effect.source, "parameters": params,
     }  # fmt: skip
 
 
@@ -115,6 +120,7 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
         lines += ["", *(f"  {line}" for line in textwrap.wrap(SCALES_SAID, width - 2))]
     needs = (", ".join(inputs(effect)) or "nothing beyond the ship's own motion") + _instead(effect)
     lines += ["", f"needs     {needs}"] + ([f"of a ship {', '.join(effect.needs_ship)}"] if effect.needs_ship else [])
+    lines += [f"attacks   {_attacks(effect)}"] if effect.lever else []
     lines += [textwrap.fill(f"source    {effect.source}", width, subsequent_indent=" " * 10)]
     add = f"next: twin add {effect.__name__} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"
     return "\n".join([*lines, "", "next: mend it; no ship file holds it" if effect in UNNAMED else add])
@@ -161,6 +167,7 @@ def _entry(effect: type[Effect]) -> list[str]:
     needs = (", ".join(f"`{name}`" for name in inputs(effect)) or "nothing beyond the ship's own motion") + _instead(effect)
     if effect.needs_ship:
         needs += f"; of the ship {', '.join(effect.needs_ship)}"
+    needs += f". Attacks {_attacks(effect)}" if effect.lever else ""
     rows = [
         f"| `{name}` | {unit} | {size} | {box} | {sd} | {doc.replace('|', '/')} |"
         for name, unit, size, box, sd, doc in (row(p, None) for p in effect.params())
