@@ -19,6 +19,7 @@ from twin.study.adding import fitted
 from twin.study.diagnose import diagnose
 from twin.study.openloop import predict
 from twin.study.sailed import fed
+from twin.study.seaway import swung
 from twin.study.track import Track, track
 
 HORIZON_S = 120.0
@@ -67,7 +68,7 @@ def told(answer: dict[str, Any]) -> dict[str, Any]:
 
 def errors(question: Question, ship: Ship, named: Sequence[str], voyage: Any, folder: Path) -> dict[str, float]:
     """Mean 120 s position error [m] on the other manoeuvre: as the ship was, after `add` of what was named, and of the truth."""
-    used, other = track(voyage, ship), track(kept(question.held_out(), folder)[0], ship)
+    used, other = (swung(track(v, ship), Model.of(ship)) for v in (voyage, kept(question.held_out(), folder)[0]))  # as `twin add` reads them
     out = {"before": error_of(Model.of(ship), other)}
     out["oracle"] = error_of(added(ship, question.missing, used), other)
     same = set(named) == set(question.missing)

@@ -19,7 +19,7 @@ from .effects import INPUTS
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import asked_for, astray, explaining, helpful, missed, too_small, undone, weathered
+from .leftover import asked_for, explaining, helpful, missed, too_small, undone, weathered
 from .manoeuvres import next_manoeuvre
 from .moments import moments
 from .overtime import over_time
@@ -66,7 +66,7 @@ def diagnose(
     if too_small(case, found, explain, rough):
         leads += [n for n in case.names(explain) if w.effects[n] >= SURE]
     like = {name: alike(case, weighed, name) for name in case.names(w.best.effects)}
-    sharp = shows(seen) and not astray(found[()] if case.news(w.best.effects) else best)
+    sharp = shows(seen) and not missed(found[()] if case.news(w.best.effects) else best)
     blurred = no_pair or rough or (not explained and not missed(found[()]))
     coarse, happened = coarse_axes(case.path.share), moments(case, best)
     able = case.excited and not coarse
@@ -88,7 +88,7 @@ def diagnose(
         "ship": ship.name,
         "verdict": verdict,
         "missing": missing,
-        "one_of": group(weighed, w) if verdict == "undecided" and able else [],
+        "one_of": group(weighed, w) if verdict == "undecided" and able and explained else [],
         "probabilities": {"nothing_missing": nothing, "unknown": w.unknown + w.nothing - nothing if explained else 1.0 - nothing},
         "candidates": [c for c in candidates if c],
         "resembles": resembles if verdict in ("unknown", "missing") else [],

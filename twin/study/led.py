@@ -20,6 +20,7 @@ from .nuisance import DAILY
 from .openloop import MODEL, STRUCTURE, Windows, coarse, predict
 from .refine import Found, Sets, standing
 from .rough import COMES_AND_GOES, added, elsewhere
+from .structure import once_off
 from .track import Track
 
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
@@ -172,11 +173,7 @@ def _astray(case: Case, model: Model) -> float:
 
 def _measured(case: Case) -> float:
     """Mean position error [m] of the calibrated ship on voyages that she was not fitted to; nothing where no calibration measured it."""
-    told = [(e["horizon_s"], e["position_m"]) for e in case.model.ship.notes.get("structural", {}).get("held_out", ()) if e.get("position_m")]
-    if not told:
-        return 0.0
-    ahead, error = np.log(np.array(told)).T
-    return float(np.exp(np.interp(np.log([horizon_s(t, case.model) for t in case.tracks]), ahead, error)).mean())
+    return float(once_off(case.model.ship, "position_m", np.array([horizon_s(t, case.model) for t in case.tracks])).mean())
 
 
 def _errors(windows: Windows, run: int) -> np.ndarray:

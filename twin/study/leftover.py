@@ -19,12 +19,13 @@ from .own_force import leads_her, otherwise, without
 from .refine import Found, Sets, standing
 from .respond import respond, standard
 from .seaway import at_sea
-from .verdict import ALIKE, SURE
+from .verdict import ALIKE, SURE, of_the_sea
 
 MOSTLY = 1.0 / 3.0  # of the error without it that may be left whatever else is
 ASTRAY = 2.0  # times the floor that an answer may end away from where she went, one that names a cause if it leads her some of the way
 NEARLY = 1.5  # and if it does not
 SOME, HALF = 0.75, 0.5  # of the error without it: what she may be left with, and as long as others may do better
+TOSSED = 0.1  # share by which she may end farther off where the sea's own force is known, which is chance
 BETTER = 0.05  # share by which a force must bring her nearer to where she went
 RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
@@ -73,13 +74,9 @@ def explains(case: Case, weighed: Sequence[Hypothesis], found: Found, nothing: F
     return (found.off_m <= found.floor_m and not strict) or WORLDS[plain.world].flow > 1.0 or quiet(case, found)
 
 
-def astray(nothing: Found) -> bool:
-    """Whether the model alone leads her so far from where she went that nobody may say that nothing is missing."""
-    return nothing.off_m > ASTRAY * nothing.floor_m
-
-
 def missed(nothing: Found) -> bool:
-    """Whether the model alone leads her clearly farther from where she went than it did when nothing was wrong."""
+    """Whether the model alone leads her clearly farther from where she went than it did when nothing was wrong: nobody may say then that nothing
+    is missing."""
     return nothing.off_m > NEARLY * nothing.floor_m
 
 
@@ -101,7 +98,7 @@ def asked_for(case: Case, found: Mapping[Sets, Found], sure: Mapping[str, float]
 def _asked(case: Case, found: Mapping[Sets, Found], sure: float, name: str, rough: bool) -> bool:
     nothing, misled = found[()], _misled(case, found, name, rough)
     led = not missed(nothing) if misled else nothing.off_m <= nothing.floor_m
-    return not led or (sure >= SURE and (not misled or _of_the_sea(case, name)))
+    return not led or (sure >= SURE and (not misled or of_the_sea(case, name)))
 
 
 def _misled(case: Case, found: Mapping[Sets, Found], name: str, rough: bool) -> bool:
@@ -115,11 +112,6 @@ def _read(found: Mapping[Sets, Found], name: str, by: float) -> bool:
     return (name,) in found and found[(name,)].hypothesis.log_weight > found[()].hypothesis.log_weight + by
 
 
-def _of_the_sea(case: Case, name: str) -> bool:
-    """Whether an effect is the sea's own force, of which the model knows nothing."""
-    return case.catalogue[name].irregular and name not in case.present
-
-
 def weathered(case: Case, nothing: Found) -> bool:
     """Whether weather may mislead: a sea, or forces known only roughly that matter to where she went."""
     return any(at_sea(t, case.model) for t in case.tracks) or roughly(case) > ROUGHLY * nothing.floor_m
@@ -131,7 +123,7 @@ def too_small(case: Case, found: Mapping[Sets, Found], chosen: Sets, rough: bool
     single = case.news(chosen)
     if len(single) != 1 or case.catalogue[single[0]].kind == "SensorFault" or not max(found[chosen].off_m, found[()].off_m) <= found[chosen].floor_m:
         return False
-    return _of_the_sea(case, single[0]) or not _misled(case, found, single[0], rough)
+    return of_the_sea(case, single[0]) or not _misled(case, found, single[0], rough)
 
 
 def undone(case: Case, found: Found) -> bool:
@@ -162,8 +154,9 @@ def _clear(case: Case, found: Mapping[Sets, Found], chosen: Sets, name: str) -> 
 
 
 def _leads(case: Case, found: Mapping[Sets, Found], chosen: Sets, name: str) -> bool:
-    """Whether a force brings her nearer to where she went; one that comes and goes hardly can, where what it does not explain tosses her on."""
-    without, better = found.get(tuple(n for n in chosen if n != name)), 0.0 if case.catalogue[name].irregular else BETTER
+    """Whether a force brings her nearer to where she went; one that comes and goes hardly can, for what it does not explain tosses her on: it
+    leads her no farther off."""
+    without, better = found.get(tuple(n for n in chosen if n != name)), -TOSSED if of_the_sea(case, name) else BETTER
     return without is None or not found[chosen].off_m > (1.0 - better) * without.off_m
 
 

@@ -16,11 +16,13 @@ import numpy as np
 from twin.physics import core
 from twin.physics.effects.current import Current
 from twin.physics.model import Model
+from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 
 from .innovations import MEMORY_B, Floor, busy
 from .respond import lagged, readings, standard
 from .start import noisy, seen, steadied, true_motion
+from .structure import once_off
 from .track import READINGS, STATE, Track
 
 HORIZONS_S = (10.0, 60.0, 120.0)
@@ -89,7 +91,21 @@ def predict(
         kept = np.nan_to_num(run.through(tuple(begin), lead), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)
     promised = kept.reshape(len(lead), 3, start.size, len(READINGS)).transpose(1, 0, 2, 3)
     promised[1:] += track.sd * rng.standard_normal(promised[1].shape)
-    return Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
+    windows = Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
+    return windows if floor is None else _no_better(windows, model.ship)
+
+
+def _no_better(w: Windows, ship: Ship) -> Windows:
+    """The same with a structural run that is no nearer than the calibrated ship was on voyages that she was not fitted to: what a core misses in
+    the same way for minutes adds up to more than what wanders."""
+    errors, ahead = w.errors(STRUCTURE), w.lead * w.track.h
+    usual = {"position": once_off(ship, "position_m", ahead), "heading": np.radians(once_off(ship, "heading_deg", ahead))}
+    means = {n: np.nanmean(np.where(w.valid.any(1)[:, None], errors[n], 1.0), 1) for n in usual}
+    place, turn = (np.maximum(1.0, usual[n] / np.maximum(means[n], 1e-12))[:, None] for n in ("position", "heading"))
+    promised = w.promised.copy()
+    for i, name in enumerate(READINGS):
+        promised[STRUCTURE, ..., i] += ((turn if name in ("psi", "r") else place) - 1.0) * (promised[STRUCTURE] - promised[MODEL])[..., i]
+    return replace(w, promised=promised)
 
 
 def coarse(

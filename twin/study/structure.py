@@ -37,6 +37,16 @@ def floor_of(ship: Ship, name: str = "floor") -> Floor | None:
         raise SettingsError(f"{ship.name}: [structural] {name} in the ship file is damaged ({error}). Calibrate her again.") from None
 
 
+def once_off(ship: Ship, key: str, horizon_s: np.ndarray) -> np.ndarray:
+    """How far off the calibrated ship was, so far ahead, on voyages that she was not fitted to (`position_m`, `heading_deg`); 0 where no
+    calibration measured it. Powers of the time between the measured horizons, in proportion to it before the first."""
+    told = [(e["horizon_s"], e[key]) for e in ship.notes.get("structural", {}).get("held_out", ()) if e.get(key)]
+    if not told:
+        return np.zeros_like(horizon_s)
+    ahead, error = np.array(told).T
+    return np.exp(np.interp(np.log(horizon_s), np.log(ahead), np.log(error))) * np.minimum(1.0, horizon_s / ahead[0])
+
+
 def _by_axis(value: float | Sequence[float]) -> tuple[float, float, float]:
     """One number for surge, sway and yaw, or one for each."""
     surge, sway, yaw = (float(v) for v in (value if isinstance(value, Sequence) else (value,) * 3))

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from .leftover import ASTRAY, BETTER, NEARLY
+from .leftover import BETTER, NEARLY
 from .overtime import changes
 from .start import told_of_waves
 from .verdict import ACQUITTED, LOST, SURE
@@ -99,7 +99,7 @@ def sentence(result: dict[str, Any]) -> str:
             f"Undecided: the readings are not what they usually are, as no effect explains, but the model leads her where she went "
             f"({path['error_without']:.3g} m off after {path['horizon_s']:.0f} s, {path['error_floor']:.3g} m would be usual)."
         )
-    if result["probabilities"]["nothing_missing"] >= ACQUITTED and path["error_without"] > ASTRAY * path["error_floor"]:
+    if result["probabilities"]["nothing_missing"] >= ACQUITTED and path["error_without"] > NEARLY * path["error_floor"]:
         return (
             f"Undecided: no effect that I know is likely, but after {path['horizon_s']:.0f} s the model ends {path['error_without']:.3g} m from "
             f"where she went ({path['error_floor']:.3g} m would be usual)."

@@ -50,11 +50,17 @@ def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
 
 
 def _nameless(case: Case, h: Hypothesis, alone: Mapping[str, float]) -> bool:
-    """Whether what is at work under a hypothesis has no name: the world is so restless, or what is known by its form alone is there and does not
-    merely mend the form of an effect that does clearly more `alone` (log weight of each effect by itself)."""
+    """Whether what is at work under a hypothesis has no name: the world is so restless without a sea that pushes her, or what is known by its
+    form alone is there and does not merely mend the form of an effect that does clearly more `alone` (log weight of each effect by itself)."""
     known = [alone.get(name, -np.inf) for name in case.names(h.effects)]
     formed = [alone.get(name, -np.inf) for name in h.effects if name in case.unnamed]
-    return WORLDS[h.world].unknown or (bool(formed) and max(known, default=-np.inf) <= max(formed) + LUXURY)
+    tossed = any(of_the_sea(case, name) for name in h.effects)
+    return (WORLDS[h.world].unknown and not tossed) or (bool(formed) and max(known, default=-np.inf) <= max(formed) + LUXURY)
+
+
+def of_the_sea(case: Case, name: str) -> bool:
+    """Whether an effect is the sea's own force, of which the model knows nothing."""
+    return case.catalogue[name].irregular and name not in case.present
 
 
 def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
