@@ -1,5 +1,6 @@
 """One number for each effect, worked by hand from its source, with every component different from zero."""
 
+from dataclasses import replace
 from math import radians, sqrt
 
 import pytest
@@ -219,6 +220,11 @@ def test_instruments_by_hand(ship):
     mast = find("AntennaOffset")(ahead=20.0, starboard=4.0).read(s, ship)
     assert (mast.x, mast.y) == (pytest.approx(10 + 17.32051 - 2), pytest.approx(20 + 10 + 3.46410))
     assert (mast.u, mast.v) == (pytest.approx(4 - 0.08), pytest.approx(-0.5 + 0.4))
+    heeled = find("AntennaOffset")(ahead=20.0, starboard=4.0, above=10.0).read(replace(s, phi=radians(6), p=0.02), ship)
+    assert (heeled.x, heeled.y) == (pytest.approx(10 + 17.32051 - 2.52264), pytest.approx(20 + 10 + 4.36934))  # 4 + 10 sin 6 deg = 5.04528 m aside
+    assert (heeled.u, heeled.v) == (pytest.approx(4 - 0.10091, abs=1e-5), pytest.approx(-0.5 + 0.4 + 0.19890, abs=1e-5))
+    level = find("AntennaOffset")(ahead=20.0, starboard=4.0, above=10.0).read(s, ship)
+    assert (level.x, level.y, level.v) == (mast.x, mast.y, mast.v)
     late = find("SensorDelay")(delay=0.5, turned=0.5).read(s, ship)
     there = 0.5 * (3.975 * 0.8685145 + 0.4875 * 0.4956637), 0.5 * (3.975 * 0.4956637 - 0.4875 * 0.8685145)  # 0.25 s ago: 29.71352 deg
     assert (late.x, late.y) == (pytest.approx(10 - there[0]), pytest.approx(20 - there[1]))

@@ -25,7 +25,8 @@ class Param(NamedTuple):
     `lo, hi` is the box of fits and of the adaptation; `sd` the width of the prior around `null`, the value at which the
     effect is not there (half-normal where the box has one side). With `of`, the four are multiples of one of the ship's
     own scales (see Ship.scale), so that one declaration serves a 2 m boat and a 320 m tanker. `form` is by how much of its
-    size it may be off (one standard deviation) because nature writes the effect otherwise than the catalogue does.
+    size it may be off (one standard deviation) because nature writes the effect otherwise than the catalogue does. `input` is a
+    field of Situation without which this number alone does nothing.
     """
 
     name: str
@@ -37,6 +38,7 @@ class Param(NamedTuple):
     null: float
     of: str | None
     form: float
+    input: str | None
     doc: str
 
     def scale(self, ship: "Ship") -> float:
@@ -49,7 +51,7 @@ class Param(NamedTuple):
 
 def param(
     default: float, *, unit: str, lo: float, hi: float, doc: str, sd: float | None = None, null: float = 0.0, of: str | None = None,
-    form: float = FORM,
+    form: float = FORM, input: str | None = None,
 ) -> Any:  # fmt: skip
     """Declare a parameter: its plausible value when the effect is there, unit, box, prior width, doubt about its form and meaning."""
     if of is not None and of not in SCALES:
@@ -63,6 +65,7 @@ def param(
         "null": null,
         "of": of,
         "form": form,
+        "input": input,
         "doc": doc,
     }
     return field(default=MISSING if of and default else default, metadata=meta, kw_only=True)  # none of it is none on any ship

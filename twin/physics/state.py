@@ -85,6 +85,7 @@ class Situation:
     bank_port: Number = None  # from the ship's side to the bank [m]
     bank_starboard: Number = None
     phi: Number = None  # roll [rad], starboard side down positive
+    p: Number = None  # and its rate [rad/s], where it was worked out: only a high antenna asks for it
     u_dot: Number = 0.0  # acceleration over ground in body axes [m/s2], where it was worked out: only a late sensor asks for it
     v_dot: Number = 0.0
 

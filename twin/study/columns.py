@@ -111,9 +111,11 @@ def columns(
             late = LATENESS[unknown.name]
             R[:, late, j] = -np.gradient(reading[:, late], track.h, axis=0)
             continue
-        if unknown.owner in (FORM, SEA):
-            terms = form if unknown.owner == FORM else tossed
-            A[:, :, j], R[:, :, j] = terms.accelerations(track, model, unknown.name), terms.readings(track, model, unknown.name)
+        if unknown.owner == FORM:
+            A[:, :, j] = form.accelerations(track, model, unknown.name)
+            continue
+        if unknown.owner == SEA:
+            A[:, :, j], R[:, :, j] = tossed.accelerations(track, model, unknown.name), tossed.readings(track, model, unknown.name)
             continue
         if unknown.owner != "core" and missing.intersection(catalogue[unknown.owner].needs):
             continue  # without its input the effect does nothing on this track

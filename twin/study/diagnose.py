@@ -99,7 +99,7 @@ def diagnose(
         "next_manoeuvre": _next(case, found, verdict, missing, candidates, {n: p for n, p in w.effects.items() if seen[n]}, progress),
         "not_judged": _not_judged(case),
         "as_on_references": list(case.no_news),
-        "not_visible": [n for n, can in seen.items() if not can and n not in [*missing, *case.no_news]],
+        "not_visible": [n for n, can in seen.items() if not can and n not in [*missing, *case.no_news, *case.present]],
         "floor": {"share_surge_sway_yaw": case.floor.share, "sensor_factor": case.floor.sensor, "temper": case.temper},
         "voyages": [v.name for v in voyages],
         "waves": waves_on(case.tracks),
@@ -140,6 +140,8 @@ def _next(
     likely: dict[str, float], progress: Callable[[str], None],
 ) -> dict[str, Any] | None:  # fmt: skip
     """What to sail next, when two effects stand in each other's way or the voyages could not tell."""
+    if verdict == "nothing_missing":
+        return None
     listed = [c for c in candidates if c]
     rivals = next(((c["effect"], o) for c in listed for o in c["cannot_be_told_from"] if c["effect"] in missing or verdict != "missing"), None)
     if rivals is None and verdict == "undecided" and len(likely) > 1:

@@ -16,7 +16,7 @@ from twin.physics import core
 from twin.physics.model import Model
 
 from .respond import lagged
-from .track import READINGS, Track
+from .track import Track
 
 SLOWEST = 0.01  # of U_0: a speed to divide by, however slow the ship
 ROLLED = 0.15  # of L/U_0: window over which the measured heel is smoothed before its rates are taken
@@ -56,8 +56,7 @@ RUDDER: dict[str, tuple[float, Term]] = {  # name: prior width, times the rudder
     "q_vv": (1.0, lambda a: a.v**2),
     "q_rr": (1.0, lambda a: a.r**2),
 }
-HEIGHT = "z_antenna"  # of the satellite receiver above the axis of roll [B]
-TERMS = {name: width for name, (_, width, _) in HULL.items()} | {name: width for name, (width, _) in RUDDER.items()} | {HEIGHT: 0.5}
+TERMS = {name: width for name, (_, width, _) in HULL.items()} | {name: width for name, (width, _) in RUDDER.items()}
 
 
 def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
@@ -67,23 +66,11 @@ def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
         axis, _, term = HULL[name]
         force = 0.5 * ship.rho * ship.L_pp * ship.T * _speed(track, model) ** 2 * term(a)
         tau = {"X": (force, zero, zero), "Y": (zero, force, zero), "N": (zero, zero, force * ship.L_pp)}[axis]
-    elif name in RUDDER:
+    else:
         u, delta = _through_water(track, model)[0], lagged(track, model)
         alone = core.rudder(u, zero, zero, delta, core.thrust(u, track.n, model.c), model.c)
         tau = tuple(part * RUDDER[name][1](a) for part in alone)  # type: ignore[assignment]
-    else:
-        return np.zeros((len(track), 3))
     return np.column_stack([np.broadcast_to(x, zero.shape) for x in core.accelerations(*tau, model.c)])
-
-
-def readings(track: Track, model: Model, name: str) -> np.ndarray:
-    """(N, 8) of one unit of a term: a receiver above the axis of roll is carried aside by heel."""
-    out = np.zeros((len(track), 8))
-    if name == HEIGHT:
-        a, B, psi = _along(track, model), float(model.ship.B), track.state[:, 2]
-        out[:, READINGS.index("x")], out[:, READINGS.index("y")] = -np.sin(psi) * a.phi * B, np.cos(psi) * a.phi * B
-        out[:, READINGS.index("v")] = a.p / float(model.ship.scale("time")) * B
-    return out
 
 
 def _through_water(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:

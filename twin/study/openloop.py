@@ -100,7 +100,7 @@ def _no_better(w: Windows, ship: Ship) -> Windows:
     the same way for minutes adds up to more than what wanders."""
     errors, ahead = w.errors(STRUCTURE), w.lead * w.track.h
     usual = {"position": once_off(ship, "position_m", ahead), "heading": np.radians(once_off(ship, "heading_deg", ahead))}
-    means = {n: np.nanmean(np.where(w.valid.any(1)[:, None], errors[n], 1.0), 1) for n in usual}
+    means = {n: np.nanmean(np.where(np.any(w.valid, axis=1, keepdims=True), errors[n], 1.0), 1) for n in usual}
     place, turn = (np.maximum(1.0, usual[n] / np.maximum(means[n], 1e-12))[:, None] for n in ("position", "heading"))
     promised = w.promised.copy()
     for i, name in enumerate(READINGS):

@@ -97,10 +97,11 @@ def _swinging(track: Track, model: Model) -> Track:
 
 def levelled(track: Track) -> Track:
     """The track with its roll averaged over one period of the waves: how she heels to a wave would be taken for its cause."""
-    if track.swell is None or "phi" not in track.weather:
+    if track.swell is None:
         return track
     steps = max(1, round(wave_period_s(track) / track.h))
-    return replace(track, weather={**track.weather, "phi": running_mean(track.weather["phi"], steps)})
+    heel = {name: running_mean(track.weather[name], steps) for name in ("phi", "p") if name in track.weather}
+    return replace(track, weather={**track.weather, **heel})
 
 
 def stirred(track: Track, model: Model) -> np.ndarray:

@@ -21,7 +21,7 @@ def told(result: dict[str, Any]) -> list[str]:
     if result["verdict"] == "unknown" and result["candidates"]:
         lines.append("were it one of the effects I know:")
     for c in result["candidates"]:
-        lines += _candidate(c)
+        lines += _candidate(c) + _not_named(c, result)
     chances = result["probabilities"]
     lines.append(f"nothing missing: {chances['nothing_missing']:.0%}   something unknown: {chances['unknown']:.0%}")
     if result["next_manoeuvre"]:
@@ -96,8 +96,8 @@ def sentence(result: dict[str, Any]) -> str:
     path = result["path"]
     if result["probabilities"]["unknown"] >= LOST and path["error_without"] <= NEARLY * path["error_floor"]:
         return (
-            f"Undecided: the readings are not what they usually are, as no effect explains, but the model leads her where she went "
-            f"({path['error_without']:.3g} m off after {path['horizon_s']:.0f} s, {path['error_floor']:.3g} m would be usual)."
+            f"Undecided: the readings are not what they usually are, as no effect explains, but the model leads her no clearly farther off than usual "
+            f"({path['error_without']:.3g} m after {path['horizon_s']:.0f} s, {path['error_floor']:.3g} m would be usual)."
         )
     if result["probabilities"]["nothing_missing"] >= ACQUITTED and path["error_without"] > NEARLY * path["error_floor"]:
         return (
@@ -150,6 +150,15 @@ def _candidate(c: dict[str, Any]) -> list[str]:
     if c["cannot_be_told_from"]:
         lines.append(f"          not told from {', '.join(c['cannot_be_told_from'])}")
     return lines
+
+
+def _not_named(c: dict[str, Any], result: dict[str, Any]) -> list[str]:
+    """Why what is likely is not named beside what is."""
+    if result["verdict"] != "missing" or c["effect"] in result["missing"] or c["probability"] < SURE:
+        return []
+    unclear = c["effect"] in result["unclear"]
+    why = "not one of its numbers is clearly other than none" if unclear else "the path does not ask for it: the form of what is named may be another"
+    return [f"          not named: {why}"]
 
 
 def _part(p: dict[str, Any]) -> str:

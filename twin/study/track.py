@@ -31,6 +31,7 @@ WEATHER_CHANNELS = (  # name in Situation, channel, what turns "from" into "to"
 STATE = ("x", "y", "psi", "u", "v", "r")
 STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail her own length
 FEWEST_PER_LENGTH = 8  # and no fewer, however slowly she was logged: with longer steps a ship cannot be stepped at all
+ROLLED = 0.3  # L/U_0 over which the measured heel is averaged before its rate is taken
 JERK = 0.15  # rad in (L/U_0)^3: how suddenly a ship turns; what is faster is the sea's doing
 LONGEST_HOLD_S = 5.0  # a control that is missing for longer breaks the track
 
@@ -98,7 +99,8 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
     if not whole.any():
         raise DataError(f"{voyage.name}: rudder_angle_deg and propeller_rate_rpm are never there together. Check the map.")
     state, sd = smooth_motion(measured, h, ship)
-    return Track(voyage.name, grid.time_s - voyage.time_s[0], h, state, *controls, _weather(grid, measured, state), measured, sd, whole)
+    weather = _weather(grid, measured, state, max(1, round(ROLLED * length_s / h)))
+    return Track(voyage.name, grid.time_s - voyage.time_s[0], h, state, *controls, weather, measured, sd, whole)
 
 
 def _step(usual: float, longest: float) -> float:
@@ -145,8 +147,9 @@ def _bridge(values: np.ndarray, longest_s: float, h: float) -> np.ndarray:
     return np.where((last >= 0) & (age * h <= longest_s), held, np.nan)
 
 
-def _weather(grid: Voyage, measured: np.ndarray, state: np.ndarray) -> dict[str, np.ndarray]:
-    """What was measured of wind, waves, depth, loading and banks, under the names and directions of Situation."""
+def _weather(grid: Voyage, measured: np.ndarray, state: np.ndarray, rolled: int) -> dict[str, np.ndarray]:
+    """What was measured of wind, waves, depth, loading, banks and heel, under the names and directions of Situation; heel's rate over so many
+    steps (`rolled`)."""
     out: dict[str, np.ndarray] = {}
 
     def put(name: str, channel: str, turn: float = 0.0) -> None:
@@ -162,6 +165,8 @@ def _weather(grid: Voyage, measured: np.ndarray, state: np.ndarray) -> dict[str,
         speed, angle = _fill(grid.si("apparent_wind_speed_mps")), _fill(grid.si("apparent_wind_angle_deg")) + np.pi
         ahead, aside = speed * np.cos(angle) + state[:, 3], speed * np.sin(angle) + state[:, 4]
         out["wind_speed"], out["wind_to"] = np.hypot(ahead, aside), np.arctan2(aside, ahead) + state[:, 2]
+    if "phi" in out and len(grid) > 1:
+        out["p"] = np.gradient(running_mean(out["phi"], rolled), grid.time_s)
     return out
 
 

@@ -54,8 +54,8 @@ def _nameless(case: Case, h: Hypothesis, alone: Mapping[str, float]) -> bool:
     form alone is there and does not merely mend the form of an effect that does clearly more `alone` (log weight of each effect by itself)."""
     known = [alone.get(name, -np.inf) for name in case.names(h.effects)]
     formed = [alone.get(name, -np.inf) for name in h.effects if name in case.unnamed]
-    tossed = any(of_the_sea(case, name) for name in h.effects)
-    return (WORLDS[h.world].unknown and not tossed) or (bool(formed) and max(known, default=-np.inf) <= max(formed) + LUXURY)
+    restless = WORLDS[h.world].unknown and not any(of_the_sea(case, name) for name in h.effects)
+    return restless or (bool(formed) and max(known, default=-np.inf) <= max(formed) + LUXURY)
 
 
 def of_the_sea(case: Case, name: str) -> bool:
@@ -125,13 +125,15 @@ def shows(seen: dict[str, bool]) -> bool:
 
 
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:
-    """Each parameter of one effect with its 95 % interval, inside its box; that the form is only roughly right is part of it. Of an effect
-    that the ship has already, also what her file says."""
-    out, form = [], {p.name: p.form for p in case.catalogue[name].params()}
+    """Each parameter of one effect that what was recorded tells of, with its 95 % interval, inside its box; that the form is only roughly right
+    is part of it. Of an effect that the ship has already, also what her file says."""
+    params = {p.name: p for p in case.catalogue[name].params()}
+    recorded = {key for track in case.tracks for key in track.weather}
+    out = []
     for i, u in enumerate(case.effects):
-        if u.owner == name:
+        if u.owner == name and (params[u.name].input in {None, *recorded}):
             value = u.centre + u.sd * found.z[i]
-            sd = u.sd * float(np.hypot(np.sqrt(found.covariance[i, i]), form[u.name] * found.z[i]))
+            sd = u.sd * float(np.hypot(np.sqrt(found.covariance[i, i]), params[u.name].form * found.z[i]))
             low, high = value - 1.96 * sd, value + 1.96 * sd
             out.append(
                 {"name": u.name, "value": float(np.clip(value, u.lo, u.hi)), "low95": float(np.clip(low, u.lo, u.hi)),

@@ -25,7 +25,7 @@ def mirrored(t):
     return replace(t, state=state, delta=-t.delta, weather=dict(t.weather) | {"phi": -t.weather["phi"]})
 
 
-@pytest.mark.parametrize("name", [n for n in form.TERMS if n != form.HEIGHT])
+@pytest.mark.parametrize("name", list(form.TERMS))
 def test_every_term_pushes_a_mirrored_ship_the_mirrored_way(sailed, name):
     t, model = sailed
     here = form.accelerations(t, model, name)
@@ -45,22 +45,11 @@ def test_in_a_stream_every_term_is_what_it_would_be_at_the_speed_through_the_wat
     assert form.accelerations(t, stream, name) != pytest.approx(form.accelerations(t, model, name), rel=0.02)
 
 
-def test_a_receiver_high_above_the_axis_of_roll_is_carried_aside(sailed):
-    t, model = sailed
-    phi = 0.1 * np.sin(0.02 * t.t)
-    rolling = replace(t, weather=dict(t.weather) | {"phi": phi})
-    x, y, *_, v = form.readings(rolling, model, form.HEIGHT)[5:-5, :5].T
-    heading = t.state[5:-5, 2]
-    assert np.cos(heading) * y - np.sin(heading) * x == pytest.approx(phi[5:-5] * model.ship.B, abs=1e-3 * model.ship.B)
-    assert v == pytest.approx(0.002 * np.cos(0.02 * t.t[5:-5]) * model.ship.B, rel=0.02, abs=1e-4)
-
-
 def test_without_a_measured_heel_its_terms_are_nothing(sailed):
     t, model = sailed
     blind = replace(t, weather={k: w for k, w in t.weather.items() if k != "phi"})
     for name in ("Y_phi", "N_p", "N_pdot"):
         assert not form.accelerations(blind, model, name).any()
-    assert not form.readings(blind, model, form.HEIGHT).any()
 
 
 def test_the_cubic_terms_are_what_a_published_polynomial_has_and_the_modulus_form_has_not():

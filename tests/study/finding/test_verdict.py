@@ -5,6 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from twin.physics.effects import catalogue
 from twin.study.evidence import Hypothesis
 from twin.study.verdict import Weights, group, judge, weights
 
@@ -50,6 +51,12 @@ def test_a_ship_is_acquitted_only_when_that_is_clear(nothing, word):
 
 def test_a_restless_world_is_unknown():
     assert verdict(["Loading"], unknown=0.8, Loading=1.0) == ("unknown", [])
+
+
+@pytest.mark.parametrize("effect, unknown", [("WaveDrift", 0.0), ("Loading", 1.0)])
+def test_water_that_the_sea_makes_restless_is_nothing_unknown_beside_the_seas_own_force(effect, unknown):
+    case = SimpleNamespace(names=list, candidates=(effect,), unnamed=(), present=set(), news=tuple, catalogue=catalogue())
+    assert weights(case, [Hypothesis((effect,), "strange", 0.0, 0.0)]).unknown == unknown
 
 
 def test_what_is_left_over_or_otherwise_than_its_name_is_unknown_but_decides_nothing_where_there_was_a_sea():

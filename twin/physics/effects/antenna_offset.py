@@ -1,8 +1,9 @@
 """The antenna is not where it is said to be: position and velocity over ground are those of another point of the ship.
 
-a_x ahead, a_y to starboard, from the point whose position the settings promise (midship; docs/import.md):
-x_m = x + a_x cos(psi) - a_y sin(psi),   y_m = y + a_x sin(psi) + a_y cos(psi)
-u_m = u - a_y r,                         v_m = v + a_x r
+a_x ahead, a_y to starboard, from the point whose position the settings promise (midship; docs/import.md); a_z above the axis of roll, from where
+heel phi carries it aside (a_z = 0 where roll was not recorded; p is its rate):
+x_m = x + a_x cos(psi) - a sin(psi),   y_m = y + a_x sin(psi) + a cos(psi),   a = a_y + a_z sin(phi)
+u_m = u - a r,                         v_m = v + a_x r + a_z cos(phi) p
 """
 
 from dataclasses import replace
@@ -20,13 +21,18 @@ class AntennaOffset(SensorFault):
 
     ahead: float = param(0.1, unit="m", lo=-0.6, hi=0.6, sd=0.1, of="length", doc="antenna ahead of where the settings put it")
     starboard: float = param(0.0, unit="m", lo=-0.1, hi=0.1, sd=0.015, of="length", doc="antenna to starboard of where the settings put it")
+    above: float = param(
+        0.0, unit="m", lo=-0.1, hi=0.5, sd=0.1, of="length", input="phi", doc="antenna above the axis of roll, where roll was recorded"
+    )
 
     def read(self, s: Situation, ship: Ship) -> Situation:
         c, si = cos(s.psi), sin(s.psi)
+        aside = self.starboard + (0.0 if s.phi is None else self.above * sin(s.phi))
+        swung = 0.0 if s.phi is None or s.p is None else self.above * cos(s.phi) * s.p
         return replace(
             s,
-            x=s.x + self.ahead * c - self.starboard * si,
-            y=s.y + self.ahead * si + self.starboard * c,
-            u=s.u - self.starboard * s.r,
-            v=s.v + self.ahead * s.r,
+            x=s.x + self.ahead * c - aside * si,
+            y=s.y + self.ahead * si + aside * c,
+            u=s.u - aside * s.r,
+            v=s.v + self.ahead * s.r + swung,
         )
