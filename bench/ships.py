@@ -73,7 +73,7 @@ def derivatives(h: Hull) -> dict[str, float]:
 
 
 NOTES = {
-    "X_u": "none was published", "Y_v": "none was published", "N_r": "none was published",
+    "X_u": "none was published", "X_uuu": "none was published", "Y_v": "none was published", "N_r": "none was published",
     "K_T0": "K_T(J) as a straight line over 0.05 < J < 0.8", "K_T1": "see K_T0",
     "epsilon": "inflow at the rudder as eps^2 (u_a^2 + kappa 8T/(pi rho D^2))", "kappa": "see epsilon",
     "gamma_v": "mean of both sides", "gamma_r": "mean of both sides times l_R", "gamma_a": "mean of both sides", "x_R": "at the aft perpendicular",
@@ -82,7 +82,7 @@ NOTES = {
 
 def how(name: str, source: str) -> str:
     """Where a derivative comes from."""
-    hull = name[0] in "XYN" and name not in ("X_uu", "X_u", "Y_v", "N_r") and not name.endswith("dot")
+    hull = name[0] in "XYN" and name not in ("X_uu", "X_uuu", "X_u", "Y_v", "N_r") and not name.endswith("dot")
     note = "LSQ" if hull else NOTES.get(name)
     return note if note and note.startswith("none") else "; ".join(filter(None, (source, note)))
 

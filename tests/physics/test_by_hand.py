@@ -54,6 +54,8 @@ def test_cross_flow_that_the_stern_holds_harder_by_hand(ship):
 def test_fouling_by_hand(ship):
     # X_uu = -0.02 x 1/2 1000 100 5 = -5000, X_u = -0.0005 x 250 000 x sqrt(9.80665 x 100) = -3914.45; at 4 m/s
     assert force("HullFouling", ship, Situation(u_r=4.0), extra=0.3)[0] == pytest.approx(-0.3 * (3914.45 + 5000 * 4) * 4, rel=1e-6)
+    waves = ship.with_derivatives(X_uuu=-0.03)  # -0.03 x 250 000/sqrt(980.665) = -239.496
+    assert force("HullFouling", waves, Situation(u_r=4.0), extra=0.3)[0] == pytest.approx(-0.3 * (3914.45 + 5000 * 4 + 239.496 * 16) * 4, rel=1e-6)
 
 
 def test_more_of_the_flow_from_one_side_turns_her_alike_whichever_way_she_drifts(ship):

@@ -101,10 +101,11 @@ def test_the_thrust_by_hand(ship):
 
 
 def test_the_damping_by_hand(ship):
+    ship = ship.with_derivatives(X_uuu=-0.03)
     f, L, d = 0.5 * 1000 * 100 * 5, 100.0, ship.derivatives
     u, v, r = 4.0, -0.5, 0.012
     slow = (9.80665 * L) ** 0.5
-    X = f * ((d.X_u * slow + d.X_uu * 4) * u + d.X_vv * 0.25 + d.X_vr * L * v * r + d.X_rr * L**2 * r**2)
+    X = f * ((d.X_u * slow + d.X_uu * 4 + d.X_uuu * 16 / slow) * u + d.X_vv * 0.25 + d.X_vr * L * v * r + d.X_rr * L**2 * r**2)
     Y = f * (d.Y_v * slow * v + d.Y_uv * 4 * v + d.Y_ur * L * 4 * r + d.Y_vv * 0.5 * v + d.Y_vr * L * 0.5 * r)
     Y += f * (d.Y_rv * L * 0.012 * v + d.Y_rr * L**2 * 0.012 * r)
     N = f * L * (d.N_uv * 4 * v + d.N_vv * 0.5 * v + d.N_vr * L * 0.5 * r + d.N_rv * L * 0.012 * v)

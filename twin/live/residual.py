@@ -28,7 +28,7 @@ from twin.physics.zeta import ZETA
 OPERATORS = frozenset(("Gemm", "MatMul", "Add", "Sub", "Mul", "Div", "Sigmoid", "Tanh", "Relu", "Clip", "Concat", "Identity", "Softplus", "Swish"))
 MAX_BYTES = 8_000_000
 OPSETS = range(13, 26)
-LATER = ("gamma_a",)  # derivatives that came after the first residuals: a ship without them is the model she was
+LATER = ("gamma_a", "X_uuu")  # derivatives that came after the first residuals: a ship without them is the model she was
 MARGIN = 0.25  # how far outside its envelope the residual is shrunk to nothing
 GOLDEN = 1e-4  # how closely golden outputs must be met, relative to their size
 ABSURD = 1e6  # a feature beyond this is no feature

@@ -39,6 +39,7 @@ class Coefficients:
     m_r: Number  # I_z - N_rdot
     X_u: Number
     X_uu: Number
+    X_uuu: Number
     X_vv: Number
     X_vr: Number
     X_rr: Number
@@ -76,7 +77,8 @@ def coefficients(ship: "Ship") -> Coefficients:
     d, L, T, rho = ship.derivatives, ship.L_pp, ship.T, ship.rho
     f = 0.5 * rho * L * T  # force for 1 m/s
     m_ = f * L  # mass
-    slow = f * (GRAVITY * L) ** 0.5  # a damping that stays linear at rest
+    wave = (GRAVITY * L) ** 0.5  # u over it is Froude's number
+    slow = f * wave  # a damping that stays linear at rest
     m_u, m_v = ship.m - d.X_udot * m_, ship.m - d.Y_vdot * m_
     mx_G = ship.m * ship.x_G
     m_vr, m_rv = mx_G - d.Y_rdot * m_ * L, mx_G - d.N_vdot * m_ * L
@@ -86,7 +88,7 @@ def coefficients(ship: "Ship") -> Coefficients:
         m=ship.m, mx_G=mx_G,
         X_udot=d.X_udot * m_, Y_vdot=d.Y_vdot * m_, Y_rdot=d.Y_rdot * m_ * L, N_vdot=d.N_vdot * m_ * L,
         N_rdot=d.N_rdot * m_ * L**2, m_u=m_u, m_v=m_v, m_vr=m_vr, m_rv=m_rv, m_r=m_r,
-        X_u=d.X_u * slow, X_uu=d.X_uu * f, X_vv=d.X_vv * f, X_vr=d.X_vr * f * L, X_rr=d.X_rr * f * L**2,
+        X_u=d.X_u * slow, X_uu=d.X_uu * f, X_uuu=d.X_uuu * f / wave, X_vv=d.X_vv * f, X_vr=d.X_vr * f * L, X_rr=d.X_rr * f * L**2,
         Y_v=d.Y_v * slow, Y_uv=d.Y_uv * f, Y_ur=d.Y_ur * f * L,
         Y_vv=d.Y_vv * f, Y_vr=d.Y_vr * f * L, Y_rv=d.Y_rv * f * L, Y_rr=d.Y_rr * f * L**2,
         N_r=d.N_r * slow * L**2, N_uv=d.N_uv * f * L, N_ur=d.N_ur * f * L**2,
@@ -99,10 +101,11 @@ def coefficients(ship: "Ship") -> Coefficients:
 
 
 def damping(u: Number, v: Number, r: Number, c: Coefficients) -> Tau:
-    """-D(nu_r) nu_r: linear, quadratic and cross-coupled drag of the hull, |.|. in Norrbin's second-order modulus form."""
+    """-D(nu_r) nu_r: linear, quadratic and cross-coupled drag of the hull, |.|. in Norrbin's second-order modulus form, and what waves make of her
+    resistance as her speed nears theirs."""
     U, V, R = abs(u), abs(v), abs(r)
     return (
-        (c.X_u + c.X_uu * U) * u + (c.X_vv * v + c.X_vr * r) * v + c.X_rr * r * r,
+        (c.X_u + (c.X_uu + c.X_uuu * U) * U) * u + (c.X_vv * v + c.X_vr * r) * v + c.X_rr * r * r,
         (c.Y_v + c.Y_uv * U + c.Y_vv * V + c.Y_rv * R) * v + (c.Y_ur * u + c.Y_vr * V + c.Y_rr * R) * r,
         (c.N_uv * u + c.N_vv * V + c.N_rv * R) * v + (c.N_r + c.N_ur * U + c.N_vr * V + c.N_rr * R) * r,
     )

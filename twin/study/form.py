@@ -19,6 +19,8 @@ from .respond import lagged
 from .track import Track
 
 SLOWEST = 0.01  # of U_0: a speed to divide by, however slow the ship
+APART = 0.2  # of U_0: of the speeds about which resistance may be otherwise
+ABOUT = (0.2, 0.4, 0.6, 0.8, 1.0, 1.2)
 ROLLED = 0.15  # of L/U_0: window over which the measured heel is smoothed before its rates are taken
 
 
@@ -31,11 +33,19 @@ class Along:
     phi: np.ndarray  # rad; zero where heel was not measured
     p: np.ndarray  # its rate, by L/U_0
     p_dot: np.ndarray
+    ahead: np.ndarray  # u/U_0
 
 
 Term = Callable[[Along], np.ndarray]
 
+
+def _about(speed: float) -> Term:
+    """Resistance about one speed, falling to none at the next: waves, wake and friction give a curve with humps that no square of the speed has."""
+    return lambda a: np.sign(a.ahead) * np.maximum(0.0, 1.0 - np.abs(np.abs(a.ahead) - speed) / APART)
+
+
 HULL: dict[str, tuple[str, float, Term]] = {  # name: axis, prior width, times 1/2 rho L T U^2 (and L)
+    **{f"X_at_{speed:g}_U": ("X", 0.005, _about(speed)) for speed in ABOUT},
     "X_vvvv": ("X", 0.5, lambda a: a.v**4),
     "Y_vvv": ("Y", 0.8, lambda a: a.v**3),
     "Y_vvr": ("Y", 0.4, lambda a: a.v**2 * a.r),
@@ -89,9 +99,11 @@ def _speed(track: Track, model: Model) -> np.ndarray:
 
 def _along(track: Track, model: Model) -> Along:
     U, time = _speed(track, model), float(model.ship.scale("time"))
+    u, v = _through_water(track, model)
     phi = _smooth(track.weather["phi"], ROLLED * time / track.h) if "phi" in track.weather else np.zeros(len(track))
     p = np.gradient(phi, track.h) * time
-    return Along(_through_water(track, model)[1] / U, track.state[:, 5] * model.ship.L_pp / U, phi, p, np.gradient(p, track.h) * time)
+    r = track.state[:, 5] * model.ship.L_pp / U
+    return Along(v / U, r, phi, p, np.gradient(p, track.h) * time, u / model.ship.U_0)
 
 
 def _smooth(values: np.ndarray, steps: float) -> np.ndarray:

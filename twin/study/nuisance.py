@@ -9,7 +9,7 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 
 from .between import scattered, ship_of, voyages
-from .columns import Unknown, core_unknowns, effect_unknowns, form_unknowns, lateness_unknowns, sea_unknowns
+from .columns import FORM, Unknown, core_unknowns, effect_unknowns, form_unknowns, lateness_unknowns, sea_unknowns
 from .evidence import Nuisance
 from .innovations import Floor, Linear, Normal, innovate
 
@@ -19,6 +19,7 @@ OF_THE_DAY = ("Current", "VaryingCurrent", "ExternalForce", "TowForce")  # their
 WEATHER = ("Wind", "WaveDrift", "ShallowWater", "Bank")  # their causes belong to the voyage, their numbers to the ship
 SURROUNDINGS = (*WEATHER, *OF_THE_DAY)
 AGAIN = ("SteeringLag.ease",)  # to first order what another number of the same effect does: about none, the two would fit a ship's form between them
+NOTHING = 1e6  # information of what is none
 DAILY = ("Current.north", "Current.east", "ExternalForce.north", "ExternalForce.east")  # a little on every day, another on the next
 
 
@@ -95,6 +96,8 @@ def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     place = {label: i for i, label in enumerate(stored.get("labels", [])) if label.split(".")[0] not in since}
     size = len(unknowns)
     information, mean = np.eye(size), np.zeros(size)
+    unlearned = [i for i, u in enumerate(unknowns) if place and u.owner == FORM and u.label not in place]  # by an earlier calibration
+    information[unlearned, unlearned] = NOTHING
     mine = [i for i, u in enumerate(unknowns) if u.label in place]
     if mine:
         theirs = [place[unknowns[i].label] for i in mine]

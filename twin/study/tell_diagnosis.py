@@ -96,8 +96,8 @@ def sentence(result: dict[str, Any]) -> str:
     path = result["path"]
     if result["probabilities"]["unknown"] >= LOST and path["error_without"] <= NEARLY * path["error_floor"]:
         return (
-            f"Undecided: the readings are not what they usually are, as no effect explains, but the model leads her no clearly farther off than usual "
-            f"({path['error_without']:.3g} m after {path['horizon_s']:.0f} s, {path['error_floor']:.3g} m would be usual)."
+            f"Undecided: the readings are not what they usually are, as no effect explains, but the model leads her no clearly farther off than "
+            f"usual ({path['error_without']:.3g} m after {path['horizon_s']:.0f} s, {path['error_floor']:.3g} m would be usual)."
         )
     if result["probabilities"]["nothing_missing"] >= ACQUITTED and path["error_without"] > NEARLY * path["error_floor"]:
         return (

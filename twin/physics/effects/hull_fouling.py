@@ -1,6 +1,6 @@
 """Fouling: a fraction of the calm-water resistance is added.
 
-X = -extra R(u_r),   R = -(X_u + X_uu |u_r|) u_r
+X = -extra R(u_r),   R = -(X_u + X_uu |u_r| + X_uuu u_r^2) u_r
 """
 
 from twin.physics.effect import Force, param
@@ -17,4 +17,5 @@ class HullFouling(Force):
     extra: float = param(0.3, unit="-", lo=0.0, hi=2.0, sd=0.25, doc="added resistance over calm-water resistance")
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:
-        return ForceVector(X=self.extra * (ship.c.X_u + ship.c.X_uu * abs(s.u_r)) * s.u_r)
+        c, U = ship.c, abs(s.u_r)
+        return ForceVector(X=self.extra * (c.X_u + (c.X_uu + c.X_uuu * U) * U) * s.u_r)

@@ -50,7 +50,7 @@ class Loading(Force):
         primes["X_udot"] = d.X_udot * (1.0 + self.mass) / k
         side, bottom = 1.7 * ship.T, ship.C_b * ship.B
         wetter = (side * k + bottom) / (side + bottom) / k
-        for name in ("X_u", "X_uu"):
+        for name in ("X_u", "X_uu", "X_uuu"):
             primes[name] = getattr(d, name) * wetter
         dry = ship.T * self.draught  # freeboard lost [m]
         return replace(
