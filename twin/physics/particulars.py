@@ -33,7 +33,7 @@ class Derivatives:
     N_rdot: Number = number(-0.011, "-", -0.1, 0.0, "added moment of inertia, yaw", sd=0.004)
     X_u: Number = number(0.0, "-", -0.05, 0.0, "resistance, linear part (made non-dimensional by sqrt(g L))", sd=0.0003)
     X_uu: Number = number(-0.022, "-", -0.4, -0.001, "resistance", sd=0.005)
-    X_uuu: Number = number(0.0, "-", -1.0, 0.1, "resistance that grows faster: waves (for u = sqrt(g L))", sd=0.02)
+    X_uuu: Number = number(0.0, "-", -1.0, 0.1, "resistance that grows faster: waves (for u = sqrt(g L))", sd=0.05)
     X_vv: Number = number(-0.04, "-", -1.0, 1.0, "resistance of drift", sd=0.05)
     X_vr: Number = number(0.0, "-", -1.0, 1.0, "resistance of drift while turning, beyond C(nu)", sd=0.07)
     X_rr: Number = number(0.011, "-", -0.3, 0.3, "resistance of turning", sd=0.02)

@@ -25,7 +25,7 @@ from .import_voyage import write_json
 from .innovations import Floor
 from .jsonable import plain
 from .nuisance import TEMPER, WEATHER, instruments, temper_of
-from .parts import clearly, placed, with_or_without_wind
+from .parts import clearly, placed, with_antenna, with_or_without_wind
 from .rollout import rolled_out
 from .sailed import Sailed, read_all
 from .seaway import levelled, swung
@@ -83,7 +83,11 @@ def calibrate(
     fitted: Sequence[Sailed], held_out: HeldOut, ship: Ship, progress: Callable[[str], None] = lambda text: None, by: str | None = None
 ) -> Calibrated:
     """Fit the core to the tracks. `by`: one of FITTED_BY; None: the one that predicts what was held out better."""
-    core = _core([s.track for s in fitted], ship, progress)
+    sailed = [s.track for s in fitted]
+    core = _core(sailed, ship, progress)
+    if core.antenna is not None:
+        progress("again, with the antenna where it was found")
+        core = _with_antenna(core.antenna, sailed, ship, progress)
     tracks = core.tracks
     held_out = [(swung(t, core.model), first) for t, first in held_out]
     ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
@@ -98,6 +102,14 @@ def calibrate(
     judged = {"held_out": off[way], "by_regime": by_regime(Model.of(ships[way]), held_out)}
     after = noted(ships[way], "structural", hers | judged)
     return Calibrated(after, plain(_result(ship, after, core, way, errors(Model.of(ship), held_out))))
+
+
+def _with_antenna(first: AntennaOffset, sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
+    """The same with the antenna in the model from the start: what heel and turning carry it about is no sway of hers, and had bent the core."""
+    found = _core(sailed, with_antenna(ship, first), progress)
+    antenna = AntennaOffset(**{name: number["value"] for name, number in found.numbers[AntennaOffset.__name__].items()})
+    hers = (e for e in ship.effects if isinstance(e, AntennaOffset))  # until predictions are better with the other (`placed`)
+    return replace(found, effects=(*hers, *(e for e in found.effects if not isinstance(e, AntennaOffset))), antenna=antenna)
 
 
 def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:

@@ -5,7 +5,7 @@ import json
 import pytest
 
 from bench.bundled import recorded
-from bench.real_faults import antenna_elsewhere
+from bench.real_faults import antenna_above, antenna_elsewhere
 from bench.reference import Case, simulate
 from twin import cli
 from twin.physics.ship import load
@@ -116,6 +116,25 @@ def test_an_antenna_that_stands_elsewhere_on_the_references_becomes_a_part_of_th
     assert antenna.ahead == pytest.approx(64.0, rel=0.25)
     assert result["antenna"]["ahead"]["value"] == antenna.ahead and "measured there" in ship.notes["effects"]["AntennaOffset"]["ahead"]["source"]
     assert "AntennaOffset" in ship.notes["structural"]["beside_effects"]
+
+
+def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship(tmp_path):
+    """Test: three voyages of a container ship that heels by some degrees in her turns, seen by an antenna 30 m above the axis of roll, and by a low one.
+    Expected: its height and no place ahead, and predictions as good as with the low one (the heel of her turns had been taken for sway)."""
+    sailed = simulate([Case("container", m, seed=970 + i, duration_s=900.0) for i, m in enumerate(("zigzag_20", "turning_circle", "mixed"))])
+    off, ships = [], []
+    for height in (0.0, 30.0):
+        paths = [tmp_path / f"{height:g}-{i}.mcap" for i in range(3)]
+        for path, r in zip(paths, sailed, strict=True):
+            write_voyage(antenna_above(recorded(path.stem, r.columns, every=10), height), path)
+        out, said = tmp_path / f"{height:g}.toml", tmp_path / "said.json"
+        words = ["calibrate", *map(str, paths[:2]), "--held-out", str(paths[2]), "--ship", "container", "-o", str(out), "--json", str(said)]
+        assert cli.main(words) == 0
+        ships.append(load(out))
+        off.append(json.loads(said.read_text())["held_out"][-1]["position_m"])
+    (antenna,) = [e for e in ships[1].effects if type(e).__name__ == "AntennaOffset"]
+    assert antenna.above == pytest.approx(30.0, rel=0.15) and abs(antenna.ahead) < 8.0
+    assert off[1] < 1.3 * off[0]
 
 
 def test_a_ship_whose_antenna_is_where_her_file_has_it_gets_none(calibrated):
