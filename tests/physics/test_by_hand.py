@@ -51,6 +51,13 @@ def test_cross_flow_that_the_stern_holds_harder_by_hand(ship):
     assert pytest.approx(0.5 * 1000 * 5 * 10 * 0.2 * 0.945863 * 100.0) == N
 
 
+def test_cross_flow_that_holds_harder_amidships_by_hand(ship):
+    # as above: squares times 1 - 12 (x/L)^2 sum to 10.825 - 12 x 0.9458625 = -0.52535; times x/L besides to 1.65 - 12 x 0.241725 = -1.2507
+    Y, N = force("CrossFlowDrag", ship, Situation(v_r=1.0, r=0.01), c_d=0.0, c_mid=0.1)[1:]
+    assert pytest.approx(0.5 * 1000 * 5 * 10 * 0.1 * 0.52535) == Y
+    assert pytest.approx(0.5 * 1000 * 5 * 10 * 0.1 * 1.2507 * 100.0) == N
+
+
 def test_fouling_by_hand(ship):
     # X_uu = -0.02 x 1/2 1000 100 5 = -5000, X_u = -0.0005 x 250 000 x sqrt(9.80665 x 100) = -3914.45; at 4 m/s
     assert force("HullFouling", ship, Situation(u_r=4.0), extra=0.3)[0] == pytest.approx(-0.3 * (3914.45 + 5000 * 4) * 4, rel=1e-6)

@@ -1,7 +1,8 @@
 """Extra quadratic cross-flow drag, integrated over strips along the hull.
 
 Y = -1/2 rho T  int c(x) |v_r + x r| (v_r + x r) dx
-N = -1/2 rho T  int c(x) |v_r + x r| (v_r + x r) x dx,      c(x) = c_d - 2 c_aft x / L,  x from -L/2 to L/2, ten strips
+N = -1/2 rho T  int c(x) |v_r + x r| (v_r + x r) x dx,      c(x) = c_d - 2 c_aft x / L + c_mid (1 - 12 x^2/L^2)
+x from -L/2 to L/2 in ten strips; the mean of c over her length is c_d (but for the strips' own coarseness).
 """
 
 from twin.physics.effect import Force, param
@@ -19,12 +20,13 @@ class CrossFlowDrag(Force):
 
     c_d: float = param(0.4, unit="-", lo=0.0, hi=2.0, sd=0.4, doc="drag coefficient beyond that of the hull's derivatives, mean of her length")
     c_aft: float = param(0.0, unit="-", lo=-1.0, hi=1.0, sd=0.2, doc="how much larger it is at the stern, and smaller at the bow")
+    c_mid: float = param(0.0, unit="-", lo=-1.0, hi=1.0, sd=0.2, doc="how much larger it is amidships, and smaller, twice as much, at the ends")
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:
         L, Y, N = ship.L_pp, 0.0, 0.0
         for xi in STRIPS:
             cross = s.v_r + xi * L * s.r
-            y = (self.c_d - 2.0 * self.c_aft * xi) * abs(cross) * cross
+            y = (self.c_d - 2.0 * self.c_aft * xi + self.c_mid * (1.0 - 12.0 * xi * xi)) * abs(cross) * cross
             Y, N = Y + y, N + xi * y
         q = -0.05 * ship.rho * ship.T * L
         return ForceVector(Y=q * Y, N=q * L * N)
