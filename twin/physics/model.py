@@ -35,7 +35,8 @@ class Model:
     def __post_init__(self) -> None:
         for name, kind in (("flows", Flow), ("pushes", ForceEffect), ("faults", SensorFault), ("lags", Lag)):
             object.__setattr__(self, name, tuple(e for e in self.effects if isinstance(e, kind)))
-        object.__setattr__(self, "faults", tuple(sorted(self.faults, key=lambda f: f.attitude)))  # what is turned by the compass is turned last
+        # whatever order they were put in: an antenna's place before its receiver is late, and what is turned by the compass last
+        object.__setattr__(self, "faults", tuple(sorted(self.faults, key=lambda f: (f.attitude, type(f).__name__))))
         ship = self.ship
         for push in self.pushes:
             ship = push.alter(ship)
