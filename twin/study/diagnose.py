@@ -19,7 +19,7 @@ from .effects import INPUTS
 from .import_voyage import write_json
 from .jsonable import plain
 from .led import held_out_error, horizon_s
-from .leftover import asked_for, explaining, helpful, missed, too_small, undone, weathered
+from .leftover import asked_for, changed, explaining, helpful, missed, too_small, undone, weathered
 from .manoeuvres import next_manoeuvre
 from .moments import moments
 from .overtime import over_time
@@ -64,7 +64,7 @@ def diagnose(
     leads = asked_for(case, found, w.effects, case.names(helpful(case, found, explain)), rough)
     explained = not case.news(w.best.effects) or (bool(explain) and not no_pair)
     if too_small(case, found, explain, rough):
-        leads += [n for n in case.names(explain) if w.effects[n] >= SURE]
+        leads += [n for n in case.names(explain) if w.effects[n] >= SURE and changed(case, found[explain], n)]
     like = {name: alike(case, weighed, name) for name in case.names(w.best.effects)}
     sharp = shows(seen) and not missed(found[()] if case.news(w.best.effects) else best)
     blurred = no_pair or rough or (not explained and not missed(found[()]))
@@ -93,7 +93,7 @@ def diagnose(
         "candidates": [c for c in candidates if c],
         "resembles": resembles if verdict in ("unknown", "missing") else [],
         "undo_each_other": list(w.best.effects) if no_pair else [],
-        "unclear": [n for n in explain if n not in leads and case.catalogue[n].kind == "SensorFault"],
+        "unclear": [n for n in explain if n not in leads and (case.catalogue[n].kind == "SensorFault" or n in case.present)],
         "moments": [m.told(case.model) for m in happened],
         "path": {"horizon_s": horizon_s(case.tracks[0], case.model), "error_without": found[()].off_m, "error_floor": found[()].floor_m},
         "next_manoeuvre": _next(case, found, verdict, missing, candidates, {n: p for n, p in w.effects.items() if seen[n]}, progress),

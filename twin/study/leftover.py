@@ -31,6 +31,7 @@ RESTLESS = 4  # times the fast part of the floor
 FACTORS = np.array([1, 2, 4, 8, 16, 32])
 SURELY = 3.0  # standard deviations of an instrument's fault from none
 UNDONE = 0.5  # of what either fault alone does to where she is seen, that two together must do
+CHANGED = 2.0  # standard deviations of its form by which a number must differ from what the ship's file has
 CLEAR = 3.0  # log evidence by which the voyages must be restless
 BEYOND = 60.0  # log evidence that no force known roughly was seen to mislead to: 21 at most in fifty voyages; true effects had 130 and more
 ROUGHLY = 1.0 / 3.0  # share of the path's floor that is due to forces known only roughly, from which they matter
@@ -90,9 +91,20 @@ def asked_for(case: Case, found: Mapping[Sets, Found], sure: Mapping[str, float]
     """Those of some effects that the path, the readings of an instrument, or a probability of its own asks for: where the model alone leads her
     within what is usual, no force is named for a group that it belongs to; in `rough` weather (`weathered`), where it does not lead her clearly
     astray, none but the sea's own (`too_small`). A change of what the model has must be asked for by the readings as well: led by the file's own
-    numbers she ends astray wherever these were found in another wind (that from ahead turns her otherwise than one from abeam)."""
-    names = [n for n in names if n not in case.present or _read(found, n, CLEAR)]
+    numbers she ends astray wherever these were found in another wind (that from ahead turns her otherwise than one from abeam); and it must be more
+    than its form may be off (`changed`)."""
+    names = [n for n in names if n not in case.present or (_read(found, n, CLEAR) and changed(case, found[(n,)], n))]
     return [n for n in names if case.catalogue[n].kind == "SensorFault" or _asked(case, found, sure[n], n, rough)]
+
+
+def changed(case: Case, found: Found, name: str) -> bool:
+    """Whether an effect is other than the ship's file has it by more than nature may write it otherwise in another manoeuvre: a gear that was
+    found as a dead time and half a second of easing is the same gear with less of the one and more of the other."""
+    if name not in case.present:
+        return True
+    form = {p.name: p.form for p in case.catalogue[name].params()}
+    moved = ((u, u.sd * z) for u, z in zip(case.effects, found.posterior.z, strict=True) if u.owner == name)
+    return any(abs(by) > CHANGED * form[u.name] * abs(u.centre) for u, by in moved)
 
 
 def _asked(case: Case, found: Mapping[Sets, Found], sure: float, name: str, rough: bool) -> bool:

@@ -96,7 +96,7 @@ def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     place = {label: i for i, label in enumerate(stored.get("labels", [])) if label.split(".")[0] not in since}
     size = len(unknowns)
     information, mean = np.eye(size), np.zeros(size)
-    unlearned = [i for i, u in enumerate(unknowns) if place and u.owner == FORM and u.label not in place]  # by an earlier calibration
+    unlearned = [i for i, u in enumerate(unknowns) if place and u.owner in ("core", FORM) and u.label not in place]  # by an earlier calibration
     information[unlearned, unlearned] = NOTHING
     mine = [i for i, u in enumerate(unknowns) if u.label in place]
     if mine:

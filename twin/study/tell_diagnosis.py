@@ -76,7 +76,7 @@ def sentence(result: dict[str, Any]) -> str:
         first, second = result["undo_each_other"]
         return f"Undecided: {first} and {second} would fit, but each takes back most of what the other does, as two faults hardly ever do."
     if likely and likely[0]["effect"] in result["unclear"]:
-        return f"Undecided: the readings ask for {_likely(by_name, likely[0]['effect'])}, but not one of its numbers is clearly other than none."
+        return f"Undecided: the readings ask for {_likely(by_name, likely[0]['effect'])}, but {_unclear(likely[0])}."
     if likely and not nearer(likely[0]):
         c = likely[0]
         return (
@@ -156,9 +156,14 @@ def _not_named(c: dict[str, Any], result: dict[str, Any]) -> list[str]:
     """Why what is likely is not named beside what is."""
     if result["verdict"] != "missing" or c["effect"] in result["missing"] or c["probability"] < SURE:
         return []
-    unclear = c["effect"] in result["unclear"]
-    why = "not one of its numbers is clearly other than none" if unclear else "the path does not ask for it: the form of what is named may be another"
+    why = _unclear(c) if c["effect"] in result["unclear"] else "the path does not ask for it: the form of what is named may be another"
     return [f"          not named: {why}"]
+
+
+def _unclear(c: dict[str, Any]) -> str:
+    """Why numbers that the readings ask for are no answer."""
+    hers = any("in_ship_file" in p for p in c["parameters"])
+    return f"not one of its numbers is clearly other than {'the ship file has it' if hers else 'none'}"
 
 
 def _part(p: dict[str, Any]) -> str:

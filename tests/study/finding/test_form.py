@@ -74,15 +74,16 @@ def test_resistance_may_be_otherwise_about_every_speed_and_between_two_of_them_i
     assert sum(about.values())[:4] == pytest.approx([1.0, -1.0, 1.0, 1.0])
 
 
-def test_what_an_earlier_calibration_did_not_learn_of_the_form_is_none_and_not_anything(tanker):
+@pytest.mark.parametrize("label, sd", [("form.Y_vvv", 0.8), ("core.X_uuu", 0.05)])
+def test_what_an_earlier_calibration_did_not_learn_of_the_form_is_none_and_not_anything(tanker, label, sd):
     unknowns = nuisance_unknowns(Model.of(tanker), {})
-    label = "form.X_at_0.6_U"
     stored = {k: v for k, v in tanker.notes["structural"].items() if k not in ("labels", "offset", "covariance")}
     keep = [i for i, name in enumerate(tanker.notes["structural"]["labels"]) if name != label]
     labels = [tanker.notes["structural"]["labels"][i] for i in keep]
     rest = {"labels": labels, "offset": np.array(tanker.notes["structural"]["offset"])[keep].tolist(),
             "covariance": np.array(tanker.notes["structural"]["covariance"])[np.ix_(keep, keep)].tolist()}  # fmt: skip
     (i,) = [k for k, u in enumerate(unknowns) if u.label == label]
+    assert unknowns[i].sd == sd
     for notes, width in ((stored | rest, 1e-3), ({}, 1.0)):
         known = from_ship(Model.of(replace(tanker, notes={**tanker.notes, "structural": notes})), unknowns)
         assert np.sqrt(np.linalg.inv(known.information)[i, i]) == pytest.approx(width)

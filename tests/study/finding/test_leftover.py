@@ -1,17 +1,18 @@
 """What is left under the best explanation, beside what the reference voyages left."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from twin.physics.effects import find
+from twin.physics.effects import catalogue, find
 from twin.study import leftover
 from twin.study.assemble import assemble
-from twin.study.columns import with_values
+from twin.study.columns import Unknown, with_values
 from twin.study.evidence import Hypothesis
 from twin.study.led import roughly
-from twin.study.leftover import ASTRAY, CLEAR, asked_for, explaining, explains, helpful, missed, quiet, too_small, undone, weathered
+from twin.study.leftover import ASTRAY, CLEAR, asked_for, changed, explaining, explains, helpful, missed, quiet, too_small, undone, weathered
 from twin.study.refine import Found
 from twin.study.search import search
 from twin.study.tell_diagnosis import sentence
@@ -174,6 +175,17 @@ def test_as_long_as_others_may_do_better_more_is_asked(monkeypatch, judged):
     assert explains(case, [found.hypothesis], near, nothing)
     assert not explains(case, [found.hypothesis], near, nothing, strict=True)
     assert not explains(case, [found.hypothesis], replace(near, off_m=1.1), nothing)
+
+
+@pytest.mark.parametrize("delay, travel_time, other", [(1.0, 25.0, False), (1.5, 31.0, True), (4.0, 25.0, True), (1.5, 25.0, False)])
+def test_what_the_ship_has_is_otherwise_only_by_more_than_its_form_may_be_off(delay, travel_time, other):
+    """Test: a gear in the ship's file, 1.5 s and 25 s; its dead time may be off by half, the other by a tenth (one standard deviation)."""
+    own = [Unknown("SteeringLag", name, "s", centre, sd, 0.0, 300.0) for name, centre, sd in (("delay", 1.5, 0.5), ("travel_time", 25.0, 10.0))]
+    z = np.array([(value - u.centre) / u.sd for value, u in zip((delay, travel_time), own, strict=True)])
+    found = SimpleNamespace(posterior=SimpleNamespace(z=z))
+    case = SimpleNamespace(present={"SteeringLag"}, catalogue=catalogue(), effects=own)
+    assert changed(case, found, "SteeringLag") is other
+    assert changed(SimpleNamespace(present=set()), found, "SteeringLag")
 
 
 @pytest.mark.parametrize("effects, off, named", [

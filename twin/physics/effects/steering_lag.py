@@ -23,7 +23,7 @@ class SteeringLag(Lag):
 
     delay: float = param(0.05, unit="s", lo=0.0, hi=0.5, sd=0.05, of="time", form=0.5, doc="dead time between order and movement")
     travel_time: float = param(0.7, unit="s", lo=0.0, hi=10.0, sd=1.0, of="time", doc="35 deg one side to 30 deg the other, at full rate")
-    ease: float = param(0.0, unit="s", lo=0.0, hi=2.0, sd=0.3, of="time", doc="time constant with which the gear slows down near its order")
+    ease: float = param(0.0, unit="s", lo=0.0, hi=2.0, sd=0.3, of="time", form=0.5, doc="time constant with which the gear slows down near its order")
 
     def dead_time(self) -> Number:
         return self.delay
