@@ -33,6 +33,7 @@ from .start import told_of_waves, waves_on
 from .structure import structural_floor
 from .track import Track
 from .usual import clearly_hers, usual
+from .weather import FAINT, HARDER
 
 SCHEMA_VERSION = 1
 FITTED_BY = ("steps", "paths")  # one step ahead through a filter, or several lengths ahead without (rollout.py)
@@ -176,6 +177,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "fitted_by": by,
         **{key: _said(owner.__name__, after, core) for key, owner in SAID.items()},
         "waves": waves_on(core.tracks),
+        "too_faint": [name for name, felt in hers["weather"].items() if felt > FAINT],
         "usual": clearly_hers(after, hers), "between_voyages": hers["between_voyages"],
         "floor": asdict(core.floor), "temper": core.temper, "by_regime": hers["by_regime"],
         "held_out": [e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]} for b, e in zip(before, hers["held_out"], strict=True)],
@@ -243,6 +245,10 @@ def told(result: dict[str, Any]) -> list[str]:
         lines.append(f"  place is measured elsewhere than the ship file had it: where is now part of the model (AntennaOffset: {_sizes(antenna)})")
     if wind := result["wind"]:
         lines.append(f"  wind pushed her on these voyages: how is now part of the model (Wind: {_sizes(wind)})")
+    lines += [
+        f"  {name} was measured and too faint to be told: up to {HARDER:g} times as hard a push is reckoned with and not called missing"
+        for name in result["too_faint"]
+    ]
     lines += [f"  {text}" for text in told_of_waves(result["waves"])]
     share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]

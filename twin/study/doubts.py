@@ -9,6 +9,8 @@ from twin.physics.ship import DERIVATIVES
 EDGE = 1e-6  # of the box: a value nearer than this to its end was stopped by it
 LARGE = 0.25  # share of the forces at work that is much to leave unexplained
 BLIND = 1.0  # widths of its prior by which an effect's number may differ between healthy voyages and still be seen
+STRAIGHTENS = {"gamma_v": 1.0, "gamma_r": -1.0}  # the sign that a hull gives them
+CLEARLY = 3.0  # standard errors
 AXES = ("surge", "sway", "yaw")
 
 
@@ -18,7 +20,7 @@ def doubts(
 ) -> list[str]:  # fmt: skip
     """Sentences; none when the calibration is as it should be. `usual`: lasting effects that she shows; `between`: by how many widths of
     their priors numbers differ from voyage to voyage."""
-    return [*_stopped(derivatives), *_no_better(held_out), *_coarse(share), *_ordered(usual), *_blind(between)]
+    return [*_stopped(derivatives), *_backwards(derivatives), *_no_better(held_out), *_coarse(share), *_ordered(usual), *_blind(between)]
 
 
 def _stopped(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -29,6 +31,18 @@ def _stopped(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
     return [
         f"{', '.join(names)} stopped at the end of what ships have: check mass, draught, rudder and propeller in the ship file, "
         "and that nothing was wrong on the reference voyages"
+    ]
+
+
+def _backwards(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Behind every hull drift and turning send the flow against the rudder's angle in a turn; less of it than none there is no hull."""
+    flow = [d for d in derivatives if d["name"] in STRAIGHTENS]
+    wrong = [f"{d['name']} {d['value']:.2g}" for d in flow if STRAIGHTENS[d["name"]] * d["value"] < -CLEARLY * d["sd"]]
+    if not wrong:
+        return []
+    return [
+        f"{', '.join(wrong)}: the stern's own drift would help her rudder, as on no ship. Is rudder, yaw rate or sway of the other sign, or late? "
+        "twin compare, and the checks of twin import"
     ]
 
 

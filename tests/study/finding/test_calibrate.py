@@ -81,6 +81,9 @@ def test_a_calibration_that_ended_badly_says_so_and_a_good_one_does_not(calibrat
     fell = {"horizon_s": 120.0, "windows": 9, "position_m": 4.0, "before_m": 9.0, "heading_deg": 1.0, "before_deg": 2.0}
     at_its_end = [{"name": "N_rr", "value": -0.6, "excited": True}, {"name": "X_u", "value": 0.0, "excited": True}]
     assert doubts(at_its_end, [fell], (0.1, 0.1, 0.1))[0].startswith("N_rr stopped")
+    flow = [{"name": "gamma_v", "value": -0.15, "sd": 0.03, "excited": True}, {"name": "gamma_r", "value": 0.05, "sd": 0.03, "excited": True}]
+    (backwards,) = doubts(flow, [fell], (0.1, 0.1, 0.1))
+    assert backwards.startswith("gamma_v -0.15: ") and "sign" in backwards
     (rose,) = doubts([], [fell | {"position_m": 12.0}], (0.1, 0.1, 0.1))
     assert "9 -> 12 m" in rose and "twin compare" in rose
     (turned,) = doubts([], [fell | {"heading_deg": 5.0}], (0.1, 0.1, 0.1))
@@ -157,4 +160,4 @@ def test_wind_that_blew_on_the_references_becomes_a_part_of_the_ship_and_none_do
     sd = ship.notes["effects"]["Wind"]["c_y"]["sd"]
     assert wind.c_y > 4.0 * sd and result["wind"]["c_y"]["value"] == wind.c_y
     assert "Wind" not in ship.notes["structural"]["beside_effects"] and "Wind" not in ship.notes["structural"]["weather"]
-    assert calibrated[1]["wind"] == {}
+    assert result["too_faint"] == [] and calibrated[1]["wind"] == {}
