@@ -82,7 +82,7 @@ def fitted(ship: Ship, effects: Sequence[type[Effect]], tracks: Sequence[Track])
     usable = in_one(base, tracks)
     tracks = [levelled(t) for t in tracks]
     found = fit(tracks, usable, unknowns, known, floor, temper=_temper(ship))
-    sd = _doubt(found, tracks, floor, known, _temper(ship))
+    sd = _doubt(found, base, tracks, floor, known, _temper(ship))
     names = {e.__name__ for e in effects}
     made = [_written(e, ship) for e in found.model.effects if type(e).__name__ in names]
     value = [float(getattr(e, u.name)) for u in unknowns for e in made if type(e).__name__ == u.owner]
@@ -103,17 +103,18 @@ def _temper(ship: Ship) -> float:
     return float(ship.notes.get("structural", {}).get("temper", TEMPER))
 
 
-def _doubt(found: Fit, tracks: Sequence[Track], floor: Floor, known: dict[str, type[Effect]], temper: float) -> np.ndarray:
-    """(P,) standard errors, the doubt about core and instruments included: it is wider than that of a fit with the core fixed."""
-    own = {u.owner for u in found.unknowns}
-    beside = tuple(u for u in nuisance_unknowns(found.model, known) if u.owner not in own)
+def _doubt(found: Fit, base: Model, tracks: Sequence[Track], floor: Floor, known: dict[str, type[Effect]], temper: float) -> np.ndarray:
+    """(P,) standard errors, the doubt about core and instruments included: it is wider than that of a fit with the core fixed. How much of the
+    effect is usual on her is among them: the reference voyages cannot tell it from her core, but tell well what both together are."""
+    beside = nuisance_unknowns(base, known)
     every: list[Unknown] = [*found.unknowns, *beside]
-    lines = [linearise(t, found.model, every, known) for t in tracks]
+    at = {u.label: float(value) for u, value in zip(found.unknowns, found.value, strict=True)}
+    lines = [linearise(t, found.model, every, known, at) for t in tracks]
     A, _, _ = innovate(lines, [floor])[0].total()
     sd, P = np.array([u.sd for u in every]), len(found.unknowns)
     A = A * np.outer(sd, sd) / temper
     A[:P, :P] += np.eye(P)
-    A[P:, P:] += from_ship(found.model, beside).information
+    A[P:, P:] += from_ship(base, beside).information
     return np.sqrt(np.diag(np.linalg.inv(A))[:P]) * sd[:P]
 
 
