@@ -80,6 +80,7 @@ class Effect:
     holds: ClassVar[tuple[str, ...]] = ()  # effects that are a part of this one, so that beside it they say nothing
     irregular: ClassVar[bool] = False  # whether it comes and goes with what no input shows
     lever: ClassVar[float] = 0.0  # share of her length by which its side force may attack elsewhere than its form has it (one sd)
+    size: ClassVar[str] = ""  # the number without which the others are a form of nothing; of most effects any of them is enough
     source: ClassVar[str] = ""
 
     def __init_subclass__(cls, **kwargs: Any) -> None:

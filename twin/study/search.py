@@ -11,6 +11,7 @@ import numpy as np
 
 from .altered import floats
 from .case import ODDS_WEAK, WORLDS, Case
+from .columns import Unknown
 from .evidence import Hypothesis, Reduced, boxed, posterior, weigh_all
 from .led import REACH, Led, led
 from .leftover import NEARLY, answer
@@ -173,11 +174,15 @@ class _Book:
                 self._enter(h)
 
     def _hollow(self, chosen: Sets) -> bool:
-        """Whether an effect of this set ended at nothing, or is a load that cannot be: it would help only with sizes that cannot be, and the
-        set says no more than the rest."""
+        """Whether an effect of this set ended at nothing (or its size did), or is a load that cannot be: it would help only with sizes that cannot
+        be, and the set says no more than the rest."""
         z = self.found[chosen].posterior.z
-        nothing = any(not np.any(z[[i for i, u in enumerate(self.case.effects) if u.owner == name]]) for name in chosen)
+        nothing = any(not np.any(z[[i for i, u in enumerate(self.case.effects) if u.owner == name and self._sizes(u)]]) for name in chosen)
         return nothing or not floats(self.case, self.found[chosen])
+
+    def _sizes(self, u: Unknown) -> bool:
+        """Whether this number alone may be what its effect is."""
+        return self.case.catalogue[u.owner].size in ("", u.name)
 
     def _counts(self, chosen: Sets, h: Hypothesis) -> bool:
         """Whether what was said about the size of `chosen` is the better word on this hypothesis: on that set itself; on what leaves a part of

@@ -140,3 +140,12 @@ def test_what_any_day_brings_is_no_news_where_it_stands_today(tanker, voyages):
     assert nothing["knows"] > 1.0 and nothing["knows not"] == 0.0
     weighed, _, _ = search(usual)
     assert weights(usual, weighed).effects["Current"] < 0.5
+
+
+@pytest.mark.parametrize("c_d, hollow", [(0.0, True), (0.1, False)])
+def test_drag_that_is_none_but_lies_otherwise_along_her_is_none(case, c_d, hollow):
+    held, chosen = book(case), ("CrossFlowDrag",)
+    z = np.array([{"c_d": c_d, "c_aft": -0.4}.get(u.name, 0.0) if u.owner == chosen[0] else 0.0 for u in case.effects])
+    nothing = held.found[()]
+    held.found[chosen] = replace(nothing, posterior=replace(nothing.posterior, z=z))
+    assert held._hollow(chosen) is hollow

@@ -16,6 +16,7 @@ STRIPS = tuple((i + 0.5) / 10.0 - 0.5 for i in range(10))  # middle of each stri
 class CrossFlowDrag(Force):
     """Bilge keels, growth or a blunt bilge hold the ship against the water that crosses under her when she drifts and turns."""
 
+    size = "c_d"
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 6 (cross-flow drag); Faltinsen (1990) Sea Loads, ch. 6"
 
     c_d: float = param(0.4, unit="-", lo=0.0, hi=2.0, sd=0.4, doc="drag coefficient beyond that of the hull's derivatives, mean of her length")
