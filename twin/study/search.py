@@ -9,6 +9,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from twin.physics.effect import SensorFault
+
 from .altered import floats
 from .case import ODDS_WEAK, WORLDS, Case
 from .columns import Unknown
@@ -89,7 +91,7 @@ class _Book:
         ranked = self.weighed()
         first = 0 if not ranked[0].effects and WORLDS[ranked[0].world].plain else SINGLES  # none when the plain answer is that nothing is there
         singles = self._promising()
-        self.first = [*singles[:first], *(self._of_the_day() if first else [])]
+        self.first = [*singles[:first], *((*self._of_the_day(), *filter(self._of_another_moment, singles)) if first else ())]
         self.last = singles[first : first + LAST]
 
     def _enter(self, h: Hypothesis) -> None:
@@ -116,6 +118,11 @@ class _Book:
         """What every day brings much of on this ship: to first order what is usual takes the credit, and only its own size tells."""
         usual = {u.owner: self.case.nuisance.daily.get(u.label, 0.0) / u.sd for u in self.case.effects if u.label in DAILY}
         return [(name,) for name, width in usual.items() if width > MUCH]
+
+    def _of_another_moment(self, chosen: Sets) -> bool:
+        """Whether an instrument shows what was true before: about none, slopes of this moment tell little of it."""
+        kinds = [self.case.catalogue[name] for name in chosen]
+        return any(issubclass(kind, SensorFault) and kind.prompt is not SensorFault.prompt for kind in kinds)
 
     def next(self) -> Sets | None:
         """What to judge about its own size next; each effect of a set alone before the set, and beside what is no news: it may do what took two."""

@@ -149,3 +149,9 @@ def test_drag_that_is_none_but_lies_otherwise_along_her_is_none(case, c_d, hollo
     nothing = held.found[()]
     held.found[chosen] = replace(nothing, posterior=replace(nothing.posterior, z=z))
     assert held._hollow(chosen) is hollow
+
+
+def test_what_shows_another_moment_is_judged_about_its_own_size_if_it_promises_anything(case):
+    held = book(case)
+    assert held._of_another_moment(("SensorDelay",)) and not held._of_another_moment(("HeadingBias",)) and not held._of_another_moment(("SteeringLag",))
+    assert (("SensorDelay",) in held.first) == (("SensorDelay",) in held._promising())
