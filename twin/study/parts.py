@@ -24,7 +24,7 @@ from .weather import strengths
 
 CLEAR = 4.0  # standard errors
 BETTER = 0.05  # share by which predictions of what was not used for the fit must be better with it
-PUSHED = 0.06  # of the standard acceleration, by a plausible wind: what a fainter one seems to do is her own way through the air, and no wind's
+PUSHED = 0.08  # of the standard acceleration, by a plausible wind: what a fainter one seems to do is her own way through the air, and no wind's
 
 
 def with_or_without_wind(tracks: Sequence[Track], without: Fit, known: Catalogue, temper: float) -> Fit:
