@@ -54,16 +54,6 @@ def antenna_elsewhere(v: Voyage, ahead: float) -> Voyage:
     return replace(q, x=q.x + ahead * c, y=q.y + ahead * s, north=q.north - ahead * q.r * s, east=q.east + ahead * q.r * c).into(v)
 
 
-def antenna_above(v: Voyage, height: float) -> Voyage:
-    """On a mast: heel carries it aside."""
-    q = Readings.of(v)
-    aside = height * np.sin(v.si("roll_deg"))
-    swing = np.gradient(aside, v.time_s)
-    c, s = np.cos(q.psi), np.sin(q.psi)
-    swung = replace(q, x=q.x - aside * s, y=q.y + aside * c)
-    return replace(swung, north=q.north - aside * q.r * c - swing * s, east=q.east - aside * q.r * s + swing * c).into(v)
-
-
 def in_a_stream(v: Voyage, north: float, east: float) -> Voyage:
     q, t = Readings.of(v), v.time_s - v.time_s[0]
     return replace(q, x=q.x + north * t, y=q.y + east * t, north=q.north + north, east=q.east + east).into(v)

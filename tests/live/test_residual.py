@@ -12,6 +12,7 @@ from twin.live import residual as residuals
 from twin.live.learned import LearnedForce
 from twin.live.onnx_file import look
 from twin.live.residual import MARGIN, ResidualError, WrongShip, check, load, ship_hash
+from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load as load_ship
 from twin.physics.state import Situation
@@ -185,6 +186,8 @@ def test_M13_a_residual_of_another_ship_or_model_is_never_used(kvlcc2, parts):
     assert ship_hash(kvlcc2) == json.loads(parts[1])["ship"]["hash"]  # made before the core knew two sides of a rudder's inflow
     with pytest.raises(WrongShip, match="another model"):
         check(*parts, kvlcc2.with_derivatives(gamma_a=-0.1))
+    drag, harder = find("CrossFlowDrag")(c_d=0.3), find("CrossFlowDrag")(c_d=0.3, c_mid=0.1)
+    assert ship_hash(kvlcc2.with_effects(drag)) == "2869635e5d42bc0d" != ship_hash(kvlcc2.with_effects(harder))  # before drag had a place along her
 
 
 def test_M7_outside_its_envelope_the_learned_force_shrinks_smoothly_to_nothing(kvlcc2):

@@ -28,7 +28,9 @@ from twin.physics.zeta import ZETA
 OPERATORS = frozenset(("Gemm", "MatMul", "Add", "Sub", "Mul", "Div", "Sigmoid", "Tanh", "Relu", "Clip", "Concat", "Identity", "Softplus", "Swish"))
 MAX_BYTES = 8_000_000
 OPSETS = range(13, 26)
-LATER = ("gamma_a", "X_uuu")  # derivatives that came after the first residuals: a ship without them is the model she was
+LATER = {  # numbers that came after the first residuals, by section or effect: a ship without them is the model she was
+    "derivatives": ("gamma_a", "X_uuu"), "CrossFlowDrag": ("c_aft", "c_mid"), "AntennaOffset": ("above",),
+}  # fmt: skip
 MARGIN = 0.25  # how far outside its envelope the residual is shrunk to nothing
 GOLDEN = 1e-4  # how closely golden outputs must be met, relative to their size
 ABSURD = 1e6  # a feature beyond this is no feature
@@ -151,10 +153,11 @@ def ship_hash(ship: Ship) -> str:
     effects."""
     table = ships.to_table(ship)
     numbers = {section: {name: entry["value"] for name, entry in table[section].items()} for section in ("particulars", "derivatives")}
-    for name in LATER:
-        if numbers["derivatives"][name] == 0.0:
-            del numbers["derivatives"][name]
     effects = {name: {k: p["value"] for k, p in entry.items()} for name, entry in table["effects"].items()}
+    for owner, entry in (numbers | effects).items():
+        for name in LATER.get(owner, ()):
+            if entry[name] == 0.0:
+                del entry[name]
     text = json.dumps([ship.name, numbers, effects], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 

@@ -100,12 +100,17 @@ def coefficients(ship: "Ship") -> Coefficients:
     )  # fmt: skip
 
 
+def resistance(u: Number, c: Coefficients) -> Number:
+    """Force ahead [N] on the bare hull in calm water, and what waves make of it as her speed nears theirs (X_uuu)."""
+    U = abs(u)
+    return (c.X_u + (c.X_uu + c.X_uuu * U) * U) * u
+
+
 def damping(u: Number, v: Number, r: Number, c: Coefficients) -> Tau:
-    """-D(nu_r) nu_r: linear, quadratic and cross-coupled drag of the hull, |.|. in Norrbin's second-order modulus form, and what waves make of her
-    resistance as her speed nears theirs."""
+    """-D(nu_r) nu_r: resistance, and linear, quadratic and cross-coupled drag of the hull, |.|. in Norrbin's second-order modulus form."""
     U, V, R = abs(u), abs(v), abs(r)
     return (
-        (c.X_u + (c.X_uu + c.X_uuu * U) * U) * u + (c.X_vv * v + c.X_vr * r) * v + c.X_rr * r * r,
+        resistance(u, c) + (c.X_vv * v + c.X_vr * r) * v + c.X_rr * r * r,
         (c.Y_v + c.Y_uv * U + c.Y_vv * V + c.Y_rv * R) * v + (c.Y_ur * u + c.Y_vr * V + c.Y_rr * R) * r,
         (c.N_uv * u + c.N_vv * V + c.N_rv * R) * v + (c.N_r + c.N_ur * U + c.N_vr * V + c.N_rr * R) * r,
     )

@@ -25,7 +25,7 @@ from .import_voyage import write_json
 from .innovations import Floor
 from .jsonable import plain
 from .nuisance import TEMPER, WEATHER, instruments, temper_of
-from .parts import clearly, placed, with_antenna, with_or_without_wind
+from .parts import clearly, placed, with_or_without_wind
 from .rollout import rolled_out
 from .sailed import Sailed, read_all
 from .seaway import levelled, swung
@@ -107,7 +107,7 @@ def calibrate(
 
 def _with_antenna(first: AntennaOffset, sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
     """The same with the antenna in the model from the start: what heel and turning carry it about is no sway of hers, and had bent the core."""
-    found = _core(sailed, with_antenna(ship, first), progress)
+    found = _core(sailed, ship.with_effects(first), progress)
     antenna = AntennaOffset(**{name: number["value"] for name, number in found.numbers[AntennaOffset.__name__].items()})
     hers = (e for e in ship.effects if isinstance(e, AntennaOffset))  # until predictions are better with the other (`placed`)
     return replace(found, effects=(*hers, *(e for e in found.effects if not isinstance(e, AntennaOffset))), antenna=antenna)

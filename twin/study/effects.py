@@ -89,10 +89,12 @@ def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:
     for p in effect.params():
         k = p.scale(ship) if ship else 1.0
         sizes = {key: getattr(p, key) * k for key in ("default", "lo", "hi", "sd", "null")} | {"form": p.form}
-        params.append({"name": p.name, "unit": p.unit, **sizes, "times": SCALES[p.of] if p.of and not ship else None, "doc": p.doc})
+        only_with = INPUTS.get(p.input) if p.input else None
+        times = SCALES[p.of] if p.of and not ship else None
+        params.append({"name": p.name, "unit": p.unit, **sizes, "times": times, "input": only_with, "doc": p.doc})
     return {
         "name": effect.__name__, "kind": effect.kind, "doc": sentence(effect), "formula": formula(effect), "needs": inputs(effect),
-        "needs_ship": list(effect.needs_ship), "lever": effect.lever, "source": effect.source, "parameters": params,
+        "needs_ship": list(effect.needs_ship), "lever": effect.lever, "size": effect.size or None, "source": effect.source, "parameters": params,
     }  # fmt: skip
 
 

@@ -7,7 +7,6 @@ prediction off.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 from twin.physics.effects.antenna_offset import AntennaOffset
 from twin.physics.effects.wind import Wind
@@ -45,15 +44,10 @@ def clearly(found: Fit) -> AntennaOffset | None:
     return AntennaOffset(**{u.name: float(v) for u, v, _ in numbers})
 
 
-def with_antenna(ship: Ship, antenna: AntennaOffset) -> Ship:
-    """The ship with her antenna there, and nowhere else."""
-    return replace(ship, effects=(*(e for e in ship.effects if not isinstance(e, AntennaOffset)), antenna))
-
-
 def placed(ship: Ship, antenna: AntennaOffset | None, held_out: HeldOut) -> Ship:
     """The ship with her antenna there, if so she is predicted better."""
     if antenna is None:
         return ship
-    moved = with_antenna(ship, antenna)
+    moved = ship.with_effects(antenna)
     before, after = (size(errors(Model.of(s), held_out)) for s in (ship, moved))
     return moved if after < before - BETTER else ship

@@ -1,11 +1,13 @@
 """Calibration: the held-out error falls, what is not excited keeps its prior, and the file carries what remains."""
 
 import json
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from bench.bundled import recorded
-from bench.real_faults import antenna_above, antenna_elsewhere
+from bench.real_faults import Readings, antenna_elsewhere
 from bench.reference import Case, simulate
 from twin import cli
 from twin.physics.ship import load
@@ -121,6 +123,16 @@ def test_an_antenna_that_stands_elsewhere_on_the_references_becomes_a_part_of_th
     assert "AntennaOffset" in ship.notes["structural"]["beside_effects"]
 
 
+def on_a_mast(v, height):
+    """The voyage as an antenna so high above the axis of roll shows it: heel carries it aside."""
+    q = Readings.of(v)
+    aside = height * np.sin(v.si("roll_deg"))
+    swing = np.gradient(aside, v.time_s)
+    c, s = np.cos(q.psi), np.sin(q.psi)
+    swung = replace(q, x=q.x - aside * s, y=q.y + aside * c)
+    return replace(swung, north=q.north - aside * q.r * c - swing * s, east=q.east - aside * q.r * s + swing * c).into(v)
+
+
 def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship(tmp_path):
     """Test: three voyages of a container ship that heels by some degrees in her turns, seen by an antenna 30 m above the axis of roll, and by a low one.
     Expected: its height and no place ahead, and predictions as good as with the low one (the heel of her turns had been taken for sway)."""
@@ -129,7 +141,7 @@ def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship
     for height in (0.0, 30.0):
         paths = [tmp_path / f"{height:g}-{i}.mcap" for i in range(3)]
         for path, r in zip(paths, sailed, strict=True):
-            write_voyage(antenna_above(recorded(path.stem, r.columns, every=10), height), path)
+            write_voyage(on_a_mast(recorded(path.stem, r.columns, every=10), height), path)
         out, said = tmp_path / f"{height:g}.toml", tmp_path / "said.json"
         words = ["calibrate", *map(str, paths[:2]), "--held-out", str(paths[2]), "--ship", "container", "-o", str(out), "--json", str(said)]
         assert cli.main(words) == 0

@@ -3,6 +3,7 @@
 X = -extra R(u_r),   R = -(X_u + X_uu |u_r| + X_uuu u_r^2) u_r
 """
 
+from twin.physics.core import resistance
 from twin.physics.effect import Force, param
 from twin.physics.particulars import Ship
 from twin.physics.state import Force as ForceVector
@@ -17,5 +18,4 @@ class HullFouling(Force):
     extra: float = param(0.3, unit="-", lo=0.0, hi=2.0, sd=0.25, doc="added resistance over calm-water resistance")
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:
-        c, U = ship.c, abs(s.u_r)
-        return ForceVector(X=self.extra * (c.X_u + (c.X_uu + c.X_uuu * U) * U) * s.u_r)
+        return ForceVector(X=self.extra * resistance(s.u_r, ship.c))
