@@ -18,9 +18,9 @@ function decode(v) {
 function tone() {
   if (DATA.kind === "add") return RESULT.forced ? ["fair", "forced"] : RESULT.accepted ? ["good", "the error falls"] : ["bad", "not written"];
   if (DATA.kind === "diagnose") return { missing: ["bad", "missing"], nothing_missing: ["good", "nothing missing"], unknown: ["fair", "unknown cause"], undecided: ["fair", "undecided"] }[RESULT.verdict] || ["fair", RESULT.verdict];
-  const h = RESULT.horizons[RESULT.horizons.length - 1];
-  if (!h) return ["fair", "not judged"];
-  const x = Math.max(h.position_mae_m / h.noise_floor.position_mae_m, h.heading_mae_deg / h.noise_floor.heading_mae_deg);
+  if (!RESULT.horizons.length) return ["fair", "not judged"];
+  const times = RESULT.horizons.map((h) => Math.max(h.position_mae_m / h.noise_floor.position_mae_m, h.heading_mae_deg / h.noise_floor.heading_mae_deg));
+  const last = times[times.length - 1], x = last < 1.5 ? Math.max(...times) : last; // as the verdict (compare.py)
   return x < 1.5 ? ["good", "within noise"] : x < 4 ? ["fair", `${num(x, 2)} times the noise`] : ["bad", `${num(x, 2)} times the noise`];
 }
 
