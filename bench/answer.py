@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from twin import whole
-from twin.study.import_voyage import write_json
+from twin.recording.import_voyage import write_json
 
 HAND = "## What it says"  # from this line on a page is written by hand, and stays
 

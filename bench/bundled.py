@@ -12,11 +12,11 @@ import numpy as np
 import twin
 from bench.reference import Case, simulate
 from twin.physics.ship import load, save
+from twin.recording.voyage import Voyage
+from twin.recording.write import write_voyage
 from twin.study.calibrate import calibrate
 from twin.study.sailed import Sailed
 from twin.study.track import track
-from twin.study.voyage import Voyage
-from twin.study.write import write_voyage
 
 FOLDER = Path(twin.__file__).parent / "voyages"
 REFERENCES = ("zigzag_20", "turning_circle", "speed_changes", "course_changes", "zigzag_10", "mixed")

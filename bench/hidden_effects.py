@@ -13,7 +13,7 @@ from bench.league_page import page
 from bench.options import positive
 from twin.errors import SettingsError
 from twin.physics.effects import catalogue
-from twin.study.import_voyage import write_json
+from twin.recording.import_voyage import write_json
 
 EPILOG = """example:
   twin-bench hidden-effects --quick --json -

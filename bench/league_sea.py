@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from bench.reference import Case, Recording, simulate
-from twin.study.voyage import Voyage
+from twin.recording.voyage import Voyage
 
 BATCH = 96  # ships that sail side by side
 

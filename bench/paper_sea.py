@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from bench.reference import HULLS, Case, Recording, simulate
-from twin.study.voyage import Voyage
+from twin.recording.voyage import Voyage
 
 SCENARIOS = ("TS-01", "TS-02", "TS-03")
 RUN_S, STARTS_S = 900.0, (290.0, 350.0, 410.0, 470.0, 530.0)  # of every voyage, and where its windows begin

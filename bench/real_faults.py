@@ -12,8 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from twin.physics.ship import Ship
+from twin.recording.voyage import Voyage
 from twin.study.diagnose import diagnose
-from twin.study.voyage import Voyage
 
 
 @dataclass(frozen=True)

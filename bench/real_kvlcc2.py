@@ -14,12 +14,12 @@ from twin.errors import SettingsError
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
+from twin.recording.map_file import read_map
+from twin.recording.read import read_voyage
 from twin.study import adding
 from twin.study.calibrate import calibrate
 from twin.study.compare import compare
 from twin.study.diagnose import diagnose
-from twin.study.map_file import read_map
-from twin.study.read import read_voyage
 from twin.study.sailed import Sailed
 from twin.study.score import reckoned
 from twin.study.track import track

@@ -27,7 +27,7 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Force, Situation
-from twin.study.jsonable import plain
+from twin.recording.jsonable import plain
 
 NOISE = {
     "kvlcc2": (0.15, 0.15, 0.0005),

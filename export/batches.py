@@ -6,13 +6,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 
+from export.data import Leg
+from export.loss import Inputs, left_over, span
+from export.network import Residual
 from twin.live.learned import scale_of
 from twin.physics.model import Model
 from twin.physics.state import Situation
-
-from .data import Leg
-from .loss import Inputs, left_over, span
-from .network import Residual
 
 STRIDE = 2  # grid steps in one step of a roll-out: a sixteenth of the time the ship takes to sail her length
 STATE = ("x", "y", "psi", "u", "v", "r")

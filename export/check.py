@@ -10,12 +10,11 @@ from pathlib import Path
 import numpy as np
 import torch
 
+from export.network import Residual
 from twin.cli import guarded
 from twin.errors import TwinError
 from twin.live.residual import load as load_residual
 from twin.physics.ship import load
-
-from .network import Residual
 
 AGREE = 1e-6  # of the larger of 1 and the feature's size
 

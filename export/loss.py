@@ -12,11 +12,10 @@ from dataclasses import replace
 
 import torch
 
+from export.network import Residual
 from twin.physics import core
 from twin.physics.model import CORE, Model
 from twin.physics.state import LIGHT, Force, Growth, Situation
-
-from .network import Residual
 
 ODD = ("sway", "yaw", "rudder", "air_starboard", "wave_starboard", "roll")
 Inputs = dict[str, torch.Tensor]  # fields of Situation, each (..., B)

@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 import torch
 
+from export.data import Leg
 from twin.live.learned import scale_of
 from twin.live.residual import MARGIN
 from twin.physics.effects.wind import Wind
@@ -18,8 +19,6 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 from twin.physics.zeta import inputs
-
-from .data import Leg
 
 LAYERS, WIDTH = 4, 64
 CALM = ("surge", "sway", "yaw", "rudder", "propeller")

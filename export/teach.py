@@ -13,14 +13,13 @@ from typing import Any
 import torch
 from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
+from export import loss as losses
+from export.batches import Samples, Windows, input_names, samples, shuffled, windows, zeta_of
+from export.data import Leg
+from export.network import Residual, names_for
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.physics.zeta import inputs
-
-from . import loss as losses
-from .batches import Samples, Windows, input_names, samples, shuffled, windows, zeta_of
-from .data import Leg
-from .network import Residual, names_for
 
 Progress = Callable[[str, int, int, float, float], None]  # stage, epoch, epochs, loss, validation loss
 

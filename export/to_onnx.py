@@ -10,11 +10,10 @@ import numpy as np
 import torch
 from onnx import TensorProto, checker, helper, numpy_helper
 
+from export.network import WIDTH, Residual
 from twin.live.manifest import SCHEMA_VERSION
 from twin.live.residual import ship_hash
 from twin.physics.zeta import ZETA
-
-from .network import WIDTH, Residual
 
 OPSET, COMPONENTS, GOLDEN = 17, 4, 8
 

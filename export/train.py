@@ -7,14 +7,13 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
+from export.data import leg, model_of, split
 from twin.errors import DataError, ThresholdError, TwinError
 from twin.physics.ship import Ship, load
-from twin.study.import_voyage import write_json
-from twin.study.jsonable import plain
+from twin.recording.import_voyage import write_json
+from twin.recording.jsonable import plain
 from twin.study.sailed import Sailed, read_all
 from twin.study.track import Track, track
-
-from .data import leg, model_of, split
 
 SCHEMA_VERSION = 1
 NEEDS = "`twin train` needs {!r}. Run: pip install 'shiptwin[train]'"
@@ -111,7 +110,7 @@ def run(args: argparse.Namespace) -> int:
 
 def settings_of(args: argparse.Namespace) -> Any:
     """The training's settings, from the command line."""
-    from .teach import Settings
+    from export.teach import Settings
 
     named = {f.name for f in fields(Settings)}
     return Settings(**{name: value for name, value in vars(args).items() if name in named})
@@ -119,9 +118,9 @@ def settings_of(args: argparse.Namespace) -> Any:
 
 def learn(ship: Ship, sailed: list[Sailed], settings: Any, seeds: list[int], output: Path, force: bool = False) -> dict[str, Any]:
     """Train for every seed, keep the best on validation, judge it on the test part, write it when it is worth having."""
-    from . import check, to_onnx
-    from .teach import teach, zeta_of
-    from .worth import share, worth
+    from export import check, to_onnx
+    from export.teach import teach, zeta_of
+    from export.worth import share, worth
 
     sailed = sorted(sailed, key=lambda s: str(s.voyage.meta.get("start_time_utc") or ""))
     tracks = on_one_grid(sailed, ship)

@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 import torch
 
+from export.batches import Windows, input_names, windows
+from export.data import Leg
+from export.loss import free_run
+from export.network import Residual
 from twin.physics.model import Model
 from twin.physics.state import Situation
-
-from .batches import Windows, input_names, windows
-from .data import Leg
-from .loss import free_run
-from .network import Residual
 
 LENGTHS = 3.0  # the horizon, in ship lengths sailed: 120 s for KVLCC2
 RESAMPLES = 2000

@@ -27,7 +27,7 @@ VERBS: dict[str, Verb] = {
         "a first model of my ship from what its owner knows",
         "twin init 'MV Alma' --length-pp-m 180 --beam-m 30 --draught-m 10.5 -o alma.toml",
     ),
-    "import": Verb("twin.study.import_voyage", "measurements in, checked", "twin import log.csv --map log-map.toml -o voyage.mcap"),
+    "import": Verb("twin.recording.import_voyage", "measurements in, checked", "twin import log.csv --map log-map.toml -o voyage.mcap"),
     "calibrate": Verb(
         "twin.study.calibrate", "fits the core to reference voyages", "twin calibrate calm.mcap --ship alma.toml -o alma2.toml"
     ),

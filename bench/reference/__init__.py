@@ -4,9 +4,9 @@ recording, = simulate([Case("kvlcc2", "mixed", hidden=(("Wind", 1.0),), seed=3)]
 recording.columns["heading_true_north_deg"], recording.truth["u"], recording.hidden["Wind"]
 """
 
-from .hulls import HULLS, Hull
-from .sea import Sea
-from .voyage import Case, Change, Recording, simulate
-from .weather import WEATHERS, Weather
+from bench.reference.hulls import HULLS, Hull
+from bench.reference.sea import Sea
+from bench.reference.voyage import Case, Change, Recording, simulate
+from bench.reference.weather import WEATHERS, Weather
 
 __all__ = ["HULLS", "WEATHERS", "Case", "Change", "Hull", "Recording", "Sea", "Weather", "simulate"]

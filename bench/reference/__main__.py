@@ -4,12 +4,12 @@ import argparse
 import json
 from pathlib import Path
 
-from . import check
-from .hidden import CATALOGUE, DECOYS, OUTSIDE
-from .hulls import HULLS
-from .manoeuvres import MANOEUVRES
-from .voyage import Case, simulate
-from .weather import WEATHERS
+from bench.reference import check
+from bench.reference.hidden import CATALOGUE, DECOYS, OUTSIDE
+from bench.reference.hulls import HULLS
+from bench.reference.manoeuvres import MANOEUVRES
+from bench.reference.voyage import Case, simulate
+from bench.reference.weather import WEATHERS
 
 
 def show():

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from .fleet import limit
-from .manoeuvres import COURSE, RUDDER, ZIGZAG
+from bench.reference.fleet import limit
+from bench.reference.manoeuvres import COURSE, RUDDER, ZIGZAG
 
 
 def wrap(angle):

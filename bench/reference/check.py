@@ -11,11 +11,11 @@ from pathlib import Path
 
 import numpy as np
 
-from . import figures
-from .manoeuvres import RUDDER, ZIGZAG, Leg
-from .sea import hull_of
-from .voyage import Case, simulate
-from .weather import Weather
+from bench.reference import figures
+from bench.reference.manoeuvres import RUDDER, ZIGZAG, Leg
+from bench.reference.sea import hull_of
+from bench.reference.voyage import Case, simulate
+from bench.reference.weather import Weather
 
 # rudder: (advance / L, tactical diameter / L); angle: (1st, 2nd overshoot [deg]); minus: rudder first to port
 SHIPMMG_TURN = {35: (3.06, 2.99), -35: (2.92, 2.73)}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from .fleet import limit
+from bench.reference.fleet import limit
 
 
 def steer(h, rudder, order, dt, rate_share=1.0):

@@ -10,8 +10,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from . import flaws
-from .weather import strong_waves, strong_wind
+from bench.reference import flaws
+from bench.reference.weather import strong_waves, strong_wind
 
 FULL_SCALE = 50.0  # [m] above this length a ship, below a boat
 

@@ -5,7 +5,7 @@ Everything takes a fleet `h` (see fleet.stack) and arrays (B,); forces in N and 
 
 import numpy as np
 
-from .fleet import limit
+from bench.reference.fleet import limit
 
 R_CLIP = 1.2  # r' beyond which the polynomial has never been measured (pivoting at rest)
 

@@ -8,7 +8,7 @@ equations hold as they stand; a changing current adds the inertia -m dc/dt.
 
 import numpy as np
 
-from . import flaws, mmg
+from bench.reference import flaws, mmg
 
 NORTH, EAST, PSI, U, V, R, PHI, P, Z, W, THETA, Q, SLOSH, SLOSHING = range(14)
 

@@ -5,15 +5,15 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from . import flaws, gear, motion
-from .autopilot import Autopilot
-from .environment import Environment
-from .fleet import limit, stack
-from .hidden import prepare, stack_flaws
-from .hulls import HULLS, Hull
-from .manoeuvres import legs
-from .sensors import COLUMNS, Instruments, compass_error
-from .weather import WEATHERS, Weather, rotated
+from bench.reference import flaws, gear, motion
+from bench.reference.autopilot import Autopilot
+from bench.reference.environment import Environment
+from bench.reference.fleet import limit, stack
+from bench.reference.hidden import prepare, stack_flaws
+from bench.reference.hulls import HULLS, Hull
+from bench.reference.manoeuvres import legs
+from bench.reference.sensors import COLUMNS, Instruments, compass_error
+from bench.reference.weather import WEATHERS, Weather, rotated
 
 ORIGINS = ("hull", "propeller", "rudder", "wind", "waves", "hidden", "known")
 TRUE = [

@@ -6,7 +6,7 @@ wrong compass does not turn them.
 
 import numpy as np
 
-from .chance import Chance
+from bench.reference.chance import Chance
 
 COLUMNS = [
     "time_s",

@@ -4,8 +4,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .sea import ORIGINS, TRUE, Sea, hull_of
-from .sensors import COLUMNS
+from bench.reference.sea import ORIGINS, TRUE, Sea, hull_of
+from bench.reference.sensors import COLUMNS
 
 HALF_HOUR = 1800.0
 AXES = ("X_N", "Y_N", "N_Nm")

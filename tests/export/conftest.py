@@ -6,9 +6,9 @@ import pytest
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation
+from twin.recording.voyage import Voyage
 from twin.study.sailed import Sailed
 from twin.study.track import track
-from twin.study.voyage import Voyage
 
 H, STEPS = 2.0, 600
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from twin.errors import DataError
-from twin.study.read import read_voyage
+from twin.recording.read import read_voyage
 
 STEP_S = 0.1
 REQUIRED = ("time_s", "north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg", "propeller_rate_rpm",

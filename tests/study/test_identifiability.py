@@ -10,6 +10,8 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation
+from twin.recording.jsonable import plain
+from twin.recording.voyage import Voyage
 from twin.study.identifiability import (
     basis,
     gramian,
@@ -20,10 +22,8 @@ from twin.study.identifiability import (
     text,
     verdict,
 )
-from twin.study.jsonable import plain
 from twin.study.learned import features, learned_force
 from twin.study.track import track
-from twin.study.voyage import Voyage
 
 STEP = 1.25
 SHIP = load("kvlcc2")

@@ -8,8 +8,8 @@ import pytest
 
 from twin.cli import main
 from twin.errors import DataError, SettingsError
-from twin.study import import_voyage as verb
-from twin.study.read import read_voyage
+from twin.recording import import_voyage as verb
+from twin.recording.read import read_voyage
 
 
 def run(*words):

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from twin.physics.ship import load
-from twin.study.checks import run_checks
-from twin.study.map_file import read_map
-from twin.study.mapping import Column
-from twin.study.read import read_voyage
+from twin.recording.checks import run_checks
+from twin.recording.map_file import read_map
+from twin.recording.mapping import Column
+from twin.recording.read import read_voyage
 
 FOLDER = Path(os.environ.get("SHIPTWIN_DATA", "")) / "kvlcc2_simman"
 MAPS = Path(__file__).parents[2] / "docs" / "maps"

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from twin.errors import SettingsError
-from twin.study.map_file import parse_map
-from twin.study.read import read_voyage
+from twin.recording.map_file import parse_map
+from twin.recording.read import read_voyage
 
 MAP = {
     "file": {"skip_lines": 1, "separator": ";", "decimal": ",", "missing": ["-99"]},

@@ -7,11 +7,11 @@ import pytest
 
 from twin.physics.effects import find
 from twin.physics.ship import load
-from twin.study.headers import GROUND
-from twin.study.map_file import parse_map
-from twin.study.read import read_voyage
+from twin.recording.headers import GROUND
+from twin.recording.map_file import parse_map
+from twin.recording.read import read_voyage
+from twin.recording.write import write_voyage
 from twin.study.track import READINGS, track
-from twin.study.write import write_voyage
 
 
 def text(tmp_path, content, name="v.csv"):

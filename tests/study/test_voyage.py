@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from twin.errors import DataError
-from twin.study.voyage import Voyage
+from twin.recording.voyage import Voyage
 
 T = np.arange(0.0, 100.0, 0.1)
 

@@ -10,12 +10,11 @@ for long teaches nothing either way, so learning waits, and what it taught since
 
 from math import degrees, radians
 
+from twin.live.dynamics import Forces
+from twin.live.operating import propeller_rate
 from twin.physics.model import CORE, Model
 from twin.physics.ship import Ship
 from twin.physics.state import Situation
-
-from .dynamics import Forces
-from .operating import propeller_rate
 
 STILL = radians(0.5)  # a feedback within this of where it was has not moved
 SLACK = radians(4.0)  # rudder that gusts and the model's errors may look like

@@ -10,13 +10,12 @@ The matrices are those of twin/live/theorem.py.
 from collections import deque
 from typing import TYPE_CHECKING
 
+from twin.live.comparison import add, apply, scaled_row
+from twin.live.operating import NU, WORDS
 from twin.physics.state import Situation
 
-from .comparison import add, apply, scaled_row
-from .operating import NU, WORDS
-
 if TYPE_CHECKING:
-    from .certificate import Certificate
+    from twin.live.certificate import Certificate
 
 NOTHING = 1e9  # a bound so wide that it says nothing: hours without a measurement, or no certificate
 

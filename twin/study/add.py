@@ -12,16 +12,15 @@ from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
-
-from .added import notes, told, verdict, written
-from .adding import ahead, can_be_judged, fitted, thirds
-from .import_voyage import write_json
-from .jsonable import plain
-from .openloop import HORIZONS_S
-from .proof import Fall, by_regime, fall, judged_at, ladder
-from .sailed import Sailed, read_all
-from .structure import floor_of
-from .track import Track
+from twin.recording.import_voyage import write_json
+from twin.recording.jsonable import plain
+from twin.study.added import notes, told, verdict, written
+from twin.study.adding import ahead, can_be_judged, fitted, thirds
+from twin.study.openloop import HORIZONS_S
+from twin.study.proof import Fall, by_regime, fall, judged_at, ladder
+from twin.study.sailed import Sailed, read_all
+from twin.study.structure import floor_of
+from twin.study.track import Track
 
 SCHEMA_VERSION = 1
 EPILOG = """example:
@@ -141,7 +140,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _report(path: str, made: Added, ship: Ship, result: dict[str, Any], shown: Sequence[Sailed]) -> None:
-    from . import report
+    from twin.study import report
 
     history = made.ship.notes["history"]
     report.write(

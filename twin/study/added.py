@@ -7,12 +7,11 @@ from typing import Any
 
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-
-from .adding import UNTOUCHED, Found
-from .jsonable import short
-from .nuisance import OF_THE_DAY
-from .proof import Fall
-from .sailed import Sailed
+from twin.recording.jsonable import short
+from twin.study.adding import UNTOUCHED, Found
+from twin.study.nuisance import OF_THE_DAY
+from twin.study.proof import Fall
+from twin.study.sailed import Sailed
 
 
 def verdict(result: dict[str, Any], proof: Fall) -> str:

@@ -12,17 +12,16 @@ from twin.physics.effect import Effect
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-
-from .columns import Unknown, effect_unknowns
-from .fit import Fit, fit
-from .innovations import Floor, innovate, linearise
-from .jsonable import short
-from .nuisance import TEMPER, from_ship, nuisance_unknowns
-from .openloop import Windows, predict
-from .sailed import fed
-from .seaway import levelled
-from .structure import floor_of
-from .track import Track
+from twin.recording.jsonable import short
+from twin.study.columns import Unknown, effect_unknowns
+from twin.study.fit import Fit, fit
+from twin.study.innovations import Floor, innovate, linearise
+from twin.study.nuisance import TEMPER, from_ship, nuisance_unknowns
+from twin.study.openloop import Windows, predict
+from twin.study.sailed import fed
+from twin.study.seaway import levelled
+from twin.study.structure import floor_of
+from twin.study.track import Track
 
 UNTOUCHED = 0.1  # a number whose doubt shrank by less was not excited
 FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {

@@ -11,19 +11,18 @@ from twin.physics.effects import UNNAMED
 from twin.physics.effects import catalogue as known_effects
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-
-from .case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, settle
-from .columns import FORM, ROUGH, SEA, Unknown, core_unknowns, effect_unknowns, lateness_unknowns, rough_unknowns
-from .excitation import manoeuvred
-from .innovations import Floor, Linear, innovate, linearise
-from .nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, of_known_weather, temper_of, usual_unknowns
-from .rough import doubted
-from .seaway import levelled, stirred, swung
-from .segments import read_parts
-from .structure import floor_beside, floor_of, structural_floor
-from .track import Track, track
-from .voyage import Voyage
-from .weather import as_usual, strengths
+from twin.recording.voyage import Voyage
+from twin.study.case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, settle
+from twin.study.columns import FORM, ROUGH, SEA, Unknown, core_unknowns, effect_unknowns, lateness_unknowns, rough_unknowns
+from twin.study.excitation import manoeuvred
+from twin.study.innovations import Floor, Linear, innovate, linearise
+from twin.study.nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, of_known_weather, temper_of, usual_unknowns
+from twin.study.rough import doubted
+from twin.study.seaway import levelled, stirred, swung
+from twin.study.segments import read_parts
+from twin.study.structure import floor_beside, floor_of, structural_floor
+from twin.study.track import Track, track
+from twin.study.weather import as_usual, strengths
 
 Progress = Callable[[str], None]
 

@@ -14,26 +14,25 @@ from twin.physics.effects.steering_lag import SteeringLag
 from twin.physics.effects.wind import Wind
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
-
-from .columns import core_unknowns
-from .derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
-from .doubts import doubts
-from .fit import Fit, fit
-from .gear import with_or_without_gear
-from .held_out import LAST, HeldOut, by_regime, errors, size, split
-from .import_voyage import write_json
-from .innovations import Floor
-from .jsonable import plain
-from .nuisance import TEMPER, WEATHER, instruments, temper_of
-from .parts import clearly, placed, with_or_without_wind
-from .rollout import rolled_out
-from .sailed import Sailed, read_all
-from .seaway import levelled, swung
-from .start import told_of_waves, waves_on
-from .structure import structural_floor
-from .track import Track
-from .usual import clearly_hers, usual
-from .weather import FAINT, HARDER
+from twin.recording.import_voyage import write_json
+from twin.recording.jsonable import plain
+from twin.study.columns import core_unknowns
+from twin.study.derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
+from twin.study.doubts import doubts
+from twin.study.fit import Fit, fit
+from twin.study.gear import with_or_without_gear
+from twin.study.held_out import LAST, HeldOut, by_regime, errors, size, split
+from twin.study.innovations import Floor
+from twin.study.nuisance import TEMPER, WEATHER, instruments, temper_of
+from twin.study.parts import clearly, placed, with_or_without_wind
+from twin.study.rollout import rolled_out
+from twin.study.sailed import Sailed, read_all
+from twin.study.seaway import levelled, swung
+from twin.study.start import told_of_waves, waves_on
+from twin.study.structure import structural_floor
+from twin.study.track import Track
+from twin.study.usual import clearly_hers, usual
+from twin.study.weather import FAINT, HARDER
 
 SCHEMA_VERSION = 1
 FITTED_BY = ("steps", "paths")  # one step ahead through a filter, or several lengths ahead without (rollout.py)

@@ -9,13 +9,12 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-
-from .columns import Unknown
-from .directions import directions
-from .evidence import Nuisance, Reduced, posterior, reduce
-from .innovations import Floor, Linear, innovate
-from .track import Track
-from .unrest import shaken
+from twin.study.columns import Unknown
+from twin.study.directions import directions
+from twin.study.evidence import Nuisance, Reduced, posterior, reduce
+from twin.study.innovations import Floor, Linear, innovate
+from twin.study.track import Track
+from twin.study.unrest import shaken
 
 MOST_SEGMENTS = 20  # of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
 

@@ -12,10 +12,9 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES
-
-from . import form, rough, tossed
-from .respond import faulty, respond
-from .track import Track
+from twin.study import form, rough, tossed
+from twin.study.respond import faulty, respond
+from twin.study.track import Track
 
 
 @dataclass(frozen=True)

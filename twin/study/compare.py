@@ -9,17 +9,16 @@ from typing import Any
 from twin.errors import DataError, ThresholdError
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
-
-from . import locate, score
-from .import_voyage import write_json
-from .jsonable import plain
-from .openloop import HORIZONS_S, Windows, predict
-from .sailed import Sailed, fed, read_all, switched_off
-from .start import waves_on
-from .structure import floor_of
-from .tell import told
-from .thresholds import passed, positive, threshold
-from .unexplained import Energy, energy
+from twin.recording.import_voyage import write_json
+from twin.recording.jsonable import plain
+from twin.study import locate, score
+from twin.study.openloop import HORIZONS_S, Windows, predict
+from twin.study.sailed import Sailed, fed, read_all, switched_off
+from twin.study.start import waves_on
+from twin.study.structure import floor_of
+from twin.study.tell import told
+from twin.study.thresholds import passed, positive, threshold
+from twin.study.unexplained import Energy, energy
 
 SCHEMA_VERSION = 1
 CLEARLY = 1.5  # times its floor, from which an error is more than it may be
@@ -71,8 +70,7 @@ def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] 
 
 def _result(ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[str, Any]], judged: Energy) -> dict[str, Any]:
     from twin.live.residual import ship_hash
-
-    from .checks import run_checks
+    from twin.recording.checks import run_checks
 
     checks = [(s.track.name, c) for s in sailed for c in run_checks(s.voyage, ship)]
     names = {name for name, _ in checks}
@@ -169,13 +167,13 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _learned(path: str, ship: Ship) -> Callable:
-    from .learned import learned_force
+    from twin.study.learned import learned_force
 
     return learned_force(path, ship)
 
 
 def _report(path: str, found: Compared, model: Model, result: dict[str, Any]) -> None:
-    from . import report
+    from twin.study import report
 
     report.write(
         path,

@@ -9,27 +9,26 @@ from typing import Any
 import numpy as np
 
 from twin.physics.ship import Ship, load
-
-from . import identifiability
-from .altered import sized
-from .assemble import assemble, unjudged_because
-from .case import Case
-from .doubts import coarse_axes
-from .effects import INPUTS
-from .import_voyage import write_json
-from .jsonable import plain
-from .led import held_out_error, horizon_s
-from .leftover import asked_for, changed, explaining, helpful, missed, too_small, undone, weathered
-from .manoeuvres import next_manoeuvre
-from .moments import moments
-from .overtime import over_time
-from .read import read_voyage
-from .refine import Found
-from .search import search
-from .start import waves_on
-from .tell_diagnosis import sentence, told
-from .verdict import SURE, alike, group, judge, parameters, shows, typical_force, weights
-from .voyage import Voyage
+from twin.recording.import_voyage import write_json
+from twin.recording.jsonable import plain
+from twin.recording.read import read_voyage
+from twin.recording.voyage import Voyage
+from twin.study import identifiability
+from twin.study.altered import sized
+from twin.study.assemble import assemble, unjudged_because
+from twin.study.case import Case
+from twin.study.doubts import coarse_axes
+from twin.study.effects import INPUTS
+from twin.study.led import held_out_error, horizon_s
+from twin.study.leftover import asked_for, changed, explaining, helpful, missed, too_small, undone, weathered
+from twin.study.manoeuvres import next_manoeuvre
+from twin.study.moments import moments
+from twin.study.overtime import over_time
+from twin.study.refine import Found
+from twin.study.search import search
+from twin.study.start import waves_on
+from twin.study.tell_diagnosis import sentence, told
+from twin.study.verdict import SURE, alike, group, judge, parameters, shows, typical_force, weights
 
 SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
@@ -194,7 +193,7 @@ def run(args: argparse.Namespace) -> int:
         write_json(result, args.json)
     print("\n".join(page_lines), file=page)
     if args.report:
-        from . import report
+        from twin.study import report
 
         report.write(args.report, "diagnose", result, list(done.case.tracks), done.case.model, voyages=voyages)
         print(f"\nwrote {args.report}", file=page)
@@ -206,7 +205,7 @@ def _features(path: str | None, ship: Ship) -> tuple[Any, ...]:
     """What the residual is made of (twin/study/learned.py)."""
     if not path:
         return ()
-    from .learned import features
+    from twin.study.learned import features
 
     return features(path, ship)
 

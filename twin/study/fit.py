@@ -12,11 +12,10 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-
-from .box import stopped
-from .columns import LATE, Unknown, with_values
-from .innovations import Floor, Linear, Normal, innovate, linearise
-from .track import Track
+from twin.study.box import stopped
+from twin.study.columns import LATE, Unknown, with_values
+from twin.study.innovations import Floor, Linear, Normal, innovate, linearise
+from twin.study.track import Track
 
 Catalogue = dict[str, type[Effect]]
 STEPS = 12

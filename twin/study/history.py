@@ -5,9 +5,8 @@ import sys
 from typing import Any
 
 from twin.physics.ship import Ship, load
-
-from .import_voyage import write_json
-from .jsonable import plain
+from twin.recording.import_voyage import write_json
+from twin.recording.jsonable import plain
 
 SCHEMA_VERSION = 1
 

@@ -20,11 +20,10 @@ from twin.physics.effects import catalogue
 from twin.physics.effects.current import Current
 from twin.physics.model import Model
 from twin.physics.state import Force, Situation
-
-from .columns import columns, core_unknowns, effect_unknowns
-from .respond import lagged, readings
-from .track import READINGS, STATE, Track, track
-from .voyage import Voyage
+from twin.recording.voyage import Voyage
+from twin.study.columns import columns, core_unknowns, effect_unknowns
+from twin.study.respond import lagged, readings
+from twin.study.track import READINGS, STATE, Track, track
 
 UNKNOWNS = ("x", "y", "psi", "u", "v", "r", "current north", "current east", "force X", "force Y", "force N")
 SUITES = {  # which readings are left out

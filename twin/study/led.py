@@ -11,17 +11,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.physics.model import Model
-
-from .case import MOST_SEGMENTS, WORLDS, Case
-from .columns import with_values
-from .evidence import Hypothesis, given, posterior, reduce
-from .innovations import Floor, innovate
-from .nuisance import DAILY
-from .openloop import MODEL, STRUCTURE, Windows, coarse, predict
-from .refine import Found, Sets, standing
-from .rough import COMES_AND_GOES, added, elsewhere
-from .structure import once_off
-from .track import Track
+from twin.study.case import MOST_SEGMENTS, WORLDS, Case
+from twin.study.columns import with_values
+from twin.study.evidence import Hypothesis, given, posterior, reduce
+from twin.study.innovations import Floor, innovate
+from twin.study.nuisance import DAILY
+from twin.study.openloop import MODEL, STRUCTURE, Windows, coarse, predict
+from twin.study.refine import Found, Sets, standing
+from twin.study.rough import COMES_AND_GOES, added, elsewhere
+from twin.study.structure import once_off
+from twin.study.track import Track
 
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
 LUXURY = 10.0  # log odds against a second effect that the path does not ask for: of two forms that are only roughly right, one mends the other

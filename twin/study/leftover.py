@@ -11,15 +11,14 @@ from dataclasses import replace
 import numpy as np
 
 from twin.physics.model import Model
-
-from .case import WORLDS, Case
-from .evidence import Hypothesis, posterior
-from .led import FORM, roughly
-from .own_force import leads_her, otherwise, without
-from .refine import Found, Sets, standing
-from .respond import respond, standard
-from .seaway import at_sea
-from .verdict import ALIKE, SURE, of_the_sea
+from twin.study.case import WORLDS, Case
+from twin.study.evidence import Hypothesis, posterior
+from twin.study.led import FORM, roughly
+from twin.study.own_force import leads_her, otherwise, without
+from twin.study.refine import Found, Sets, standing
+from twin.study.respond import respond, standard
+from twin.study.seaway import at_sea
+from twin.study.verdict import ALIKE, SURE, of_the_sea
 
 MOSTLY = 1.0 / 3.0  # of the error without it that may be left whatever else is
 ASTRAY = 2.0  # times the floor that an answer may end away from where she went, one that names a cause if it leads her some of the way

@@ -12,10 +12,9 @@ from typing import Any
 import numpy as np
 
 from twin.physics.ship import Ship
-
-from .openloop import MODEL, SENSORS, STRUCTURE, Windows
-from .regimes import conditions, means
-from .score import pooled
+from twin.study.openloop import MODEL, SENSORS, STRUCTURE, Windows
+from twin.study.regimes import conditions, means
+from twin.study.score import pooled
 
 CHANCE = 0.05
 SHIFTS = 400

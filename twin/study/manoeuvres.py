@@ -11,10 +11,9 @@ import numpy as np
 
 from twin.physics.model import Model
 from twin.physics.state import Situation
-
-from .case import Case
-from .innovations import linearise
-from .track import READINGS, Track
+from twin.study.case import Case
+from twin.study.innovations import linearise
+from twin.study.track import READINGS, Track
 
 LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of her lengths
 STEPS_PER_LENGTH = 12

@@ -13,15 +13,14 @@ import numpy as np
 
 from twin.physics import core
 from twin.physics.model import Model
-
-from .case import MOST_SEGMENTS, Case
-from .evidence import likeliest
-from .innovations import Floor, Linear, innovate
-from .led import plain
-from .refine import Found, standing
-from .respond import standard
-from .segments import segments
-from .start import wave_period_s
+from twin.study.case import MOST_SEGMENTS, Case
+from twin.study.evidence import likeliest
+from twin.study.innovations import Floor, Linear, innovate
+from twin.study.led import plain
+from twin.study.refine import Found, standing
+from twin.study.respond import standard
+from twin.study.segments import segments
+from twin.study.start import wave_period_s
 
 LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before
 CLEAR = 15.0  # log evidence, tempered, that a push of its own must add

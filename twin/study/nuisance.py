@@ -7,11 +7,10 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-
-from .between import scattered, ship_of, voyages
-from .columns import FORM, Unknown, core_unknowns, effect_unknowns, form_unknowns, lateness_unknowns, sea_unknowns
-from .evidence import Nuisance
-from .innovations import Floor, Linear, Normal, innovate
+from twin.study.between import scattered, ship_of, voyages
+from twin.study.columns import FORM, Unknown, core_unknowns, effect_unknowns, form_unknowns, lateness_unknowns, sea_unknowns
+from twin.study.evidence import Nuisance
+from twin.study.innovations import Floor, Linear, Normal, innovate
 
 USUAL = 0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
 TEMPER = 3.0  # when no reference voyage tells how far innovations are from white

@@ -12,14 +12,13 @@ from twin.physics.effects.antenna_offset import AntennaOffset
 from twin.physics.effects.wind import Wind
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-
-from .columns import effect_unknowns
-from .fit import Catalogue, Fit, fit
-from .gear import CLEAR as CLEARLY_BETTER
-from .held_out import HeldOut, errors, size
-from .innovations import Floor
-from .track import Track
-from .weather import strengths
+from twin.study.columns import effect_unknowns
+from twin.study.fit import Catalogue, Fit, fit
+from twin.study.gear import CLEAR as CLEARLY_BETTER
+from twin.study.held_out import HeldOut, errors, size
+from twin.study.innovations import Floor
+from twin.study.track import Track
+from twin.study.weather import strengths
 
 CLEAR = 4.0  # standard errors
 BETTER = 0.05  # share by which predictions of what was not used for the fit must be better with it

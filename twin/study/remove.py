@@ -8,8 +8,7 @@ from dataclasses import replace
 
 from twin.errors import SettingsError, did_you_mean
 from twin.physics.ship import Ship, load, save
-
-from .import_voyage import write_json
+from twin.recording.import_voyage import write_json
 
 SCHEMA_VERSION = 1
 

@@ -13,11 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.physics.model import Model
-
-from .columns import Unknown, with_values
-from .fit import Catalogue
-from .openloop import coarse
-from .track import Track
+from twin.study.columns import Unknown, with_values
+from twin.study.fit import Catalogue
+from twin.study.openloop import coarse
+from twin.study.track import Track
 
 HORIZON, LEADS = 3.0, 3  # ship lengths ahead, looked at so often on the way
 STRIDE = 1.0  # ship lengths between the beginnings of two predictions

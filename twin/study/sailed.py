@@ -11,11 +11,10 @@ from twin.errors import DataError
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-
-from .read import read_voyage
-from .seaway import swung
-from .track import Track, track
-from .voyage import Voyage
+from twin.recording.read import read_voyage
+from twin.recording.voyage import Voyage
+from twin.study.seaway import swung
+from twin.study.track import Track, track
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,15 @@ from dataclasses import replace
 import numpy as np
 
 from twin.physics.effect import SensorFault
-
-from .altered import floats
-from .case import ODDS_WEAK, WORLDS, Case
-from .columns import Unknown
-from .evidence import Hypothesis, Reduced, boxed, posterior, weigh_all
-from .led import REACH, Led, led
-from .leftover import NEARLY, answer
-from .nuisance import DAILY
-from .refine import Found, Sets, refine
-from .steady import steady
+from twin.study.altered import floats
+from twin.study.case import ODDS_WEAK, WORLDS, Case
+from twin.study.columns import Unknown
+from twin.study.evidence import Hypothesis, Reduced, boxed, posterior, weigh_all
+from twin.study.led import REACH, Led, led
+from twin.study.leftover import NEARLY, answer
+from twin.study.nuisance import DAILY
+from twin.study.refine import Found, Sets, refine
+from twin.study.steady import steady
 
 MOST = 2  # effects at once that would be news
 ROUNDS = 20  # hypotheses judged about their own size, at most

@@ -10,10 +10,9 @@ import numpy as np
 from twin.physics.effect import Flow
 from twin.physics.model import Model
 from twin.physics.state import Situation
-
-from .case import Case
-from .refine import Found
-from .track import Track
+from twin.study.case import Case
+from twin.study.refine import Found
+from twin.study.track import Track
 
 EDDIES = 0.2  # of a stream, beside its mean, that nobody calls a change (root mean squares)
 

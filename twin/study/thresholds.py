@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from twin.errors import did_you_mean
-
-from . import score
-from .track import MEASURED
+from twin.study import score
+from twin.study.track import MEASURED
 
 AT_HORIZON = (*score.NAMES.values(), "noise_units")  # may have @SECONDS behind
 METRICS = (

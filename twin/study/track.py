@@ -14,8 +14,7 @@ from scipy.linalg import solveh_banded
 from twin.errors import DataError
 from twin.physics.ship import Ship
 from twin.physics.state import WEATHER, Situation
-
-from .voyage import Voyage
+from twin.recording.voyage import Voyage
 
 MEASURED = {  # reading -> channel
     "x": "north_m", "y": "east_m", "psi": "heading_true_north_deg", "u": "surge_velocity_mps", "v": "sway_velocity_mps",

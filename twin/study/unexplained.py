@@ -12,10 +12,9 @@ import numpy as np
 from twin.physics import core
 from twin.physics.model import Model
 from twin.physics.state import Growth
-
-from .respond import lagged
-from .start import noisy, true_motion
-from .track import STATE, Track
+from twin.study.respond import lagged
+from twin.study.start import noisy, true_motion
+from twin.study.track import STATE, Track
 
 AXES = ("surge", "sway", "yaw")
 

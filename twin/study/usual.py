@@ -9,15 +9,14 @@ import numpy as np
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-
-from .derivatives import first_prior
-from .innovations import Floor, innovate, linearise
-from .jsonable import plain
-from .nuisance import from_references, nuisance_unknowns, temper_of, usual_unknowns
-from .sailed import fed
-from .structure import floor_beside
-from .track import Track
-from .weather import strengths
+from twin.recording.jsonable import plain
+from twin.study.derivatives import first_prior
+from twin.study.innovations import Floor, innovate, linearise
+from twin.study.nuisance import from_references, nuisance_unknowns, temper_of, usual_unknowns
+from twin.study.sailed import fed
+from twin.study.structure import floor_beside
+from twin.study.track import Track
+from twin.study.weather import strengths
 
 CLEAR = 4.0  # standard errors
 

@@ -10,10 +10,10 @@ from twin.cli import main
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.physics.state import Situation
+from twin.recording.voyage import Voyage
+from twin.recording.write import write_voyage
 from twin.study.sailed import Sailed
 from twin.study.track import track
-from twin.study.voyage import Voyage
-from twin.study.write import write_voyage
 
 DEG = 180.0 / np.pi
 STEP_S = 320.0 / 7.97388 / 32.0  # the study's own grid for this ship

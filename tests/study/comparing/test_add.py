@@ -10,15 +10,15 @@ from twin.cli import main
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load, to_table
+from twin.recording.read import read_voyage
+from twin.recording.write import write_voyage
 from twin.study import story
 from twin.study.add import add
 from twin.study.adding import fitted
 from twin.study.diagnose import diagnose
 from twin.study.openloop import HORIZONS_S, predict
 from twin.study.proof import fall, judged_at
-from twin.study.read import read_voyage
 from twin.study.track import track
-from twin.study.write import write_voyage
 
 
 @pytest.fixture(scope="module")

@@ -11,9 +11,9 @@ from bench.real_faults import Readings, antenna_elsewhere
 from bench.reference import Case, simulate
 from twin import cli
 from twin.physics.ship import load
+from twin.recording.write import write_voyage
 from twin.study.doubts import doubts
 from twin.study.usual import clearly_hers
-from twin.study.write import write_voyage
 
 
 @pytest.fixture(scope="module")

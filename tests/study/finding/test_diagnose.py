@@ -8,11 +8,11 @@ import pytest
 
 from twin import cli
 from twin.physics.effects import catalogue
+from twin.recording.read import read_voyage
+from twin.recording.voyage import Voyage
 from twin.study.diagnose import diagnose
-from twin.study.read import read_voyage
 from twin.study.story import MONDAY, SHIP, TUESDAY
 from twin.study.tell_diagnosis import sentence, told
-from twin.study.voyage import Voyage
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +115,7 @@ def test_what_was_not_recorded_cannot_be_judged_and_the_answer_says_so(tanker, v
 
 
 def test_a_voyage_too_short_to_judge_exits_with_4_and_one_line(tanker, voyages, tmp_path, capsys):
-    from twin.study.write import write_voyage
+    from twin.recording.write import write_voyage
 
     write_voyage(voyages["nothing"].between(0.0, 60.0), tmp_path / "short.mcap")
     assert cli.main(["diagnose", str(tmp_path / "short.mcap"), "--ship", str(SHIP)]) == 4

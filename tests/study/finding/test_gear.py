@@ -13,11 +13,11 @@ from twin.physics.effects import catalogue
 from twin.physics.effects.steering_lag import TRAVEL, SteeringLag
 from twin.physics.model import Model
 from twin.physics.ship import load, save
+from twin.recording.write import write_voyage
 from twin.study.assemble import judgeable
 from twin.study.columns import effect_unknowns
 from twin.study.nuisance import USUAL, from_ship, nuisance_unknowns, of_known_weather
 from twin.study.track import track
-from twin.study.write import write_voyage
 
 GYRO = 1e-6  # rad/s that the ship file already says of the gyro
 

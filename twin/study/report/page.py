@@ -8,17 +8,16 @@ from typing import Any
 
 from twin import whole
 from twin.physics.model import Model
-
-from .. import locate, score
-from ..openloop import HORIZONS_S
-from ..sailed import switched_off
-from ..start import told_of_waves, waves_on
-from ..structure import floor_of
-from ..track import Track
-from ..unexplained import energy
-from ..voyage import Voyage
-from .series import shown
-from .words import sentence, title
+from twin.recording.voyage import Voyage
+from twin.study import locate, score
+from twin.study.openloop import HORIZONS_S
+from twin.study.report.series import shown
+from twin.study.report.words import sentence, title
+from twin.study.sailed import switched_off
+from twin.study.start import told_of_waves, waves_on
+from twin.study.structure import floor_of
+from twin.study.track import Track
+from twin.study.unexplained import energy
 
 SCRIPTS = ("dom.js", "plot.js", "track.js", "sections.js", "diagnosis.js", "main.js")
 
@@ -44,8 +43,8 @@ def content(
     voyages: Sequence[Voyage] = (),
 ) -> dict[str, Any]:
     """Everything the page shows, as JSON."""
-    from ..adding import ahead
-    from ..jsonable import plain
+    from twin.recording.jsonable import plain
+    from twin.study.adding import ahead
 
     structural = floor_of(model.ship) is not None
     asked = [h["horizon_s"] for h in result.get("horizons", [])] or list(HORIZONS_S)

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.study.checks.view import View
-from twin.study.units import DEG_PER_RAD, KNOT_MPS
+from twin.recording.checks.view import View
+from twin.recording.units import DEG_PER_RAD, KNOT_MPS
 
 Flow = Callable[[View], np.ndarray]
 

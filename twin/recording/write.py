@@ -7,8 +7,8 @@ import numpy as np
 
 from twin.live.messages import Row
 from twin.live.record import LogFile
-from twin.study.timebase import moment_of
-from twin.study.voyage import Voyage
+from twin.recording.timebase import moment_of
+from twin.recording.voyage import Voyage
 
 TOPIC = "shiptwin/voyage/row"
 ABOUT = "shiptwin.voyage"  # the table of words; values are JSON

@@ -5,8 +5,8 @@ from collections.abc import Collection
 from pathlib import Path
 
 from twin.errors import DataError
-from twin.study.mapping import FRAMED, NAMES, Column, Layout, Map, TimeColumn, nearest
-from twin.study.sheet import Sheet, open_text
+from twin.recording.mapping import FRAMED, NAMES, Column, Layout, Map, TimeColumn, nearest
+from twin.recording.sheet import Sheet, open_text
 
 TIMES = ("time_s", "time_utc")
 GROUND = {  # what stands for the velocities in the ship's axes, by the frame that a map would name

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from twin.errors import DataError
-from twin.study.mapping import TimeColumn
-from twin.study.units import UNITS
+from twin.recording.mapping import TimeColumn
+from twin.recording.units import UNITS
 
 EPOCH_S = 1e8  # a number of seconds above this counts from 1970, not from the start of the voyage
 DAY_S = 86400.0

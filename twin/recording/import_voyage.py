@@ -11,11 +11,11 @@ from typing import Any, NamedTuple
 from twin import whole
 from twin.errors import DataError, SettingsError, did_you_mean
 from twin.physics.ship import load
-from twin.study.checks import CHECKS, Check, run_checks
-from twin.study.map_file import read_map
-from twin.study.read import read_voyage
-from twin.study.voyage import Voyage
-from twin.study.write import write_voyage
+from twin.recording.checks import CHECKS, Check, run_checks
+from twin.recording.map_file import read_map
+from twin.recording.read import read_voyage
+from twin.recording.voyage import Voyage
+from twin.recording.write import write_voyage
 
 SCHEMA_VERSION = 1
 EPILOG = """

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from twin.study.checks.answer import Check, cannot_tell, doubtful, wrong
-from twin.study.checks.view import View, rms
+from twin.recording.checks.answer import Check, cannot_tell, doubtful, wrong
+from twin.recording.checks.view import View, rms
 
 FASTEST_MPS = 40.0
 LARGE_DRIFT_DEG = 8.0

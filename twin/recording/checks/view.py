@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from twin.physics.ship import Ship
-from twin.study.voyage import Voyage
+from twin.recording.voyage import Voyage
 
 MOST_ROWS = 20_000
 

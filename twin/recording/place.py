@@ -6,11 +6,11 @@ from typing import Any
 import numpy as np
 
 from twin.live.channels import BY_NAME
-from twin.study.frames import SMOOTH_S, body_from_earth, chart, earth_from_body, integral, slope
-from twin.study.mapping import FRAMED, PLACES, Map
-from twin.study.resample import beside, continuous
-from twin.study.samples import from_zero
-from twin.study.units import froude
+from twin.recording.frames import SMOOTH_S, body_from_earth, chart, earth_from_body, integral, slope
+from twin.recording.mapping import FRAMED, PLACES, Map
+from twin.recording.resample import beside, continuous
+from twin.recording.samples import from_zero
+from twin.recording.units import froude
 
 Columns = dict[str, np.ndarray]
 CHART = ("north_m", "east_m")

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TextIO
 
 from twin.errors import DataError, SettingsError
-from twin.study.mapping import SEPARATORS, Key, Layout
+from twin.recording.mapping import SEPARATORS, Key, Layout
 
 Row = tuple[int, list[str]]  # line in the file, cells
 

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from twin.study.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.study.checks.view import View, fit, rms
-from twin.study.units import DEG_PER_RAD
+from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
+from twin.recording.checks.view import View, fit, rms
+from twin.recording.units import DEG_PER_RAD
 
 RATES = (
     (1.0, "", ""),

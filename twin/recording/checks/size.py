@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from twin.study.checks.answer import Check, cannot_tell, doubtful, good
-from twin.study.checks.view import View
+from twin.recording.checks.answer import Check, cannot_tell, doubtful, good
+from twin.recording.checks.view import View
 
 G = 9.81  # [m/s2]
 FASTEST_FROUDE = 0.7  # U / sqrt(g L); a displacement hull stays below 0.5

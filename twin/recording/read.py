@@ -12,15 +12,15 @@ import numpy as np
 
 from twin.errors import DataError
 from twin.live.channels import BY_NAME
-from twin.study.frames import from_ddmm
-from twin.study.headers import own_names
-from twin.study.mapping import PLACES, Column, Key, Map, TimeColumn, target
-from twin.study.place import CHART, FRAMED, derive, placed, present, scaled
-from twin.study.samples import plausible, spikes
-from twin.study.table import Table, read_table
-from twin.study.timebase import Clock, clock_from_numbers, clock_from_text, rebuilt, refuse_backwards
-from twin.study.units import factor, froude
-from twin.study.voyage import Voyage
+from twin.recording.frames import from_ddmm
+from twin.recording.headers import own_names
+from twin.recording.mapping import PLACES, Column, Key, Map, TimeColumn, target
+from twin.recording.place import CHART, FRAMED, derive, placed, present, scaled
+from twin.recording.samples import plausible, spikes
+from twin.recording.table import Table, read_table
+from twin.recording.timebase import Clock, clock_from_numbers, clock_from_text, rebuilt, refuse_backwards
+from twin.recording.units import factor, froude
+from twin.recording.voyage import Voyage
 
 FEWEST_ROWS = 10
 CONTROLS = ("rudder_angle_deg", "propeller_rate_rpm")
@@ -72,7 +72,7 @@ def from_log(path: Path) -> Raw:
 def words(path: Path) -> dict[str, Any]:
     """What an imported voyage says about itself: where it came from, what in it is derived."""
     from twin.live.mcap_read import McapReader
-    from twin.study.write import ABOUT
+    from twin.recording.write import ABOUT
 
     reader = McapReader(path)
     next(reader.messages(), None)

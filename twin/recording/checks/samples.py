@@ -3,10 +3,10 @@
 import numpy as np
 
 from twin.live.channels import BY_NAME
-from twin.study.checks.answer import Check, doubtful, good
-from twin.study.checks.view import View
-from twin.study.samples import spikes as spike_rows
-from twin.study.voyage import Voyage
+from twin.recording.checks.answer import Check, doubtful, good
+from twin.recording.checks.view import View
+from twin.recording.samples import spikes as spike_rows
+from twin.recording.voyage import Voyage
 
 JUMPY = frozenset(("rudder_angle_deg", "propeller_rate_rpm", "true_wind_direction_deg", "apparent_wind_angle_deg"))
 # orders jump, and a light wind comes from anywhere: a lonely sample of these is no sign of a bad sensor

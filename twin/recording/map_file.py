@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from twin.errors import SettingsError, did_you_mean
-from twin.study.mapping import (
+from twin.recording.mapping import (
     FRAMED,
     FRAMES,
     NAMES,
@@ -20,7 +20,7 @@ from twin.study.mapping import (
     nearest,
     target,
 )
-from twin.study.units import UNITS, factor
+from twin.recording.units import UNITS, factor
 
 WORDS: dict[type, str] = {
     int: "a whole number",

@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from twin.errors import DataError
-from twin.study.mapping import Key, Layout
-from twin.study.sheet import Row, Sheet, open_text
+from twin.recording.mapping import Key, Layout
+from twin.recording.sheet import Row, Sheet, open_text
 
 ROWS_AT_ONCE = 20_000
 EMPTY = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"))

@@ -9,18 +9,18 @@ unless told to accept it.
 from collections.abc import Callable
 
 from twin.physics.ship import Ship
-from twin.study.checks.answer import Check
-from twin.study.checks.clock import time_gaps, time_stamps
-from twin.study.checks.motion import velocity_frame
-from twin.study.checks.propeller import propeller_rate
-from twin.study.checks.rudder import rudder_sign, rudder_unit
-from twin.study.checks.samples import frozen, missing_samples, plausible_values, spikes
-from twin.study.checks.size import duration, ship_size
-from twin.study.checks.turning import yaw_rate
-from twin.study.checks.view import View
-from twin.study.checks.water import speed_log
-from twin.study.checks.wind import wind
-from twin.study.voyage import Voyage
+from twin.recording.checks.answer import Check
+from twin.recording.checks.clock import time_gaps, time_stamps
+from twin.recording.checks.motion import velocity_frame
+from twin.recording.checks.propeller import propeller_rate
+from twin.recording.checks.rudder import rudder_sign, rudder_unit
+from twin.recording.checks.samples import frozen, missing_samples, plausible_values, spikes
+from twin.recording.checks.size import duration, ship_size
+from twin.recording.checks.turning import yaw_rate
+from twin.recording.checks.view import View
+from twin.recording.checks.water import speed_log
+from twin.recording.checks.wind import wind
+from twin.recording.voyage import Voyage
 
 __all__ = ["CHECKS", "Check", "run_checks"]
 

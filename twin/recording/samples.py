@@ -4,7 +4,7 @@ import numpy as np
 
 from twin.live.channels import BY_NAME
 from twin.live.sentinels import CODES, GENERIC, IN_RANGE_TOO
-from twin.study.resample import continuous
+from twin.recording.resample import continuous
 
 FEWEST = 20  # samples, to know what is usual
 USUAL = 0.97  # share of the steps from sample to sample that count as usual

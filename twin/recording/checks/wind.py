@@ -8,9 +8,9 @@ from collections.abc import Callable
 
 import numpy as np
 
-from twin.study.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.study.checks.view import View, fit, rms
-from twin.study.units import DEG_PER_RAD, KNOT_MPS
+from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
+from twin.recording.checks.view import View, fit, rms
+from twin.recording.units import DEG_PER_RAD, KNOT_MPS
 
 AGREES = 0.35  # share of the wind by which the triangle may stay open (gusts, mast height, flow around the ship)
 EXPLAINS = 0.5

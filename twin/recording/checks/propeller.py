@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from twin.study.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.study.checks.view import View
+from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
+from twin.recording.checks.view import View
 
 SLOWEST_RPM = 20.0  # no propeller drives a ship with fewer turns
 ADVANCE = (0.08, 2.0)  # plausible J = U / (n D) of a ship under way

@@ -11,7 +11,7 @@ import numpy as np
 
 from twin.errors import DataError, did_you_mean
 from twin.live.channels import BY_NAME, CHANNELS, Channel
-from twin.study.resample import continuous, resampled, wrapped
+from twin.recording.resample import continuous, resampled, wrapped
 
 SLOW_S = 60.0  # a channel that may be this old is a state of the sea or of the loading: its ends are held
 

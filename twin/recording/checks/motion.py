@@ -10,10 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.study.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.study.checks.course import course_against_heading
-from twin.study.checks.mistakes import AS_THEY_ARE, GEOMETRY, SCALES, Mistake, turned
-from twin.study.checks.view import View, fit, rms
+from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
+from twin.recording.checks.course import course_against_heading
+from twin.recording.checks.mistakes import AS_THEY_ARE, GEOMETRY, SCALES, Mistake, turned
+from twin.recording.checks.view import View, fit, rms
 
 NAME = "velocity_frame"
 AGREES = 0.12  # share of the distance by which position and velocities may differ

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from twin.study.checks.answer import Check, doubtful, good, wrong
-from twin.study.checks.view import View
-from twin.study.voyage import Voyage
+from twin.recording.checks.answer import Check, doubtful, good, wrong
+from twin.recording.checks.view import View
+from twin.recording.voyage import Voyage
 
 FEW = 0.01  # share of repeated stamps that a logger's hiccup explains
 UNEVEN = 0.35  # scatter of the steps, in usual steps
