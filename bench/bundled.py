@@ -16,7 +16,7 @@ from twin.recording.voyage import Voyage
 from twin.recording.write import write_voyage
 from twin.study.calibrate import calibrate
 from twin.study.sailed import Sailed
-from twin.study.track import track
+from twin.study.track.track import track
 
 FOLDER = Path(twin.__file__).parent / "voyages"
 REFERENCES = ("zigzag_20", "turning_circle", "speed_changes", "course_changes", "zigzag_10", "mixed")

@@ -20,7 +20,7 @@ from twin.study.diagnose import diagnose
 from twin.study.openloop import predict
 from twin.study.sailed import fed
 from twin.study.seaway import swung
-from twin.study.track import Track, track
+from twin.study.track.track import Track, track
 
 HORIZON_S = 120.0
 _SHIPS: dict[str, dict[str, Any]] = {}

@@ -12,7 +12,7 @@ import numpy as np
 
 from twin.physics.model import Model
 from twin.study.respond import respond
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 TERMS = (
     "v",

@@ -23,7 +23,7 @@ from twin.live.movable import Columns, movable
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Rates, Situation
-from twin.study.track import READINGS
+from twin.study.track.track import READINGS
 
 Law = Callable[[Ship, Force, int], Adaptation]
 SPEEDS = [READINGS.index(n) for n in ("u", "v", "r")]

@@ -14,7 +14,7 @@ from export.batches import STRIDE
 from twin.physics import core
 from twin.physics.model import Model
 from twin.physics.state import Force, Situation
-from twin.study.track import READINGS
+from twin.study.track.track import READINGS
 
 WALKS = (1e-6, 1e-5, 1e-4)  # of the disturbance, in units of U/T for one grid step
 SEEN = [READINGS.index(n) for n in ("x", "y", "psi", "u_r", "v_r", "r")]

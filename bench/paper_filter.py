@@ -18,7 +18,7 @@ from export.batches import STRIDE
 from export.loss import Held, free_run
 from twin.physics.model import Model
 from twin.physics.state import Force, Situation
-from twin.study.track import READINGS
+from twin.study.track.track import READINGS
 
 PSI, U, V, R, NORTH, EAST, PUSH = 2, 3, 4, 5, 6, 7, slice(8, 11)
 SIZE = 11

@@ -17,7 +17,7 @@ from export.loss import free_run
 from export.network import Residual
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-from twin.study.track import READINGS, Track, track
+from twin.study.track.track import READINGS, Track, track
 
 HORIZON_S = 120.0
 

@@ -14,7 +14,7 @@ from typing import Any
 from bench.options import positive
 from bench.paper_sea import QUICK, lessons, sail, zigzags
 from bench.paper_ship import nominal
-from twin.study.track import track
+from twin.study.track.track import track
 
 VARIANTS: dict[str, dict[str, Any]] = {
     "paper, lambda_phys 0.1": {"loss": "paper"},

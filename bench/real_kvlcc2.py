@@ -22,7 +22,7 @@ from twin.study.compare import compare
 from twin.study.diagnose import diagnose
 from twin.study.sailed import Sailed
 from twin.study.score import reckoned
-from twin.study.track import track
+from twin.study.track.track import track
 
 MAPS = Path(__file__).parents[1] / "docs" / "maps"
 HORIZONS_S = (10.0, 60.0, 120.0)

@@ -18,7 +18,7 @@ from twin.physics.ship import Ship
 from twin.study.adding import in_one
 from twin.study.respond import lagged
 from twin.study.start import true_motion
-from twin.study.track import STATE, Track
+from twin.study.track.track import STATE, Track
 
 CURRENT_S, BLOCK_S = 120.0, 300.0
 FEWEST_BLOCKS = 12  # of a voyage that is cut in time

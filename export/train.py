@@ -13,7 +13,7 @@ from twin.physics.ship import Ship, load
 from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
 from twin.study.sailed import Sailed, read_all
-from twin.study.track import Track, track
+from twin.study.track.track import Track, track
 
 SCHEMA_VERSION = 1
 NEEDS = "`twin train` needs {!r}. Run: pip install 'shiptwin[train]'"

@@ -23,7 +23,7 @@ from twin.study.identifiability import (
     verdict,
 )
 from twin.study.learned import features, learned_force
-from twin.study.track import track
+from twin.study.track.track import track
 
 STEP = 1.25
 SHIP = load("kvlcc2")

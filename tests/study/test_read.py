@@ -11,7 +11,7 @@ from twin.recording.headers import GROUND
 from twin.recording.map_file import parse_map
 from twin.recording.read import read_voyage
 from twin.recording.write import write_voyage
-from twin.study.track import READINGS, track
+from twin.study.track.track import READINGS, track
 
 
 def text(tmp_path, content, name="v.csv"):

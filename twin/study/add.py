@@ -20,7 +20,7 @@ from twin.study.openloop import HORIZONS_S
 from twin.study.proof import Fall, by_regime, fall, judged_at, ladder
 from twin.study.sailed import Sailed, read_all
 from twin.study.structure import floor_of
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 SCHEMA_VERSION = 1
 EPILOG = """example:

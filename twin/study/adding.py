@@ -21,7 +21,7 @@ from twin.study.openloop import Windows, predict
 from twin.study.sailed import fed
 from twin.study.seaway import levelled
 from twin.study.structure import floor_of
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 UNTOUCHED = 0.1  # a number whose doubt shrank by less was not excited
 FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {

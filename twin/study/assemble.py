@@ -14,14 +14,14 @@ from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 from twin.study.case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, settle
 from twin.study.columns import FORM, ROUGH, SEA, Unknown, core_unknowns, effect_unknowns, lateness_unknowns, rough_unknowns
-from twin.study.excitation import manoeuvred
 from twin.study.innovations import Floor, Linear, innovate, linearise
 from twin.study.nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, of_known_weather, temper_of, usual_unknowns
 from twin.study.rough import doubted
 from twin.study.seaway import levelled, stirred, swung
-from twin.study.segments import read_parts
 from twin.study.structure import floor_beside, floor_of, structural_floor
-from twin.study.track import Track, track
+from twin.study.track.excitation import manoeuvred
+from twin.study.track.segments import read_parts
+from twin.study.track.track import Track, track
 from twin.study.weather import as_usual, strengths
 
 Progress = Callable[[str], None]

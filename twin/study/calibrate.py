@@ -30,7 +30,7 @@ from twin.study.sailed import Sailed, read_all
 from twin.study.seaway import levelled, swung
 from twin.study.start import told_of_waves, waves_on
 from twin.study.structure import structural_floor
-from twin.study.track import Track
+from twin.study.track.track import Track
 from twin.study.usual import clearly_hers, usual
 from twin.study.weather import FAINT, HARDER
 

@@ -13,8 +13,8 @@ from twin.study.columns import Unknown
 from twin.study.directions import directions
 from twin.study.evidence import Nuisance, Reduced, posterior, reduce
 from twin.study.innovations import Floor, Linear, innovate
-from twin.study.track import Track
-from twin.study.unrest import shaken
+from twin.study.track.track import Track
+from twin.study.track.unrest import shaken
 
 MOST_SEGMENTS = 20  # of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
 

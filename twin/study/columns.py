@@ -14,7 +14,7 @@ from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES
 from twin.study import form, rough, tossed
 from twin.study.respond import faulty, respond
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 
 @dataclass(frozen=True)

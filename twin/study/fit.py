@@ -15,7 +15,7 @@ from twin.physics.model import Model
 from twin.study.box import stopped
 from twin.study.columns import LATE, Unknown, with_values
 from twin.study.innovations import Floor, Linear, Normal, innovate, linearise
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 Catalogue = dict[str, type[Effect]]
 STEPS = 12

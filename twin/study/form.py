@@ -15,7 +15,7 @@ import numpy as np
 from twin.physics import core
 from twin.physics.model import Model
 from twin.study.respond import lagged
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 SLOWEST = 0.01  # of U_0: a speed to divide by, however slow the ship
 APART = 0.2  # of U_0: of the speeds about which resistance may be otherwise

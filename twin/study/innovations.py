@@ -17,14 +17,14 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.study import waves
 from twin.study.columns import LATE, Unknown, beside, columns, turns
 from twin.study.filters import FLOW, LIGHT, MOTION, PLACE, SHIP, SLOW, SPEEDS, STATES, WAVES, Filters, Noise, Stretches
 from twin.study.normal import Normal, Sums
 from twin.study.respond import SATELLITES, accelerations, advance, faulty, jacobian, lagged, later, respond, standard, when_true
-from twin.study.segments import segments
 from twin.study.start import undone
-from twin.study.track import Track
+from twin.study.track import waves
+from twin.study.track.segments import segments
+from twin.study.track.track import Track
 
 Where = Sequence[tuple[int, int, int]]  # segments: track, first step, last step
 EVERY = 4  # grid steps, an eighth of a ship length, over which slopes change little

@@ -20,7 +20,7 @@ from twin.study.openloop import MODEL, STRUCTURE, Windows, coarse, predict
 from twin.study.refine import Found, Sets, standing
 from twin.study.rough import COMES_AND_GOES, added, elsewhere
 from twin.study.structure import once_off
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
 LUXURY = 10.0  # log odds against a second effect that the path does not ask for: of two forms that are only roughly right, one mends the other

@@ -13,7 +13,7 @@ from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.case import Case
 from twin.study.innovations import linearise
-from twin.study.track import READINGS, Track
+from twin.study.track.track import READINGS, Track
 
 LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of her lengths
 STEPS_PER_LENGTH = 12

@@ -19,8 +19,8 @@ from twin.study.innovations import Floor, Linear, innovate
 from twin.study.led import plain
 from twin.study.refine import Found, standing
 from twin.study.respond import standard
-from twin.study.segments import segments
 from twin.study.start import wave_period_s
+from twin.study.track.segments import segments
 
 LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before
 CLEAR = 15.0  # log evidence, tempered, that a push of its own must add

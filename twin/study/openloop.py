@@ -22,7 +22,7 @@ from twin.study.innovations import MEMORY_B, Floor, busy
 from twin.study.respond import lagged, readings, standard
 from twin.study.start import noisy, seen, steadied, true_motion
 from twin.study.structure import once_off
-from twin.study.track import READINGS, STATE, Track
+from twin.study.track.track import READINGS, STATE, Track
 
 HORIZONS_S = (10.0, 60.0, 120.0)
 STRIDE_S = 10.0  # a window begins this often

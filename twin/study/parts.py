@@ -17,7 +17,7 @@ from twin.study.fit import Catalogue, Fit, fit
 from twin.study.gear import CLEAR as CLEARLY_BETTER
 from twin.study.held_out import HeldOut, errors, size
 from twin.study.innovations import Floor
-from twin.study.track import Track
+from twin.study.track.track import Track
 from twin.study.weather import strengths
 
 CLEAR = 4.0  # standard errors

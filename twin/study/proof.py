@@ -14,7 +14,7 @@ from twin.errors import DataError
 from twin.physics.ship import Ship
 from twin.study import locate, score
 from twin.study.openloop import MODEL, SENSORS, Windows
-from twin.study.track import MEASURED
+from twin.study.track.track import MEASURED
 
 FEWEST = 2.0  # windows that do not overlap, below which nothing can be proved
 ENOUGH, LENGTHS = 10.0, 3.0  # windows from which a horizon can prove something; and it sails so many ship lengths

@@ -10,7 +10,7 @@ from twin.physics import core
 from twin.physics.effect import Lag
 from twin.physics.model import Model
 from twin.physics.state import Situation
-from twin.study.track import READINGS, STATE, Track
+from twin.study.track.track import READINGS, STATE, Track
 
 
 def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:

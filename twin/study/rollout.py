@@ -16,7 +16,7 @@ from twin.physics.model import Model
 from twin.study.columns import Unknown, with_values
 from twin.study.fit import Catalogue
 from twin.study.openloop import coarse
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 HORIZON, LEADS = 3.0, 3  # ship lengths ahead, looked at so often on the way
 STRIDE = 1.0  # ship lengths between the beginnings of two predictions

@@ -15,7 +15,7 @@ from twin.physics.model import Model
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 from twin.study.respond import respond, standard
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 KNOWN = 0.1  # share of the force of an effect in the model that may be something else
 COMES_AND_GOES = 0.5  # share of an irregular effect's force, and of what it does to the path, that no size of it explains

@@ -14,7 +14,7 @@ from twin.physics.ship import Ship
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.study.seaway import swung
-from twin.study.track import Track, track
+from twin.study.track.track import Track, track
 
 
 @dataclass(frozen=True)

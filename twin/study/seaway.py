@@ -20,10 +20,10 @@ from twin.study.gear import geared
 from twin.study.innovations import Floor, Linear, innovate, linearise
 from twin.study.nuisance import TEMPER, nuisance_unknowns
 from twin.study.respond import respond
-from twin.study.segments import read_parts, segments
 from twin.study.start import steadied, wave_period_s
 from twin.study.structure import floor_of
-from twin.study.track import Track, running_mean
+from twin.study.track.segments import read_parts, segments
+from twin.study.track.track import Track, running_mean
 
 SWIFT = 3.0  # L/U_0: what swings about the mean over so long a time may be waves
 LATELY = 8.0  # L/U_0: on another course waves are met otherwise

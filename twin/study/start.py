@@ -10,7 +10,7 @@ from scipy.signal import savgol_filter
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.respond import later, stretches
-from twin.study.track import STATE, Track, smooth_motion
+from twin.study.track.track import STATE, Track, smooth_motion
 
 ABOUT = 2.5  # periods of the waves
 BRIDGE_S = 3.0  # instruments slower than the grid are joined by straight lines over no more than this

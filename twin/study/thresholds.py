@@ -7,7 +7,7 @@ from typing import Any
 
 from twin.errors import did_you_mean
 from twin.study import score
-from twin.study.track import MEASURED
+from twin.study.track.track import MEASURED
 
 AT_HORIZON = (*score.NAMES.values(), "noise_units")  # may have @SECONDS behind
 METRICS = (

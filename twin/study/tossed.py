@@ -14,7 +14,7 @@ import numpy as np
 from twin.physics.model import Model
 from twin.study.respond import accelerations as pushed
 from twin.study.start import steadied, wave_period_s
-from twin.study.track import READINGS, Track, running_mean
+from twin.study.track.track import READINGS, Track, running_mean
 
 EARLIER = "_earlier"  # a quarter of a period before
 HELM = {"helm": 0.5, "helm" + EARLIER: 0.5}  # prior width, as a share of what the rudder does in time with the waves

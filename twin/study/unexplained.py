@@ -14,7 +14,7 @@ from twin.physics.model import Model
 from twin.physics.state import Growth
 from twin.study.respond import lagged
 from twin.study.start import noisy, true_motion
-from twin.study.track import STATE, Track
+from twin.study.track.track import STATE, Track
 
 AXES = ("surge", "sway", "yaw")
 

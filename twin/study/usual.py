@@ -15,7 +15,7 @@ from twin.study.innovations import Floor, innovate, linearise
 from twin.study.nuisance import from_references, nuisance_unknowns, temper_of, usual_unknowns
 from twin.study.sailed import fed
 from twin.study.structure import floor_beside
-from twin.study.track import Track
+from twin.study.track.track import Track
 from twin.study.weather import strengths
 
 CLEAR = 4.0  # standard errors

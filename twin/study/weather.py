@@ -11,7 +11,7 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.study.nuisance import WEATHER
 from twin.study.respond import respond, standard
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 FAINT = 0.03  # of the standard acceleration: nobody would feel it
 HARDER = 1.5  # times the push of the reference voyages that are news; a wind 1.2 times as strong

@@ -13,7 +13,7 @@ from twin.physics.state import Situation
 from twin.recording.voyage import Voyage
 from twin.recording.write import write_voyage
 from twin.study.sailed import Sailed
-from twin.study.track import track
+from twin.study.track.track import track
 
 DEG = 180.0 / np.pi
 STEP_S = 320.0 / 7.97388 / 32.0  # the study's own grid for this ship

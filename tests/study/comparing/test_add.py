@@ -18,7 +18,7 @@ from twin.study.adding import fitted
 from twin.study.diagnose import diagnose
 from twin.study.openloop import HORIZONS_S, predict
 from twin.study.proof import fall, judged_at
-from twin.study.track import track
+from twin.study.track.track import track
 
 
 @pytest.fixture(scope="module")

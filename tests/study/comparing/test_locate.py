@@ -8,7 +8,7 @@ from twin.physics.model import Model
 from twin.study import locate
 from twin.study.openloop import predict
 from twin.study.regimes import conditions, means
-from twin.study.track import track
+from twin.study.track.track import track
 
 
 @pytest.fixture

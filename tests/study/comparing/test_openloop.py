@@ -12,7 +12,7 @@ from twin.study.innovations import Floor
 from twin.study.openloop import HORIZONS_S, MODEL, SENSORS, STRUCTURE, predict
 from twin.study.sailed import fed, switched_off
 from twin.study.structure import once_off
-from twin.study.track import track
+from twin.study.track.track import track
 
 
 def mean(windows, name, horizon, run=0):

@@ -7,7 +7,7 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.study.start import kinematics, true_motion
-from twin.study.track import READINGS, Track
+from twin.study.track.track import READINGS, Track
 
 MODEL = Model.of(load("usv"))
 

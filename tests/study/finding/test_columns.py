@@ -6,7 +6,7 @@ import pytest
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.study.columns import columns, effect_unknowns
-from twin.study.track import track
+from twin.study.track.track import track
 
 
 @pytest.fixture(scope="module")

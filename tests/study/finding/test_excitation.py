@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from twin.physics.ship import load
-from twin.study.excitation import manoeuvred
-from twin.study.track import READINGS, Track
+from twin.study.track.excitation import manoeuvred
+from twin.study.track.track import READINGS, Track
 
 
 @pytest.fixture(scope="module", params=["kvlcc2", "usv"])

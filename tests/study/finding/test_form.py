@@ -10,7 +10,7 @@ from twin.physics.model import Model
 from twin.study import form
 from twin.study.columns import columns, form_unknowns
 from twin.study.nuisance import from_ship, nuisance_unknowns
-from twin.study.track import track
+from twin.study.track.track import track
 
 MIRROR = np.array([1.0, -1.0, -1.0])  # X, Y, N of a ship seen in a mirror
 

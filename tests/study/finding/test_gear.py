@@ -17,7 +17,7 @@ from twin.recording.write import write_voyage
 from twin.study.assemble import judgeable
 from twin.study.columns import effect_unknowns
 from twin.study.nuisance import USUAL, from_ship, nuisance_unknowns, of_known_weather
-from twin.study.track import track
+from twin.study.track.track import track
 
 GYRO = 1e-6  # rad/s that the ship file already says of the gyro
 

@@ -12,9 +12,9 @@ from twin.study.columns import core_unknowns, effect_unknowns, with_values
 from twin.study.fit import fit
 from twin.study.innovations import Floor, innovate, linearise
 from twin.study.respond import later
-from twin.study.segments import read_parts, segments
 from twin.study.structure import floor_of, structural_floor
-from twin.study.track import READINGS, smooth_motion, track
+from twin.study.track.segments import read_parts, segments
+from twin.study.track.track import READINGS, smooth_motion, track
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from twin.physics.state import Situation
 from twin.study.columns import core_unknowns
 from twin.study.openloop import coarse
 from twin.study.rollout import HORIZON, rolled_out
-from twin.study.track import READINGS, Track
+from twin.study.track.track import READINGS, Track
 from twin.study.trial import shaft_speed
 
 NAMES = ("N_ur", "N_vr", "X_uu", "a_H", "Y_uv")

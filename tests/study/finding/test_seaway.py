@@ -11,8 +11,8 @@ from twin.study import seaway
 from twin.study.openloop import coarse
 from twin.study.seaway import at_sea, levelled, stirred, swung
 from twin.study.start import steadied, told_of_waves, wave_period_s, waves_on
-from twin.study.track import track
-from twin.study.waves import LASTING, RATE, as_shown, carried, lasting, renewed, swinging
+from twin.study.track.track import track
+from twin.study.track.waves import LASTING, RATE, as_shown, carried, lasting, renewed, swinging
 
 PERIOD_S = 12.0
 YAW, SWAY = 0.01, 0.3  # amplitudes [rad, m/s]

@@ -11,7 +11,7 @@ from twin.study import tossed
 from twin.study.columns import SEA, sea_unknowns
 from twin.study.nuisance import nuisance_unknowns
 from twin.study.respond import accelerations, readings
-from twin.study.track import track
+from twin.study.track.track import track
 
 PERIOD_S = 12.0
 MIRROR = np.array([1.0, -1.0, -1.0])  # X, Y, N of a ship seen in a mirror

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.track import READINGS, track
-from twin.study.unrest import shaken
+from twin.study.track.track import READINGS, track
+from twin.study.track.unrest import shaken
 
 GYRO = READINGS.index("r")
 PERIOD_S, SWING_DEGPS = 4.0, 0.15  # shorter than what the smooth motion of a tanker holds; forty times her gyro's usual scatter

@@ -16,7 +16,7 @@ from twin.study.report.words import sentence, title
 from twin.study.sailed import switched_off
 from twin.study.start import told_of_waves, waves_on
 from twin.study.structure import floor_of
-from twin.study.track import Track
+from twin.study.track.track import Track
 from twin.study.unexplained import energy
 
 SCRIPTS = ("dom.js", "plot.js", "track.js", "sections.js", "diagnosis.js", "main.js")

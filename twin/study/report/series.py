@@ -15,7 +15,7 @@ from twin.recording.voyage import Voyage
 from twin.study.openloop import MODEL, SENSORS, STRUCTURE, Windows, predict
 from twin.study.sailed import fed
 from twin.study.score import ANGLES
-from twin.study.track import MEASURED, READINGS, Track
+from twin.study.track.track import MEASURED, READINGS, Track
 
 SHORTEST_S = 5.0  # a last stretch at least so long is drawn too
 EVERY = 10**6  # leads: all of them

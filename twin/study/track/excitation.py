@@ -7,7 +7,7 @@ corrections to any precision, and what they seem to say is the model's own error
 import numpy as np
 
 from twin.physics.ship import Ship
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 TURN = np.radians(10.0)  # a change of heading within STRETCH ship lengths that no autopilot makes to hold its course
 STRETCH = 5.0

@@ -14,7 +14,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import solve_continuous_lyapunov
 
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 DAMPING = 0.1  # zeta: how broad a band waves swing her in
 APART = 0.1  # of the resonances from the middle of the band, as a share of its frequency

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from twin.study.track import Track
+from twin.study.track.track import Track
 
 SEGMENT_LENGTHS = 16  # a segment lasts while the ship sails so many of her lengths
 BEFORE_LENGTHS, AFTER_LENGTHS = 4, 2  # and so much of what is about it is kept
