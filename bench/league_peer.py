@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.respond import respond
+from twin.study.estimation.respond import respond
 from twin.study.track.track import Track
 
 TERMS = (

@@ -13,7 +13,7 @@ from bench.paper_lab import Course
 from export.network import Residual
 from twin.physics.model import Model
 from twin.physics.state import Situation
-from twin.study.identifiability import Features, residual_angles
+from twin.study.estimation.identifiability import Features, residual_angles
 
 
 def apart(courses: Sequence[Course], model: Model, network: Residual) -> dict[str, dict[str, float]]:

@@ -23,9 +23,9 @@ from export.teach import Settings, Taught, teach
 from export.worth import share
 from twin.physics.effects import catalogue, find
 from twin.physics.model import Model
-from twin.study.columns import core_unknowns, effect_unknowns
-from twin.study.fit import fit
-from twin.study.innovations import Floor
+from twin.study.estimation.columns import core_unknowns, effect_unknowns
+from twin.study.estimation.fit import fit
+from twin.study.estimation.innovations import Floor
 from twin.study.nuisance import TEMPER
 
 Predict = Callable[[Sequence[Course]], list[np.ndarray]]  # (T, W, 3) for each course

@@ -16,8 +16,8 @@ from twin.physics.effects.varying_current import VaryingCurrent
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.study.adding import in_one
-from twin.study.respond import lagged
-from twin.study.start import true_motion
+from twin.study.estimation.respond import lagged
+from twin.study.estimation.start import true_motion
 from twin.study.track.track import STATE, Track
 
 CURRENT_S, BLOCK_S = 120.0, 300.0

@@ -12,7 +12,7 @@ from twin.physics.ship import load
 from twin.physics.state import Situation
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
-from twin.study.identifiability import (
+from twin.study.estimation.identifiability import (
     basis,
     gramian,
     observability,
@@ -22,7 +22,7 @@ from twin.study.identifiability import (
     text,
     verdict,
 )
-from twin.study.learned import features, learned_force
+from twin.study.estimation.learned import features, learned_force
 from twin.study.track.track import track
 
 STEP = 1.25

@@ -13,9 +13,9 @@ from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import short
-from twin.study.columns import Unknown, effect_unknowns
-from twin.study.fit import Fit, fit
-from twin.study.innovations import Floor, innovate, linearise
+from twin.study.estimation.columns import Unknown, effect_unknowns
+from twin.study.estimation.fit import Fit, fit
+from twin.study.estimation.innovations import Floor, innovate, linearise
 from twin.study.nuisance import TEMPER, from_ship, nuisance_unknowns
 from twin.study.openloop import Windows, predict
 from twin.study.sailed import fed

@@ -13,7 +13,7 @@ from twin.physics.effect import Effect, Force
 from twin.physics.effects.loading import waterplane
 from twin.physics.model import Model
 from twin.study.case import Case
-from twin.study.columns import with_values
+from twin.study.estimation.columns import with_values
 from twin.study.evidence import Nuisance, Posterior, posterior
 from twin.study.refine import Found, standing
 

@@ -13,10 +13,10 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 from twin.study.case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, settle
-from twin.study.columns import FORM, ROUGH, SEA, Unknown, core_unknowns, effect_unknowns, lateness_unknowns, rough_unknowns
-from twin.study.innovations import Floor, Linear, innovate, linearise
+from twin.study.estimation.columns import FORM, ROUGH, SEA, Unknown, core_unknowns, effect_unknowns, lateness_unknowns, rough_unknowns
+from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
+from twin.study.estimation.rough import doubted
 from twin.study.nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, of_known_weather, temper_of, usual_unknowns
-from twin.study.rough import doubted
 from twin.study.seaway import levelled, stirred, swung
 from twin.study.structure import floor_beside, floor_of, structural_floor
 from twin.study.track.excitation import manoeuvred

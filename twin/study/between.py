@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.study.innovations import Normal
+from twin.study.estimation.innovations import Normal
 
 SHARES = (0.1, 0.2, 0.4, 0.8, 1.6)
 FEW = 6  # numbers that are tried in each round

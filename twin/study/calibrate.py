@@ -16,19 +16,19 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
-from twin.study.columns import core_unknowns
 from twin.study.derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
 from twin.study.doubts import doubts
-from twin.study.fit import Fit, fit
+from twin.study.estimation.columns import core_unknowns
+from twin.study.estimation.fit import Fit, fit
+from twin.study.estimation.innovations import Floor
+from twin.study.estimation.start import told_of_waves, waves_on
 from twin.study.gear import with_or_without_gear
 from twin.study.held_out import LAST, HeldOut, by_regime, errors, size, split
-from twin.study.innovations import Floor
 from twin.study.nuisance import TEMPER, WEATHER, instruments, temper_of
 from twin.study.parts import clearly, placed, with_or_without_wind
 from twin.study.rollout import rolled_out
 from twin.study.sailed import Sailed, read_all
 from twin.study.seaway import levelled, swung
-from twin.study.start import told_of_waves, waves_on
 from twin.study.structure import structural_floor
 from twin.study.track.track import Track
 from twin.study.usual import clearly_hers, usual

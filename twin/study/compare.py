@@ -12,9 +12,9 @@ from twin.physics.ship import Ship, load
 from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
 from twin.study import locate, score
+from twin.study.estimation.start import waves_on
 from twin.study.openloop import HORIZONS_S, Windows, predict
 from twin.study.sailed import Sailed, fed, read_all, switched_off
-from twin.study.start import waves_on
 from twin.study.structure import floor_of
 from twin.study.tell import told
 from twin.study.thresholds import passed, positive, threshold
@@ -167,7 +167,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _learned(path: str, ship: Ship) -> Callable:
-    from twin.study.learned import learned_force
+    from twin.study.estimation.learned import learned_force
 
     return learned_force(path, ship)
 

@@ -6,8 +6,8 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from twin.physics.ship import Ship
-from twin.study.columns import Unknown
-from twin.study.fit import Fit
+from twin.study.estimation.columns import Unknown
+from twin.study.estimation.fit import Fit
 
 UNEXCITED = 0.1  # a derivative of whose prior variance the voyages took away less than this keeps its prior
 

@@ -13,12 +13,13 @@ from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
-from twin.study import identifiability
 from twin.study.altered import sized
 from twin.study.assemble import assemble, unjudged_because
 from twin.study.case import Case
 from twin.study.doubts import coarse_axes
 from twin.study.effects import INPUTS
+from twin.study.estimation import identifiability
+from twin.study.estimation.start import waves_on
 from twin.study.led import held_out_error, horizon_s
 from twin.study.leftover import asked_for, changed, explaining, helpful, missed, too_small, undone, weathered
 from twin.study.manoeuvres import next_manoeuvre
@@ -26,7 +27,6 @@ from twin.study.moments import moments
 from twin.study.overtime import over_time
 from twin.study.refine import Found
 from twin.study.search import search
-from twin.study.start import waves_on
 from twin.study.tell_diagnosis import sentence, told
 from twin.study.verdict import SURE, alike, group, judge, parameters, shows, typical_force, weights
 
@@ -202,10 +202,10 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _features(path: str | None, ship: Ship) -> tuple[Any, ...]:
-    """What the residual is made of (twin/study/learned.py)."""
+    """What the residual is made of (twin/study/estimation/learned.py)."""
     if not path:
         return ()
-    from twin.study.learned import features
+    from twin.study.estimation.learned import features
 
     return features(path, ship)
 

@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.study.columns import Unknown
+from twin.study.estimation.columns import Unknown
+from twin.study.estimation.innovations import Linear
 from twin.study.evidence import Nuisance
-from twin.study.innovations import Linear
 
 TELLS = 0.02  # information in the voyages over what is known beforehand, from which a direction is asked about
 SURE = 1e6  # information about what is not asked about

@@ -17,9 +17,9 @@ from itertools import combinations
 import numpy as np
 from scipy.special import log_ndtr
 
-from twin.study.box import stopped
-from twin.study.columns import Unknown
-from twin.study.innovations import Normal
+from twin.study.estimation.box import stopped
+from twin.study.estimation.columns import Unknown
+from twin.study.estimation.innovations import Normal
 
 SPIKE = 0.01  # width of "not there", in widths of "there"
 

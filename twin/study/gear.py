@@ -11,9 +11,9 @@ import numpy as np
 
 from twin.physics.effects.steering_lag import SteeringLag
 from twin.physics.model import Model
-from twin.study.columns import Unknown, effect_unknowns
-from twin.study.fit import Catalogue, Fit, evidence, fit
-from twin.study.innovations import Floor, innovate, linearise
+from twin.study.estimation.columns import Unknown, effect_unknowns
+from twin.study.estimation.fit import Catalogue, Fit, evidence, fit
+from twin.study.estimation.innovations import Floor, innovate, linearise
 from twin.study.track.track import Track
 
 TRAVEL, DELAY = (0.35, 0.7, 1.4, 2.8), (0.05, 0.1, 0.2)  # L/U_0; the first is as fast as a large tanker's must be

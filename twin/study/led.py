@@ -12,13 +12,13 @@ import numpy as np
 
 from twin.physics.model import Model
 from twin.study.case import MOST_SEGMENTS, WORLDS, Case
-from twin.study.columns import with_values
+from twin.study.estimation.columns import with_values
+from twin.study.estimation.innovations import Floor, innovate
+from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
 from twin.study.evidence import Hypothesis, given, posterior, reduce
-from twin.study.innovations import Floor, innovate
 from twin.study.nuisance import DAILY
 from twin.study.openloop import MODEL, STRUCTURE, Windows, coarse, predict
 from twin.study.refine import Found, Sets, standing
-from twin.study.rough import COMES_AND_GOES, added, elsewhere
 from twin.study.structure import once_off
 from twin.study.track.track import Track
 

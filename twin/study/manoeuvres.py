@@ -12,7 +12,7 @@ import numpy as np
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.case import Case
-from twin.study.innovations import linearise
+from twin.study.estimation.innovations import linearise
 from twin.study.track.track import READINGS, Track
 
 LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of her lengths

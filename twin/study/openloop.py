@@ -18,9 +18,9 @@ from twin.physics.effects.current import Current
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
-from twin.study.innovations import MEMORY_B, Floor, busy
-from twin.study.respond import lagged, readings, standard
-from twin.study.start import noisy, seen, steadied, true_motion
+from twin.study.estimation.innovations import MEMORY_B, Floor, busy
+from twin.study.estimation.respond import lagged, readings, standard
+from twin.study.estimation.start import noisy, seen, steadied, true_motion
 from twin.study.structure import once_off
 from twin.study.track.track import READINGS, STATE, Track
 

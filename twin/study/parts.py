@@ -12,11 +12,11 @@ from twin.physics.effects.antenna_offset import AntennaOffset
 from twin.physics.effects.wind import Wind
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-from twin.study.columns import effect_unknowns
-from twin.study.fit import Catalogue, Fit, fit
+from twin.study.estimation.columns import effect_unknowns
+from twin.study.estimation.fit import Catalogue, Fit, fit
+from twin.study.estimation.innovations import Floor
 from twin.study.gear import CLEAR as CLEARLY_BETTER
 from twin.study.held_out import HeldOut, errors, size
-from twin.study.innovations import Floor
 from twin.study.track.track import Track
 from twin.study.weather import strengths
 

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.columns import Unknown, with_values
-from twin.study.fit import Catalogue
+from twin.study.estimation.columns import Unknown, with_values
+from twin.study.estimation.fit import Catalogue
 from twin.study.openloop import coarse
 from twin.study.track.track import Track
 

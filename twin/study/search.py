@@ -12,7 +12,7 @@ import numpy as np
 from twin.physics.effect import SensorFault
 from twin.study.altered import floats
 from twin.study.case import ODDS_WEAK, WORLDS, Case
-from twin.study.columns import Unknown
+from twin.study.estimation.columns import Unknown
 from twin.study.evidence import Hypothesis, Reduced, boxed, posterior, weigh_all
 from twin.study.led import REACH, Led, led
 from twin.study.leftover import NEARLY, answer

@@ -14,13 +14,13 @@ import numpy as np
 
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
-from twin.study.columns import Unknown
-from twin.study.fit import evidence
+from twin.study.estimation.columns import Unknown
+from twin.study.estimation.fit import evidence
+from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
+from twin.study.estimation.respond import respond
+from twin.study.estimation.start import steadied, wave_period_s
 from twin.study.gear import geared
-from twin.study.innovations import Floor, Linear, innovate, linearise
 from twin.study.nuisance import TEMPER, nuisance_unknowns
-from twin.study.respond import respond
-from twin.study.start import steadied, wave_period_s
 from twin.study.structure import floor_of
 from twin.study.track.segments import read_parts, segments
 from twin.study.track.track import Track, running_mean

@@ -12,9 +12,9 @@ import numpy as np
 
 from twin.errors import SettingsError
 from twin.physics.ship import Ship
-from twin.study.columns import Unknown
-from twin.study.fit import evidence
-from twin.study.innovations import Floor, Linear, Normal, innovate
+from twin.study.estimation.columns import Unknown
+from twin.study.estimation.fit import evidence
+from twin.study.estimation.innovations import Floor, Linear, Normal, innovate
 
 MOST_SEGMENTS = 40
 FEWER = 20  # where many columns make each dear

@@ -3,7 +3,7 @@
 import textwrap
 from typing import Any
 
-from twin.study.start import told_of_waves
+from twin.study.estimation.start import told_of_waves
 
 BAR = 24
 

@@ -2,9 +2,9 @@
 
 from typing import Any
 
+from twin.study.estimation.start import told_of_waves
 from twin.study.leftover import BETTER, NEARLY
 from twin.study.overtime import changes
-from twin.study.start import told_of_waves
 from twin.study.verdict import ACQUITTED, LOST, SURE
 
 PUSHED = 3  # moments that are told

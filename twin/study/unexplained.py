@@ -12,8 +12,8 @@ import numpy as np
 from twin.physics import core
 from twin.physics.model import Model
 from twin.physics.state import Growth
-from twin.study.respond import lagged
-from twin.study.start import noisy, true_motion
+from twin.study.estimation.respond import lagged
+from twin.study.estimation.start import noisy, true_motion
 from twin.study.track.track import STATE, Track
 
 AXES = ("surge", "sway", "yaw")

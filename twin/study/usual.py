@@ -11,7 +11,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.derivatives import first_prior
-from twin.study.innovations import Floor, innovate, linearise
+from twin.study.estimation.innovations import Floor, innovate, linearise
 from twin.study.nuisance import from_references, nuisance_unknowns, temper_of, usual_unknowns
 from twin.study.sailed import fed
 from twin.study.structure import floor_beside

@@ -8,7 +8,7 @@ import pytest
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.state import Force
-from twin.study.innovations import Floor
+from twin.study.estimation.innovations import Floor
 from twin.study.openloop import HORIZONS_S, MODEL, SENSORS, STRUCTURE, predict
 from twin.study.sailed import fed, switched_off
 from twin.study.structure import once_off

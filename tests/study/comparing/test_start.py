@@ -6,7 +6,7 @@ import pytest
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load
-from twin.study.start import kinematics, true_motion
+from twin.study.estimation.start import kinematics, true_motion
 from twin.study.track.track import READINGS, Track
 
 MODEL = Model.of(load("usv"))

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from twin.study.columns import Unknown
+from twin.study.estimation.columns import Unknown
 from twin.study.evidence import SPIKE, Reduced, boxed, given, log_evidence, posterior, weigh_all, weigh_with
 
 

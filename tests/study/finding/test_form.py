@@ -7,8 +7,8 @@ import pytest
 
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.study import form
-from twin.study.columns import columns, form_unknowns
+from twin.study.estimation import form
+from twin.study.estimation.columns import columns, form_unknowns
 from twin.study.nuisance import from_ship, nuisance_unknowns
 from twin.study.track.track import track
 

@@ -8,10 +8,10 @@ import pytest
 from twin.errors import SettingsError
 from twin.physics.effects import catalogue
 from twin.physics.model import Model
-from twin.study.columns import core_unknowns, effect_unknowns, with_values
-from twin.study.fit import fit
-from twin.study.innovations import Floor, innovate, linearise
-from twin.study.respond import later
+from twin.study.estimation.columns import core_unknowns, effect_unknowns, with_values
+from twin.study.estimation.fit import fit
+from twin.study.estimation.innovations import Floor, innovate, linearise
+from twin.study.estimation.respond import later
 from twin.study.structure import floor_of, structural_floor
 from twin.study.track.segments import read_parts, segments
 from twin.study.track.track import READINGS, smooth_motion, track

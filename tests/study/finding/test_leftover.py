@@ -9,7 +9,7 @@ import pytest
 from twin.physics.effects import catalogue, find
 from twin.study import leftover
 from twin.study.assemble import assemble
-from twin.study.columns import Unknown, with_values
+from twin.study.estimation.columns import Unknown, with_values
 from twin.study.evidence import Hypothesis
 from twin.study.led import roughly
 from twin.study.leftover import ASTRAY, CLEAR, asked_for, changed, explaining, explains, helpful, missed, quiet, too_small, undone, weathered

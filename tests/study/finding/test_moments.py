@@ -10,8 +10,8 @@ from bench.bundled import recorded
 from bench.reference import Case, simulate
 from twin.study import moments as moment_of
 from twin.study.assemble import assemble
-from twin.study.columns import Unknown
 from twin.study.diagnose import diagnose
+from twin.study.estimation.columns import Unknown
 from twin.study.evidence import Hypothesis, Nuisance, likeliest, posterior
 from twin.study.moments import CLEAR, Moment, moments, stretches
 from twin.study.refine import Found, refine

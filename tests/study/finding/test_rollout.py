@@ -6,7 +6,7 @@ import pytest
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation
-from twin.study.columns import core_unknowns
+from twin.study.estimation.columns import core_unknowns
 from twin.study.openloop import coarse
 from twin.study.rollout import HORIZON, rolled_out
 from twin.study.track.track import READINGS, Track

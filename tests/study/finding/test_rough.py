@@ -8,9 +8,9 @@ import pytest
 from twin.physics import core
 from twin.physics.effects import find
 from twin.study.assemble import assemble
-from twin.study.columns import ROUGH
-from twin.study.respond import respond, standard
-from twin.study.rough import KNOWN, TERMS, accelerations, doubted
+from twin.study.estimation.columns import ROUGH
+from twin.study.estimation.respond import respond, standard
+from twin.study.estimation.rough import KNOWN, TERMS, accelerations, doubted
 
 
 @pytest.fixture(scope="module")

@@ -14,7 +14,7 @@ from twin.physics.effect import Effect, Force
 from twin.physics.model import Model
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
-from twin.study.respond import respond, standard
+from twin.study.estimation.respond import respond, standard
 from twin.study.track.track import Track
 
 KNOWN = 0.1  # share of the force of an effect in the model that may be something else

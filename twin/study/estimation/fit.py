@@ -12,9 +12,9 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-from twin.study.box import stopped
-from twin.study.columns import LATE, Unknown, with_values
-from twin.study.innovations import Floor, Linear, Normal, innovate, linearise
+from twin.study.estimation.box import stopped
+from twin.study.estimation.columns import LATE, Unknown, with_values
+from twin.study.estimation.innovations import Floor, Linear, Normal, innovate, linearise
 from twin.study.track.track import Track
 
 Catalogue = dict[str, type[Effect]]

@@ -12,8 +12,8 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES
-from twin.study import form, rough, tossed
-from twin.study.respond import faulty, respond
+from twin.study.estimation import form, rough, tossed
+from twin.study.estimation.respond import faulty, respond
 from twin.study.track.track import Track
 
 

@@ -17,11 +17,11 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.study.columns import LATE, Unknown, beside, columns, turns
-from twin.study.filters import FLOW, LIGHT, MOTION, PLACE, SHIP, SLOW, SPEEDS, STATES, WAVES, Filters, Noise, Stretches
-from twin.study.normal import Normal, Sums
-from twin.study.respond import SATELLITES, accelerations, advance, faulty, jacobian, lagged, later, respond, standard, when_true
-from twin.study.start import undone
+from twin.study.estimation.columns import LATE, Unknown, beside, columns, turns
+from twin.study.estimation.filters import FLOW, LIGHT, MOTION, PLACE, SHIP, SLOW, SPEEDS, STATES, WAVES, Filters, Noise, Stretches
+from twin.study.estimation.normal import Normal, Sums
+from twin.study.estimation.respond import SATELLITES, accelerations, advance, faulty, jacobian, lagged, later, respond, standard, when_true
+from twin.study.estimation.start import undone
 from twin.study.track import waves
 from twin.study.track.segments import segments
 from twin.study.track.track import Track

@@ -21,8 +21,8 @@ from twin.physics.effects.current import Current
 from twin.physics.model import Model
 from twin.physics.state import Force, Situation
 from twin.recording.voyage import Voyage
-from twin.study.columns import columns, core_unknowns, effect_unknowns
-from twin.study.respond import lagged, readings
+from twin.study.estimation.columns import columns, core_unknowns, effect_unknowns
+from twin.study.estimation.respond import lagged, readings
 from twin.study.track.track import READINGS, STATE, Track, track
 
 UNKNOWNS = ("x", "y", "psi", "u", "v", "r", "current north", "current east", "force X", "force Y", "force N")

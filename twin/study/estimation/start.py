@@ -9,7 +9,7 @@ from scipy.signal import savgol_filter
 
 from twin.physics.model import Model
 from twin.physics.state import Situation
-from twin.study.respond import later, stretches
+from twin.study.estimation.respond import later, stretches
 from twin.study.track.track import STATE, Track, smooth_motion
 
 ABOUT = 2.5  # periods of the waves

@@ -12,8 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.respond import accelerations as pushed
-from twin.study.start import steadied, wave_period_s
+from twin.study.estimation.respond import accelerations as pushed
+from twin.study.estimation.start import steadied, wave_period_s
 from twin.study.track.track import READINGS, Track, running_mean
 
 EARLIER = "_earlier"  # a quarter of a period before

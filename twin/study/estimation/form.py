@@ -14,7 +14,7 @@ import numpy as np
 
 from twin.physics import core
 from twin.physics.model import Model
-from twin.study.respond import lagged
+from twin.study.estimation.respond import lagged
 from twin.study.track.track import Track
 
 SLOWEST = 0.01  # of U_0: a speed to divide by, however slow the ship

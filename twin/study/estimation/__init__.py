@@ -1,0 +1,1 @@
+"""Parameters, sensitivities, Kalman innovations, normal equations and the Gauss-Newton fit."""
