@@ -15,7 +15,7 @@ from twin.physics.ship import load, save
 from twin.recording.voyage import Voyage
 from twin.recording.write import write_voyage
 from twin.study.calibrate import calibrate
-from twin.study.sailed import Sailed
+from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
 
 FOLDER = Path(twin.__file__).parent / "voyages"

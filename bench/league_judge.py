@@ -18,8 +18,8 @@ from twin.physics.ship import Ship
 from twin.study.adding import fitted
 from twin.study.diagnose import diagnose
 from twin.study.openloop import predict
-from twin.study.sailed import fed
-from twin.study.seaway import swung
+from twin.study.reference.sailed import fed
+from twin.study.reference.seaway import swung
 from twin.study.track.track import Track, track
 
 HORIZON_S = 120.0

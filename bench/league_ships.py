@@ -12,7 +12,7 @@ from twin.physics.effects import find
 from twin.physics.ship import Ship, load
 from twin.study.adding import fitted
 from twin.study.calibrate import calibrate
-from twin.study.sailed import Sailed
+from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
 
 MANOEUVRES = ("zigzag_20", "speed_changes", "turning_circle", "course_changes", "zigzag_10", "mixed")

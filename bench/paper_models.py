@@ -26,7 +26,7 @@ from twin.physics.model import Model
 from twin.study.estimation.columns import core_unknowns, effect_unknowns
 from twin.study.estimation.fit import fit
 from twin.study.estimation.innovations import Floor
-from twin.study.nuisance import TEMPER
+from twin.study.reference.nuisance import TEMPER
 
 Predict = Callable[[Sequence[Course]], list[np.ndarray]]  # (T, W, 3) for each course
 NAMED = ("Wind", "WaveDrift")  # what `twin add` would name on TS-02 and TS-03, the current being seen by the log

@@ -20,7 +20,7 @@ from twin.study import adding
 from twin.study.calibrate import calibrate
 from twin.study.compare import compare
 from twin.study.diagnose import diagnose
-from twin.study.sailed import Sailed
+from twin.study.reference.sailed import Sailed
 from twin.study.score import reckoned
 from twin.study.track.track import track
 

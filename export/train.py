@@ -12,7 +12,7 @@ from twin.errors import DataError, ThresholdError, TwinError
 from twin.physics.ship import Ship, load
 from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
-from twin.study.sailed import Sailed, read_all
+from twin.study.reference.sailed import Sailed, read_all
 from twin.study.track.track import Track, track
 
 SCHEMA_VERSION = 1

@@ -7,7 +7,7 @@ from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation
 from twin.recording.voyage import Voyage
-from twin.study.sailed import Sailed
+from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
 
 H, STEPS = 2.0, 600

@@ -21,7 +21,7 @@ from twin.live import residual as live  # noqa: E402
 from twin.live.learned import scale_of  # noqa: E402
 from twin.physics.model import Model  # noqa: E402
 from twin.physics.state import Force, Situation  # noqa: E402
-from twin.study.sailed import Sailed  # noqa: E402
+from twin.study.reference.sailed import Sailed  # noqa: E402
 from twin.study.track.track import track  # noqa: E402
 
 FEW = Settings(epochs=3, rollout_epochs=2, rollout_lengths=0.75)

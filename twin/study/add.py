@@ -18,8 +18,8 @@ from twin.study.added import notes, told, verdict, written
 from twin.study.adding import ahead, can_be_judged, fitted, thirds
 from twin.study.openloop import HORIZONS_S
 from twin.study.proof import Fall, by_regime, fall, judged_at, ladder
-from twin.study.sailed import Sailed, read_all
-from twin.study.structure import floor_of
+from twin.study.reference.sailed import Sailed, read_all
+from twin.study.reference.structure import floor_of
 from twin.study.track.track import Track
 
 SCHEMA_VERSION = 1

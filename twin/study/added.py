@@ -9,9 +9,9 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import short
 from twin.study.adding import UNTOUCHED, Found
-from twin.study.nuisance import OF_THE_DAY
 from twin.study.proof import Fall
-from twin.study.sailed import Sailed
+from twin.study.reference.nuisance import OF_THE_DAY
+from twin.study.reference.sailed import Sailed
 
 
 def verdict(result: dict[str, Any], proof: Fall) -> str:

@@ -16,11 +16,11 @@ from twin.recording.jsonable import short
 from twin.study.estimation.columns import Unknown, effect_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import Floor, innovate, linearise
-from twin.study.nuisance import TEMPER, from_ship, nuisance_unknowns
 from twin.study.openloop import Windows, predict
-from twin.study.sailed import fed
-from twin.study.seaway import levelled
-from twin.study.structure import floor_of
+from twin.study.reference.nuisance import TEMPER, from_ship, nuisance_unknowns
+from twin.study.reference.sailed import fed
+from twin.study.reference.seaway import levelled
+from twin.study.reference.structure import floor_of
 from twin.study.track.track import Track
 
 UNTOUCHED = 0.1  # a number whose doubt shrank by less was not excited

@@ -14,7 +14,7 @@ from twin.physics.effects.loading import waterplane
 from twin.physics.model import Model
 from twin.study.case import Case
 from twin.study.estimation.columns import with_values
-from twin.study.evidence import Nuisance, Posterior, posterior
+from twin.study.reference.evidence import Nuisance, Posterior, posterior
 from twin.study.refine import Found, standing
 
 HULL = ("X_", "Y_", "N_")

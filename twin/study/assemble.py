@@ -16,13 +16,13 @@ from twin.study.case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UN
 from twin.study.estimation.columns import FORM, ROUGH, SEA, Unknown, core_unknowns, effect_unknowns, lateness_unknowns, rough_unknowns
 from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
 from twin.study.estimation.rough import doubted
-from twin.study.nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, of_known_weather, temper_of, usual_unknowns
-from twin.study.seaway import levelled, stirred, swung
-from twin.study.structure import floor_beside, floor_of, structural_floor
+from twin.study.reference.nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, of_known_weather, temper_of, usual_unknowns
+from twin.study.reference.seaway import levelled, stirred, swung
+from twin.study.reference.structure import floor_beside, floor_of, structural_floor
+from twin.study.reference.weather import as_usual, strengths
 from twin.study.track.excitation import manoeuvred
 from twin.study.track.segments import read_parts
 from twin.study.track.track import Track, track
-from twin.study.weather import as_usual, strengths
 
 Progress = Callable[[str], None]
 

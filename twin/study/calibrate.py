@@ -16,23 +16,23 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
-from twin.study.derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
 from twin.study.doubts import doubts
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import Floor
 from twin.study.estimation.start import told_of_waves, waves_on
-from twin.study.gear import with_or_without_gear
 from twin.study.held_out import LAST, HeldOut, by_regime, errors, size, split
-from twin.study.nuisance import TEMPER, WEATHER, instruments, temper_of
 from twin.study.parts import clearly, placed, with_or_without_wind
+from twin.study.reference.derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
+from twin.study.reference.gear import with_or_without_gear
+from twin.study.reference.nuisance import TEMPER, WEATHER, instruments, temper_of
+from twin.study.reference.sailed import Sailed, read_all
+from twin.study.reference.seaway import levelled, swung
+from twin.study.reference.structure import structural_floor
+from twin.study.reference.usual import clearly_hers, usual
+from twin.study.reference.weather import FAINT, HARDER
 from twin.study.rollout import rolled_out
-from twin.study.sailed import Sailed, read_all
-from twin.study.seaway import levelled, swung
-from twin.study.structure import structural_floor
 from twin.study.track.track import Track
-from twin.study.usual import clearly_hers, usual
-from twin.study.weather import FAINT, HARDER
 
 SCHEMA_VERSION = 1
 FITTED_BY = ("steps", "paths")  # one step ahead through a filter, or several lengths ahead without (rollout.py)

@@ -9,10 +9,10 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-from twin.study.directions import directions
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import Floor, Linear, innovate
-from twin.study.evidence import Nuisance, Reduced, posterior, reduce
+from twin.study.reference.directions import directions
+from twin.study.reference.evidence import Nuisance, Reduced, posterior, reduce
 from twin.study.track.track import Track
 from twin.study.track.unrest import shaken
 

@@ -14,8 +14,8 @@ from twin.recording.jsonable import plain
 from twin.study import locate, score
 from twin.study.estimation.start import waves_on
 from twin.study.openloop import HORIZONS_S, Windows, predict
-from twin.study.sailed import Sailed, fed, read_all, switched_off
-from twin.study.structure import floor_of
+from twin.study.reference.sailed import Sailed, fed, read_all, switched_off
+from twin.study.reference.structure import floor_of
 from twin.study.tell import told
 from twin.study.thresholds import passed, positive, threshold
 from twin.study.unexplained import Energy, energy

@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.physics.model import Model
 from twin.study.openloop import HORIZONS_S, predict
-from twin.study.sailed import Sailed, fed
+from twin.study.reference.sailed import Sailed, fed
 from twin.study.track.track import Track
 
 HeldOut = Sequence[tuple[Track, int]]  # tracks, each with the first grid step that was not used for the fit

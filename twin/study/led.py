@@ -15,11 +15,11 @@ from twin.study.case import MOST_SEGMENTS, WORLDS, Case
 from twin.study.estimation.columns import with_values
 from twin.study.estimation.innovations import Floor, innovate
 from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
-from twin.study.evidence import Hypothesis, given, posterior, reduce
-from twin.study.nuisance import DAILY
 from twin.study.openloop import MODEL, STRUCTURE, Windows, coarse, predict
+from twin.study.reference.evidence import Hypothesis, given, posterior, reduce
+from twin.study.reference.nuisance import DAILY
+from twin.study.reference.structure import once_off
 from twin.study.refine import Found, Sets, standing
-from twin.study.structure import once_off
 from twin.study.track.track import Track
 
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two

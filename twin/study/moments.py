@@ -17,8 +17,8 @@ from twin.study.case import MOST_SEGMENTS, Case
 from twin.study.estimation.innovations import Floor, Linear, innovate
 from twin.study.estimation.respond import standard
 from twin.study.estimation.start import wave_period_s
-from twin.study.evidence import likeliest
 from twin.study.led import plain
+from twin.study.reference.evidence import likeliest
 from twin.study.refine import Found, standing
 from twin.study.track.segments import segments
 

@@ -21,7 +21,7 @@ from twin.physics.state import Force, Situation
 from twin.study.estimation.innovations import MEMORY_B, Floor, busy
 from twin.study.estimation.respond import lagged, readings, standard
 from twin.study.estimation.start import noisy, seen, steadied, true_motion
-from twin.study.structure import once_off
+from twin.study.reference.structure import once_off
 from twin.study.track.track import READINGS, STATE, Track
 
 HORIZONS_S = (10.0, 60.0, 120.0)

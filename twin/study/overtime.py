@@ -12,7 +12,7 @@ import numpy as np
 
 from twin.study.case import Case
 from twin.study.estimation.innovations import innovate
-from twin.study.evidence import reduce
+from twin.study.reference.evidence import reduce
 from twin.study.refine import Found, standing
 
 PARTS = 4  # at most; a part holds whole segments of the filter

@@ -15,8 +15,8 @@ import numpy as np
 from twin.physics.model import Model
 from twin.study.case import Case
 from twin.study.estimation.respond import respond
-from twin.study.evidence import posterior
 from twin.study.led import plain
+from twin.study.reference.evidence import posterior
 from twin.study.refine import DOUBTS, Found, standing
 
 PUSH = ("Force", "Lag")  # kinds that are judged by what they do to her

@@ -15,10 +15,10 @@ from twin.physics.ship import Ship
 from twin.study.estimation.columns import effect_unknowns
 from twin.study.estimation.fit import Catalogue, Fit, fit
 from twin.study.estimation.innovations import Floor
-from twin.study.gear import CLEAR as CLEARLY_BETTER
 from twin.study.held_out import HeldOut, errors, size
+from twin.study.reference.gear import CLEAR as CLEARLY_BETTER
+from twin.study.reference.weather import strengths
 from twin.study.track.track import Track
-from twin.study.weather import strengths
 
 CLEAR = 4.0  # standard errors
 BETTER = 0.05  # share by which predictions of what was not used for the fit must be better with it

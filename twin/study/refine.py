@@ -14,7 +14,7 @@ from twin.study.case import WORLDS, Case
 from twin.study.estimation.columns import ROUGH, Unknown, changed, with_values
 from twin.study.estimation.innovations import Linear, linearise
 from twin.study.estimation.respond import respond, standard
-from twin.study.evidence import Hypothesis, Posterior, Reduced, boxed, log_evidence, posterior, weigh_with
+from twin.study.reference.evidence import Hypothesis, Posterior, Reduced, boxed, log_evidence, posterior, weigh_with
 
 DOUBTS = (0.2, 0.1, 0.05)
 IRREGULAR = (1.0, 0.5)  # and of one that comes and goes with what no input shows

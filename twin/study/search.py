@@ -13,10 +13,10 @@ from twin.physics.effect import SensorFault
 from twin.study.altered import floats
 from twin.study.case import ODDS_WEAK, WORLDS, Case
 from twin.study.estimation.columns import Unknown
-from twin.study.evidence import Hypothesis, Reduced, boxed, posterior, weigh_all
 from twin.study.led import REACH, Led, led
 from twin.study.leftover import NEARLY, answer
-from twin.study.nuisance import DAILY
+from twin.study.reference.evidence import Hypothesis, Reduced, boxed, posterior, weigh_all
+from twin.study.reference.nuisance import DAILY
 from twin.study.refine import Found, Sets, refine
 from twin.study.steady import steady
 

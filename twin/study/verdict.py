@@ -9,10 +9,10 @@ from twin.physics import core
 from twin.physics.model import Model
 from twin.study.case import WORLDS, Case
 from twin.study.estimation.respond import respond
-from twin.study.evidence import Hypothesis, Posterior, probabilities
 from twin.study.led import LUXURY
-from twin.study.nuisance import SURROUNDINGS
 from twin.study.own_force import without
+from twin.study.reference.evidence import Hypothesis, Posterior, probabilities
+from twin.study.reference.nuisance import SURROUNDINGS
 
 SURE = 0.8  # probability from which an effect is named
 SURE_GROUP = 0.95  # and from which one is named with those that these voyages cannot tell it from: one of them is there

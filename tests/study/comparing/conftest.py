@@ -12,7 +12,7 @@ from twin.physics.ship import Ship, load
 from twin.physics.state import Situation
 from twin.recording.voyage import Voyage
 from twin.recording.write import write_voyage
-from twin.study.sailed import Sailed
+from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
 
 DEG = 180.0 / np.pi

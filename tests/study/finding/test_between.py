@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from twin.study.between import Told, scattered, ship_of
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import Normal
-from twin.study.nuisance import of_any_day, temper_of
+from twin.study.reference.between import Told, scattered, ship_of
+from twin.study.reference.nuisance import of_any_day, temper_of
 
 P, SAID = 6, 400.0  # numbers, and how much a voyage says of each (in priors)
 

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from twin.study.assemble import assemble
-from twin.study.directions import TELLS, directions
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import innovate
-from twin.study.evidence import Nuisance, posterior, reduce
+from twin.study.reference.directions import TELLS, directions
+from twin.study.reference.evidence import Nuisance, posterior, reduce
 
 C, Q = 12, 3  # numbers of the nuisance, and of the effects
 

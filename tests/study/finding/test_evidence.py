@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from twin.study.estimation.columns import Unknown
-from twin.study.evidence import SPIKE, Reduced, boxed, given, log_evidence, posterior, weigh_all, weigh_with
+from twin.study.reference.evidence import SPIKE, Reduced, boxed, given, log_evidence, posterior, weigh_all, weigh_with
 
 
 def unknowns():

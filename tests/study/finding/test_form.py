@@ -9,7 +9,7 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.study.estimation import form
 from twin.study.estimation.columns import columns, form_unknowns
-from twin.study.nuisance import from_ship, nuisance_unknowns
+from twin.study.reference.nuisance import from_ship, nuisance_unknowns
 from twin.study.track.track import track
 
 MIRROR = np.array([1.0, -1.0, -1.0])  # X, Y, N of a ship seen in a mirror

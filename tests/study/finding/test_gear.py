@@ -16,7 +16,7 @@ from twin.physics.ship import load, save
 from twin.recording.write import write_voyage
 from twin.study.assemble import judgeable
 from twin.study.estimation.columns import effect_unknowns
-from twin.study.nuisance import USUAL, from_ship, nuisance_unknowns, of_known_weather
+from twin.study.reference.nuisance import USUAL, from_ship, nuisance_unknowns, of_known_weather
 from twin.study.track.track import track
 
 GYRO = 1e-6  # rad/s that the ship file already says of the gyro

@@ -12,7 +12,7 @@ from twin.study.estimation.columns import core_unknowns, effect_unknowns, with_v
 from twin.study.estimation.fit import fit
 from twin.study.estimation.innovations import Floor, innovate, linearise
 from twin.study.estimation.respond import later
-from twin.study.structure import floor_of, structural_floor
+from twin.study.reference.structure import floor_of, structural_floor
 from twin.study.track.segments import read_parts, segments
 from twin.study.track.track import READINGS, smooth_motion, track
 

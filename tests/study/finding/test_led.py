@@ -8,8 +8,8 @@ import pytest
 from twin.physics.effects import find
 from twin.study.assemble import assemble
 from twin.study.estimation.rough import KNOWN, added, elsewhere
-from twin.study.evidence import Hypothesis, posterior
 from twin.study.led import FORM, LUXURY, Led, _astray, _measured, held_out_error, horizon_s, led, roughly
+from twin.study.reference.evidence import Hypothesis, posterior
 from twin.study.refine import Found, refine
 from twin.study.search import search
 from twin.study.verdict import weights

@@ -10,9 +10,9 @@ from twin.physics.effects import catalogue, find
 from twin.study import leftover
 from twin.study.assemble import assemble
 from twin.study.estimation.columns import Unknown, with_values
-from twin.study.evidence import Hypothesis
 from twin.study.led import roughly
 from twin.study.leftover import ASTRAY, CLEAR, asked_for, changed, explaining, explains, helpful, missed, quiet, too_small, undone, weathered
+from twin.study.reference.evidence import Hypothesis
 from twin.study.refine import Found
 from twin.study.search import search
 from twin.study.tell_diagnosis import sentence

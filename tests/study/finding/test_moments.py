@@ -12,8 +12,8 @@ from twin.study import moments as moment_of
 from twin.study.assemble import assemble
 from twin.study.diagnose import diagnose
 from twin.study.estimation.columns import Unknown
-from twin.study.evidence import Hypothesis, Nuisance, likeliest, posterior
 from twin.study.moments import CLEAR, Moment, moments, stretches
+from twin.study.reference.evidence import Hypothesis, Nuisance, likeliest, posterior
 from twin.study.refine import Found, refine
 from twin.study.tell_diagnosis import sentence, told
 

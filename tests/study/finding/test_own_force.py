@@ -7,9 +7,9 @@ import pytest
 
 from twin.study import leftover, own_force
 from twin.study.assemble import assemble
-from twin.study.evidence import Posterior
 from twin.study.leftover import answer
 from twin.study.own_force import MOST_OF_IT, otherwise, without
+from twin.study.reference.evidence import Posterior
 from twin.study.refine import DOUBTS, refine
 from twin.study.search import search
 

@@ -9,7 +9,7 @@ import pytest
 from twin.physics.effects import find
 from twin.study.assemble import assemble
 from twin.study.estimation.respond import standard
-from twin.study.evidence import Hypothesis
+from twin.study.reference.evidence import Hypothesis
 from twin.study.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _place, _told, _Top, about
 
 

@@ -10,7 +10,7 @@ from twin.physics.model import Model
 from twin.study.estimation import tossed
 from twin.study.estimation.columns import SEA, sea_unknowns
 from twin.study.estimation.respond import accelerations, readings
-from twin.study.nuisance import nuisance_unknowns
+from twin.study.reference.nuisance import nuisance_unknowns
 from twin.study.track.track import track
 
 PERIOD_S = 12.0

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from twin.physics.effects import catalogue
-from twin.study.evidence import Hypothesis
+from twin.study.reference.evidence import Hypothesis
 from twin.study.verdict import Weights, group, judge, weights
 
 YES = ("blurred",)

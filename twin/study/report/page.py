@@ -12,10 +12,10 @@ from twin.recording.voyage import Voyage
 from twin.study import locate, score
 from twin.study.estimation.start import told_of_waves, waves_on
 from twin.study.openloop import HORIZONS_S
+from twin.study.reference.sailed import switched_off
+from twin.study.reference.structure import floor_of
 from twin.study.report.series import shown
 from twin.study.report.words import sentence, title
-from twin.study.sailed import switched_off
-from twin.study.structure import floor_of
 from twin.study.track.track import Track
 from twin.study.unexplained import energy
 

@@ -13,7 +13,7 @@ from twin.live.channels import BY_NAME
 from twin.physics.model import Model
 from twin.recording.voyage import Voyage
 from twin.study.openloop import MODEL, SENSORS, STRUCTURE, Windows, predict
-from twin.study.sailed import fed
+from twin.study.reference.sailed import fed
 from twin.study.score import ANGLES
 from twin.study.track.track import MEASURED, READINGS, Track
 

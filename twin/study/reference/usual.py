@@ -10,13 +10,13 @@ from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
-from twin.study.derivatives import first_prior
 from twin.study.estimation.innovations import Floor, innovate, linearise
-from twin.study.nuisance import from_references, nuisance_unknowns, temper_of, usual_unknowns
-from twin.study.sailed import fed
-from twin.study.structure import floor_beside
+from twin.study.reference.derivatives import first_prior
+from twin.study.reference.nuisance import from_references, nuisance_unknowns, temper_of, usual_unknowns
+from twin.study.reference.sailed import fed
+from twin.study.reference.structure import floor_beside
+from twin.study.reference.weather import strengths
 from twin.study.track.track import Track
-from twin.study.weather import strengths
 
 CLEAR = 4.0  # standard errors
 

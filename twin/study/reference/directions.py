@@ -12,7 +12,7 @@ import numpy as np
 
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import Linear
-from twin.study.evidence import Nuisance
+from twin.study.reference.evidence import Nuisance
 
 TELLS = 0.02  # information in the voyages over what is known beforehand, from which a direction is asked about
 SURE = 1e6  # information about what is not asked about

@@ -13,7 +13,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
-from twin.study.seaway import swung
+from twin.study.reference.seaway import swung
 from twin.study.track.track import Track, track
 
 

@@ -19,9 +19,9 @@ from twin.study.estimation.fit import evidence
 from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
 from twin.study.estimation.respond import respond
 from twin.study.estimation.start import steadied, wave_period_s
-from twin.study.gear import geared
-from twin.study.nuisance import TEMPER, nuisance_unknowns
-from twin.study.structure import floor_of
+from twin.study.reference.gear import geared
+from twin.study.reference.nuisance import TEMPER, nuisance_unknowns
+from twin.study.reference.structure import floor_of
 from twin.study.track.segments import read_parts, segments
 from twin.study.track.track import Track, running_mean
 

@@ -7,10 +7,10 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-from twin.study.between import scattered, ship_of, voyages
 from twin.study.estimation.columns import FORM, Unknown, core_unknowns, effect_unknowns, form_unknowns, lateness_unknowns, sea_unknowns
 from twin.study.estimation.innovations import Floor, Linear, Normal, innovate
-from twin.study.evidence import Nuisance
+from twin.study.reference.between import scattered, ship_of, voyages
+from twin.study.reference.evidence import Nuisance
 
 USUAL = 0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
 TEMPER = 3.0  # when no reference voyage tells how far innovations are from white

@@ -10,7 +10,7 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.study.estimation.respond import respond, standard
-from twin.study.nuisance import WEATHER
+from twin.study.reference.nuisance import WEATHER
 from twin.study.track.track import Track
 
 FAINT = 0.03  # of the standard acceleration: nobody would feel it
