@@ -17,7 +17,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.study.adding import fitted
 from twin.study.diagnose import diagnose
-from twin.study.openloop import predict
+from twin.study.prediction.openloop import predict
 from twin.study.reference.sailed import fed
 from twin.study.reference.seaway import swung
 from twin.study.track.track import Track, track

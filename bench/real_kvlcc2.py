@@ -18,10 +18,10 @@ from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
 from twin.study import adding
 from twin.study.calibrate import calibrate
-from twin.study.compare import compare
 from twin.study.diagnose import diagnose
+from twin.study.prediction.compare import compare
+from twin.study.prediction.score import reckoned
 from twin.study.reference.sailed import Sailed
-from twin.study.score import reckoned
 from twin.study.track.track import track
 
 MAPS = Path(__file__).parents[1] / "docs" / "maps"

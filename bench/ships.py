@@ -15,7 +15,7 @@ from bench.reference.hulls import HULLS, Hull
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship, save
 from twin.study.modulus import WORKING_J, error_share, modulus_form, slipstream
-from twin.study.trial import straight_line_stability, turning_circle, zigzag
+from twin.study.prediction.trial import straight_line_stability, turning_circle, zigzag
 
 FOLDER = Path(__file__).parent.parent / "twin" / "ships"
 NAMES = {

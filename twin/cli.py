@@ -31,7 +31,7 @@ VERBS: dict[str, Verb] = {
     "calibrate": Verb(
         "twin.study.calibrate", "fits the core to reference voyages", "twin calibrate calm.mcap --ship alma.toml -o alma2.toml"
     ),
-    "compare": Verb("twin.study.compare", "model against measurement: how wrong, and where", "twin compare v.mcap --ship alma2.toml"),
+    "compare": Verb("twin.study.prediction.compare", "model against measurement: how wrong, and where", "twin compare v.mcap --ship alma2.toml"),
     "diagnose": Verb(
         "twin.study.diagnose", "which physical effect is missing", "twin diagnose v.mcap --ship alma2.toml --reference calm.mcap"
     ),

@@ -10,7 +10,7 @@ from twin.cli import main
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.study.init import OPTIONS, first_model
-from twin.study.trial import turning_circle, zigzag
+from twin.study.prediction.trial import turning_circle, zigzag
 
 HULL = {  # length, beam, draught, and what else is known
     "2 m boat": (2.0, 0.34, 0.114, {"mass-kg": 40.0}),
@@ -77,7 +77,7 @@ def test_her_inertia_is_hers_where_it_is_known():
 
 
 def test_a_shaft_speed_sets_the_thrust(tmp_path):
-    from twin.study.trial import shaft_speed
+    from twin.study.prediction.trial import shaft_speed
 
     more = {"block-coefficient": 0.75, "service-speed-mps": 7.5, "shaft-speed-rpm": 105.0, "propeller-diameter-m": 6.2}
     ship, _ = first_model("A", given(180.0, 30.0, 10.5, more))

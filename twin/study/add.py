@@ -16,7 +16,7 @@ from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
 from twin.study.added import notes, told, verdict, written
 from twin.study.adding import ahead, can_be_judged, fitted, thirds
-from twin.study.openloop import HORIZONS_S
+from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.proof import Fall, by_regime, fall, judged_at, ladder
 from twin.study.reference.sailed import Sailed, read_all
 from twin.study.reference.structure import floor_of

@@ -16,7 +16,7 @@ from twin.recording.jsonable import short
 from twin.study.estimation.columns import Unknown, effect_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import Floor, innovate, linearise
-from twin.study.openloop import Windows, predict
+from twin.study.prediction.openloop import Windows, predict
 from twin.study.reference.nuisance import TEMPER, from_ship, nuisance_unknowns
 from twin.study.reference.sailed import fed
 from twin.study.reference.seaway import levelled

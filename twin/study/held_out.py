@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.openloop import HORIZONS_S, predict
+from twin.study.prediction.openloop import HORIZONS_S, predict
 from twin.study.reference.sailed import Sailed, fed
 from twin.study.track.track import Track
 

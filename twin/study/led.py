@@ -15,7 +15,7 @@ from twin.study.case import MOST_SEGMENTS, WORLDS, Case
 from twin.study.estimation.columns import with_values
 from twin.study.estimation.innovations import Floor, innovate
 from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
-from twin.study.openloop import MODEL, STRUCTURE, Windows, coarse, predict
+from twin.study.prediction.openloop import MODEL, STRUCTURE, Windows, coarse, predict
 from twin.study.reference.evidence import Hypothesis, given, posterior, reduce
 from twin.study.reference.nuisance import DAILY
 from twin.study.reference.structure import once_off

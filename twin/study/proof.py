@@ -12,8 +12,8 @@ from scipy.special import stdtrit
 
 from twin.errors import DataError
 from twin.physics.ship import Ship
-from twin.study import locate, score
-from twin.study.openloop import MODEL, SENSORS, Windows
+from twin.study.prediction import locate, score
+from twin.study.prediction.openloop import MODEL, SENSORS, Windows
 from twin.study.track.track import MEASURED
 
 FEWEST = 2.0  # windows that do not overlap, below which nothing can be proved

@@ -15,7 +15,7 @@ import numpy as np
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown, with_values
 from twin.study.estimation.fit import Catalogue
-from twin.study.openloop import coarse
+from twin.study.prediction.openloop import coarse
 from twin.study.track.track import Track
 
 HORIZON, LEADS = 3.0, 3  # ship lengths ahead, looked at so often on the way

@@ -16,7 +16,7 @@ from twin.study import story
 from twin.study.add import add
 from twin.study.adding import fitted
 from twin.study.diagnose import diagnose
-from twin.study.openloop import HORIZONS_S, predict
+from twin.study.prediction.openloop import HORIZONS_S, predict
 from twin.study.proof import fall, judged_at
 from twin.study.track.track import track
 

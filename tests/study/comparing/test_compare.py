@@ -9,7 +9,7 @@ import pytest
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load, save
-from twin.study.compare import compare, verdict
+from twin.study.prediction.compare import compare, verdict
 
 KEYS = {
     "schema_version",

@@ -5,9 +5,9 @@ import pytest
 
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.study import locate
-from twin.study.openloop import predict
-from twin.study.regimes import conditions, means
+from twin.study.prediction import locate
+from twin.study.prediction.openloop import predict
+from twin.study.prediction.regimes import conditions, means
 from twin.study.track.track import track
 
 

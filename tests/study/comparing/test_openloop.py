@@ -9,7 +9,7 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.state import Force
 from twin.study.estimation.innovations import Floor
-from twin.study.openloop import HORIZONS_S, MODEL, SENSORS, STRUCTURE, predict
+from twin.study.prediction.openloop import HORIZONS_S, MODEL, SENSORS, STRUCTURE, predict
 from twin.study.reference.sailed import fed, switched_off
 from twin.study.reference.structure import once_off
 from twin.study.track.track import track

@@ -11,7 +11,7 @@ from twin.errors import TwinError
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.study import report
-from twin.study.compare import compare
+from twin.study.prediction.compare import compare
 from twin.study.report.page import content
 
 BROWSER = next((b for b in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if b), None)

@@ -8,7 +8,7 @@ import pytest
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.study.estimation.start import steadied, told_of_waves, wave_period_s, waves_on
-from twin.study.openloop import coarse
+from twin.study.prediction.openloop import coarse
 from twin.study.reference import seaway
 from twin.study.reference.seaway import at_sea, levelled, stirred, swung
 from twin.study.track.track import track

@@ -12,9 +12,9 @@ import numpy as np
 from twin.live.channels import BY_NAME
 from twin.physics.model import Model
 from twin.recording.voyage import Voyage
-from twin.study.openloop import MODEL, SENSORS, STRUCTURE, Windows, predict
+from twin.study.prediction.openloop import MODEL, SENSORS, STRUCTURE, Windows, predict
+from twin.study.prediction.score import ANGLES
 from twin.study.reference.sailed import fed
-from twin.study.score import ANGLES
 from twin.study.track.track import MEASURED, READINGS, Track
 
 SHORTEST_S = 5.0  # a last stretch at least so long is drawn too

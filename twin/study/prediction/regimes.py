@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.physics.ship import Ship
-from twin.study.openloop import Windows
+from twin.study.prediction.openloop import Windows
 
 DEG = 180.0 / np.pi
 SECTORS = (("ahead", 0.0), ("the starboard beam", 90.0), ("astern", 180.0), ("the port beam", 270.0))

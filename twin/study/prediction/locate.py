@@ -12,9 +12,9 @@ from typing import Any
 import numpy as np
 
 from twin.physics.ship import Ship
-from twin.study.openloop import MODEL, SENSORS, STRUCTURE, Windows
-from twin.study.regimes import conditions, means
-from twin.study.score import pooled
+from twin.study.prediction.openloop import MODEL, SENSORS, STRUCTURE, Windows
+from twin.study.prediction.regimes import conditions, means
+from twin.study.prediction.score import pooled
 
 CHANCE = 0.05
 SHIFTS = 400

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from twin.errors import did_you_mean
-from twin.study import score
+from twin.study.prediction import score
 from twin.study.track.track import MEASURED
 
 AT_HORIZON = (*score.NAMES.values(), "noise_units")  # may have @SECONDS behind

@@ -11,14 +11,14 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
-from twin.study import locate, score
 from twin.study.estimation.start import waves_on
-from twin.study.openloop import HORIZONS_S, Windows, predict
+from twin.study.prediction import locate, score
+from twin.study.prediction.openloop import HORIZONS_S, Windows, predict
+from twin.study.prediction.tell import told
+from twin.study.prediction.thresholds import passed, positive, threshold
+from twin.study.prediction.unexplained import Energy, energy
 from twin.study.reference.sailed import Sailed, fed, read_all, switched_off
 from twin.study.reference.structure import floor_of
-from twin.study.tell import told
-from twin.study.thresholds import passed, positive, threshold
-from twin.study.unexplained import Energy, energy
 
 SCHEMA_VERSION = 1
 CLEARLY = 1.5  # times its floor, from which an error is more than it may be
