@@ -11,7 +11,7 @@ from bench.reference import Case
 from twin.physics.effects import find
 from twin.physics.ship import Ship, load
 from twin.study.adding import fitted
-from twin.study.calibrate import calibrate
+from twin.study.calibration.calibrate import calibrate
 from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
 

@@ -17,7 +17,7 @@ from twin.physics.ship import Ship, load
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
 from twin.study import adding
-from twin.study.calibrate import calibrate
+from twin.study.calibration.calibrate import calibrate
 from twin.study.diagnose import diagnose
 from twin.study.prediction.compare import compare
 from twin.study.prediction.score import reckoned

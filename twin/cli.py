@@ -29,7 +29,7 @@ VERBS: dict[str, Verb] = {
     ),
     "import": Verb("twin.recording.import_voyage", "measurements in, checked", "twin import log.csv --map log-map.toml -o voyage.mcap"),
     "calibrate": Verb(
-        "twin.study.calibrate", "fits the core to reference voyages", "twin calibrate calm.mcap --ship alma.toml -o alma2.toml"
+        "twin.study.calibration.calibrate", "fits the core to reference voyages", "twin calibrate calm.mcap --ship alma.toml -o alma2.toml"
     ),
     "compare": Verb("twin.study.prediction.compare", "model against measurement: how wrong, and where", "twin compare v.mcap --ship alma2.toml"),
     "diagnose": Verb(

@@ -15,8 +15,8 @@ from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.study.altered import sized
 from twin.study.assemble import assemble, unjudged_because
+from twin.study.calibration.doubts import coarse_axes
 from twin.study.case import Case
-from twin.study.doubts import coarse_axes
 from twin.study.effects import INPUTS
 from twin.study.estimation import identifiability
 from twin.study.estimation.start import waves_on

@@ -12,7 +12,7 @@ from bench.reference import Case, simulate
 from twin import cli
 from twin.physics.ship import load
 from twin.recording.write import write_voyage
-from twin.study.doubts import doubts
+from twin.study.calibration.doubts import doubts
 from twin.study.reference.usual import clearly_hers
 
 

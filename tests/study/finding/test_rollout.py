@@ -6,10 +6,10 @@ import pytest
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation
+from twin.study.calibration.rollout import HORIZON, rolled_out
 from twin.study.estimation.columns import core_unknowns
 from twin.study.prediction.openloop import coarse
 from twin.study.prediction.trial import shaft_speed
-from twin.study.rollout import HORIZON, rolled_out
 from twin.study.track.track import READINGS, Track
 
 NAMES = ("N_ur", "N_vr", "X_uu", "a_H", "Y_uv")

@@ -16,13 +16,14 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
-from twin.study.doubts import doubts
+from twin.study.calibration.doubts import doubts
+from twin.study.calibration.held_out import LAST, HeldOut, by_regime, errors, size, split
+from twin.study.calibration.parts import clearly, placed, with_or_without_wind
+from twin.study.calibration.rollout import rolled_out
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import Floor
 from twin.study.estimation.start import told_of_waves, waves_on
-from twin.study.held_out import LAST, HeldOut, by_regime, errors, size, split
-from twin.study.parts import clearly, placed, with_or_without_wind
 from twin.study.reference.derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
 from twin.study.reference.gear import with_or_without_gear
 from twin.study.reference.nuisance import TEMPER, WEATHER, instruments, temper_of
@@ -31,7 +32,6 @@ from twin.study.reference.seaway import levelled, swung
 from twin.study.reference.structure import structural_floor
 from twin.study.reference.usual import clearly_hers, usual
 from twin.study.reference.weather import FAINT, HARDER
-from twin.study.rollout import rolled_out
 from twin.study.track.track import Track
 
 SCHEMA_VERSION = 1

@@ -12,10 +12,10 @@ from twin.physics.effects.antenna_offset import AntennaOffset
 from twin.physics.effects.wind import Wind
 from twin.physics.model import Model
 from twin.physics.ship import Ship
+from twin.study.calibration.held_out import HeldOut, errors, size
 from twin.study.estimation.columns import effect_unknowns
 from twin.study.estimation.fit import Catalogue, Fit, fit
 from twin.study.estimation.innovations import Floor
-from twin.study.held_out import HeldOut, errors, size
 from twin.study.reference.gear import CLEAR as CLEARLY_BETTER
 from twin.study.reference.weather import strengths
 from twin.study.track.track import Track
