@@ -16,7 +16,7 @@ from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.study.adding import fitted
-from twin.study.diagnose import diagnose
+from twin.study.diagnosis.diagnose import diagnose
 from twin.study.prediction.openloop import predict
 from twin.study.reference.sailed import fed
 from twin.study.reference.seaway import swung

@@ -13,7 +13,7 @@ import numpy as np
 
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
-from twin.study.diagnose import diagnose
+from twin.study.diagnosis.diagnose import diagnose
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
 from twin.study import adding
 from twin.study.calibration.calibrate import calibrate
-from twin.study.diagnose import diagnose
+from twin.study.diagnosis.diagnose import diagnose
 from twin.study.prediction.compare import compare
 from twin.study.prediction.score import reckoned
 from twin.study.reference.sailed import Sailed

@@ -33,7 +33,7 @@ VERBS: dict[str, Verb] = {
     ),
     "compare": Verb("twin.study.prediction.compare", "model against measurement: how wrong, and where", "twin compare v.mcap --ship alma2.toml"),
     "diagnose": Verb(
-        "twin.study.diagnose", "which physical effect is missing", "twin diagnose v.mcap --ship alma2.toml --reference calm.mcap"
+        "twin.study.diagnosis.diagnose", "which physical effect is missing", "twin diagnose v.mcap --ship alma2.toml --reference calm.mcap"
     ),
     "add": Verb(
         "twin.study.add",

@@ -15,7 +15,7 @@ from twin.recording.write import write_voyage
 from twin.study import story
 from twin.study.add import add
 from twin.study.adding import fitted
-from twin.study.diagnose import diagnose
+from twin.study.diagnosis.diagnose import diagnose
 from twin.study.prediction.openloop import HORIZONS_S, predict
 from twin.study.proof import fall, judged_at
 from twin.study.track.track import track

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from twin.physics.effects import find
-from twin.study import altered
-from twin.study.altered import SCATTER, _moved, _scattered, floats, sized
-from twin.study.assemble import assemble
-from twin.study.refine import Found, refine
+from twin.study.diagnosis import altered
+from twin.study.diagnosis.altered import SCATTER, _moved, _scattered, floats, sized
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.refine import Found, refine
 
 
 @pytest.fixture(scope="module")

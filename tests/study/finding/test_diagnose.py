@@ -10,9 +10,9 @@ from twin import cli
 from twin.physics.effects import catalogue
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
-from twin.study.diagnose import diagnose
+from twin.study.diagnosis.diagnose import diagnose
+from twin.study.diagnosis.tell_diagnosis import sentence, told
 from twin.study.story import MONDAY, SHIP, TUESDAY
-from twin.study.tell_diagnosis import sentence, told
 
 
 @pytest.fixture(scope="module")

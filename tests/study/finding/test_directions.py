@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from twin.study.assemble import assemble
+from twin.study.diagnosis.assemble import assemble
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import innovate
 from twin.study.reference.directions import TELLS, directions

@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 
 from twin.physics.effects import find
-from twin.study.assemble import assemble
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.led import FORM, LUXURY, Led, _astray, _measured, held_out_error, horizon_s, led, roughly
+from twin.study.diagnosis.refine import Found, refine
+from twin.study.diagnosis.search import search
+from twin.study.diagnosis.verdict import weights
 from twin.study.estimation.rough import KNOWN, added, elsewhere
-from twin.study.led import FORM, LUXURY, Led, _astray, _measured, held_out_error, horizon_s, led, roughly
 from twin.study.reference.evidence import Hypothesis, posterior
-from twin.study.refine import Found, refine
-from twin.study.search import search
-from twin.study.verdict import weights
 
 TEN = 10.0  # windows that do not overlap
 FLOOR_M = float(np.hypot(8.0, FORM * 20.0))  # where nothing is off by 20 m

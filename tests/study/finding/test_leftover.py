@@ -7,15 +7,28 @@ import numpy as np
 import pytest
 
 from twin.physics.effects import catalogue, find
-from twin.study import leftover
-from twin.study.assemble import assemble
+from twin.study.diagnosis import leftover
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.led import roughly
+from twin.study.diagnosis.leftover import (
+    ASTRAY,
+    CLEAR,
+    asked_for,
+    changed,
+    explaining,
+    explains,
+    helpful,
+    missed,
+    quiet,
+    too_small,
+    undone,
+    weathered,
+)
+from twin.study.diagnosis.refine import Found
+from twin.study.diagnosis.search import search
+from twin.study.diagnosis.tell_diagnosis import sentence
 from twin.study.estimation.columns import Unknown, with_values
-from twin.study.led import roughly
-from twin.study.leftover import ASTRAY, CLEAR, asked_for, changed, explaining, explains, helpful, missed, quiet, too_small, undone, weathered
 from twin.study.reference.evidence import Hypothesis
-from twin.study.refine import Found
-from twin.study.search import search
-from twin.study.tell_diagnosis import sentence
 
 UNDECIDED = {
     "verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "calibrated_too_coarsely": [],

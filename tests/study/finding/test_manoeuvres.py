@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from twin.physics.effects import find
-from twin.study.assemble import assemble
-from twin.study.manoeuvres import MANOEUVRES, next_manoeuvre, sail
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.manoeuvres import MANOEUVRES, next_manoeuvre, sail
 
 
 @pytest.fixture(scope="module")

@@ -8,14 +8,14 @@ import pytest
 
 from bench.bundled import recorded
 from bench.reference import Case, simulate
-from twin.study import moments as moment_of
-from twin.study.assemble import assemble
-from twin.study.diagnose import diagnose
+from twin.study.diagnosis import moments as moment_of
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.diagnose import diagnose
+from twin.study.diagnosis.moments import CLEAR, Moment, moments, stretches
+from twin.study.diagnosis.refine import Found, refine
+from twin.study.diagnosis.tell_diagnosis import sentence, told
 from twin.study.estimation.columns import Unknown
-from twin.study.moments import CLEAR, Moment, moments, stretches
 from twin.study.reference.evidence import Hypothesis, Nuisance, likeliest, posterior
-from twin.study.refine import Found, refine
-from twin.study.tell_diagnosis import sentence, told
 
 
 def as_she_is(case):

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from twin.study.diagnose import diagnose
-from twin.study.overtime import changes
-from twin.study.tell_diagnosis import told
+from twin.study.diagnosis.diagnose import diagnose
+from twin.study.diagnosis.overtime import changes
+from twin.study.diagnosis.tell_diagnosis import told
 
 
 def parts(result, name):

@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from twin.study import leftover, own_force
-from twin.study.assemble import assemble
-from twin.study.leftover import answer
-from twin.study.own_force import MOST_OF_IT, otherwise, without
+from twin.study.diagnosis import leftover, own_force
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.leftover import answer
+from twin.study.diagnosis.own_force import MOST_OF_IT, otherwise, without
+from twin.study.diagnosis.refine import DOUBTS, refine
+from twin.study.diagnosis.search import search
 from twin.study.reference.evidence import Posterior
-from twin.study.refine import DOUBTS, refine
-from twin.study.search import search
 
 
 def about_its_size(voyage, ship, name):

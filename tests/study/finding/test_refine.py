@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from twin.physics.effects import find
-from twin.study.assemble import assemble
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _place, _told, _Top, about
 from twin.study.estimation.respond import standard
 from twin.study.reference.evidence import Hypothesis
-from twin.study.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _place, _told, _Top, about
 
 
 @pytest.fixture(scope="module")
@@ -99,7 +99,7 @@ def test_a_climb_that_got_no_higher_is_asked_in_no_other_world(case, monkeypatch
 def test_what_comes_and_goes_with_wave_groups_may_be_something_else_as_a_whole(case, monkeypatch, chosen, most):
     asked = []
     monkeypatch.setattr(type(case), "reduced", lambda self, lines, floors, at: asked.extend(floors) or [None] * len(floors))
-    monkeypatch.setattr("twin.study.refine.posterior", lambda r, chosen: SimpleNamespace(log_evidence=0.0))
+    monkeypatch.setattr("twin.study.diagnosis.refine.posterior", lambda r, chosen: SimpleNamespace(log_evidence=0.0))
     _doubt(case, chosen, _Top(np.zeros(len(case.effects)), case.lines, {"usual": Hypothesis(chosen, "usual", 0.0, 0.0)}))
     assert max(floor.doubt for floor in asked) == most and min(floor.doubt for floor in asked) == DOUBTS[-1]
 

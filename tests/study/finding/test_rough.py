@@ -7,7 +7,7 @@ import pytest
 
 from twin.physics import core
 from twin.physics.effects import find
-from twin.study.assemble import assemble
+from twin.study.diagnosis.assemble import assemble
 from twin.study.estimation.columns import ROUGH
 from twin.study.estimation.respond import respond, standard
 from twin.study.estimation.rough import KNOWN, TERMS, accelerations, doubted

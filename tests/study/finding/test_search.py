@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from twin.physics.effects import catalogue
-from twin.study.assemble import assemble
-from twin.study.case import WORLDS
-from twin.study.refine import Found
-from twin.study.search import _Book, search
-from twin.study.verdict import weights
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.case import WORLDS
+from twin.study.diagnosis.refine import Found
+from twin.study.diagnosis.search import _Book, search
+from twin.study.diagnosis.verdict import weights
 
 PAIR = ("RudderWear", "SteeringLag")
 
@@ -51,7 +51,7 @@ def test_a_pair_begins_where_the_likelier_of_its_parts_was_found_and_that_is_not
         began.update(z=z, known=known)
         return replace(held.found[PAIR[1:]], hypothesis=replace(held.found[PAIR[1:]].hypothesis, effects=chosen)), []
 
-    monkeypatch.setattr("twin.study.search.refine", begins)
+    monkeypatch.setattr("twin.study.diagnosis.search.refine", begins)
     held.judge(PAIR)
     gear = [i for i, u in enumerate(case.effects) if u.owner == "SteeringLag"]
     assert slow > worn and began["known"] == ("SteeringLag",)
@@ -109,7 +109,7 @@ def test_an_effect_that_ended_at_nothing_says_no_more_than_the_rest(case, monkey
         h = replace(none.hypothesis, effects=chosen, log_evidence=1e6)
         return Found(h, replace(none.posterior, z=np.zeros(len(case.effects))), case.model), [h]
 
-    monkeypatch.setattr("twin.study.search.refine", at_nothing)
+    monkeypatch.setattr("twin.study.diagnosis.search.refine", at_nothing)
     held.judge(("RudderWear",))
     assert ("RudderWear",) in held.found
     assert ("RudderWear",) not in {h.effects for h in held.weighed()}

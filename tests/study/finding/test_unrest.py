@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from twin.study.assemble import assemble
+from twin.study.diagnosis.assemble import assemble
 from twin.study.track.track import READINGS, track
 from twin.study.track.unrest import shaken
 

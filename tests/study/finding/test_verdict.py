@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pytest
 
 from twin.physics.effects import catalogue
+from twin.study.diagnosis.verdict import Weights, group, judge, weights
 from twin.study.reference.evidence import Hypothesis
-from twin.study.verdict import Weights, group, judge, weights
 
 YES = ("blurred",)
 

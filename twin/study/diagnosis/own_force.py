@@ -13,11 +13,11 @@ from dataclasses import replace
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.case import Case
+from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.led import plain
+from twin.study.diagnosis.refine import DOUBTS, Found, standing
 from twin.study.estimation.respond import respond
-from twin.study.led import plain
 from twin.study.reference.evidence import posterior
-from twin.study.refine import DOUBTS, Found, standing
 
 PUSH = ("Force", "Lag")  # kinds that are judged by what they do to her
 MOST_OF_IT = (0.4, 0.8, 1.6)  # shares that no true effect leaves open; the last is more than all of it

@@ -13,13 +13,13 @@ import numpy as np
 
 from twin.physics import core
 from twin.physics.model import Model
-from twin.study.case import MOST_SEGMENTS, Case
+from twin.study.diagnosis.case import MOST_SEGMENTS, Case
+from twin.study.diagnosis.led import plain
+from twin.study.diagnosis.refine import Found, standing
 from twin.study.estimation.innovations import Floor, Linear, innovate
 from twin.study.estimation.respond import standard
 from twin.study.estimation.start import wave_period_s
-from twin.study.led import plain
 from twin.study.reference.evidence import likeliest
-from twin.study.refine import Found, standing
 from twin.study.track.segments import segments
 
 LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before

@@ -12,7 +12,7 @@ from twin.physics.effects import catalogue as known_effects
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
-from twin.study.case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, settle
+from twin.study.diagnosis.case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, settle
 from twin.study.estimation.columns import FORM, ROUGH, SEA, Unknown, core_unknowns, effect_unknowns, lateness_unknowns, rough_unknowns
 from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
 from twin.study.estimation.rough import doubted

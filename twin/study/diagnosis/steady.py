@@ -10,8 +10,8 @@ import numpy as np
 from twin.physics.effect import Flow
 from twin.physics.model import Model
 from twin.physics.state import Situation
-from twin.study.case import Case
-from twin.study.refine import Found
+from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.refine import Found
 from twin.study.track.track import Track
 
 EDDIES = 0.2  # of a stream, beside its mean, that nobody calls a change (root mean squares)

@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.case import MOST_SEGMENTS, WORLDS, Case
+from twin.study.diagnosis.case import MOST_SEGMENTS, WORLDS, Case
+from twin.study.diagnosis.refine import Found, Sets, standing
 from twin.study.estimation.columns import with_values
 from twin.study.estimation.innovations import Floor, innovate
 from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
@@ -19,7 +20,6 @@ from twin.study.prediction.openloop import MODEL, STRUCTURE, Windows, coarse, pr
 from twin.study.reference.evidence import Hypothesis, given, posterior, reduce
 from twin.study.reference.nuisance import DAILY
 from twin.study.reference.structure import once_off
-from twin.study.refine import Found, Sets, standing
 from twin.study.track.track import Track
 
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two

@@ -11,14 +11,14 @@ from dataclasses import replace
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.case import WORLDS, Case
+from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.led import FORM, roughly
+from twin.study.diagnosis.own_force import leads_her, otherwise, without
+from twin.study.diagnosis.refine import Found, Sets, standing
+from twin.study.diagnosis.verdict import ALIKE, SURE, of_the_sea
 from twin.study.estimation.respond import respond, standard
-from twin.study.led import FORM, roughly
-from twin.study.own_force import leads_her, otherwise, without
 from twin.study.reference.evidence import Hypothesis, posterior
 from twin.study.reference.seaway import at_sea
-from twin.study.refine import Found, Sets, standing
-from twin.study.verdict import ALIKE, SURE, of_the_sea
 
 MOSTLY = 1.0 / 3.0  # of the error without it that may be left whatever else is
 ASTRAY = 2.0  # times the floor that an answer may end away from where she went, one that names a cause if it leads her some of the way

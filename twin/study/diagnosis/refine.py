@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.case import WORLDS, Case
+from twin.study.diagnosis.case import WORLDS, Case
 from twin.study.estimation.columns import ROUGH, Unknown, changed, with_values
 from twin.study.estimation.innovations import Linear, linearise
 from twin.study.estimation.respond import respond, standard

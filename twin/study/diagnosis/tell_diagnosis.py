@@ -2,10 +2,10 @@
 
 from typing import Any
 
+from twin.study.diagnosis.leftover import BETTER, NEARLY
+from twin.study.diagnosis.overtime import changes
+from twin.study.diagnosis.verdict import ACQUITTED, LOST, SURE
 from twin.study.estimation.start import told_of_waves
-from twin.study.leftover import BETTER, NEARLY
-from twin.study.overtime import changes
-from twin.study.verdict import ACQUITTED, LOST, SURE
 
 PUSHED = 3  # moments that are told
 SMALL = "It is too small to show in where these voyages led her: `twin add` may ask for others."

@@ -10,15 +10,15 @@ from dataclasses import replace
 import numpy as np
 
 from twin.physics.effect import SensorFault
-from twin.study.altered import floats
-from twin.study.case import ODDS_WEAK, WORLDS, Case
+from twin.study.diagnosis.altered import floats
+from twin.study.diagnosis.case import ODDS_WEAK, WORLDS, Case
+from twin.study.diagnosis.led import REACH, Led, led
+from twin.study.diagnosis.leftover import NEARLY, answer
+from twin.study.diagnosis.refine import Found, Sets, refine
+from twin.study.diagnosis.steady import steady
 from twin.study.estimation.columns import Unknown
-from twin.study.led import REACH, Led, led
-from twin.study.leftover import NEARLY, answer
 from twin.study.reference.evidence import Hypothesis, Reduced, boxed, posterior, weigh_all
 from twin.study.reference.nuisance import DAILY
-from twin.study.refine import Found, Sets, refine
-from twin.study.steady import steady
 
 MOST = 2  # effects at once that would be news
 ROUNDS = 20  # hypotheses judged about their own size, at most

@@ -7,10 +7,10 @@ import numpy as np
 
 from twin.physics import core
 from twin.physics.model import Model
-from twin.study.case import WORLDS, Case
+from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.led import LUXURY
+from twin.study.diagnosis.own_force import without
 from twin.study.estimation.respond import respond
-from twin.study.led import LUXURY
-from twin.study.own_force import without
 from twin.study.reference.evidence import Hypothesis, Posterior, probabilities
 from twin.study.reference.nuisance import SURROUNDINGS
 

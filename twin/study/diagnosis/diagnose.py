@@ -13,22 +13,22 @@ from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
-from twin.study.altered import sized
-from twin.study.assemble import assemble, unjudged_because
 from twin.study.calibration.doubts import coarse_axes
-from twin.study.case import Case
+from twin.study.diagnosis.altered import sized
+from twin.study.diagnosis.assemble import assemble, unjudged_because
+from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.led import held_out_error, horizon_s
+from twin.study.diagnosis.leftover import asked_for, changed, explaining, helpful, missed, too_small, undone, weathered
+from twin.study.diagnosis.manoeuvres import next_manoeuvre
+from twin.study.diagnosis.moments import moments
+from twin.study.diagnosis.overtime import over_time
+from twin.study.diagnosis.refine import Found
+from twin.study.diagnosis.search import search
+from twin.study.diagnosis.tell_diagnosis import sentence, told
+from twin.study.diagnosis.verdict import SURE, alike, group, judge, parameters, shows, typical_force, weights
 from twin.study.effects import INPUTS
 from twin.study.estimation import identifiability
 from twin.study.estimation.start import waves_on
-from twin.study.led import held_out_error, horizon_s
-from twin.study.leftover import asked_for, changed, explaining, helpful, missed, too_small, undone, weathered
-from twin.study.manoeuvres import next_manoeuvre
-from twin.study.moments import moments
-from twin.study.overtime import over_time
-from twin.study.refine import Found
-from twin.study.search import search
-from twin.study.tell_diagnosis import sentence, told
-from twin.study.verdict import SURE, alike, group, judge, parameters, shows, typical_force, weights
 
 SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this

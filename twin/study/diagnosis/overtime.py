@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from twin.study.case import Case
+from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.refine import Found, standing
 from twin.study.estimation.innovations import innovate
 from twin.study.reference.evidence import reduce
-from twin.study.refine import Found, standing
 
 PARTS = 4  # at most; a part holds whole segments of the filter
 FORM = 0.25  # a share that differs by so much is the form of the effect, not its time

@@ -12,10 +12,10 @@ import numpy as np
 from twin.physics.effect import Effect, Force
 from twin.physics.effects.loading import waterplane
 from twin.physics.model import Model
-from twin.study.case import Case
+from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.refine import Found, standing
 from twin.study.estimation.columns import with_values
 from twin.study.reference.evidence import Nuisance, Posterior, posterior
-from twin.study.refine import Found, standing
 
 HULL = ("X_", "Y_", "N_")
 SCATTER = 0.5  # of single hulls about a regression, as a share of what it says

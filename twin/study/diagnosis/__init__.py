@@ -1,0 +1,1 @@
+"""Hypotheses, evidence, search, validation on held-out parts, and the decision with its reason."""
