@@ -15,12 +15,12 @@ from bench.league_truth import beside
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-from twin.study.adding import fitted
 from twin.study.diagnosis.diagnose import diagnose
 from twin.study.prediction.openloop import predict
 from twin.study.reference.sailed import fed
 from twin.study.reference.seaway import swung
 from twin.study.track.track import Track, track
+from twin.study.update.adding import fitted
 
 HORIZON_S = 120.0
 _SHIPS: dict[str, dict[str, Any]] = {}

@@ -10,10 +10,10 @@ from bench.league_sea import kept
 from bench.reference import Case
 from twin.physics.effects import find
 from twin.physics.ship import Ship, load
-from twin.study.adding import fitted
 from twin.study.calibration.calibrate import calibrate
 from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
+from twin.study.update.adding import fitted
 
 MANOEUVRES = ("zigzag_20", "speed_changes", "turning_circle", "course_changes", "zigzag_10", "mixed")
 HELD_BACK = "mixed"  # a seventh, to measure the calibrated ship

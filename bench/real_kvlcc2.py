@@ -16,13 +16,13 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
-from twin.study import adding
 from twin.study.calibration.calibrate import calibrate
 from twin.study.diagnosis.diagnose import diagnose
 from twin.study.prediction.compare import compare
 from twin.study.prediction.score import reckoned
 from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
+from twin.study.update import adding
 
 MAPS = Path(__file__).parents[1] / "docs" / "maps"
 HORIZONS_S = (10.0, 60.0, 120.0)

@@ -15,10 +15,10 @@ from twin.physics.effects.current import Current
 from twin.physics.effects.varying_current import VaryingCurrent
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-from twin.study.adding import in_one
 from twin.study.estimation.respond import lagged
 from twin.study.estimation.start import true_motion
 from twin.study.track.track import STATE, Track
+from twin.study.update.adding import in_one
 
 CURRENT_S, BLOCK_S = 120.0, 300.0
 FEWEST_BLOCKS = 12  # of a voyage that is cut in time

@@ -36,12 +36,12 @@ VERBS: dict[str, Verb] = {
         "twin.study.diagnosis.diagnose", "which physical effect is missing", "twin diagnose v.mcap --ship alma2.toml --reference calm.mcap"
     ),
     "add": Verb(
-        "twin.study.add",
+        "twin.study.update.add",
         "adds an effect, fits it, proves the fall on held-out voyages",
         "twin add Wind --ship alma2.toml --voyage v.mcap --held-out w.mcap -o alma3.toml",
     ),
-    "remove": Verb("twin.study.remove", "takes an effect out again", "twin remove Wind --ship alma3.toml -o alma4.toml"),
-    "history": Verb("twin.study.history", "the ladder of what was added and how far the error fell", "twin history alma3.toml"),
+    "remove": Verb("twin.study.update.remove", "takes an effect out again", "twin remove Wind --ship alma3.toml -o alma4.toml"),
+    "history": Verb("twin.study.update.history", "the ladder of what was added and how far the error fell", "twin history alma3.toml"),
     "effects": Verb("twin.study.effects", "the catalogue: formula, inputs, parameters, units, source", "twin effects Wind"),
     "train": Verb("export.train", "trains and exports the residual", "twin train v*.mcap --ship alma3.toml -o residual.onnx"),
     "demo": Verb("twin.study.demo", "the whole story on a bundled voyage, in a minute or two", "twin demo"),

@@ -13,12 +13,12 @@ from twin.physics.ship import load, to_table
 from twin.recording.read import read_voyage
 from twin.recording.write import write_voyage
 from twin.study import story
-from twin.study.add import add
-from twin.study.adding import fitted
 from twin.study.diagnosis.diagnose import diagnose
 from twin.study.prediction.openloop import HORIZONS_S, predict
-from twin.study.proof import fall, judged_at
 from twin.study.track.track import track
+from twin.study.update.add import add
+from twin.study.update.adding import fitted
+from twin.study.update.proof import fall, judged_at
 
 
 @pytest.fixture(scope="module")
@@ -151,7 +151,7 @@ def test_an_effect_that_was_fitted_to_nothing_is_said_to_change_nothing(make, kv
 
 
 def test_the_interval_of_the_fall_is_as_wide_as_overlapping_windows_make_it():
-    from twin.study.proof import _bootstrap
+    from twin.study.update.proof import _bootstrap
 
     rng = np.random.default_rng(0)
     wander = np.convolve(rng.standard_normal(412), np.ones(12), "valid")
@@ -173,7 +173,7 @@ def test_a_short_voyage_is_judged_nearer_ahead_when_the_ship_is_small(make, kvlc
 
 
 def test_few_windows_make_a_wide_interval():
-    from twin.study.proof import _interval
+    from twin.study.update.proof import _interval
 
     spread = np.linspace(-1.0, 1.0, 101)
     assert np.diff(_interval(spread, 0.0, 2.5)) > 2.5 * np.diff(_interval(spread, 0.0, 50.0))

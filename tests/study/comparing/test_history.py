@@ -6,8 +6,8 @@ import pytest
 
 from twin.physics.effects import find
 from twin.physics.ship import load, save
-from twin.study.add import add
-from twin.study.history import ladder, told
+from twin.study.update.add import add
+from twin.study.update.history import ladder, told
 
 
 @pytest.fixture

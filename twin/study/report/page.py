@@ -44,7 +44,7 @@ def content(
 ) -> dict[str, Any]:
     """Everything the page shows, as JSON."""
     from twin.recording.jsonable import plain
-    from twin.study.adding import ahead
+    from twin.study.update.adding import ahead
 
     structural = floor_of(model.ship) is not None
     asked = [h["horizon_s"] for h in result.get("horizons", [])] or list(HORIZONS_S)

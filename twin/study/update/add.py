@@ -14,13 +14,13 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
 from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
-from twin.study.added import notes, told, verdict, written
-from twin.study.adding import ahead, can_be_judged, fitted, thirds
 from twin.study.prediction.openloop import HORIZONS_S
-from twin.study.proof import Fall, by_regime, fall, judged_at, ladder
 from twin.study.reference.sailed import Sailed, read_all
 from twin.study.reference.structure import floor_of
 from twin.study.track.track import Track
+from twin.study.update.added import notes, told, verdict, written
+from twin.study.update.adding import ahead, can_be_judged, fitted, thirds
+from twin.study.update.proof import Fall, by_regime, fall, judged_at, ladder
 
 SCHEMA_VERSION = 1
 EPILOG = """example:

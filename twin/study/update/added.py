@@ -8,10 +8,10 @@ from typing import Any
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import short
-from twin.study.adding import UNTOUCHED, Found
-from twin.study.proof import Fall
 from twin.study.reference.nuisance import OF_THE_DAY
 from twin.study.reference.sailed import Sailed
+from twin.study.update.adding import UNTOUCHED, Found
+from twin.study.update.proof import Fall
 
 
 def verdict(result: dict[str, Any], proof: Fall) -> str:
