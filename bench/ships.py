@@ -1,7 +1,7 @@
 """The bundled ship files, made from published numbers: `python -m bench.ships` writes them and prints their sea trials.
 
 The published tables stand in bench/reference/hulls.py (MMG: polynomials in v', r'). The twin writes the same ships in another
-form, the core's modulus form, by least squares (twin/study/modulus.py); so a bundled ship is a good nominal model and not the
+form, the core's modulus form, by least squares (twin/study/first_model/modulus.py); so a bundled ship is a good nominal model and not the
 truth of any voyage of the reference sea, and nothing here was fitted to one.
 """
 
@@ -14,7 +14,7 @@ import numpy as np
 from bench.reference.hulls import HULLS, Hull
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship, save
-from twin.study.modulus import WORKING_J, error_share, modulus_form, slipstream
+from twin.study.first_model.modulus import WORKING_J, error_share, modulus_form, slipstream
 from twin.study.prediction.trial import straight_line_stability, turning_circle, zigzag
 
 FOLDER = Path(__file__).parent.parent / "twin" / "ships"

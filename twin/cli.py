@@ -23,7 +23,7 @@ VERBS: dict[str, Verb] = {
     "run": Verb("twin.live.run", "the service: Zenoh in, Zenoh out, MCAP log", "twin run --config /etc/shiptwin/twin.toml"),
     "replay": Verb("twin.live.replay", "a recorded voyage through the same loop", "twin replay logs/voyage.mcap -o again.mcap"),
     "init": Verb(
-        "twin.study.init",
+        "twin.study.first_model.init",
         "a first model of my ship from what its owner knows",
         "twin init 'MV Alma' --length-pp-m 180 --beam-m 30 --draught-m 10.5 -o alma.toml",
     ),

@@ -7,7 +7,7 @@ import pytest
 from bench import ships
 from twin.physics.model import Model
 from twin.physics.ship import load
-from twin.study.modulus import error_share
+from twin.study.first_model.modulus import error_share
 from twin.study.prediction.trial import shaft_speed, straight_line_stability, turning_circle, zigzag
 
 each = pytest.mark.parametrize("key", ships.NAMES)

@@ -9,7 +9,7 @@ from bench.reference.hulls import HULLS
 from twin.cli import main
 from twin.physics.model import Model
 from twin.physics.ship import load
-from twin.study.init import OPTIONS, first_model
+from twin.study.first_model.init import OPTIONS, first_model
 from twin.study.prediction.trial import turning_circle, zigzag
 
 HULL = {  # length, beam, draught, and what else is known

@@ -12,8 +12,8 @@ from twin.errors import SettingsError
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship, save
 from twin.recording.import_voyage import write_json
-from twin.study import regressions as reg
-from twin.study.modulus import modulus_form, slipstream
+from twin.study.first_model import regressions as reg
+from twin.study.first_model.modulus import modulus_form, slipstream
 from twin.study.prediction.trial import shaft_speed, straight_line_stability, turning_circle, zigzag
 
 FARTHEST_G = 0.15  # of L: centres of gravity lie within a few per cent of midship, of a slender naval vessel 0.10 astern
