@@ -7,12 +7,12 @@ import subprocess
 
 import pytest
 
+from twin import report
 from twin.errors import TwinError
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.study import report
+from twin.report.page import content
 from twin.study.prediction.compare import compare
-from twin.study.report.page import content
 
 BROWSER = next((b for b in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if b), None)
 FLAGS = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking --enable-logging=stderr"

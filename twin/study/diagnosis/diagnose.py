@@ -193,7 +193,7 @@ def run(args: argparse.Namespace) -> int:
         write_json(result, args.json)
     print("\n".join(page_lines), file=page)
     if args.report:
-        from twin.study import report
+        from twin import report
 
         report.write(args.report, "diagnose", result, list(done.case.tracks), done.case.model, voyages=voyages)
         print(f"\nwrote {args.report}", file=page)

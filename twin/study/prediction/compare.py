@@ -173,7 +173,7 @@ def _learned(path: str, ship: Ship) -> Callable:
 
 
 def _report(path: str, found: Compared, model: Model, result: dict[str, Any]) -> None:
-    from twin.study import report
+    from twin import report
 
     report.write(
         path,

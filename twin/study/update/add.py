@@ -140,7 +140,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _report(path: str, made: Added, ship: Ship, result: dict[str, Any], shown: Sequence[Sailed]) -> None:
-    from twin.study import report
+    from twin import report
 
     history = made.ship.notes["history"]
     report.write(

@@ -9,14 +9,14 @@ from typing import Any
 from twin import whole
 from twin.physics.model import Model
 from twin.recording.voyage import Voyage
+from twin.report.series import shown
+from twin.report.words import sentence, title
 from twin.study.estimation.start import told_of_waves, waves_on
 from twin.study.prediction import locate, score
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.prediction.unexplained import energy
 from twin.study.reference.sailed import switched_off
 from twin.study.reference.structure import floor_of
-from twin.study.report.series import shown
-from twin.study.report.words import sentence, title
 from twin.study.track.track import Track
 
 SCRIPTS = ("dom.js", "plot.js", "track.js", "sections.js", "diagnosis.js", "main.js")

@@ -8,6 +8,6 @@
 `result` lacks (horizons, channels, where, worst_windows, unexplained_force, switched_off) is worked out from tracks and model.
 """
 
-from twin.study.report.page import write
+from twin.report.page import write
 
 __all__ = ["write"]
