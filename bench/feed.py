@@ -17,8 +17,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from bench.mark import Mark
-from twin.live import geodesy
 from twin.live.messages import Tick, encode_fix, encode_float, unwrap, wrap
+from twin.live.signals import geodesy
 from twin.live.topics import BY_SUBJECT, INPUTS, key
 
 LATITUDE_DEG, LONGITUDE_DEG = 57.62, 11.58

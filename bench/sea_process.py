@@ -19,8 +19,8 @@ from bench.reference import HULLS, WEATHERS, Case, Sea, simulate
 from bench.reference.manoeuvres import MANOEUVRES
 from twin.cli import guarded
 from twin.errors import SettingsError, UsageError, did_you_mean
-from twin.live import geodesy
 from twin.live.messages import encode_fix, encode_float, wrap
+from twin.live.signals import geodesy
 from twin.live.topics import INPUTS, OWN_SOURCE, key
 from twin.live.zenoh_config import BusSettings, configuration
 

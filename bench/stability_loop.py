@@ -12,11 +12,11 @@ import numpy as np
 from bench.stability import HEADING_NOISE, Fleet
 from twin.live.build import loop_of
 from twin.live.clock import Instant
-from twin.live.config import Settings
 from twin.live.inbox import Played
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
-from twin.live.readings import Reading
+from twin.live.signals.config import Settings
+from twin.live.signals.readings import Reading
 from twin.physics.model import Model
 from twin.physics.state import Situation
 

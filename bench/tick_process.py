@@ -19,8 +19,9 @@ from typing import Any
 from bench.mark import Mark
 from bench.memory import Memory, memory
 from bench.timing import quantiles
-from twin.live import config, run
+from twin.live import run
 from twin.live.clock import Clock, Instant, MonotonicClock
+from twin.live.signals import config
 
 WARM_UP = 900  # ticks before anything is counted: the feed is heard, gates open, the first prediction is made, the log is open
 CONNECT_S = 20.0

@@ -88,7 +88,7 @@ def test_torch_is_loaded_in_export_only():
 SERVE = """
 import socket, sys
 from twin.live import run
-from twin.live.config import Settings
+from twin.live.signals.config import Settings
 with socket.socket() as probe:
     probe.bind(("127.0.0.1", 0))
     port = probe.getsockname()[1]

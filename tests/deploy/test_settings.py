@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from twin.live.config import KEYS, load
+from twin.live.signals.config import KEYS, load
 
 DEPLOY = Path(__file__).parents[2] / "deploy"
 TOML = DEPLOY / "twin.toml"

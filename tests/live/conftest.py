@@ -14,7 +14,7 @@ from twin.live.learned import LearnedForce
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
-from twin.live.readings import Reading
+from twin.live.signals.readings import Reading
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.physics.state import Situation

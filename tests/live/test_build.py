@@ -5,7 +5,7 @@ from importlib import resources
 import pytest
 
 from twin.live.build import certificate_file, stabilizer_of
-from twin.live.config import Settings
+from twin.live.signals.config import Settings
 from twin.physics.ship import load
 
 

@@ -5,8 +5,8 @@ import tomllib
 import pytest
 
 from twin.errors import SettingsError
-from twin.live import config
-from twin.live.config import KEYS, example, load
+from twin.live.signals import config
+from twin.live.signals.config import KEYS, example, load
 
 
 def write(tmp_path, text, encoding="utf-8"):

@@ -4,7 +4,7 @@ from math import cos, pi, radians, sin
 
 import pytest
 
-from twin.live.derive import RateFromHeading, SpeedFromPosition, apparent_wind, true_wind, turn
+from twin.live.signals.derive import RateFromHeading, SpeedFromPosition, apparent_wind, true_wind, turn
 
 
 def test_the_short_way_round():

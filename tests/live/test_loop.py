@@ -6,7 +6,7 @@ from math import hypot, isfinite, radians
 import pytest
 
 from twin.live.clock import Instant
-from twin.live.readings import Reading
+from twin.live.signals.readings import Reading
 
 
 def test_the_estimate_follows_a_zigzag_closer_than_the_instruments_say(bridge):

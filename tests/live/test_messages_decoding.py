@@ -5,12 +5,12 @@ from math import inf, nan
 import pytest
 
 from twin.live import messages, topics
-from twin.live.channels import BY_NAME, CHANNELS, Channel
 from twin.live.decode import Decoder, Result, check, from_row
-from twin.live.geodesy import datum
-from twin.live.readings import WORDS, Quality, Reading, Rejected
 from twin.live.schema import keelson_class
-from twin.live.sentinels import CODES
+from twin.live.signals.channels import BY_NAME, CHANNELS, Channel
+from twin.live.signals.geodesy import datum
+from twin.live.signals.readings import WORDS, Quality, Reading, Rejected
+from twin.live.signals.sentinels import CODES
 
 NS = 1_750_000_000_500_000_000
 HEADING = topics.key("twin", "ship", "heading_true_north_deg", "gyro")

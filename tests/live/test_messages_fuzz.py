@@ -4,10 +4,10 @@ import random
 from math import isfinite
 
 from twin.live import messages, topics
-from twin.live.channels import BY_NAME
 from twin.live.decode import EARLIEST_S, LATEST_S, Decoder
-from twin.live.geodesy import MAX_DISTANCE_M, datum
-from twin.live.readings import Reading
+from twin.live.signals.channels import BY_NAME
+from twin.live.signals.geodesy import MAX_DISTANCE_M, datum
+from twin.live.signals.readings import Reading
 
 NS = 1_750_000_000_000_000_000
 CASES = 100_000

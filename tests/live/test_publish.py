@@ -6,9 +6,9 @@ import pytest
 
 from twin.live import messages
 from twin.live.bus import MemoryBus
-from twin.live.geodesy import datum
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher, border_sigma, border_state
+from twin.live.signals.geodesy import datum
 from twin.live.topics import OUTPUTS, address
 
 

@@ -6,7 +6,6 @@ from twin.errors import DataError
 from twin.live import messages
 from twin.live.bus import MemoryBus
 from twin.live.clock import Instant
-from twin.live.config import Settings
 from twin.live.inbox import Inbox
 from twin.live.learned import LearnedForce
 from twin.live.loop import Loop
@@ -17,6 +16,7 @@ from twin.live.publish import Publisher
 from twin.live.record import LogFile
 from twin.live.replay import replay
 from twin.live.residual import bundled, load
+from twin.live.signals.config import Settings
 from twin.live.topics import BY_SUBJECT, key
 
 WALL = 1.7e9

@@ -16,8 +16,9 @@ from twin.live.mcap_read import McapReader
 
 SERVE = """
 import os, sys, traceback
-from twin.live import config, run
-from twin.live.config import Settings
+from twin.live import run
+from twin.live.signals import config
+from twin.live.signals.config import Settings
 def on_tick(tick):
     {hook}
 code = 1

@@ -5,7 +5,7 @@ import pytest
 
 from twin.errors import SettingsError
 from twin.live import topics
-from twin.live.channels import BY_NAME, CHANNELS
+from twin.live.signals.channels import BY_NAME, CHANNELS
 
 
 def test_every_channel_has_a_topic() -> None:

@@ -6,7 +6,7 @@ from math import atan2, cos, degrees, hypot, radians, sin, sqrt
 import pytest
 
 from twin.errors import SettingsError
-from twin.live.geodesy import E2, A, convergence_deg, datum, from_chart, to_chart
+from twin.live.signals.geodesy import E2, A, convergence_deg, datum, from_chart, to_chart
 
 
 @pytest.mark.parametrize("latitude", [0.0, 35.0, 57.7, -55.0, 80.0, 89.4])

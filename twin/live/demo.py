@@ -22,8 +22,8 @@ from typing import IO, Any
 from twin.errors import TwinError, UsageError
 from twin.live import messages, replay
 from twin.live import run as service
-from twin.live.config import Settings
 from twin.live.logfile import read
+from twin.live.signals.config import Settings
 from twin.live.view import View
 from twin.physics.ship import load
 

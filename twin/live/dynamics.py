@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from copy import copy
 
 from twin.live.estimate import Estimate
-from twin.live.measured import Measured
+from twin.live.signals.measured import Measured
 from twin.physics import core
 from twin.physics.effect import Effect, Flow, Lag
 from twin.physics.maths import cos, sin

@@ -12,8 +12,8 @@ from collections import deque
 from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
 
-from twin.live.derive import turn
-from twin.live.measured import Measured
+from twin.live.signals.derive import turn
+from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
 from twin.physics.state import Rates
 

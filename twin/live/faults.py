@@ -5,9 +5,9 @@ measured' = measured - (read(s) - s), read being what the instruments would say 
 
 from dataclasses import fields
 
-from twin.live.derive import turn
 from twin.live.estimate import Estimate
-from twin.live.measured import Measured
+from twin.live.signals.derive import turn
+from twin.live.signals.measured import Measured
 from twin.physics.effect import SensorFault
 from twin.physics.model import Model
 from twin.physics.ship import Ship

@@ -7,9 +7,9 @@ believed after SETTLE_S, and announced.
 
 from math import exp, isfinite
 
-from twin.live.channels import Channel
 from twin.live.frozen import Frozen
-from twin.live.readings import Quality, Reading
+from twin.live.signals.channels import Channel
+from twin.live.signals.readings import Quality, Reading
 
 SETTLE_S = 1.2  # how long a step must last before it is believed
 SETTLE_SAMPLES = 3

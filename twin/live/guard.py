@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 from twin.live.estimate import Estimate
 from twin.live.learned import Learned, LearnedForce
-from twin.live.measured import Measured
 from twin.live.plausible import Plausibility
+from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
 
 STARTING, HYBRID, PHYSICS, RECKONING, INVALID = "starting", "hybrid", "physics only", "dead reckoning", "invalid"

@@ -13,9 +13,10 @@ from google.protobuf.message import DecodeError
 from twin import whole
 from twin.cli import guarded
 from twin.errors import UsageError
-from twin.live import config, messages
-from twin.live.config import Settings
+from twin.live import messages
 from twin.live.guard import HYBRID, PHYSICS
+from twin.live.signals import config
+from twin.live.signals.config import Settings
 from twin.live.topics import OWN_SOURCE, key
 
 SCHEMA_VERSION = 1

@@ -12,15 +12,15 @@ from twin.live.decode import Result
 from twin.live.dynamics import Dynamics
 from twin.live.estimate import Observer
 from twin.live.faults import KnownFaults
-from twin.live.geodesy import Datum
 from twin.live.guard import INVALID, Guard
 from twin.live.learned import LearnedForce
-from twin.live.measured import Measured
 from twin.live.outbox import Outbox
 from twin.live.parts import Parts
 from twin.live.predict import LearnedAt, Predictor
 from twin.live.seen import Pace, Seen, Standing
 from twin.live.sensors import Sensors
+from twin.live.signals.geodesy import Datum
+from twin.live.signals.measured import Measured
 from twin.live.stabilizer import Stabilizer
 from twin.physics.ship import Ship
 

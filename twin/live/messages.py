@@ -7,8 +7,8 @@ flat enough to plot by path in Lichtblick, Foxglove and PlotJuggler: `estimate.h
 
 from typing import Any
 
-from twin.live.channels import CHANNELS
 from twin.live.schema import Field, classes_from_table, descriptor_set, keelson_class
+from twin.live.signals.channels import CHANNELS
 
 
 def each_channel(kind: str) -> list[Field]:

@@ -9,7 +9,7 @@ from math import nan
 
 import numpy as np
 
-from twin.live.channels import BY_NAME, Channel
+from twin.live.signals.channels import BY_NAME, Channel
 
 Columns = dict[str, np.ndarray]
 Samples = dict[str, tuple[np.ndarray, np.ndarray]]  # channel: (stamps [s], values)

@@ -3,10 +3,10 @@
 from typing import Any
 
 from twin.live.bus import Bus
-from twin.live.geodesy import Datum
 from twin.live.inbox import Log
 from twin.live.messages import wrap
 from twin.live.publish import Publisher
+from twin.live.signals.geodesy import Datum
 from twin.live.topics import OUTPUTS, key
 
 TICK = next(output for output in OUTPUTS if output.subject == "twin_tick")

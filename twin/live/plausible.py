@@ -9,8 +9,8 @@ a name.
 from collections.abc import Sequence
 from math import sqrt
 
-from twin.live.derive import turn
-from twin.live.measured import Measured
+from twin.live.signals.derive import turn
+from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
 
 TURNS = (

@@ -12,9 +12,9 @@ from dataclasses import replace
 from math import ceil, exp, hypot, log, pi
 from typing import NamedTuple
 
-from twin.live.derive import turn
 from twin.live.dynamics import Forces, Known, Steering
 from twin.live.estimate import Estimate
+from twin.live.signals.derive import turn
 from twin.physics.maths import cos, sin
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation

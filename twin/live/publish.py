@@ -8,9 +8,9 @@ from typing import Any
 
 from twin.live import messages
 from twin.live.estimate import Estimate
-from twin.live.geodesy import Datum, from_chart
 from twin.live.learned import Learned
 from twin.live.seen import Seen, Standing
+from twin.live.signals.geodesy import Datum, from_chart
 from twin.live.topics import OUTPUTS, Output
 from twin.physics.core import Tau
 

@@ -11,9 +11,8 @@ from typing import Any, NamedTuple
 
 from twin import whole
 from twin.errors import DataError, SettingsError
-from twin.live import build, config
+from twin.live import build
 from twin.live.clock import ReplayClock
-from twin.live.config import Settings
 from twin.live.foresight import Foresight, Sight
 from twin.live.inbox import Played
 from twin.live.loop import Loop
@@ -21,6 +20,8 @@ from twin.live.outbox import Outbox
 from twin.live.played import Batch, PlayedLog
 from twin.live.publish import Publisher
 from twin.live.record import LogFile
+from twin.live.signals import config
+from twin.live.signals.config import Settings
 
 SCHEMA_VERSION = 1
 PROGRESS = 20_000  # ticks between two words on standard error

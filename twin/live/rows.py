@@ -16,8 +16,8 @@ from twin.errors import DataError
 from twin.live.decode import Decoder, Result
 from twin.live.mcap_read import McapReader
 from twin.live.onebase import Columns, on_one_base, without_repeats
-from twin.live.readings import WORDS, Reading
 from twin.live.schema import classes_from_set
+from twin.live.signals.readings import WORDS, Reading
 from twin.live.wire import double_columns
 
 ROW, TICK, AGES = "shiptwin.Row", "shiptwin.Tick", "shiptwin.Ages"

@@ -16,10 +16,9 @@ from time import perf_counter_ns
 from typing import Any
 
 from twin.errors import TwinError, UsageError
-from twin.live import build, config, realtime
+from twin.live import build, realtime
 from twin.live.bus import Bus
 from twin.live.clock import Clock, MonotonicClock
-from twin.live.config import Settings
 from twin.live.inbox import Inbox
 from twin.live.keep import Keeper
 from twin.live.loop import Loop
@@ -27,6 +26,8 @@ from twin.live.notify import Notifier
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
 from twin.live.record import Recorder
+from twin.live.signals import config
+from twin.live.signals.config import Settings
 from twin.live.zenoh_config import BusSettings
 
 WATCHDOG_S = 0.25  # how often the service manager hears that a step was good

@@ -9,8 +9,8 @@ from twin.live.dynamics import Known
 from twin.live.estimate import Estimate
 from twin.live.guard import Verdict
 from twin.live.learned import Learned
-from twin.live.measured import Measured
 from twin.live.predict import Prediction
+from twin.live.signals.measured import Measured
 from twin.physics.core import Tau
 from twin.physics.state import Situation
 

@@ -8,13 +8,13 @@ derived.
 from collections.abc import Sequence
 from math import degrees, inf, pi
 
-from twin.live.channels import CHANNELS
-from twin.live.derive import RateFromHeading, SpeedFromPosition, true_wind
 from twin.live.estimate import HELD, Estimate
 from twin.live.frozen import Frozen
 from twin.live.gate import Gate
-from twin.live.measured import Measured
-from twin.live.readings import WORDS, Quality, Reading, Rejected
+from twin.live.signals.channels import CHANNELS
+from twin.live.signals.derive import RateFromHeading, SpeedFromPosition, true_wind
+from twin.live.signals.measured import Measured
+from twin.live.signals.readings import WORDS, Quality, Reading, Rejected
 from twin.live.stamps import Stamps
 from twin.physics.ship import Ship
 

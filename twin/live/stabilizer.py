@@ -5,8 +5,8 @@ from math import hypot
 
 from twin.live.estimate import Observer
 from twin.live.guard import CONTROLS
-from twin.live.measured import Measured
 from twin.live.seen import Certified
+from twin.live.signals.measured import Measured
 from twin.live.tube import STILL, Three, Tube
 from twin.physics.state import Situation
 

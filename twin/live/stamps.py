@@ -9,7 +9,7 @@ thrown away because a clock was set.
 
 from math import isfinite
 
-from twin.live.readings import Quality, Reading
+from twin.live.signals.readings import Quality, Reading
 
 STEP_S = 0.2  # a wall clock that moves by more against the monotonic one was set
 FORGET_S = 120.0  # how long the offset from before a step is remembered

@@ -7,7 +7,7 @@ Keelson has one; the twin's own subjects follow its naming rule (quantity, frame
 from typing import NamedTuple
 
 from twin.errors import SettingsError, did_you_mean
-from twin.live.channels import CHANNELS
+from twin.live.signals.channels import CHANNELS
 
 OWN_SOURCE = "twin"  # what the twin says carries this source id; it never listens to it
 KNOT = 1852.0 / 3600.0  # [m/s]

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from twin.errors import SettingsError
-from twin.live.config import Settings
+from twin.live.signals.config import Settings
 from twin.live.topics import subjects
 
 MAX_HZ = 200.0  # of each subject

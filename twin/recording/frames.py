@@ -6,8 +6,8 @@ north' = u cos psi - v sin psi        east' = u sin psi + v cos psi
 
 import numpy as np
 
-from twin.live.geodesy import datum, to_chart
-from twin.live.sentinels import is_no_position
+from twin.live.signals.geodesy import datum, to_chart
+from twin.live.signals.sentinels import is_no_position
 
 SMOOTH_S = 2.0  # a derivative is the slope of the line through this much time
 

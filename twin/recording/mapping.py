@@ -4,7 +4,7 @@ import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from twin.live.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME
 
 FRAMED = ("surge_velocity_mps", "sway_velocity_mps")
 PLACES = ("latitude_deg", "longitude_deg")

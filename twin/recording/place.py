@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.live.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME
 from twin.recording.frames import SMOOTH_S, body_from_earth, chart, earth_from_body, integral, slope
 from twin.recording.mapping import FRAMED, PLACES, Map
 from twin.recording.resample import beside, continuous

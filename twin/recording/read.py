@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from twin.errors import DataError
-from twin.live.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME
 from twin.recording.frames import from_ddmm
 from twin.recording.headers import own_names
 from twin.recording.mapping import PLACES, Column, Key, Map, TimeColumn, target

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from twin.live.channels import BY_NAME
-from twin.live.sentinels import CODES, GENERIC, IN_RANGE_TOO
+from twin.live.signals.channels import BY_NAME
+from twin.live.signals.sentinels import CODES, GENERIC, IN_RANGE_TOO
 from twin.recording.resample import continuous
 
 FEWEST = 20  # samples, to know what is usual

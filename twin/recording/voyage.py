@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from twin.errors import DataError, did_you_mean
-from twin.live.channels import BY_NAME, CHANNELS, Channel
+from twin.live.signals.channels import BY_NAME, CHANNELS, Channel
 from twin.recording.resample import continuous, resampled, wrapped
 
 SLOW_S = 60.0  # a channel that may be this old is a state of the sea or of the loading: its ends are held

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.live.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME
 from twin.physics.model import Model
 from twin.recording.voyage import Voyage
 from twin.study.prediction.openloop import MODEL, SENSORS, STRUCTURE, Windows, predict

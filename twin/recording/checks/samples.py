@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.live.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME
 from twin.recording.checks.answer import Check, doubtful, good
 from twin.recording.checks.view import View
 from twin.recording.samples import spikes as spike_rows

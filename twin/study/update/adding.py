@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from twin.errors import DataError
-from twin.live.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME
 from twin.physics.effect import Effect
 from twin.physics.effects import catalogue
 from twin.physics.model import Model

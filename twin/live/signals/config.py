@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from twin.errors import SettingsError, did_you_mean
-from twin.live.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME
 
 
 class Key(NamedTuple):

@@ -7,7 +7,7 @@ deg N. Sources: NMEA 2000 appendix B.1; ITU-R M.1371-5, table 48.
 
 from math import pi
 
-from twin.live.channels import CHANNELS
+from twin.live.signals.channels import CHANNELS
 
 Field = tuple[tuple[int, ...], float]  # (raw codes, resolution in border units)
 DEG = 180.0 / pi
