@@ -17,9 +17,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 from bench.mark import Mark
-from twin.live.messages import Tick, encode_fix, encode_float, unwrap, wrap
+from twin.live.keelson.messages import Tick, encode_fix, encode_float, unwrap, wrap
+from twin.live.keelson.topics import BY_SUBJECT, INPUTS, key
 from twin.live.signals import geodesy
-from twin.live.topics import BY_SUBJECT, INPUTS, key
 
 LATITUDE_DEG, LONGITUDE_DEG = 57.62, 11.58
 HZ = 10.0  # of the reference sea
@@ -79,7 +79,7 @@ class Feed:
 def main(rows: str, endpoint: str, base: str, entity: str) -> None:
     import zenoh
 
-    from twin.live.zenoh_config import BusSettings, configuration
+    from twin.live.keelson.zenoh_config import BusSettings, configuration
 
     voyage = pickle.loads(Path(rows).read_bytes())
     session = zenoh.open(configuration(BusSettings(base, entity, "", (endpoint,))))

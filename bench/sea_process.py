@@ -19,10 +19,10 @@ from bench.reference import HULLS, WEATHERS, Case, Sea, simulate
 from bench.reference.manoeuvres import MANOEUVRES
 from twin.cli import guarded
 from twin.errors import SettingsError, UsageError, did_you_mean
-from twin.live.messages import encode_fix, encode_float, wrap
+from twin.live.keelson.messages import encode_fix, encode_float, wrap
+from twin.live.keelson.topics import INPUTS, OWN_SOURCE, key
+from twin.live.keelson.zenoh_config import BusSettings, configuration
 from twin.live.signals import geodesy
-from twin.live.topics import INPUTS, OWN_SOURCE, key
-from twin.live.zenoh_config import BusSettings, configuration
 
 SOURCE = "sea"
 LISTENER_S = 30.0  # the longest wait for a twin that listens

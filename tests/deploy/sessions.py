@@ -9,7 +9,7 @@ import time
 
 import zenoh
 
-from twin.live.zenoh_config import BusSettings, configuration
+from twin.live.keelson.zenoh_config import BusSettings, configuration
 
 ALL = "*/@v0/*/pubsub/**"
 OWN = "twin/@v0/ship/pubsub/twin_tick/twin"

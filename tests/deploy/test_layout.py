@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from twin.live.messages import Tick
-from twin.live.topics import OUTPUTS, address
+from twin.live.keelson.messages import Tick
+from twin.live.keelson.topics import OUTPUTS, address
 
 LAYOUT = json.loads((Path(__file__).parents[2] / "deploy" / "lichtblick-layout.json").read_text())
 

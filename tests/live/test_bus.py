@@ -13,13 +13,13 @@ import pytest
 import zenoh
 
 from twin.errors import SettingsError
-from twin.live import messages, topics
-from twin.live.bus import MemoryBus
-from twin.live.zenoh_bus import ZenohBus
-from twin.live.zenoh_config import BusSettings, configuration
+from twin.live.keelson import messages, topics
+from twin.live.keelson.bus import MemoryBus
+from twin.live.keelson.zenoh_bus import ZenohBus
+from twin.live.keelson.zenoh_config import BusSettings, configuration
 
 HEADING = topics.key("twin", "ship", "heading_true_north_deg", "gyro")
-IMPORTS = "from twin.live.zenoh_bus import ZenohBus\nfrom twin.live.zenoh_config import BusSettings\n"
+IMPORTS = "from twin.live.keelson.zenoh_bus import ZenohBus\nfrom twin.live.keelson.zenoh_config import BusSettings\n"
 RUDDER = topics.key("twin", "ship", "rudder_angle_deg", "steering")
 
 

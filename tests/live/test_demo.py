@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from twin.live import demo, view
-from twin.live.messages import Tick
+from twin.live.keelson.messages import Tick
 
 DEMO = [sys.executable, "-m", "twin.cli", "demo"]
 

@@ -6,7 +6,7 @@ from google.protobuf.descriptor_pb2 import FileDescriptorSet
 from google.protobuf.descriptor_pool import DescriptorPool
 from google.protobuf.message_factory import GetMessageClass
 
-from twin.live import messages
+from twin.live.keelson import messages
 from twin.live.signals.channels import CHANNELS
 
 NS = 1_750_000_000_123_456_789

@@ -4,9 +4,9 @@ from math import inf, nan
 
 import pytest
 
-from twin.live import messages, topics
-from twin.live.decode import Decoder, Result, check, from_row
-from twin.live.schema import keelson_class
+from twin.live.keelson import messages, topics
+from twin.live.keelson.decode import Decoder, Result, check, from_row
+from twin.live.keelson.schema import keelson_class
 from twin.live.signals.channels import BY_NAME, CHANNELS, Channel
 from twin.live.signals.geodesy import datum
 from twin.live.signals.readings import WORDS, Quality, Reading, Rejected

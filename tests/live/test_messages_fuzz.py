@@ -3,8 +3,8 @@
 import random
 from math import isfinite
 
-from twin.live import messages, topics
-from twin.live.decode import EARLIEST_S, LATEST_S, Decoder
+from twin.live.keelson import messages, topics
+from twin.live.keelson.decode import EARLIEST_S, LATEST_S, Decoder
 from twin.live.signals.channels import BY_NAME
 from twin.live.signals.geodesy import MAX_DISTANCE_M, datum
 from twin.live.signals.readings import Reading

@@ -4,12 +4,12 @@ from math import inf, nan
 
 import pytest
 
-from twin.live import messages
-from twin.live.bus import MemoryBus
+from twin.live.keelson import messages
+from twin.live.keelson.bus import MemoryBus
+from twin.live.keelson.topics import OUTPUTS, address
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher, border_sigma, border_state
 from twin.live.signals.geodesy import datum
-from twin.live.topics import OUTPUTS, address
 
 
 def test_numbers_that_are_none_are_withheld_and_counted():

@@ -12,7 +12,7 @@ import pytest
 from mcap.reader import NonSeekingReader, make_reader
 
 from twin.errors import DataError, TwinError
-from twin.live import messages
+from twin.live.keelson import messages
 from twin.live.mcap_index import MAGIC
 from twin.live.mcap_read import McapReader
 from twin.live.mcap_write import CHUNK_BYTES, McapWriter

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from twin.errors import DataError
-from twin.live import messages, topics
+from twin.live.keelson import messages, topics
 from twin.live.record import LogFile, read_rows
 
 START = 1_750_000_000

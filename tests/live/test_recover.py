@@ -12,7 +12,7 @@ from time import sleep
 import pytest
 from mcap.reader import make_reader
 
-from twin.live import messages
+from twin.live.keelson import messages
 from twin.live.mcap_write import McapWriter
 from twin.live.record import Recorder, read
 from twin.live.recover import recover, recover_folder
@@ -21,7 +21,7 @@ TOPIC = "twin/@v0/ship/pubsub/heading_true_north_deg/gyro"
 KILLS = 20
 WRITER = """
 import os, sys, time
-from twin.live import messages
+from twin.live.keelson import messages
 from twin.live.record import Recorder
 with Recorder(sys.argv[1]) as recorder:
     for i in range(100000):

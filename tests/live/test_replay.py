@@ -3,21 +3,21 @@
 import pytest
 
 from twin.errors import DataError
-from twin.live import messages
-from twin.live.bus import MemoryBus
 from twin.live.clock import Instant
 from twin.live.inbox import Inbox
+from twin.live.keelson import messages
+from twin.live.keelson.bus import MemoryBus
+from twin.live.keelson.messages import encode_float, wrap
+from twin.live.keelson.topics import BY_SUBJECT, key
 from twin.live.learned import LearnedForce
 from twin.live.loop import Loop
 from twin.live.mcap_read import McapReader
-from twin.live.messages import encode_float, wrap
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
 from twin.live.record import LogFile
 from twin.live.replay import replay
 from twin.live.residual import bundled, load
 from twin.live.signals.config import Settings
-from twin.live.topics import BY_SUBJECT, key
 
 WALL = 1.7e9
 

@@ -79,7 +79,7 @@ def started(process):
 
 
 def ticks(place):
-    from twin.live import messages
+    from twin.live.keelson import messages
 
     path = max((place / "logs").glob("*.mcap"))
     return [messages.Tick.FromString(m.data) for m in McapReader(path).messages() if m.type_name == "shiptwin.Tick"]

@@ -7,8 +7,8 @@ import pytest
 from google.protobuf.descriptor_pb2 import FileDescriptorProto, FileDescriptorSet
 
 from twin.errors import TwinError
-from twin.live import messages, proto_file
-from twin.live.schema import keelson_class
+from twin.live.keelson import messages, proto_file
+from twin.live.keelson.schema import keelson_class
 
 FIELDS = [("time_s", "double"), ("name", "string?"), ("state", "State"), ("parts", "State*"), ("n", "int64?"), ("on", "bool")]
 

@@ -4,7 +4,7 @@ import keelson
 import pytest
 
 from twin.errors import SettingsError
-from twin.live import topics
+from twin.live.keelson import topics
 from twin.live.signals.channels import BY_NAME, CHANNELS
 
 

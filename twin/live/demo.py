@@ -20,8 +20,9 @@ from pathlib import Path
 from typing import IO, Any
 
 from twin.errors import TwinError, UsageError
-from twin.live import messages, replay
+from twin.live import replay
 from twin.live import run as service
+from twin.live.keelson import messages
 from twin.live.logfile import read
 from twin.live.signals.config import Settings
 from twin.live.view import View

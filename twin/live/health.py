@@ -13,11 +13,11 @@ from google.protobuf.message import DecodeError
 from twin import whole
 from twin.cli import guarded
 from twin.errors import UsageError
-from twin.live import messages
 from twin.live.guard import HYBRID, PHYSICS
+from twin.live.keelson import messages
+from twin.live.keelson.topics import OWN_SOURCE, key
 from twin.live.signals import config
 from twin.live.signals.config import Settings
-from twin.live.topics import OWN_SOURCE, key
 
 SCHEMA_VERSION = 1
 
@@ -55,7 +55,7 @@ def hear(settings: Settings, timeout_s: float) -> Any:
     """The newest tick that comes within the time, None when none does."""
     import zenoh
 
-    from twin.live.zenoh_config import BusSettings, beside
+    from twin.live.keelson.zenoh_config import BusSettings, beside
 
     try:
         session = zenoh.open(beside(BusSettings.of(settings)))

@@ -2,9 +2,9 @@
 
 from collections.abc import Callable, Iterable
 
-from twin.live.bus import Bus
 from twin.live.clock import Instant
-from twin.live.decode import Decoder, Result
+from twin.live.keelson.bus import Bus
+from twin.live.keelson.decode import Decoder, Result
 from twin.live.signals.geodesy import Datum
 
 Log = Callable[[str, str, bytes, int], None]  # topic, type name, payload, time [ns since 1970]

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from twin.errors import TwinError
+from twin.live.keelson.messages import schema_bytes
 from twin.live.mcap_read import McapReader, Message
 from twin.live.mcap_write import McapWriter
-from twin.live.messages import schema_bytes
 
 if TYPE_CHECKING:
     import numpy as np

@@ -8,11 +8,11 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from twin.live.clock import Instant
-from twin.live.decode import Result
 from twin.live.dynamics import Dynamics
 from twin.live.estimate import Observer
 from twin.live.faults import KnownFaults
 from twin.live.guard import INVALID, Guard
+from twin.live.keelson.decode import Result
 from twin.live.learned import LearnedForce
 from twin.live.outbox import Outbox
 from twin.live.parts import Parts

@@ -2,12 +2,12 @@
 
 from typing import Any
 
-from twin.live.bus import Bus
 from twin.live.inbox import Log
-from twin.live.messages import wrap
+from twin.live.keelson.bus import Bus
+from twin.live.keelson.messages import wrap
+from twin.live.keelson.topics import OUTPUTS, key
 from twin.live.publish import Publisher
 from twin.live.signals.geodesy import Datum
-from twin.live.topics import OUTPUTS, key
 
 TICK = next(output for output in OUTPUTS if output.subject == "twin_tick")
 

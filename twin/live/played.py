@@ -13,10 +13,10 @@ from typing import NamedTuple
 from google.protobuf.message import DecodeError
 
 from twin.errors import DataError
-from twin.live import messages
-from twin.live.decode import Decoder, Result, from_row
+from twin.live.keelson import messages
+from twin.live.keelson.decode import Decoder, Result, from_row
+from twin.live.keelson.topics import BY_SUBJECT, address, is_own
 from twin.live.mcap_read import McapReader, Message
-from twin.live.topics import BY_SUBJECT, address, is_own
 
 TICK, ROW = "shiptwin.Tick", "shiptwin.Row"
 PEEK = 5000  # messages within which a log of the twin shows its first tick

@@ -13,12 +13,12 @@ import numpy as np
 from google.protobuf.message import DecodeError
 
 from twin.errors import DataError
-from twin.live.decode import Decoder, Result
+from twin.live.keelson.decode import Decoder, Result
+from twin.live.keelson.schema import classes_from_set
+from twin.live.keelson.wire import double_columns
 from twin.live.mcap_read import McapReader
 from twin.live.onebase import Columns, on_one_base, without_repeats
-from twin.live.schema import classes_from_set
 from twin.live.signals.readings import WORDS, Reading
-from twin.live.wire import double_columns
 
 ROW, TICK, AGES = "shiptwin.Row", "shiptwin.Tick", "shiptwin.Ages"
 

@@ -17,9 +17,10 @@ from typing import Any
 
 from twin.errors import TwinError, UsageError
 from twin.live import build, realtime
-from twin.live.bus import Bus
 from twin.live.clock import Clock, MonotonicClock
 from twin.live.inbox import Inbox
+from twin.live.keelson.bus import Bus
+from twin.live.keelson.zenoh_config import BusSettings
 from twin.live.keep import Keeper
 from twin.live.loop import Loop
 from twin.live.notify import Notifier
@@ -28,7 +29,6 @@ from twin.live.publish import Publisher
 from twin.live.record import Recorder
 from twin.live.signals import config
 from twin.live.signals.config import Settings
-from twin.live.zenoh_config import BusSettings
 
 WATCHDOG_S = 0.25  # how often the service manager hears that a step was good
 STATUS_S = 1.0
@@ -194,7 +194,7 @@ class Service:
 
 
 def bus_of(settings: Settings) -> Bus:
-    from twin.live.zenoh_bus import ZenohBus
+    from twin.live.keelson.zenoh_bus import ZenohBus
 
     return ZenohBus(BusSettings.of(settings))
 

@@ -11,8 +11,8 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from twin.live.keelson.messages import schema_bytes
 from twin.live.mcap_write import Compress, McapWriter
-from twin.live.messages import schema_bytes
 
 
 class Segment:

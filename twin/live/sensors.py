@@ -11,11 +11,11 @@ from math import degrees, inf, pi
 from twin.live.estimate import HELD, Estimate
 from twin.live.frozen import Frozen
 from twin.live.gate import Gate
+from twin.live.keelson.stamps import Stamps
 from twin.live.signals.channels import CHANNELS
 from twin.live.signals.derive import RateFromHeading, SpeedFromPosition, true_wind
 from twin.live.signals.measured import Measured
 from twin.live.signals.readings import WORDS, Quality, Reading, Rejected
-from twin.live.stamps import Stamps
 from twin.physics.ship import Ship
 
 MOVING = ("north_m", "east_m", "heading_true_north_deg")  # a ship under way changes them for certain

@@ -12,12 +12,12 @@ from typing import Any, NamedTuple
 from google.protobuf.message import DecodeError
 from google.protobuf.unknown_fields import UnknownFieldSet
 
-from twin.live import messages
+from twin.live.keelson import messages
+from twin.live.keelson.topics import BY_SUBJECT, FIX, Topic, address, is_own
 from twin.live.signals.channels import BY_NAME
 from twin.live.signals.geodesy import MAX_DISTANCE_M, MAX_LATITUDE_DEG, Datum, datum, to_chart
 from twin.live.signals.readings import Quality, Reading, Rejected
 from twin.live.signals.sentinels import is_no_position, is_sentinel
-from twin.live.topics import BY_SUBJECT, FIX, Topic, address, is_own
 
 EARLIEST_S = 946684800.0  # 2000-01-01: an earlier stamp is a clock that was never set
 LATEST_S = 4102444800.0  # 2100-01-01: a later stamp is garbage

@@ -7,7 +7,7 @@ flat enough to plot by path in Lichtblick, Foxglove and PlotJuggler: `estimate.h
 
 from typing import Any
 
-from twin.live.schema import Field, classes_from_table, descriptor_set, keelson_class
+from twin.live.keelson.schema import Field, classes_from_table, descriptor_set, keelson_class
 from twin.live.signals.channels import CHANNELS
 
 

@@ -13,7 +13,7 @@ from typing import Any
 from google.protobuf.message import Message
 
 from twin.errors import TwinError
-from twin.live import proto_file
+from twin.live.keelson import proto_file
 
 try:
     from google._upb._message import DescriptorPool, MessageMeta

@@ -11,9 +11,9 @@ from threading import Event, Thread
 from typing import Any
 
 from twin.errors import SettingsError
-from twin.live.bus import BusState, Incoming
-from twin.live.topics import liveliness_key, subjects
-from twin.live.zenoh_config import MAX_BYTES, BusSettings, configuration, endpoints, is_client
+from twin.live.keelson.bus import BusState, Incoming
+from twin.live.keelson.topics import liveliness_key, subjects
+from twin.live.keelson.zenoh_config import MAX_BYTES, BusSettings, configuration, endpoints, is_client
 
 RETRY_S = 0.5  # between two tries to reach a router that was not there at the start
 CAUSES = (

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from twin.errors import SettingsError
+from twin.live.keelson.topics import subjects
 from twin.live.signals.config import Settings
-from twin.live.topics import subjects
 
 MAX_HZ = 200.0  # of each subject
 MAX_BYTES = 4096  # of one sample

@@ -1,0 +1,1 @@
+"""The bus: Keelson keys, envelopes and types, and Zenoh."""
