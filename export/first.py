@@ -23,9 +23,9 @@ import torch
 
 from twin.live.dynamics import Known
 from twin.live.learned import scale_of
+from twin.live.log.rows import read_rows
 from twin.live.manifest import SCHEMA_VERSION
 from twin.live.residual import ship_hash
-from twin.live.rows import read_rows
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.physics.state import Force, Situation

@@ -13,10 +13,10 @@ from mcap.reader import NonSeekingReader, make_reader
 
 from twin.errors import DataError, TwinError
 from twin.live.keelson import messages
-from twin.live.mcap_index import MAGIC
-from twin.live.mcap_read import McapReader
-from twin.live.mcap_write import CHUNK_BYTES, McapWriter
-from twin.live.record import LogFile, LogState, Recorder, read
+from twin.live.log.mcap_index import MAGIC
+from twin.live.log.mcap_read import McapReader
+from twin.live.log.mcap_write import CHUNK_BYTES, McapWriter
+from twin.live.log.record import LogFile, LogState, Recorder, read
 
 SCALAR = "keelson.TimestampedFloat"
 TICKS = "twin/@v0/ship/pubsub/twin_tick/twin"
@@ -169,7 +169,7 @@ def test_four_chunks_a_second_for_a_quarter_of_an_hour_do_not_fill_the_memory() 
 
 def test_a_flood_does_not_wait_for_the_next_period(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Test: a thread that would write once an hour, and 300 messages. Expected: it writes as soon as 256 wait."""
-    monkeypatch.setattr("twin.live.record.PERIOD_S", 3600.0)
+    monkeypatch.setattr("twin.live.log.record.PERIOD_S", 3600.0)
     with Recorder(tmp_path) as recorder:
         put(recorder, 300, 0)
         until(lambda: recorder.state.written >= 256)

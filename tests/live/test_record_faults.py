@@ -12,7 +12,7 @@ from time import monotonic, sleep
 import pytest
 
 from twin.live.keelson import messages
-from twin.live.record import QUEUE, Recorder, read
+from twin.live.log.record import QUEUE, Recorder, read
 
 TOPIC = "twin/@v0/ship/pubsub/heading_true_north_deg/gyro"
 

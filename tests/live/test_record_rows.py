@@ -8,7 +8,7 @@ import pytest
 
 from twin.errors import DataError
 from twin.live.keelson import messages, topics
-from twin.live.record import LogFile, read_rows
+from twin.live.log.record import LogFile, read_rows
 
 START = 1_750_000_000
 ROW_TOPIC = "twin/@v0/ship/pubsub/voyage_row/import"

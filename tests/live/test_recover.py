@@ -13,16 +13,16 @@ import pytest
 from mcap.reader import make_reader
 
 from twin.live.keelson import messages
-from twin.live.mcap_write import McapWriter
-from twin.live.record import Recorder, read
-from twin.live.recover import recover, recover_folder
+from twin.live.log.mcap_write import McapWriter
+from twin.live.log.record import Recorder, read
+from twin.live.log.recover import recover, recover_folder
 
 TOPIC = "twin/@v0/ship/pubsub/heading_true_north_deg/gyro"
 KILLS = 20
 WRITER = """
 import os, sys, time
 from twin.live.keelson import messages
-from twin.live.record import Recorder
+from twin.live.log.record import Recorder
 with Recorder(sys.argv[1]) as recorder:
     for i in range(100000):
         now, tick = time.monotonic_ns(), messages.Tick(index=i).SerializeToString()

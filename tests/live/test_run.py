@@ -12,7 +12,7 @@ import time
 
 import pytest
 
-from twin.live.mcap_read import McapReader
+from twin.live.log.mcap_read import McapReader
 
 SERVE = """
 import os, sys, traceback

@@ -23,7 +23,7 @@ from twin.errors import TwinError, UsageError
 from twin.live import replay
 from twin.live import run as service
 from twin.live.keelson import messages
-from twin.live.logfile import read
+from twin.live.log.logfile import read
 from twin.live.signals.config import Settings
 from twin.live.view import View
 from twin.physics.ship import load

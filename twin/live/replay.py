@@ -15,11 +15,11 @@ from twin.live import build
 from twin.live.clock import ReplayClock
 from twin.live.foresight import Foresight, Sight
 from twin.live.inbox import Played
+from twin.live.log.played import Batch, PlayedLog
+from twin.live.log.record import LogFile
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
-from twin.live.played import Batch, PlayedLog
 from twin.live.publish import Publisher
-from twin.live.record import LogFile
 from twin.live.signals import config
 from twin.live.signals.config import Settings
 

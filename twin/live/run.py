@@ -22,11 +22,11 @@ from twin.live.inbox import Inbox
 from twin.live.keelson.bus import Bus
 from twin.live.keelson.zenoh_config import BusSettings
 from twin.live.keep import Keeper
+from twin.live.log.record import Recorder
 from twin.live.loop import Loop
 from twin.live.notify import Notifier
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
-from twin.live.record import Recorder
 from twin.live.signals import config
 from twin.live.signals.config import Settings
 

@@ -60,7 +60,7 @@ def read_voyage(path: str | Path, by: Map | None = None) -> Voyage:
 
 def from_log(path: Path) -> Raw:
     """The samples of an MCAP file: an imported voyage, the twin's own log, or one that Keelson recorded."""
-    from twin.live.rows import read_rows
+    from twin.live.log.rows import read_rows
 
     notes: list[str] = []
     time_s, columns = read_rows(path, notes)
@@ -71,7 +71,7 @@ def from_log(path: Path) -> Raw:
 
 def words(path: Path) -> dict[str, Any]:
     """What an imported voyage says about itself: where it came from, what in it is derived."""
-    from twin.live.mcap_read import McapReader
+    from twin.live.log.mcap_read import McapReader
     from twin.recording.write import ABOUT
 
     reader = McapReader(path)

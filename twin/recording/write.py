@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.live.keelson.messages import Row
-from twin.live.record import LogFile
+from twin.live.log.record import LogFile
 from twin.recording.timebase import moment_of
 from twin.recording.voyage import Voyage
 

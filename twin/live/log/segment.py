@@ -12,7 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from twin.live.keelson.messages import schema_bytes
-from twin.live.mcap_write import Compress, McapWriter
+from twin.live.log.mcap_write import Compress, McapWriter
 
 
 class Segment:

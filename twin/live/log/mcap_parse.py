@@ -11,7 +11,7 @@ from typing import IO
 from zlib import crc32
 
 from twin.errors import DataError
-from twin.live.mcap_index import DATA_END, HEAD, MAGIC
+from twin.live.log.mcap_index import DATA_END, HEAD, MAGIC
 
 MAX_CHUNK = MAX_RECORD = 256 * 1024 * 1024  # bytes, unpacked and packed
 

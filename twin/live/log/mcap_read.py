@@ -12,8 +12,8 @@ from struct import Struct, error, unpack_from
 from typing import IO, NamedTuple
 
 from twin.errors import DataError
-from twin.live.mcap_index import CHANNEL, CHUNK, DATA_END, HEAD, MESSAGE, METADATA, SCHEMA
-from twin.live.mcap_parse import Broken, ends_well, open_log, records, string, string_map, unpacked
+from twin.live.log.mcap_index import CHANNEL, CHUNK, DATA_END, HEAD, MESSAGE, METADATA, SCHEMA
+from twin.live.log.mcap_parse import Broken, ends_well, open_log, records, string, string_map, unpacked
 
 _MESSAGE = Struct("<HIQQ")  # channel, sequence, log time, publish time
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from struct import Struct, pack
 from zlib import crc32
 
-from twin.live.mcap_index import (
+from twin.live.log.mcap_index import (
     CHANNEL,
     CHUNK,
     HEADER,

@@ -16,8 +16,8 @@ from twin.errors import DataError
 from twin.live.keelson.decode import Decoder, Result
 from twin.live.keelson.schema import classes_from_set
 from twin.live.keelson.wire import double_columns
-from twin.live.mcap_read import McapReader
-from twin.live.onebase import Columns, on_one_base, without_repeats
+from twin.live.log.mcap_read import McapReader
+from twin.live.log.onebase import Columns, on_one_base, without_repeats
 from twin.live.signals.readings import WORDS, Reading
 
 ROW, TICK, AGES = "shiptwin.Row", "shiptwin.Tick", "shiptwin.Ages"

@@ -11,7 +11,7 @@ from struct import error, unpack_from
 from typing import IO, NamedTuple
 
 from twin.errors import DataError
-from twin.live.mcap_index import (
+from twin.live.log.mcap_index import (
     CHANNEL,
     CHUNK,
     DATA_END,
@@ -23,7 +23,7 @@ from twin.live.mcap_index import (
     Summary,
     message_indexes,
 )
-from twin.live.mcap_parse import Broken, ends_well, open_log, records, string, unpacked
+from twin.live.log.mcap_parse import Broken, ends_well, open_log, records, string, unpacked
 
 
 class Scan(NamedTuple):

@@ -16,7 +16,7 @@ from twin.errors import DataError
 from twin.live.keelson import messages
 from twin.live.keelson.decode import Decoder, Result, from_row
 from twin.live.keelson.topics import BY_SUBJECT, address, is_own
-from twin.live.mcap_read import McapReader, Message
+from twin.live.log.mcap_read import McapReader, Message
 
 TICK, ROW = "shiptwin.Tick", "shiptwin.Row"
 PEEK = 5000  # messages within which a log of the twin shows its first tick

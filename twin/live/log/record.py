@@ -15,10 +15,10 @@ from pathlib import Path
 from threading import Event, Thread
 from typing import NamedTuple
 
-from twin.live.logfile import LogFile, read, read_rows
-from twin.live.mcap_write import zstd
-from twin.live.recover import recover_folder
-from twin.live.segment import Segment
+from twin.live.log.logfile import LogFile, read, read_rows
+from twin.live.log.mcap_write import zstd
+from twin.live.log.recover import recover_folder
+from twin.live.log.segment import Segment
 
 __all__ = ["LogFile", "LogState", "Recorder", "read", "read_rows"]
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from twin.errors import TwinError
 from twin.live.keelson.messages import schema_bytes
-from twin.live.mcap_read import McapReader, Message
-from twin.live.mcap_write import McapWriter
+from twin.live.log.mcap_read import McapReader, Message
+from twin.live.log.mcap_write import McapWriter
 
 if TYPE_CHECKING:
     import numpy as np
@@ -77,6 +77,6 @@ def read(path: str | Path, notes: list[str] | None = None) -> Iterator[Message]:
 
 def read_rows(path: str | Path, notes: list[str] | None = None) -> "tuple[np.ndarray, dict[str, np.ndarray]]":
     """(time_s (N,), {channel: (N,)}) of a log, NaN where nothing was measured; see `rows.read_rows`."""
-    from twin.live.rows import read_rows as rows
+    from twin.live.log.rows import read_rows as rows
 
     return rows(path, notes)

@@ -1,0 +1,1 @@
+"""MCAP: written while the ship sails, recovered after a crash, read again."""
