@@ -17,9 +17,9 @@ from export.loss import known
 from export.network import Residual
 from export.to_onnx import whitening
 from twin.live.adapt import BESIDE, CORES, LARGEST, Adaptation
-from twin.live.dynamics import Known
 from twin.live.evidence import Evidence
 from twin.live.movable import Columns, movable
+from twin.live.observer.dynamics import Known
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Rates, Situation

@@ -21,8 +21,8 @@ from bench.lstm import HIDDEN, INPUTS, LAYERS, lstm_bytes
 from bench.options import positive
 from bench.ort import session
 from bench.timing import hot_us, quantiles
-from twin.live.dynamics import NONE, Known
-from twin.live.predict import ensemble
+from twin.live.observer.dynamics import NONE, Known
+from twin.live.observer.predict import ensemble
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation

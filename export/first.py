@@ -21,10 +21,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import torch
 
-from twin.live.dynamics import Known
 from twin.live.learned import scale_of
 from twin.live.log.rows import read_rows
 from twin.live.manifest import SCHEMA_VERSION
+from twin.live.observer.dynamics import Known
 from twin.live.residual import ship_hash
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load

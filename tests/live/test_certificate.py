@@ -13,7 +13,7 @@ from twin.live import certificate as cert
 from twin.live import comparison as c3
 from twin.live.certificate import Certificate, Confined, Disturbance, certify
 from twin.live.enclosure import sampled, slopes
-from twin.live.estimate import gain_for
+from twin.live.observer.estimate import gain_for
 from twin.physics.dual import Dual
 from twin.physics.effects import BUILT_IN, find
 from twin.physics.model import Model

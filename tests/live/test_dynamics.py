@@ -2,7 +2,7 @@
 
 import pytest
 
-from twin.live.dynamics import Dynamics
+from twin.live.observer.dynamics import Dynamics
 from twin.physics.effects import find
 
 

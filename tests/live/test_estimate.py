@@ -5,7 +5,7 @@ from math import hypot, pi, radians
 
 import pytest
 
-from twin.live.estimate import A_MAX, CurrentFilter, Estimate, Observer, gain_for
+from twin.live.observer.estimate import A_MAX, CurrentFilter, Estimate, Observer, gain_for
 from twin.live.signals.measured import Measured
 from twin.physics.ship import load
 from twin.physics.state import Rates

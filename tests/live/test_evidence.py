@@ -4,9 +4,9 @@ from math import sin
 
 import pytest
 
-from twin.live.dynamics import Known
 from twin.live.evidence import Evidence
 from twin.live.learned import scale_of
+from twin.live.observer.dynamics import Known
 from twin.physics.model import Model
 from twin.physics.state import Rates
 

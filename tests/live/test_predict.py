@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from twin.live.dynamics import Dynamics, Known
-from twin.live.estimate import Estimate
-from twin.live.predict import LEARNED, Middle, Predictor, Sureness, carry, ensemble
+from twin.live.observer.dynamics import Dynamics, Known
+from twin.live.observer.estimate import Estimate
+from twin.live.observer.predict import LEARNED, Middle, Predictor, Sureness, carry, ensemble
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load

@@ -19,9 +19,9 @@ from math import isfinite, sqrt
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from twin.live.dynamics import Forces
 from twin.live.evidence import Three
 from twin.live.named import Named
+from twin.live.observer.dynamics import Forces
 from twin.live.proof import Proof
 from twin.live.residual import dot
 from twin.live.ridge import HINDSIGHT, LARGEST, MEMORY, NOISE_S, SPREAD, deviations, factor, solve

@@ -9,8 +9,8 @@ from twin.live.certificate import Certificate, Tube, kept, mark, on_board, on_fi
 from twin.live.guard import Guard
 from twin.live.learned import LearnedForce
 from twin.live.loop import Ears, Loop
+from twin.live.observer.predict import Predictor
 from twin.live.outbox import Outbox
-from twin.live.predict import Predictor
 from twin.live.residual import Residual, ResidualError, WrongShip
 from twin.live.sensors import Sensors
 from twin.live.signals.config import Settings

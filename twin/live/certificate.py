@@ -19,9 +19,9 @@ from twin import whole
 from twin.errors import SettingsError, TwinError
 from twin.live import comparison as c3
 from twin.live.comparison import Matrix, Row
-from twin.live.estimate import fastest_gain, gain_for
 from twin.live.movable import movable
-from twin.live.operating import Confined, OperatingSet, of_ship
+from twin.live.observer.estimate import fastest_gain, gain_for
+from twin.live.observer.operating import Confined, OperatingSet, of_ship
 from twin.live.plant import HEADING_NOISE, Disturbance, Plant, lipschitz, output_bound, plant_of, self_regressor, usual_disturbance, usual_noise
 from twin.live.theorem import Ages, Promise, Recursion, assess, best_gain, gains_that_do, suited_gain, usual_gain
 from twin.live.tube import Tube

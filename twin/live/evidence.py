@@ -11,7 +11,7 @@ little of it.
 
 from collections.abc import Sequence
 
-from twin.live.dynamics import Known
+from twin.live.observer.dynamics import Known
 from twin.physics.ship import Ship
 from twin.physics.state import LIGHT, Force, Growth, Rates
 

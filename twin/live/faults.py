@@ -5,7 +5,7 @@ measured' = measured - (read(s) - s), read being what the instruments would say 
 
 from dataclasses import fields
 
-from twin.live.estimate import Estimate
+from twin.live.observer.estimate import Estimate
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
 from twin.physics.effect import SensorFault

@@ -12,9 +12,9 @@ from dataclasses import replace
 from math import ceil, degrees, hypot
 from typing import NamedTuple
 
-from twin.live.dynamics import INPUTS, Known, Steering
 from twin.live.loop import Loop
-from twin.live.predict import STEP, LearnedAt, Middle, carry
+from twin.live.observer.dynamics import INPUTS, Known, Steering
+from twin.live.observer.predict import STEP, LearnedAt, Middle, carry
 from twin.live.signals.derive import turn
 from twin.physics.state import Situation
 

@@ -6,8 +6,8 @@ again as soon as it is heard; the learned force, after a fault of its own, only 
 
 from typing import NamedTuple
 
-from twin.live.estimate import Estimate
 from twin.live.learned import Learned, LearnedForce
+from twin.live.observer.estimate import Estimate
 from twin.live.plausible import Plausibility
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship

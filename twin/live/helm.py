@@ -10,8 +10,8 @@ for long teaches nothing either way, so learning waits, and what it taught since
 
 from math import degrees, radians
 
-from twin.live.dynamics import Forces
-from twin.live.operating import propeller_rate
+from twin.live.observer.dynamics import Forces
+from twin.live.observer.operating import propeller_rate
 from twin.physics.model import CORE, Model
 from twin.physics.ship import Ship
 from twin.physics.state import Situation

@@ -11,10 +11,10 @@ from dataclasses import dataclass, field
 from math import sqrt
 
 from twin.live.adapt import Adaptation
-from twin.live.dynamics import Forces, Known
 from twin.live.evidence import Evidence, Three
 from twin.live.helm import Helm
 from twin.live.movable import movable
+from twin.live.observer.dynamics import Forces, Known
 from twin.live.residual import Residual
 from twin.physics.effect import Effect
 from twin.physics.ship import Ship

@@ -8,15 +8,15 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from twin.live.clock import Instant
-from twin.live.dynamics import Dynamics
-from twin.live.estimate import Observer
 from twin.live.faults import KnownFaults
 from twin.live.guard import INVALID, Guard
 from twin.live.keelson.decode import Result
 from twin.live.learned import LearnedForce
+from twin.live.observer.dynamics import Dynamics
+from twin.live.observer.estimate import Observer
+from twin.live.observer.predict import LearnedAt, Predictor
 from twin.live.outbox import Outbox
 from twin.live.parts import Parts
-from twin.live.predict import LearnedAt, Predictor
 from twin.live.seen import Pace, Seen, Standing
 from twin.live.sensors import Sensors
 from twin.live.signals.geodesy import Datum

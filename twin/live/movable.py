@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from copy import copy
 from typing import NamedTuple
 
-from twin.live.dynamics import Forces, Known
+from twin.live.observer.dynamics import Forces, Known
 from twin.live.ridge import LARGEST
 from twin.physics.effect import Effect, Flow
 from twin.physics.effect import Force as ForceEffect

@@ -6,10 +6,10 @@ Nothing that is not a finite number is ever put into a message: such a field sta
 from math import degrees, isfinite
 from typing import Any
 
-from twin.live.estimate import Estimate
 from twin.live.keelson import messages
 from twin.live.keelson.topics import OUTPUTS, Output
 from twin.live.learned import Learned
+from twin.live.observer.estimate import Estimate
 from twin.live.seen import Seen, Standing
 from twin.live.signals.geodesy import Datum, from_chart
 from twin.physics.core import Tau

@@ -5,11 +5,11 @@ from typing import NamedTuple
 
 from twin.live.adapt import Parameter
 from twin.live.clock import Instant
-from twin.live.dynamics import Known
-from twin.live.estimate import Estimate
 from twin.live.guard import Verdict
 from twin.live.learned import Learned
-from twin.live.predict import Prediction
+from twin.live.observer.dynamics import Known
+from twin.live.observer.estimate import Estimate
+from twin.live.observer.predict import Prediction
 from twin.live.signals.measured import Measured
 from twin.physics.core import Tau
 from twin.physics.state import Situation

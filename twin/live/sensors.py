@@ -8,10 +8,10 @@ derived.
 from collections.abc import Sequence
 from math import degrees, inf, pi
 
-from twin.live.estimate import HELD, Estimate
 from twin.live.frozen import Frozen
 from twin.live.gate import Gate
 from twin.live.keelson.stamps import Stamps
+from twin.live.observer.estimate import HELD, Estimate
 from twin.live.signals.channels import CHANNELS
 from twin.live.signals.derive import RateFromHeading, SpeedFromPosition, true_wind
 from twin.live.signals.measured import Measured

@@ -3,8 +3,8 @@ hold now."""
 
 from math import hypot
 
-from twin.live.estimate import Observer
 from twin.live.guard import CONTROLS
+from twin.live.observer.estimate import Observer
 from twin.live.seen import Certified
 from twin.live.signals.measured import Measured
 from twin.live.tube import STILL, Three, Tube

@@ -14,7 +14,7 @@ from typing import Any
 
 from twin.live import comparison as c3
 from twin.live.comparison import AXES, Matrix, Row
-from twin.live.operating import NU
+from twin.live.observer.operating import NU
 from twin.live.plant import Disturbance, Plant
 
 Ages = tuple[int, int, int]

@@ -11,7 +11,7 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from twin.live.comparison import add, apply, scaled_row
-from twin.live.operating import NU, WORDS
+from twin.live.observer.operating import NU, WORDS
 from twin.physics.state import Situation
 
 if TYPE_CHECKING:

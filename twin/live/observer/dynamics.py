@@ -8,7 +8,7 @@ from collections import deque
 from collections.abc import Sequence
 from copy import copy
 
-from twin.live.estimate import Estimate
+from twin.live.observer.estimate import Estimate
 from twin.live.signals.measured import Measured
 from twin.physics import core
 from twin.physics.effect import Effect, Flow, Lag

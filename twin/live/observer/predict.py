@@ -12,8 +12,8 @@ from dataclasses import replace
 from math import ceil, exp, hypot, log, pi
 from typing import NamedTuple
 
-from twin.live.dynamics import Forces, Known, Steering
-from twin.live.estimate import Estimate
+from twin.live.observer.dynamics import Forces, Known, Steering
+from twin.live.observer.estimate import Estimate
 from twin.live.signals.derive import turn
 from twin.physics.maths import cos, sin
 from twin.physics.ship import Ship

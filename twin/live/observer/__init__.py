@@ -1,0 +1,1 @@
+"""The estimate: equations of motion, correction by measurements, prediction ahead."""
