@@ -255,7 +255,7 @@ def test_I25_when_the_first_falls_silent_the_second_takes_over(bridge):
 
 
 def test_the_owner_may_choose_who_speaks(kvlcc2, make_bridge):
-    from twin.live.sensors import Sensors
+    from twin.live.gates.sensors import Sensors
 
     bridge = make_bridge(loop={"sensors": Sensors(kvlcc2, {HEADING: "good"})})
     both = only(HEADING, lambda r, b: [r._replace(value=0.0, source="bad"), r._replace(source="good")])
@@ -265,7 +265,7 @@ def test_the_owner_may_choose_who_speaks(kvlcc2, make_bridge):
 
 def test_F3_a_source_that_nobody_is_is_named_after_ten_seconds(kvlcc2, make_bridge):
     """Test: the owner names a compass that does not exist. Expected: said within 10 s, and no more once it speaks."""
-    from twin.live.sensors import Sensors
+    from twin.live.gates.sensors import Sensors
 
     bridge = make_bridge(loop={"sensors": Sensors(kvlcc2, {HEADING: "gyro 2"})})
     assert not said(bridge.run(9.9), "never been heard")

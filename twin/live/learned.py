@@ -12,7 +12,7 @@ from math import sqrt
 
 from twin.live.adapt import Adaptation
 from twin.live.evidence import Evidence, Three
-from twin.live.helm import Helm
+from twin.live.gates.helm import Helm
 from twin.live.movable import movable
 from twin.live.observer.dynamics import Forces, Known
 from twin.live.residual import Residual

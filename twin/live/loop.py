@@ -8,7 +8,8 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from twin.live.clock import Instant
-from twin.live.faults import KnownFaults
+from twin.live.gates.faults import KnownFaults
+from twin.live.gates.sensors import Sensors
 from twin.live.guard import INVALID, Guard
 from twin.live.keelson.decode import Result
 from twin.live.learned import LearnedForce
@@ -18,7 +19,6 @@ from twin.live.observer.predict import LearnedAt, Predictor
 from twin.live.outbox import Outbox
 from twin.live.parts import Parts
 from twin.live.seen import Pace, Seen, Standing
-from twin.live.sensors import Sensors
 from twin.live.signals.geodesy import Datum
 from twin.live.signals.measured import Measured
 from twin.live.stabilizer import Stabilizer

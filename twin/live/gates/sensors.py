@@ -8,8 +8,8 @@ derived.
 from collections.abc import Sequence
 from math import degrees, inf, pi
 
-from twin.live.frozen import Frozen
-from twin.live.gate import Gate
+from twin.live.gates.frozen import Frozen
+from twin.live.gates.gate import Gate
 from twin.live.keelson.stamps import Stamps
 from twin.live.observer.estimate import HELD, Estimate
 from twin.live.signals.channels import CHANNELS

@@ -7,7 +7,7 @@ believed after SETTLE_S, and announced.
 
 from math import exp, isfinite
 
-from twin.live.frozen import Frozen
+from twin.live.gates.frozen import Frozen
 from twin.live.signals.channels import Channel
 from twin.live.signals.readings import Quality, Reading
 
