@@ -3,7 +3,7 @@
 The change has just happened when a voyage begins, and nothing is learned yet; or it comes in the middle, when the law on board has
 heard the ship as she was for five minutes (adaptation_named.py: there it is a named effect that grows). All laws see the same stream
 of unexplained force and regressors (from the hybrid's own filter, which does not use what they learn), and are judged by the free runs
-of 120 s that follow. Boxes, ball and gate are those of twin/live/adapt.py for all of them.
+of 120 s that follow. Boxes, ball and gate are those of twin/live/learning/adapt.py for all of them.
 """
 
 import argparse
@@ -21,7 +21,7 @@ from bench.adaptation_laws import Stream
 from bench.options import positive
 from bench.paper_sea import FULL, QUICK, changed, zigzags
 from bench.reference import HULLS, Change
-from twin.live.adapt import BESIDE, Adaptation
+from twin.live.learning.adapt import BESIDE, Adaptation
 
 EPILOG = """example: twin-bench adaptation --work .paper --markdown docs/results/adaptation.md
 

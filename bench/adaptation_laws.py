@@ -1,4 +1,4 @@
-"""Laws of adaptation that are compared with the one on board; all share its saturation, gate, boxes and ball (twin/live/adapt.py).
+"""Laws of adaptation that are compared with the one on board; all share its saturation, gate, boxes and ball (twin/live/learning/adapt.py).
 
     gradient    a' = G q e/(1 + q'q) - sigma a                        sigma-modification [Ioannou & Kokotovic 1984]
     e-mod       a' = G q e/(1 + q'q) - mu |e| a                       e-modification [Narendra & Annaswamy 1987]
@@ -10,9 +10,9 @@
 from math import sqrt
 from typing import Any
 
-from twin.live.adapt import NOISE_S, Adaptation, Row
-from twin.live.evidence import Three
-from twin.live.residual import dot
+from twin.live.learning.adapt import NOISE_S, Adaptation, Row
+from twin.live.learning.evidence import Three
+from twin.live.learning.residual import dot
 from twin.physics.ship import Ship
 from twin.physics.state import Force
 

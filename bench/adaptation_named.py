@@ -17,8 +17,8 @@ from bench.paper_models import Workshop, named
 from bench.paper_sea import zigzags
 from bench.paper_ship import nominal
 from bench.reference import HULLS, Change
-from twin.live.adapt import Adaptation
-from twin.live.movable import movable, moved
+from twin.live.learning.adapt import Adaptation
+from twin.live.learning.movable import movable, moved
 from twin.physics.effects import find
 from twin.physics.model import Model
 

@@ -15,7 +15,7 @@ def page(r: dict[str, Any]) -> list[str]:
         "# Laws of adaptation", "",
         f"`twin-bench adaptation{' --full' if r['full'] else ''} --seeds {r['seeds']}`: {r['voyages']} zigzags of 900 s for each ship "
         "(TS-01 to TS-03, 10/10 and 20/20), free runs of 120 s; every law in the boxes, the ball and behind the gate of "
-        "twin/live/adapt.py. The last row is on board.",
+        "twin/live/learning/adapt.py. The last row is on board.",
         "", "## Ships that changed when the voyage began", "",
         "Heading deg / lateral m of windows begun 300 to 540 s after the change.", "",
         *_table(r["changed"], ships, lambda x: f"{x['heading_deg']:.3f} / {x['lateral_m']:.2f}"),

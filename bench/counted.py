@@ -13,11 +13,11 @@ from twin.live.inbox import Inbox
 from twin.live.keelson.bus import MemoryBus
 from twin.live.keelson.messages import encode_fix, encode_float, wrap
 from twin.live.keelson.topics import key
+from twin.live.learning.residual import bundled
+from twin.live.learning.residual import load as load_residual
 from twin.live.loop import Loop, measured_nu
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
-from twin.live.residual import bundled
-from twin.live.residual import load as load_residual
 from twin.live.signals.config import Settings
 from twin.physics.model import Model
 from twin.physics.ship import load

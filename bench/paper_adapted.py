@@ -1,4 +1,4 @@
-"""The hybrid that goes on learning: the law of twin/live/adapt.py beside the filter, one for each voyage, every grid step.
+"""The hybrid that goes on learning: the law of twin/live/learning/adapt.py beside the filter, one for each voyage, every grid step.
 
     f = w [W phi + g A q],  |f| <= bound           q = [whitened components of phi | known forces of the row | 1]
 
@@ -16,9 +16,9 @@ from bench.paper_lab import Course
 from export.loss import known
 from export.network import Residual
 from export.to_onnx import whitening
-from twin.live.adapt import BESIDE, CORES, LARGEST, Adaptation
-from twin.live.evidence import Evidence
-from twin.live.movable import Columns, movable
+from twin.live.learning.adapt import BESIDE, CORES, LARGEST, Adaptation
+from twin.live.learning.evidence import Evidence
+from twin.live.learning.movable import Columns, movable
 from twin.live.observer.dynamics import Known
 from twin.physics.model import Model
 from twin.physics.ship import Ship

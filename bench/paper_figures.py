@@ -123,9 +123,9 @@ def ahead_ms(once: Callable[[], object], steps: int) -> float:
 def _predictors() -> dict[str, Callable[[], object]]:
     """One step of 1 s of each."""
     from bench import peers
-    from twin.live.learned import LearnedForce
+    from twin.live.learning.learned import LearnedForce
+    from twin.live.learning.residual import bundled, load
     from twin.live.observer.dynamics import Known
-    from twin.live.residual import bundled, load
     from twin.physics.model import Model
     from twin.physics.ship import load as ship_of
 

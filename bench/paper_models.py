@@ -37,7 +37,7 @@ ROWS = {
     "lstm": "LSTM",
     "hybrid_smooth": "hybrid, begun in the smooth motion",
     "hybrid": "**hybrid: nominal + network**, begun in its own filter",
-    "hybrid_adapted": "the same, learning on (twin/live/adapt.py)",
+    "hybrid_adapted": "the same, learning on (twin/live/learning/adapt.py)",
     "calibrated": "core calibrated on the TS-01 training runs, own filter, no network",
     "physics_added": "calibrated + Wind + WaveDrift, own filter, no network",
     "physics_added_hybrid": "calibrated + Wind + WaveDrift + network, own filter",

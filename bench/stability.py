@@ -21,7 +21,7 @@ from twin.errors import ThresholdError
 from twin.live import certificate as cert
 from twin.live import comparison as c3
 from twin.live.certificate import Certificate, Confined
-from twin.live.movable import Movable, movable, moved
+from twin.live.learning.movable import Movable, movable, moved
 from twin.physics import core
 from twin.physics.effects import find
 from twin.physics.model import Model

@@ -43,7 +43,7 @@ b: the ultimate bound ({UNITS}). Error/tube: the greatest error in units of the 
 {_head(*RUNS)}
 {_lines(_run(*row) for row in rows)}
 
-Numbers moved: those of these effects, by the adversary, anywhere in the boxes of adaptation (twin/live/movable.py).
+Numbers moved: those of these effects, by the adversary, anywhere in the boxes of adaptation (twin/live/learning/movable.py).
 With drop-outs the error may exceed b, which counts on measurements; the tube must hold, and does.
 
 ## The loop itself

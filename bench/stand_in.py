@@ -12,9 +12,9 @@ import onnx
 from onnx import TensorProto, helper, numpy_helper
 
 from bench.ort import session
-from twin.live.learned import scale_of
-from twin.live.manifest import SCHEMA_VERSION
-from twin.live.residual import ship_hash
+from twin.live.learning.learned import scale_of
+from twin.live.learning.manifest import SCHEMA_VERSION
+from twin.live.learning.residual import ship_hash
 from twin.physics.ship import Ship
 
 INPUTS = ("surge", "sway", "yaw", "rudder", "propeller", "air_ahead", "air_starboard")

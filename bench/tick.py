@@ -16,7 +16,7 @@ from typing import Any
 from bench import answer, cortex, feed, instructions, mark, tick_table
 from bench.tick_process import WARM_UP
 from twin.errors import TwinError, UsageError
-from twin.live.residual import bundled
+from twin.live.learning.residual import bundled
 from twin.physics.ship import load
 
 SCHEMA_VERSION = 1

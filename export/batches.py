@@ -9,7 +9,7 @@ import torch
 from export.data import Leg
 from export.loss import Inputs, left_over, span
 from export.network import Residual
-from twin.live.learned import scale_of
+from twin.live.learning.learned import scale_of
 from twin.physics.model import Model
 from twin.physics.state import Situation
 

@@ -13,7 +13,7 @@ import torch
 from export.network import Residual
 from twin.cli import guarded
 from twin.errors import TwinError
-from twin.live.residual import load as load_residual
+from twin.live.learning.residual import load as load_residual
 from twin.physics.ship import load
 
 AGREE = 1e-6  # of the larger of 1 and the feature's size

@@ -3,7 +3,7 @@ differentiating a sensor.
 
     python -m export.first VOYAGE.mcap... --ship kvlcc2 -o twin/ships/kvlcc2.residual.onnx
 
-The loss is the filtered regression the twin also uses on board (twin/live/evidence.py): with (.)_f a
+The loss is the filtered regression the twin also uses on board (twin/live/learning/evidence.py): with (.)_f a
 first-order low-pass,
     d = S^-1 M [(d nu/dt)_f - (nu_dot_known)_f],   minimise |d - (W phi(zeta))_f|^2 + ridge |W phi|^2
 The full training, with roll-outs and its protocol, is `twin train`; this one gives the loop something honest
@@ -21,11 +21,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import torch
 
-from twin.live.learned import scale_of
+from twin.live.learning.learned import scale_of
+from twin.live.learning.manifest import SCHEMA_VERSION
+from twin.live.learning.residual import ship_hash
 from twin.live.log.rows import read_rows
-from twin.live.manifest import SCHEMA_VERSION
 from twin.live.observer.dynamics import Known
-from twin.live.residual import ship_hash
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.physics.state import Force, Situation

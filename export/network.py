@@ -2,7 +2,7 @@
 
     x = (clip(zeta, low, high) - offset)/scale,   phi = trunk(x),   f = weight W phi,  |f| <= bound,   force = S f
 
-`weight` falls to zero outside [low, high], as in twin/live/residual.py, which must say the same of the exported file.
+`weight` falls to zero outside [low, high], as in twin/live/learning/residual.py, which must say the same of the exported file.
 """
 
 from collections.abc import Sequence
@@ -12,8 +12,8 @@ import numpy as np
 import torch
 
 from export.data import Leg
-from twin.live.learned import scale_of
-from twin.live.residual import MARGIN
+from twin.live.learning.learned import scale_of
+from twin.live.learning.residual import MARGIN
 from twin.physics.effects.wind import Wind
 from twin.physics.model import Model
 from twin.physics.ship import Ship

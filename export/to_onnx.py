@@ -11,8 +11,8 @@ import torch
 from onnx import TensorProto, checker, helper, numpy_helper
 
 from export.network import WIDTH, Residual
-from twin.live.manifest import SCHEMA_VERSION
-from twin.live.residual import ship_hash
+from twin.live.learning.manifest import SCHEMA_VERSION
+from twin.live.learning.residual import ship_hash
 from twin.physics.zeta import ZETA
 
 OPSET, COMPONENTS, GOLDEN = 17, 4, 8

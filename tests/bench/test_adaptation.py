@@ -9,8 +9,8 @@ from bench import adaptation_laws as laws
 from bench import answer
 from bench.adaptation import CHANGE_S, LIES, ROUND_S, changes
 from bench.adaptation_page import figure, page
-from twin.live.adapt import A_MAX, SIZES, Adaptation
-from twin.live.learned import scale_of
+from twin.live.learning.adapt import A_MAX, SIZES, Adaptation
+from twin.live.learning.learned import scale_of
 from twin.physics.ship import load
 
 ALL = (laws.Gradient, laws.EModified, laws.DeadZone, laws.Recursive, laws.Kalman, Adaptation)

@@ -8,9 +8,9 @@ import pytest
 from bench.adaptation_named import CHANGE_S, GROWTHS, HOW, RUN_S, STARTS_S, Growth, Learned, RowsAlone, arrival, growing, late, learned, summary
 from bench.adaptation_named_page import figure, page
 from bench.reference import HULLS
-from twin.live.adapt import BESIDE, SIZES
-from twin.live.learned import scale_of
-from twin.live.movable import movable
+from twin.live.learning.adapt import BESIDE, SIZES
+from twin.live.learning.learned import scale_of
+from twin.live.learning.movable import movable
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load

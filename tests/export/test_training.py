@@ -17,8 +17,8 @@ from export.network import Residual  # noqa: E402
 from export.teach import Course, Settings, device, prepared, teach  # noqa: E402
 from twin.cli import main  # noqa: E402
 from twin.errors import ThresholdError  # noqa: E402
-from twin.live import residual as live  # noqa: E402
-from twin.live.learned import scale_of  # noqa: E402
+from twin.live.learning import residual as live  # noqa: E402
+from twin.live.learning.learned import scale_of  # noqa: E402
 from twin.physics.model import Model  # noqa: E402
 from twin.physics.state import Force, Situation  # noqa: E402
 from twin.study.reference.sailed import Sailed  # noqa: E402

@@ -10,7 +10,7 @@ import pytest
 
 from twin.live.clock import Instant
 from twin.live.inbox import Played
-from twin.live.learned import LearnedForce
+from twin.live.learning.learned import LearnedForce
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher

@@ -8,7 +8,7 @@ import pytest
 from twin.live import certificate as cert
 from twin.live.certificate import Tube, certify, kept
 from twin.live.enclosure import _points, _situation, contribution, sampled, slopes
-from twin.live.movable import adaptable, movable, moved
+from twin.live.learning.movable import adaptable, movable, moved
 from twin.live.observer.estimate import gain_for
 from twin.physics.effects import BUILT_IN, find
 from twin.physics.model import CORE, Model

@@ -4,8 +4,8 @@ from math import sin
 
 import pytest
 
-from twin.live.evidence import Evidence
-from twin.live.learned import scale_of
+from twin.live.learning.evidence import Evidence
+from twin.live.learning.learned import scale_of
 from twin.live.observer.dynamics import Known
 from twin.physics.model import Model
 from twin.physics.state import Rates

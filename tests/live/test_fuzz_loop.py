@@ -4,17 +4,17 @@ nothing that is not finite, no bound broken."""
 import random
 from math import hypot, isfinite
 
-from twin.live.adapt import A_MAX
 from twin.live.clock import Instant
 from twin.live.inbox import Played
 from twin.live.keelson.decode import Decoder
 from twin.live.keelson.messages import encode_fix, encode_float, wrap
 from twin.live.keelson.topics import INPUTS, key
-from twin.live.learned import LearnedForce
+from twin.live.learning.adapt import A_MAX
+from twin.live.learning.learned import LearnedForce
+from twin.live.learning.residual import bundled, load
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
-from twin.live.residual import bundled, load
 from twin.live.signals.channels import CHANNELS
 from twin.physics.effects import BUILT_IN
 from twin.physics.ship import load as load_ship

@@ -6,8 +6,8 @@ import pytest
 
 from twin.live.certificate import Tube, certify
 from twin.live.guard import Held
-from twin.live.learned import LearnedForce
-from twin.live.residual import bundled, check, load
+from twin.live.learning.learned import LearnedForce
+from twin.live.learning.residual import bundled, check, load
 from twin.live.stabilizer import Stabilizer
 from twin.physics.model import Model
 

@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from twin.live.learned import LearnedForce
-from twin.live.residual import bundled, load
+from twin.live.learning.learned import LearnedForce
+from twin.live.learning.residual import bundled, load
 from twin.physics.effects import find
 from twin.physics.model import Model
 

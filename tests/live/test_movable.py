@@ -4,10 +4,10 @@ from dataclasses import replace
 
 import pytest
 
-from twin.live.learned import scale_of
-from twin.live.movable import Columns, movable, moved
+from twin.live.learning.learned import scale_of
+from twin.live.learning.movable import Columns, movable, moved
+from twin.live.learning.ridge import LARGEST
 from twin.live.observer.dynamics import Known
-from twin.live.ridge import LARGEST
 from twin.physics import core
 from twin.physics.effects import BUILT_IN, find
 from twin.physics.model import Model

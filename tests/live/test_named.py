@@ -6,9 +6,9 @@ from math import isfinite, sin
 
 import pytest
 
-from twin.live.adapt import SIZES, Adaptation
-from twin.live.learned import LearnedForce, scale_of
-from twin.live.movable import movable
+from twin.live.learning.adapt import SIZES, Adaptation
+from twin.live.learning.learned import LearnedForce, scale_of
+from twin.live.learning.movable import movable
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load

@@ -5,7 +5,7 @@ from math import sin
 
 import pytest
 
-from twin.live.proof import Proof
+from twin.live.learning.proof import Proof
 
 H = 0.1  # L/U_0 between two words of a row
 

@@ -9,14 +9,14 @@ from twin.live.keelson import messages
 from twin.live.keelson.bus import MemoryBus
 from twin.live.keelson.messages import encode_float, wrap
 from twin.live.keelson.topics import BY_SUBJECT, key
-from twin.live.learned import LearnedForce
+from twin.live.learning.learned import LearnedForce
+from twin.live.learning.residual import bundled, load
 from twin.live.log.mcap_read import McapReader
 from twin.live.log.record import LogFile
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
 from twin.live.replay import replay
-from twin.live.residual import bundled, load
 from twin.live.signals.config import Settings
 
 WALL = 1.7e9

@@ -8,10 +8,10 @@ import random
 
 import pytest
 
-from twin.live import residual as residuals
-from twin.live.learned import LearnedForce
-from twin.live.onnx_file import look
-from twin.live.residual import MARGIN, ResidualError, WrongShip, check, load, ship_hash
+from twin.live.learning import residual as residuals
+from twin.live.learning.learned import LearnedForce
+from twin.live.learning.onnx_file import look
+from twin.live.learning.residual import MARGIN, ResidualError, WrongShip, check, load, ship_hash
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load as load_ship
@@ -168,7 +168,7 @@ def test_M4_bytes_that_are_no_model_are_refused(kvlcc2, parts, data):
 
 
 def test_looking_at_garbage_never_raises_anything_but_its_own_error():
-    from twin.live.onnx_file import OnnxError
+    from twin.live.learning.onnx_file import OnnxError
 
     dice = random.Random(3)
     for _ in range(3000):

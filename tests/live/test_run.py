@@ -177,7 +177,7 @@ def test_F1_M1_settings_that_cannot_be_used_end_it_with_exit_code_5_and_one_line
 
 
 def test_M13_a_residual_of_another_ship_that_was_asked_for_ends_it(place):
-    from twin.live.residual import bundled
+    from twin.live.learning.residual import bundled
     from twin.physics.ship import load
 
     path = bundled(load("kvlcc2"))

@@ -4,8 +4,8 @@ from math import isfinite, nan
 
 import pytest
 
-from twin.live.learned import LearnedForce
-from twin.live.residual import bundled, load
+from twin.live.learning.learned import LearnedForce
+from twin.live.learning.residual import bundled, load
 from twin.live.signals.readings import Quality, Rejected
 
 HEADING, NORTH, SURGE, YAW = "heading_true_north_deg", "north_m", "surge_velocity_mps", "yaw_rate_degps"

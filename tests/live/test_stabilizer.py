@@ -3,7 +3,7 @@
 from math import hypot
 
 from twin.live.certificate import Tube, certify
-from twin.live.learned import LearnedForce
+from twin.live.learning.learned import LearnedForce
 from twin.live.stabilizer import USELESS, Stabilizer
 from twin.physics.model import Model
 

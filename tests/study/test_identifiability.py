@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from twin.errors import DataError
-from twin.live.learned import scale_of
-from twin.live.residual import bundled
+from twin.live.learning.learned import scale_of
+from twin.live.learning.residual import bundled
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load

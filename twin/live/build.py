@@ -3,16 +3,17 @@
 import sys
 from pathlib import Path
 
-from twin.live import network, realtime
-from twin.live import residual as residuals
+from twin.live import realtime
 from twin.live.certificate import Certificate, Tube, kept, mark, on_board, on_file
 from twin.live.gates.sensors import Sensors
 from twin.live.guard import Guard
-from twin.live.learned import LearnedForce
+from twin.live.learning import network
+from twin.live.learning import residual as residuals
+from twin.live.learning.learned import LearnedForce
+from twin.live.learning.residual import Residual, ResidualError, WrongShip
 from twin.live.loop import Ears, Loop
 from twin.live.observer.predict import Predictor
 from twin.live.outbox import Outbox
-from twin.live.residual import Residual, ResidualError, WrongShip
 from twin.live.signals.config import Settings
 from twin.live.stabilizer import Stabilizer
 from twin.physics.model import Model

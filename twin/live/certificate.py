@@ -19,7 +19,7 @@ from twin import whole
 from twin.errors import SettingsError, TwinError
 from twin.live import comparison as c3
 from twin.live.comparison import Matrix, Row
-from twin.live.movable import movable
+from twin.live.learning.movable import movable
 from twin.live.observer.estimate import fastest_gain, gain_for
 from twin.live.observer.operating import Confined, OperatingSet, of_ship
 from twin.live.plant import HEADING_NOISE, Disturbance, Plant, lipschitz, output_bound, plant_of, self_regressor, usual_disturbance, usual_noise

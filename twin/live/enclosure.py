@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.live.movable import Movable, moved
+from twin.live.learning.movable import Movable, moved
 from twin.physics import core
 from twin.physics.dual import Dual
 from twin.physics.effect import Effect

@@ -7,7 +7,7 @@ again as soon as it is heard; the learned force, after a fault of its own, only 
 from typing import NamedTuple
 
 from twin.live.gates.plausible import Plausibility
-from twin.live.learned import Learned, LearnedForce
+from twin.live.learning.learned import Learned, LearnedForce
 from twin.live.observer.estimate import Estimate
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship

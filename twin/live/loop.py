@@ -12,7 +12,7 @@ from twin.live.gates.faults import KnownFaults
 from twin.live.gates.sensors import Sensors
 from twin.live.guard import INVALID, Guard
 from twin.live.keelson.decode import Result
-from twin.live.learned import LearnedForce
+from twin.live.learning.learned import LearnedForce
 from twin.live.observer.dynamics import Dynamics
 from twin.live.observer.estimate import Observer
 from twin.live.observer.predict import LearnedAt, Predictor

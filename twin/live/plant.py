@@ -8,7 +8,7 @@ from typing import Any
 
 from twin.live import comparison as c3
 from twin.live.comparison import AXES, Matrix, Row
-from twin.live.movable import Movable
+from twin.live.learning.movable import Movable
 from twin.live.observer.operating import OperatingSet
 from twin.physics import core
 from twin.physics.model import Model

@@ -8,7 +8,7 @@ from typing import Any
 
 from twin.live.keelson import messages
 from twin.live.keelson.topics import OUTPUTS, Output
-from twin.live.learned import Learned
+from twin.live.learning.learned import Learned
 from twin.live.observer.estimate import Estimate
 from twin.live.seen import Seen, Standing
 from twin.live.signals.geodesy import Datum, from_chart

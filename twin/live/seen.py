@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from twin.live.adapt import Parameter
 from twin.live.clock import Instant
 from twin.live.guard import Verdict
-from twin.live.learned import Learned
+from twin.live.learning.adapt import Parameter
+from twin.live.learning.learned import Learned
 from twin.live.observer.dynamics import Known
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction

@@ -166,7 +166,7 @@ def test_spoilt_but_usable_voyages_are_compared_all_the_same(verb, on_disk, make
 
 
 def test_a_residual_is_added_as_the_loop_adds_it_and_its_share_is_told(verb, on_disk, make, tmp_path):
-    from twin.live.residual import bundled
+    from twin.live.learning.residual import bundled
 
     path = bundled(load("kvlcc2"))
     if path is None:
@@ -178,7 +178,7 @@ def test_a_residual_is_added_as_the_loop_adds_it_and_its_share_is_told(verb, on_
 
 
 def test_a_residual_made_for_another_ship_is_exit_code_5(verb, on_disk, make, capsys):
-    from twin.live.residual import bundled
+    from twin.live.learning.residual import bundled
 
     path = bundled(load("kvlcc2"))
     if path is None:

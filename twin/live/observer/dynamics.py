@@ -110,7 +110,7 @@ class Dynamics:
         self._steering = Steering([Gear(lag) for lag in self.full.lags])
 
     def adopt(self, effects: Sequence[Effect]) -> None:
-        """The ship's effects with the numbers that act from now on (twin/live/named.py)."""
+        """The ship's effects with the numbers that act from now on (twin/live/learning/named.py)."""
         if effects is not self._adopted:
             self._adopted, new = effects, {type(e): e for e in effects}
             self.full = Model(self.ship, tuple([new[type(e)] for e in self.full.effects]))

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.live.learned import LearnedForce
-from twin.live.network import Network
-from twin.live.onnx_file import look
-from twin.live.residual import load
+from twin.live.learning.learned import LearnedForce
+from twin.live.learning.network import Network
+from twin.live.learning.onnx_file import look
+from twin.live.learning.residual import load
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 

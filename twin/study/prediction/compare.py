@@ -69,7 +69,7 @@ def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] 
 
 
 def _result(ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[str, Any]], judged: Energy) -> dict[str, Any]:
-    from twin.live.residual import ship_hash
+    from twin.live.learning.residual import ship_hash
     from twin.recording.checks import run_checks
 
     checks = [(s.track.name, c) for s in sailed for c in run_checks(s.voyage, ship)]

@@ -19,12 +19,12 @@ from math import isfinite, sqrt
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from twin.live.evidence import Three
-from twin.live.named import Named
+from twin.live.learning.evidence import Three
+from twin.live.learning.named import Named
+from twin.live.learning.proof import Proof
+from twin.live.learning.residual import dot
+from twin.live.learning.ridge import HINDSIGHT, LARGEST, MEMORY, NOISE_S, SPREAD, deviations, factor, solve
 from twin.live.observer.dynamics import Forces
-from twin.live.proof import Proof
-from twin.live.residual import dot
-from twin.live.ridge import HINDSIGHT, LARGEST, MEMORY, NOISE_S, SPREAD, deviations, factor, solve
 from twin.physics.model import CORE
 from twin.physics.ship import Ship
 from twin.physics.state import Force

@@ -11,8 +11,8 @@ from collections.abc import Sequence
 from copy import copy
 from typing import NamedTuple
 
+from twin.live.learning.ridge import LARGEST
 from twin.live.observer.dynamics import Forces, Known
-from twin.live.ridge import LARGEST
 from twin.physics.effect import Effect, Flow
 from twin.physics.effect import Force as ForceEffect
 from twin.physics.model import Model

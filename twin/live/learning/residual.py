@@ -16,10 +16,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from twin.errors import SettingsError
-from twin.live import manifest as manifests
-from twin.live.manifest import Manifest
-from twin.live.network import Network, NetworkError
-from twin.live.onnx_file import FLOAT, OnnxError, look, with_rows
+from twin.live.learning import manifest as manifests
+from twin.live.learning.manifest import Manifest
+from twin.live.learning.network import Network, NetworkError
+from twin.live.learning.onnx_file import FLOAT, OnnxError, look, with_rows
 from twin.physics import ship as ships
 from twin.physics.ship import Ship
 from twin.physics.state import Situation

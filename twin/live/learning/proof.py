@@ -9,7 +9,7 @@ was only noise nothing comes true.
 
 from math import sqrt
 
-from twin.live.ridge import GATE, NOISE_S
+from twin.live.learning.ridge import GATE, NOISE_S
 
 SAMPLES = 2.0 * GATE / NOISE_S  # that the means count as
 ENOUGH = 0.5  # share of what was promised that must surely have come true for all of it to act

@@ -10,12 +10,12 @@ from copy import copy
 from dataclasses import dataclass, field
 from math import sqrt
 
-from twin.live.adapt import Adaptation
-from twin.live.evidence import Evidence, Three
 from twin.live.gates.helm import Helm
-from twin.live.movable import movable
+from twin.live.learning.adapt import Adaptation
+from twin.live.learning.evidence import Evidence, Three
+from twin.live.learning.movable import movable
+from twin.live.learning.residual import Residual
 from twin.live.observer.dynamics import Forces, Known
-from twin.live.residual import Residual
 from twin.physics.effect import Effect
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation

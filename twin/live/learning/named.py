@@ -11,11 +11,11 @@ explain what is left.
 from copy import copy, deepcopy
 from math import isfinite, sqrt
 
-from twin.live.evidence import Three
-from twin.live.movable import Columns, movable, moved
-from twin.live.proof import Proof
-from twin.live.residual import dot
-from twin.live.ridge import HINDSIGHT, NOISE_S, SPREAD, deviations, factor, solve
+from twin.live.learning.evidence import Three
+from twin.live.learning.movable import Columns, movable, moved
+from twin.live.learning.proof import Proof
+from twin.live.learning.residual import dot
+from twin.live.learning.ridge import HINDSIGHT, NOISE_S, SPREAD, deviations, factor, solve
 from twin.physics.effect import Effect
 from twin.physics.ship import Ship
 from twin.physics.state import Force

@@ -1,0 +1,1 @@
+"""The learned force and its bounded adaptation."""
