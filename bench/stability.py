@@ -18,9 +18,9 @@ import numpy as np
 from bench import answer
 from bench.options import positive
 from twin.errors import ThresholdError
-from twin.live import certificate as cert
-from twin.live import comparison as c3
-from twin.live.certificate import Certificate, Confined
+from twin.live.certificate import certificate as cert
+from twin.live.certificate import comparison as c3
+from twin.live.certificate.certificate import Certificate, Confined
 from twin.live.learning.movable import Movable, movable, moved
 from twin.physics import core
 from twin.physics.effects import find

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from math import degrees, isfinite
 from typing import Any
 
-from twin.live import certificate as cert
-from twin.live.enclosure import sampled, slopes
+from twin.live.certificate import certificate as cert
+from twin.live.certificate.enclosure import sampled, slopes
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load

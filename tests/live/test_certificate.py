@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from twin.errors import SettingsError
-from twin.live import certificate as cert
-from twin.live import comparison as c3
-from twin.live.certificate import Certificate, Confined, Disturbance, certify
-from twin.live.enclosure import sampled, slopes
+from twin.live.certificate import certificate as cert
+from twin.live.certificate import comparison as c3
+from twin.live.certificate.certificate import Certificate, Confined, Disturbance, certify
+from twin.live.certificate.enclosure import sampled, slopes
 from twin.live.observer.estimate import gain_for
 from twin.physics.dual import Dual
 from twin.physics.effects import BUILT_IN, find
@@ -244,7 +244,7 @@ def test_the_loop_reads_a_certificate_without_numpy(vlcc, tmp_path):
     path = tmp_path / "c.json"
     path.write_text(vlcc[1].to_json())
     code = (
-        "import sys; from twin.live.certificate import Certificate, Tube; from pathlib import Path;"
+        "import sys; from twin.live.certificate.certificate import Certificate, Tube; from pathlib import Path;"
         f"t = Tube(Certificate.from_json(Path({str(path)!r}).read_text())); t.step((True, True, False)); "
         "print('numpy' in sys.modules)"
     )

@@ -5,8 +5,8 @@ import pytest
 
 from bench.stability import Case, Fleet, certified, trial
 from bench.stability_loop import LoopCase, Loops
-from twin.live.certificate import Tube, certify
-from twin.live.tube import Highest
+from twin.live.certificate.certificate import Tube, certify
+from twin.live.certificate.tube import Highest
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from twin.live.certificate import Tube, certify
+from twin.live.certificate.certificate import Tube, certify
 from twin.live.guard import Held
 from twin.live.learning.learned import LearnedForce
 from twin.live.learning.residual import bundled, check, load

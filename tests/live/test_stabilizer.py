@@ -2,7 +2,7 @@
 
 from math import hypot
 
-from twin.live.certificate import Tube, certify
+from twin.live.certificate.certificate import Tube, certify
 from twin.live.learning.learned import LearnedForce
 from twin.live.stabilizer import USELESS, Stabilizer
 from twin.physics.model import Model

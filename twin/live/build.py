@@ -4,7 +4,7 @@ import sys
 from pathlib import Path
 
 from twin.live import realtime
-from twin.live.certificate import Certificate, Tube, kept, mark, on_board, on_file
+from twin.live.certificate.certificate import Certificate, Tube, kept, mark, on_board, on_file
 from twin.live.gates.sensors import Sensors
 from twin.live.guard import Guard
 from twin.live.learning import network

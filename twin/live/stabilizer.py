@@ -3,11 +3,11 @@ hold now."""
 
 from math import hypot
 
+from twin.live.certificate.tube import STILL, Three, Tube
 from twin.live.guard import CONTROLS
 from twin.live.observer.estimate import Observer
 from twin.live.seen import Certified
 from twin.live.signals.measured import Measured
-from twin.live.tube import STILL, Three, Tube
 from twin.physics.state import Situation
 
 NU = ("u", "v", "r")

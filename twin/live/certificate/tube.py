@@ -4,18 +4,18 @@
     with one (row by row):               p = W p + again max(E) + drift max(p) + c
     without:                             p = E, and what a rejected sample was allowed to pull
 
-The matrices are those of twin/live/theorem.py.
+The matrices are those of twin/live/certificate/theorem.py.
 """
 
 from collections import deque
 from typing import TYPE_CHECKING
 
-from twin.live.comparison import add, apply, scaled_row
+from twin.live.certificate.comparison import add, apply, scaled_row
 from twin.live.observer.operating import NU, WORDS
 from twin.physics.state import Situation
 
 if TYPE_CHECKING:
-    from twin.live.certificate import Certificate
+    from twin.live.certificate.certificate import Certificate
 
 NOTHING = 1e9  # a bound so wide that it says nothing: hours without a measurement, or no certificate
 

@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from math import log, sqrt
 from typing import Any
 
-from twin.live import comparison as c3
-from twin.live.comparison import AXES, Matrix, Row
+from twin.live.certificate import comparison as c3
+from twin.live.certificate.comparison import AXES, Matrix, Row
+from twin.live.certificate.plant import Disturbance, Plant
 from twin.live.observer.operating import NU
-from twin.live.plant import Disturbance, Plant
 
 Ages = tuple[int, int, int]
 SURE = 3.0  # times the least K: what the loop's own is at least

@@ -17,14 +17,24 @@ from typing import Any
 
 from twin import whole
 from twin.errors import SettingsError, TwinError
-from twin.live import comparison as c3
-from twin.live.comparison import Matrix, Row
+from twin.live.certificate import comparison as c3
+from twin.live.certificate.comparison import Matrix, Row
+from twin.live.certificate.plant import (
+    HEADING_NOISE,
+    Disturbance,
+    Plant,
+    lipschitz,
+    output_bound,
+    plant_of,
+    self_regressor,
+    usual_disturbance,
+    usual_noise,
+)
+from twin.live.certificate.theorem import Ages, Promise, Recursion, assess, best_gain, gains_that_do, suited_gain, usual_gain
+from twin.live.certificate.tube import Tube
 from twin.live.learning.movable import movable
 from twin.live.observer.estimate import fastest_gain, gain_for
 from twin.live.observer.operating import Confined, OperatingSet, of_ship
-from twin.live.plant import HEADING_NOISE, Disturbance, Plant, lipschitz, output_bound, plant_of, self_regressor, usual_disturbance, usual_noise
-from twin.live.theorem import Ages, Promise, Recursion, assess, best_gain, gains_that_do, suited_gain, usual_gain
-from twin.live.tube import Tube
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from twin.live import comparison as c3
-from twin.live.comparison import AXES, Matrix, Row
+from twin.live.certificate import comparison as c3
+from twin.live.certificate.comparison import AXES, Matrix, Row
 from twin.live.learning.movable import Movable
 from twin.live.observer.operating import OperatingSet
 from twin.physics import core
@@ -78,7 +78,7 @@ def plant_of(model: Model, operating: OperatingSet, h: float, numbers: Sequence[
     """Sure bounds of the known physics (the learned force is an input, not a slope); a quarter of a second
     for a ship with wind. `numbers`: those of the effects that adaptation may move, all over their boxes.
     """
-    from twin.live.enclosure import anywhere, slopes
+    from twin.live.certificate.enclosure import anywhere, slopes
 
     steep = slopes(model, operating.ranges, numbers=numbers)
     unit = [core.accelerations(*row, anywhere(model, numbers).c) for row in c3.IDENTITY]
