@@ -22,18 +22,18 @@ class Bench(NamedTuple):
 
 
 BENCHES: dict[str, Bench] = {
-    "tick": Bench("bench.tick", "the budget: time and memory of the loop, part by part", "twin-bench --steps 10000"),
+    "tick": Bench("bench.tick.budget", "the budget: time and memory of the loop, part by part", "twin-bench --steps 10000"),
     "sea": Bench("bench.sea_process", "the reference sea, speaking Keelson in real time", "twin-bench sea --hull usv"),
-    "paper": Bench("bench.paper", "the paper's tables beside the paper's numbers", "twin-bench paper --quick"),
-    "adaptation": Bench("bench.adaptation", "laws of adaptation on ships that changed", "twin-bench adaptation --work .paper"),
-    "gap": Bench("bench.paper_again", "the gap from validation to test, on more runs", "twin-bench gap --work .paper"),
-    "stability": Bench("bench.stability", "ten thousand runs against the certificate", "twin-bench stability --runs 1000"),
+    "paper": Bench("bench.paper.reproduce", "the paper's tables beside the paper's numbers", "twin-bench paper --quick"),
+    "adaptation": Bench("bench.adaptation.laws_compared", "laws of adaptation on ships that changed", "twin-bench adaptation --work .paper"),
+    "gap": Bench("bench.paper.again", "the gap from validation to test, on more runs", "twin-bench gap --work .paper"),
+    "stability": Bench("bench.stability.adversaries", "ten thousand runs against the certificate", "twin-bench stability --runs 1000"),
     "hidden-effects": Bench(
-        "bench.hidden_effects",
+        "bench.league.hidden_effects",
         "the hidden-effect league: is what is missing named?",
         "twin-bench hidden-effects --quick --json -",
     ),
-    "real": Bench("bench.real_kvlcc2", "measured KVLCC2 manoeuvres (SIMMAN 2008)", "twin-bench real --data DIR"),
+    "real": Bench("bench.real.kvlcc2", "measured KVLCC2 manoeuvres (SIMMAN 2008)", "twin-bench real --data DIR"),
 }
 
 

@@ -5,10 +5,10 @@ from math import sin
 import numpy as np
 import pytest
 
-from bench import adaptation_laws as laws
 from bench import answer
-from bench.adaptation import CHANGE_S, LIES, ROUND_S, changes
-from bench.adaptation_page import figure, page
+from bench.adaptation import laws
+from bench.adaptation.laws_compared import CHANGE_S, LIES, ROUND_S, changes
+from bench.adaptation.page import figure, page
 from twin.live.learning.adapt import A_MAX, SIZES, Adaptation
 from twin.live.learning.learned import scale_of
 from twin.physics.ship import load

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bench.adaptation_named import CHANGE_S, GROWTHS, HOW, RUN_S, STARTS_S, Growth, Learned, RowsAlone, arrival, growing, late, learned, summary
-from bench.adaptation_named_page import figure, page
+from bench.adaptation.named import CHANGE_S, GROWTHS, HOW, RUN_S, STARTS_S, Growth, Learned, RowsAlone, arrival, growing, late, learned, summary
+from bench.adaptation.named_page import figure, page
 from bench.reference import HULLS
 from twin.live.learning.adapt import BESIDE, SIZES
 from twin.live.learning.learned import scale_of

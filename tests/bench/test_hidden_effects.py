@@ -5,12 +5,10 @@ from collections import Counter
 
 import pytest
 
-from bench import league_plan as plan
-from bench import league_score as score
-from bench import league_tables as tables
 from bench.cli import main
-from bench.league_page import page
-from bench.league_truth import TABLE, beside
+from bench.league import plan, score, tables
+from bench.league.page import page
+from bench.league.truth import TABLE, beside
 from bench.reference.hidden import CATALOGUE, prepare
 from bench.reference.hulls import HULLS
 from bench.reference.weather import CALM

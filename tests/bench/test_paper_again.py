@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from bench import paper_sea as sea
-from bench.paper_again import PAIRS, again, page
-from bench.paper_gap import _among_like, _change
+from bench.paper import sea
+from bench.paper.again import PAIRS, again, page
+from bench.paper.gap import _among_like, _change
 
 
 def test_what_is_sailed_again_is_the_same_but_for_seeds_that_nobody_had():

@@ -1,6 +1,6 @@
 """The table of claims: what a run of the whole plan says that a small one never reaches."""
 
-from bench.paper_claims import _tenth
+from bench.paper.claims import _tenth
 
 
 def test_the_claim_of_a_tenth_takes_the_largest_run_that_is_one_and_tells_how_many_taught():

@@ -5,11 +5,11 @@ import math
 import numpy as np
 import pytest
 
-from bench import cortex, counted, instructions, lstm, nbody, peers
-from bench.ekf import ShipFilter
-from bench.memory import memory
-from bench.ort import session
-from bench.timing import hot_us, quantiles
+from bench.tick import cortex, counted, instructions, lstm, nbody, peers
+from bench.tick.ekf import ShipFilter
+from bench.tick.memory import memory
+from bench.tick.ort import session
+from bench.tick.timing import hot_us, quantiles
 from twin.live.loop import Loop
 from twin.physics.model import Model
 from twin.physics.ship import load

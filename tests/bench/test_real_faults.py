@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench import real_faults
-from bench.real_faults import FAULTS, Readings, antenna_elsewhere, asked, early_rudder, in_a_stream, late_receiver, turned_compass
+from bench.real import faults as real_faults
+from bench.real.faults import FAULTS, Readings, antenna_elsewhere, asked, early_rudder, in_a_stream, late_receiver, turned_compass
 from twin.physics.effects import find
 from twin.physics.ship import load
 from twin.recording.voyage import Voyage

@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from bench import tick_table
-from bench.tick import judged
+from bench.tick import table as tick_table
+from bench.tick.budget import judged
 
 SHORT = ["--steps", "120", "--paced", "30", "--no-peers", "--no-instructions"]
 

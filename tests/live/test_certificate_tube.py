@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.stability import Case, Fleet, certified, trial
-from bench.stability_loop import LoopCase, Loops
+from bench.stability.adversaries import Case, Fleet, certified, trial
+from bench.stability.loop import LoopCase, Loops
 from twin.live.certificate.certificate import Tube, certify
 from twin.live.certificate.tube import Highest
 from twin.physics.effects import find

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bench.bundled import recorded
-from bench.real_faults import Readings, antenna_elsewhere
+from bench.real.faults import Readings, antenna_elsewhere
 from bench.reference import Case, simulate
 from twin import cli
 from twin.physics.ship import load

@@ -1,0 +1,1 @@
+"""Real ships: published measurements, never fitted to."""

@@ -1,0 +1,1 @@
+"""The budget of one tick: time, memory, instructions, and peers in the same run."""
