@@ -1,111 +1,157 @@
-"""A ship that exists only in kinematics: her columns agree, until a test plants a mistake."""
+"""Voyages for the study's tests: of the reference sea with something hidden, and of the twin's own model where a test wants to know what is
+in it."""
+
+from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 import pytest
 
-from twin.errors import DataError
-from twin.recording.read import read_voyage
+from bench.bundled import recorded
+from bench.reference import Case, simulate
+from twin.cli import main
+from twin.physics.model import Model
+from twin.physics.ship import Ship, load
+from twin.physics.state import Situation
+from twin.recording.voyage import Voyage
+from twin.recording.write import write_voyage
+from twin.study.reference.sailed import Sailed
+from twin.study.story import SHIP
+from twin.study.track.track import track
 
-STEP_S = 0.1
-REQUIRED = ("time_s", "north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg", "propeller_rate_rpm",
-            "surge_velocity_mps", "sway_velocity_mps", "yaw_rate_degps")  # fmt: skip
+HIDDEN = {
+    "nothing": (),
+    "HeadingBias": (("HeadingBias", 1.0),),
+    "Current": (("Current", 1.0),),
+    "RudderWear": (("RudderWear", 1.0),),
+    "SteeringLag": (("SteeringLag", 1.0),),
+    "IceLike": (("IceLike", 1.0),),
+    "Wind": (("Wind", 1.0),),
+    "Wind again": (("Wind", 1.0),),
+    "RudderBacklash": (("RudderBacklash", 1.0),),
+    "Sloshing": (("Sloshing", 1.0),),
+}
 
 
+@pytest.fixture(scope="session")
+def tanker():
+    return load(SHIP)
+
+
+@pytest.fixture(scope="session")
+def voyages():
+    """One 20 min voyage for each name in HIDDEN, a straight one, and two to calibrate on; every second a sample."""
+    cases = {name: Case("kvlcc2", "mixed", hidden=h, seed=900 + i, duration_s=1200.0) for i, (name, h) in enumerate(HIDDEN.items())}
+    cases["straight"] = Case("kvlcc2", "straight", seed=950, duration_s=1200.0)
+    cases["calm"] = Case("kvlcc2", "zigzag_20", seed=960, duration_s=1200.0)
+    cases["calm too"] = Case("kvlcc2", "speed_changes", seed=961, duration_s=1200.0)
+    sailed = simulate(list(cases.values()))
+    return {name: recorded(name, r.columns, every=10) for name, r in zip(cases, sailed, strict=True)}
+
+
+DEG = 180.0 / np.pi
+STEP_S = 320.0 / 7.97388 / 32.0  # the study's own grid for this ship
+
+
+@lru_cache
+def ship() -> Ship:
+    return load("kvlcc2")
+
+
+def voyage(*effects, **facts) -> Voyage:
+    """A voyage of one's own to change: see `sail`."""
+    made = sail(*effects, **facts)
+    return made.with_rows(made.time_s.copy(), {k: x.copy() for k, x in made.columns.items()})
+
+
+@lru_cache(maxsize=32)
 def sail(
-    duration_s: float = 900.0,
-    length_m: float = 100.0,
-    speed_mps: float = 7.0,
-    noise: float = 1.0,
+    *effects,
     seed: int = 0,
-):
-    """{column: (N,)} with `time_s`: 20 deg zigzags by Nomoto's equation, wind, a log in a current, noise."""
-    t = np.arange(0.0, duration_s, STEP_S)
-    rng = np.random.default_rng(seed)
-    r, psi, rudder, order = (np.zeros(t.size) for _ in range(4))
-    time_scale, gain = length_m / speed_mps, 0.8 * speed_mps / length_m
-    side = 20.0
-    for k in range(1, t.size):
-        if np.degrees(psi[k - 1]) * np.sign(side) > 20.0:
-            side = -side
-        order[k] = side
-        rudder[k] = rudder[k - 1] + np.clip(side - rudder[k - 1], -3.0 * STEP_S, 3.0 * STEP_S)
-        r[k] = r[k - 1] + STEP_S * (gain * np.radians(rudder[k - 1]) - r[k - 1]) / time_scale
-        psi[k] = psi[k - 1] + STEP_S * (r[k] + r[k - 1]) / 2.0
-    psi = psi + np.radians(355.0)
-    u = speed_mps * (1.0 - 0.1 * (np.degrees(psi - psi.mean()) / 30.0) ** 2 * 0.3)
-    v = -0.4 * length_m * r
-    over_ground = (u + 1j * v) * np.exp(1j * psi)
-    place = np.r_[0.0, np.cumsum((over_ground[1:] + over_ground[:-1]) / 2.0 * STEP_S)]
-    through_water = (over_ground - (0.3 - 0.4j)) * np.exp(-1j * psi)
-    true_wind = 9.0 * np.exp(1j * np.radians(70.0 + 4.0 * np.sin(t / 40.0)))  # where it comes from
-    apparent = true_wind * np.exp(-1j * psi) + u + 1j * v
-
-    def with_noise(x: np.ndarray, sigma: float) -> np.ndarray:
-        return x + noise * sigma * rng.normal(size=t.size)
-
-    return {
-        "time_s": t,
-        "north_m": with_noise(place.real, 0.3),
-        "east_m": with_noise(place.imag, 0.3),
-        "heading_true_north_deg": np.mod(with_noise(np.degrees(psi), 0.1), 360.0),
-        "surge_velocity_mps": with_noise(u, 0.05),
-        "sway_velocity_mps": with_noise(v, 0.05),
-        "surge_velocity_through_water_mps": with_noise(through_water.real, 0.05),
-        "yaw_rate_degps": with_noise(np.degrees(r), 0.02),
-        "rudder_angle_deg": with_noise(rudder, 0.1),
-        "propeller_rate_rpm": with_noise(np.full(t.size, 110.0), 0.2),
-        "true_wind_speed_mps": with_noise(np.abs(true_wind), 0.5),
-        "true_wind_direction_deg": np.mod(with_noise(np.degrees(np.angle(true_wind)), 2.0), 360.0),
-        "apparent_wind_speed_mps": with_noise(np.abs(apparent), 0.5),
-        "apparent_wind_angle_deg": np.mod(with_noise(np.degrees(np.angle(apparent)), 2.0), 360.0),
+    seconds: float = 1500.0,
+    step: float = STEP_S,
+    noise: float = 1.0,
+    wind: float | None = None,
+    name: str = "made",
+    of: Ship | None = None,
+) -> Voyage:
+    """Turns and straight legs of a ship with these effects, measured with noise; `wind` [m/s] from the east, if measured."""
+    model, rng = Model.of(of or ship()).but(*effects), np.random.default_rng(seed)
+    t = np.arange(0.0, seconds, step)
+    legs = np.repeat(rng.choice([-20.0, -10.0, 0.0, 10.0, 20.0], t.size), rng.integers(50, 130, t.size))
+    order = legs[: t.size]
+    rudder = np.radians(np.convolve(np.pad(order, (5, 5), "edge"), np.ones(11) / 11.0, "valid"))  # 2.2 deg/s
+    n = np.interp(t, [0.6 * seconds, 0.6 * seconds + 120.0], [1.6, 1.25])
+    seas = {} if wind is None else {"wind_speed": wind, "wind_to": np.pi * 1.5}
+    rows, state = [], (0.0, 0.0, 0.3 * seed, 7.0, 0.0, 0.0)
+    for k in range(t.size):
+        s = Situation(delta=rudder[k], n=n[k], t=t[k], **seas)
+        half = Situation(delta=rudder[k : k + 2].mean(), n=n[k : k + 2].mean(), t=t[k] + 0.5 * step, **seas)
+        s.x, s.y, s.psi, s.u, s.v, s.r = state
+        rates = model.nu_dot(s)
+        s.u_dot, s.v_dot = rates.u, rates.v
+        shown = s
+        for fault in model.faults:
+            shown = fault.read(replace(shown), model.loaded)
+        rows.append([shown.x, shown.y, shown.psi, shown.u, shown.v, shown.r, shown.u_r, shown.v_r])
+        state = model.step(state, half, step)
+    x, y, psi, u, v, r, u_r, v_r = (
+        np.array(rows) + noise * rng.normal(size=(t.size, 8)) * [0.4, 0.4, 1e-3, 0.02, 0.02, 2e-5, 0.03, 0.03]
+    ).T
+    columns = {
+        "north_m": x,
+        "east_m": y,
+        "heading_true_north_deg": np.mod(psi * DEG, 360.0),
+        "surge_velocity_mps": u,
+        "sway_velocity_mps": v,
+        "yaw_rate_degps": r * DEG,
+        "surge_velocity_through_water_mps": u_r,
+        "sway_velocity_through_water_mps": v_r,
+        "rudder_angle_deg": rudder * DEG,
+        "propeller_rate_rpm": n * 60.0,
     }
+    if wind is not None:
+        columns |= {
+            "true_wind_speed_mps": np.full(t.size, wind),
+            "true_wind_direction_deg": np.full(t.size, 90.0),
+        }
+    return Voyage(name, t, columns, {"start_time_utc": f"2026-05-0{1 + seed % 9}T08:00:00Z"})
 
 
-@pytest.fixture(name="sail")
-def sail_fixture():
-    return sail
+@pytest.fixture(scope="session")
+def make():
+    """The function that makes a voyage."""
+    return voyage
+
+
+@pytest.fixture(scope="session")
+def kvlcc2():
+    return ship()
 
 
 @pytest.fixture
-def write_csv(tmp_path):
-    """Writes {column: values} as a CSV and gives its path."""
+def sailed():
+    """A voyage and its track, as the verbs take them."""
 
-    def write(columns, name="voyage.csv", separator=",", decimal=".", encoding="utf-8", digits=10):
-        path = tmp_path / name
-        rows = zip(*(np.asarray(c).tolist() for c in columns.values()), strict=True)
-        lines = [separator.join(columns)]
-        for row in rows:
-            cells = ["" if x != x else x if isinstance(x, str) else f"{x:.{digits}g}" for x in row]
-            lines.append(separator.join(c.replace(".", decimal) for c in cells))
-        path.write_bytes(("\n".join(lines) + "\n").encode(encoding))
-        return path
+    def wrap(voyage: Voyage, of: Ship | None = None, sha256: str = "") -> Sailed:
+        return Sailed(voyage, track(voyage, of or ship()), sha256 or voyage.name)
+
+    return wrap
+
+
+@pytest.fixture
+def on_disk(tmp_path):
+    """A voyage as a file."""
+
+    def write(voyage: Voyage) -> str:
+        path = tmp_path / f"{voyage.name}.mcap"
+        write_voyage(voyage, path)
+        return str(path)
 
     return write
 
 
 @pytest.fixture
-def required():
-    """The columns that no voyage can do without."""
-    return REQUIRED
-
-
-@pytest.fixture
-def columns(sail):
-    full = sail(60.0)
-    return {name: full[name] for name in REQUIRED}
-
-
-@pytest.fixture(name="refused")
-def refused_fixture():
-    return refused
-
-
-def refused(path, *words, by=None):
-    """The message of the DataError, which is one line that names the file and holds the words."""
-    with pytest.raises(DataError) as caught:
-        read_voyage(path, by)
-    message = str(caught.value)
-    assert str(path) in message and "\n" not in message
-    for word in words:
-        assert word in message, message
-    return message
+def verb():
+    """Runs a verb as the command line does: words in, exit code out."""
+    return lambda *words: main([str(w) for w in words])
