@@ -15,18 +15,24 @@ settings.load_profile("shiptwin")
 # bench/test_tick.py runs before all of them and alone (Makefile): its loop is thirty times as fast as time, and 30 ms without a processor
 # for the bus are a second without measurements.
 BY_THE_CLOCK = (
-    "deploy/test_zenoh.py", "live/test_bus.py", "live/test_clock.py", "live/test_demo.py", "live/test_realtime.py",
-    "live/test_record.py", "live/test_record_faults.py", "live/test_recover.py", "live/test_run.py", "test_house.py", "test_readme.py",
+    "deploy/test_zenoh.py", "live/keelson/test_bus.py", "live/test_clock.py", "live/test_demo.py",
+    "live/test_realtime.py", "live/log/test_record.py", "live/log/test_record_faults.py",
+    "live/log/test_recover.py", "live/test_run.py", "test_house.py", "test_readme.py",
 )  # fmt: skip
-SAME_VOYAGES = "study/finding/"  # sailed once for the folder: half a minute
+# sailed once for these rooms: half a minute
+SAME_VOYAGES = (
+    "study/diagnosis/", "study/reference/", "study/estimation/", "study/calibration/", "study/track/",
+)  # fmt: skip
 LONG = ("study/test_first_hour.py", "bench/test_paper.py", "bench/test_hidden_effects.py", "deploy/test_install.py")
-FIRST = ("by the clock", SAME_VOYAGES, *LONG)
+FIRST = ("by the clock", "same voyages", *LONG)
 
 
 def work(nodeid):
     """Which piece of work a test belongs to; a process takes whole pieces."""
     name = nodeid.partition("::")[0].removeprefix("tests/")
-    return "by the clock" if name in BY_THE_CLOCK else SAME_VOYAGES if name.startswith(SAME_VOYAGES) else name
+    if name in BY_THE_CLOCK:
+        return "by the clock"
+    return "same voyages" if name.startswith(SAME_VOYAGES) else name
 
 
 def pytest_collection_modifyitems(config, items):
@@ -41,7 +47,7 @@ def pytest_xdist_make_scheduler(config, log):
         return None
     from xdist.scheduler import LoadFileScheduling
 
-    gone = [name for name in (*BY_THE_CLOCK, SAME_VOYAGES, *LONG) if not (config.rootpath / "tests" / name).exists()]
+    gone = [name for name in (*BY_THE_CLOCK, *SAME_VOYAGES, *LONG) if not (config.rootpath / "tests" / name).exists()]
     if gone:
         raise pytest.UsageError(f"tests/conftest.py names what is not there: {', '.join(gone)}")
 
