@@ -1,8 +1,8 @@
-"""The voyages that come with the twin, for `twin demo` and the tutorial: `python -m bench.bundled` makes them again.
+"""The voyages that come with the twin, for `twin demo` and the tutorial: `python -m bench.bundled` makes them
+again.
 
-A tanker is calibrated on calm reference voyages of the reference sea; then something happens to her that nobody tells the twin. Two
-voyages are kept at 1 Hz, one to find it on and one to prove it on.
-"""
+A tanker is calibrated on calm reference voyages of the reference sea; then something happens to her that
+nobody tells the twin. Two voyages are kept at 1 Hz, one to find it on and one to prove it on."""
 
 import sys
 from pathlib import Path
@@ -35,7 +35,9 @@ def main() -> int:
     cases += [Case("kvlcc2", m, seed=seed, hidden=HIDDEN) for m, seed in KEPT.values()]
     sailed = simulate(cases)
     ship = load("kvlcc2")
-    calm = [recorded(f"calm-{c.manoeuvre}", r.columns) for c, r in zip(cases, sailed, strict=False)][: len(REFERENCES)]
+    calm = [recorded(f"calm-{c.manoeuvre}", r.columns) for c, r in zip(cases, sailed, strict=False)][
+        : len(REFERENCES)
+    ]
     references = [Sailed(v, track(v, ship), "") for v in calm]
     done = calibrate(references, [(references[-1].track, 0)], ship, lambda text: print(text, file=sys.stderr))
     FOLDER.mkdir(exist_ok=True)

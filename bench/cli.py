@@ -22,18 +22,38 @@ class Bench(NamedTuple):
 
 
 BENCHES: dict[str, Bench] = {
-    "tick": Bench("bench.tick.budget", "the budget: time and memory of the loop, part by part", "twin-bench --steps 10000"),
-    "sea": Bench("bench.sea_process", "the reference sea, speaking Keelson in real time", "twin-bench sea --hull usv"),
-    "paper": Bench("bench.paper.reproduce", "the paper's tables beside the paper's numbers", "twin-bench paper --quick"),
-    "adaptation": Bench("bench.adaptation.laws_compared", "laws of adaptation on ships that changed", "twin-bench adaptation --work .paper"),
-    "gap": Bench("bench.paper.again", "the gap from validation to test, on more runs", "twin-bench gap --work .paper"),
-    "stability": Bench("bench.stability.adversaries", "ten thousand runs against the certificate", "twin-bench stability --runs 1000"),
+    "tick": Bench(
+        "bench.tick.budget",
+        "the budget: time and memory of the loop, part by part",
+        "twin-bench --steps 10000",
+    ),
+    "sea": Bench(
+        "bench.sea_process", "the reference sea, speaking Keelson in real time", "twin-bench sea --hull usv"
+    ),
+    "paper": Bench(
+        "bench.paper.reproduce", "the paper's tables beside the paper's numbers", "twin-bench paper --quick"
+    ),
+    "adaptation": Bench(
+        "bench.adaptation.laws_compared",
+        "laws of adaptation on ships that changed",
+        "twin-bench adaptation --work .paper",
+    ),
+    "gap": Bench(
+        "bench.paper.again", "the gap from validation to test, on more runs", "twin-bench gap --work .paper"
+    ),
+    "stability": Bench(
+        "bench.stability.adversaries",
+        "ten thousand runs against the certificate",
+        "twin-bench stability --runs 1000",
+    ),
     "hidden-effects": Bench(
         "bench.league.hidden_effects",
         "the hidden-effect league: is what is missing named?",
         "twin-bench hidden-effects --quick --json -",
     ),
-    "real": Bench("bench.real.kvlcc2", "measured KVLCC2 manoeuvres (SIMMAN 2008)", "twin-bench real --data DIR"),
+    "real": Bench(
+        "bench.real.kvlcc2", "measured KVLCC2 manoeuvres (SIMMAN 2008)", "twin-bench real --data DIR"
+    ),
 }
 
 
@@ -43,10 +63,14 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not argv or (argv[0].startswith("-") and argv[0] not in ("-h", "--help")):
         argv = [FIRST, *argv]
     parser = argparse.ArgumentParser(prog="twin-bench", description="What the twin costs and how good it is.")
-    parser.epilog = f"Without a name it is {FIRST}: twin-bench --steps 10000. Its options: twin-bench {FIRST} --help"
+    parser.epilog = (
+        f"Without a name it is {FIRST}: twin-bench --steps 10000. Its options: twin-bench {FIRST} --help"
+    )
     benches = parser.add_subparsers(dest="bench", required=True, metavar="BENCH")
     for name, bench in BENCHES.items():
-        sub = benches.add_parser(name, help=bench.help, description=bench.help, epilog=f"example: {bench.example}")
+        sub = benches.add_parser(
+            name, help=bench.help, description=bench.help, epilog=f"example: {bench.example}"
+        )
         if name == argv[0]:
             code = guarded(lambda sub=sub, bench=bench: load(bench).add_arguments(sub))  # type: ignore[misc]
             if code:
@@ -66,7 +90,9 @@ def load(bench: Bench) -> Any:
         return importlib.import_module(bench.module)
     except ModuleNotFoundError as error:
         if error.name != bench.module:
-            raise TwinError(f"`{bench.example}` needs {error.name!r}. Run: pip install {error.name}") from None
+            raise TwinError(
+                f"`{bench.example}` needs {error.name!r}. Run: pip install {error.name}"
+            ) from None
         raise TwinError(f"`{bench.example}` is not in this version. Known: twin-bench {FIRST}.") from None
 
 

@@ -45,10 +45,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--hz", type=float, default=10.0, help="how often the sea moves on (default: 10)")
-    parser.add_argument("--duration", type=float, default=math.inf, metavar="S", help="how long (default: until stopped)")
-    parser.add_argument("--after", type=float, default=0.0, metavar="S", help="let her sail so long before anybody hears her")
+    parser.add_argument(
+        "--duration", type=float, default=math.inf, metavar="S", help="how long (default: until stopped)"
+    )
+    parser.add_argument(
+        "--after", type=float, default=0.0, metavar="S", help="let her sail so long before anybody hears her"
+    )
     parser.add_argument("--csv", metavar="FILE", help="write the voyage there at once, and speak to nobody")
-    parser.add_argument("--latitude-deg", type=float, default=57.62, help="of the chart's origin (default: off Vinga)")
+    parser.add_argument(
+        "--latitude-deg", type=float, default=57.62, help="of the chart's origin (default: off Vinga)"
+    )
     parser.add_argument("--longitude-deg", type=float, default=11.58)
 
 
@@ -130,7 +136,9 @@ def _write(args: argparse.Namespace) -> int:
     (voyage,) = simulate([replace(_case(args), duration_s=args.duration)], 1.0 / args.hz)
     voyage.write_csv(aside)
     aside.replace(path)
-    print(f"{path}: {args.duration:g} s of {args.hull}. Next: twin import {path} -o {path.with_suffix('.mcap')}")
+    print(
+        f"{path}: {args.duration:g} s of {args.hull}. Next: twin import {path} -o {path.with_suffix('.mcap')}"
+    )
     return 0
 
 

@@ -20,8 +20,8 @@ BLOCKS = 1000  # numbers of blocks kept for each voyage
 
 @dataclass(frozen=True)
 class Samples:
-    """Single moments (N, ...): `d` is what physics leaves, `columns` the core's forces, both in units of the force scale;
-    `voyage` (N,) is where each comes from."""
+    """Single moments (N, ...): `d` is what physics leaves, `columns` the core's forces, both in units of the
+    force scale; `voyage` (N,) is where each comes from."""
 
     fields: Inputs
     ahead: torch.Tensor  # (N, 3) speeds one grid step later
@@ -45,7 +45,8 @@ class Samples:
 
 @dataclass(frozen=True)
 class Windows:
-    """Free runs side by side: start (W, 6), inputs (T + 1, W), wanted (T, W, 6); `group` (W,) is the block each comes from."""
+    """Free runs side by side: start (W, 6), inputs (T + 1, W), wanted (T, W, 6); `group` (W,) is the block
+    each comes from."""
 
     start: torch.Tensor
     inputs: Inputs
@@ -75,7 +76,10 @@ def samples(legs: Sequence[Leg], model: Model, names: Sequence[str]) -> Samples:
     """Every grid step with known controls and a step after it."""
     kept = [(leg, leg.starts(1, 1)) for leg in legs]
     fields = (
-        {name: _tensor([leg.state[k, i] - (leg.state[k, i] if i < 2 else 0.0) for leg, k in kept]) for i, name in enumerate(STATE)}
+        {
+            name: _tensor([leg.state[k, i] - (leg.state[k, i] if i < 2 else 0.0) for leg, k in kept])
+            for i, name in enumerate(STATE)
+        }
         | {name: _tensor([leg.inputs[name][k] for leg, k in kept]) for name in names}
         | {"t": _tensor([leg.t[k] for leg, k in kept])}
     )
@@ -87,10 +91,19 @@ def samples(legs: Sequence[Leg], model: Model, names: Sequence[str]) -> Samples:
     h = _tensor([np.full(k.size, leg.h) for leg, k in kept])
     fields |= {"u_r": exact.u_r, "v_r": exact.v_r}
     voyage = torch.tensor(np.concatenate([np.full(k.size, i) for i, (_, k) in enumerate(kept)]))
-    return Samples({n: x.float() for n, x in fields.items()}, ahead.float(), h.float(), d.float(), columns.float(), voyage)
+    return Samples(
+        {n: x.float() for n, x in fields.items()},
+        ahead.float(),
+        h.float(),
+        d.float(),
+        columns.float(),
+        voyage,
+    )
 
 
-def windows(legs: Sequence[Leg], names: Sequence[str], horizon_s: float, stride_s: float, block_s: float = 300.0) -> Windows:
+def windows(
+    legs: Sequence[Leg], names: Sequence[str], horizon_s: float, stride_s: float, block_s: float = 300.0
+) -> Windows:
     """Free runs of `horizon_s` that begin every `stride_s`."""
     starts, wanted, h, group = [], [], [], []
     inputs: dict[str, list[np.ndarray]] = {name: [] for name in (*names, "t")}
@@ -120,7 +133,8 @@ def zeta_of(network: Residual, data: Samples) -> torch.Tensor:
 
 
 def shuffled(count: int, batch: int, seed: int) -> Iterator[torch.Tensor]:
-    """Batches of indices in an order that depends on the seed alone; a last batch of less than half is left out."""
+    """Batches of indices in an order that depends on the seed alone; a last batch of less than half is left
+    out."""
     order = torch.randperm(count, generator=torch.Generator().manual_seed(seed))
     for part in order.split(batch):
         if part.numel() >= min(batch, count) / 2:

@@ -1,4 +1,5 @@
-"""Does ONNX Runtime say of the exported trunk what torch says of the trained one? And does the twin take the two files?
+"""Does ONNX Runtime say of the exported trunk what torch says of the trained one? And does the twin take the
+two files?
 
 python -m export.check RESIDUAL.onnx --ship SHIP.toml
 """
@@ -31,7 +32,8 @@ def answers(model: bytes, x: np.ndarray) -> np.ndarray:
 
 
 def disagreement(network: Residual, model: bytes, count: int = 256, seed: int = 0) -> float:
-    """The greatest difference over inputs drawn from the whole envelope, relative to the larger of 1 and |phi|."""
+    """The greatest difference over inputs drawn from the whole envelope, relative to the larger of 1 and
+    |phi|."""
     rng = np.random.default_rng(seed)
     low, high = network.low.numpy(), network.high.numpy()
     zeta = torch.tensor(low + (high - low) * rng.random((count, low.size)), dtype=torch.float32)
@@ -45,17 +47,24 @@ def agree(network: Residual, model: bytes) -> float:
     """The disagreement; TwinError when it is more than AGREE."""
     worst = disagreement(network, model)
     if not worst <= AGREE:
-        raise TwinError(f"torch and ONNX Runtime disagree by {worst:.2g} (at most {AGREE:g}); nothing was written.")
+        raise TwinError(
+            f"torch and ONNX Runtime disagree by {worst:.2g} (at most {AGREE:g}); nothing was written."
+        )
     return worst
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="python -m export.check", description="Would the twin take this residual for this ship?")
+    parser = argparse.ArgumentParser(
+        prog="python -m export.check", description="Would the twin take this residual for this ship?"
+    )
     parser.add_argument("residual", metavar="RESIDUAL.onnx", type=Path)
     parser.add_argument("--ship", metavar="SHIP.toml", required=True)
     args = parser.parse_args()
     found = load_residual(args.residual, load(args.ship))
-    print(f"{args.residual}: whole, and made for {found.manifest.ship_name}; inputs {', '.join(i.name for i in found.manifest.inputs)}")
+    print(
+        f"{args.residual}: whole, and made for {found.manifest.ship_name}; inputs "
+        f"{', '.join(i.name for i in found.manifest.inputs)}"
+    )
     return 0
 
 

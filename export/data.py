@@ -1,9 +1,8 @@
 """What is learned from: voyages in the frame that drifts with the water, split in blocks of time.
 
-Seen from the water a steady current is gone (Galilei), so that neither the network nor the core has to explain it. The
-current is what GNSS and log disagree by, averaged over the last CURRENT_S seconds: nothing of the future is used. Without a
-log the frame stays the earth's and the ship's own current effects hold.
-"""
+Seen from the water a steady current is gone (Galilei), so that neither the network nor the core has to
+explain it. The current is what GNSS and log disagree by, averaged over the last CURRENT_S seconds: nothing of
+the future is used. Without a log the frame stays the earth's and the ship's own current effects hold."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -30,7 +29,8 @@ LOG = {"u_r": len(STATE), "v_r": len(STATE) + 1}  # columns of Track.measured
 
 @dataclass(frozen=True)
 class Leg:
-    """A stretch of one voyage; arrays (N,) at `t` [s], every h seconds; `state` (N, 6) and `rate` (N, 3) seen from the water."""
+    """A stretch of one voyage; arrays (N,) at `t` [s], every h seconds; `state` (N, 6) and `rate` (N, 3) seen
+    from the water."""
 
     name: str
     t: np.ndarray
@@ -48,9 +48,14 @@ class Leg:
         """Grid steps first <= k < last."""
         cut = slice(first, last)
         return replace(
-            self, t=self.t[cut], state=self.state[cut], rate=self.rate[cut], water=self.water[cut], whole=self.whole[cut],
+            self,
+            t=self.t[cut],
+            state=self.state[cut],
+            rate=self.rate[cut],
+            water=self.water[cut],
+            whole=self.whole[cut],
             inputs={name: x[cut] for name, x in self.inputs.items()},
-        )  # fmt: skip
+        )
 
     def starts(self, steps: int, stride: int) -> np.ndarray:
         """Grid steps from which `steps` more can be run through without a hole in the controls."""
@@ -60,10 +65,13 @@ class Leg:
 
 
 def model_of(ship: Ship, tracks: Sequence[Track]) -> Model:
-    """The ship's model as all the voyages can feed it; her current effects are left to the frame when all have a log."""
+    """The ship's model as all the voyages can feed it; her current effects are left to the frame when all
+    have a log."""
     model = in_one(Model.of(ship), tracks)
     if all(_logged(t) for t in tracks):
-        model = replace(model, effects=tuple(e for e in model.effects if not isinstance(e, (Current, VaryingCurrent))))
+        model = replace(
+            model, effects=tuple(e for e in model.effects if not isinstance(e, (Current, VaryingCurrent)))
+        )
     return model
 
 
@@ -89,7 +97,9 @@ def afloat(state: np.ndarray, water: np.ndarray, h: float) -> np.ndarray:
     c, s = np.cos(psi), np.sin(psi)
     north, east = water.T
     drift = np.cumsum(water, axis=0) * h
-    return np.column_stack([x - drift[:, 0], y - drift[:, 1], psi, u - north * c - east * s, v - east * c + north * s, r])
+    return np.column_stack(
+        [x - drift[:, 0], y - drift[:, 1], psi, u - north * c - east * s, v - east * c + north * s, r]
+    )
 
 
 def current(track: Track, state: np.ndarray) -> np.ndarray:
@@ -118,9 +128,8 @@ def _logged(track: Track) -> bool:
 def split(legs: Sequence[Leg], block_s: float = BLOCK_S) -> dict[str, list[Leg]]:
     """Train, validation and test, in this order of time.
 
-    Whole voyages where there are five or more; else each voyage is cut at two borders of blocks and the block at each border
-    goes to nobody: neighbouring blocks of one manoeuvre are never on both sides.
-    """
+    Whole voyages where there are five or more; else each voyage is cut at two borders of blocks and the block
+    at each border goes to nobody: neighbouring blocks of one manoeuvre are never on both sides."""
     parts: dict[str, list[Leg]] = {name: [] for name in PARTS}
     if len(legs) >= 5:
         for name, chosen in zip(PARTS, np.split(np.arange(len(legs)), _borders(len(legs))), strict=True):
@@ -138,5 +147,7 @@ def _borders(count: int) -> tuple[int, int]:
     first = max(1, round(SHARES[0] * count))
     second = max(first + 1, round((SHARES[0] + SHARES[1]) * count))
     if second >= count:
-        raise DataError(f"{count} stretches cannot be split into train, validation and test. Give more or longer voyages.")
+        raise DataError(
+            f"{count} stretches cannot be split into train, validation and test. Give more or longer voyages."
+        )
     return first, second

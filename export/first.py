@@ -90,9 +90,13 @@ def read(path: Path, ship: Ship) -> Run:
 
 
 COLUMNS = {
-    "u": "surge_velocity_mps", "v": "sway_velocity_mps", "r": "yaw_rate_degps", "psi": "heading_true_north_deg",
-    "delta": "rudder_angle_deg", "n": "propeller_rate_rpm",
-}  # fmt: skip
+    "u": "surge_velocity_mps",
+    "v": "sway_velocity_mps",
+    "r": "yaw_rate_degps",
+    "psi": "heading_true_north_deg",
+    "delta": "rudder_angle_deg",
+    "n": "propeller_rate_rpm",
+}
 
 
 def low_passed(x: torch.Tensor) -> torch.Tensor:
@@ -149,7 +153,10 @@ def _on(grid: np.ndarray, time_s: np.ndarray, values: np.ndarray) -> np.ndarray:
 def explained(trunk: Trunk, runs: list[Run]) -> list[float]:
     """Share of the mean square of d that the network takes away, by axis."""
     with torch.no_grad():
-        pairs = [(low_passed(trunk(torch.tensor(run.zeta, dtype=torch.float32))).numpy()[KERNEL:], run.d[KERNEL:]) for run in runs]
+        pairs = [
+            (low_passed(trunk(torch.tensor(run.zeta, dtype=torch.float32))).numpy()[KERNEL:], run.d[KERNEL:])
+            for run in runs
+        ]
     left = np.concatenate([d - f for f, d in pairs])
     whole = np.concatenate([d for _, d in pairs])
     return [float(x) for x in 1.0 - (left**2).mean(0) / (whole**2).mean(0)]
@@ -170,14 +177,21 @@ def trunk_onnx(trunk: Trunk) -> bytes:
             helper.make_node("Mul", [f"z{i}", f"s{i}"], [out]),
         ]
         source = out
-    ends = [helper.make_tensor_value_info(n, TensorProto.FLOAT, [1, size]) for n, size in (("zeta", len(NAMES)), ("phi", FEATURES))]
+    ends = [
+        helper.make_tensor_value_info(n, TensorProto.FLOAT, [1, size])
+        for n, size in (("zeta", len(NAMES)), ("phi", FEATURES))
+    ]
     graph = helper.make_graph(nodes, "trunk", ends[:1], ends[1:], weights)
-    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=8, producer_name="shiptwin")
+    model = helper.make_model(
+        graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=8, producer_name="shiptwin"
+    )
     checker.check_model(model)
     return bytes(model.SerializeToString())
 
 
-def manifest(trunk: Trunk, model: bytes, ship: Ship, runs: list[Run], about: dict[str, Any]) -> dict[str, Any]:
+def manifest(
+    trunk: Trunk, model: bytes, ship: Ship, runs: list[Run], about: dict[str, Any]
+) -> dict[str, Any]:
     """The manifest of docs/residual.md."""
     zeta = np.concatenate([run.zeta for run in runs])
     low, high = zeta.min(0), zeta.max(0)

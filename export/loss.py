@@ -1,7 +1,8 @@
-"""The losses, the paper's and those that work better, on the same physics as the loop: Model.forces and Model.step with tensors.
+"""The losses, the paper's and those that work better, on the same physics as the loop: Model.forces and
+Model.step with tensors.
 
-acceleration   |S^-1 (M nu_dot - F(nu)) - f|^2, one sample at a time
-paper          lambda_data |nu(t+h) - nu_pred(t+h)|^2 + lambda_phys |S^-1 R|^2,  R = M nu_dot_pred - F(nu) - S f,
+acceleration   |S^-1 (M nu_dot - F(nu)) - f|^2, one sample at a time paper          lambda_data |nu(t+h) -
+nu_pred(t+h)|^2 + lambda_phys |S^-1 R|^2,  R = M nu_dot_pred - F(nu) - S f,
                nu_dot_pred = d nu_pred/dh by automatic differentiation through Model.step
 rollout        Huber of heading, place and speeds along a free run of many steps
 orthogonal     what of f lies in the span of the core's own forces: |P f|^2
@@ -56,7 +57,8 @@ def paper(
     network: Residual, model: Model, s: Situation, ahead: torch.Tensor, h: torch.Tensor, size: torch.Tensor,
     lambda_data: float = 1.0, lambda_phys: float = 0.1,
 ) -> tuple[torch.Tensor, dict[str, float]]:  # fmt: skip
-    """The literal loss of one step; `ahead` (B, 3) the measured speeds h later, `size` (3,) of one step's change. Diagnostics too."""
+    """The literal loss of one step; `ahead` (B, 3) the measured speeds h later, `size` (3,) of one step's
+    change. Diagnostics too."""
     h = h.clone().requires_grad_(True)
     hybrid = replace(model, residual=network)
     start = (s.x, s.y, s.psi, s.u, s.v, s.r)
@@ -75,9 +77,12 @@ def _rms(x: torch.Tensor) -> float:
     return float((x.detach() ** 2).mean().sqrt())
 
 
-def free_run(network: Residual | None, model: Model, start: torch.Tensor, inputs: Inputs, h: torch.Tensor) -> torch.Tensor:
-    """(T, B, 6) states after each step; `start` (B, 6), inputs (T + 1, B). The learned force of a step is that of its middle, by a
-    line through this step's and the last one's beginnings (Adams-Bashforth): as good as asking the network twice."""
+def free_run(
+    network: Residual | None, model: Model, start: torch.Tensor, inputs: Inputs, h: torch.Tensor
+) -> torch.Tensor:
+    """(T, B, 6) states after each step; `start` (B, 6), inputs (T + 1, B). The learned force of a step is
+    that of its middle, by a line through this step's and the last one's beginnings (Adams-Bashforth): as good
+    as asking the network twice."""
     held = Held()
     moving = replace(model, residual=held) if network is not None else model
     state, kept, last = tuple(start.unbind(-1)), [], None
@@ -87,21 +92,28 @@ def free_run(network: Residual | None, model: Model, start: torch.Tensor, inputs
             s = Situation(*state, **now)
             model.forces(s, model.water(s))
             force = network(s)
-            held.force, last = Force(*[1.5 * a - 0.5 * b for a, b in zip(force, last or force, strict=True)]), force
+            held.force, last = (
+                Force(*[1.5 * a - 0.5 * b for a, b in zip(force, last or force, strict=True)]),
+                force,
+            )
         middle = {name: 0.5 * (x[k] + x[k + 1]) for name, x in inputs.items()}
         state = _onward(moving, state, Situation(**middle), h)
         kept.append(torch.stack(state, -1))
     return torch.stack(kept)
 
 
-def _onward(model: Model, state: tuple[torch.Tensor, ...], s: Situation, h: torch.Tensor) -> tuple[torch.Tensor, ...]:
-    """One step by the midpoint rule: half the work of Model.step, and at STRIDE steps as near to the truth as the model is."""
+def _onward(
+    model: Model, state: tuple[torch.Tensor, ...], s: Situation, h: torch.Tensor
+) -> tuple[torch.Tensor, ...]:
+    """One step by the midpoint rule: half the work of Model.step, and at STRIDE steps as near to the truth as
+    the model is."""
     half = [x + 0.5 * h * k for x, k in zip(state, model.derivative(state, s), strict=True)]
     return tuple([x + h * k for x, k in zip(state, model.derivative(tuple(half), s), strict=True)])  # type: ignore[arg-type]
 
 
 def allowed(model: Model) -> torch.Tensor:
-    """(6,) an error of this size counts as one: a hundredth of her length, her speed, a radian and their ratios."""
+    """(6,) an error of this size counts as one: a hundredth of her length, her speed, a radian and their
+    ratios."""
     L, U = float(model.ship.L_pp), float(model.ship.U_0)
     return 0.01 * torch.tensor([L, L, 1.0, U, U, U / L])
 
@@ -117,11 +129,14 @@ def rollout(
     """(B,) Huber loss along each run; a ship that runs away counts as much as can be."""
     off = (free_run(network, model, start, inputs, h) - wanted) / allowed(model).to(wanted.device)
     off = torch.nan_to_num(off, nan=1e3, posinf=1e3, neginf=-1e3).clamp(-1e3, 1e3)
-    return torch.nn.functional.huber_loss(off, torch.zeros_like(off), delta=2.0, reduction="none").mean((0, 2))
+    return torch.nn.functional.huber_loss(off, torch.zeros_like(off), delta=2.0, reduction="none").mean(
+        (0, 2)
+    )
 
 
 def orthogonal(f: torch.Tensor, columns: torch.Tensor) -> torch.Tensor:
-    """|P f|^2/|size|^2 of a batch: f (B, 3), columns (B, 3, K) of the core; the basis is not differentiated."""
+    """|P f|^2/|size|^2 of a batch: f (B, 3), columns (B, 3, K) of the core; the basis is not
+    differentiated."""
     total = f.new_zeros(())
     for axis in range(3):
         A = columns[:, axis].detach()

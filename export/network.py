@@ -1,9 +1,11 @@
-"""The residual network of Table 1: four layers of 64, swish, and a last layer W kept apart; believed only where it was trained.
+"""The residual network of Table 1: four layers of 64, swish, and a last layer W kept apart; believed only
+where it was trained.
 
-    x = (clip(zeta, low, high) - offset)/scale,   phi = trunk(x),   f = weight W phi,  |f| <= bound,   force = S f
+    x = (clip(zeta, low, high) - offset)/scale,   phi = trunk(x),   f = weight W phi,  |f| <= bound,   force =
+    S f
 
-`weight` falls to zero outside [low, high], as in twin/live/learning/residual.py, which must say the same of the exported file.
-"""
+`weight` falls to zero outside [low, high], as in twin/live/learning/residual.py, which must say the same of
+the exported file."""
 
 from collections.abc import Sequence
 from itertools import pairwise
@@ -41,9 +43,12 @@ class Residual(torch.nn.Module):
         low, high = zeta.min(0), zeta.max(0)
         wide = np.maximum(high - low, 0.05)  # what hardly varied in the data
         for name, value in (
-            ("offset", zeta.mean(0)), ("scale", zeta.std(0) + 0.1 * wide), ("low", low - 0.02 * wide), ("high", high + 0.02 * wide),
+            ("offset", zeta.mean(0)),
+            ("scale", zeta.std(0) + 0.1 * wide),
+            ("low", low - 0.02 * wide),
+            ("high", high + 0.02 * wide),
             ("bound", np.float32(np.inf)),
-        ):  # fmt: skip
+        ):
             self.register_buffer(name, torch.tensor(value, dtype=torch.float32))
 
     def trunk(self, x: torch.Tensor) -> torch.Tensor:
@@ -85,8 +90,9 @@ class Residual(torch.nn.Module):
 
 
 def names_for(legs: Sequence[Leg], model: Model) -> tuple[str, ...]:
-    """Which inputs the voyages can feed: her motion and controls; the air too where every voyage measured it, unless the wind has
-    its name in the model already (few voyages would teach the network their weathers by heart)."""
+    """Which inputs the voyages can feed: her motion and controls; the air too where every voyage measured it,
+    unless the wind has its name in the model already (few voyages would teach the network their weathers by
+    heart)."""
     measured = all("wind_speed" in leg.inputs for leg in legs)
     named = any(isinstance(effect, Wind) for effect in model.effects)
     return CALM + AIR if measured and not named else CALM

@@ -1,4 +1,5 @@
-"""The training itself: Table 1's protocol on single moments, then roll-outs; resumable, and the same for the same seed."""
+"""The training itself: Table 1's protocol on single moments, then roll-outs; resumable, and the same for the
+same seed."""
 
 import hashlib
 import json
@@ -26,7 +27,8 @@ Progress = Callable[[str, int, int, float, float], None]  # stage, epoch, epochs
 
 @dataclass(frozen=True)
 class Settings:
-    """Table 1 of the paper, and what it leaves open; horizons in ship lengths sailed (1.5 lengths of KVLCC2 are 60 s)."""
+    """Table 1 of the paper, and what it leaves open; horizons in ship lengths sailed (1.5 lengths of KVLCC2
+    are 60 s)."""
 
     seed: int = 42
     loss: str = "rollout"
@@ -50,8 +52,12 @@ class Settings:
 DECAY_EPOCHS = 10
 MOST = 4096  # windows or moments that a validation looks at
 EVEN = 10.0
-STEPS = 50  # in an epoch of single moments at least: where there is less to learn from, batches are smaller, not the steps fewer
-FEWEST = 5  # validation voyages from which they may say when to stop; fewer are not like the rest, and all epochs are gone through
+# in an epoch of single moments at least: where there is less to learn from, batches are smaller, not the
+# steps fewer
+STEPS = 50
+# validation voyages from which they may say when to stop; fewer are not like the rest, and all epochs are
+# gone through
+FEWEST = 5
 
 
 @dataclass
@@ -100,7 +106,8 @@ def teach(
     progress: Progress | None = None,
     keep: Path | None = None,
 ) -> Taught:
-    """Train a residual for the model; `keep` is a checkpoint file, continued when it belongs to the same training."""
+    """Train a residual for the model; `keep` is a checkpoint file, continued when it belongs to the same
+    training."""
     torch.set_num_threads(1)
     torch.manual_seed(settings.seed)
     data = prepared(parts, model, settings)
@@ -136,7 +143,8 @@ STAGES = {"paper": ("paper",), "acceleration": ("acceleration",), "rollout": ("a
 
 
 class Course:
-    """One training: its network, the average of its weights over the last epochs, its optimiser, and where it stands."""
+    """One training: its network, the average of its weights over the last epochs, its optimiser, and where it
+    stands."""
 
     def __init__(
         self,
@@ -169,12 +177,16 @@ class Course:
         self.weight = torch.ones(1)  # of each training voyage, while a stage runs
 
     def run(self, stage: str) -> None:
-        """All epochs of a stage; of the averaged weights those of the best validation loss stay, or the last where it says too little."""
+        """All epochs of a stage; of the averaged weights those of the best validation loss stay, or the last
+        where it says too little."""
         c = self.settings
         epochs = c.rollout_epochs if stage == "rollout" else c.epochs
         rate = c.rollout_rate if stage == "rollout" else c.rate
         self.optimiser = torch.optim.Adam(self.network.parameters(), lr=rate, weight_decay=c.l2)
-        self.mean = AveragedModel(self.network, multi_avg_fn=get_ema_multi_avg_fn(1.0 - 1.0 / (1.0 + c.average * self._batches(stage))))
+        self.mean = AveragedModel(
+            self.network,
+            multi_avg_fn=get_ema_multi_avg_fn(1.0 - 1.0 / (1.0 + c.average * self._batches(stage))),
+        )
         best, since, first = (self._copy(), self.validation(stage)), 0, 0
         if self.kept and self.kept["stage"] == stage:
             best, since, first = self._resume()
@@ -184,12 +196,20 @@ class Course:
             if since >= c.patience and self.asked:
                 break
             for group in self.optimiser.param_groups:
-                group["lr"] = rate * (0.5 + 0.5 * cos(pi * epoch / epochs) if stage == "rollout" else c.decay ** (epoch // DECAY_EPOCHS))
+                group["lr"] = rate * (
+                    0.5 + 0.5 * cos(pi * epoch / epochs)
+                    if stage == "rollout"
+                    else c.decay ** (epoch // DECAY_EPOCHS)
+                )
             value = self._epoch(stage, epoch)
             validation = self.validation(stage)
             self.curve.append((stage, epoch, value, validation))
             self.progress(stage, epoch + 1, epochs, value, validation)
-            best, since = ((self._copy(), validation), 0) if validation < best[1] or not self.asked else (best, since + 1)
+            best, since = (
+                ((self._copy(), validation), 0)
+                if validation < best[1] or not self.asked
+                else (best, since + 1)
+            )
             self._save(stage, epoch + 1, best, since)
         self.network.load_state_dict(best[0])
         self.best = best[1]
@@ -212,7 +232,9 @@ class Course:
         for k in shuffled(*self._amount(stage), seed):
             value = self._loss(stage, "train", k)
             yield value + self._penalty(
-                torch.randint(len(part.samples), (self.settings.batch,), generator=torch.Generator().manual_seed(seed))
+                torch.randint(
+                    len(part.samples), (self.settings.batch,), generator=torch.Generator().manual_seed(seed)
+                )
             )
 
     def _amount(self, stage: str) -> tuple[int, int]:
@@ -244,7 +266,14 @@ class Course:
     def _literal(self, network: Residual, part: str, k: torch.Tensor) -> torch.Tensor:
         one, c = self.data[part].samples, self.settings
         value, self.diagnostics = losses.paper(
-            network, self.model, one.situation(k), one.ahead[k], one.h[k], self.jump, c.lambda_data, c.lambda_phys
+            network,
+            self.model,
+            one.situation(k),
+            one.ahead[k],
+            one.h[k],
+            self.jump,
+            c.lambda_data,
+            c.lambda_phys,
         )
         return value
 
@@ -261,8 +290,8 @@ class Course:
         return total / torch.bincount(voyage[k], minlength=total.numel()).clamp(min=1)
 
     def _weights(self, stage: str) -> torch.Tensor:
-        """The gradient of the geometric mean of the voyages' losses: a voyage in heavy sea, whose errors are mostly
-        waves, counts no more than a calm one. No weight is more than EVEN times another."""
+        """The gradient of the geometric mean of the voyages' losses: a voyage in heavy sea, whose errors are
+        mostly waves, counts no more than a calm one. No weight is more than EVEN times another."""
         if stage == "paper":
             return torch.ones(1)
         scatter = self._by_voyage(self.network, stage, "train")
@@ -284,7 +313,9 @@ class Course:
         network = self.mean.module
         if stage == "paper":
             many = len(self.data["validation"].samples)
-            return float(self._literal(network, "validation", torch.arange(0, many, max(1, many // MOST))).detach())
+            return float(
+                self._literal(network, "validation", torch.arange(0, many, max(1, many // MOST))).detach()
+            )
         return float(self._by_voyage(network, stage, "validation").clamp(min=1e-12).log().mean().exp())
 
     def _copy(self) -> dict[str, Any]:
@@ -311,11 +342,21 @@ class Course:
         stages = STAGES[self.settings.loss]
         aside = self.keep.with_name(f"{self.keep.name}.aside")
         torch.save(
-            {"key": self.key, "stage": stage, "done": list(stages[: stages.index(stage)]), "epoch": epoch, "since": since,
-             "network": self.network.state_dict(), "mean": self.mean.state_dict(), "optimiser": self.optimiser.state_dict(), "best": best[0],
-             "best_loss": best[1], "curve": [list(row) for row in self.curve]},
+            {
+                "key": self.key,
+                "stage": stage,
+                "done": list(stages[: stages.index(stage)]),
+                "epoch": epoch,
+                "since": since,
+                "network": self.network.state_dict(),
+                "mean": self.mean.state_dict(),
+                "optimiser": self.optimiser.state_dict(),
+                "best": best[0],
+                "best_loss": best[1],
+                "curve": [list(row) for row in self.curve],
+            },
             aside,
-        )  # fmt: skip
+        )
         os.replace(aside, self.keep)
 
 

@@ -1,4 +1,5 @@
-"""The trained residual as the two files that the twin reads (docs/residual.md): trunk in ONNX, everything else in the manifest."""
+"""The trained residual as the two files that the twin reads (docs/residual.md): trunk in ONNX, everything
+else in the manifest."""
 
 import hashlib
 import json
@@ -23,16 +24,24 @@ def trunk(network: Residual) -> bytes:
     nodes, weights, source = [], [], "zeta"
     for i, layer in enumerate(network.layers):
         out = "phi" if layer is network.layers[-1] else f"x{i}"
-        weights += [numpy_helper.from_array(x.detach().numpy(), f"{n}{i}") for n, x in (("w", layer.weight), ("b", layer.bias))]
+        weights += [
+            numpy_helper.from_array(x.detach().numpy(), f"{n}{i}")
+            for n, x in (("w", layer.weight), ("b", layer.bias))
+        ]
         nodes += [
             helper.make_node("Gemm", [source, f"w{i}", f"b{i}"], [f"z{i}"], transB=1),
             helper.make_node("Sigmoid", [f"z{i}"], [f"s{i}"]),
             helper.make_node("Mul", [f"z{i}", f"s{i}"], [out]),
         ]
         source = out
-    ends = [helper.make_tensor_value_info(n, TensorProto.FLOAT, [1, size]) for n, size in (("zeta", len(network.names)), ("phi", WIDTH))]
+    ends = [
+        helper.make_tensor_value_info(n, TensorProto.FLOAT, [1, size])
+        for n, size in (("zeta", len(network.names)), ("phi", WIDTH))
+    ]
     graph = helper.make_graph(nodes, "trunk", ends[:1], ends[1:], weights)
-    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=8, producer_name="shiptwin")
+    model = helper.make_model(
+        graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=8, producer_name="shiptwin"
+    )
     checker.check_model(model)
     return bytes(model.SerializeToString())
 
@@ -42,7 +51,10 @@ def manifest(network: Residual, model: bytes, zeta: torch.Tensor, training: dict
     W = network.last.weight.detach().numpy().astype(float)
     with torch.no_grad():
         phi = network.phi(zeta).numpy().astype(float)
-        x = (torch.clamp(zeta[:: max(len(zeta) // GOLDEN, 1)][:GOLDEN], network.low, network.high) - network.offset) / network.scale
+        x = (
+            torch.clamp(zeta[:: max(len(zeta) // GOLDEN, 1)][:GOLDEN], network.low, network.high)
+            - network.offset
+        ) / network.scale
         answers = network.trunk(x).numpy()
     return {
         "schema_version": SCHEMA_VERSION,
@@ -56,14 +68,18 @@ def manifest(network: Residual, model: bytes, zeta: torch.Tensor, training: dict
         "force_scale": {"X_N": float(network.S.X), "Y_N": float(network.S.Y), "N_Nm": float(network.S.N)},
         "output_bound": float(network.bound),
         "whitening": whitening(phi),
-        "spectral_norms": [float(np.linalg.norm(layer.weight.detach().numpy(), 2)) for layer in network.layers],
+        "spectral_norms": [
+            float(np.linalg.norm(layer.weight.detach().numpy(), 2)) for layer in network.layers
+        ],
         "golden": {"inputs": x.tolist(), "outputs": answers.tolist()},
         "training": training,
     }
 
 
 def _inputs(network: Residual) -> list[dict[str, Any]]:
-    columns = zip(*(getattr(network, name).tolist() for name in ("scale", "offset", "low", "high")), strict=True)
+    columns = zip(
+        *(getattr(network, name).tolist() for name in ("scale", "offset", "low", "high")), strict=True
+    )
     return [
         {
             "name": n,

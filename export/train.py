@@ -1,4 +1,5 @@
-"""`twin train`: learns from voyages what the ship's physics leaves over, proves on held-out free runs that it helps, exports it."""
+"""`twin train`: learns from voyages what the ship's physics leaves over, proves on held-out free runs that it
+helps, exports it."""
 
 import argparse
 import sys
@@ -20,10 +21,10 @@ NEEDS = "`twin train` needs {!r}. Run: pip install 'shiptwin[train]'"
 EPILOG = """example:
   twin train v*.mcap --ship alma3.toml -o residual.onnx
 
-Voyages are taken in the order of time: the first 60 % teach, the next 20 % say when to stop, the last 20 % judge. With fewer than
-five voyages each is cut in time instead. Interrupted, it goes on where it was when the same command is given again.
-Exit code 3: the residual does not help on the held-out part, nothing is written (--force writes all the same); 4: a voyage cannot
-be used; 5: the ship file is not valid.
+Voyages are taken in the order of time: the first 60 % teach, the next 20 % say when to stop, the last 20 %
+judge. With fewer than five voyages each is cut in time instead. Interrupted, it goes on where it was when the
+same command is given again. Exit code 3: the residual does not help on the held-out part, nothing is written
+(--force writes all the same); 4: a voyage cannot be used; 5: the ship file is not valid.
 """
 
 
@@ -62,10 +63,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="rollout",
         help="default: acceleration matching, then roll-outs",
     )
-    parser.add_argument("--epochs", metavar="N", type=int, default=150, help="of single moments, at most (150)")
-    parser.add_argument("--rollout-epochs", metavar="N", type=int, default=40, help="of roll-outs, at most (40)")
-    parser.add_argument("--lambda-data", metavar="X", type=float, default=1.0, help="weight of the data in --loss paper (1)")
-    parser.add_argument("--lambda-phys", metavar="X", type=float, default=0.1, help="weight of R in --loss paper (0.1)")
+    parser.add_argument(
+        "--epochs", metavar="N", type=int, default=150, help="of single moments, at most (150)"
+    )
+    parser.add_argument(
+        "--rollout-epochs", metavar="N", type=int, default=40, help="of roll-outs, at most (40)"
+    )
+    parser.add_argument(
+        "--lambda-data", metavar="X", type=float, default=1.0, help="weight of the data in --loss paper (1)"
+    )
+    parser.add_argument(
+        "--lambda-phys", metavar="X", type=float, default=0.1, help="weight of R in --loss paper (0.1)"
+    )
     parser.add_argument(
         "--orthogonality",
         metavar="X",
@@ -116,8 +125,11 @@ def settings_of(args: argparse.Namespace) -> Any:
     return Settings(**{name: value for name, value in vars(args).items() if name in named})
 
 
-def learn(ship: Ship, sailed: list[Sailed], settings: Any, seeds: list[int], output: Path, force: bool = False) -> dict[str, Any]:
-    """Train for every seed, keep the best on validation, judge it on the test part, write it when it is worth having."""
+def learn(
+    ship: Ship, sailed: list[Sailed], settings: Any, seeds: list[int], output: Path, force: bool = False
+) -> dict[str, Any]:
+    """Train for every seed, keep the best on validation, judge it on the test part, write it when it is worth
+    having."""
     from export import check, to_onnx
     from export.teach import teach, zeta_of
     from export.worth import share, worth
@@ -136,13 +148,22 @@ def learn(ship: Ship, sailed: list[Sailed], settings: Any, seeds: list[int], out
     judged = worth(best.network, model, parts["test"])
     samples = best.samples
     result = {
-        "schema_version": SCHEMA_VERSION, "ship": ship.name, "loss": settings.loss, "seeds": seeds,
-        "seed": seeds[taught.index(best)], "held_out": judged.told(), "verdict": judged.sentence(),
-        "learned_share": share(best.network, model, samples.situation(slice(None))), "inputs": list(best.network.names),
-        "seconds": sum(t.seconds for t in taught), "epochs": dict(Counter(stage for stage, *_ in best.curve)),
-        "voyages": [s.provenance() for s in sailed], "parts": {part: [one.name for one in legs] for part, legs in parts.items()},
-        "written": judged.proved or force, "forced": force and not judged.proved,
-    }  # fmt: skip
+        "schema_version": SCHEMA_VERSION,
+        "ship": ship.name,
+        "loss": settings.loss,
+        "seeds": seeds,
+        "seed": seeds[taught.index(best)],
+        "held_out": judged.told(),
+        "verdict": judged.sentence(),
+        "learned_share": share(best.network, model, samples.situation(slice(None))),
+        "inputs": list(best.network.names),
+        "seconds": sum(t.seconds for t in taught),
+        "epochs": dict(Counter(stage for stage, *_ in best.curve)),
+        "voyages": [s.provenance() for s in sailed],
+        "parts": {part: [one.name for one in legs] for part, legs in parts.items()},
+        "written": judged.proved or force,
+        "forced": force and not judged.proved,
+    }
     if result["written"]:
         network = to_onnx.trunk(best.network)
         result["torch_onnx_difference"] = check.agree(best.network, network)
@@ -157,7 +178,8 @@ def learn(ship: Ship, sailed: list[Sailed], settings: Any, seeds: list[int], out
 
 
 def on_one_grid(sailed: list[Sailed], ship: Ship) -> list[Track]:
-    """The tracks, all with the step of the slowest recording, so that free runs of all can go side by side."""
+    """The tracks, all with the step of the slowest recording, so that free runs of all can go side by
+    side."""
     h = max(s.track.h for s in sailed)
     per_length = float(ship.scale("time")) / h
     return [s.track if abs(s.track.h - h) < 1e-3 * h else track(s.voyage, ship, per_length) for s in sailed]
@@ -168,7 +190,10 @@ def bar(label: str) -> Any:
 
     def show(stage: str, epoch: int, epochs: int, loss: float, validation: float) -> None:
         filled = round(20 * epoch / epochs)
-        text = f"{label}{stage:<12} [{'#' * filled}{'.' * (20 - filled)}] {epoch:>3}/{epochs}  loss {loss:.4g}  validation {validation:.4g}"
+        text = (
+            f"{label}{stage:<12} [{'#' * filled}{'.' * (20 - filled)}] {epoch:>3}/{epochs}  loss "
+            f"{loss:.4g}  validation {validation:.4g}"
+        )
         end = "\r" if sys.stderr.isatty() else "\n"
         if sys.stderr.isatty() or epoch % 10 == 0 or epoch == epochs:
             print(text, end=end if epoch < epochs else "\n", file=sys.stderr, flush=True)

@@ -1,4 +1,5 @@
-"""Is the residual worth having? Free runs on the part that no training saw, physics alone beside physics and residual."""
+"""Is the residual worth having? Free runs on the part that no training saw, physics alone beside physics and
+residual."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,7 +22,8 @@ RUNAWAY = 1e6
 
 @dataclass(frozen=True)
 class Worth:
-    """Mean errors over the horizon without and with the residual, and the 95 % interval of the ratio of places."""
+    """Mean errors over the horizon without and with the residual, and the 95 % interval of the ratio of
+    places."""
 
     horizon_s: float
     windows: int
@@ -40,30 +42,37 @@ class Worth:
         (p, q), (a, b) = self.position_m, self.heading_deg
         said = "is worth having" if self.proved else "is not worth having"
         return (
-            f"the residual {said}: over {self.horizon_s:.0f} s on {self.windows} held-out free runs the place is off by {q:.3g} m "
+            f"the residual {said}: over {self.horizon_s:.0f} s on {self.windows} held-out free runs the "
+            f"place is off by {q:.3g} m "
             f"with it, {p:.3g} m without (ratio {self.ratio_low95:.2f} to {self.ratio_high95:.2f}), "
             f"the heading by {b:.3g} deg, {a:.3g} deg without"
         )
 
     def told(self) -> dict[str, Any]:
         return {
-            "horizon_s": self.horizon_s, "windows": self.windows, "blocks": self.blocks, "worth_having": self.proved,
+            "horizon_s": self.horizon_s,
+            "windows": self.windows,
+            "blocks": self.blocks,
+            "worth_having": self.proved,
             "position_mae_m": dict(zip(("physics", "with_residual"), self.position_m, strict=True)),
             "heading_mae_deg": dict(zip(("physics", "with_residual"), self.heading_deg, strict=True)),
             "position_ratio_95": [self.ratio_low95, self.ratio_high95],
-        }  # fmt: skip
+        }
 
 
 def errors(network: Residual | None, model: Model, w: Windows) -> np.ndarray:
     """(W, 2) mean position error [m] and heading error [deg] along each free run."""
     with torch.no_grad():
-        off = torch.nan_to_num(free_run(network, model, w.start, w.inputs, w.h) - w.wanted, nan=RUNAWAY).clamp(-RUNAWAY, RUNAWAY)
+        off = torch.nan_to_num(
+            free_run(network, model, w.start, w.inputs, w.h) - w.wanted, nan=RUNAWAY
+        ).clamp(-RUNAWAY, RUNAWAY)
     place, heading = off[..., :2].norm(dim=-1), torch.rad2deg(off[..., 2].abs())
     return torch.stack([place.mean(0), heading.mean(0)], -1).double().numpy()
 
 
 def worth(network: Residual, model: Model, legs: Sequence[Leg], seed: int = 0) -> Worth:
-    """The verdict on these legs; whole blocks are resampled, because neighbouring windows are not independent."""
+    """The verdict on these legs; whole blocks are resampled, because neighbouring windows are not
+    independent."""
     length_s = float(model.ship.scale("time"))
     horizon = min(LENGTHS * length_s, 0.3 * max(len(leg) * leg.h for leg in legs))
     w = windows(legs, input_names(legs), horizon, 0.5 * length_s)
@@ -85,9 +94,13 @@ def ratio(before: np.ndarray, after: np.ndarray, group: np.ndarray, seed: int) -
 
 
 def share(network: Residual, model: Model, s: Situation) -> float:
-    """How much of the force the network gives: rms of f over rms of f and the known forces, in units of the force scale."""
+    """How much of the force the network gives: rms of f over rms of f and the known forces, in units of the
+    force scale."""
     with torch.no_grad():
-        known = [torch.stack([torch.as_tensor(x) + torch.zeros_like(s.u) for x in f], -1) for f in model.forces(s, model.water(s))]
+        known = [
+            torch.stack([torch.as_tensor(x) + torch.zeros_like(s.u) for x in f], -1)
+            for f in model.forces(s, model.water(s))
+        ]
         scale = torch.tensor(network.S)
         f = network.f(network.zeta(s)).abs().sum(-1).mean()
         total = sum((k / scale).abs().sum(-1).mean() for k in known)

@@ -1,9 +1,9 @@
-"""For all rooms: what hypothesis draws is the same in every run, and how long it takes is no verdict; and who works beside whom
-when several processes share the tests (`make tests`).
+"""For all rooms: what hypothesis draws is the same in every run, and how long it takes is no verdict; and who
+works beside whom when several processes share the tests (`make tests`).
 
-A file is the work of one process, so what its tests share is made once; the long work begins first, so that all processes end
-together. The mark `xdist_group` would say the same beside the tests, but pytest 9.2 does not hear it.
-"""
+A file is the work of one process, so what its tests share is made once; the long work begins first, so that
+all processes end together. The mark `xdist_group` would say the same beside the tests, but pytest 9.2 does
+not hear it."""
 
 import pytest
 from hypothesis import settings
@@ -11,9 +11,9 @@ from hypothesis import settings
 settings.register_profile("shiptwin", deadline=None, derandomize=True)
 settings.load_profile("shiptwin")
 
-# They measure time, run the loop at its real-time priority or listen at the default port: one process has them all, one after the other.
-# bench/test_tick.py runs before all of them and alone (Makefile): its loop is thirty times as fast as time, and 30 ms without a processor
-# for the bus are a second without measurements.
+# They measure time, run the loop at its real-time priority or listen at the default port: one process has
+# them all, one after the other. bench/test_tick.py runs before all of them and alone (Makefile): its loop is
+# thirty times as fast as time, and 30 ms without a processor for the bus are a second without measurements.
 BY_THE_CLOCK = (
     "deploy/test_zenoh.py", "live/keelson/test_bus.py", "live/test_clock.py", "live/test_demo.py",
     "live/test_realtime.py", "live/log/test_record.py", "live/log/test_record_faults.py",
@@ -23,7 +23,12 @@ BY_THE_CLOCK = (
 SAME_VOYAGES = (
     "study/diagnosis/", "study/reference/", "study/estimation/", "study/calibration/", "study/track/",
 )  # fmt: skip
-LONG = ("study/test_first_hour.py", "bench/test_paper.py", "bench/test_hidden_effects.py", "deploy/test_install.py")
+LONG = (
+    "study/test_first_hour.py",
+    "bench/test_paper.py",
+    "bench/test_hidden_effects.py",
+    "deploy/test_install.py",
+)
 FIRST = ("by the clock", "same voyages", *LONG)
 
 
@@ -47,7 +52,11 @@ def pytest_xdist_make_scheduler(config, log):
         return None
     from xdist.scheduler import LoadFileScheduling
 
-    gone = [name for name in (*BY_THE_CLOCK, *SAME_VOYAGES, *LONG) if not (config.rootpath / "tests" / name).exists()]
+    gone = [
+        name
+        for name in (*BY_THE_CLOCK, *SAME_VOYAGES, *LONG)
+        if not (config.rootpath / "tests" / name).exists()
+    ]
     if gone:
         raise pytest.UsageError(f"tests/conftest.py names what is not there: {', '.join(gone)}")
 

@@ -17,7 +17,9 @@ def said(capsys):
 
 
 @pytest.mark.parametrize("package, extra", [("scipy", "shiptwin[study]"), ("torch", "shiptwin[train]")])
-def test_a_package_that_is_not_installed_is_named_with_the_extra_that_brings_it(package, extra, monkeypatch, capsys):
+def test_a_package_that_is_not_installed_is_named_with_the_extra_that_brings_it(
+    package, extra, monkeypatch, capsys
+):
     verb = cli.Verb(package, "needs it", "twin needy")
     monkeypatch.setitem(cli.VERBS, "needy", verb)
     monkeypatch.setitem(sys.modules, package, None)
@@ -60,9 +62,16 @@ def test_a_folder_or_nothing_where_a_file_should_be_is_one_line(verb, tmp_path, 
 @pytest.mark.parametrize("wish, threads", [(None, 1), ("2", 2)])
 def test_matrices_are_not_shared_between_threads_unless_the_owner_wishes(wish, threads):
     """A diagnosis beside other work took 47 s of two cores' time with threads and 13 s without."""
-    code = "from twin import cli; cli.main(['effects', 'Wind']); import os; print(os.environ['OPENBLAS_NUM_THREADS'])"
-    env = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"} | ({"OPENBLAS_NUM_THREADS": wish} if wish else {})
-    told = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True).stdout
+    code = (
+        "from twin import cli; cli.main(['effects', 'Wind']); import os; "
+        "print(os.environ['OPENBLAS_NUM_THREADS'])"
+    )
+    env = {k: v for k, v in os.environ.items() if k != "OPENBLAS_NUM_THREADS"} | (
+        {"OPENBLAS_NUM_THREADS": wish} if wish else {}
+    )
+    told = subprocess.run(
+        [sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True
+    ).stdout
     assert told.splitlines()[-1] == str(threads)
 
 

@@ -42,7 +42,9 @@ def test_make_demo_installs_no_torch_and_shows_the_demo():
 
 def test_make_test_runs_ruff_mypy_pytest_and_the_papers_tables_in_small():
     said = words("test")
-    assert all(tool in said for tool in ("ruff check .", ".venv/bin/mypy", "-m pytest", "twin-bench paper --quick"))
+    assert all(
+        tool in said for tool in ("ruff check .", ".venv/bin/mypy", "-m pytest", "twin-bench paper --quick")
+    )
 
 
 def test_ci_says_the_same_words():

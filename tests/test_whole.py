@@ -14,7 +14,8 @@ def test_what_was_there_is_replaced_and_nothing_else_stays(tmp_path):
 
 @pytest.mark.parametrize("where", ["none/x.toml", "folder"])
 def test_where_it_cannot_be_written_nothing_is_left_behind(tmp_path, where):
-    """Test: a folder that is not there, and a folder in the file's own place. Expected: one line, exit code 1."""
+    """Test: a folder that is not there, and a folder in the file's own place. Expected: one line, exit code
+    1."""
     (tmp_path / "folder").mkdir()
     with pytest.raises(TwinError, match=r"cannot be written .* --json") as failure:
         whole.write(tmp_path / where, "new\n", "--json")

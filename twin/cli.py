@@ -12,7 +12,8 @@ from twin.errors import DataError, TwinError
 
 
 class Verb(NamedTuple):
-    """Where a verb lives (a module with `add_arguments(parser)` and `run(args) -> int`), what it does, and how it is typed."""
+    """Where a verb lives (a module with `add_arguments(parser)` and `run(args) -> int`), what it does, and
+    how it is typed."""
 
     module: str
     help: str
@@ -20,30 +21,64 @@ class Verb(NamedTuple):
 
 
 VERBS: dict[str, Verb] = {
-    "run": Verb("twin.live.run", "the service: Zenoh in, Zenoh out, MCAP log", "twin run --config /etc/shiptwin/twin.toml"),
-    "replay": Verb("twin.live.replay", "a recorded voyage through the same loop", "twin replay logs/voyage.mcap -o again.mcap"),
+    "run": Verb(
+        "twin.live.run",
+        "the service: Zenoh in, Zenoh out, MCAP log",
+        "twin run --config /etc/shiptwin/twin.toml",
+    ),
+    "replay": Verb(
+        "twin.live.replay",
+        "a recorded voyage through the same loop",
+        "twin replay logs/voyage.mcap -o again.mcap",
+    ),
     "init": Verb(
         "twin.study.first_model.init",
         "a first model of my ship from what its owner knows",
         "twin init 'MV Alma' --length-pp-m 180 --beam-m 30 --draught-m 10.5 -o alma.toml",
     ),
-    "import": Verb("twin.recording.import_voyage", "measurements in, checked", "twin import log.csv --map log-map.toml -o voyage.mcap"),
-    "calibrate": Verb(
-        "twin.study.calibration.calibrate", "fits the core to reference voyages", "twin calibrate calm.mcap --ship alma.toml -o alma2.toml"
+    "import": Verb(
+        "twin.recording.import_voyage",
+        "measurements in, checked",
+        "twin import log.csv --map log-map.toml -o voyage.mcap",
     ),
-    "compare": Verb("twin.study.prediction.compare", "model against measurement: how wrong, and where", "twin compare v.mcap --ship alma2.toml"),
+    "calibrate": Verb(
+        "twin.study.calibration.calibrate",
+        "fits the core to reference voyages",
+        "twin calibrate calm.mcap --ship alma.toml -o alma2.toml",
+    ),
+    "compare": Verb(
+        "twin.study.prediction.compare",
+        "model against measurement: how wrong, and where",
+        "twin compare v.mcap --ship alma2.toml",
+    ),
     "diagnose": Verb(
-        "twin.study.diagnosis.diagnose", "which physical effect is missing", "twin diagnose v.mcap --ship alma2.toml --reference calm.mcap"
+        "twin.study.diagnosis.diagnose",
+        "which physical effect is missing",
+        "twin diagnose v.mcap --ship alma2.toml --reference calm.mcap",
     ),
     "add": Verb(
         "twin.study.update.add",
         "adds an effect, fits it, proves the fall on held-out voyages",
         "twin add Wind --ship alma2.toml --voyage v.mcap --held-out w.mcap -o alma3.toml",
     ),
-    "remove": Verb("twin.study.update.remove", "takes an effect out again", "twin remove Wind --ship alma3.toml -o alma4.toml"),
-    "history": Verb("twin.study.update.history", "the ladder of what was added and how far the error fell", "twin history alma3.toml"),
-    "effects": Verb("twin.study.effects", "the catalogue: formula, inputs, parameters, units, source", "twin effects Wind"),
-    "train": Verb("export.train", "trains and exports the residual", "twin train v*.mcap --ship alma3.toml -o residual.onnx"),
+    "remove": Verb(
+        "twin.study.update.remove",
+        "takes an effect out again",
+        "twin remove Wind --ship alma3.toml -o alma4.toml",
+    ),
+    "history": Verb(
+        "twin.study.update.history",
+        "the ladder of what was added and how far the error fell",
+        "twin history alma3.toml",
+    ),
+    "effects": Verb(
+        "twin.study.effects", "the catalogue: formula, inputs, parameters, units, source", "twin effects Wind"
+    ),
+    "train": Verb(
+        "export.train",
+        "trains and exports the residual",
+        "twin train v*.mcap --ship alma3.toml -o residual.onnx",
+    ),
     "demo": Verb("twin.study.demo", "the whole story on a bundled voyage, in a minute or two", "twin demo"),
     "health": Verb("twin.live.health", "is the twin on this machine alive and well?", "twin health"),
 }
@@ -55,12 +90,15 @@ ASIDE = ("export", "bench")  # packages of the source folder that an installatio
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run one verb; a problem is one line on standard error and an exit code (see twin/errors.py)."""
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # before numpy loads: on matrices of a hundred rows threads wait for each other
+    # before numpy loads: on matrices of a hundred rows threads wait for each other
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     return guarded(lambda: _verb(sys.argv[1:] if argv is None else list(argv)))
 
 
 def _verb(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="twin", description="A digital twin of a ship's motion that its owner can correct.")
+    parser = argparse.ArgumentParser(
+        prog="twin", description="A digital twin of a ship's motion that its owner can correct."
+    )
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     for name, verb in VERBS.items():
         sub = verbs.add_parser(
@@ -84,9 +122,13 @@ def _module(verb: str) -> Any:
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
         if package in EXTRAS:
-            raise TwinError(f"`twin {verb}` needs the package {package}. Run: pip install 'shiptwin[{EXTRAS[package]}]'") from None
+            raise TwinError(
+                f"`twin {verb}` needs the package {package}. Run: pip install 'shiptwin[{EXTRAS[package]}]'"
+            ) from None
         if package in ASIDE or error.name == VERBS[verb].module:
-            raise TwinError(f"`twin {verb}` is not in this installation ({error.name}). Run it in the source folder.") from None
+            raise TwinError(
+                f"`twin {verb}` is not in this installation ({error.name}). Run it in the source folder."
+            ) from None
         raise
 
 

@@ -8,16 +8,24 @@ from pathlib import Path
 
 from twin.errors import TwinError
 
-OUTPUTS = {"output": "-o", "json": "--json", "report": "--report", "markdown": "--markdown", "page": ""}  # in what was asked: option
+# in what was asked: option
+OUTPUTS = {"output": "-o", "json": "--json", "report": "--report", "markdown": "--markdown", "page": ""}
 
 
 def promised(args: argparse.Namespace) -> None:
-    """Before any work is done: TwinError (exit code 1) when a file that was asked for could not be written where it is to be."""
+    """Before any work is done: TwinError (exit code 1) when a file that was asked for could not be written
+    where it is to be."""
     for name, option in OUTPUTS.items():
         path = Path(getattr(args, name, None) or "-")
         if path == Path("-"):
             continue
-        why = "it is a folder" if path.is_dir() else "there is no such folder" if not path.parent.is_dir() else ""
+        why = (
+            "it is a folder"
+            if path.is_dir()
+            else "there is no such folder"
+            if not path.parent.is_dir()
+            else ""
+        )
         if why or not os.access(path.parent, os.W_OK):
             raise _cannot(path, why or "its folder may not be written to", option or args.page_option)
 
@@ -27,11 +35,13 @@ def _cannot(path: Path, why: str | None, option: str) -> TwinError:
 
 
 def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
-    """Write aside, to the disk, and rename into place; TwinError (exit code 1) when that cannot be done, and nothing is left behind.
-    `option`: what names the file on the command line."""
+    """Write aside, to the disk, and rename into place; TwinError (exit code 1) when that cannot be done, and
+    nothing is left behind. `option`: what names the file on the command line."""
     path, aside = Path(path), ""
     try:
-        with tempfile.NamedTemporaryFile("w", dir=path.parent, prefix=f".{path.name}.", delete=False, encoding="utf-8") as file:
+        with tempfile.NamedTemporaryFile(
+            "w", dir=path.parent, prefix=f".{path.name}.", delete=False, encoding="utf-8"
+        ) as file:
             aside = file.name
             file.write(text)
             file.flush()

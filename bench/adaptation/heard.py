@@ -22,7 +22,8 @@ from twin.physics.model import Model
 
 @dataclass(frozen=True)
 class Heard:
-    """Of some voyages: the filter's model and network, where it stood after each step (K, V, 11), and what the laws are told."""
+    """Of some voyages: the filter's model and network, where it stood after each step (K, V, 11), and what
+    the laws are told."""
 
     model: Model
     acting: Acting
@@ -35,7 +36,8 @@ class Heard:
         return np.array([c.scenario for c in self.courses])
 
     def errors(self, rows: np.ndarray, model: Model | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Heading deg and lateral m (V, W) of free runs with the learned numbers (V W, 3, width), by another model if one is given."""
+        """Heading deg and lateral m (V, W) of free runs with the learned numbers (V W, 3, width), by another
+        model if one is given."""
         model = model or self.model
         starts = [self.states[c.starts, i] for i, c in enumerate(self.courses)]
         e = judge(from_states(self.courses, model, self.acting.holding(rows, model), starts), self.courses)
@@ -58,7 +60,9 @@ class Hearing:
         taught = shop.taught(model, shop.settings.seed, name)
         return cls(shop, model, taught, shop.tuned(model, taught.network))
 
-    def of_voyages(self, cases: Sequence[Any], starts_s: tuple[float, ...], model: Model | None = None) -> Heard:
+    def of_voyages(
+        self, cases: Sequence[Any], starts_s: tuple[float, ...], model: Model | None = None
+    ) -> Heard:
         """Sail, filter by the model (or by another), and write down what a law would be told."""
         model = model or self.model
         acting = Acting(self.taught.network, model, zeta_of(self.taught.network, self.taught.samples))

@@ -1,10 +1,14 @@
-"""Laws of adaptation that are compared with the one on board; all share its saturation, gate, boxes and ball (twin/live/learning/adapt.py).
+"""Laws of adaptation that are compared with the one on board; all share its saturation, gate, boxes and ball
+(twin/live/learning/adapt.py).
 
-    gradient    a' = G q e/(1 + q'q) - sigma a                        sigma-modification [Ioannou & Kokotovic 1984]
-    e-mod       a' = G q e/(1 + q'q) - mu |e| a                       e-modification [Narendra & Annaswamy 1987]
+    gradient    a' = G q e/(1 + q'q) - sigma a                        sigma-modification [Ioannou & Kokotovic
+    1984]
+    e-mod       a' = G q e/(1 + q'q) - mu |e| a                       e-modification [Narendra & Annaswamy
+    1987]
     dead zone   the same gradient, not below one usual error
     RLS         P' = P/M - P q q' P/R,  a' = P q e/R                  forgetting over M, P bounded from above
-    Kalman      P' = Q - P q q' P/R - 2 P/T,  a' = P q e/R - a/T      a random walk, leaking to the trained weights
+    Kalman      P' = Q - P q q' P/R - 2 P/T,  a' = P q e/R - a/T      a random walk, leaking to the trained
+    weights
 """
 
 from math import sqrt
@@ -18,12 +22,14 @@ from twin.physics.state import Force
 
 GAIN, SIGMA, MU = 1.0, 1.0 / 60.0, 0.5  # per L/U_0
 MEMORY = 20.0  # of RLS, in L/U_0
-Stream = list[tuple[Three, list[float], float, str]]  # what a law is told at each step: wanted, regressors, dt, frozen
+# what a law is told at each step: wanted, regressors, dt, frozen
+Stream = list[tuple[Three, list[float], float, str]]
 LEAK, WALK = 60.0, 0.016  # in L/U_0; of what is usual, squared, per L/U_0
 
 
 class Told(Adaptation):
-    """The law on board, were it told `at_s` after it began that the ship has changed: it forgets everything then."""
+    """The law on board, were it told `at_s` after it began that the ship has changed: it forgets everything
+    then."""
 
     def __init__(self, ship: Ship, scale: Force, components: int, at_s: float):
         super().__init__(ship, scale, components)
@@ -67,11 +73,17 @@ class DeadZone(Gradient):
 
 
 class Covariant(Adaptation):
-    """What RLS and the Kalman filter share: a covariance P of each row, which begins as the prior of the law on board."""
+    """What RLS and the Kalman filter share: a covariance P of each row, which begins as the prior of the law
+    on board."""
 
     def __init__(self, *args: Any) -> None:
         super().__init__(*args)
-        self._P = {id(row): [[u * u if i == j else 0.0 for j in range(self.width)] for i, u in enumerate(self._usual)] for row in self._rows}
+        self._P = {
+            id(row): [
+                [u * u if i == j else 0.0 for j in range(self.width)] for i, u in enumerate(self._usual)
+            ]
+            for row in self._rows
+        }
 
     def _fit(self, row: Row, q: list[float], error: float, h: float) -> None:
         P = self._P[id(row)]
@@ -79,7 +91,9 @@ class Covariant(Adaptation):
         gain = 1.0 / (NOISE_S * row.spread / h + dot(q, Pq))
         leak = self._leak(h)
         row.a = [leak * x + gain * error * y for x, y in zip(row.a, Pq, strict=True)]
-        left = [[p - gain * x * y for p, y in zip(line, Pq, strict=True)] for line, x in zip(P, Pq, strict=True)]
+        left = [
+            [p - gain * x * y for p, y in zip(line, Pq, strict=True)] for line, x in zip(P, Pq, strict=True)
+        ]
         self._P[id(row)] = self._later(left, h)
 
     def _leak(self, h: float) -> float:
@@ -107,7 +121,9 @@ class Kalman(Covariant):
 
     def _later(self, P: list[list[float]], h: float) -> list[list[float]]:
         keep, walk = 1.0 - 2.0 * h / LEAK, [h * WALK * u * u for u in self._usual]
-        return [[keep * p + (walk[i] if i == j else 0.0) for j, p in enumerate(line)] for i, line in enumerate(P)]
+        return [
+            [keep * p + (walk[i] if i == j else 0.0) for j, p in enumerate(line)] for i, line in enumerate(P)
+        ]
 
 
 class Writes(Adaptation):

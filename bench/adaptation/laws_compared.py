@@ -1,10 +1,11 @@
-"""`twin-bench adaptation`: laws of adaptation side by side on ships that changed, and under measurements that lie.
+"""`twin-bench adaptation`: laws of adaptation side by side on ships that changed, and under measurements that
+lie.
 
-The change has just happened when a voyage begins, and nothing is learned yet; or it comes in the middle, when the law on board has
-heard the ship as she was for five minutes (adaptation_named.py: there it is a named effect that grows). All laws see the same stream
-of unexplained force and regressors (from the hybrid's own filter, which does not use what they learn), and are judged by the free runs
-of 120 s that follow. Boxes, ball and gate are those of twin/live/learning/adapt.py for all of them.
-"""
+The change has just happened when a voyage begins, and nothing is learned yet; or it comes in the middle, when
+the law on board has heard the ship as she was for five minutes (adaptation_named.py: there it is a named
+effect that grows). All laws see the same stream of unexplained force and regressors (from the hybrid's own
+filter, which does not use what they learn), and are judged by the free runs of 120 s that follow. Boxes, ball
+and gate are those of twin/live/learning/adapt.py for all of them."""
 
 import argparse
 from collections.abc import Callable, Sequence
@@ -25,12 +26,14 @@ from twin.live.learning.adapt import BESIDE, Adaptation
 
 EPILOG = """example: twin-bench adaptation --work .paper --markdown docs/results/adaptation.md
 
-Trains the hybrid first where DIR holds none from `twin-bench paper` (--full: that of its full plan). Beside FILE.md go two
-figures, FILE.png and FILE-named.png; what the page held from its line "## What it says" on stays. Exit code 0: the tables are made.
+Trains the hybrid first where DIR holds none from `twin-bench paper` (--full: that of its full plan). Beside
+FILE.md go two figures, FILE.png and FILE-named.png; what the page held from its line "## What it says" on
+stays. Exit code 0: the tables are made.
 """
 STARTS_S = (60.0, 120.0, 180.0, 240.0, 300.0, 360.0, 420.0, 480.0, 540.0)
 CHANGE_S = 300.0  # of a change in the middle of a voyage
-ROUND_S = (180.0, 300.0, 360.0, 420.0, 480.0, 540.0, 600.0, 660.0, 720.0)  # windows around it: the first ends where it begins
+# windows around it: the first ends where it begins
+ROUND_S = (180.0, 300.0, 360.0, 420.0, 480.0, 540.0, 600.0, 660.0, 720.0)
 EARLY, LATE = slice(0, 3), slice(4, 9)  # windows while it learns, and after
 ON_BOARD = "ridge on fading evidence"
 
@@ -38,8 +41,20 @@ ON_BOARD = "ridge on fading evidence"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EPILOG
     parser.add_argument("--full", action="store_true", help="the network of `twin-bench paper --full`")
-    parser.add_argument("--seeds", metavar="N", type=positive, default=2, help="seeds for each scenario and zigzag (%(default)s)")
-    parser.add_argument("--work", metavar="DIR", type=Path, default=Path(".paper"), help="voyages and checkpoints (%(default)s)")
+    parser.add_argument(
+        "--seeds",
+        metavar="N",
+        type=positive,
+        default=2,
+        help="seeds for each scenario and zigzag (%(default)s)",
+    )
+    parser.add_argument(
+        "--work",
+        metavar="DIR",
+        type=Path,
+        default=Path(".paper"),
+        help="voyages and checkpoints (%(default)s)",
+    )
     answer.add_arguments(parser)
 
 
@@ -55,7 +70,10 @@ def run(args: argparse.Namespace) -> int:
         first, second = args.page.with_suffix(".png"), args.page.with_name(f"{args.page.stem}-named.png")
         figure(result, first)
         named.figure(result["named"], second)
-        more = f"\n![Error over time since a change]({first.name})\n\n![A named effect that grows]({second.name})\n{answer.kept(args.page)}"
+        more = (
+            f"\n![Error over time since a change]({first.name})\n\n![A named effect that "
+            f"grows]({second.name})\n{answer.kept(args.page)}"
+        )
     answer.give(args, result, "\n".join(page(result)), more)
     return 0
 
@@ -73,19 +91,30 @@ def compare(shop: Any, seeds: int) -> dict[str, Any]:
     for name, law in laws().items():
         shop.tell(f"law: {name}")
         out["changed"][name] = {ship: judged(law, some) for ship, some in heard.items()}
-        out["lies"][name] = {said: judged(law, replace(clean, streams=lie(clean.streams))) for said, lie in LIES.items()}
+        out["lies"][name] = {
+            said: judged(law, replace(clean, streams=lie(clean.streams))) for said, lie in LIES.items()
+        }
     named = adaptation_named.compare(shop, 2 * seeds)
     return out | {
-        "voyages": len(clean.courses), "midway": midway(hearing, seeds), "change_s": CHANGE_S, "starts_s": ROUND_S, "named": named,
-    }  # fmt: skip
+        "voyages": len(clean.courses),
+        "midway": midway(hearing, seeds),
+        "change_s": CHANGE_S,
+        "starts_s": ROUND_S,
+        "named": named,
+    }
 
 
 def laws() -> dict[str, Any]:
     """None first, the one on board last."""
     return {
-        "none": None, "gradient, sigma": peers.Gradient, "gradient, e-modification": peers.EModified, "gradient, dead zone": peers.DeadZone,
-        "RLS, forgetting": peers.Recursive, "Kalman, walk and leak": peers.Kalman, ON_BOARD: Adaptation,
-    }  # fmt: skip
+        "none": None,
+        "gradient, sigma": peers.Gradient,
+        "gradient, e-modification": peers.EModified,
+        "gradient, dead zone": peers.DeadZone,
+        "RLS, forgetting": peers.Recursive,
+        "Kalman, walk and leak": peers.Kalman,
+        ON_BOARD: Adaptation,
+    }
 
 
 def midway_laws() -> dict[str, Any]:
@@ -103,16 +132,29 @@ def hulls() -> dict[str, Any]:
     hull = HULLS["kvlcc2"]
     heavy, held = (changed(FULL)[name][0].hull for name in ("Mass error M (+5%)", "Damping error D (+10%)"))
     return {
-        "as she is": hull, "mass +5 %": heavy, "damping +10 %": held, "fouling: resistance +30 %": replace(hull, R0=1.3 * hull.R0),
-        "windage +50 %": replace(hull, A_L=1.5 * hull.A_L, A_F=1.5 * hull.A_F), "rudder area -20 %": replace(hull, A_R=0.8 * hull.A_R),
-    }  # fmt: skip
+        "as she is": hull,
+        "mass +5 %": heavy,
+        "damping +10 %": held,
+        "fouling: resistance +30 %": replace(hull, R0=1.3 * hull.R0),
+        "windage +50 %": replace(hull, A_L=1.5 * hull.A_L, A_F=1.5 * hull.A_F),
+        "rudder area -20 %": replace(hull, A_R=0.8 * hull.A_R),
+    }
 
 
 def changes() -> dict[str, Any]:
     """What happens to her at CHANGE_S."""
     altered = hulls()
-    became = {name: Change(CHANGE_S, altered[name]) for name in altered if name not in ("as she is", "windage +50 %")}
-    return {"as she is": None, **became, "wind x 1.5": Change(CHANGE_S, wind=1.5), "wind x 2": Change(CHANGE_S, wind=2.0)}
+    became = {
+        name: Change(CHANGE_S, altered[name])
+        for name in altered
+        if name not in ("as she is", "windage +50 %")
+    }
+    return {
+        "as she is": None,
+        **became,
+        "wind x 1.5": Change(CHANGE_S, wind=1.5),
+        "wind x 2": Change(CHANGE_S, wind=2.0),
+    }
 
 
 def midway(hearing: Any, seeds: int) -> dict[str, Any]:
@@ -121,7 +163,9 @@ def midway(hearing: Any, seeds: int) -> dict[str, Any]:
     for name, change in changes().items():
         hearing.shop.tell(f"midway: {name}")
         heard = hearing.of_voyages(zigzags(seeds, 90_000, change=change), ROUND_S)
-        out[name] = {how: _summary(*errors(law, heard)[:2], heard.scenario) for how, law in midway_laws().items()}
+        out[name] = {
+            how: _summary(*errors(law, heard)[:2], heard.scenario) for how, law in midway_laws().items()
+        }
     return out
 
 
@@ -129,14 +173,18 @@ def judged(law: Any, heard: Any) -> dict[str, Any]:
     """Heading deg and lateral m, early and late; and the greatest |A|."""
     heading, lateral, largest = errors(law, heard)
     return {
-        "heading_deg": float(heading[:, LATE].mean()), "lateral_m": float(lateral[:, LATE].mean()),
-        "heading_early_deg": float(heading[:, EARLY].mean()), "lateral_early_m": float(lateral[:, EARLY].mean()),
-        "by_start_deg": heading.mean(0).tolist(), "largest_A": largest,
-    }  # fmt: skip
+        "heading_deg": float(heading[:, LATE].mean()),
+        "lateral_m": float(lateral[:, LATE].mean()),
+        "heading_early_deg": float(heading[:, EARLY].mean()),
+        "lateral_early_m": float(lateral[:, EARLY].mean()),
+        "by_start_deg": heading.mean(0).tolist(),
+        "largest_A": largest,
+    }
 
 
 def errors(law: Any, heard: Any) -> tuple[np.ndarray, np.ndarray, float]:
-    """Free runs with what the law had learned by their starts: heading deg and lateral m (V, W); and the greatest |A|."""
+    """Free runs with what the law had learned by their starts: heading deg and lateral m (V, W); and the
+    greatest |A|."""
     learned = [_acting(law, heard, stream) for stream in heard.streams]
     held = np.concatenate([x[c.starts] for x, c in zip(learned, heard.courses, strict=True)])
     return *heard.errors(held), float(np.sqrt((np.array(learned) ** 2).sum((2, 3))).max())
@@ -175,17 +223,25 @@ def _noisy(streams: Sequence[Stream]) -> list[Stream]:
 def _outliers(streams: Sequence[Stream]) -> list[Stream]:
     """Three in a hundred are ten units of the force scale off."""
     rng = np.random.default_rng(2)
-    return [_changed(s, lambda k, w: w + 10.0 * rng.standard_normal(3) * (rng.random(3) < 0.03)) for s in streams]
+    return [
+        _changed(s, lambda k, w: w + 10.0 * rng.standard_normal(3) * (rng.random(3) < 0.03)) for s in streams
+    ]
 
 
 def _dropouts(streams: Sequence[Stream]) -> list[Stream]:
     """Nothing to learn from in two of every three minutes."""
-    return [[(w, q, dt, "out" if k * dt % 180.0 < 120.0 else frozen) for k, (w, q, dt, frozen) in enumerate(s)] for s in streams]
+    return [
+        [(w, q, dt, "out" if k * dt % 180.0 < 120.0 else frozen) for k, (w, q, dt, frozen) in enumerate(s)]
+        for s in streams
+    ]
 
 
 def _adversary(streams: Sequence[Stream]) -> list[Stream]:
     """Square waves of one unit in each row, slow enough to be believed."""
-    return [_changed(s, lambda k, w: w + np.sign(np.sin(2 * np.pi * k / np.array([40.0, 55.0, 70.0])))) for s in streams]
+    return [
+        _changed(s, lambda k, w: w + np.sign(np.sin(2 * np.pi * k / np.array([40.0, 55.0, 70.0]))))
+        for s in streams
+    ]
 
 
 def _stuck(streams: Sequence[Stream]) -> list[Stream]:
@@ -194,9 +250,15 @@ def _stuck(streams: Sequence[Stream]) -> list[Stream]:
 
 
 def _changed(stream: Stream, change: Callable[[int, np.ndarray], np.ndarray]) -> Stream:
-    return [(tuple(change(k, np.array(w)).tolist()), q, dt, frozen) for k, (w, q, dt, frozen) in enumerate(stream)]
+    return [
+        (tuple(change(k, np.array(w)).tolist()), q, dt, frozen) for k, (w, q, dt, frozen) in enumerate(stream)
+    ]
 
 
 LIES: dict[str, Callable[[Sequence[Stream]], list[Stream]]] = {
-    "noise 0.15": _noisy, "3 % outliers of 10": _outliers, "drop-outs": _dropouts, "square waves of 1": _adversary, "stuck": _stuck,
-}  # fmt: skip
+    "noise 0.15": _noisy,
+    "3 % outliers of 10": _outliers,
+    "drop-outs": _dropouts,
+    "square waves of 1": _adversary,
+    "stuck": _stuck,
+}

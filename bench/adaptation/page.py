@@ -12,34 +12,60 @@ def page(r: dict[str, Any]) -> list[str]:
     """Markdown."""
     ships, lies = (list(next(iter(r[part].values()))) for part in ("changed", "lies"))
     lines = [
-        "# Laws of adaptation", "",
-        f"`twin-bench adaptation{' --full' if r['full'] else ''} --seeds {r['seeds']}`: {r['voyages']} zigzags of 900 s for each ship "
-        "(TS-01 to TS-03, 10/10 and 20/20), free runs of 120 s; every law in the boxes, the ball and behind the gate of "
+        "# Laws of adaptation",
+        "",
+        f"`twin-bench adaptation{' --full' if r['full'] else ''} --seeds {r['seeds']}`: {r['voyages']} "
+        "zigzags of 900 s for each ship "
+        "(TS-01 to TS-03, 10/10 and 20/20), free runs of 120 s; every law in the boxes, the ball and behind "
+        "the gate of "
         "twin/live/learning/adapt.py. The last row is on board.",
-        "", "## Ships that changed when the voyage began", "",
-        "Heading deg / lateral m of windows begun 300 to 540 s after the change.", "",
+        "",
+        "## Ships that changed when the voyage began",
+        "",
+        "Heading deg / lateral m of windows begun 300 to 540 s after the change.",
+        "",
         *_table(r["changed"], ships, lambda x: f"{x['heading_deg']:.3f} / {x['lateral_m']:.2f}"),
-        "", "While it learns: windows begun 60 to 180 s after the change.", "",
+        "",
+        "While it learns: windows begun 60 to 180 s after the change.",
+        "",
         *_table(r["changed"], ships, lambda x: f"{x['heading_early_deg']:.3f} / {x['lateral_early_m']:.2f}"),
-        "", "## Measurements that lie, on the ship as she is", "",
-        "Heading deg / lateral m (300 to 540 s), and the greatest |A| that ever acted (at most 1).", "",
-        *_table(r["lies"], lies, lambda x: f"{x['heading_deg']:.3f} / {x['lateral_m']:.2f} ({x['largest_A']:.2f})"),
-        "", "## A change in the middle of a voyage", "",
-        f"Zigzags of 900 s in other seas, the change at {r['change_s']:.0f} s; heading deg / lateral m of free runs by the second they "
-        "begin at: learning off; on (the law on board); told (the same law, which forgets all it knew at the change: on board nobody says so). "
-        "The run begun at the change knows nothing of it yet.", "",
+        "",
+        "## Measurements that lie, on the ship as she is",
+        "",
+        "Heading deg / lateral m (300 to 540 s), and the greatest |A| that ever acted (at most 1).",
+        "",
+        *_table(
+            r["lies"], lies, lambda x: f"{x['heading_deg']:.3f} / {x['lateral_m']:.2f} ({x['largest_A']:.2f})"
+        ),
+        "",
+        "## A change in the middle of a voyage",
+        "",
+        f"Zigzags of 900 s in other seas, the change at {r['change_s']:.0f} s; heading deg / lateral m of "
+        "free runs by the second they "
+        "begin at: learning off; on (the law on board); told (the same law, which forgets all it knew at the "
+        "change: on board nobody says so). "
+        "The run begun at the change knows nothing of it yet.",
+        "",
         *adaptation_named_page.by_window("change", r["midway"], r["starts_s"]),
-        "", "Heading deg by scenario, mean of the windows begun at the change and later, learning off / on / told.", "",
+        "",
+        "Heading deg by scenario, mean of the windows begun at the change and later, learning off / on / "
+        "told.",
+        "",
         *_by_scenario(r["midway"]),
-        "", *adaptation_named_page.page(r["named"]),
-    ]  # fmt: skip
+        "",
+        *adaptation_named_page.page(r["named"]),
+    ]
     return lines
 
 
 def _by_scenario(midway: dict[str, Any]) -> list[str]:
     scenarios = list(next(iter(midway.values()))["off"]["by_scenario_deg"])
     rows = [
-        f"| {name} |" + "".join(f" {' / '.join(format(e['by_scenario_deg'][ts], '.3f') for e in hows.values())} |" for ts in scenarios)
+        f"| {name} |"
+        + "".join(
+            f" {' / '.join(format(e['by_scenario_deg'][ts], '.3f') for e in hows.values())} |"
+            for ts in scenarios
+        )
         for name, hows in midway.items()
     ]
     return [f"| change | {' | '.join(scenarios)} |", "|---" * (1 + len(scenarios)) + "|", *rows]
@@ -75,4 +101,6 @@ def figure(r: dict[str, Any], path: Path) -> None:
 
 def _table(rows: dict[str, Any], columns: list[str], cell: Any) -> list[str]:
     lines = [f"| law | {' | '.join(columns)} |", "|---" * (1 + len(columns)) + "|"]
-    return lines + [f"| {law} | {' | '.join(cell(found[c]) for c in columns)} |" for law, found in rows.items()]
+    return lines + [
+        f"| {law} | {' | '.join(cell(found[c]) for c in columns)} |" for law, found in rows.items()
+    ]

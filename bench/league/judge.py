@@ -1,4 +1,5 @@
-"""One question of the league: the diagnosis, and what `add` makes of it beside an oracle that was told the truth."""
+"""One question of the league: the diagnosis, and what `add` makes of it beside an oracle that was told the
+truth."""
 
 import time
 from collections.abc import Sequence
@@ -42,9 +43,14 @@ def judge(question: Question, folder: Path) -> dict[str, Any]:
     row |= {"seconds": time.perf_counter() - wall, "cpu_seconds": time.process_time() - cpu} | told(answer)
     by_name = {c["effect"]: c for c in answer["candidates"]}
     row["parameters"] = [
-        p for n in question.missing if n in answer["missing"] for p in beside(n, by_name[n]["parameters"], truth[n])
+        p
+        for n in question.missing
+        if n in answer["missing"]
+        for p in beside(n, by_name[n]["parameters"], truth[n])
     ]
-    if question.kind == "effect" and (found := peer(track(voyage, ship), Model.of(ship), question.missing[0])):
+    if question.kind == "effect" and (
+        found := peer(track(voyage, ship), Model.of(ship), question.missing[0])
+    ):
         row["peer"] = found
     if question.proves:
         row |= errors(question, ship, answer["missing"], voyage, folder)
@@ -66,13 +72,21 @@ def told(answer: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def errors(question: Question, ship: Ship, named: Sequence[str], voyage: Any, folder: Path) -> dict[str, float]:
-    """Mean 120 s position error [m] on the other manoeuvre: as the ship was, after `add` of what was named, and of the truth."""
-    used, other = (swung(track(v, ship), Model.of(ship)) for v in (voyage, kept(question.held_out(), folder)[0]))  # as `twin add` reads them
+def errors(
+    question: Question, ship: Ship, named: Sequence[str], voyage: Any, folder: Path
+) -> dict[str, float]:
+    """Mean 120 s position error [m] on the other manoeuvre: as the ship was, after `add` of what was named,
+    and of the truth."""
+    # as `twin add` reads them
+    used, other = (
+        swung(track(v, ship), Model.of(ship)) for v in (voyage, kept(question.held_out(), folder)[0])
+    )
     out = {"before": error_of(Model.of(ship), other)}
     out["oracle"] = error_of(added(ship, question.missing, used), other)
     same = set(named) == set(question.missing)
-    out["after"] = out["oracle"] if same else error_of(added(ship, named, used), other) if named else out["before"]
+    out["after"] = (
+        out["oracle"] if same else error_of(added(ship, named, used), other) if named else out["before"]
+    )
     return out
 
 

@@ -1,4 +1,5 @@
-"""The league's page, docs/results/hidden-effects.md: what was run, what was found against what was wanted, and every table."""
+"""The league's page, docs/results/hidden-effects.md: what was run, what was found against what was wanted,
+and every table."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -25,16 +26,18 @@ HEAD = """# The hidden-effect league
 
 `{command}`: {done}; hulls {hulls}; strengths {strengths}; seeds {seeds}.
 
-Voyages come from the reference sea (`bench/reference`: 6-DOF, MMG, no formula shared with the twin); each ship
-is a bundled file calibrated on six calm reference voyages. A case is one voyage of 30 minutes (the 2 m boat: 20
-minutes, 900 of her lengths), diagnosed alone, with the reference voyages known only through the ship file.
+Voyages come from the reference sea (`bench/reference`: 6-DOF, MMG, no formula shared with the twin); each
+ship is a bundled file calibrated on six calm reference voyages. A case is one voyage of 30 minutes (the 2 m
+boat: 20 minutes, 900 of her lengths), diagnosed alone, with the reference voyages known only through the ship
+file.
 
-* **Named**: the hidden effect is the first of `missing`. **In its group**: it is among `missing`, or among the
-  effects that the diagnosis says it could not tell from the first; or, when nothing is named, in the group of at most
-  four of which it says that one is surely there. **Wrong**: another effect comes first.
-* **Before**, **after**, **oracle**: mean 120 s open-loop position error on *another* voyage (same hidden effect,
-  another manoeuvre): of the calibrated ship; after `add` of what was named, fitted on the diagnosed voyage
-  (nothing is added when nothing was named); and after the same fit of the *true* effect in the catalogue's form.
+* **Named**: the hidden effect is the first of `missing`. **In its group**: it is among `missing`, or among
+  the effects that the diagnosis says it could not tell from the first; or, when nothing is named, in the
+  group of at most four of which it says that one is surely there. **Wrong**: another effect comes first.
+* **Before**, **after**, **oracle**: mean 120 s open-loop position error on *another* voyage (same hidden
+  effect, another manoeuvre): of the calibrated ship; after `add` of what was named, fitted on the diagnosed
+  voyage (nothing is added when nothing was named); and after the same fit of the *true* effect in the
+  catalogue's form.
   Ratios are geometric means over cases, so that a tanker does not outweigh a boat."""
 
 
@@ -42,7 +45,13 @@ def page(rows: Sequence[Row], result: dict[str, Any], calibrations: dict[str, An
     """The whole page."""
     parts = [head(result["run"]), goals(rows, result)]
     parts += [tables.by(what, rows) for what in ("hull", "strength", "manoeuvre", "seed")]
-    parts += [tables.effects(rows), tables.gain(rows), tables.parameters(rows), tables.nothing(rows), tables.outside(rows)]
+    parts += [
+        tables.effects(rows),
+        tables.gain(rows),
+        tables.parameters(rows),
+        tables.nothing(rows),
+        tables.outside(rows),
+    ]
     parts += [tables.pairs(rows), tables.straight(rows), cost(rows), peer(rows), ships(calibrations)]
     parts += [failed(rows)]
     return "\n\n".join(p for p in parts if p) + "\n"
@@ -60,16 +69,22 @@ def head(run: dict[str, Any]) -> str:
 
 
 def goals(rows: Sequence[Row], result: dict[str, Any]) -> str:
-    """What was found beside what was wanted; shares of few cases say little, so their number stands beside them."""
+    """What was found beside what was wanted; shares of few cases say little, so their number stands beside
+    them."""
     single, lines = score.of_kind(rows, "effect"), []
     intervals = sum(len(r.get("parameters", [])) for r in rows)
     for key, (words, goal) in GOALS.items():
-        value, cases = result[key], intervals if key == "coverage95" else result[COUNTED[key]] if key in COUNTED else len(single)
+        value, cases = (
+            result[key],
+            intervals if key == "coverage95" else result[COUNTED[key]] if key in COUNTED else len(single),
+        )
         shown = tables.number(value) if key.endswith("oracle") else share(value)
         lines += [[words, f"**{shown}**", goal, cases]] if cases else []
     if single:
         lines.append(["a wrong effect first", share(score.share(single, tables.wrong)), "", len(single)])
-        lines.append(["no effect named", share(score.share(single, lambda r: not r["missing"])), "", len(single)])
+        lines.append(
+            ["no effect named", share(score.share(single, lambda r: not r["missing"])), "", len(single)]
+        )
     return table("## In total", ["measure", "found", "goal", "cases"], lines)
 
 
@@ -83,7 +98,10 @@ def cost(rows: Sequence[Row]) -> str:
             seconds = (score.middle(wall), max(wall), score.middle(cpu), hour)
             lines.append([hull, *(f"{s:.1f}" for s in seconds)])
     columns = ["hull", "median s a case", "greatest", "median CPU s a case", "CPU s for an hour of voyage"]
-    words = "All candidates, one thread, 10 Hz; the machine was shared, so the processor's own time stands beside the clock's."
+    words = (
+        "All candidates, one thread, 10 Hz; the machine was shared, so the processor's own time stands "
+        "beside the clock's."
+    )
     return table(f"## Time\n\n{words}", columns, lines) if lines else ""
 
 
@@ -95,9 +113,10 @@ def peer(rows: Sequence[Row]) -> str:
     seconds = score.middle([r["peer"]["seconds"] for r in mine])
     return f"""## pysindy
 
-Sparse regression (STLSQ) of the residual accelerations of the same {len(mine)} voyages on 13 terms that an engineer
-would offer it; only causes that have a term of their own. Its largest term belongs to the cause in {share(right)};
-the twin names the cause first in {share(own)}. Median {seconds:.2f} s a voyage. It has no answer for "nothing is
+Sparse regression (STLSQ) of the residual accelerations of the same {len(mine)} voyages on 13 terms that an
+engineer would offer it; only causes that have a term of their own. Its largest term belongs to the cause in
+{share(right)}; the twin names the cause first in {share(own)}. Median {seconds:.2f} s a voyage. It has no
+answer for "nothing is
 missing", gives no newtons, and sees no fault of an instrument."""
 
 
@@ -106,7 +125,9 @@ def ships(calibrations: dict[str, Any]) -> str:
     for hull, c in calibrations.items():
         last = c["held_out"][-1]
         shares = ", ".join(f"{100 * s:.2g} %" for s in c["floor"]["share"])
-        lines.append([hull, f"{last['before_m']:.3g} m", f"{last['position_m']:.3g} m", shares, f"{c['temper']:.1f}"])
+        lines.append(
+            [hull, f"{last['before_m']:.3g} m", f"{last['position_m']:.3g} m", shares, f"{c['temper']:.1f}"]
+        )
     columns = ["hull", "bundled file", "calibrated", "unexplained of surge, sway, yaw", "temper"]
     words = "Calibrated on six voyages; 120 s position error on a seventh."
     return table(f"## The ships\n\n{words}", columns, lines) if lines else ""

@@ -1,8 +1,8 @@
-"""A peer for scale: pysindy's sparse regression of the same residual accelerations on terms that an engineer would offer it.
+"""A peer for scale: pysindy's sparse regression of the same residual accelerations on terms that an engineer
+would offer it.
 
-It is asked less than the twin is: whether its largest term belongs to the cause. It gives no probability, no newtons, cannot
-say that nothing is missing, and sees no fault of an instrument.
-"""
+It is asked less than the twin is: whether its largest term belongs to the cause. It gives no probability, no
+newtons, cannot say that nothing is missing, and sees no fault of an instrument."""
 
 import time
 import warnings
@@ -47,7 +47,8 @@ POINTS_AT: dict[str, set[str]] = {
 
 
 def peer(t: Track, model: Model, effect: str) -> dict[str, Any] | None:
-    """Seconds, the largest term, and whether it points at the cause; None without pysindy, or where no term could."""
+    """Seconds, the largest term, and whether it points at the cause; None without pysindy, or where no term
+    could."""
     try:
         import pysindy
     except ImportError:
@@ -58,7 +59,9 @@ def peer(t: Track, model: Model, effect: str) -> dict[str, Any] | None:
     begin = time.perf_counter()
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        found = pysindy.SINDy(optimizer=pysindy.STLSQ(threshold=THRESHOLD), feature_library=pysindy.PolynomialLibrary(degree=1))
+        found = pysindy.SINDy(
+            optimizer=pysindy.STLSQ(threshold=THRESHOLD), feature_library=pysindy.PolynomialLibrary(degree=1)
+        )
         found.fit(terms[:, :3], t=t.h, x_dot=residual, u=terms[:, 3:], feature_names=list(TERMS))
     term = _largest(found)
     seconds = time.perf_counter() - begin

@@ -1,4 +1,5 @@
-"""What the league asks: one question a voyage, in rounds of one seed each, so that a part of a run is a fair sample."""
+"""What the league asks: one question a voyage, in rounds of one seed each, so that a part of a run is a fair
+sample."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,13 +19,21 @@ HALF_HOUR = 1800.0
 STRAIGHT = ("Wind", "HullFouling", "RudderOffset", "SpeedLogBias", "Current", "TowForce")
 WEATHERS = {"Wind": "wind", "WaveDrift": "waves"}
 QUICK = (
-    "Wind", "Current", "HullFouling", "PropellerWear", "RudderWear", "SteeringLag", "SpeedLogBias", "SensorDelay",
-)  # fmt: skip
+    "Wind",
+    "Current",
+    "HullFouling",
+    "PropellerWear",
+    "RudderWear",
+    "SteeringLag",
+    "SpeedLogBias",
+    "SensorDelay",
+)
 
 
 @dataclass(frozen=True)
 class Question:
-    """One voyage to judge. `known`: effects that the ship's model already has, fitted on windy or wavy voyages."""
+    """One voyage to judge. `known`: effects that the ship's model already has, fitted on windy or wavy
+    voyages."""
 
     hull: str
     kind: str  # effect, none, decoy, pair, outside, straight
@@ -40,7 +49,9 @@ class Question:
         """A name that no other question has."""
         what = [f"{n}:{s:g}" for n, s in self.hidden] + list(self.decoys) or ["nothing"]
         known = [f"knows-{n}" for n in self.known]
-        return "_".join([self.hull, self.kind, *what, *known, self.manoeuvre, f"{self.duration_s:g}s", str(self.seed)])
+        return "_".join(
+            [self.hull, self.kind, *what, *known, self.manoeuvre, f"{self.duration_s:g}s", str(self.seed)]
+        )
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -71,10 +82,17 @@ def lasts(hull: str, duration_s: float | None) -> float:
 
 
 def questions(
-    hulls: Sequence[str], seeds: int, strengths: Sequence[float], effects: Sequence[str] = (), quick: bool = False,
-    duration_s: float | None = None, every: int = 1, first_seed: int = 1,
-) -> list[list[Question]]:  # fmt: skip
-    """A round of questions for each of `seeds` seeds; of all of them one in `every`, in turn over questions, hulls and seeds."""
+    hulls: Sequence[str],
+    seeds: int,
+    strengths: Sequence[float],
+    effects: Sequence[str] = (),
+    quick: bool = False,
+    duration_s: float | None = None,
+    every: int = 1,
+    first_seed: int = 1,
+) -> list[list[Question]]:
+    """A round of questions for each of `seeds` seeds; of all of them one in `every`, in turn over questions,
+    hulls and seeds."""
     return [
         [
             Question(h, *rest, duration_s=lasts(h, duration_s))
@@ -87,14 +105,17 @@ def questions(
 
 
 def _round(seed: int, strengths: Sequence[float], effects: Sequence[str], quick: bool) -> list[tuple]:
-    """(kind, hidden, manoeuvre, seed, decoys, known) of one seed; the manoeuvres go round from effect to effect."""
+    """(kind, hidden, manoeuvre, seed, decoys, known) of one seed; the manoeuvres go round from effect to
+    effect."""
     chosen = list(effects) or list(QUICK if quick else CATALOGUE)
 
     def sails(i: int) -> str:
         return MANOEUVRES[(i + seed) % len(MANOEUVRES)]
 
     out: list[tuple] = [
-        ("effect", ((name, s),), sails(i + j), seed, (), ()) for j, s in enumerate(strengths) for i, name in enumerate(chosen)
+        ("effect", ((name, s),), sails(i + j), seed, (), ())
+        for j, s in enumerate(strengths)
+        for i, name in enumerate(chosen)
     ]
     none = [("none", (), m, seed + 50 * k, (), ()) for k, m in enumerate(MANOEUVRES[: 1 if quick else 4])]
     out += none if quick else [*none, ("none", (), sails(0), seed + 250, (), ())]

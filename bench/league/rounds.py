@@ -88,7 +88,11 @@ class League:
         print(said, file=sys.stderr, flush=True)
 
     def calibrations(self) -> dict[str, Any]:
-        return {h: ships_of(h, self.folder)["calibration"] for h in self.hulls if (self.folder / f"{h}.ship").exists()}
+        return {
+            h: ships_of(h, self.folder)["calibration"]
+            for h in self.hulls
+            if (self.folder / f"{h}.ship").exists()
+        }
 
     def facts(self, rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
         """What was run, of what."""

@@ -19,8 +19,8 @@ def named(row: Row) -> bool:
 
 
 def in_group(row: Row) -> bool:
-    """It is among the named, or in the group that the data could not tell from the first of them; or, when nothing was named, in the
-    small group of which one is surely there."""
+    """It is among the named, or in the group that the data could not tell from the first of them; or, when
+    nothing was named, in the small group of which one is surely there."""
     return row["missing_truly"][0] in {*row["missing"], *row["group"]}
 
 

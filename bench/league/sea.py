@@ -17,7 +17,9 @@ BATCH = 96  # ships that sail side by side
 def name_of(case: Case) -> str:
     """A file name that no other voyage of the league has."""
     hidden = [f"{n}:{s:g}" for n, s in case.hidden]
-    return "_".join([str(case.hull), str(case.manoeuvre), *hidden, *case.decoys, f"{case.duration_s:g}s", str(case.seed)])
+    return "_".join(
+        [str(case.hull), str(case.manoeuvre), *hidden, *case.decoys, f"{case.duration_s:g}s", str(case.seed)]
+    )
 
 
 def voyage(recording: Recording) -> Voyage:

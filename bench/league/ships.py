@@ -1,4 +1,5 @@
-"""The ships of the league: a bundled file, calibrated in memory on calm voyages; and the same with wind or waves in its model."""
+"""The ships of the league: a bundled file, calibrated in memory on calm voyages; and the same with wind or
+waves in its model."""
 
 import pickle
 from dataclasses import dataclass
@@ -45,7 +46,9 @@ class Fleet:
         return tuple(WEATHERS) if self.weather else ()
 
     def _case(self, manoeuvre: str, seed: int, hidden: tuple[tuple[str, float], ...] = ()) -> Case:
-        return Case(self.hull, manoeuvre, hidden=hidden, seed=seed, duration_s=lasts(self.hull, self.duration_s))
+        return Case(
+            self.hull, manoeuvre, hidden=hidden, seed=seed, duration_s=lasts(self.hull, self.duration_s)
+        )
 
 
 def make(fleet: Fleet, folder: Path) -> None:

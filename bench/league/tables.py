@@ -53,7 +53,9 @@ def by(what: str, rows: Sequence[Row]) -> str:
     single, lines = score.of_kind(rows, "effect"), []
     for v in sorted({value(r) for r in single}):
         mine = [r for r in single if value(r) == v]
-        nothing = [r for r in score.of_kind(rows, "none", "decoy") if what in ("hull", "manoeuvre") and r[what] == v]
+        nothing = [
+            r for r in score.of_kind(rows, "none", "decoy") if what in ("hull", "manoeuvre") and r[what] == v
+        ]
         lines.append([v, *rates(mine), share(score.share(nothing, score.alarm)), *ratios(mine)])
     columns = [what, *RATES, "false alarms", "after/before", "oracle/before", "after/oracle"]
     return table(f"## By {what}", columns, lines) if lines else ""
@@ -69,15 +71,30 @@ def effects(rows: Sequence[Row]) -> str:
 
 
 def gain(rows: Sequence[Row]) -> str:
-    """Forces, flows and lags by what there is to win: a name that leads her no better is worth little, and can hardly be found."""
-    mine = [r for r in score.of_kind(rows, "effect") if not score.of_instruments(r) and r.get("before") and "oracle" in r]
+    """Forces, flows and lags by what there is to win: a name that leads her no better is worth little, and
+    can hardly be found."""
+    mine = [
+        r
+        for r in score.of_kind(rows, "effect")
+        if not score.of_instruments(r) and r.get("before") and "oracle" in r
+    ]
     lines = []
     for words, least, most in GAINS:
         here = [r for r in mine if least <= 1.0 - r["oracle"] / r["before"] < most]
         if here:
             lines.append([words, *rates(here), *ratios(here), counted(score.confusion(here))])
-    columns = ["the true effect takes away", *RATES, "after/before", "oracle/before", "after/oracle", "called instead"]
-    words = "Held-out error that the true effect, added in the catalogue's form, takes away; faults of instruments are left out."
+    columns = [
+        "the true effect takes away",
+        *RATES,
+        "after/before",
+        "oracle/before",
+        "after/oracle",
+        "called instead",
+    ]
+    words = (
+        "Held-out error that the true effect, added in the catalogue's form, takes away; faults of "
+        "instruments are left out."
+    )
     return table(f"## By what there is to win\n\n{words}", columns, lines) if lines else ""
 
 
@@ -95,7 +112,9 @@ def parameters(rows: Sequence[Row]) -> str:
     for name, found in sorted(held.items()):
         covered = sum(p["covered"] for p in found) / len(found)
         lines.append([name, len(found), share(score.middle([p["error"] for p in found])), share(covered)])
-    words = "Of rightly named effects whose forms allow a comparison; error as a share of the effect's true size."
+    words = (
+        "Of rightly named effects whose forms allow a comparison; error as a share of the effect's true size."
+    )
     columns = ["parameter", "cases", "median error", "95 % interval holds the truth"]
     return table(f"## Numbers beside the truth\n\n{words}", columns, lines) if lines else ""
 

@@ -1,4 +1,5 @@
-"""The truth beside the diagnosis' numbers: where the reference sea's form and the catalogue's allow a comparison."""
+"""The truth beside the diagnosis' numbers: where the reference sea's form and the catalogue's allow a
+comparison."""
 
 from collections.abc import Callable
 from math import radians
@@ -6,7 +7,8 @@ from typing import Any, NamedTuple
 
 
 class Compared(NamedTuple):
-    """`of(truth)`: what the parameter should be; `size(truth)`: the effect's own size, by which its error is divided."""
+    """`of(truth)`: what the parameter should be; `size(truth)`: the effect's own size, by which its error is
+    divided."""
 
     effect: str
     parameter: str
@@ -44,7 +46,9 @@ TABLE: list[Compared] = [
     _same("Loading", "mass", "mass_share"),
     _same("Loading", "draught", "draught_share"),
     _same("Loading", "x_G", "x_G_shift_m"),
-    Compared("SteeringLag", "travel_time", lambda t: 65.0 / t["rate_degps"], lambda t: 65.0 / t["rate_degps"]),
+    Compared(
+        "SteeringLag", "travel_time", lambda t: 65.0 / t["rate_degps"], lambda t: 65.0 / t["rate_degps"]
+    ),
     _same("SteeringLag", "delay", "delay_s"),
     _same("HeadingBias", "bias", "bias_deg", radians(1.0)),
     _same("SpeedLogBias", "bias", "surge_bias_mps"),
@@ -56,7 +60,8 @@ TABLE: list[Compared] = [
 
 
 def beside(effect: str, parameters: list[dict[str, Any]], truth: dict[str, Any]) -> list[dict[str, Any]]:
-    """Each parameter that can be compared: its value, whether its interval holds the truth, its error as a share of the effect."""
+    """Each parameter that can be compared: its value, whether its interval holds the truth, its error as a
+    share of the effect."""
     given = {p["name"]: p for p in parameters}
     out = []
     for c in TABLE:

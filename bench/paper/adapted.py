@@ -1,6 +1,8 @@
-"""The hybrid that goes on learning: the law of twin/live/learning/adapt.py beside the filter, one for each voyage, every grid step.
+"""The hybrid that goes on learning: the law of twin/live/learning/adapt.py beside the filter, one for each
+voyage, every grid step.
 
-    f = w [W phi + g A q],  |f| <= bound           q = [whitened components of phi | known forces of the row | 1]
+    f = w [W phi + g A q],  |f| <= bound           q = [whitened components of phi | known forces of the row |
+    1]
 
 What is learned up to the start of a window is held while the window is predicted.
 """
@@ -30,7 +32,8 @@ SPEEDS = [READINGS.index(n) for n in ("u", "v", "r")]
 
 
 class Acting:
-    """The learned force of many ships at once: trained, and what each has learned on board (`A`, gates included)."""
+    """The learned force of many ships at once: trained, and what each has learned on board (`A`, gates
+    included)."""
 
     def __init__(self, network: Residual, model: Model, zeta: torch.Tensor):
         self.network, self.model = network, model
@@ -40,13 +43,17 @@ class Acting:
         self.A = torch.zeros(1, 3, len(self.rows) + BESIDE)
 
     def holding(self, A: np.ndarray, model: Model | None = None) -> "Acting":
-        """The same network with other learned numbers (B, 3, width), on another state of the model if one is given."""
+        """The same network with other learned numbers (B, 3, width), on another state of the model if one is
+        given."""
         other = object.__new__(Acting)
-        other.__dict__.update(self.__dict__, A=torch.tensor(A, dtype=torch.float32), model=model or self.model)
+        other.__dict__.update(
+            self.__dict__, A=torch.tensor(A, dtype=torch.float32), model=model or self.model
+        )
         return other
 
     def parts(self, s: Situation) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
-        """Of B ships: how far the network is believed (B, 1), W phi (B, 3) and the regressors of every row (B, 3, width)."""
+        """Of B ships: how far the network is believed (B, 1), W phi (B, 3) and the regressors of every row
+        (B, 3, width)."""
         forces, S = self.model.forces(s, self.model.water(s)), self.network.S
         zeta = self.network.zeta(s)
         phi = self.network.phi(zeta)
@@ -54,7 +61,15 @@ class Acting:
         rows = []
         for r, core in enumerate(CORES):
             sizes = [forces[i][r] for i in core]
-            rows.append(torch.cat([components, torch.stack([_sized(x, S[r], phi) for x in sizes] + [torch.ones(len(phi))], -1)], -1))
+            rows.append(
+                torch.cat(
+                    [
+                        components,
+                        torch.stack([_sized(x, S[r], phi) for x in sizes] + [torch.ones(len(phi))], -1),
+                    ],
+                    -1,
+                )
+            )
         return self.network.weight(zeta).unsqueeze(-1), self.network.last(phi), torch.stack(rows, 1)
 
     def f(self, s: Situation) -> torch.Tensor:
@@ -75,7 +90,9 @@ def _sized(force: torch.Tensor | float, size: float, like: torch.Tensor) -> torc
 class Learning(Filter):
     """Filters whose ships learn; `frozen(k, i)` may say why voyage i must not learn at step k."""
 
-    def __init__(self, courses: Sequence[Course], model: Model, acting: Acting, tuning: Tuning, law: Law = Adaptation):
+    def __init__(
+        self, courses: Sequence[Course], model: Model, acting: Acting, tuning: Tuning, law: Law = Adaptation
+    ):
         self.acting = acting
         super().__init__(courses, model, lambda s: self.acting(s), [tuning] * len(courses))
         ship, S, components = model.ship, acting.network.S, len(acting.rows)
@@ -104,7 +121,15 @@ class Learning(Filter):
             if not np.isfinite(nu).all():
                 evidence.pause()
                 continue
-            evidence.feed(nu, Rates(*rates[i]), tuple(shadow[i]), tuple(trained[i]), [*q[i], *forces[i], *columns[i]], self.physics, self.h)
+            evidence.feed(
+                nu,
+                Rates(*rates[i]),
+                tuple(shadow[i]),
+                tuple(trained[i]),
+                [*q[i], *forces[i], *columns[i]],
+                self.physics,
+                self.h,
+            )
             wanted = tuple(d - t for d, t in zip(evidence.unexplained, evidence.trained, strict=True))
             law.learn(wanted, evidence.regressors, self.h, "" if evidence.ready else "has just begun")
 
@@ -112,11 +137,13 @@ class Learning(Filter):
         """(V, 3) speeds and rate of turn as measured, the current taken off."""
         c, s = np.cos(self.x[:, PSI]), np.sin(self.x[:, PSI])
         north, east = self.x[:, NORTH], self.x[:, EAST]
-        return self.measured[k][:, SPEEDS] - np.column_stack([north * c + east * s, east * c - north * s, 0.0 * c])
+        return self.measured[k][:, SPEEDS] - np.column_stack(
+            [north * c + east * s, east * c - north * s, 0.0 * c]
+        )
 
     def _seen(self, k: int) -> tuple[torch.Tensor, ...]:
-        """Of each voyage: accelerations by known forces, W phi, the whole learned force, components, known forces, and columns of the
-        named effects' numbers."""
+        """Of each voyage: accelerations by known forces, W phi, the whole learned force, components, known
+        forces, and columns of the named effects' numbers."""
         x, y, psi, u, v, r = torch.tensor(self.x[:, :6].T, dtype=torch.float32)
         now = {n: torch.tensor(a[k], dtype=torch.float32) for n, a in self.inputs.items()}
         s = Situation(x, y, psi, u, v, r, **now)
@@ -128,9 +155,21 @@ class Learning(Filter):
             columns = [self._column(*probe, s, rates, shadow) for probe in self.probes]
         many = q.shape[-1] - BESIDE
         sizes = q[:, :, many:-1].reshape(len(q), -1)
-        return tuple(t.double() for t in (rates, w * trained, shadow, q[:, 0, :many], sizes, torch.cat([sizes[:, :0], *columns], -1)))
+        return tuple(
+            t.double()
+            for t in (
+                rates,
+                w * trained,
+                shadow,
+                q[:, 0, :many],
+                sizes,
+                torch.cat([sizes[:, :0], *columns], -1),
+            )
+        )
 
-    def _column(self, probe: Model, share: float, s: Situation, rates: torch.Tensor, shadow: torch.Tensor) -> torch.Tensor:
+    def _column(
+        self, probe: Model, share: float, s: Situation, rates: torch.Tensor, shadow: torch.Tensor
+    ) -> torch.Tensor:
         """(V, 3) as movable.Columns has it."""
         S = torch.tensor([float(x) for x in self.acting.network.S])
         learned = shadow * S
@@ -146,10 +185,15 @@ def _accelerations(model: Model, forces: torch.Tensor) -> tuple[torch.Tensor, ..
     return tuple(core.accelerations(*forces, model.c))  # type: ignore[arg-type]
 
 
-def predict(courses: Sequence[Course], model: Model, acting: Acting, tuning: Tuning, law: Law = Adaptation) -> list[np.ndarray]:
-    """(T, W, 3) for each course: filtered and learning up to each start, then free with what was learned by then."""
+def predict(
+    courses: Sequence[Course], model: Model, acting: Acting, tuning: Tuning, law: Law = Adaptation
+) -> list[np.ndarray]:
+    """(T, W, 3) for each course: filtered and learning up to each start, then free with what was learned by
+    then."""
     learning = Learning(courses, model, acting, tuning, law)
     states = learning.run(int(max(c.starts[-1] for c in courses)))
     numbers = np.stack(learning.numbers)
     held = np.concatenate([numbers[c.starts, i] for i, c in enumerate(courses)])
-    return from_states(courses, model, acting.holding(held), [states[c.starts, i] for i, c in enumerate(courses)])
+    return from_states(
+        courses, model, acting.holding(held), [states[c.starts, i] for i, c in enumerate(courses)]
+    )

@@ -1,4 +1,5 @@
-"""What the paper claims, what this run found, and whether that is enough: made by the command, so that no row is older than its run."""
+"""What the paper claims, what this run found, and whether that is enough: made by the command, so that no row
+is older than its run."""
 
 from collections.abc import Iterator
 from statistics import mean, stdev
@@ -19,9 +20,13 @@ class Claim(NamedTuple):
 def lines(r: dict[str, Any]) -> list[str]:
     """The table."""
     return [
-        "", "## What was claimed, and what this run found", "", "| the paper's claim, as this project asks for it | here | met |", "|---|---|---|",
+        "",
+        "## What was claimed, and what this run found",
+        "",
+        "| the paper's claim, as this project asks for it | here | met |",
+        "|---|---|---|",
         *(f"| {c.asked} | {c.here} | {'yes' if c.met else '**no**'} |" for c in claims(r)),
-    ]  # fmt: skip
+    ]
 
 
 def claims(r: dict[str, Any]) -> Iterator[Claim]:
@@ -41,7 +46,11 @@ def claims(r: dict[str, Any]) -> Iterator[Claim]:
 
 def _times(r: dict[str, Any], name: str, words: str, heading: float, lateral: float) -> Claim:
     a, b = r["ratios"][f"heading_vs_{name}"], r["ratios"][f"lateral_vs_{name}"]
-    return Claim(f"{heading:g} x in heading and {lateral:g} x lateral against {words}", f"{a:.1f} x, {b:.1f} x", a >= heading and b >= lateral)
+    return Claim(
+        f"{heading:g} x in heading and {lateral:g} x lateral against {words}",
+        f"{a:.1f} x, {b:.1f} x",
+        a >= heading and b >= lateral,
+    )
 
 
 def _r2(t: dict[str, Any]) -> Claim:
@@ -56,19 +65,31 @@ def _seeds(rows: list[list[float]]) -> Claim:
 
 def _named(r: dict[str, Any]) -> Claim:
     seeds, models = r["tables"]["3"]["by_seed"], r["models"]
-    (a, x), (b, y) = (tuple(mean(v) for v in zip(*seeds[n], strict=True)) for n in ("physics_added_hybrid", "hybrid"))
+    (a, x), (b, y) = (
+        tuple(mean(v) for v in zip(*seeds[n], strict=True)) for n in ("physics_added_hybrid", "hybrid")
+    )
     less, more = (100.0 * models[n]["share_of_force"] for n in ("physics_added_hybrid", "hybrid"))
-    wins = sum(one[0] < other[0] for one, other in zip(seeds["physics_added_hybrid"], seeds["hybrid"], strict=True))
-    better = f"{a:.3f} against {b:.3f} deg (in {wins} of {len(seeds['hybrid'])} seeds), {x:.2f} against {y:.2f} m"
+    wins = sum(
+        one[0] < other[0] for one, other in zip(seeds["physics_added_hybrid"], seeds["hybrid"], strict=True)
+    )
+    better = (
+        f"{a:.3f} against {b:.3f} deg (in {wins} of {len(seeds['hybrid'])} seeds), {x:.2f} against {y:.2f} m"
+    )
     here = f"{better}; {more:.1f} to {less:.1f} % of the force"
-    return Claim("physics named plus network beats the network alone, and the network's share falls", here, a < b and x <= y and less < more)
+    return Claim(
+        "physics named plus network beats the network alone, and the network's share falls",
+        here,
+        a < b and x <= y and less < more,
+    )
 
 
 def _gap(found: dict[str, Any]) -> Claim:
     told = []
     for name in ("heading", "lateral"):
         low, high = found[name]["by_voyage_95"]
-        told.append(f"{name} {found[name]['change_percent']:+.1f} % (95 % by voyage {low:+.0f} to {high:+.0f} %)")
+        told.append(
+            f"{name} {found[name]['change_percent']:+.1f} % (95 % by voyage {low:+.0f} to {high:+.0f} %)"
+        )
     met = all(found[name]["change_percent"] <= 4.5 for name in ("heading", "lateral"))
     return Claim("validation to test within 4.5 % (more runs: [gap.md](gap.md))", ", ".join(told), met)
 
@@ -79,7 +100,12 @@ def _seven(t: dict[str, Any], measure: str) -> Claim:
     here = " / ".join(f"{x:+.1f}" for x in found.values()) + " %"
     if missed := [case.split()[0].lower() for case, goal in GOALS_7.items() if found[case] > goal]:
         here += f" ({', '.join(missed)} not)"
-    return Claim(f"Table 7, learning on, {measure}: mass / damping / GNSS within {asked} % of the nominal analytic error", here, not missed)
+    return Claim(
+        f"Table 7, learning on, {measure}: mass / damping / GNSS within {asked} % of the nominal "
+        "analytic error",
+        here,
+        not missed,
+    )
 
 
 def _tenth(r: dict[str, Any]) -> Iterator[Claim]:
@@ -91,17 +117,27 @@ def _tenth(r: dict[str, Any]) -> Iterator[Claim]:
         a, b = (mean(x) for x in zip(*most["by_seed"], strict=True))
         alone = most["hybrid"]
         yield Claim(
-            f"the LSTM's accuracy with all data ({goal[0]:.3f} deg, {goal[1]:.2f} m), by the hybrid from a tenth of it",
-            f"from {most['runs']} of {r['models']['parts']['train']} runs, named: {a:.3f} deg, {b:.2f} m; the network alone "
+            f"the LSTM's accuracy with all data ({goal[0]:.3f} deg, {goal[1]:.2f} m), by the hybrid from a "
+            "tenth of it",
+            f"from {most['runs']} of {r['models']['parts']['train']} runs, named: {a:.3f} deg, {b:.2f} m; "
+            "the network alone "
             f"{alone['heading_mae_deg']:.3f}, {alone['lateral_mae_m']:.2f}",
             a <= goal[0] and b <= goal[1],
         )
 
 
 def _closed(rows: list[dict[str, Any]]) -> Claim:
-    worst = {n: max(x[n] for x in rows) for n in ("settle_lengths_max", "overshoot_percent", "steady_error_max", "rudder_deg")}
+    worst = {
+        n: max(x[n] for x in rows)
+        for n in ("settle_lengths_max", "overshoot_percent", "steady_error_max", "rudder_deg")
+    }
     here = (
-        f"{worst['settle_lengths_max']:.1f} L/U, {worst['overshoot_percent']:.1f} %, {worst['steady_error_max']:.3f}, "
+        f"{worst['settle_lengths_max']:.1f} L/U, {worst['overshoot_percent']:.1f} %, "
+        f"{worst['steady_error_max']:.3f}, "
         f"{worst['rudder_deg']:.1f} deg, worst of {sum(x['runs'] for x in rows)} runs"
     )
-    return Claim("Fig. 5, with the residual: 5 L/U, 8 %, 0.02, rudder short of its stop", here, all(x["met"] for x in rows))
+    return Claim(
+        "Fig. 5, with the residual: 5 L/U, 8 %, 0.02, rudder short of its stop",
+        here,
+        all(x["met"] for x in rows),
+    )

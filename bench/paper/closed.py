@@ -1,11 +1,12 @@
-"""The paper's Fig. 5: a heading controller with the residual as corrector, tau_total = tau_analytic + tau_corr, on the reference sea.
+"""The paper's Fig. 5: a heading controller with the residual as corrector, tau_total = tau_analytic +
+tau_corr, on the reference sea.
 
-A step of 15 degrees through a critically damped reference of third order, a gust of 10 m/s from abeam seven ship lengths later.
-The rudder is the one for which the model gives the yaw acceleration that is wanted,
+A step of 15 degrees through a critically damped reference of third order, a gust of 10 m/s from abeam seven
+ship lengths later. The rudder is the one for which the model gives the yaw acceleration that is wanted,
     r_dot(nu_hat, delta) = r_dot_d + 2 w_c (r_d - r_hat) + w_c^2 e + k_i int e,        e = psi_d - psi
-tau_analytic and tau_corr both in r_dot, nu_hat by the observer with gain K from log, gyro and compass as measured, one tick late.
-Times are in ship lengths sailed: the paper's seconds are those of a model (Froude scale 1:64 divides time by eight).
-"""
+tau_analytic and tau_corr both in r_dot, nu_hat by the observer with gain K from log, gyro and compass as
+measured, one tick late. Times are in ship lengths sailed: the paper's seconds are those of a model (Froude
+scale 1:64 divides time by eight)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -55,7 +56,8 @@ class Steered(Sea):
 
 
 class Helm:
-    """Every ship's controller; `mode` (B,) is an index of MODES. `order` is what the sea asks of a helmsman."""
+    """Every ship's controller; `mode` (B,) is an index of MODES. `order` is what the sea asks of a
+    helmsman."""
 
     def __init__(self, model: Model, network: Residual, mode: np.ndarray, seed: int = 1):
         self.model, self.network, self.mode = model, network, mode
@@ -72,15 +74,25 @@ class Helm:
         self.nu = np.stack([sea.h.U0 * np.ones(many), np.zeros(many), np.zeros(many)])
         self.wanted = np.stack([sea.heading, np.zeros(many), np.zeros(many)])  # psi_d, r_d, r_dot_d
         self.sum, self.delta, self.tick = np.zeros(many), np.zeros(many), 0
-        self.last = {"psi": sea.heading.copy(), "u": self.nu[0].copy(), "v": np.zeros(many), "r": np.zeros(many)}
+        self.last = {
+            "psi": sea.heading.copy(),
+            "u": self.nu[0].copy(),
+            "v": np.zeros(many),
+            "r": np.zeros(many),
+        }
 
-    def order(self, t: float, psi: np.ndarray, r: np.ndarray, u: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
-        """Rudder order and propeller rate; truth is only kept for judging, the instruments of the last tick are what counts."""
+    def order(
+        self, t: float, psi: np.ndarray, r: np.ndarray, u: np.ndarray, dt: float
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Rudder order and propeller rate; truth is only kept for judging, the instruments of the last tick
+        are what counts."""
         if self.tick:
             self._listen()
         if self.tick % round(ORDER_S / dt) == 0:
             self._decide(t, ORDER_S)
-            self.kept.append(np.stack([np.full(psi.size, t), psi, r, self.sea.gear, self._error(psi), self.wanted[1]]))
+            self.kept.append(
+                np.stack([np.full(psi.size, t), psi, r, self.sea.gear, self._error(psi), self.wanted[1]])
+            )
         self.tick += 1
         return self.delta, self.n
 
@@ -89,7 +101,11 @@ class Helm:
         heading = np.radians(row["heading_true_north_deg"])
         turned = (heading - last["psi"] + np.pi) % (2 * np.pi) - np.pi
         last["psi"] = np.where(np.isfinite(heading), last["psi"] + turned, last["psi"])
-        for key, x in (("u", row[SPEEDS[0]]), ("v", row[SPEEDS[1]]), ("r", np.radians(row["yaw_rate_degps"]))):
+        for key, x in (
+            ("u", row[SPEEDS[0]]),
+            ("v", row[SPEEDS[1]]),
+            ("r", np.radians(row["yaw_rate_degps"])),
+        ):
             last[key] = np.where(np.isfinite(x), x, last[key])
         speed, angle = row["apparent_wind_speed_mps"], np.radians(row["apparent_wind_angle_deg"])
         for name, x in (("air_ahead", -speed * np.cos(angle)), ("air_aside", -speed * np.sin(angle))):
@@ -105,7 +121,11 @@ class Helm:
         self.nu = self.nu + h * (nu_dot + K / self.time * (measured - self.nu))
         e, w = self._error(self.last["psi"]), CONTROL / self.time
         self.sum = np.where(np.abs(e) < 0.05, self.sum + h * e, self.sum)
-        aim = self.wanted[2] + 2.0 * w * (self.wanted[1] - self.nu[2]) + w**2 * (e + INTEGRAL / self.time * self.sum)
+        aim = (
+            self.wanted[2]
+            + 2.0 * w * (self.wanted[1] - self.nu[2])
+            + w**2 * (e + INTEGRAL / self.time * self.sum)
+        )
         self.delta = self._rudder_for(aim)
 
     def _guide(self, t: float, h: float) -> None:
@@ -133,32 +153,56 @@ class Helm:
         total = [sum(f) for f in zip(*self.model.forces(s, self.model.water(s)), strict=True)]
         corr = self._corrector(s)
         S = self.network.S
-        return np.stack(core.accelerations(*[f + c * scale for f, c, scale in zip(total, corr.T, S, strict=True)], self.model.c))
+        return np.stack(
+            core.accelerations(
+                *[f + c * scale for f, c, scale in zip(total, corr.T, S, strict=True)], self.model.c
+            )
+        )
 
     def _situation(self, delta: np.ndarray) -> Situation:
         u, v, r = self.nu
-        north, east = self.seen["air_ahead"] + u, self.seen["air_aside"] + v  # the wind seen from the water, body axes
+        # the wind seen from the water, body axes
+        north, east = self.seen["air_ahead"] + u, self.seen["air_aside"] + v
         psi = self.last["psi"]
         return Situation(
-            psi=psi, u=u, v=v, r=r, delta=delta, n=self.n, wind_speed=np.hypot(north, east), wind_to=psi + np.arctan2(east, north)
+            psi=psi,
+            u=u,
+            v=v,
+            r=r,
+            delta=delta,
+            n=self.n,
+            wind_speed=np.hypot(north, east),
+            wind_to=psi + np.arctan2(east, north),
         )
 
     def _corrector(self, s: Situation) -> np.ndarray:
-        """(B, 3) in units of the force scale: nothing, what was learned, or whatever does harm within the bound."""
-        fields = {n: torch.tensor(np.asarray(getattr(s, n)), dtype=torch.float32) for n in ("psi", "u", "v", "r", "delta", "n")}
-        fields |= {n: torch.tensor(np.asarray(getattr(s, n)), dtype=torch.float32) for n in ("u_r", "v_r", "wind_speed", "wind_to")}
+        """(B, 3) in units of the force scale: nothing, what was learned, or whatever does harm within the
+        bound."""
+        fields = {
+            n: torch.tensor(np.asarray(getattr(s, n)), dtype=torch.float32)
+            for n in ("psi", "u", "v", "r", "delta", "n")
+        }
+        fields |= {
+            n: torch.tensor(np.asarray(getattr(s, n)), dtype=torch.float32)
+            for n in ("u_r", "v_r", "wind_speed", "wind_to")
+        }
         t = Situation(**fields)
         with torch.no_grad():
             f = self.network.f(self.network.zeta(t)).double().numpy()
         against = np.sign(self._error(self.last["psi"]))[:, None] * np.ones(3)
         square = self.corner * np.sign(np.sin(2 * np.pi * self.sea.dt * self.tick / self.period))[:, None]
-        hostile = float(self.network.bound) / np.sqrt(3.0) * np.where((np.arange(self.mode.size) % 2 == 0)[:, None], against, square)
+        hostile = (
+            float(self.network.bound)
+            / np.sqrt(3.0)
+            * np.where((np.arange(self.mode.size) % 2 == 0)[:, None], against, square)
+        )
         return np.where((self.mode == 0)[:, None], 0.0, np.where((self.mode == 1)[:, None], f, hostile))
 
 
 @dataclass(frozen=True)
 class Closed:
-    """All runs: arrays (T, B) with time in L/U since the step, angles in degrees; which scenario and mode each is."""
+    """All runs: arrays (T, B) with time in L/U since the step, angles in degrees; which scenario and mode
+    each is."""
 
     lengths: np.ndarray
     heading: np.ndarray  # since the step, from the old course
@@ -187,9 +231,16 @@ def sail(model: Model, network: Residual, seeds: int, tick_s: float = 0.1) -> Cl
     t, psi, r, rudder, _, _ = np.array(helm.kept).transpose(1, 0, 2)
     heading = np.degrees((psi - sea.heading + np.pi) % (2 * np.pi) - np.pi)
     return Closed(
-        t[:, 0] / float(sea.unit[0]) - BEFORE, heading, np.degrees(r), np.degrees(rudder), heading - STEP_DEG,
-        np.tile(np.repeat(np.arange(len(SCENARIOS)), seeds), len(MODES)), mode, float(sea.unit[0]), float(np.max(sea.h.rudder_max)),
-    )  # fmt: skip
+        t[:, 0] / float(sea.unit[0]) - BEFORE,
+        heading,
+        np.degrees(r),
+        np.degrees(rudder),
+        heading - STEP_DEG,
+        np.tile(np.repeat(np.arange(len(SCENARIOS)), seeds), len(MODES)),
+        mode,
+        float(sea.unit[0]),
+        float(np.max(sea.h.rudder_max)),
+    )
 
 
 def table(c: Closed) -> list[dict[str, Any]]:
@@ -197,7 +248,10 @@ def table(c: Closed) -> list[dict[str, Any]]:
     rows = []
     for m, mode in enumerate(MODES):
         for j, scenario in enumerate(SCENARIOS):
-            rows.append({"mode": mode, "scenario": scenario} | _row(c, np.flatnonzero((c.mode == m) & (c.scenario == j))))
+            rows.append(
+                {"mode": mode, "scenario": scenario}
+                | _row(c, np.flatnonzero((c.mode == m) & (c.scenario == j)))
+            )
     return rows
 
 
@@ -212,13 +266,21 @@ def _row(c: Closed, k: np.ndarray) -> dict[str, Any]:
     steady = np.abs(error[late].mean(0)) / STEP_DEG
     rate = np.abs(np.diff(c.rudder[:, k], axis=0)).max() / ORDER_S
     row = {
-        "runs": int(k.size), "settle_lengths_mean": float(settle.mean()), "settle_lengths_max": float(settle.max()),
-        "overshoot_percent": float(100 * np.maximum(error[calm].max(0), 0.0).max() / STEP_DEG), "steady_error_max": float(steady.max()),
-        "gust_deg": float(np.abs(error[gust]).max()), "rudder_deg": float(np.abs(c.rudder[:, k]).max()), "rudder_degps": float(rate),
-    }  # fmt: skip
+        "runs": int(k.size),
+        "settle_lengths_mean": float(settle.mean()),
+        "settle_lengths_max": float(settle.max()),
+        "overshoot_percent": float(100 * np.maximum(error[calm].max(0), 0.0).max() / STEP_DEG),
+        "steady_error_max": float(steady.max()),
+        "gust_deg": float(np.abs(error[gust]).max()),
+        "rudder_deg": float(np.abs(c.rudder[:, k]).max()),
+        "rudder_degps": float(rate),
+    }
     row["settle_s_full_scale"] = row["settle_lengths_mean"] * c.length_s
     row["settle_s_model_1_64"] = row["settle_s_full_scale"] / 8.0
     row["met"] = bool(
-        settle.max() <= 5.0 and row["overshoot_percent"] <= 8.0 and steady.max() <= STEADY and row["rudder_deg"] < c.hard_over_deg - 0.5
+        settle.max() <= 5.0
+        and row["overshoot_percent"] <= 8.0
+        and steady.max() <= STEADY
+        and row["rudder_deg"] < c.hard_over_deg - 0.5
     )
     return row

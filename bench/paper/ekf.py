@@ -1,8 +1,9 @@
-"""The paper's EKF, at its best: filterpy's, on the nominal equations, with slow disturbances, told the current, tuned on validation runs.
+"""The paper's EKF, at its best: filterpy's, on the nominal equations, with slow disturbances, told the
+current, tuned on validation runs.
 
-State: x, y, psi, u, v, r and the accelerations that no known force explains. The Jacobian is by differences through Model.step.
-Tuned: how fast the disturbance may walk (three sizes), and whether the prediction keeps it.
-"""
+State: x, y, psi, u, v, r and the accelerations that no known force explains. The Jacobian is by differences
+through Model.step. Tuned: how fast the disturbance may walk (three sizes), and whether the prediction keeps
+it."""
 
 from collections.abc import Sequence
 
@@ -41,7 +42,11 @@ class Careful(ShipFilter):
 def filtered(c: Course, model: Model, walk: float) -> np.ndarray:
     """(W, 9) the filter's state at the starts of the windows."""
     view, measured = c.water, c.floating.measured[:, SEEN]
-    inputs = {name: x for name, x in view.inputs.items() if name in ("delta", "n", "wind_speed", "wind_to", "H_s", "T_p", "wave_to")}
+    inputs = {
+        name: x
+        for name, x in view.inputs.items()
+        if name in ("delta", "n", "wind_speed", "wind_to", "H_s", "T_p", "wave_to")
+    }
     kalman = Careful(model, Situation(), view.h, c.floating.sd[SEEN], walk)
     kalman.x[:6], kept = view.state[0], {}
     for k in range(int(c.starts[-1]) + 1):
@@ -50,7 +55,9 @@ def filtered(c: Course, model: Model, walk: float) -> np.ndarray:
             kalman.predict()
         there = np.isfinite(measured[k])
         kalman.R[np.diag_indices(6)] = np.where(there, c.floating.sd[SEEN] ** 2, 1e9)
-        kalman.update(np.where(there, measured[k], kalman.x[:6]), HJacobian=kalman._jacobian, Hx=kalman._expected)
+        kalman.update(
+            np.where(there, measured[k], kalman.x[:6]), HJacobian=kalman._jacobian, Hx=kalman._expected
+        )
         kept[k] = kalman.x.copy()
     return np.stack([kept[int(k)] for k in c.starts])
 
@@ -80,12 +87,15 @@ def _pushed(c: Course, model: Model, state: np.ndarray) -> np.ndarray:
 
 
 def tuned(courses: Sequence[Course], model: Model) -> tuple[float, bool]:
-    """The walk and the choice that predict validation voyages best (heading and lateral errors, each over its least)."""
+    """The walk and the choice that predict validation voyages best (heading and lateral errors, each over its
+    least)."""
     tried = {}
     for walk in WALKS:
         states = [filtered(c, model, walk) for c in courses]
         for keep in (False, True):
-            tried[walk, keep] = judge([_from(c, model, x, keep) for c, x in zip(courses, states, strict=True)], courses)
+            tried[walk, keep] = judge(
+                [_from(c, model, x, keep) for c, x in zip(courses, states, strict=True)], courses
+            )
     heading = {k: e.heading_deg.mean() for k, e in tried.items()}
     lateral = {k: e.lateral_m.mean() for k, e in tried.items()}
     return min(tried, key=lambda k: heading[k] / min(heading.values()) + lateral[k] / min(lateral.values()))

@@ -16,7 +16,12 @@ from bench.paper.lab import Course, judge
 from bench.paper.models import Models
 from bench.tick.timing import hot_us
 
-SHOWN = {"analytic": ("nominal analytic", "0.6"), "ekf": ("EKF", "tab:orange"), "lstm": ("LSTM", "tab:green"), "hybrid": ("hybrid", "tab:blue")}
+SHOWN = {
+    "analytic": ("nominal analytic", "0.6"),
+    "ekf": ("EKF", "tab:orange"),
+    "lstm": ("LSTM", "tab:green"),
+    "hybrid": ("hybrid", "tab:blue"),
+}
 COLOURS = ("0.5", "tab:blue", "tab:red")
 
 
@@ -34,9 +39,19 @@ def learning(folder: Path, curves: dict[str, list[list[float]]]) -> None:
         shortest = min(map(len, runs))
         table = np.stack([r[:shortest] for r in runs])
         x = np.arange(1, shortest + 1)
-        ax.plot(x, table.mean(0), color=colour, label=f"{'hybrid, roll-outs' if name == 'hybrid' else 'LSTM'} ({len(runs)} seed(s))")
+        ax.plot(
+            x,
+            table.mean(0),
+            color=colour,
+            label=f"{'hybrid, roll-outs' if name == 'hybrid' else 'LSTM'} ({len(runs)} seed(s))",
+        )
         ax.fill_between(x, table.min(0), table.max(0), color=colour, alpha=0.25)
-    ax.set(xlabel="epoch", ylabel="validation loss / its first", yscale="log", title="Fig. 2: learning (band: least to greatest of the seeds)")
+    ax.set(
+        xlabel="epoch",
+        ylabel="validation loss / its first",
+        yscale="log",
+        title="Fig. 2: learning (band: least to greatest of the seeds)",
+    )
     ax.legend()
     save(folder, "fig-2-learning.png", fig)
 
@@ -64,8 +79,20 @@ def histogram(folder: Path, models: Models, courses: Sequence[Course]) -> None:
     for name, (words, colour) in SHOWN.items():
         e = judge(models.predict[name](courses), courses).lateral[:, -1]
         bins = np.linspace(-120, 120, 121)
-        ax.hist(e.clip(-120, 120), bins, density=True, histtype="step", color=colour, label=f"{words}: sd {e.std():.1f} m")
-    ax.set(xlabel="lateral error after 120 s, m", ylabel="density, 1/m", yscale="log", title=f"Fig. 4: {len(e)} windows on unseen zigzags")
+        ax.hist(
+            e.clip(-120, 120),
+            bins,
+            density=True,
+            histtype="step",
+            color=colour,
+            label=f"{words}: sd {e.std():.1f} m",
+        )
+    ax.set(
+        xlabel="lateral error after 120 s, m",
+        ylabel="density, 1/m",
+        yscale="log",
+        title=f"Fig. 4: {len(e)} windows on unseen zigzags",
+    )
     ax.legend()
     save(folder, "fig-4-errors.png", fig)
 
@@ -83,12 +110,18 @@ def closed_loop(folder: Path, c: Closed) -> None:
         d.plot(c.error[after][:, k[0]], c.rate[after][:, k[0]], color=COLOURS[m], lw=0.8)
         late = x >= 4.0
         tail = c.error[late][:, k]
-        power = (np.abs(np.fft.rfft((tail - tail.mean(0)) * np.hanning(len(tail))[:, None], axis=0)) ** 2).mean(1)
+        power = (
+            np.abs(np.fft.rfft((tail - tail.mean(0)) * np.hanning(len(tail))[:, None], axis=0)) ** 2
+        ).mean(1)
         step = float(x[1] - x[0])
         e.loglog(np.fft.rfftfreq(len(tail), step)[1:], power[1:] / len(tail) ** 2, color=COLOURS[m])
     a.axvspan(GUST_AT, GUST_AT + GUST_LONG, color="0.9")
     a.axhline(STEP_DEG, color="k", lw=0.5)
-    a.set(xlabel="ship lengths sailed since the step", ylabel="heading, deg", title="Fig. 5a: step of 15 deg, gust (grey); TS-03, band of all seeds")
+    a.set(
+        xlabel="ship lengths sailed since the step",
+        ylabel="heading, deg",
+        title="Fig. 5a: step of 15 deg, gust (grey); TS-03, band of all seeds",
+    )
     b.set(xlabel="ship lengths sailed since the step", ylabel="rudder, deg", title="b: rudder")
     d.set(xlabel="error, deg", ylabel="rate of turn, deg/s", title="c, d: phase portrait of one run")
     e.set(xlabel="per ship length", ylabel="deg^2", title="spectrum of the error after 4 lengths")
@@ -97,14 +130,19 @@ def closed_loop(folder: Path, c: Closed) -> None:
 
 
 def horizons(folder: Path) -> dict[str, list[float]]:
-    """Fig. 6: time of one prediction over its horizon, in steps of 1 s on floats, one thread; also as numbers [ms], one step last."""
+    """Fig. 6: time of one prediction over its horizon, in steps of 1 s on floats, one thread; also as numbers
+    [ms], one step last."""
     fig, ax = plt.subplots(figsize=(7, 3.5))
     seconds, out = (10, 30, 60, 120, 300), {}
     for (name, once), colour in zip(_predictors().items(), ("0.6", "tab:blue", "tab:green"), strict=True):
         step_us = float(np.median(hot_us(once, 300)))
         out[name] = [ahead_ms(once, n) for n in seconds] + [step_us / 1000]
         ax.loglog(seconds, out[name][:-1], "o-", color=colour, label=name)
-    ax.set(xlabel="horizon, s", ylabel="time of one prediction, ms", title="Fig. 6: cost of looking ahead, on this machine")
+    ax.set(
+        xlabel="horizon, s",
+        ylabel="time of one prediction, ms",
+        title="Fig. 6: cost of looking ahead, on this machine",
+    )
     ax.legend()
     save(folder, "fig-6-horizon.png", fig)
     return out
@@ -151,9 +189,13 @@ CURVES = {
 def data(folder: Path, rows: Sequence[dict[str, Any]]) -> None:
     """Error over amount of data."""
     fig, axes = plt.subplots(1, 2, figsize=(9, 3.5))
-    for ax, measure, unit in zip(axes, ("heading_mae_deg", "lateral_mae_m"), ("heading, deg", "lateral, m"), strict=True):
+    for ax, measure, unit in zip(
+        axes, ("heading_mae_deg", "lateral_mae_m"), ("heading, deg", "lateral, m"), strict=True
+    ):
         for name, (words, colour) in CURVES.items():
-            ax.loglog([r["hours"] for r in rows], [r[name][measure] for r in rows], "o-", color=colour, label=words)
+            ax.loglog(
+                [r["hours"] for r in rows], [r[name][measure] for r in rows], "o-", color=colour, label=words
+            )
         ax.set(xlabel="hours that teach", ylabel=f"MAE {unit}")
     axes[0].set_title("Error over amount of data")
     axes[0].legend()

@@ -1,10 +1,11 @@
-"""The hybrid's own filter: where each ship is, how she moves through the water and where the water goes, from the past alone.
+"""The hybrid's own filter: where each ship is, how she moves through the water and where the water goes, from
+the past alone.
 
-State: x, y, psi, u, v, r (through the water), the current north and east, and the accelerations that neither physics nor network
-explains. An extended Kalman filter of all voyages side by side; its Jacobian by differences through Model.step. Predictions begin
-in its state and keep its current; the unexplained accelerations serve the filter and are dropped.
-Tuned on validation runs: how fast current and unexplained accelerations may walk, and how long the sea's noise hangs together.
-"""
+State: x, y, psi, u, v, r (through the water), the current north and east, and the accelerations that neither
+physics nor network explains. An extended Kalman filter of all voyages side by side; its Jacobian by
+differences through Model.step. Predictions begin in its state and keep its current; the unexplained
+accelerations serve the filter and are dropped. Tuned on validation runs: how fast current and unexplained
+accelerations may walk, and how long the sea's noise hangs together."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -29,8 +30,8 @@ Push = Callable[[Situation], Force]
 
 @dataclass(frozen=True)
 class Tuning:
-    """Walks in one second: of the unexplained accelerations in (U/T)^2, of the current in (m/s)^2; and the factor on each variance
-    of a reading."""
+    """Walks in one second: of the unexplained accelerations in (U/T)^2, of the current in (m/s)^2; and the
+    factor on each variance of a reading."""
 
     walk: float = 1e-6
     current: float = 1e-5
@@ -41,7 +42,8 @@ TRIED = tuple(Tuning(*x) for x in product((1e-6, 1e-5, 1e-4), (1e-6, 1e-5), (1.0
 
 
 class Filter:
-    """The filters of many voyages; `tick(k)` takes grid step k in, `x` (V, 11) and `P` (V, 11, 11) are where they stand."""
+    """The filters of many voyages; `tick(k)` takes grid step k in, `x` (V, 11) and `P` (V, 11, 11) are where
+    they stand."""
 
     def __init__(self, courses: Sequence[Course], model: Model, push: Push | None, tunings: Sequence[Tuning]):
         self.courses, self.model, self.push, self.h = courses, model, push, courses[0].water.h
@@ -52,7 +54,9 @@ class Filter:
         self.sd = np.stack([c.track.sd for c in courses])
         self.noise = np.array([t.noise for t in tunings])[:, None] * self.sd**2
         steady = [*[1e-4 * self.h] * 2, 1e-10, *(3e-4 * self.h * self.a) ** 2]
-        self.Q = np.stack([np.diag([*steady, *[t.current * self.h] * 2, *(self.h * t.walk * self.a**2)]) for t in tunings])
+        self.Q = np.stack(
+            [np.diag([*steady, *[t.current * self.h] * 2, *(self.h * t.walk * self.a**2)]) for t in tunings]
+        )
         names = set.intersection(*(set(c.water.inputs) for c in courses))
         self.inputs = {n: np.stack([c.water.inputs[n] for c in courses], 1) for n in names}
         self._begin()
@@ -87,14 +91,17 @@ class Filter:
         self.P = F @ self.P @ F.transpose(0, 2, 1) + self.Q
 
     def _ahead(self, now: dict[str, np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
-        """(V, 6) one grid step of the model from where the filters are, place relative; and its Jacobian (V, 11, 11)."""
+        """(V, 6) one grid step of the model from where the filters are, place relative; and its Jacobian (V,
+        11, 11)."""
         many, count = len(self.x), 1 + 2 * len(NUDGED)
         shift = np.zeros((count, 6))
         for i, (column, by) in enumerate(zip(NUDGED, NUDGE, strict=True)):
             shift[1 + 2 * i, column], shift[2 + 2 * i, column] = by, -by
         start = self.x[None, :, :6] + shift[:, None]
         start[..., :2] = 0.0
-        out = self._step(start.reshape(-1, 6), {n: np.tile(x, count) for n, x in now.items()}).reshape(count, many, 6)
+        out = self._step(start.reshape(-1, 6), {n: np.tile(x, count) for n, x in now.items()}).reshape(
+            count, many, 6
+        )
         F = np.broadcast_to(np.eye(SIZE), (many, SIZE, SIZE)).copy()
         for i, (column, by) in enumerate(zip(NUDGED, NUDGE, strict=True)):
             F[:, :6, column] = (out[1 + 2 * i] - out[2 + 2 * i]) / (2.0 * by)
@@ -142,7 +149,13 @@ class Filter:
 
 def _tensors(s: Situation) -> Situation:
     """The same as the network wants it."""
-    return Situation(**{n: torch.tensor(v, dtype=torch.float32) for n in s.__slots__ if isinstance(v := getattr(s, n), np.ndarray)})
+    return Situation(
+        **{
+            n: torch.tensor(v, dtype=torch.float32)
+            for n in s.__slots__
+            if isinstance(v := getattr(s, n), np.ndarray)
+        }
+    )
 
 
 def predict(courses: Sequence[Course], model: Model, push: Push | None, tuning: Tuning) -> list[np.ndarray]:
@@ -150,17 +163,24 @@ def predict(courses: Sequence[Course], model: Model, push: Push | None, tuning: 
     return _predict(courses, model, push, [tuning] * len(courses))
 
 
-def _predict(courses: Sequence[Course], model: Model, push: Push | None, tunings: Sequence[Tuning]) -> list[np.ndarray]:
+def _predict(
+    courses: Sequence[Course], model: Model, push: Push | None, tunings: Sequence[Tuning]
+) -> list[np.ndarray]:
     states = Filter(courses, model, push, tunings).run(int(max(c.starts[-1] for c in courses)))
     return from_states(courses, model, push, [states[c.starts, i] for i, c in enumerate(courses)])
 
 
-def from_states(courses: Sequence[Course], model: Model, push: Push | None, states: Sequence[np.ndarray]) -> list[np.ndarray]:
+def from_states(
+    courses: Sequence[Course], model: Model, push: Push | None, states: Sequence[np.ndarray]
+) -> list[np.ndarray]:
     """(T, W, 3) north, east, psi over ground: free runs from filters' states (W, 11), their current kept."""
     local = torch.tensor(np.concatenate(states)[:, :6], dtype=torch.float32)
     local[:, :2] = 0.0
     names = set.intersection(*(set(c.water.inputs) for c in courses))
-    fed = {n: torch.tensor(np.concatenate([c.water.inputs[n][c.at] for c in courses], 1), dtype=torch.float32) for n in names}
+    fed = {
+        n: torch.tensor(np.concatenate([c.water.inputs[n][c.at] for c in courses], 1), dtype=torch.float32)
+        for n in names
+    }
     h = STRIDE * courses[0].water.h
     with torch.no_grad():
         run = free_run(push, model, local, fed, torch.full((len(local),), h)).double().numpy()[..., :3]  # type: ignore[arg-type]
@@ -174,7 +194,8 @@ def _over_ground(run: np.ndarray, state: np.ndarray, h: float) -> np.ndarray:
 
 
 def tuned(courses: Sequence[Course], model: Model, push: Push | None) -> Tuning:
-    """What predicts validation voyages best (heading and lateral errors, each over its least); all are tried side by side."""
+    """What predicts validation voyages best (heading and lateral errors, each over its least); all are tried
+    side by side."""
     many = len(courses)
     runs = _predict(list(courses) * len(TRIED), model, push, [t for t in TRIED for _ in courses])
     found = {t: judge(runs[i * many : (i + 1) * many], courses) for i, t in enumerate(TRIED)}

@@ -1,8 +1,8 @@
 """One harness for all models: the same windows, the same controls and weather, the same truth.
 
-A window is a free run of 120 s in a zigzag, begun at 290, 350, 410, 470 or 530 s (paper_sea.STARTS_S). Models that keep no filter begin in the smooth
-motion under the readings (it sees a few seconds ahead; the filter and the LSTM do not).
-"""
+A window is a free run of 120 s in a zigzag, begun at 290, 350, 410, 470 or 530 s (paper_sea.STARTS_S). Models
+that keep no filter begin in the smooth motion under the readings (it sees a few seconds ahead; the filter and
+the LSTM do not)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -24,7 +24,8 @@ HORIZON_S = 120.0
 
 @dataclass(frozen=True)
 class Course:
-    """A voyage for judging: as tracked, seen from the water, seen from the earth, and the truth (N, 3) north, east, psi on the grid."""
+    """A voyage for judging: as tracked, seen from the water, seen from the earth, and the truth (N, 3) north,
+    east, psi on the grid."""
 
     name: str
     scenario: str
@@ -56,16 +57,28 @@ def course(sailed: Sailed, ship: Ship, starts_s: tuple[float, ...] = STARTS_S) -
     blind[:, list(LOG.values())] = np.nan
     time_s = sailed.voyage.time_s - sailed.voyage.time_s[0]
     truth = np.column_stack([np.interp(t.t, time_s, column) for column in sailed.truth.T])
-    return Course(t.name, t.name.split()[0], t, floating(t, ship), leg(t, model), leg(replace(t, measured=blind), model), truth, starts_s)
+    return Course(
+        t.name,
+        t.name.split()[0],
+        t,
+        floating(t, ship),
+        leg(t, model),
+        leg(replace(t, measured=blind), model),
+        truth,
+        starts_s,
+    )
 
 
 def floating(t: Track, ship: Ship) -> Track:
-    """The track as it would have been recorded by somebody who drifts with the water: no current is left in it."""
+    """The track as it would have been recorded by somebody who drifts with the water: no current is left in
+    it."""
     water = current(t, t.state)
     drift = np.cumsum(water, axis=0) * t.h
     measured, (north, east) = t.measured.copy(), water.T
     c, s = np.cos(t.state[:, 2]), np.sin(t.state[:, 2])
-    for name, shift in zip(("x", "y", "u", "v"), (*drift.T, north * c + east * s, east * c - north * s), strict=True):
+    for name, shift in zip(
+        ("x", "y", "u", "v"), (*drift.T, north * c + east * s, east * c - north * s), strict=True
+    ):
         measured[:, READINGS.index(name)] -= shift
     still = leg(t, Model(ship))
     weather = {k: still.inputs[k] for k in t.weather}
@@ -73,11 +86,18 @@ def floating(t: Track, ship: Ship) -> Track:
 
 
 def free(
-    model: Model, network: Residual | None, courses: Sequence[Course], view: str = "water", states: Sequence[np.ndarray] | None = None
+    model: Model,
+    network: Residual | None,
+    courses: Sequence[Course],
+    view: str = "water",
+    states: Sequence[np.ndarray] | None = None,
 ) -> list[np.ndarray]:
-    """(T, W, 3) north, east, psi over ground for each course: free runs from the view's state (or from `states`), the water as it was."""
+    """(T, W, 3) north, east, psi over ground for each course: free runs from the view's state (or from
+    `states`), the water as it was."""
     views: list[Leg] = [getattr(c, view) for c in courses]
-    begin = [v.state[c.starts] for v, c in zip(views, courses, strict=True)] if states is None else list(states)
+    begin = (
+        [v.state[c.starts] for v, c in zip(views, courses, strict=True)] if states is None else list(states)
+    )
     local = torch.tensor(np.concatenate(begin), dtype=torch.float32)
     local[:, :2] = 0.0
     names = set.intersection(*(set(v.inputs) for v in views))
@@ -100,7 +120,8 @@ def grounded(run: np.ndarray, c: Course, view: Leg) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Errors:
-    """Of one model on many windows: (W, T) heading [rad] and lateral [m] errors with their truths, and which voyage each is of."""
+    """Of one model on many windows: (W, T) heading [rad] and lateral [m] errors with their truths, and which
+    voyage each is of."""
 
     heading: np.ndarray
     lateral: np.ndarray

@@ -1,7 +1,8 @@
-"""The losses side by side on the paper's voyages: `python -m bench.paper.loss [--runs 15]` writes docs/results/loss.md's table.
+"""The losses side by side on the paper's voyages: `python -m bench.paper.loss [--runs 15]` writes
+docs/results/loss.md's table.
 
-Each loss trains the same network on the same parts; free runs of 120 s on the test part and on zigzags that no training saw.
-"""
+Each loss trains the same network on the same parts; free runs of 120 s on the test part and on zigzags that
+no training saw."""
 
 import argparse
 import sys
@@ -32,14 +33,18 @@ def main() -> int:
     parser.add_argument("--epochs", type=positive, default=150)
     parser.add_argument("--rollout-epochs", type=positive, default=30)
     parser.add_argument("--work", type=Path, default=Path(".paper"))
-    parser.add_argument("--only", metavar="LOSS", nargs="+", choices=VARIANTS, default=list(VARIANTS), help="some of them")
+    parser.add_argument(
+        "--only", metavar="LOSS", nargs="+", choices=VARIANTS, default=list(VARIANTS), help="some of them"
+    )
     args = parser.parse_args()
     for line in table(args.runs, args.epochs, args.rollout_epochs, args.work, args.only):
         print(line, flush=True)
     return 0
 
 
-def table(runs: int, epochs: int, rollout_epochs: int, work: Path, only: Sequence[str] = tuple(VARIANTS)) -> Any:
+def table(
+    runs: int, epochs: int, rollout_epochs: int, work: Path, only: Sequence[str] = tuple(VARIANTS)
+) -> Any:
     """Lines of the table, as they are ready."""
     from export.data import leg, model_of, split
     from export.teach import Settings, teach
@@ -52,7 +57,10 @@ def table(runs: int, epochs: int, rollout_epochs: int, work: Path, only: Sequenc
     model = model_of(ship, tracks)
     legs = [leg(t, model) for t in tracks]
     parts = split(legs[:runs])
-    yield "| loss | zigzag: heading deg | place m | test: heading deg | place m | rms of f | share of force | epochs | CPU s |"
+    yield (
+        "| loss | zigzag: heading deg | place m | test: heading deg | place m | rms of f | share of force "
+        "| epochs | CPU s |"
+    )
     yield "|---|---|---|---|---|---|---|---|---|"
     for name in only:
         began = time.process_time()
@@ -66,7 +74,8 @@ def table(runs: int, epochs: int, rollout_epochs: int, work: Path, only: Sequenc
         part = share(taught.network, model, s)
         rms = float((taught.network.f(taught.network.zeta(s)).detach() ** 2).mean().sqrt())
         yield (
-            f"| {name} | {zz.heading_deg[1]:.3f} | {zz.position_m[1]:.2f} | {test.heading_deg[1]:.3f} | {test.position_m[1]:.2f} "
+            f"| {name} | {zz.heading_deg[1]:.3f} | {zz.position_m[1]:.2f} | {test.heading_deg[1]:.3f} | "
+            f"{test.position_m[1]:.2f} "
             f"| {rms:.3f} | {100 * part:.1f} % | {len(taught.curve)} | {spent:.0f} |"
         )
         print(name, taught.diagnostics, file=sys.stderr)

@@ -1,4 +1,5 @@
-"""The paper's LSTM: told the kinematics, 30 s to warm up, then free; trained by free runs on the same parts as the hybrid."""
+"""The paper's LSTM: told the kinematics, 30 s to warm up, then free; trained by free runs on the same parts
+as the hybrid."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +14,8 @@ from export.data import Leg
 from export.teach import FEWEST, Settings
 
 WARM, FREE, HIDDEN, BATCH = 12, 24, 64, 64  # steps of 2.5 s for KVLCC2: 30 s and 60 s
-STEPS = 30  # in an epoch at least, as the hybrid has them: batches are smaller where there is less to learn from
+# in an epoch at least, as the hybrid has them: batches are smaller where there is less to learn from
+STEPS = 30
 
 
 class Lstm(torch.nn.Module):
@@ -30,8 +32,8 @@ class Lstm(torch.nn.Module):
     def run(self, nu: torch.Tensor, psi: torch.Tensor, more: torch.Tensor, h: float) -> torch.Tensor:
         """(T, B, 4) psi, u, v, r after each free step.
 
-        nu (WARM, B, 3) measured, psi (B,) at the end of it, more (WARM + T, B, 5): rudder, propeller, wind north and east, heading.
-        """
+        nu (WARM, B, 3) measured, psi (B,) at the end of it, more (WARM + T, B, 5): rudder, propeller, wind
+        north and east, heading."""
         memory, kept, now = None, [], nu[0]
         for k in range(more.shape[0] - 1):
             now = nu[k] if k < WARM else now
@@ -39,7 +41,11 @@ class Lstm(torch.nn.Module):
             angle = more[k, :, 4] if k < WARM else psi
             air = (
                 torch.stack(
-                    [wind_n * torch.cos(angle) + wind_e * torch.sin(angle), wind_e * torch.cos(angle) - wind_n * torch.sin(angle)], -1
+                    [
+                        wind_n * torch.cos(angle) + wind_e * torch.sin(angle),
+                        wind_e * torch.cos(angle) - wind_n * torch.sin(angle),
+                    ],
+                    -1,
                 )
                 - now[:, :2]
             )
@@ -53,12 +59,16 @@ class Lstm(torch.nn.Module):
         return torch.stack(kept)
 
 
-def tensors(leg: Leg, starts: np.ndarray, free: int) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor, torch.Tensor]:
+def tensors(
+    leg: Leg, starts: np.ndarray, free: int
+) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor, torch.Tensor]:
     """nu, psi, inputs, wanted (T, B, 4); the free run begins at `starts`."""
     warm = starts + STRIDE * np.arange(1 - WARM, 1)[:, None]
     whole = starts + STRIDE * np.arange(1 - WARM, free + 1)[:, None]
     wind, to = (leg.inputs.get(n, np.zeros(len(leg))) for n in ("wind_speed", "wind_to"))
-    more = np.stack([leg.inputs["delta"], leg.inputs["n"], wind * np.cos(to), wind * np.sin(to), leg.state[:, 2]], -1)
+    more = np.stack(
+        [leg.inputs["delta"], leg.inputs["n"], wind * np.cos(to), wind * np.sin(to), leg.state[:, 2]], -1
+    )
     out = leg.state[warm][..., 3:], leg.state[starts, 2], more[whole], leg.state[whole[WARM:]][..., 2:]
     return tuple(torch.tensor(x, dtype=torch.float32) for x in out)  # type: ignore[return-value]
 
@@ -74,19 +84,35 @@ def _late(leg: Leg) -> np.ndarray:
 
 
 def train(
-    train_legs: Sequence[Leg], validation: Sequence[Leg], epochs: int, seed: int = 42, patience: int = 20, keep: Path | None = None
+    train_legs: Sequence[Leg],
+    validation: Sequence[Leg],
+    epochs: int,
+    seed: int = 42,
+    patience: int = 20,
+    keep: Path | None = None,
 ) -> Lstm:
-    """Adam at 3e-3, Huber of heading and speeds in deviations. Like the hybrid's, its weights are averaged, and the best on validation
-    stay, or the last where few voyages validate. `keep`: a file of a finished training."""
+    """Adam at 3e-3, Huber of heading and speeds in deviations. Like the hybrid's, its weights are averaged,
+    and the best on validation stay, or the last where few voyages validate. `keep`: a file of a finished
+    training."""
     torch.manual_seed(seed)
     torch.set_num_threads(1)
     data, held = _all(train_legs), _all(validation)
     state = torch.cat([torch.tensor(leg.state[:, 3:]) for leg in train_legs]).float()
     h = STRIDE * train_legs[0].h
-    jump = torch.cat([torch.tensor(leg.state[STRIDE:, 3:] - leg.state[:-STRIDE, 3:]) for leg in train_legs]).float().std(0)
-    controls = torch.cat([torch.tensor(np.stack([leg.inputs["delta"], leg.inputs["n"]], -1)) for leg in train_legs]).float()
+    jump = (
+        torch.cat([torch.tensor(leg.state[STRIDE:, 3:] - leg.state[:-STRIDE, 3:]) for leg in train_legs])
+        .float()
+        .std(0)
+    )
+    controls = torch.cat(
+        [torch.tensor(np.stack([leg.inputs["delta"], leg.inputs["n"]], -1)) for leg in train_legs]
+    ).float()
     air = torch.tensor([6.0, 6.0])
-    model = Lstm(torch.cat([state.mean(0), controls.mean(0), torch.zeros(2)]), torch.cat([state.std(0), controls.std(0) + 1e-3, air]), jump)
+    model = Lstm(
+        torch.cat([state.mean(0), controls.mean(0), torch.zeros(2)]),
+        torch.cat([state.std(0), controls.std(0) + 1e-3, air]),
+        jump,
+    )
     size = torch.cat([torch.tensor([0.02]), state.std(0) * 0.2])
     optimiser = torch.optim.Adam(model.parameters(), lr=3e-3)
     if keep and keep.exists():
@@ -96,7 +122,9 @@ def train(
         return model
     many = data[1].numel()
     batch = max(1, min(BATCH, many // STEPS))
-    mean = AveragedModel(model, multi_avg_fn=get_ema_multi_avg_fn(1.0 - 1.0 / (1.0 + Settings.average * max(1, many // batch))))
+    mean = AveragedModel(
+        model, multi_avg_fn=get_ema_multi_avg_fn(1.0 - 1.0 / (1.0 + Settings.average * max(1, many // batch)))
+    )
     best, since, asked = (float("inf"), model.state_dict()), 0, len(validation) >= FEWEST
     for epoch in range(epochs):
         for k in shuffled(many, batch, 7919 * seed + epoch):
@@ -109,7 +137,11 @@ def train(
         with torch.no_grad():
             value = float(_loss(mean.module, held, h, size))
         model.curve.append(value)
-        best, since = ((value, {n: x.clone() for n, x in mean.module.state_dict().items()}), 0) if value < best[0] or not asked else (best, since + 1)
+        best, since = (
+            ((value, {n: x.clone() for n, x in mean.module.state_dict().items()}), 0)
+            if value < best[0] or not asked
+            else (best, since + 1)
+        )
         if since >= patience:
             break
     model.load_state_dict(best[1])

@@ -16,19 +16,28 @@ def to_onnx(model: Lstm) -> bytes:
     """x (1, 1, inputs) in deviations, h and c (1, 1, 64) -> y (1, 3) in deviations, h_out and c_out."""
     cell, ends = model.cell, [1, 1, HIDDEN]
     weights = {
-        "W": _gates(cell.weight_ih)[None], "R": _gates(cell.weight_hh)[None],
-        "B": torch.cat([_gates(cell.bias_ih), _gates(cell.bias_hh)])[None], "w": model.out.weight, "b": model.out.bias,
-    }  # fmt: skip
+        "W": _gates(cell.weight_ih)[None],
+        "R": _gates(cell.weight_hh)[None],
+        "B": torch.cat([_gates(cell.bias_ih), _gates(cell.bias_hh)])[None],
+        "w": model.out.weight,
+        "b": model.out.bias,
+    }
     nodes = [
-        helper.make_node("LSTM", ["x", "W", "R", "B", "", "h", "c"], ["all", "h_out", "c_out"], hidden_size=HIDDEN),
+        helper.make_node(
+            "LSTM", ["x", "W", "R", "B", "", "h", "c"], ["all", "h_out", "c_out"], hidden_size=HIDDEN
+        ),
         helper.make_node("Squeeze", ["h_out", "axis"], ["top"]),
         helper.make_node("Gemm", ["top", "w", "b"], ["y"], transB=1),
     ]
     held = [numpy_helper.from_array(x.detach().numpy(), name) for name, x in weights.items()]
     held.append(numpy_helper.from_array(np.array([0], np.int64), "axis"))
     inputs = [_float("x", [1, 1, model.mean.numel()]), _float("h", ends), _float("c", ends)]
-    graph = helper.make_graph(nodes, "lstm", inputs, [_float("y", [1, 3]), _float("h_out", ends), _float("c_out", ends)], held)
-    made = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 17)], ir_version=8, producer_name="shiptwin")
+    graph = helper.make_graph(
+        nodes, "lstm", inputs, [_float("y", [1, 3]), _float("h_out", ends), _float("c_out", ends)], held
+    )
+    made = helper.make_model(
+        graph, opset_imports=[helper.make_opsetid("", 17)], ir_version=8, producer_name="shiptwin"
+    )
     onnx.checker.check_model(made)
     return bytes(made.SerializeToString())
 

@@ -1,4 +1,5 @@
-"""The models that are compared, each made from the same training and validation runs and tuned on those alone."""
+"""The models that are compared, each made from the same training and validation runs and tuned on those
+alone."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, replace
@@ -33,7 +34,8 @@ from twin.study.estimation.innovations import Floor
 from twin.study.reference.nuisance import TEMPER
 
 Predict = Callable[[Sequence[Course]], list[np.ndarray]]  # (T, W, 3) for each course
-NAMED = ("Wind", "WaveDrift")  # what `twin add` would name on TS-02 and TS-03, the current being seen by the log
+# what `twin add` would name on TS-02 and TS-03, the current being seen by the log
+NAMED = ("Wind", "WaveDrift")
 ROWS = {
     "analytic": "nominal analytic, as in the paper (no wind, no current)",
     "analytic_current": "nominal analytic, told the current",
@@ -54,8 +56,10 @@ class Models:
 
     predict: dict[str, Predict] = field(default_factory=dict)
     told: dict[str, Any] = field(default_factory=dict)
-    seeds: dict[str, dict[int, Predict]] = field(default_factory=dict)  # of every seed: the hybrid, and that on named physics
-    curves: dict[str, list[list[float]]] = field(default_factory=dict)  # validation loss by epoch, of every seed
+    # of every seed: the hybrid, and that on named physics
+    seeds: dict[str, dict[int, Predict]] = field(default_factory=dict)
+    # validation loss by epoch, of every seed
+    curves: dict[str, list[list[float]]] = field(default_factory=dict)
     acting: Acting | None = None  # the first seed's network, for adaptation
     tuning: Tuning = field(default_factory=Tuning)
     network: Any = None  # the first seed's
@@ -74,13 +78,17 @@ class Workshop:
     tell: Callable[[str], None]
 
     @classmethod
-    def of(cls, lessons: Sequence[Course], settings: Settings, work: Path, tell: Callable[[str], None]) -> "Workshop":
+    def of(
+        cls, lessons: Sequence[Course], settings: Settings, work: Path, tell: Callable[[str], None]
+    ) -> "Workshop":
         return cls(split(lessons), split([c.water for c in lessons]), settings, work, tell)  # type: ignore[type-var,arg-type]
 
     @classmethod
     def planned(cls, plan: sea.Plan, work: Path, tell: Callable[[str], None]) -> "Workshop":
         """Of a plan whose lessons are not yet sailed."""
-        lessons = [course(one, nominal()) for one in sea.sail(sea.lessons(plan), work / "voyages", tell, plan.tick_s)]
+        lessons = [
+            course(one, nominal()) for one in sea.sail(sea.lessons(plan), work / "voyages", tell, plan.tick_s)
+        ]
         return cls.of(lessons, settings_for(plan), work, tell)
 
     def taught(self, model: Model, seed: int, name: str) -> Taught:
@@ -91,7 +99,9 @@ class Workshop:
             if epoch % 10 == 0:
                 self.tell(f"  {stage} {epoch}/{epochs}: loss {loss:.4g}, validation {validation:.4g}")
 
-        return teach(self.legs, model, replace(self.settings, seed=seed), show, self.work / f"{name}-{seed}.pt")
+        return teach(
+            self.legs, model, replace(self.settings, seed=seed), show, self.work / f"{name}-{seed}.pt"
+        )
 
     def tuned(self, model: Model, push: Push | None) -> Tuning:
         return paper_filter.tuned(self.parts["validation"], model, push)
@@ -103,7 +113,12 @@ def settings_for(plan: sea.Plan) -> Settings:
 
 
 def build(
-    lessons: Sequence[Course], settings: Settings, lstm_epochs: int, seeds: Sequence[int], work: Path, tell: Callable[[str], None]
+    lessons: Sequence[Course],
+    settings: Settings,
+    lstm_epochs: int,
+    seeds: Sequence[int],
+    work: Path,
+    tell: Callable[[str], None],
 ) -> Models:
     """Train, fit and tune everything."""
     out, shop, plain = Models(), Workshop.of(lessons, settings, work, tell), Model(nominal())
@@ -128,11 +143,16 @@ def _filtered(out: Models, shop: Workshop, plain: Model) -> None:
 
 def _sequence(out: Models, shop: Workshop, epochs: int, seed: int) -> None:
     shop.tell("training the LSTM")
-    lstm = paper_lstm.train(shop.legs["train"], shop.legs["validation"], epochs, seed, keep=shop.work / f"lstm-{epochs}-{seed}.pt")
+    lstm = paper_lstm.train(
+        shop.legs["train"], shop.legs["validation"], epochs, seed, keep=shop.work / f"lstm-{epochs}-{seed}.pt"
+    )
     out.curves["lstm"] = [lstm.curve]
     file = paper_lstm_onnx.to_onnx(lstm)
     (shop.work / "lstm.onnx").write_bytes(file)
-    out.told["lstm"] = {"epochs": len(lstm.curve), "torch_onnx_difference": paper_lstm_onnx.disagreement(lstm, file)}
+    out.told["lstm"] = {
+        "epochs": len(lstm.curve),
+        "torch_onnx_difference": paper_lstm_onnx.disagreement(lstm, file),
+    }
     out.predict["lstm"] = lambda cs: [paper_lstm.predict(lstm, c) for c in cs]
 
 
@@ -147,7 +167,10 @@ def _hybrids(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) ->
     out.network = first.network
     out.acting = Acting(first.network, plain, zeta_of(first.network, first.samples))
     out.predict["hybrid"] = out.seeds["hybrid"][seeds[0]]
-    out.told["hybrid"] = _about(plain, first) | {"filter": asdict(out.tuning), "apart": apart(shop.parts["test"], plain, first.network)}
+    out.told["hybrid"] = _about(plain, first) | {
+        "filter": asdict(out.tuning),
+        "apart": apart(shop.parts["test"], plain, first.network),
+    }
     told = {"hybrid": out.predict["hybrid"], "analytic_current": out.predict["analytic_current"]}
     out.told["gap"] = gap(told, shop.parts["validation"], shop.parts["test"])
     out.predict["hybrid_smooth"] = lambda cs: free(plain, first.network, cs)
@@ -158,7 +181,9 @@ def _named(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) -> N
     """What has a name first, then a network on top."""
     shop.tell("calibrating the core, then adding " + ", ".join(NAMED))
     core, added = named(shop.parts["train"], plain)
-    out.told["added"] = {type(e).__name__: {p.name: float(getattr(e, p.name)) for p in e.params()} for e in added.effects}
+    out.told["added"] = {
+        type(e).__name__: {p.name: float(getattr(e, p.name)) for p in e.params()} for e in added.effects
+    }
     for name, model in (("calibrated", core), ("physics_added", added)):
         out.predict[name] = _started(model, None, shop.tuned(model, None))
     taught = {seed: shop.taught(added, seed, "added") for seed in seeds}
@@ -170,7 +195,8 @@ def _named(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) -> N
 
 
 def named(train: Sequence[Course], plain: Model) -> tuple[Model, Model]:
-    """The core calibrated on the calm runs, then with what `twin add` would name on the others; as far as there are such runs."""
+    """The core calibrated on the calm runs, then with what `twin add` would name on the others; as far as
+    there are such runs."""
     calm, windy = ([c for c in train if (c.scenario == "TS-01") is still] for still in (True, False))
     core = _fitted(plain, calm, []) if calm else plain
     return core, _fitted(core, windy, NAMED) if windy else core
@@ -194,5 +220,9 @@ def _about(model: Model, taught: Taught) -> dict[str, object]:
 
 def _fitted(model: Model, courses: Sequence[Course], effects: Sequence[str]) -> Model:
     """The study's own fit, of the core or of named effects, on tracks in which no current is left."""
-    unknowns = [u for name in effects for u in effect_unknowns(find(name), model)] if effects else core_unknowns(model)
+    unknowns = (
+        [u for name in effects for u in effect_unknowns(find(name), model)]
+        if effects
+        else core_unknowns(model)
+    )
     return fit([c.floating for c in courses], model, unknowns, catalogue(), Floor(), temper=TEMPER).model

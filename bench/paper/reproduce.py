@@ -12,9 +12,9 @@ from bench.paper import sea
 
 EPILOG = """example: twin-bench paper --quick
 
---quick takes minutes and few runs; --full is the paper's 18 hours of voyages, 90 zigzags and five seeds, and takes hours. Both keep
-what is done in --work DIR and go on from there. What a page holds from its line "## What it says" on stays. Exit code 0: the tables are
-written, whatever they say.
+--quick takes minutes and few runs; --full is the paper's 18 hours of voyages, 90 zigzags and five seeds, and
+takes hours. Both keep what is done in --work DIR and go on from there. What a page holds from its line "##
+What it says" on stays. Exit code 0: the tables are written, whatever they say.
 """
 
 
@@ -24,10 +24,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     size.add_argument("--quick", action="store_true", help="few runs, one seed (the default)")
     size.add_argument("--full", action="store_true", help="the paper's own amount, resumable")
     parser.add_argument(
-        "--work", metavar="DIR", type=Path, help="where voyages and checkpoints are kept (default: nowhere; --full: .paper)"
+        "--work",
+        metavar="DIR",
+        type=Path,
+        help="where voyages and checkpoints are kept (default: nowhere; --full: .paper)",
     )
-    parser.add_argument("--figures", metavar="DIR", type=Path, help="Figures 2 to 6 as PNG files (needs matplotlib)")
-    parser.add_argument("--tick", metavar="FILE.json", type=Path, help="what `twin-bench --json` wrote, for Table 9")
+    parser.add_argument(
+        "--figures", metavar="DIR", type=Path, help="Figures 2 to 6 as PNG files (needs matplotlib)"
+    )
+    parser.add_argument(
+        "--tick", metavar="FILE.json", type=Path, help="what `twin-bench --json` wrote, for Table 9"
+    )
     answer.add_arguments(parser)
 
 
@@ -58,28 +65,44 @@ def reproduce(plan: sea.Plan, work: Path, quick: bool, figures: Path | None = No
     ship, tell = nominal(), answer.tell
     changed, speeds = sea.changed(plan), sea.by_speed(plan)
     groups = {"lessons": sea.lessons(plan), "zigzags": sea.unseen(plan), **changed, **speeds}
-    sailed = iter(sea.sail([c for cases in groups.values() for c in cases], work / "voyages", tell, plan.tick_s))
+    sailed = iter(
+        sea.sail([c for cases in groups.values() for c in cases], work / "voyages", tell, plan.tick_s)
+    )
     voyages = {name: [next(sailed) for _ in cases] for name, cases in groups.items()}
     voyages[paper_tables.EXACT] = [sea.without_gnss_noise(one) for one in voyages[next(iter(changed))]]
     courses = {name: [course(one, ship, plan.starts_s) for one in some] for name, some in voyages.items()}
-    models = paper_models.build(courses["lessons"], paper_models.settings_for(plan), plan.lstm_epochs, plan.seeds, work, tell)
+    models = paper_models.build(
+        courses["lessons"], paper_models.settings_for(plan), plan.lstm_epochs, plan.seeds, work, tell
+    )
     tell("predicting")
-    tables = paper_tables.all_tables(models, courses, list(changed), list(speeds), plan.resamples, plan.resamples // 2)
+    tables = paper_tables.all_tables(
+        models, courses, list(changed), list(speeds), plan.resamples, plan.resamples // 2
+    )
     tell("closed loop")
     closed = paper_closed.sail(models.plain, models.network, plan.closed, plan.tick_s)
     tables["fig5"] = paper_closed.table(closed)
     tell("less data")
-    tables["data"] = curve(models.shop, models.tuning, courses["zigzags"], plan.curve, plan.lstm_epochs, plan.seeds)
+    tables["data"] = curve(
+        models.shop, models.tuning, courses["zigzags"], plan.curve, plan.lstm_epochs, plan.seeds
+    )
     if figures:
         tables["fig6_ms"] = _draw(figures, models, courses["zigzags"], closed, tables)
     return {
-        "schema_version": 1, "quick": quick, "tables": tables, "ratios": paper_tables.ratios(tables["3"]), "models": models.told,
-        "counts": {name: len(some) for name, some in courses.items()}, "scenarios": list(sea.SCENARIOS),
-        "cpu_seconds": round(time.process_time() - began, 1), "seconds": round(time.monotonic() - wall, 1),
-    }  # fmt: skip
+        "schema_version": 1,
+        "quick": quick,
+        "tables": tables,
+        "ratios": paper_tables.ratios(tables["3"]),
+        "models": models.told,
+        "counts": {name: len(some) for name, some in courses.items()},
+        "scenarios": list(sea.SCENARIOS),
+        "cpu_seconds": round(time.process_time() - began, 1),
+        "seconds": round(time.monotonic() - wall, 1),
+    }
 
 
-def _draw(folder: Path, models: Any, zigzags: list[Any], closed: Any, tables: dict[str, Any]) -> dict[str, list[float]]:
+def _draw(
+    folder: Path, models: Any, zigzags: list[Any], closed: Any, tables: dict[str, Any]
+) -> dict[str, list[float]]:
     """All figures; gives the times behind Fig. 6."""
     from bench.paper import figures as draw
 
@@ -94,5 +117,3 @@ def _draw(folder: Path, models: Any, zigzags: list[Any], closed: Any, tables: di
     }
     draw.data(folder, [*tables["data"], whole])
     return draw.horizons(folder)
-
-

@@ -1,7 +1,8 @@
-"""The paper's voyages, sailed on the reference sea: TS-01 to TS-03 (Table 2), and zigzags that no model has seen.
+"""The paper's voyages, sailed on the reference sea: TS-01 to TS-03 (Table 2), and zigzags that no model has
+seen.
 
-72 runs of 900 s are the paper's 18 h at 10 Hz (648 000 samples). Scenarios take turns, so that each part of the split has all.
-"""
+72 runs of 900 s are the paper's 18 h at 10 Hz (648 000 samples). Scenarios take turns, so that each part of
+the split has all."""
 
 import hashlib
 import os
@@ -25,7 +26,8 @@ TRUE = ("north", "east", "psi")
 
 @dataclass(frozen=True)
 class Plan:
-    """How much is sailed: runs to learn from, zigzags for each scenario and angle, for each changed ship, for each speed."""
+    """How much is sailed: runs to learn from, zigzags for each scenario and angle, for each changed ship, for
+    each speed."""
 
     runs: int
     zigzags: int
@@ -63,9 +65,10 @@ class Sailed:
 
 
 def lessons(plan: Plan) -> list[Case]:
-    """What is learned from, in the order of time. Any 15 in a row hold the same manoeuvres in the same seas, so that training,
-    validation and test are alike; speeds take turns with them. She is driven harder than her service speed and slower than half of
-    it: what a network was never shown (a propeller that turns faster than U_0 needs) it must leave to the physics."""
+    """What is learned from, in the order of time. Any 15 in a row hold the same manoeuvres in the same seas,
+    so that training, validation and test are alike; speeds take turns with them. She is driven harder than
+    her service speed and slower than half of it: what a network was never shown (a propeller that turns
+    faster than U_0 needs) it must leave to the physics."""
     return [
         Case(
             "kvlcc2",
@@ -79,7 +82,13 @@ def lessons(plan: Plan) -> list[Case]:
     ]
 
 
-def zigzags(count: int, seed: int, scenarios: Sequence[str] = SCENARIOS, angles: Sequence[int] = (10, 20), **changes: Any) -> list[Case]:
+def zigzags(
+    count: int,
+    seed: int,
+    scenarios: Sequence[str] = SCENARIOS,
+    angles: Sequence[int] = (10, 20),
+    **changes: Any,
+) -> list[Case]:
     """`count` zigzags of each of `angles` (10/10 and 20/20) in each scenario."""
     return [
         replace(
@@ -104,8 +113,12 @@ def changed(plan: Plan) -> dict[str, list[Case]]:
     held = replace(hull, R0=1.1 * hull.R0, X=_more(hull.X, 1.1), Y=_more(hull.Y, 1.1), N=_more(hull.N, 1.1))
     return {
         "as she is": zigzags(plan.changed, 50_000, angles=plan.angles, duration_s=plan.run_s),
-        "Mass error M (+5%)": zigzags(plan.changed, 50_000, angles=plan.angles, duration_s=plan.run_s, hull=heavy),
-        "Damping error D (+10%)": zigzags(plan.changed, 50_000, angles=plan.angles, duration_s=plan.run_s, hull=held),
+        "Mass error M (+5%)": zigzags(
+            plan.changed, 50_000, angles=plan.angles, duration_s=plan.run_s, hull=heavy
+        ),
+        "Damping error D (+10%)": zigzags(
+            plan.changed, 50_000, angles=plan.angles, duration_s=plan.run_s, hull=held
+        ),
     }
 
 
@@ -116,17 +129,25 @@ def _more(derivatives: tuple[float, ...], by: float) -> tuple[float, ...]:
 def without_gnss_noise(sailed: Sailed) -> Sailed:
     """The same voyage with places as they were, 0.1 s late as the receiver is."""
     v = sailed.voyage
-    exact = {name: np.interp(v.time_s - GNSS_LATE_S, v.time_s, sailed.truth[:, i]) for i, name in enumerate(("north_m", "east_m"))}
+    exact = {
+        name: np.interp(v.time_s - GNSS_LATE_S, v.time_s, sailed.truth[:, i])
+        for i, name in enumerate(("north_m", "east_m"))
+    }
     seen = {name: np.where(np.isfinite(v.columns[name]), x, np.nan) for name, x in exact.items()}
     return Sailed(v.with_rows(v.time_s, dict(v.columns) | seen), sailed.truth)
 
 
 def by_speed(plan: Plan) -> dict[str, list[Case]]:
     """Table 8."""
-    return {name: zigzags(plan.speeds, 60_000, angles=plan.angles, duration_s=plan.run_s, speed_fraction=share) for name, share in SPEEDS.items()}
+    return {
+        name: zigzags(plan.speeds, 60_000, angles=plan.angles, duration_s=plan.run_s, speed_fraction=share)
+        for name, share in SPEEDS.items()
+    }
 
 
-def sail(cases: Sequence[Case], folder: Path, tell: Callable[[str], None], tick_s: float = 0.1) -> list[Sailed]:
+def sail(
+    cases: Sequence[Case], folder: Path, tell: Callable[[str], None], tick_s: float = 0.1
+) -> list[Sailed]:
     """These voyages, from the folder where they were sailed before."""
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{_key(case)}.npz" for case in cases]
@@ -141,7 +162,8 @@ def sail(cases: Sequence[Case], folder: Path, tell: Callable[[str], None], tick_
 
 
 def _key(case: Case) -> str:
-    told = repr(case).replace(", change=None", "")  # voyages sailed before there were changes keep their names
+    # voyages sailed before there were changes keep their names
+    told = repr(case).replace(", change=None", "")
     return f"{case.manoeuvre}-{case.weather}-{case.seed}-{hashlib.sha256(told.encode()).hexdigest()[:10]}"
 
 
@@ -156,4 +178,6 @@ def _read(case: Case, path: Path) -> Sailed:
     with np.load(path) as held:
         columns = {name: held[name].astype(float) for name in held.files}
     truth = columns.pop("truth")
-    return Sailed(Voyage(f"{case.weather} {case.manoeuvre} {case.seed}", columns.pop("time_s"), columns), truth)
+    return Sailed(
+        Voyage(f"{case.weather} {case.manoeuvre} {case.seed}", columns.pop("time_s"), columns), truth
+    )

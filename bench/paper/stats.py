@@ -1,4 +1,5 @@
-"""Intervals and sizes of effect for Tables 4 to 6: bootstrap by single errors as in the paper, and by whole voyages, as it should be."""
+"""Intervals and sizes of effect for Tables 4 to 6: bootstrap by single errors as in the paper, and by whole
+voyages, as it should be."""
 
 import numpy as np
 
@@ -8,7 +9,8 @@ RESAMPLES = 2_000_000  # numbers drawn at a time
 
 
 def bootstrap(values: np.ndarray, group: np.ndarray, resamples: int, seed: int = 1) -> tuple[float, float]:
-    """95 % interval of the mean when whole groups are drawn; give every value its own group for the naive one."""
+    """95 % interval of the mean when whole groups are drawn; give every value its own group for the naive
+    one."""
     blocks, index = np.unique(group, return_inverse=True)
     total, count = np.bincount(index, values), np.bincount(index)
     rng, means = np.random.default_rng(seed), []
@@ -24,7 +26,9 @@ def r2(off: np.ndarray, true: np.ndarray) -> float:
     return float(1.0 - (off**2).sum() / ((true - true.mean()) ** 2).sum())
 
 
-def r2_interval(off: np.ndarray, true: np.ndarray, group: np.ndarray, resamples: int, seed: int = 1) -> tuple[float, float]:
+def r2_interval(
+    off: np.ndarray, true: np.ndarray, group: np.ndarray, resamples: int, seed: int = 1
+) -> tuple[float, float]:
     """95 % interval of R2 when whole groups are drawn."""
     blocks, index = np.unique(group, return_inverse=True)
     parts = [np.bincount(index, x.sum(1)) for x in (off**2, true**2, true)]
@@ -36,14 +40,17 @@ def r2_interval(off: np.ndarray, true: np.ndarray, group: np.ndarray, resamples:
 
 
 def wilcoxon(ours: np.ndarray, theirs: np.ndarray, group: np.ndarray) -> tuple[float, float]:
-    """One-sided p that ours is smaller: of single windows, and of voyage means; 1 where both are the same (learning that never acted)."""
+    """One-sided p that ours is smaller: of single windows, and of voyage means; 1 where both are the same
+    (learning that never acted)."""
     from scipy import stats
 
     if np.array_equal(ours, theirs):
         return 1.0, 1.0
     _, index = np.unique(group, return_inverse=True)
     means = [np.bincount(index, x) / np.bincount(index) for x in (ours, theirs)]
-    alone, together = (float(stats.wilcoxon(a, b, alternative="less").pvalue) for a, b in ((ours, theirs), means))
+    alone, together = (
+        float(stats.wilcoxon(a, b, alternative="less").pvalue) for a, b in ((ours, theirs), means)
+    )
     return alone, together
 
 

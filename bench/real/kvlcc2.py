@@ -1,4 +1,5 @@
-"""The measured KVLCC2 manoeuvres of SIMMAN 2008: published coefficients, calibration, and what the diagnosis says of them."""
+"""The measured KVLCC2 manoeuvres of SIMMAN 2008: published coefficients, calibration, and what the diagnosis
+says of them."""
 
 import argparse
 import os
@@ -27,16 +28,19 @@ from twin.study.update import adding
 
 MAPS = Path(__file__).parents[1] / "docs" / "maps"
 HORIZONS_S = (10.0, 60.0, 120.0)
-ASYMMETRIC = ("RudderOffset", "PropellerWalk", "TowForce")  # of the catalogue, what could make one side differ
+# of the catalogue, what could make one side differ
+ASYMMETRIC = ("RudderOffset", "PropellerWalk", "TowForce")
 EPILOG = """example:
   SHIPTWIN_DATA=DIR twin-bench real --out docs/results/real-kvlcc2.md
 
-DIR/kvlcc2_simman holds hsva/*.dat and marin/*.dat (no licence is stated for the data, so it is not in the project).
+DIR/kvlcc2_simman holds hsva/*.dat and marin/*.dat (no licence is stated for the data, so it is not in the
+project).
 """
 
 
 class Basin(NamedTuple):
-    """One towing tank's runs. `fitted`: words of file names that the calibration may see; the others judge it."""
+    """One towing tank's runs. `fitted`: words of file names that the calibration may see; the others judge
+    it."""
 
     name: str
     folder: str
@@ -60,14 +64,18 @@ BASINS = (
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.formatter_class = argparse.RawDescriptionHelpFormatter
     parser.epilog = EPILOG
-    parser.add_argument("--data", metavar="DIR", default=os.environ.get("SHIPTWIN_DATA"), help="default: $SHIPTWIN_DATA")
+    parser.add_argument(
+        "--data", metavar="DIR", default=os.environ.get("SHIPTWIN_DATA"), help="default: $SHIPTWIN_DATA"
+    )
     answer.add_arguments(parser, "--out")
 
 
 def run(args: argparse.Namespace) -> int:
     root = Path(args.data or ".") / "kvlcc2_simman"
     if not args.data or not root.is_dir():
-        raise SettingsError(f"{root}: the SIMMAN files are not there. Set SHIPTWIN_DATA to the folder above kvlcc2_simman.")
+        raise SettingsError(
+            f"{root}: the SIMMAN files are not there. Set SHIPTWIN_DATA to the folder above kvlcc2_simman."
+        )
     result = {"schema_version": 1, "basins": [judged(basin, root) for basin in BASINS]}
     answer.give(args, result, page(result))
     return 0
@@ -82,12 +90,17 @@ def judged(basin: Basin, root: Path) -> dict[str, Any]:
     answer.tell(f"{basin.name}: calibrating")
     after = calibrate(fitted, [(s.track, 0) for s in others], ship)
     return {
-        "basin": basin.name, "words": basin.words, "ship": basin.ship,
-        "runs": [{"name": s.voyage.name, "fitted": s in fitted, "duration_s": s.voyage.duration_s} for s in runs],
+        "basin": basin.name,
+        "words": basin.words,
+        "ship": basin.ship,
+        "runs": [
+            {"name": s.voyage.name, "fitted": s in fitted, "duration_s": s.voyage.duration_s} for s in runs
+        ],
         "published": [of_run(s, ship) for s in runs],
         "published_on_others": ladder(others, ship),
         "calibrated_on_others": ladder(others, after.ship),
-        "floor": after.result["floor"], "temper": after.result["temper"],
+        "floor": after.result["floor"],
+        "temper": after.result["temper"],
         "helm": [helm(s) for s in runs],
         "asked": [asked(name, fitted, others, after.ship) for name in ASYMMETRIC],
         "diagnoses": [
@@ -95,7 +108,7 @@ def judged(basin: Basin, root: Path) -> dict[str, Any]:
             diagnosed("calibrated ship, the runs that it was not fitted to", others, after.ship),
         ],
         "faults": [faulty(fault, others, after.ship) for fault in real_faults.FAULTS],
-    }  # fmt: skip
+    }
 
 
 def voyages(basin: Basin, root: Path) -> list[Sailed]:
@@ -105,7 +118,8 @@ def voyages(basin: Basin, root: Path) -> list[Sailed]:
 
 
 def ladder(runs: Sequence[Sailed], ship: Ship) -> list[dict[str, Any]]:
-    """Errors at each horizon over these runs, with dead reckoning (the motion at the start goes on) beside them."""
+    """Errors at each horizon over these runs, with dead reckoning (the motion at the start goes on) beside
+    them."""
     done = compare(runs, Model.of(ship), HORIZONS_S)
     rows = done.result["horizons"]
     for row in rows:
@@ -120,7 +134,8 @@ def of_run(s: Sailed, ship: Ship) -> dict[str, Any]:
 
 
 def helm(s: Sailed) -> dict[str, Any]:
-    """Mean rudder over whole zigzag cycles [deg, starboard positive]: zero for a hull that is alike on both sides."""
+    """Mean rudder over whole zigzag cycles [deg, starboard positive]: zero for a hull that is alike on both
+    sides."""
     delta = np.degrees(s.track.delta)
     up = np.flatnonzero((delta[1:] > 0.0) & (delta[:-1] <= 0.0))
     whole = delta[up[0] : up[-1]] if up.size > 1 else delta[:0]
@@ -132,11 +147,17 @@ def helm(s: Sailed) -> dict[str, Any]:
 
 
 def asked(name: str, fitted: Sequence[Sailed], others: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
-    """The effect as if it had been named: fitted on the calibration's runs, judged on the others at the longest horizon."""
+    """The effect as if it had been named: fitted on the calibration's runs, judged on the others at the
+    longest horizon."""
     answer.tell(f"adding {name}")
     model, found = adding.fitted(ship, [find(name)], [s.track for s in fitted])
     before, after = (ladder(others, s)[-1] for s in (ship, ship.with_effects(*model.effects)))
-    return {"effect": name, "numbers": [{"name": f.name, **f.entry()} for f in found], "before": before, "after": after}
+    return {
+        "effect": name,
+        "numbers": [{"name": f.name, **f.entry()} for f in found],
+        "before": before,
+        "after": after,
+    }
 
 
 def faulty(fault: real_faults.Fault, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:

@@ -5,7 +5,7 @@ import numpy as np
 from bench.reference import flaws, waves, wind
 from bench.reference.chance import Wander
 
-ANSWER_TICKS = 4          # the answer to waves follows the heading every fourth tick, the phase every tick
+ANSWER_TICKS = 4  # the answer to waves follows the heading every fourth tick, the phase every tick
 GUST_TIME, VEER_TIME, BANK_TIME, GNSS_TIME = 25.0, 60.0, 6.0, 120.0  # [s]; the bank's in L/U0
 
 

@@ -57,7 +57,10 @@ def hull_later(case) -> Hull:
     now = hull_of(case)
     later = now if case.change.hull is None else hull_of(replace(case, hull=case.change.hull))
     if later.L != now.L:
-        raise ValueError(f"a change cannot make {now.name} ({now.L:g} m) a ship of {later.L:g} m. Give a hull of her length.")
+        raise ValueError(
+            f"a change cannot make {now.name} ({now.L:g} m) a ship of {later.L:g} m. Give a "
+            "hull of her length."
+        )
     return later
 
 

@@ -13,7 +13,8 @@ AXES = ("X_N", "Y_N", "N_Nm")
 
 @dataclass(frozen=True)
 class Change:
-    """From `at_s` on she is another `hull` of the same length, and the wind blows `wind` times as hard; all else goes on."""
+    """From `at_s` on she is another `hull` of the same length, and the wind blows `wind` times as hard; all
+    else goes on."""
 
     at_s: float
     hull: object = None  # as in Case; None: hers

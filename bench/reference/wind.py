@@ -4,6 +4,7 @@
     g: where the apparent wind comes from, off the bow, starboard positive.
 Source: Isherwood (1972), Wind resistance of merchant ships, Trans. RINA 115, 327-338: coefficients A, B, C.
 """
+
 import numpy as np
 
 RHO_AIR = 1.224

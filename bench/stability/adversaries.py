@@ -3,8 +3,8 @@
 Truth is the ship's own equations with a bounded force added, integrated twice as finely; the observer sees
 late, noisy, missing measurements and a hostile network. Disturbance, noise and network are chosen against it
 (along its error, held in one corner, square waves, white), all within their bounds. A run that leaves the
-operating set is judged until it leaves, and counted. Beside them a few of the twin's own loops (stability_loop.py).
-"""
+operating set is judged until it leaves, and counted. Beside them a few of the twin's own loops
+(stability_loop.py)."""
 
 import argparse
 import time
@@ -47,7 +47,8 @@ class Case(NamedTuple):
     H_s: float = 0.0
     dropouts: bool = False
     K: float | None = None  # 1/s; None: `usual_gain`
-    moving: tuple[str, ...] = ()  # effects whose numbers an adversary moves in their boxes, and the wind's, as adaptation might
+    # effects whose numbers an adversary moves in their boxes, and the wind's, as adaptation might
+    moving: tuple[str, ...] = ()
 
 
 CASES = (
@@ -91,15 +92,29 @@ def certified(case: Case) -> tuple[Model, Certificate]:
         *(find(name).plausible(model.ship) for name in case.moving),
     )
     h = 1.0 / case.rate_hz
-    plant = cert.plant_of(model, cert.of_ship(model), h, movable(model.effects, model.ship) if case.moving else ())
-    K = case.K or cert.usual_gain(plant, case.delays) or 1.0 / model.ship.scale("time")  # if none holds, the certificate says so
-    return model, cert.certify(model, K, h, case.delays, NOISE[case.ship], heading_noise=HEADING_NOISE, adapted=bool(case.moving))
+    plant = cert.plant_of(
+        model, cert.of_ship(model), h, movable(model.effects, model.ship) if case.moving else ()
+    )
+    # if none holds, the certificate says so
+    K = case.K or cert.usual_gain(plant, case.delays) or 1.0 / model.ship.scale("time")
+    return model, cert.certify(
+        model, K, h, case.delays, NOISE[case.ship], heading_noise=HEADING_NOISE, adapted=bool(case.moving)
+    )
 
 
 class Fleet:
     """Many ships of one kind at once, each with an observer and an adversary of her own."""
 
-    def __init__(self, model: Model, c: Certificate, runs: int, seed: int, H_s: float = 0.0, dropouts: bool = False, moving: bool = False) -> None:
+    def __init__(
+        self,
+        model: Model,
+        c: Certificate,
+        runs: int,
+        seed: int,
+        H_s: float = 0.0,
+        dropouts: bool = False,
+        moving: bool = False,
+    ) -> None:
         self.c, self.runs, self.rng, self.h = c, runs, np.random.default_rng(seed), c.h
         self.H_s, self.dropouts = H_s, dropouts
         self.numbers = movable(model.effects, model.ship) if moving else ()
@@ -130,7 +145,8 @@ class Fleet:
         self.share = rng.random(n)  # of the disturbance that is the ship's; the rest is the hostile network's
         self.gentle = rng.uniform(0.1, 1.0, n)
         self.silent = np.zeros((3, n))  # samples for which a row stays silent
-        self.held = rng.integers(0, 2, (len(self.numbers), n))  # the end of its box at which each number is held
+        # the end of its box at which each number is held
+        self.held = rng.integers(0, 2, (len(self.numbers), n))
         self._helm()
 
     def _helm(self) -> None:
@@ -154,18 +170,25 @@ class Fleet:
         return np.choose(self.policy, [error, self.corner, square, white])
 
     def _twin(self, k: int, before: tuple[Any, ...], side: np.ndarray) -> Confined:
-        """What the observer integrates: the ship's equations, with every number of her effects where the adversary wants it."""
+        """What the observer integrates: the ship's equations, with every number of her effects where the
+        adversary wants it."""
         if not self.numbers:
             return self.twin
         worst = [self._worse(i, before, side) for i in range(len(self.numbers))]
         square = (self.held + (np.sin(2 * np.pi * k * self.h / self.period) > 0.0)) % 2
         share = np.choose(self.policy, [worst, self.held, square, self.rng.random(self.held.shape)])
-        return self._with(self.numbers, [m.low + x * (m.high - m.low) for m, x in zip(self.numbers, share, strict=True)])
+        return self._with(
+            self.numbers, [m.low + x * (m.high - m.low) for m, x in zip(self.numbers, share, strict=True)]
+        )
 
     def _worse(self, i: int, before: tuple[Any, ...], side: np.ndarray) -> np.ndarray:
-        """(runs,) 1 where the upper end of a number's box drives the error further than the lower one, else 0."""
+        """(runs,) 1 where the upper end of a number's box drives the error further than the lower one, else
+        0."""
         m, weight = self.numbers[i], side / np.array(self.c.bound)[:, None]
-        low, high = (np.array(self._with((m,), [x]).step(before, Situation(**self.inputs), self.h)[3:]) for x in (m.low, m.high))
+        low, high = (
+            np.array(self._with((m,), [x]).step(before, Situation(**self.inputs), self.h)[3:])
+            for x in (m.low, m.high)
+        )
         return ((weight * (high - low)).sum(0) > 0.0).astype(int)
 
     def _with(self, numbers: Sequence[Movable], values: Sequence[object]) -> Confined:
@@ -190,13 +213,16 @@ class Fleet:
         self.push, self.learned = -self.share * force, (1.0 - self.share) * force
         heading = self.truth[2] + HEADING_NOISE * side[2]
         before = (0.0, 0.0, heading, *self.estimate)
-        self.estimate = np.array(self._twin(k, before, side).step(before, Situation(**self.inputs), self.h)[3:])
+        self.estimate = np.array(
+            self._twin(k, before, side).step(before, Situation(**self.inputs), self.h)[3:]
+        )
         for _ in range(2):
             self.truth = self.true.step(self.truth, Situation(**self.inputs), 0.5 * self.h)
         self.past.append((np.array(self.truth[3:]), self.estimate))
         self.received = self._received()
         self.estimate = self.estimate + np.where(self.received, self._pull(k, side), 0.0)
-        self.past[-1] = (self.past[-1][0], self.estimate)  # what comes late is compared with the corrected estimate of its time
+        # what comes late is compared with the corrected estimate of its time
+        self.past[-1] = (self.past[-1][0], self.estimate)
         self._grow()
         low, high = np.array([self.c.operating.ranges[a] for a in ("u", "v", "r")]).T
         nu, w = np.array(self.truth[3:]), self.true.water(Situation(psi=self.truth[2]))
@@ -223,7 +249,12 @@ class Fleet:
         E = V @ self.tube + d[:, None]
         self.before.append(E)
         told = np.array(step.told(tuple(d.tolist()), c.noise))
-        seen = now @ self.tube + again[:, None] * np.max(self.before, axis=0) + drift @ np.max(self.after, axis=0) + told[:, None]
+        seen = (
+            now @ self.tube
+            + again[:, None] * np.max(self.before, axis=0)
+            + drift @ np.max(self.after, axis=0)
+            + told[:, None]
+        )
         self.tube = np.where(self.received, seen, E)
         self.after.append(self.tube)
 
@@ -258,7 +289,9 @@ def _inner(span: tuple[float, float], share: float) -> tuple[float, float]:
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--runs", type=positive, default=sum(c.runs for c in CASES), help="runs in all (default: %(default)s)")
+    parser.add_argument(
+        "--runs", type=positive, default=sum(c.runs for c in CASES), help="runs in all (default: %(default)s)"
+    )
     parser.add_argument("--seed", type=int, default=1)
     answer.add_arguments(parser, "--results")
 
@@ -273,16 +306,31 @@ def run(args: argparse.Namespace) -> int:
     rows, loops = [], []
     for i, case in enumerate(CASES):
         model, c = certified(case)
-        fleet = Fleet(model, c, max(1, round(case.runs * share)), args.seed + i, case.H_s, case.dropouts, bool(case.moving))
+        fleet = Fleet(
+            model,
+            c,
+            max(1, round(case.runs * share)),
+            args.seed + i,
+            case.H_s,
+            case.dropouts,
+            bool(case.moving),
+        )
         rows.append((case, c, _told(f"{case.ship} {case.rate_hz:g} Hz", trial(fleet))))
     for i, of_loop in enumerate(LOOPS):
         sailed = Loops(of_loop, max(1, round(of_loop.runs * share)), args.seed + i)
-        loops.append((of_loop, sailed.c, _told(f"the loop, {of_loop.ship} {of_loop.rate_hz:g} Hz", trial(sailed))))
-    cases, own = ([{**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o in some] for some in (rows, loops))
+        loops.append(
+            (of_loop, sailed.c, _told(f"the loop, {of_loop.ship} {of_loop.rate_hz:g} Hz", trial(sailed)))
+        )
+    cases, own = (
+        [{**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o in some]
+        for some in (rows, loops)
+    )
     answer.give(args, plain({"schema_version": 1, "cases": cases, "loops": own}), tables(rows, loops, args))
     broken = sum(o.violations for _, _, o in (*rows, *loops))
     if broken:
-        raise ThresholdError(f"the bound was broken in {broken} samples inside the operating set. Do not use the certificate.")
+        raise ThresholdError(
+            f"the bound was broken in {broken} samples inside the operating set. Do not use the certificate."
+        )
     return 0
 
 

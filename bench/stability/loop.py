@@ -1,9 +1,9 @@
 """The twin's own loop against the same adversaries: `twin-bench stability` sails it beside the fleets.
 
-What a Fleet's observer leaves out is all here: readings by channel, gates that refuse, samples that pull by less than K, a heading that
-is estimated. Every other ship's instruments are half a sample late. Only the network and the adaptation are off: the whole disturbance is
-the ship's. A tick counts when the loop itself says that its certificate holds.
-"""
+What a Fleet's observer leaves out is all here: readings by channel, gates that refuse, samples that pull by
+less than K, a heading that is estimated. Every other ship's instruments are half a sample late. Only the
+network and the adaptation are off: the whole disturbance is the ship's. A tick counts when the loop itself
+says that its certificate holds."""
 
 from typing import NamedTuple
 
@@ -23,9 +23,15 @@ from twin.physics.state import Situation
 BEGIN_S, WALL = 500.0, 1.7e9  # the loop's clock at the first tick, and the wall's at its zero
 STEERS = np.radians(2.5)  # rad/s: a rudder that jumps is refused by the gates
 CHANNELS = (
-    "north_m", "east_m", "heading_true_north_deg", "surge_velocity_mps", "sway_velocity_mps", "yaw_rate_degps", "rudder_angle_deg",
+    "north_m",
+    "east_m",
+    "heading_true_north_deg",
+    "surge_velocity_mps",
+    "sway_velocity_mps",
+    "yaw_rate_degps",
+    "rudder_angle_deg",
     "propeller_rate_rpm",
-)  # fmt: skip
+)
 SPEEDS = [CHANNELS.index(name) for name in ("surge_velocity_mps", "sway_velocity_mps", "yaw_rate_degps")]
 
 
@@ -39,30 +45,46 @@ class LoopCase(NamedTuple):
 
 
 CASES = (
-    LoopCase("kvlcc2", 10.0, 40), LoopCase("kvlcc2", 10.0, 25, dropouts=True), LoopCase("container", 10.0, 10), LoopCase("container", 50.0, 10),
-    LoopCase("usv", 50.0, 10), LoopCase("usv", 10.0, 10),
-)  # fmt: skip
+    LoopCase("kvlcc2", 10.0, 40),
+    LoopCase("kvlcc2", 10.0, 25, dropouts=True),
+    LoopCase("container", 10.0, 10),
+    LoopCase("container", 50.0, 10),
+    LoopCase("usv", 50.0, 10),
+    LoopCase("usv", 10.0, 10),
+)
 
 
 class Loops(Fleet):
     """Ships as in a Fleet; estimate, bound and whether it holds (`alive`) are each one's own loop's."""
 
     def __init__(self, case: LoopCase, runs: int, seed: int) -> None:
-        settings = Settings({"ship.file": case.ship, "loop.rate_hz": case.rate_hz, "residual.file": "none", "adaptation.on": False})
+        settings = Settings(
+            {
+                "ship.file": case.ship,
+                "loop.rate_hz": case.rate_hz,
+                "residual.file": "none",
+                "adaptation.on": False,
+            }
+        )
         self.ears = [Played([]) for _ in range(runs)]
-        self.loops = [loop_of(settings, ears, Outbox(Publisher(), "twin", "ship"), None) for ears in self.ears]
+        self.loops = [
+            loop_of(settings, ears, Outbox(Publisher(), "twin", "ship"), None) for ears in self.ears
+        ]
         tube, self.rudder = self.loops[0].stabilizer.tube, np.zeros(runs)
         assert tube is not None, self.loops[0].stabilizer.why_not
         super().__init__(Model.of(self.loops[0].ship), tube.certificate, runs, seed, dropouts=case.dropouts)
         self.halfway, self.late = self.truth, np.arange(runs) % 2 == 1
 
     def step(self, k: int) -> np.ndarray:
-        """One tick of all loops on what their ships' instruments say, then the ships sail on; (3, runs) the error at the tick."""
+        """One tick of all loops on what their ships' instruments say, then the ships sail on; (3, runs) the
+        error at the tick."""
         self._tick(k)
         error = self.estimate - np.array(self.truth[3:])
         self._helm()
         self.rudder += np.clip(self.inputs["delta"] - self.rudder, -STEERS * self.h, STEERS * self.h)
-        self.push = -np.sign(self.inverse.T @ (self._against(k) / np.array(self.c.bound)[:, None])) * self.limit
+        self.push = (
+            -np.sign(self.inverse.T @ (self._against(k) / np.array(self.c.bound)[:, None])) * self.limit
+        )
         at = Situation(delta=self.rudder, n=self.inputs["n"])
         self.halfway = self.true.step(self.truth, at, 0.5 * self.h)
         self.truth = self.true.step(self.halfway, at, 0.5 * self.h)
@@ -71,12 +93,20 @@ class Loops(Fleet):
     def _tick(self, k: int) -> None:
         now_s = BEGIN_S + k * self.h
         self.received = self._received()
-        for i, (loop, ears, values) in enumerate(zip(self.loops, self.ears, self._instruments(k).T.tolist(), strict=True)):
+        for i, (loop, ears, values) in enumerate(
+            zip(self.loops, self.ears, self._instruments(k).T.tolist(), strict=True)
+        ):
             said = zip(CHANNELS, values, strict=True)
             taken_s = now_s - 0.5 * self.h * self.late[i]
-            ears.next = [Reading(channel, x, WALL + taken_s, now_s, "ship") for channel, x in said if np.isfinite(x)]
+            ears.next = [
+                Reading(channel, x, WALL + taken_s, now_s, "ship") for channel, x in said if np.isfinite(x)
+            ]
             tick, e = loop.tick(Instant(k, now_s, WALL + now_s)), loop.observer.estimate
-            self.estimate[:, i], self.tube[:, i], self.alive[i] = (e.u, e.v, e.r), loop.stabilizer.tube.beta, tick.certificate.inside
+            self.estimate[:, i], self.tube[:, i], self.alive[i] = (
+                (e.u, e.v, e.r),
+                loop.stabilizer.tube.beta,
+                tick.certificate.inside,
+            )
 
     def _instruments(self, k: int) -> np.ndarray:
         """(8, runs) by channel, off by as much as the certificate allows; NaN where nothing comes."""
@@ -84,6 +114,8 @@ class Loops(Fleet):
         x, y, psi, *nu = np.where(self.late, self.halfway, self.truth)
         u, v, r = np.array(nu) + self.noise * side
         heading = np.degrees(psi + HEADING_NOISE * side[2]) % 360.0
-        said = np.array([x, y, heading, u, v, np.degrees(r), np.degrees(self.rudder), 60.0 * self.inputs["n"]])
+        said = np.array(
+            [x, y, heading, u, v, np.degrees(r), np.degrees(self.rudder), 60.0 * self.inputs["n"]]
+        )
         said[SPEEDS] = np.where(self.received, said[SPEEDS], np.nan)
         return said

@@ -33,8 +33,9 @@ def tables(rows: list[tuple[Any, ...]], loops: list[tuple[Any, ...]], args: argp
 `twin-bench stability --runs {args.runs} --seed {args.seed}` ({seconds + own_seconds:.0f} s here)
 
 **{broken} violations in {runs} runs** ({samples} samples inside the operating set; {left} runs left it and
-were judged until then) of an observer as the theorem has it. **{own_broken} violations in {own_runs} runs of the twin's own loop**
-({own_samples} ticks of which it said that its certificate holds). Theorem and adversaries: `docs/stability.md`, `bench/stability/adversaries.py`.
+were judged until then) of an observer as the theorem has it. **{own_broken} violations in {own_runs} runs of
+the twin's own loop** ({own_samples} ticks of which it said that its certificate holds). Theorem and
+adversaries: `docs/stability.md`, `bench/stability/adversaries.py`.
 
 ## Runs
 b: the ultimate bound ({UNITS}). Error/tube: the greatest error in units of the live bound, by axis
@@ -43,13 +44,14 @@ b: the ultimate bound ({UNITS}). Error/tube: the greatest error in units of the 
 {_head(*RUNS)}
 {_lines(_run(*row) for row in rows)}
 
-Numbers moved: those of these effects, by the adversary, anywhere in the boxes of adaptation (twin/live/learning/movable.py).
-With drop-outs the error may exceed b, which counts on measurements; the tube must hold, and does.
+Numbers moved: those of these effects, by the adversary, anywhere in the boxes of adaptation
+(twin/live/learning/movable.py). With drop-outs the error may exceed b, which counts on measurements; the tube
+must hold, and does.
 
-## The loop itself
-The twin's own sensors, gates, observer, guard and tube (`bench/stability/loop.py`), fed with the readings of the same hostile ships once in
-each tick (every other ship's half a sample late), at the K, delay and noise that it would take on board; no wind, no current, network and
-adaptation off. Inside: the share of ticks in which it said that its certificate holds; only those are judged, for of others it promises
+## The loop itself The twin's own sensors, gates, observer, guard and tube (`bench/stability/loop.py`), fed
+with the readings of the same hostile ships once in each tick (every other ship's half a sample late), at the
+K, delay and noise that it would take on board; no wind, no current, network and adaptation off. Inside: the
+share of ticks in which it said that its certificate holds; only those are judged, for of others it promises
 nothing.
 
 {_head(*LOOPS)}
@@ -84,10 +86,18 @@ def _loop(case: Any, c: Any, o: Any) -> list[str]:
     u, v, r = c.bound
     bound, ticks = f"{u:.3f}, {v:.3f}, {degrees(r):.3f}" if c.ok else "no K like this holds", o.runs * o.steps
     return [
-        case.ship, f"{case.rate_hz:g}", "yes" if case.dropouts else "no", f"{c.K[0]:.3g}", str(o.runs), str(ticks),
-        f"{100.0 * o.samples / ticks:.0f} %", str(o.violations), bound,
-        " / ".join(f"{x:.2f}" for x in o.of_tube) if o.samples else "-", _seen(o),
-    ]  # fmt: skip
+        case.ship,
+        f"{case.rate_hz:g}",
+        "yes" if case.dropouts else "no",
+        f"{c.K[0]:.3g}",
+        str(o.runs),
+        str(ticks),
+        f"{100.0 * o.samples / ticks:.0f} %",
+        str(o.violations),
+        bound,
+        " / ".join(f"{x:.2f}" for x in o.of_tube) if o.samples else "-",
+        _seen(o),
+    ]
 
 
 def _seen(o: Any) -> str:
@@ -137,6 +147,8 @@ def widening(model: Model, operating: cert.OperatingSet) -> tuple[float, float]:
     """
     ranges = {**operating.ranges, "stream": (0.0, 0.0)}  # what a current adds is exact
     sure, seen = slopes(model, ranges), sampled(model, ranges)
-    ratios = [(sure.hi[i][j] - sure.lo[i][j]) / (seen.hi[i][j] - seen.lo[i][j]) for i in range(3) for j in range(3)]
+    ratios = [
+        (sure.hi[i][j] - sure.lo[i][j]) / (seen.hi[i][j] - seen.lo[i][j]) for i in range(3) for j in range(3)
+    ]
     ratios = [x for x in ratios if isfinite(x)]
     return max(ratios), sum(ratios) / len(ratios)

@@ -25,16 +25,21 @@ SCHEMA_VERSION = 1
 PARTS = 2000  # ticks with a stop-watch on each part, after the measured ones
 PACED_S = 20.0
 COUNTED_FROM = 5000  # steps: a quick look does not wait for valgrind
-COMPUTING = ("correct", "known", "learned", "adapt", "step")  # what a peer does too: correct, force, one step on
+# what a peer does too: correct, force, one step on
+COMPUTING = ("correct", "known", "learned", "adapt", "step")
 MORE = ("sensors", "predict")  # what no peer does: gates, and 120 s ahead
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--steps", type=int, default=10000, help="ticks as fast as possible (default: 10000)")
     parser.add_argument("--rate", type=float, default=50.0, metavar="HZ", help="of the loop (default: 50)")
-    parser.add_argument("--paced", type=int, metavar="N", help="ticks on time (default: 20 s of them; 0: none)")
+    parser.add_argument(
+        "--paced", type=int, metavar="N", help="ticks on time (default: 20 s of them; 0: none)"
+    )
     parser.add_argument("--ship", default="kvlcc2", help="ship file or bundled ship (default: kvlcc2)")
-    parser.add_argument("--target", choices=["here", "cortex-a72"], default="here", help="whose budget is checked")
+    parser.add_argument(
+        "--target", choices=["here", "cortex-a72"], default="here", help="whose budget is checked"
+    )
     parser.add_argument("--budget-ms", type=float, default=12.0, help="for a step, p99.9 (default: 12)")
     parser.add_argument("--budget-mb", type=float, default=48.0, help="for the process, peak (default: 48)")
     parser.add_argument("--no-peers", action="store_true", help="leave the peers out")
@@ -76,13 +81,17 @@ def measure(args: argparse.Namespace) -> dict[str, Any]:
     return judged(args, fast, paced, peers, counted, residual)
 
 
-def judged(args: argparse.Namespace, fast: Any, paced: Any, peers: Any, counted: dict[str, int], residual: str) -> dict[str, Any]:
+def judged(
+    args: argparse.Namespace, fast: Any, paced: Any, peers: Any, counted: dict[str, int], residual: str
+) -> dict[str, Any]:
     """The measurements put together, and held against the budgets."""
     step, memory = fast["step_us"], fast["memory"]
     parts = {name: times for name, times in fast["parts_us"].items() if name != "tick"}
     estimate = cortex.estimate(step["median"], step["p999"]) | {"anchor": cortex.anchor()}
     held_ms = estimate["step_ms_p999"] if args.target == "cortex-a72" else step["p999"] * 1e-3
-    computing, more = (round(sum(parts[name]["mean"] for name in names if name in parts), 1) for names in (COMPUTING, MORE))
+    computing, more = (
+        round(sum(parts[name]["mean"] for name in names if name in parts), 1) for names in (COMPUTING, MORE)
+    )
     over = []
     if held_ms > args.budget_ms:
         over.append(f"step {held_ms:.1f} ms (p99.9) is over {args.budget_ms:g} ms")
@@ -143,14 +152,20 @@ class Place:
         return stand_in.write(self.folder / "stand-in.onnx", self.ship)
 
     def _settings(self, ship: str, residual: Path) -> None:
-        zenoh = self.folder / "zenoh.json5"  # the limit of 200 messages a second is meant for time that passes
-        zenoh.write_text('{downsampling: [{messages: ["put"], flows: ["ingress"], rules: [{key_expr: "x", freq: 1.0}]}]}')
+        # the limit of 200 messages a second is meant for time that passes
+        zenoh = self.folder / "zenoh.json5"
+        zenoh.write_text(
+            '{downsampling: [{messages: ["put"], flows: ["ingress"], rules: [{key_expr: "x", freq: 1.0}]}]}'
+        )
         settings = {
             "ship": {"file": ship}, "loop": {"rate_hz": self.rate}, "log": {"folder": self.folder / "logs"},
             "bus": {"listen": self.endpoint, "file": zenoh}, "state": {"folder": self.folder / "state"},
             "residual": {"file": residual, "required": True},
         }  # fmt: skip
-        sections = [[f"[{name}]", *(f"{key} = {json.dumps(x, default=str)}" for key, x in keys.items())] for name, keys in settings.items()]
+        sections = [
+            [f"[{name}]", *(f"{key} = {json.dumps(x, default=str)}" for key, x in keys.items())]
+            for name, keys in settings.items()
+        ]
         (self.folder / "twin.toml").write_text("\n".join(line for section in sections for line in section))
 
 
@@ -177,4 +192,7 @@ def _paced(paced: Any) -> dict[str, Any] | None:
 
 def _ratios(found: dict[str, Any]) -> dict[str, float]:
     """The twin's step over each peer's, all hot: below 1 the twin is quicker."""
-    return {f"hybrid_over_{name}": round(found["hybrid"]["mean_us"] / p["median_us"], 2) for name, p in found["peers"].items()}
+    return {
+        f"hybrid_over_{name}": round(found["hybrid"]["mean_us"] / p["median_us"], 2)
+        for name, p in found["peers"].items()
+    }

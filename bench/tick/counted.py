@@ -46,12 +46,14 @@ def network() -> Step:
 
 
 def tick() -> Step:
-    """One whole tick at 50 Hz: decode, gates, observer, forces, adaptation, prediction, certificate, records."""
+    """One whole tick at 50 Hz: decode, gates, observer, forces, adaptation, prediction, certificate,
+    records."""
     return _ticks(MOST)[1]
 
 
 def hybrid(most: int = MOST) -> Step:
-    """What a peer does too, on the measurements of `most` such ticks: correct, known force, learned force, adapt, one step on."""
+    """What a peer does too, on the measurements of `most` such ticks: correct, known force, learned force,
+    adapt, one step on."""
     (before, step), (loop, _) = _ticks(most), _ticks(0)
     taken = []
     for _ in range(most):
@@ -99,10 +101,13 @@ def _messages(t: float) -> list[tuple[str, bytes]]:
     north = speed * (t * (1.0 - 0.25 * swing**2) + 0.125 * swing**2 / pace * sin(2.0 * pace * t))
     east = speed * swing / pace * (1.0 - cos(pace * t))
     values = {
-        "heading_true_north_deg": (degrees(psi) + 0.05 * waver) % 360.0, "yaw_rate_degps": degrees(r) + 0.003 * waver,
-        "surge_velocity_mps": speed + 0.02 * waver, "sway_velocity_mps": -40.0 * r + 0.02 * waver,
-        "rudder_angle_deg": 10.0 * cos(pace * t + 0.5) + 0.05 * waver, "propeller_rate_rpm": 85.0 + 0.1 * waver,
-    }  # fmt: skip
+        "heading_true_north_deg": (degrees(psi) + 0.05 * waver) % 360.0,
+        "yaw_rate_degps": degrees(r) + 0.003 * waver,
+        "surge_velocity_mps": speed + 0.02 * waver,
+        "sway_velocity_mps": -40.0 * r + 0.02 * waver,
+        "rudder_angle_deg": 10.0 * cos(pace * t + 0.5) + 0.05 * waver,
+        "propeller_rate_rpm": 85.0 + 0.1 * waver,
+    }
     fix = encode_fix(57.62 + north / 111e3, 11.58 + east / 59e3, ns)
     said = {"location_fix": fix} | {name: encode_float(value, ns) for name, value in values.items()}
     return [(key("twin", "ship", subject, "sea"), wrap(data, ns)) for subject, data in said.items()]

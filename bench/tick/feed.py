@@ -72,7 +72,11 @@ class Feed:
         wall_ns = int((self.start_s + row.time_s) * 1e9)
         for subject, value in row.said:
             place = isinstance(value, tuple)
-            data = encode_fix(*geodesy.from_chart(self.datum, *value), wall_ns) if place else encode_float(value, wall_ns)
+            data = (
+                encode_fix(*geodesy.from_chart(self.datum, *value), wall_ns)
+                if place
+                else encode_float(value, wall_ns)
+            )
             self.put[subject](wrap(data, wall_ns))
 
 

@@ -1,9 +1,9 @@
 """What the others cost for one step, measured hot in a process of their own (their memory is not the twin's).
 
-hybrid: the twin's step, correct to adapt. analytic: one Runge-Kutta step of the equations. ekf: filterpy's filter on the same equations. lstm: two
-layers of 128 in ONNX Runtime, one thread, re-run over its window of 50 each step (the paper's kind) and,
-beside it, carrying its state. look_ahead: 120 s in 1200 steps of 0.1 s and in 120 of 1 s, for one ship and for
-an ensemble of 64.
+hybrid: the twin's step, correct to adapt. analytic: one Runge-Kutta step of the equations. ekf: filterpy's
+filter on the same equations. lstm: two layers of 128 in ONNX Runtime, one thread, re-run over its window of
+50 each step (the paper's kind) and, beside it, carrying its state. look_ahead: 120 s in 1200 steps of 0.1 s
+and in 120 of 1 s, for one ship and for an ensemble of 64.
 
     python -m bench.tick.peers [--repeats 1000]      prints JSON
 """
@@ -90,7 +90,8 @@ def look_ahead(ship: Any, members: int, step_s: float) -> Callable[[], Situation
 
 
 def ahead(ship: Any, members: int) -> dict[str, float]:
-    """Milliseconds of the look-ahead in fine and in coarse steps, and how far apart their ends are at most."""
+    """Milliseconds of the look-ahead in fine and in coarse steps, and how far apart their ends are at
+    most."""
     fine, coarse = (look_ahead(ship, members, step_s) for step_s in (FINE_S, COARSE_S))
     a, b = fine(), coarse()
     return {
@@ -107,7 +108,9 @@ def measure(repeats: int) -> dict[str, Any]:
     All in turn, a few steps of each, so that a machine that gets slower or faster does so for all.
     """
     ship, few = load(SHIP), max(repeats // ROUNDS, 1)
-    steps = {"hybrid": counted.hybrid(SETTLE + ROUNDS * (few + HOT))} | {name: make(ship) for name, make in PEERS.items()}
+    steps = {"hybrid": counted.hybrid(SETTLE + ROUNDS * (few + HOT))} | {
+        name: make(ship) for name, make in PEERS.items()
+    }
     hot_us(steps["hybrid"], 1, SETTLE - 1)
     times: dict[str, list[float]] = {name: [] for name in steps}
     for _ in range(ROUNDS):
@@ -122,7 +125,9 @@ def measure(repeats: int) -> dict[str, Any]:
 def _mean_us(times: list[float]) -> float:
     """Of five steps together, in one of which she learns; the median of such means."""
     every = counted.EVERY
-    return quantiles([sum(times[i : i + every]) / every for i in range(0, len(times) - every + 1, every)], ("median",))["median"]
+    return quantiles(
+        [sum(times[i : i + every]) / every for i in range(0, len(times) - every + 1, every)], ("median",)
+    )["median"]
 
 
 def _quantiles(times: list[float]) -> dict[str, float]:

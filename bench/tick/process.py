@@ -23,7 +23,9 @@ from twin.live import run
 from twin.live.clock import Clock, Instant, MonotonicClock
 from twin.live.signals import config
 
-WARM_UP = 900  # ticks before anything is counted: the feed is heard, gates open, the first prediction is made, the log is open
+# ticks before anything is counted: the feed is heard, gates open, the first prediction is made, the log is
+# open
+WARM_UP = 900
 CONNECT_S = 20.0
 FEED_S = 20.0  # a feed that is silent for so long has stopped
 LAG_S = 0.2  # of the loop's own time
@@ -34,16 +36,17 @@ class FastClock:
     """A clock that is always due: each tick is one period later than the last, whatever the time is.
 
     Outside every step it waits for a feed that lags by more than `LAG_S` (without measurements the loop would
-    do less work), and rests now and then (the kernel stops a real-time process that never sleeps). What the feed
-    has said may still be on its way: while the newest measurement is older than `OLD_S` it ticks on time.
-    """
+    do less work), and rests now and then (the kernel stops a real-time process that never sleeps). What the
+    feed has said may still be on its way: while the newest measurement is older than `OLD_S` it ticks on
+    time."""
 
     overruns = 0
     work_s, rest_s = 0.05, 0.01
 
     def __init__(self, rate_hz: float, mark: Mark | None = None, age_s: Callable[[], float] = lambda: 0.0):
         self.period_s, self._index, self._mark, self._age_s = 1.0 / rate_hz, 0, mark, age_s
-        self._start_s = self._wall_s = self._rested_s = 0.0  # of the first tick: the feed may take a while to connect
+        # of the first tick: the feed may take a while to connect
+        self._start_s = self._wall_s = self._rested_s = 0.0
 
     def wait(self) -> Instant:
         if self._index == 0:

@@ -52,7 +52,9 @@ def _title(words: str, right: str = "") -> str:
 
 def _head(r: dict[str, Any]) -> str:
     lines = [f"twin-bench: {r['steps']} steps of the whole loop at {r['rate_hz']:g} Hz, mode: {r['mode']}"]
-    lines.append(f"residual: {r['residual']}; {r['messages_per_step']:g} messages a step; {r['log']['written']} logged")
+    lines.append(
+        f"residual: {r['residual']}; {r['messages_per_step']:g} messages a step; {r['log']['written']} logged"
+    )
     others = {mode: n for mode, n in r["modes"].items() if mode != r["mode"]}
     if others:
         lines.append(f"note: not all steps did all the work: {others}")
@@ -84,7 +86,10 @@ def _parts(r: dict[str, Any]) -> str:
     total = sum(p["mean"] for p in r["parts_us"].values()) or 1.0
     for name, times in r["parts_us"].items():
         bar = "█" * round(14 * times["mean"] / total)
-        lines.append(f"  {name:<12}{times['median']:>8,.0f}{times['p99']:>8,.0f}{times['mean']:>8,.0f}  {DOC.get(name, ''):<44}{bar}")
+        lines.append(
+            f"  {name:<12}{times['median']:>8,.0f}{times['p99']:>8,.0f}{times['mean']:>8,.0f}  "
+            f"{DOC.get(name, ''):<44}{bar}"
+        )
     return "\n".join(lines)
 
 
@@ -92,8 +97,10 @@ def _memory(r: dict[str, Any]) -> str:
     return "\n".join(
         [
             _title("Memory of the whole process [MB]"),
-            f"  peak (VmHWM) {r['rss_peak_mb']:.1f}   at the end: anonymous {r['rss_anon_mb']:.1f}, file-backed {r['rss_file_mb']:.1f}",
-            f"  growth from a tenth of the steps to the end: {r['rss_growth_mb']:+.2f}, of it anonymous {r['rss_growth_anon_mb']:+.2f}",
+            f"  peak (VmHWM) {r['rss_peak_mb']:.1f}   at the end: anonymous {r['rss_anon_mb']:.1f}, "
+            f"file-backed {r['rss_file_mb']:.1f}",
+            f"  growth from a tenth of the steps to the end: {r['rss_growth_mb']:+.2f}, of it anonymous "
+            f"{r['rss_growth_anon_mb']:+.2f}",
         ]
     )
 
@@ -102,11 +109,16 @@ def _peers(r: dict[str, Any]) -> str:
     if not r["peers"]:
         return ""
     lines = [_title("Computing of one step, beside the peers, all hot [us]", "twin/peer")]
-    lines.append(f"  {'twin':<14}{'correct, known, learned, step, adapt (mean)':<44}{r['hybrid']['mean_us']:>8,.0f}")
+    lines.append(
+        f"  {'twin':<14}{'correct, known, learned, step, adapt (mean)':<44}{r['hybrid']['mean_us']:>8,.0f}"
+    )
     for name, doc in PEERS.items():
         ratio = r["ratios"][f"hybrid_over_{name}"]
         lines.append(f"  {name:<14}{doc:<44}{r['peers'][name]['median_us']:>8,.0f}{ratio:>10.2f}")
-    lines.append(f"  in the loop, caches cold: {r['computing_us']:,.0f}, and gates and predictions, which no peer has, {r['more_us']:,.0f}")
+    lines.append(
+        f"  in the loop, caches cold: {r['computing_us']:,.0f}, and gates and predictions, which no "
+        f"peer has, {r['more_us']:,.0f}"
+    )
     return "\n".join(lines)
 
 
@@ -115,7 +127,9 @@ def _ahead(r: dict[str, Any]) -> str:
         return ""
     lines = [_title("Look-ahead of 120 s by the equations, outside the tick [ms]")]
     for who, found in r["look_ahead"].items():
-        times = "   ".join(f"{name.split('_')[1]} steps {ms:,.0f}" for name, ms in found.items() if name.endswith("_ms"))
+        times = "   ".join(
+            f"{name.split('_')[1]} steps {ms:,.0f}" for name, ms in found.items() if name.endswith("_ms")
+        )
         lines.append(f"  {who:<12}{times}   ends {100.0 * found['apart_m']:.1f} cm apart")
     return "\n".join(lines)
 
@@ -140,7 +154,8 @@ def _cortex(r: dict[str, Any]) -> str:
             "  published single-thread ratios of current x86-64 cores, and their geometric mean",
             f"  anchor: N-body in Python takes {a['nbody_us']:.1f} us here, "
             f"{a['nbody_us_cortex_a72']:.1f} us on a Pi 4 (published): x{a['ratio']:.2f}, by which",
-            f"  median {a['ratio'] * r['step_us']['median'] * 1e-3:.2f}   p99.9 {a['ratio'] * r['step_us']['p999'] * 1e-3:.2f}",
+            f"  median {a['ratio'] * r['step_us']['median'] * 1e-3:.2f}   p99.9 "
+            f"{a['ratio'] * r['step_us']['p999'] * 1e-3:.2f}",
         ]
     )
 

@@ -34,7 +34,10 @@ def test_an_unknown_hull_is_one_line_that_names_the_known_ones(capsys):
     assert "kvlcc2" in said and said.count("\n") == 1
 
 
-@pytest.mark.parametrize("words", [["hidden-effects", "--seeds", "0"], ["stability", "--runs", "-5"], ["adaptation", "--seeds", "two"]])
+@pytest.mark.parametrize(
+    "words",
+    [["hidden-effects", "--seeds", "0"], ["stability", "--runs", "-5"], ["adaptation", "--seeds", "two"]],
+)
 def test_a_count_that_is_none_is_a_usage_error_and_no_hour_of_work(words, capsys):
     with pytest.raises(SystemExit) as end:
         main(words)
@@ -44,4 +47,6 @@ def test_a_count_that_is_none_is_a_usage_error_and_no_hour_of_work(words, capsys
 
 def test_a_page_that_could_not_be_written_is_said_before_the_work(tmp_path, capsys):
     assert main(["hidden-effects", "--out", str(tmp_path / "no" / "league.md")]) == 1
-    assert "league.md: cannot be written (there is no such folder). Choose another place with --out." in capsys.readouterr().err
+    assert (
+        "league.md: cannot be written (there is no such folder). Choose another place with --out."
+    ) in capsys.readouterr().err

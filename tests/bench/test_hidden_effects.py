@@ -15,9 +15,21 @@ from bench.reference.weather import CALM
 from twin.physics.effects import catalogue, find
 
 KEYS = {
-    "schema_version", "cases", "named", "named_in_group", "false_alarms", "nothing_cases", "unknown_recognised", "unknown_cases",
-    "pairs_found", "pair_cases", "coverage95", "error_after_over_oracle", "seconds_median", "effects",
-}  # fmt: skip
+    "schema_version",
+    "cases",
+    "named",
+    "named_in_group",
+    "false_alarms",
+    "nothing_cases",
+    "unknown_recognised",
+    "unknown_cases",
+    "pairs_found",
+    "pair_cases",
+    "coverage95",
+    "error_after_over_oracle",
+    "seconds_median",
+    "effects",
+}
 OF_EFFECT = {"cases", "named", "named_in_group", "error_before_m", "error_after_m", "error_oracle_m"}
 
 
@@ -25,10 +37,23 @@ def row(kind="effect", hidden=("Wind",), missing=("Wind",), verdict=None, group=
     truly = hidden if kind in ("effect", "pair") else ()
     said = verdict or ("missing" if missing else "nothing_missing")
     return {
-        "kind": kind, "hidden": dict.fromkeys(hidden, 1.0), "missing_truly": list(truly), "missing": list(missing), "verdict": said,
-        "group": list(group), "hull": "kvlcc2", "manoeuvre": "mixed", "seed": 1, "known": [], "decoys": [], "duration_s": 1800.0,
-        "seconds": 8.0, "cpu_seconds": 4.0, "key": "k", **more,
-    }  # fmt: skip
+        "kind": kind,
+        "hidden": dict.fromkeys(hidden, 1.0),
+        "missing_truly": list(truly),
+        "missing": list(missing),
+        "verdict": said,
+        "group": list(group),
+        "hull": "kvlcc2",
+        "manoeuvre": "mixed",
+        "seed": 1,
+        "known": [],
+        "decoys": [],
+        "duration_s": 1800.0,
+        "seconds": 8.0,
+        "cpu_seconds": 4.0,
+        "key": "k",
+        **more,
+    }
 
 
 def test_every_round_hides_every_effect_on_every_hull_at_every_strength():
@@ -46,7 +71,9 @@ def test_no_two_questions_are_the_same():
 def test_other_seeds_ask_the_same_kinds_of_questions_on_other_voyages():
     first, sixth = (plan.questions(["usv"], 1, [1.0], first_seed=seed)[0] for seed in (1, 6))
     assert {q.seed % 50 for q in sixth} == {6} and {q.seed % 50 for q in first} == {1}
-    assert {q.kind for q in first} == {q.kind for q in sixth} and not {q.key for q in first} & {q.key for q in sixth}
+    assert {q.kind for q in first} == {q.kind for q in sixth} and not {q.key for q in first} & {
+        q.key for q in sixth
+    }
 
 
 def test_the_held_out_voyage_is_another_manoeuvre_of_the_same_ship():
@@ -78,12 +105,17 @@ def test_a_number_beside_its_truth_by_hand():
 
 def test_scores_by_hand():
     rows = [
-        row(before=4.0, after=2.0, oracle=1.0), row(missing=["Bank"], group=["Wind"], before=4.0, after=4.0, oracle=2.0),
-        row(missing=["Bank"]), row(missing=[]),
-        row("none", (), []), row("decoy", (), ["Wind"]),
-        row("outside", ("Squall",), [], "unknown"), row("outside", ("Squall",), [], "nothing_missing"),
-        row("pair", ("Wind", "Bank"), ["Bank", "Wind"]), row("pair", ("Wind", "Bank"), ["Wind"]),
-    ]  # fmt: skip
+        row(before=4.0, after=2.0, oracle=1.0),
+        row(missing=["Bank"], group=["Wind"], before=4.0, after=4.0, oracle=2.0),
+        row(missing=["Bank"]),
+        row(missing=[]),
+        row("none", (), []),
+        row("decoy", (), ["Wind"]),
+        row("outside", ("Squall",), [], "unknown"),
+        row("outside", ("Squall",), [], "nothing_missing"),
+        row("pair", ("Wind", "Bank"), ["Bank", "Wind"]),
+        row("pair", ("Wind", "Bank"), ["Wind"]),
+    ]
     found = score.contract(rows)
     assert (found["cases"], found["named"], found["named_in_group"]) == (10, 0.25, 0.5)
     assert (found["false_alarms"], found["nothing_cases"]) == (0.5, 2)
@@ -122,7 +154,10 @@ def test_three_short_voyages_go_through_the_whole_league(tmp_path, capsys):
         "outside",
     ]
     out = tmp_path / "league.md"
-    assert main(["hidden-effects", *options, "--resume", str(tmp_path / "r"), "--out", str(out), "--json", "-"]) == 0
+    assert (
+        main(["hidden-effects", *options, "--resume", str(tmp_path / "r"), "--out", str(out), "--json", "-"])
+        == 0
+    )
     result = json.loads(capsys.readouterr().out)
     assert set(result) >= KEYS and set(result["effects"]["Current"]) == OF_EFFECT
     assert (result["cases"], result["nothing_cases"], result["unknown_cases"]) == (3, 1, 1)

@@ -69,7 +69,9 @@ def test_the_filter_begins_where_the_ship_is(calm):
 def test_blocks_widen_an_interval_that_single_errors_make_too_narrow():
     """Test: ten voyages of five equal errors. Expected: the interval by voyages more than twice as wide."""
     values = np.repeat(np.random.default_rng(1).standard_normal(10), 5)
-    (a, b), (c, d) = (paper_stats.bootstrap(values, g, 2000) for g in (np.repeat(np.arange(10), 5), np.arange(50)))
+    (a, b), (c, d) = (
+        paper_stats.bootstrap(values, g, 2000) for g in (np.repeat(np.arange(10), 5), np.arange(50))
+    )
     assert b - a > 1.8 * (d - c)
 
 
@@ -79,12 +81,16 @@ def test_cliffs_delta_by_hand():
 
 
 def test_the_hybrids_filter_knows_where_she_is_and_where_the_water_goes(calm):
-    """Test: the nominal ship in TS-01, a current of 0.1 m/s. Expected: place within two metres at every start, current within 0.1 m/s,
-    heading within half a degree, and uncertainties that are neither nothing nor boundless."""
+    """Test: the nominal ship in TS-01, a current of 0.1 m/s. Expected: place within two metres at every
+    start, current within 0.1 m/s, heading within half a degree, and uncertainties that are neither nothing
+    nor boundless."""
     one = paper_filter.Filter([calm], Model(nominal()), None, [paper_filter.Tuning()])
     state = one.run(int(calm.starts[-1]))[calm.starts, 0]
     truth = calm.truth[calm.starts]
-    assert np.abs(state[:, :2] - truth[:, :2]).max() < 2.0 and np.degrees(np.abs(state[:, 2] - truth[:, 2])).max() < 0.5
+    assert (
+        np.abs(state[:, :2] - truth[:, :2]).max() < 2.0
+        and np.degrees(np.abs(state[:, 2] - truth[:, 2])).max() < 0.5
+    )
     assert np.abs(state[:, 6:8] - calm.water.water[calm.starts]).max() < 0.1
     sigma = np.sqrt(np.diagonal(one.P[0]))
     assert (sigma > 0).all() and sigma[0] < 1.0 and sigma[3] < 0.1
@@ -99,20 +105,27 @@ def test_many_filters_side_by_side_say_what_each_says_alone(calm):
 
 
 def test_free_runs_over_ground_begin_where_the_filter_is(calm):
-    """Test: a filter's state that is the truth, but for a current that is 1 m/s too far north. Expected: a metre north for each second."""
-    state = np.concatenate([calm.water.state[calm.starts], calm.water.water[calm.starts], np.zeros((5, 3))], 1)
+    """Test: a filter's state that is the truth, but for a current that is 1 m/s too far north. Expected: a
+    metre north for each second."""
+    state = np.concatenate(
+        [calm.water.state[calm.starts], calm.water.water[calm.starts], np.zeros((5, 3))], 1
+    )
     state[:, :2] = calm.earth.state[calm.starts, :2]
     model = Model(nominal())
     (there,) = paper_filter.from_states([calm], model, None, [state])
     state[:, paper_filter.NORTH] += 1.0
     (north,) = paper_filter.from_states([calm], model, None, [state])
     seconds = calm.water.t[calm.at[-1, 0]] - calm.water.t[calm.at[0, 0]]
-    assert np.allclose(north[-1, :, 0] - there[-1, :, 0], seconds, atol=1e-3) and np.allclose(north[..., 1:], there[..., 1:])
+    assert np.allclose(north[-1, :, 0] - there[-1, :, 0], seconds, atol=1e-3) and np.allclose(
+        north[..., 1:], there[..., 1:]
+    )
     assert np.allclose(there, free(model, None, [calm])[0], atol=1e-3)
 
 
 def test_without_gnss_noise_the_place_is_the_truth_of_a_moment_ago(tmp_path):
-    (sailed,) = paper_sea.sail([replace(paper_sea.zigzags(1, 5, ("TS-02",))[0], duration_s=60.0)], tmp_path, lambda text: None)
+    (sailed,) = paper_sea.sail(
+        [replace(paper_sea.zigzags(1, 5, ("TS-02",))[0], duration_s=60.0)], tmp_path, lambda text: None
+    )
     exact = paper_sea.without_gnss_noise(sailed).voyage
     seen = np.isfinite(sailed.voyage.columns["north_m"])
     assert np.array_equal(np.isfinite(exact.columns["north_m"]), seen)
@@ -122,24 +135,33 @@ def test_without_gnss_noise_the_place_is_the_truth_of_a_moment_ago(tmp_path):
 
 
 def test_validation_and_test_are_as_hard_as_each_other_by_their_plan():
-    """Expected: the same manoeuvres, seas and speeds among the runs that say when to stop and those that never did, but for the one
-    run more that 72 leave over."""
+    """Expected: the same manoeuvres, seas and speeds among the runs that say when to stop and those that
+    never did, but for the one run more that 72 leave over."""
     parts = split(paper_sea.lessons(paper_sea.FULL))
-    kinds = {n: Counter(x for c in cases for x in (c.manoeuvre, c.weather, c.speed_fraction)) for n, cases in parts.items()}
+    kinds = {
+        n: Counter(x for c in cases for x in (c.manoeuvre, c.weather, c.speed_fraction))
+        for n, cases in parts.items()
+    }
     assert sum(kinds["validation"].values()) - sum(kinds["test"].values()) == 3
     assert all(0 <= kinds["validation"][kind] - kinds["test"][kind] <= 1 for kind in kinds["train"])
 
 
 def test_a_gap_between_equal_parts_is_nothing(calm):
     model = Model(nominal())
-    found = paper_gap.gap({"nominal": lambda some: free(model, None, some)}, [calm], [calm], 100)["nominal"]["heading"]
-    assert found["change_percent"] == 0.0 and found["by_voyage_95"] == [0.0, 0.0] and found["validation"] > 0.1
+    found = paper_gap.gap({"nominal": lambda some: free(model, None, some)}, [calm], [calm], 100)["nominal"][
+        "heading"
+    ]
+    assert (
+        found["change_percent"] == 0.0 and found["by_voyage_95"] == [0.0, 0.0] and found["validation"] > 0.1
+    )
 
 
 @pytest.fixture(scope="module")
 def tiny(tmp_path_factory):
     """The whole bench with the least of everything: it learns next to nothing, but every table is made."""
-    plan = paper_sea.Plan(5, 1, 1, 1, (20,), (1,), 1, (42, 123), 2, 1, 64, 1, 200, 0.5, 320.0, (110.0, 150.0, 190.0))
+    plan = paper_sea.Plan(
+        5, 1, 1, 1, (20,), (1,), 1, (42, 123), 2, 1, 64, 1, 200, 0.5, 320.0, (110.0, 150.0, 190.0)
+    )
     folder = tmp_path_factory.mktemp("tiny")
     return paper.reproduce(plan, folder / "work", True, folder / "figures"), folder
 
@@ -149,9 +171,13 @@ def test_every_table_is_made_and_keeps_the_contract(tiny):
     assert set(result["tables"]) >= {"3", "4", "5", "6", "7", "8", "fig5", "data", "fig6_ms"}
     three = result["tables"]["3"]
     for measure in ("heading_mae_deg", "lateral_mae_m"):
-        assert {"analytic", "ekf", "lstm", "hybrid", "hybrid_adapted", "physics_added", "paper"} <= set(three[measure])
+        assert {"analytic", "ekf", "lstm", "hybrid", "hybrid_adapted", "physics_added", "paper"} <= set(
+            three[measure]
+        )
     assert set(three["r2"]) >= {"analytic", "hybrid"} and three["seeds"]["count"] == 2
-    assert {"heading_vs_analytic", "lateral_vs_analytic", "heading_vs_ekf", "lateral_vs_ekf"} <= set(result["ratios"])
+    assert {"heading_vs_analytic", "lateral_vs_analytic", "heading_vs_ekf", "lateral_vs_ekf"} <= set(
+        result["ratios"]
+    )
     json.dumps(result, allow_nan=False)
 
 
@@ -162,21 +188,39 @@ def test_the_lstm_says_the_same_as_onnx(tiny):
 def test_the_page_has_the_papers_numbers_and_the_figures_are_small(tiny):
     result, folder = tiny
     text = "\n".join(page(result))
-    assert all(word in text for word in ("(paper 142.5)", "Table 7", "Table 8", "Fig. 5", "learning on", "Error over amount of data", "fig-5-closed-loop.png"))
-    assert "| R2 at least 0.96 |" in text and "| 14 x in heading and 12.7 x lateral against the nominal analytic model |" in text
+    assert all(
+        word in text
+        for word in (
+            "(paper 142.5)",
+            "Table 7",
+            "Table 8",
+            "Fig. 5",
+            "learning on",
+            "Error over amount of data",
+            "fig-5-closed-loop.png",
+        )
+    )
+    assert (
+        "| R2 at least 0.96 |" in text
+        and ("| 14 x in heading and 12.7 x lateral against the nominal analytic model |") in text
+    )
     drawn = sorted(path.name for path in (folder / "figures").iterdir())
     assert [name[:5] for name in drawn] == [f"fig-{k}" for k in range(2, 8)]
     assert all(path.stat().st_size < 150_000 for path in (folder / "figures").iterdir())
 
 
 def test_the_loop_closed_over_the_reference_sea_settles_and_a_hostile_residual_stays_bounded(tiny):
-    """Expected: without a residual, settled within six lengths with hardly any overshoot and the rudder far from its stop; a hostile
-    one, as strong as its bound allows, cannot turn her round."""
+    """Expected: without a residual, settled within six lengths with hardly any overshoot and the rudder far
+    from its stop; a hostile one, as strong as its bound allows, cannot turn her round."""
     rows = {(x["mode"], x["scenario"]): x for x in tiny[0]["tables"]["fig5"]}
     assert len(rows) == 9
     for scenario in paper_sea.SCENARIOS:
         alone = rows["analytic alone", scenario]
-        assert alone["settle_lengths_max"] < 6.0 and alone["overshoot_percent"] < 8.0 and alone["rudder_deg"] < 20.0
+        assert (
+            alone["settle_lengths_max"] < 6.0
+            and alone["overshoot_percent"] < 8.0
+            and alone["rudder_deg"] < 20.0
+        )
         assert rows["with a hostile residual", scenario]["gust_deg"] < 60.0
 
 

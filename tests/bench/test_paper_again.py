@@ -1,4 +1,5 @@
-"""The gap on more runs: what is sailed again is the same but for its seeds, and the page says what was compared."""
+"""The gap on more runs: what is sailed again is the same but for its seeds, and the page says what was
+compared."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -21,8 +22,8 @@ def test_what_is_sailed_again_is_the_same_but_for_seeds_that_nobody_had():
 
 
 def test_voyages_drawn_among_their_like_do_not_scatter_by_kind():
-    """Test: two parts whose windows err by 1 in one sea and by 10 in another, the same in both. Expected: no gap and no doubt among
-    like ones; a wide interval by voyage."""
+    """Test: two parts whose windows err by 1 in one sea and by 10 in another, the same in both. Expected: no
+    gap and no doubt among like ones; a wide interval by voyage."""
     voyage = np.repeat(np.arange(6), 4)
     error = np.where(voyage < 3, 1.0, 10.0)
     e, kinds = SimpleNamespace(voyage=voyage, heading_deg=error), 3 * ["TS-01 mixed"] + 3 * ["TS-03 mixed"]
@@ -33,8 +34,18 @@ def test_voyages_drawn_among_their_like_do_not_scatter_by_kind():
 
 
 def test_the_page_holds_every_pair_with_its_interval():
-    x = {"validation": 0.2, "test": 0.25, "change_percent": 25.0, "by_voyage_95": [-1.0, 51.0], "among_like_95": [9.0, 41.0]}
-    found = {"runs": {"validation": 13, "test": 14}} | {name: {"heading": x, "lateral": x} for name in ("hybrid", "analytic_current")}
+    x = {
+        "validation": 0.2,
+        "test": 0.25,
+        "change_percent": 25.0,
+        "by_voyage_95": [-1.0, 51.0],
+        "among_like_95": [9.0, 41.0],
+    }
+    found = {"runs": {"validation": 13, "test": 14}} | {
+        name: {"heading": x, "lateral": x} for name in ("hybrid", "analytic_current")
+    }
     text = "\n".join(page({"times": 3, "pairs": dict.fromkeys(PAIRS, found)}, True))
     assert all(text.count(f"| {said} | 13, 14 |") == 2 for said in PAIRS)
-    assert "`twin-bench gap --full --times 3`" in text and "| 0.200, 0.250 | +25.0 % | -1.0 to +51.0 % | +9.0 to +41.0 % |" in text
+    assert (
+        "`twin-bench gap --full --times 3`"
+    ) in text and "| 0.200, 0.250 | +25.0 % | -1.0 to +51.0 % | +9.0 to +41.0 % |" in text

@@ -124,7 +124,8 @@ def test_what_is_counted_runs_as_a_whole():
 
 
 def test_the_twins_step_beside_the_peers_does_all_the_work():
-    """Test: 120 s of it. Expected: the estimate follows the measurements, the network acts, and she learns."""
+    """Test: 120 s of it. Expected: the estimate follows the measurements, the network acts, and she
+    learns."""
     step = counted.hybrid(6000)
     e = [step() for _ in range(6000)][-1]
     loop = next(c.cell_contents for c in step.__closure__ if isinstance(c.cell_contents, Loop))

@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 
 from bench.real import faults as real_faults
-from bench.real.faults import FAULTS, Readings, antenna_elsewhere, asked, early_rudder, in_a_stream, late_receiver, turned_compass
+from bench.real.faults import (
+    FAULTS,
+    Readings,
+    antenna_elsewhere,
+    asked,
+    early_rudder,
+    in_a_stream,
+    late_receiver,
+    turned_compass,
+)
 from twin.physics.effects import find
 from twin.physics.ship import load
 from twin.recording.voyage import Voyage
@@ -18,10 +27,15 @@ def voyage():
     t = np.arange(0.0, 600.0, 1.0)
     psi = R * t
     columns = {
-        "north_m": U / R * np.sin(psi), "east_m": U / R * (1.0 - np.cos(psi)), "heading_true_north_deg": np.degrees(psi),
-        "surge_velocity_mps": np.full_like(t, U), "sway_velocity_mps": np.zeros_like(t), "yaw_rate_degps": np.full_like(t, np.degrees(R)),
-        "rudder_angle_deg": 10.0 * np.sin(0.02 * t), "propeller_rate_rpm": np.full_like(t, 100.0),
-    }  # fmt: skip
+        "north_m": U / R * np.sin(psi),
+        "east_m": U / R * (1.0 - np.cos(psi)),
+        "heading_true_north_deg": np.degrees(psi),
+        "surge_velocity_mps": np.full_like(t, U),
+        "sway_velocity_mps": np.zeros_like(t),
+        "yaw_rate_degps": np.full_like(t, np.degrees(R)),
+        "rudder_angle_deg": 10.0 * np.sin(0.02 * t),
+        "propeller_rate_rpm": np.full_like(t, 100.0),
+    }
     return Voyage("a turn", t, columns)
 
 
@@ -42,17 +56,23 @@ def test_place_and_velocity_still_belong_together_behind_an_antenna_a_stream_and
     for v in (voyage, antenna_elsewhere(voyage, 40.0), in_a_stream(voyage, 0.5, -0.3)):
         moves_as_it_says(v)
     late = late_receiver(voyage, 5.0)
-    assert late["north_m"] == pytest.approx(voyage["north_m"][: len(late)]) and late["heading_true_north_deg"][0] == pytest.approx(np.degrees(R * 5))
+    assert late["north_m"] == pytest.approx(voyage["north_m"][: len(late)]) and late[
+        "heading_true_north_deg"
+    ][0] == pytest.approx(np.degrees(R * 5))
 
 
 def test_a_turned_compass_moves_the_ship_nowhere_and_makes_her_drift(voyage):
     v = turned_compass(voyage, 0.05)
     assert v["north_m"] == pytest.approx(voyage["north_m"])
-    assert v["sway_velocity_mps"] == pytest.approx(-U * np.sin(0.05)) and v["surge_velocity_mps"] == pytest.approx(U * np.cos(0.05))
+    assert v["sway_velocity_mps"] == pytest.approx(-U * np.sin(0.05)) and v[
+        "surge_velocity_mps"
+    ] == pytest.approx(U * np.cos(0.05))
 
 
 def test_a_rudder_that_comes_later_was_recorded_earlier(voyage):
-    assert early_rudder(voyage, 7.0)["rudder_angle_deg"][:500] == pytest.approx(voyage["rudder_angle_deg"][7:507])
+    assert early_rudder(voyage, 7.0)["rudder_angle_deg"][:500] == pytest.approx(
+        voyage["rudder_angle_deg"][7:507]
+    )
 
 
 def test_every_fault_has_a_name_in_the_catalogue_and_changes_the_readings(voyage):

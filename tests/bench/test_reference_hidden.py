@@ -149,7 +149,8 @@ def test_two_effects_can_be_hidden_at_once():
 
 
 def test_a_voyage_is_the_same_whoever_sails_beside_it(voyages):
-    """All voyages are sailed side by side; a squall over one ship once let the wind blow on another that was to feel none."""
+    """All voyages are sailed side by side; a squall over one ship once let the wind blow on another that was
+    to feel none."""
     for name in ("wind_no_force", "waves_no_force"):
         alone = simulate([Case("usv", "mixed", decoys=(name,), seed=11, duration_s=40.0)])[0]
         assert np.array_equal(alone.truth["v"], voyages[1][name].truth["v"]), name

@@ -150,7 +150,8 @@ def changed():
 
 @pytest.mark.parametrize("name", CHANGES)
 def test_a_change_is_not_felt_before_its_time_and_is_felt_after(changed, name):
-    """Test: another hull or another wind from 60 s on. Expected: the same bytes before; another speed in the end."""
+    """Test: another hull or another wind from 60 s on. Expected: the same bytes before; another speed in the
+    end."""
     at, plain, other = round(CHANGED_AT_S / TICK_S), changed["as she is"], changed[name]
     for column in COLUMNS:
         assert plain.columns[column][:at].tobytes() == other.columns[column][:at].tobytes(), column
@@ -178,7 +179,10 @@ def test_a_step_of_wind_leaves_waves_and_current_as_they_were(changed):
 
 def test_who_changes_at_once_sails_like_who_was_so_from_the_beginning():
     heavy = CHANGES["heavier"]["hull"]
-    cases = [Case(heavy, seed=7, duration_s=30.0), Case("kvlcc2", seed=7, duration_s=30.0, change=Change(0.0, heavy))]
+    cases = [
+        Case(heavy, seed=7, duration_s=30.0),
+        Case("kvlcc2", seed=7, duration_s=30.0, change=Change(0.0, heavy)),
+    ]
     first, second = simulate(cases)
     assert first.truth["u"].tobytes() == second.truth["u"].tobytes()
 

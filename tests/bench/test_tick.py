@@ -36,7 +36,8 @@ def test_a_short_run_of_the_whole_loop_is_good(short):
 
 
 def test_the_whole_process_stays_inside_its_budget_of_memory(short):
-    """Expected: bus, log, network and adaptation loaded, at most 48 MB at the peak; half of it is other people's pages."""
+    """Expected: bus, log, network and adaptation loaded, at most 48 MB at the peak; half of it is other
+    people's pages."""
     assert short[1]["rss_peak_mb"] < 48.0
 
 

@@ -81,10 +81,13 @@ def test_a_certificate_of_another_authority_does_not_get_in(settings):
 def test_health_hears_a_twin_that_speaks_over_tls(settings, tmp_path):
     """Test: the service with the Zenoh file of deploy/. Expected: heard, though nobody measures yet."""
     (tmp_path / "twin.toml").write_text(
-        f'[loop]\nrate_hz = 20.0\npriority = 0\nlock_memory = false\n[log]\nfolder = ""\n[bus]\nfile = "{settings("twin", "zenoh.json5")}"\n'
+        '[loop]\nrate_hz = 20.0\npriority = 0\nlock_memory = false\n[log]\nfolder = ""\n[bus]\nfile = '
+        f'"{settings("twin", "zenoh.json5")}"\n'
     )
     twin = [sys.executable, "-m", "twin.cli"]
-    process = subprocess.Popen([*twin, "run", "--config", str(tmp_path / "twin.toml")], stderr=subprocess.PIPE, text=True)
+    process = subprocess.Popen(
+        [*twin, "run", "--config", str(tmp_path / "twin.toml")], stderr=subprocess.PIPE, text=True
+    )
     try:
         assert "KVLCC2" in process.stderr.readline()
         health = [*twin, "health", "--config", str(tmp_path / "twin.toml"), "--timeout", "10", "--json", "-"]

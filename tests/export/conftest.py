@@ -1,4 +1,5 @@
-"""Voyages that the twin's own physics sails with a rudder weaker than the ship file says: there is something to learn."""
+"""Voyages that the twin's own physics sails with a rudder weaker than the ship file says: there is something
+to learn."""
 
 import numpy as np
 import pytest
@@ -14,7 +15,8 @@ H, STEPS = 2.0, 600
 
 
 def voyages(ship, count, current=(0.3, -0.2), seed=1):
-    """`count` voyages of 20 min side by side, rudder thrown about, in water that moves; at 0.5 Hz with a little noise."""
+    """`count` voyages of 20 min side by side, rudder thrown about, in water that moves; at 0.5 Hz with a
+    little noise."""
     rng = np.random.default_rng(seed)
     model, (north, east) = Model.of(ship), current
     flip = rng.integers(40, 90, count)
@@ -34,12 +36,17 @@ def voyages(ship, count, current=(0.3, -0.2), seed=1):
     over_u = u + north * np.cos(psi) + east * np.sin(psi)
     over_v = v + east * np.cos(psi) - north * np.sin(psi)
     columns = {
-        "north_m": noisy(x + north * t, 0.3), "east_m": noisy(y + east * t, 0.3),
-        "heading_true_north_deg": np.degrees(noisy(psi, 1e-3)) % 360, "yaw_rate_degps": np.degrees(noisy(r, 1e-5)),
-        "surge_velocity_mps": noisy(over_u, 0.02), "sway_velocity_mps": noisy(over_v, 0.02),
-        "surge_velocity_through_water_mps": noisy(u, 0.02), "sway_velocity_through_water_mps": noisy(v, 0.02),
-        "rudder_angle_deg": np.degrees(delta), "propeller_rate_rpm": np.full_like(u, 96.0),
-    }  # fmt: skip
+        "north_m": noisy(x + north * t, 0.3),
+        "east_m": noisy(y + east * t, 0.3),
+        "heading_true_north_deg": np.degrees(noisy(psi, 1e-3)) % 360,
+        "yaw_rate_degps": np.degrees(noisy(r, 1e-5)),
+        "surge_velocity_mps": noisy(over_u, 0.02),
+        "sway_velocity_mps": noisy(over_v, 0.02),
+        "surge_velocity_through_water_mps": noisy(u, 0.02),
+        "sway_velocity_through_water_mps": noisy(v, 0.02),
+        "rudder_angle_deg": np.degrees(delta),
+        "propeller_rate_rpm": np.full_like(u, 96.0),
+    }
     return [
         Voyage(
             f"v{i}",

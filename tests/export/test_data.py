@@ -16,7 +16,8 @@ def legs(ship, sailed):
 
 
 def test_the_water_is_found_and_gone(legs):
-    """Expected: the current that was sailed in, within the noise of log and GNSS; speeds are those through the water."""
+    """Expected: the current that was sailed in, within the noise of log and GNSS; speeds are those through
+    the water."""
     one = legs[0]
     assert np.allclose(one.water[200:].mean(0), (0.3, -0.2), atol=0.02)
     c, s = np.cos(one.state[:, 2]), np.sin(one.state[:, 2])
@@ -40,7 +41,8 @@ def test_whole_voyages_go_to_one_part_in_the_order_of_time(legs):
 
 
 def test_no_moment_of_a_single_voyage_is_in_two_parts_and_a_block_lies_between(legs):
-    """Test: one voyage, cut in time. Expected: parts in order, at least one whole block of nobody's between them."""
+    """Test: one voyage, cut in time. Expected: parts in order, at least one whole block of nobody's between
+    them."""
     parts = split(legs[:1])
     block = min(BLOCK_S, len(legs[0]) * legs[0].h / 12)
     ends = [(parts[p][0].t[0], parts[p][0].t[-1]) for p in PARTS]

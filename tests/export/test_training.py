@@ -1,4 +1,5 @@
-"""Training: it learns what was planted, says so, is the same twice, goes on where it was, and writes what the twin can read."""
+"""Training: it learns what was planted, says so, is the same twice, goes on where it was, and writes what the
+twin can read."""
 
 import hashlib
 import json
@@ -39,12 +40,15 @@ def learned(ship, sailed, tmp_path_factory):
     path = tmp_path_factory.mktemp("learned") / "residual.onnx"
     made = []
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(to_onnx, "trunk", lambda network, trunk=to_onnx.trunk: (made.append(network), trunk(network))[1])
+        patched.setattr(
+            to_onnx, "trunk", lambda network, trunk=to_onnx.trunk: (made.append(network), trunk(network))[1]
+        )
         return path, train.learn(ship, sailed, FEW, [42], path), made[0].state_dict()
 
 
 def test_it_says_that_a_planted_weakness_was_worth_learning(learned):
-    """Test: a rudder 20 % weaker than the ship file says. Expected: held-out free runs better beyond chance."""
+    """Test: a rudder 20 % weaker than the ship file says. Expected: held-out free runs better beyond
+    chance."""
     assert learned[1]["held_out"]["worth_having"] and "is worth having" in learned[1]["verdict"]
     errors = learned[1]["held_out"]["position_mae_m"]
     assert errors["with_residual"] < 0.7 * errors["physics"]
@@ -70,14 +74,17 @@ def test_the_twin_says_what_the_training_says(learned, ship, parts):
     s = Situation(psi=0.5, u=6.5, v=0.1, r=0.001, delta=0.1, n=1.6)
     model.forces(s, model.water(s))
     on_board = live.load(learned[0], ship).features(s)
-    t = Situation(**{n: torch.tensor([getattr(s, n)]) for n in ("psi", "u", "v", "r", "delta", "n", "u_r", "v_r")})
+    t = Situation(
+        **{n: torch.tensor([getattr(s, n)]) for n in ("psi", "u", "v", "r", "delta", "n", "u_r", "v_r")}
+    )
     f = again.f(again.zeta(t))[0].tolist()
     assert on_board.weight == pytest.approx(float(again.weight(again.zeta(t))), abs=1e-6)
     assert on_board.trained == pytest.approx(f, abs=1e-5)
 
 
 def test_the_same_seed_gives_the_same_weights_and_an_interrupted_training_goes_on(parts, tmp_path):
-    """Test: stop after two epochs, start again. Expected: bit for bit what an uninterrupted training gives."""
+    """Test: stop after two epochs, start again. Expected: bit for bit what an uninterrupted training
+    gives."""
     settings = replace(FEW, loss="acceleration", epochs=4)
     whole = teach(*parts, settings)
 
@@ -99,13 +106,18 @@ def test_the_gpu_is_chosen_when_there_is_one(there, expected, monkeypatch):
 
 
 def test_a_training_moves_to_the_chosen_device_and_comes_back(parts, monkeypatch):
-    """Test: a device that stands in for a GPU ("meta" has no numbers), and stages that only look. Expected: network and data are there
-    while they run, the network is called back, and the samples it is judged with never left."""
+    """Test: a device that stands in for a GPU ("meta" has no numbers), and stages that only look. Expected:
+    network and data are there while they run, the network is called back, and the samples it is judged with
+    never left."""
     seen = []
     monkeypatch.setattr("export.teach.device", lambda: torch.device("meta"))
     monkeypatch.setattr("export.teach._key", lambda settings, data: "")
-    monkeypatch.setattr(Course, "run", lambda course, stage: seen.append((course.network, course.data["train"])))
-    monkeypatch.setattr(Residual, "cpu", lambda network: seen.append({p.device.type for p in network.parameters()}))
+    monkeypatch.setattr(
+        Course, "run", lambda course, stage: seen.append((course.network, course.data["train"]))
+    )
+    monkeypatch.setattr(
+        Residual, "cpu", lambda network: seen.append({p.device.type for p in network.parameters()})
+    )
     monkeypatch.setattr(Residual, "bind", lambda network, zeta: None)
     monkeypatch.setattr("export.teach.zeta_of", lambda network, data: data.d)
     taught = teach(*parts, replace(FEW, loss="acceleration"))
@@ -116,10 +128,15 @@ def test_a_training_moves_to_the_chosen_device_and_comes_back(parts, monkeypatch
 
 @pytest.mark.parametrize("stage", ["paper", "acceleration", "rollout"])
 def test_a_batch_does_not_mix_two_devices(parts, stage):
-    """Test: a batch forward and back on the stand-in for a GPU. Expected: torch finds no tensor on another device."""
+    """Test: a batch forward and back on the stand-in for a GPU. Expected: torch finds no tensor on another
+    device."""
     away, settings = torch.device("meta"), replace(FEW, mirror=0.1)
     data = prepared(*parts, settings)
-    probe = Residual(parts[1].ship, ("surge", "sway", "yaw", "rudder", "propeller"), np.ones((3, 5)) * [[0.0], [0.5], [1.0]]).to(away)
+    probe = Residual(
+        parts[1].ship,
+        ("surge", "sway", "yaw", "rudder", "propeller"),
+        np.ones((3, 5)) * [[0.0], [0.5], [1.0]],
+    ).to(away)
     probe.bound = torch.tensor(float("inf"))  # asked for its value, which nothing on "meta" has
     course = object.__new__(Course)
     course.network, course.model, course.settings, course.weight = probe, parts[1], settings, torch.ones(8)
@@ -164,7 +181,8 @@ def test_a_residual_that_does_not_help_is_refused(ship, sailed, tmp_path, monkey
 
 
 def test_the_papers_R_is_nothing_whatever_the_network_says(parts):
-    """Expected: R by automatic differentiation is zero (it holds by construction), while f is not: lambda_phys pulls at nothing."""
+    """Expected: R by automatic differentiation is zero (it holds by construction), while f is not:
+    lambda_phys pulls at nothing."""
     taught = teach(*parts, replace(FEW, loss="paper", epochs=1))
     assert taught.diagnostics["R"] < 0.02 * taught.diagnostics["f"]
 
@@ -205,24 +223,44 @@ def test_voyages_recorded_at_other_rates_come_on_one_grid(ship, sailed):
 
 
 def test_it_learns_from_voyages_that_came_through_twin_import(ship, sailed, tmp_path, capsys):
-    """Test: five CSV files -> twin import -> twin train. Expected: exit code 0, and two files that the twin takes."""
+    """Test: five CSV files -> twin import -> twin train. Expected: exit code 0, and two files that the twin
+    takes."""
     paths = []
     for one in sailed[:5]:
         csv, out = tmp_path / f"{one.voyage.name}.csv", tmp_path / f"{one.voyage.name}.mcap"
         columns = {"time_s": one.voyage.time_s} | dict(one.voyage.columns)
-        rows = [",".join(columns), *(",".join(f"{x:.9g}" for x in row) for row in zip(*columns.values(), strict=True))]
+        rows = [
+            ",".join(columns),
+            *(",".join(f"{x:.9g}" for x in row) for row in zip(*columns.values(), strict=True)),
+        ]
         csv.write_text("\n".join(rows) + "\n")
         assert main(["import", str(csv), "--ship", "kvlcc2", "-o", str(out)]) == 0
         paths.append(str(out))
     output = tmp_path / "r.onnx"
-    assert main(["train", *paths, "--ship", "kvlcc2", "-o", str(output), "--loss", "acceleration", "--epochs", "30"]) == 0
+    assert (
+        main(
+            [
+                "train",
+                *paths,
+                "--ship",
+                "kvlcc2",
+                "-o",
+                str(output),
+                "--loss",
+                "acceleration",
+                "--epochs",
+                "30",
+            ]
+        )
+        == 0
+    )
     assert "is worth having" in capsys.readouterr().out
     assert live.load(output, ship).manifest.training["voyages"]
 
 
 def test_a_voyage_in_heavy_sea_counts_no_more_than_a_calm_one(parts):
-    """Test: one of four teaching voyages shaken three times as hard as its neighbours scatter. Expected: its weight falls, the mean of
-    all weights stays one, and no weight is more than ten times another."""
+    """Test: one of four teaching voyages shaken three times as hard as its neighbours scatter. Expected: its
+    weight falls, the mean of all weights stays one, and no weight is more than ten times another."""
     split_parts, model = parts
     first, *others = split_parts["train"]
     rng = np.random.default_rng(2)
@@ -231,7 +269,11 @@ def test_a_voyage_in_heavy_sea_counts_no_more_than_a_calm_one(parts):
     def weights(legs):
         data = prepared({"train": legs, "validation": split_parts["validation"]}, model, FEW)
         torch.manual_seed(1)
-        probe = Residual(model.ship, ("surge", "sway", "yaw", "rudder", "propeller"), np.ones((3, 5)) * [[0.0], [0.5], [1.0]])
+        probe = Residual(
+            model.ship,
+            ("surge", "sway", "yaw", "rudder", "propeller"),
+            np.ones((3, 5)) * [[0.0], [0.5], [1.0]],
+        )
         return Course(probe, model, FEW, data, lambda *_: None, None)._weights("acceleration")
 
     calm, rough = weights([first, *others]), weights([shaken, *others])
@@ -244,7 +286,11 @@ def test_little_data_is_taught_in_smaller_batches_and_not_in_fewer_steps(parts):
     split_parts, model = parts
     for legs in (split_parts["train"], split_parts["train"][:1]):
         data = prepared({"train": legs, "validation": split_parts["validation"]}, model, FEW)
-        network = Residual(model.ship, ("surge", "sway", "yaw", "rudder", "propeller"), np.ones((3, 5)) * [[0.0], [0.5], [1.0]])
+        network = Residual(
+            model.ship,
+            ("surge", "sway", "yaw", "rudder", "propeller"),
+            np.ones((3, 5)) * [[0.0], [0.5], [1.0]],
+        )
         course = Course(network, model, FEW, data, lambda *_: None, None)
         many, batch = course._amount("acceleration")
         assert many == len(data["train"].samples) and batch <= FEW.batch
@@ -252,15 +298,24 @@ def test_little_data_is_taught_in_smaller_batches_and_not_in_fewer_steps(parts):
 
 
 def test_a_learned_force_is_that_of_the_middle_of_its_step(ship):
-    """Test: a moment that follows the rudder, which swings; steps of 4, 2 and 0.125 s. Expected: half the step, a quarter of the error
-    (a force held from each step's beginning gives a half)."""
+    """Test: a moment that follows the rudder, which swings; steps of 4, 2 and 0.125 s. Expected: half the
+    step, a quarter of the error (a force held from each step's beginning gives a half)."""
     model, seconds = Model.of(ship), 60.0
 
     def heading(h):
         t = torch.arange(0.0, seconds + h / 2, h, dtype=torch.float64)
-        inputs = {"delta": 0.3 * torch.sin(t / 8.0)[:, None], "n": torch.full((len(t), 1), 1.6, dtype=torch.float64)}
+        inputs = {
+            "delta": 0.3 * torch.sin(t / 8.0)[:, None],
+            "n": torch.full((len(t), 1), 1.6, dtype=torch.float64),
+        }
         start = torch.tensor([[0.0, 0.0, 0.0, 7.0, 0.0, 0.0]], dtype=torch.float64)
-        run = loss.free_run(lambda s: Force(0.0 * s.u, 0.0 * s.u, 3e9 * s.delta), model, start, inputs, torch.tensor([h], dtype=torch.float64))
+        run = loss.free_run(
+            lambda s: Force(0.0 * s.u, 0.0 * s.u, 3e9 * s.delta),
+            model,
+            start,
+            inputs,
+            torch.tensor([h], dtype=torch.float64),
+        )
         return float(run[-1, 0, 2])
 
     fine = heading(0.125)

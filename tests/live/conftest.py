@@ -22,9 +22,15 @@ from twin.physics.state import Situation
 STEP_S = 0.1
 WALL = 1.7e9  # wall clock less monotonic clock
 NOISE = {
-    "north_m": 0.3, "east_m": 0.3, "heading_true_north_deg": 0.05, "surge_velocity_mps": 0.03, "sway_velocity_mps": 0.03,
-    "yaw_rate_degps": 0.003, "rudder_angle_deg": 0.05, "propeller_rate_rpm": 0.1,
-}  # fmt: skip
+    "north_m": 0.3,
+    "east_m": 0.3,
+    "heading_true_north_deg": 0.05,
+    "surge_velocity_mps": 0.03,
+    "sway_velocity_mps": 0.03,
+    "yaw_rate_degps": 0.003,
+    "rudder_angle_deg": 0.05,
+    "propeller_rate_rpm": 0.1,
+}
 
 
 @dataclass
@@ -58,16 +64,25 @@ class Sailing:
     def true(self) -> dict[str, float]:
         x, y, psi, u, v, r = self.state
         return {
-            "north_m": x, "east_m": y, "heading_true_north_deg": degrees(psi) % 360.0, "surge_velocity_mps": u,
-            "sway_velocity_mps": v, "yaw_rate_degps": degrees(r), "rudder_angle_deg": self.rudder,
+            "north_m": x,
+            "east_m": y,
+            "heading_true_north_deg": degrees(psi) % 360.0,
+            "surge_velocity_mps": u,
+            "sway_velocity_mps": v,
+            "yaw_rate_degps": degrees(r),
+            "rudder_angle_deg": self.rudder,
             "propeller_rate_rpm": 60.0 * self.shaft,
-        }  # fmt: skip
+        }
 
     def readings(self, now_s: float) -> list[Reading]:
         said = []
         for name, value in self.true().items():
             value += self.noise * self.random.gauss(0.0, NOISE[name])
-            said.append(Reading(name, value % 360.0 if "north_deg" in name else value, WALL + now_s, now_s, self.source))
+            said.append(
+                Reading(
+                    name, value % 360.0 if "north_deg" in name else value, WALL + now_s, now_s, self.source
+                )
+            )
         return said
 
 
@@ -126,7 +141,9 @@ def make_bridge(kvlcc2):
 
 def every_number(message):
     for about, value in message.ListFields():
-        many = value if not isinstance(value, (str, float, int, bool)) and hasattr(value, "__len__") else [value]
+        many = (
+            value if not isinstance(value, (str, float, int, bool)) and hasattr(value, "__len__") else [value]
+        )
         for one in many:
             if hasattr(one, "ListFields"):
                 yield from every_number(one)

@@ -26,18 +26,25 @@ def ship_file(folder, mass_kg):
 
 
 def test_two_ships_whose_files_have_one_name_keep_a_certificate_each(at_home):
-    """Test: the same file name in two folders, two masses. Expected: two files, each of its own ship, and both are found again."""
+    """Test: the same file name in two folders, two masses. Expected: two files, each of its own ship, and
+    both are found again."""
     files = [ship_file(at_home, mass_kg) for mass_kg in ("320415000.0", "350000000.0")]
     made = [stabilizer_of(Settings({"ship.file": path}), load(path), None).tube.certificate for path in files]
-    assert made[0].fingerprint != made[1].fingerprint and len(list((at_home / ".cache" / "shiptwin").iterdir())) == 2
+    assert (
+        made[0].fingerprint != made[1].fingerprint
+        and len(list((at_home / ".cache" / "shiptwin").iterdir())) == 2
+    )
     for path, certificate in zip(files, made, strict=True):
         assert stabilizer_of(Settings({"ship.file": path}), load(path), 0.0).tube.certificate == certificate
 
 
 def test_a_certificate_that_is_not_ready_in_time_is_one_clear_line(at_home):
-    """Test: no patience at all. Expected: no tube; the reason is one line with the seconds, not another process's command."""
+    """Test: no patience at all. Expected: no tube; the reason is one line with the seconds, not another
+    process's command."""
     made = stabilizer_of(Settings({"ship.file": "kvlcc2"}), load("kvlcc2"), 0.0)
-    assert made.tube is None and made.why_not == "not worked out (not ready after 0 s. Start again when the machine is less busy)"
+    assert made.tube is None and made.why_not == (
+        "not worked out (not ready after 0 s. Start again when the machine is less busy)"
+    )
 
 
 def test_where_no_file_can_be_written_there_is_a_certificate_all_the_same(at_home):
@@ -46,5 +53,10 @@ def test_where_no_file_can_be_written_there_is_a_certificate_all_the_same(at_hom
 
 
 def test_settings_name_the_certificates_file_before_the_cache_does(at_home):
-    assert certificate_file(Settings({"state.folder": "/var/lib/shiptwin"}), "mark").as_posix() == "/var/lib/shiptwin/certificate.json"
-    assert certificate_file(Settings({"ship.file": "x/alma.toml"}), "mark").name == "alma-mark.certificate.json"
+    assert (
+        certificate_file(Settings({"state.folder": "/var/lib/shiptwin"}), "mark").as_posix()
+        == "/var/lib/shiptwin/certificate.json"
+    )
+    assert (
+        certificate_file(Settings({"ship.file": "x/alma.toml"}), "mark").name == "alma-mark.certificate.json"
+    )

@@ -60,7 +60,9 @@ def test_C2_after_a_stall_in_its_sleep_no_two_ticks_are_closer_than_half_a_perio
     times = [clock.wait().time_s for _ in range(6)]
     gaps = [b - a for a, b in itertools.pairwise(times)]
     assert max(gaps) > stall_s and min(gaps) >= 0.01 - 1e-9
-    assert clock.overruns >= 9 and times[-1] - 100.0 == pytest.approx(round((times[-1] - 100.0) / 0.02) * 0.02)
+    assert clock.overruns >= 9 and times[-1] - 100.0 == pytest.approx(
+        round((times[-1] - 100.0) / 0.02) * 0.02
+    )
 
 
 def test_a_step_that_is_merely_late_skips_nothing() -> None:

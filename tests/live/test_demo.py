@@ -75,7 +75,9 @@ def test_what_cannot_be_shown_is_refused_in_one_line(words, code, tmp_path):
 
 
 def test_why_the_sea_did_not_start_is_said(tmp_path):
-    refused = subprocess.run([*DEMO, "--manoeuvre", "zigzack"], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    refused = subprocess.run(
+        [*DEMO, "--manoeuvre", "zigzack"], cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
     assert refused.returncode == 1 and "zigzack" in refused.stderr and "zigzag_20" in refused.stderr
 
 

@@ -40,13 +40,17 @@ def made_up(dice: random.Random, now_s: float) -> tuple[str, bytes]:
         )
     )
     if topic.subject == "location_fix":
-        data = encode_fix(dice.choice((57.6, 57.6001, 91.0, -57.0)), dice.choice((11.6, 11.6001, 181.0)), stamp_ns)
+        data = encode_fix(
+            dice.choice((57.6, 57.6001, 91.0, -57.0)), dice.choice((11.6, 11.6001, 181.0)), stamp_ns
+        )
     else:
         data = encode_float(value, stamp_ns)
     data = wrap(data, stamp_ns)
     if dice.random() < 0.2:
         data = mutated(dice, data)
-    return key("twin", "ship", dice.choice((topic.subject,) * 9 + ("unknown",)), dice.choice(("a", "a", "a", "b"))), data
+    return key(
+        "twin", "ship", dice.choice((topic.subject,) * 9 + ("unknown",)), dice.choice(("a", "a", "a", "b"))
+    ), data
 
 
 def mutated(dice: random.Random, data: bytes) -> bytes:
@@ -87,7 +91,9 @@ def test_I27_a_hundred_thousand_messages_do_no_harm(kvlcc2, numbers):
 
 def test_nor_do_they_on_a_small_boat_with_every_effect_of_the_catalogue(numbers):
     boat = load_ship("usv")
-    effects = [e.plausible(boat) for e in BUILT_IN if all(getattr(boat, p, None) is not None for p in e.needs_ship)]
+    effects = [
+        e.plausible(boat) for e in BUILT_IN if all(getattr(boat, p, None) is not None for p in e.needs_ship)
+    ]
     assert len(effects) > 15
     boat = boat.with_effects(*effects)
     sailed(boat, LearnedForce(boat, None, "none in this test"), MESSAGES // 5, numbers)

@@ -1,4 +1,5 @@
-"""The ladder of modes: hybrid, physics only, dead reckoning, invalid; down at once, and the learned force back only after a while."""
+"""The ladder of modes: hybrid, physics only, dead reckoning, invalid; down at once, and the learned force
+back only after a while."""
 
 import json
 
@@ -46,7 +47,9 @@ def test_M10_a_residual_that_makes_it_worse_is_switched_off_and_says_so(kvlcc2, 
     learned = spoilt(kvlcc2, -6.0)
     ticks = make_bridge(loop={"learned": learned}, noise=0.3).run(260.0)
     assert ticks[600].mode == "hybrid"
-    assert ticks[-1].mode == "physics only" and any("worse than the physics alone" in r for r in ticks[-1].reasons)
+    assert ticks[-1].mode == "physics only" and any(
+        "worse than the physics alone" in r for r in ticks[-1].reasons
+    )
     assert ticks[-1].learned.N_Nm == 0.0 and ticks[-1].learned.weight == 0.0
 
 
@@ -60,7 +63,9 @@ def test_M7_in_a_state_it_was_not_trained_on_the_residual_has_no_say(make_bridge
     """Test: the engine astern. Expected: physics only, with the input and its range in words."""
     bridge = make_bridge(loop={"learned": hybrid}, shaft=-1.0)
     tick = bridge.run(10.0)[-1]
-    assert tick.mode == "physics only" and any("propeller" in r and "where it was trained" in r for r in tick.reasons)
+    assert tick.mode == "physics only" and any(
+        "propeller" in r and "where it was trained" in r for r in tick.reasons
+    )
     assert tick.learned.X_N == 0.0
 
 
@@ -74,14 +79,23 @@ def test_I23_without_the_rudder_it_is_dead_reckoning_and_nothing_is_learned(make
     assert bridge.run(1.0)[-1].mode == "hybrid"
 
 
-def test_where_the_bound_is_contradicted_the_learned_force_rests_for_three_ship_lengths(kvlcc2, make_bridge, hybrid):
-    """Test: the log goes off by 1.5 m/s and stays. Expected: physics only, with the certificate's own reason, and no learned force."""
+def test_where_the_bound_is_contradicted_the_learned_force_rests_for_three_ship_lengths(
+    kvlcc2, make_bridge, hybrid
+):
+    """Test: the log goes off by 1.5 m/s and stays. Expected: physics only, with the certificate's own reason,
+    and no learned force."""
     K = 12.0 * kvlcc2.U_0 / kvlcc2.L_pp
     tube = Tube(certify(Model.of(kvlcc2), (K, K, K), 0.1, delay_samples=5))
     bridge = make_bridge(loop={"stabilizer": Stabilizer(tube), "learned": hybrid})
     bridge.run(30.0)
-    off = lambda readings, b: [r._replace(value=r.value + 1.5) if r.channel == "surge_velocity_mps" else r for r in readings]  # noqa: E731
+    off = lambda readings, b: [
+        r._replace(value=r.value + 1.5) if r.channel == "surge_velocity_mps" else r for r in readings
+    ]  # noqa: E731
     ticks = bridge.run(20.0, off)
-    first = next(i for i, t in enumerate(ticks) if any("than its bound allows" in reason for reason in t.reasons))
+    first = next(
+        i for i, t in enumerate(ticks) if any("than its bound allows" in reason for reason in t.reasons)
+    )
     assert not any(t.certificate.inside for t in ticks[first : first + 5])
-    assert ticks[-1].mode == "physics only" and any("than its bound allows" in reason for reason in ticks[-1].reasons)
+    assert ticks[-1].mode == "physics only" and any(
+        "than its bound allows" in reason for reason in ticks[-1].reasons
+    )

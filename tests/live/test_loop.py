@@ -11,7 +11,9 @@ from twin.live.signals.readings import Reading
 
 def test_the_estimate_follows_a_zigzag_closer_than_the_instruments_say(bridge):
     bridge.run(60.0)
-    errors = {name: [] for name in ("north_m", "heading_true_north_deg", "surge_velocity_mps", "yaw_rate_degps")}
+    errors = {
+        name: [] for name in ("north_m", "heading_true_north_deg", "surge_velocity_mps", "yaw_rate_degps")
+    }
     for _ in range(600):
         bridge.run(0.1)
         for name, found in errors.items():
@@ -86,7 +88,9 @@ def test_sources_whose_clock_steps_too_are_still_heard(make_bridge):
 
 def test_the_same_messages_give_the_same_bytes(make_bridge):
     one, other = make_bridge().run(30.0), make_bridge().run(30.0)
-    assert [t.SerializeToString(deterministic=True) for t in one] == [t.SerializeToString(deterministic=True) for t in other]
+    assert [t.SerializeToString(deterministic=True) for t in one] == [
+        t.SerializeToString(deterministic=True) for t in other
+    ]
 
 
 def test_nothing_that_is_not_finite_is_ever_said(bridge, numbers):
@@ -124,8 +128,8 @@ def test_a_tick_holds_its_time_and_its_pace(bridge):
 
 
 def test_a_known_fault_of_an_instrument_is_taken_off(kvlcc2, make_bridge):
-    """Test: a compass 3 deg off and a log 0.4 m/s off, both in the ship file. Expected: the estimate knows better; the log of what
-    was measured does not."""
+    """Test: a compass 3 deg off and a log 0.4 m/s off, both in the ship file. Expected: the estimate knows
+    better; the log of what was measured does not."""
     from twin.physics.effects import find
 
     ship = kvlcc2.with_effects(find("HeadingBias")(bias=radians(3.0)), find("SpeedLogBias")(bias=0.4))
@@ -134,7 +138,9 @@ def test_a_known_fault_of_an_instrument_is_taken_off(kvlcc2, make_bridge):
     def wrong(readings, b):
         out = []
         for r in readings:
-            out.append(r._replace(value=(r.value + 3.0) % 360.0) if r.channel == "heading_true_north_deg" else r)
+            out.append(
+                r._replace(value=(r.value + 3.0) % 360.0) if r.channel == "heading_true_north_deg" else r
+            )
             if r.channel == "surge_velocity_mps":
                 out.append(r._replace(channel="surge_velocity_through_water_mps", value=r.value + 0.4))
         return out

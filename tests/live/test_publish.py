@@ -37,7 +37,10 @@ def spoken(make_bridge, seconds, at=None):
 
 def test_every_subject_is_said_as_often_as_the_table_says(make_bridge):
     _, sent = spoken(make_bridge, 5.0, datum(57.6, 11.6))
-    count = {(o.subject, o.source): sum(a.subject == o.subject and a.source == o.source for a, _ in sent) for o in OUTPUTS}
+    count = {
+        (o.subject, o.source): sum(a.subject == o.subject and a.source == o.source for a, _ in sent)
+        for o in OUTPUTS
+    }
     for output in OUTPUTS:
         wanted = 5.0 / output.every_s if output.every_s else 50
         assert count[(output.subject, output.source)] == pytest.approx(wanted, abs=1), output
@@ -47,7 +50,9 @@ def test_known_and_learned_force_are_said_apart(make_bridge):
     bridge, sent = spoken(make_bridge, 1.0)
     tick = bridge.ticks[0]
     known = next(p for a, p in sent if a.subject == "force_newton" and a.source == "twin/known")
-    assert messages.Vector.FromString(known).vector.x == pytest.approx(sum(f.X_N for f in tick.known), rel=1e-6)
+    assert messages.Vector.FromString(known).vector.x == pytest.approx(
+        sum(f.X_N for f in tick.known), rel=1e-6
+    )
     learned = next(p for a, p in sent if a.subject == "force_newton" and a.source == "twin/learned")
     assert messages.Vector.FromString(learned).vector.x == 0.0
 

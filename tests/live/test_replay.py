@@ -27,7 +27,11 @@ def settings(tmp_path, **more):
 
 
 def ticks(path):
-    return [messages.Tick.FromString(m.data) for m in McapReader(path).messages() if m.type_name == "shiptwin.Tick"]
+    return [
+        messages.Tick.FromString(m.data)
+        for m in McapReader(path).messages()
+        if m.type_name == "shiptwin.Tick"
+    ]
 
 
 def spoken(readings, bus):
@@ -117,7 +121,9 @@ def test_a_log_of_scalars_without_a_twin_is_sailed_too(sailing, tmp_path):
                     )
             sailing.advance()
     summary = replay(path, settings(tmp_path))
-    assert summary.kind == "a log of Keelson scalars" and summary.ticks == 600 and summary.modes["hybrid"] > 500
+    assert (
+        summary.kind == "a log of Keelson scalars" and summary.ticks == 600 and summary.modes["hybrid"] > 500
+    )
 
 
 @pytest.mark.parametrize("data", (b"", b"not a log", b"\x89MCAP0\r\n"))
@@ -131,7 +137,9 @@ def test_what_is_no_log_is_refused_in_one_line(tmp_path, data):
 def test_a_log_without_anything_the_twin_knows_is_refused(tmp_path):
     path = tmp_path / "x.mcap"
     with LogFile(path) as log:
-        log.add("rise/@v0/alma/pubsub/unknown/x", "keelson.TimestampedFloat", encode_float(1.0, 10**18), 10**18)
+        log.add(
+            "rise/@v0/alma/pubsub/unknown/x", "keelson.TimestampedFloat", encode_float(1.0, 10**18), 10**18
+        )
     with pytest.raises(DataError, match="no measurements in it"):
         replay(path, settings(tmp_path))
 

@@ -60,7 +60,8 @@ def free_port():
 def place(tmp_path):
     """A folder with settings of its own: port, log, state."""
     (tmp_path / "twin.toml").write_text(
-        f'[loop]\nrate_hz = 20.0\npriority = 0\nlock_memory = false\n[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n'
+        "[loop]\nrate_hz = 20.0\npriority = 0\nlock_memory = false\n[bus]\nlisten = "
+        f'"tcp/127.0.0.1:{free_port()}"\n'
         f'[log]\nfolder = "{tmp_path}/logs"\n[state]\nfolder = "{tmp_path}/state"\n'
     )
     return tmp_path
@@ -82,7 +83,11 @@ def ticks(place):
     from twin.live.keelson import messages
 
     path = max((place / "logs").glob("*.mcap"))
-    return [messages.Tick.FromString(m.data) for m in McapReader(path).messages() if m.type_name == "shiptwin.Tick"]
+    return [
+        messages.Tick.FromString(m.data)
+        for m in McapReader(path).messages()
+        if m.type_name == "shiptwin.Tick"
+    ]
 
 
 def test_C7_told_to_stop_it_finishes_cleanly_within_two_seconds(place):
@@ -119,7 +124,9 @@ def test_C4_an_uncaught_exception_ends_the_process_and_does_not_hang(place):
     """Test: a bug on the tenth tick, bus and log open. Expected: exit code not 0 within a second,
     traceback said."""
     hook = "if tick.index == 10: print('BROKEN', file=sys.stderr, flush=True); raise RuntimeError('planted')"
-    process = popen(sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml"), stderr=subprocess.PIPE)
+    process = popen(
+        sys.executable, "-c", SERVE.format(hook=hook), str(place / "twin.toml"), stderr=subprocess.PIPE
+    )
     while "BROKEN" not in process.stderr.readline():
         pass
     broke = time.monotonic()
@@ -169,7 +176,9 @@ def test_C3_the_watchdog_is_fed_after_good_steps_and_not_while_the_loop_hangs(pl
     ('[residual]\nfile = "no.onnx"\nrequired = true\n', "no.onnx"),
 ))  # fmt: skip
 def test_F1_M1_settings_that_cannot_be_used_end_it_with_exit_code_5_and_one_line(place, text, words):
-    (place / "twin.toml").write_text(text + f'[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n[log]\nfolder = ""\n')
+    (place / "twin.toml").write_text(
+        text + f'[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n[log]\nfolder = ""\n'
+    )
     process = start(place)
     assert process.wait(30.0) == 5
     said = process.stderr.read()
@@ -182,7 +191,8 @@ def test_M13_a_residual_of_another_ship_that_was_asked_for_ends_it(place):
 
     path = bundled(load("kvlcc2"))
     (place / "twin.toml").write_text(
-        f'[ship]\nfile = "usv"\n[residual]\nfile = "{path}"\n[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n[log]\nfolder = ""\n'
+        f'[ship]\nfile = "usv"\n[residual]\nfile = "{path}"\n[bus]\nlisten = '
+        f'"tcp/127.0.0.1:{free_port()}"\n[log]\nfolder = ""\n'
     )
     process = start(place)
     assert process.wait(30.0) == 5 and "made for the ship 'KVLCC2'" in process.stderr.read()
@@ -213,8 +223,14 @@ def test_health_hears_the_twin_and_says_when_it_does_not(place):
 
 @pytest.mark.parametrize(
     "words, code",
-    ((["run", "--duration", "-3"], 2), (["health", "--timeout", "0"], 2), (["health", "--timeout", "0.2", "--json", "nowhere/x.json"], 1)),
+    (
+        (["run", "--duration", "-3"], 2),
+        (["health", "--timeout", "0"], 2),
+        (["health", "--timeout", "0.2", "--json", "nowhere/x.json"], 1),
+    ),
 )
 def test_what_cannot_be_meant_or_written_is_one_line(words, code, tmp_path):
-    done = subprocess.run([sys.executable, "-m", "twin.cli", *words], cwd=tmp_path, capture_output=True, text=True, timeout=60)
+    done = subprocess.run(
+        [sys.executable, "-m", "twin.cli", *words], cwd=tmp_path, capture_output=True, text=True, timeout=60
+    )
     assert done.returncode == code and done.stderr.count("\n") == 1 and words[-1] in done.stderr

@@ -1,4 +1,5 @@
-"""The certificate beside the loop: the observer's error stays inside the live bound, and nothing is promised where nothing holds."""
+"""The certificate beside the loop: the observer's error stays inside the live bound, and nothing is promised
+where nothing holds."""
 
 from math import hypot
 
@@ -11,7 +12,9 @@ from twin.physics.model import Model
 def stabilized(ship, make_bridge, **sailing):
     K = 12.0 * ship.U_0 / ship.L_pp
     tube = Tube(certify(Model.of(ship), (K, K, K), 0.1, delay_samples=5))
-    return make_bridge(loop={"stabilizer": Stabilizer(tube), "learned": LearnedForce(ship, None, "none")}, **sailing)
+    return make_bridge(
+        loop={"stabilizer": Stabilizer(tube), "learned": LearnedForce(ship, None, "none")}, **sailing
+    )
 
 
 def test_on_a_voyage_the_error_stays_inside_the_bound(kvlcc2, make_bridge):
@@ -19,7 +22,10 @@ def test_on_a_voyage_the_error_stays_inside_the_bound(kvlcc2, make_bridge):
     for _ in range(60):
         tick = bridge.run(1.0)[-1]
         assert tick.certificate.inside and tick.certificate.margin > 0.5
-        assert hypot(bridge.error("surge_velocity_mps"), bridge.error("sway_velocity_mps")) < tick.certificate.bound
+        assert (
+            hypot(bridge.error("surge_velocity_mps"), bridge.error("sway_velocity_mps"))
+            < tick.certificate.bound
+        )
     assert 0.0 < tick.certificate.bound < 1.0
 
 
@@ -32,14 +38,22 @@ def test_without_measurements_the_bound_grows_and_comes_back(kvlcc2, make_bridge
 
 
 def test_a_speed_that_was_not_measured_as_she_began_is_not_bounded_as_if_it_had_been(kvlcc2, make_bridge):
-    """Test: a ship that drifts at 0.6 m/s, her sway first measured in the second tick. Expected: no promise until the bound has come back."""
+    """Test: a ship that drifts at 0.6 m/s, her sway first measured in the second tick. Expected: no promise
+    until the bound has come back."""
     bridge = stabilized(kvlcc2, make_bridge)
     bridge.sailing.state = (0.0, 0.0, 0.5, 6.0, 0.6, 0.0)
     first = bridge.run(0.1, lambda readings, b: [r for r in readings if r.channel != "sway_velocity_mps"])[0]
-    assert bridge.error("sway_velocity_mps") < -0.5 and first.certificate.bound > 10.0 and not first.certificate.inside
+    assert (
+        bridge.error("sway_velocity_mps") < -0.5
+        and first.certificate.bound > 10.0
+        and not first.certificate.inside
+    )
     for _ in range(90):
         tick = bridge.run(1.0)[-1]
-        assert hypot(bridge.error("surge_velocity_mps"), bridge.error("sway_velocity_mps")) < tick.certificate.bound
+        assert (
+            hypot(bridge.error("surge_velocity_mps"), bridge.error("sway_velocity_mps"))
+            < tick.certificate.bound
+        )
     assert tick.certificate.inside
 
 
@@ -50,11 +64,17 @@ def test_outside_the_operating_set_nothing_is_promised(kvlcc2, make_bridge):
 
 
 def test_back_in_the_operating_set_the_promise_waits_until_nothing_looks_back_outside(kvlcc2, make_bridge):
-    """Test: a propeller that is said to turn at twice the certified rate for ten seconds. Expected: no promise as soon as that is
-    believed, nor for as many ticks as a late measurement looks back on; afterwards a promise again, that holds."""
+    """Test: a propeller that is said to turn at twice the certified rate for ten seconds. Expected: no
+    promise as soon as that is believed, nor for as many ticks as a late measurement looks back on; afterwards
+    a promise again, that holds."""
     bridge = stabilized(kvlcc2, make_bridge)
     assert bridge.run(20.0)[-1].certificate.inside
-    bridge.run(10.0, lambda readings, b: [r._replace(value=150.0) if r.channel == "propeller_rate_rpm" else r for r in readings])
+    bridge.run(
+        10.0,
+        lambda readings, b: [
+            r._replace(value=150.0) if r.channel == "propeller_rate_rpm" else r for r in readings
+        ],
+    )
     assert not bridge.ticks[-1].certificate.inside and "propeller rate" in bridge.loop.stabilizer.outside
     most, back = bridge.loop.stabilizer.tube.certificate.operating.ranges["n"][1], []
     while len(back) < 100:
@@ -64,11 +84,14 @@ def test_back_in_the_operating_set_the_promise_waits_until_nothing_looks_back_ou
     window = bridge.loop.stabilizer.tube.window
     assert [inside for _, inside in back[: first + window - 1]] == [False] * (first + window - 1)
     assert all(inside for _, inside in back[first + window - 1 :])
-    assert hypot(bridge.error("surge_velocity_mps"), bridge.error("sway_velocity_mps")) < tick.certificate.bound
+    assert (
+        hypot(bridge.error("surge_velocity_mps"), bridge.error("sway_velocity_mps")) < tick.certificate.bound
+    )
 
 
 def test_without_the_controls_nothing_is_promised(kvlcc2, make_bridge):
-    """Test: nobody says how fast the propeller turns. Expected: the physics runs on with none, so the bound is not that of her motion."""
+    """Test: nobody says how fast the propeller turns. Expected: the physics runs on with none, so the bound
+    is not that of her motion."""
     bridge = stabilized(kvlcc2, make_bridge)
     assert bridge.run(20.0)[-1].certificate.inside
     silent = bridge.run(20.0, lambda readings, b: [r for r in readings if r.channel != "propeller_rate_rpm"])
@@ -80,21 +103,34 @@ def test_without_a_certificate_nothing_is_promised(make_bridge):
     assert not make_bridge().run(5.0)[-1].certificate.inside
 
 
-def test_without_any_measurement_nothing_is_promised_however_long_and_with_them_again_it_comes_back(kvlcc2, make_bridge):
-    """Test: no speed and no rate of turn for four minutes. Expected: from some time on no bound at all, until they return."""
+def test_without_any_measurement_nothing_is_promised_however_long_and_with_them_again_it_comes_back(
+    kvlcc2, make_bridge
+):
+    """Test: no speed and no rate of turn for four minutes. Expected: from some time on no bound at all, until
+    they return."""
     bridge = stabilized(kvlcc2, make_bridge)
     bridge.run(20.0)
-    silent = bridge.run(240.0, lambda readings, b: [r for r in readings if "velocity" not in r.channel and "rate_degps" not in r.channel])
+    silent = bridge.run(
+        240.0,
+        lambda readings, b: [
+            r for r in readings if "velocity" not in r.channel and "rate_degps" not in r.channel
+        ],
+    )
     lost = next(i for i, t in enumerate(silent) if t.certificate.bound >= USELESS)
     assert not any(t.certificate.inside for t in silent[lost:])
     assert bridge.run(240.0)[-1].certificate.inside
 
 
-def test_measurements_that_contradict_the_bound_take_the_promise_back_and_the_learned_force_off(kvlcc2, make_bridge):
-    """Test: the log goes off by 1.5 m/s and stays there, which is believed after a while. Expected: inside before, not after, and why."""
+def test_measurements_that_contradict_the_bound_take_the_promise_back_and_the_learned_force_off(
+    kvlcc2, make_bridge
+):
+    """Test: the log goes off by 1.5 m/s and stays there, which is believed after a while. Expected: inside
+    before, not after, and why."""
     bridge = stabilized(kvlcc2, make_bridge)
     assert bridge.run(60.0)[-1].certificate.inside and not bridge.loop.stabilizer.broken
-    off = lambda readings, b: [r._replace(value=r.value + 1.5) if r.channel == "surge_velocity_mps" else r for r in readings]  # noqa: E731
+    off = lambda readings, b: [
+        r._replace(value=r.value + 1.5) if r.channel == "surge_velocity_mps" else r for r in readings
+    ]  # noqa: E731
     why = set()
     for _ in range(100):
         tick = bridge.run(0.1, off)[-1]
@@ -104,7 +140,8 @@ def test_measurements_that_contradict_the_bound_take_the_promise_back_and_the_le
 
 
 def test_a_sample_that_pulls_by_less_than_the_certified_gain_is_no_measurement_of_it(kvlcc2, make_bridge):
-    """Test: speed over ground every three seconds. Expected: the cap on h K bites, and the tube is not told that K acted."""
+    """Test: speed over ground every three seconds. Expected: the cap on h K bites, and the tube is not told
+    that K acted."""
     bridge = stabilized(kvlcc2, make_bridge)
     bridge.run(20.0)
     slow = lambda readings, b: [r for r in readings if "velocity" not in r.channel or b.number % 30 == 0]  # noqa: E731

@@ -41,10 +41,13 @@ def test_she_turns_and_zigzags_as_a_ship_does(key):
 
 @pytest.mark.parametrize("key", ["kvlcc2", "kvlcc2_model"])
 def test_the_tanker_turns_as_her_model_tests_say(key):
-    """Advance about 3.3 L, tactical diameter about 3.4 L; overshoots of the free-running tests within a few degrees."""
+    """Advance about 3.3 L, tactical diameter about 3.4 L; overshoots of the free-running tests within a few
+    degrees."""
     model, rate = Model.of(load(key)), radians(ships.HULLS[key].rudder_rate)
     circle = turning_circle(model, radians(35), rate=rate)
-    assert circle.advance == pytest.approx(3.3, abs=0.3) and circle.tactical_diameter == pytest.approx(3.4, abs=0.35)
+    assert circle.advance == pytest.approx(3.3, abs=0.3) and circle.tactical_diameter == pytest.approx(
+        3.4, abs=0.35
+    )
     for angle, tolerance in ((10, 3.0), (20, 4.5)):
         over = zigzag(model, radians(angle), radians(angle), rate=rate)
         measured = ships.MEASURED_ZIGZAG[angle]

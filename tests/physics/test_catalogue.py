@@ -19,9 +19,9 @@ TUTORIAL = (ROOT / "docs" / "tutorials" / "own-effect.md").read_text(encoding="u
 
 
 def test_the_page_is_current():
-    assert (ROOT / "docs" / "effects.md").read_text(encoding="utf-8") == page(list(BUILT_IN)).rstrip("\n") + "\n", (
-        "run: twin effects --markdown docs/effects.md"
-    )
+    assert (ROOT / "docs" / "effects.md").read_text(encoding="utf-8") == page(list(BUILT_IN)).rstrip(
+        "\n"
+    ) + "\n", "run: twin effects --markdown docs/effects.md"
 
 
 @pytest.mark.parametrize("Kind", BUILT_IN, ids=lambda kind: kind.__name__)
@@ -95,7 +95,9 @@ def test_the_tutorial_runs(tmp_path):
     shown = subprocess.run([*twin, "SeaAnchor"], capture_output=True, text=True, env=world, cwd=ROOT)
     assert "drogue" in shown.stdout and "drag_area" in shown.stdout, shown.stderr
     subprocess.run([sys.executable, "-c", check], check=True, env=world, cwd=tmp_path / "site")
-    ship = (ROOT / "twin" / "ships" / "usv.toml").read_text() + re.findall(r"```toml\n(\[effects.*?)```", TUTORIAL, re.S)[0]
+    ship = (ROOT / "twin" / "ships" / "usv.toml").read_text() + re.findall(
+        r"```toml\n(\[effects.*?)```", TUTORIAL, re.S
+    )[0]
     (tmp_path / "mine.toml").write_text(ship)
     load = f"from twin.physics.ship import load; print(load({str(tmp_path / 'mine.toml')!r}).effects)"
     loaded = subprocess.run([sys.executable, "-c", load], capture_output=True, text=True, env=world, cwd=ROOT)

@@ -19,7 +19,9 @@ def matrices(ship):
     d, mass = ship.derivatives, 0.5 * ship.rho * ship.L_pp**2 * ship.T
     rigid = np.array([[ship.m, 0, 0], [0, ship.m, ship.m * ship.x_G], [0, ship.m * ship.x_G, ship.I_z]])
     L = ship.L_pp
-    added = -mass * np.array([[d.X_udot, 0, 0], [0, d.Y_vdot, d.Y_rdot * L], [0, d.N_vdot * L, d.N_rdot * L**2]])
+    added = -mass * np.array(
+        [[d.X_udot, 0, 0], [0, d.Y_vdot, d.Y_rdot * L], [0, d.N_vdot * L, d.N_rdot * L**2]]
+    )
     return rigid, added
 
 
@@ -45,7 +47,9 @@ def test_components_agree_with_fossens_matrices(name):
     want = -coriolis_matrix(rigid, nu) @ nu - coriolis_matrix(added, nu) @ nu
     np.testing.assert_allclose(core.coriolis(*nu, ship.c), want, rtol=1e-9)
     tau = np.array([0.01, 0.02, 0.005 * ship.L_pp]) * ship.m
-    np.testing.assert_allclose(core.accelerations(*tau, ship.c), np.linalg.solve(rigid + added, tau), rtol=1e-9)
+    np.testing.assert_allclose(
+        core.accelerations(*tau, ship.c), np.linalg.solve(rigid + added, tau), rtol=1e-9
+    )
 
 
 @ships
@@ -58,7 +62,8 @@ def test_coriolis_forces_do_no_work(name):
 
 
 def test_the_equations_follow_from_lagrange(ship):
-    """Kirchhoff's equations from the kinetic energy T = 1/2 nu' M nu: d/dt T_v + w x T_v = 0, d/dt T_w + w x T_w + v x T_v = 0."""
+    """Kirchhoff's equations from the kinetic energy T = 1/2 nu' M nu: d/dt T_v + w x T_v = 0, d/dt T_w + w x
+    T_w + v x T_v = 0."""
     u, v, r = sympy.symbols("u v r", real=True)
     rates = sympy.symbols("du dv dr", real=True)
     rigid, added = matrices(ship)
@@ -78,7 +83,16 @@ def test_the_equations_follow_from_lagrange(ship):
 def test_the_hull_brakes_in_every_direction_a_ship_goes(name):
     ship = load(name)
     U, R = ship.U_0, ship.U_0 / ship.L_pp
-    for u, v, r in ((1, 0, 0), (-1, 0, 0), (0, 0.5, 0), (0, -0.5, 0), (0, 0, 0.8), (0, 0, -0.8), (1, -0.15, 0.4), (1, 0.15, -0.4)):
+    for u, v, r in (
+        (1, 0, 0),
+        (-1, 0, 0),
+        (0, 0.5, 0),
+        (0, -0.5, 0),
+        (0, 0, 0.8),
+        (0, 0, -0.8),
+        (1, -0.15, 0.4),
+        (1, 0.15, -0.4),
+    ):
         force = core.damping(u * U, v * U, r * R, ship.c)
         assert force[0] * u * U + force[1] * v * U + force[2] * r * R < 0.0, (u, v, r)
 
@@ -105,7 +119,12 @@ def test_the_damping_by_hand(ship):
     f, L, d = 0.5 * 1000 * 100 * 5, 100.0, ship.derivatives
     u, v, r = 4.0, -0.5, 0.012
     slow = (9.80665 * L) ** 0.5
-    X = f * ((d.X_u * slow + d.X_uu * 4 + d.X_uuu * 16 / slow) * u + d.X_vv * 0.25 + d.X_vr * L * v * r + d.X_rr * L**2 * r**2)
+    X = f * (
+        (d.X_u * slow + d.X_uu * 4 + d.X_uuu * 16 / slow) * u
+        + d.X_vv * 0.25
+        + d.X_vr * L * v * r
+        + d.X_rr * L**2 * r**2
+    )
     Y = f * (d.Y_v * slow * v + d.Y_uv * 4 * v + d.Y_ur * L * 4 * r + d.Y_vv * 0.5 * v + d.Y_vr * L * 0.5 * r)
     Y += f * (d.Y_rv * L * 0.012 * v + d.Y_rr * L**2 * 0.012 * r)
     N = f * L * (d.N_uv * 4 * v + d.N_vv * 0.5 * v + d.N_vr * L * 0.5 * r + d.N_rv * L * 0.012 * v)
@@ -152,4 +171,6 @@ def test_a_ship_without_thrust_comes_to_rest(ship):
 @pytest.mark.parametrize("grown", [(0.0, 0.0), (0.4, 0.2)])
 def test_the_force_for_an_acceleration_gives_that_acceleration(ship, grown):
     tau = (2e5, -7e5, 3e7)
-    np.testing.assert_allclose(core.force_for(*core.accelerations(*tau, ship.c, grown), ship.c, grown), tau, rtol=1e-12)
+    np.testing.assert_allclose(
+        core.force_for(*core.accelerations(*tau, ship.c, grown), ship.c, grown), tau, rtol=1e-12
+    )

@@ -39,25 +39,42 @@ ISSUE = [
     "GyroBias",
 ]
 READ = ("x", "y", "psi", "u", "v", "r", "u_r", "v_r", "wind_to")
-ATHWART = {"y", "psi", "v", "r", "v_r", "delta", "wind_to", "wave_to", "phi", "v_dot"}  # change sign in a mirror
+# change sign in a mirror
+ATHWART = {"y", "psi", "v", "r", "v_r", "delta", "wind_to", "wave_to", "phi", "v_dot"}
 MIRRORED = {  # parameters that do so too
-    "RudderOffset": {"offset"}, "TowForce": {"starboard", "turning"}, "ExternalForce": {"east", "turn_east"},
-    "PropellerWalk": {"c_y", "c_n"}, "Current": {"east"}, "HeadingBias": {"bias", "turned"}, "SpeedLogMisalignment": {"angle"},
-    "AntennaOffset": {"starboard"}, "GyroBias": {"bias"},
+    "RudderOffset": {"offset"},
+    "TowForce": {"starboard", "turning"},
+    "ExternalForce": {"east", "turn_east"},
+    "PropellerWalk": {"c_y", "c_n"},
+    "Current": {"east"},
+    "HeadingBias": {"bias", "turned"},
+    "SpeedLogMisalignment": {"angle"},
+    "AntennaOffset": {"starboard"},
+    "GyroBias": {"bias"},
     "VaryingCurrent": {"east"} | {f"east_{wave}{k}" for wave in "cs" for k in "123"},
-}  # fmt: skip
+}
 each = pytest.mark.parametrize("Kind", (*BUILT_IN, *UNNAMED), ids=lambda kind: kind.__name__)
 
 
 def busy(Kind, ship):
     """The effect with every parameter away from null."""
-    return Kind(**{p.name: (p.default if p.default != p.null else p.null + 0.7 * p.sd) * p.scale(ship) for p in Kind.params()})
+    return Kind(
+        **{
+            p.name: (p.default if p.default != p.null else p.null + 0.7 * p.sd) * p.scale(ship)
+            for p in Kind.params()
+        }
+    )
 
 
 def respond(effect, s, ship):
-    """What the effect makes of this moment: accelerations, an actuator's next angle, or what the instruments say."""
+    """What the effect makes of this moment: accelerations, an actuator's next angle, or what the instruments
+    say."""
     if effect.kind == "Lag":
-        return (effect.step(s.delta, 2.0 * s.delta, 0.1), effect.step(s.delta, 1.001 * s.delta, 0.1), effect.dead_time())
+        return (
+            effect.step(s.delta, 2.0 * s.delta, 0.1),
+            effect.step(s.delta, 1.001 * s.delta, 0.1),
+            effect.dead_time(),
+        )
     if effect.kind == "SensorFault":
         read = effect.read(s, ship)
         return tuple(getattr(read, name) for name in READ)
@@ -110,7 +127,10 @@ def test_each_of_its_parameters_does_something(Kind, ship, moment):
 @each
 def test_floats_arrays_tensors_and_symbols_agree(Kind, ship, moment):
     effect, shifts = busy(Kind, ship), (0.0, 0.1, -0.7)
-    states = [moment | {"u": moment["u"] + d, "r": moment["r"] * (1.0 + d), "delta": d, "psi": moment["psi"] + d} for d in shifts]
+    states = [
+        moment | {"u": moment["u"] + d, "r": moment["r"] * (1.0 + d), "delta": d, "psi": moment["psi"] + d}
+        for d in shifts
+    ]
     floats = np.array([respond(effect, at(m), ship) for m in states])
     stacked = {k: np.array([m[k] for m in states]) for k in moment}
     arrays = respond(effect, Situation(**stacked), ship)
@@ -129,7 +149,10 @@ def test_its_gradient_is_finite_for_a_ship_at_rest_in_still_weather(Kind, ship, 
     still = dict.fromkeys(moment, 0.0) | {"depth": 9.0, "T_p": 8.0, "bank_port": 60.0, "bank_starboard": 25.0}
     s = Situation(**{k: torch.tensor(v, dtype=torch.float64, requires_grad=True) for k, v in still.items()})
     inputs = [getattr(s, name) for name in still]
-    values = {p.name: torch.tensor(p.null * p.scale(ship), dtype=torch.float64, requires_grad=True) for p in Kind.params()}
+    values = {
+        p.name: torch.tensor(p.null * p.scale(ship), dtype=torch.float64, requires_grad=True)
+        for p in Kind.params()
+    }
     said = [x for x in respond(Kind(**values), s, ship) if torch.is_tensor(x) and x.requires_grad]
     gradients = torch.autograd.grad(sum(said), [*inputs, *values.values()], allow_unused=True)
     assert all(g is None or torch.isfinite(g) for g in gradients)
@@ -142,7 +165,9 @@ def test_a_mirrored_ship_does_the_mirrored_thing(Kind, ship, moment):
     mirror = {k: -v if k in ATHWART else v for k, v in moment.items()}
     mirror |= {"bank_port": moment["bank_starboard"], "bank_starboard": moment["bank_port"]}
     true, seen = respond(effect, at(moment), ship), respond(flipped, at(mirror), ship)
-    signs = {"Lag": (-1, -1, 1), "SensorFault": [-1 if name in ATHWART else 1 for name in READ]}.get(Kind.kind, (1, -1, -1))
+    signs = {"Lag": (-1, -1, 1), "SensorFault": [-1 if name in ATHWART else 1 for name in READ]}.get(
+        Kind.kind, (1, -1, -1)
+    )
     np.testing.assert_allclose(np.array(signs) * seen, true, rtol=1e-12, atol=1e-15)
 
 
@@ -154,26 +179,54 @@ def test_it_is_linear_in_its_parameters_or_nearly_so(Kind, ship, moment):
     null = np.array(respond(Kind.absent(ship), at(moment), ship), float)
     for p in Kind.params():
         size = p.sd * p.scale(ship)
-        whole, half = (np.array(respond(Kind.absent(ship).but(**{p.name: k * size}), at(moment), ship), float) - null for k in (1.0, 0.5))
+        whole, half = (
+            np.array(respond(Kind.absent(ship).but(**{p.name: k * size}), at(moment), ship), float) - null
+            for k in (1.0, 0.5)
+        )
         scale = np.max(np.abs(whole))
         assert np.max(np.abs(2.0 * half - whole)) <= 0.15 * scale, p.name
 
 
 @each
 def test_it_scales_with_the_ship(Kind, ship, moment):
-    """By Froude's law the same effect at its plausible size gives the same accelerations on a model 1:25, where it has no size of its own."""
-    own_size = {"GyroBias", "SensorDelay", "VaryingCurrent"}  # instruments and tides do not shrink with the ship
+    """By Froude's law the same effect at its plausible size gives the same accelerations on a model 1:25,
+    where it has no size of its own."""
+    # instruments and tides do not shrink with the ship
+    own_size = {"GyroBias", "SensorDelay", "VaryingCurrent"}
     if Kind.kind in ("Lag", "SensorFault") or Kind.__name__ in own_size:
         pytest.skip("not a force of the ship's own size")
     k = 25.0
     small = replace(
-        ship, L_pp=ship.L_pp / k, B=ship.B / k, T=ship.T / k, m=ship.m / k**3, x_G=ship.x_G / k, I_z=ship.I_z / k**5, U_0=ship.U_0 / k**0.5,
-        D_P=ship.D_P / k, A_R=ship.A_R / k**2, A_F=ship.A_F / k**2, A_L=ship.A_L / k**2,
-    )  # fmt: skip
-    power = {"u": 0.5, "v": 0.5, "u_r": 0.5, "v_r": 0.5, "wind_speed": 0.5, "r": -0.5, "n": -0.5, "t": 0.5, "T_p": 0.5}
+        ship,
+        L_pp=ship.L_pp / k,
+        B=ship.B / k,
+        T=ship.T / k,
+        m=ship.m / k**3,
+        x_G=ship.x_G / k,
+        I_z=ship.I_z / k**5,
+        U_0=ship.U_0 / k**0.5,
+        D_P=ship.D_P / k,
+        A_R=ship.A_R / k**2,
+        A_F=ship.A_F / k**2,
+        A_L=ship.A_L / k**2,
+    )
+    power = {
+        "u": 0.5,
+        "v": 0.5,
+        "u_r": 0.5,
+        "v_r": 0.5,
+        "wind_speed": 0.5,
+        "r": -0.5,
+        "n": -0.5,
+        "t": 0.5,
+        "T_p": 0.5,
+    }
     power |= dict.fromkeys(("x", "y", "depth", "H_s", "draught", "bank_port", "bank_starboard"), 1.0)
     scaled = {name: value / k ** power.get(name, 0.0) for name, value in moment.items()}
-    big, little = respond(Kind.plausible(ship), at(moment), ship), respond(Kind.plausible(small), at(scaled), small)
+    big, little = (
+        respond(Kind.plausible(ship), at(moment), ship),
+        respond(Kind.plausible(small), at(scaled), small),
+    )
     np.testing.assert_allclose([little[0], little[1], little[2] / k], big, rtol=1e-6)
 
 

@@ -139,7 +139,8 @@ MOVING = [None, *(kind for kind in BUILT_IN if kind.kind in ("Force", "Flow"))]
 
 
 @pytest.mark.parametrize("Kind", MOVING, ids=lambda kind: kind.__name__ if kind else "core")
-@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])  # the moment is only read
+# the moment is only read
+@settings(max_examples=20, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(data=st.data())
 def test_every_force_and_flow_is_enclosed_with_its_slopes(Kind, data, ship, moment):
     """Test: random boxes around a busy moment, random points inside. Expected: nu_dot and its slopes lie
@@ -151,7 +152,9 @@ def test_every_force_and_flow_is_enclosed_with_its_slopes(Kind, data, ship, mome
     width = {k: draw(st.floats(0.0, 1.0)) * 0.2 * w for k, w in SPREAD.items()}
     point = {k: middle[k] + draw(st.floats(-1.0, 1.0)) * width[k] for k in SPREAD}
     names = ("u", "v", "r", "psi")
-    box = Situation(**{k: seeded(k, Interval(middle[k] - width[k], middle[k] + width[k]), names) for k in SPREAD})
+    box = Situation(
+        **{k: seeded(k, Interval(middle[k] - width[k], middle[k] + width[k]), names) for k in SPREAD}
+    )
     exact = Situation(**{k: seeded(k, float(x), names) for k, x in point.items()})
     for sure, here in zip(model.nu_dot(box), model.nu_dot(exact), strict=True):
         for a, b in zip((sure.value, *sure.slopes), (here.value, *here.slopes), strict=True):
@@ -170,7 +173,9 @@ def test_dual_numbers_on_floats_agree_with_differences(ship, moment):
     known = {f.name for f in fields(Situation)}
     values = {k: v for k, v in moment.items() if k in known}
     names = ("u", "v", "r", "psi")
-    slopes = model.nu_dot(Situation(**{k: seeded(k, v, names) if k in SPREAD else v for k, v in values.items()}))
+    slopes = model.nu_dot(
+        Situation(**{k: seeded(k, v, names) if k in SPREAD else v for k, v in values.items()})
+    )
     for j, name in enumerate(names):
         h = 1e-6
         up, down = (model.nu_dot(Situation(**values | {name: values[name] + s * h})) for s in (1.0, -1.0))

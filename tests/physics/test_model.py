@@ -55,21 +55,26 @@ def test_physics_imports_nothing_beyond_the_standard_library():
     code = (
         "import sys, pkgutil, importlib, twin.physics.effects as e\n"
         "import twin.physics.model, twin.physics.ship\n"
-        "[importlib.import_module(m.name) for m in pkgutil.walk_packages(twin.physics.__path__, 'twin.physics.')]\n"
+        "[importlib.import_module(m.name) for m in pkgutil.walk_packages(twin.physics.__path__, "
+        "'twin.physics.')]\n"
         "from twin.physics.ship import load\n"
         "load('kvlcc2')\n"
         "tops = {m.partition('.')[0] for m in sys.modules}\n"
-        "print(sorted(tops - set(sys.stdlib_module_names) - {'twin', '__main__', '__mp_main__'} - set(sys.argv[1:])))\n"
+        "print(sorted(tops - set(sys.stdlib_module_names) - {'twin', '__main__', '__mp_main__'} - "
+        "set(sys.argv[1:])))\n"
     )
     bare = subprocess.run(
-        [sys.executable, "-c", "import sys; print(*{m.partition('.')[0] for m in sys.modules})"], capture_output=True, text=True
+        [sys.executable, "-c", "import sys; print(*{m.partition('.')[0] for m in sys.modules})"],
+        capture_output=True,
+        text=True,
     )
     out = subprocess.run([sys.executable, "-c", code, *bare.stdout.split()], capture_output=True, text=True)
     assert out.stdout.strip() == "[]", out.stdout + out.stderr
 
 
 def test_an_antenna_stands_where_the_true_heading_puts_it_whatever_the_compass_shows(ship, situation):
-    """In whichever order the faults were named: a late receiver shows the antenna's place, the compass turns what it shows, and moves nothing."""
+    """In whichever order the faults were named: a late receiver shows the antenna's place, the compass turns
+    what it shows, and moves nothing."""
     compass, gyro = find("HeadingBias").plausible(ship), find("GyroBias").plausible(ship)
     antenna, late = find("AntennaOffset").plausible(ship), find("SensorDelay").plausible(ship)
     said = []

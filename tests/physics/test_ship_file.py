@@ -65,11 +65,20 @@ def test_an_unknown_parameter_is_refused_with_the_nearest_name():
 
 
 def test_a_parameter_outside_its_box_is_refused():
-    refuse(lambda t: t["effects"].update(Wind={"c_x": {"value": 9.0, "unit": "-"}}), "effects.Wind.c_x", "9", "[0, 1.6]")
+    refuse(
+        lambda t: t["effects"].update(Wind={"c_x": {"value": 9.0, "unit": "-"}}),
+        "effects.Wind.c_x",
+        "9",
+        "[0, 1.6]",
+    )
 
 
 def test_an_effect_that_lacks_a_particular_is_refused():
-    refuse(lambda t: (t["particulars"].pop("A_L"), t["effects"].update(Wind={})), "effects.Wind needs A_L", "[particulars]")
+    refuse(
+        lambda t: (t["particulars"].pop("A_L"), t["effects"].update(Wind={})),
+        "effects.Wind needs A_L",
+        "[particulars]",
+    )
 
 
 def test_a_missing_particular_is_refused():
@@ -77,7 +86,12 @@ def test_a_missing_particular_is_refused():
 
 
 def test_a_number_out_of_this_world_is_refused():
-    refuse(lambda t: t["particulars"].update(T={"value": 2080.0, "unit": "m"}), "particulars.T", "2080", "Check its unit")
+    refuse(
+        lambda t: t["particulars"].update(T={"value": 2080.0, "unit": "m"}),
+        "particulars.T",
+        "2080",
+        "Check its unit",
+    )
 
 
 def test_another_unit_is_refused():

@@ -1,4 +1,5 @@
-"""A number that carries its unit goes through the same code, which must give N, N, N m, and add no apples to pears."""
+"""A number that carries its unit goes through the same code, which must give N, N, N m, and add no apples to
+pears."""
 
 import sys
 from fractions import Fraction
@@ -25,7 +26,9 @@ class Quantity:
 
     def _like(self, other):
         if isinstance(other, Quantity):
-            assert other.unit == self.unit or other.value == 0.0 or self.value == 0.0, f"{self.unit} with {other.unit}"
+            assert other.unit == self.unit or other.value == 0.0 or self.value == 0.0, (
+                f"{self.unit} with {other.unit}"
+            )
             return other
         assert abs(other) <= FLOOR or not any(self.unit), f"{self.unit} with the bare number {other}"
         return Quantity(other, self.unit)
@@ -78,17 +81,35 @@ def _pure(name):
     return function
 
 
-sys.modules["quantity_maths"] = SimpleNamespace(sqrt=lambda x: x**0.5, **{n: _pure(n) for n in ("sin", "cos", "tanh", "exp")})
+sys.modules["quantity_maths"] = SimpleNamespace(
+    sqrt=lambda x: x**0.5, **{n: _pure(n) for n in ("sin", "cos", "tanh", "exp")}
+)
 
 KG, M, S = (1, 0, 0), (0, 1, 0), (0, 0, 1)
 UNITS = {
-    "-": (0, 0, 0), "rad": (0, 0, 0), "1/rad": (0, 0, 0), "L": (0, 0, 0), "m": M, "m2": (0, 2, 0), "s": S, "kg": KG, "kg m2": (1, 2, 0),
-    "kg/m3": (1, -3, 0), "m/s": (0, 1, -1), "m/s2": (0, 1, -2), "rad/s": (0, 0, -1), "rad/s2": (0, 0, -2), "1/s": (0, 0, -1),
-    "N": (1, 1, -2), "N m": (1, 2, -2),
-}  # fmt: skip
+    "-": (0, 0, 0),
+    "rad": (0, 0, 0),
+    "1/rad": (0, 0, 0),
+    "L": (0, 0, 0),
+    "m": M,
+    "m2": (0, 2, 0),
+    "s": S,
+    "kg": KG,
+    "kg m2": (1, 2, 0),
+    "kg/m3": (1, -3, 0),
+    "m/s": (0, 1, -1),
+    "m/s2": (0, 1, -2),
+    "rad/s": (0, 0, -1),
+    "rad/s2": (0, 0, -2),
+    "1/s": (0, 0, -1),
+    "N": (1, 1, -2),
+    "N m": (1, 2, -2),
+}
 FIELDS = dict.fromkeys(("x", "y", "depth", "H_s", "draught", "bank_port", "bank_starboard"), "m")
 FIELDS |= dict.fromkeys(("u", "v", "u_r", "v_r", "wind_speed"), "m/s") | dict.fromkeys(("r", "n"), "1/s")
-FIELDS |= dict.fromkeys(("psi", "delta", "wind_to", "wave_to", "phi"), "rad") | dict.fromkeys(("t", "T_p"), "s")
+FIELDS |= dict.fromkeys(("psi", "delta", "wind_to", "wave_to", "phi"), "rad") | dict.fromkeys(
+    ("t", "T_p"), "s"
+)
 FIELDS |= dict.fromkeys(("u_dot", "v_dot"), "m/s2")
 
 
@@ -102,7 +123,9 @@ def world(ship, moment, monkeypatch):
     monkeypatch.setattr(wind, "RHO_AIR", Quantity(1.225, UNITS["kg/m3"]))
     monkeypatch.setattr(varying_current, "HOUR", Quantity(3600.0, S))
     united = {f.name: Quantity(getattr(ship, f.name), UNITS[f.metadata["unit"]]) for f in PARTICULARS}
-    return replace(ship, **united), lambda: Situation(**{k: Quantity(v, UNITS[FIELDS[k]]) for k, v in moment.items()})
+    return replace(ship, **united), lambda: Situation(
+        **{k: Quantity(v, UNITS[FIELDS[k]]) for k, v in moment.items()}
+    )
 
 
 def test_the_core_gives_newtons_and_newton_metres(world):
@@ -120,8 +143,15 @@ def test_an_effect_gives_the_unit_it_should(Kind, world):
     sized = {p.name: (p.default or p.sd) * p.scale(ship) for p in Kind.params()}
     for p in Kind.params():
         if p.of:
-            assert sized[p.name].unit == UNITS[p.unit], f"{p.name}: of={p.of!r} has another unit than {p.unit}"
-    effect = Kind(**{p.name: Quantity(getattr(sized[p.name], "value", sized[p.name]), UNITS[p.unit]) for p in Kind.params()})
+            assert sized[p.name].unit == UNITS[p.unit], (
+                f"{p.name}: of={p.of!r} has another unit than {p.unit}"
+            )
+    effect = Kind(
+        **{
+            p.name: Quantity(getattr(sized[p.name], "value", sized[p.name]), UNITS[p.unit])
+            for p in Kind.params()
+        }
+    )
     s = moment()
     if Kind.kind == "Force":
         for component, unit in zip(effect.force(s, ship), ("N", "N", "N m"), strict=True):

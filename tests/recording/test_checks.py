@@ -119,7 +119,9 @@ TRAPS = {
 
 
 def test_good_data_passes_every_check_in_silence(sail):
-    for seed, (length, speed, noise) in enumerate([(100.0, 7.0, 1.0), (320.0, 8.0, 1.0), (7.0, 1.2, 0.05), (2.0, 1.5, 0.05)]):
+    for seed, (length, speed, noise) in enumerate(
+        [(100.0, 7.0, 1.0), (320.0, 8.0, 1.0), (7.0, 1.2, 0.05), (2.0, 1.5, 0.05)]
+    ):
         columns = sail(900.0, length, speed, noise, seed)
         assert [c.text for c in answers(columns).values() if not c.ok] == []
 
@@ -131,7 +133,9 @@ def test_the_trap_is_named(sail, trap):
     assert not found.ok and words in found.text, found.text
 
 
-@pytest.mark.parametrize("trap", [name for name, (check, _, _) in TRAPS.items() if check in ("velocity_frame", "yaw_rate")])
+@pytest.mark.parametrize(
+    "trap", [name for name, (check, _, _) in TRAPS.items() if check in ("velocity_frame", "yaw_rate")]
+)
 def test_a_proved_mistake_makes_the_data_unusable_and_says_what_to_write_in_the_map(sail, trap):
     check, plant, _ = TRAPS[trap]
     found = answers(plant(sail()))[check]
@@ -175,8 +179,9 @@ def test_the_yaw_rate_of_a_constant_heading_cannot_be_told(sail):
 
 
 def test_a_speed_over_ground_that_scatters_does_not_make_a_log_short():
-    """Test: a zigzag with a right log in a stream of 0.1 m/s; the speed over ground is the slope of positions and scatters by 0.5 m/s.
-    Expected: 1.00 and that stream. (With the speed over ground as the cause, k is short and a stream stands in for the rest.)"""
+    """Test: a zigzag with a right log in a stream of 0.1 m/s; the speed over ground is the slope of positions
+    and scatters by 0.5 m/s. Expected: 1.00 and that stream. (With the speed over ground as the cause, k is
+    short and a stream stands in for the rest.)"""
     rng, t = np.random.default_rng(5), np.arange(0.0, 2400.0)
     psi, true = 0.8 * np.sin(t / 90.0), 6.0 + 1.2 * np.sin(t / 45.0)
     log = true - 0.1 * np.cos(psi - 1.0) + 0.04 * rng.standard_normal(t.size)
@@ -224,7 +229,8 @@ def test_every_check_answers_under_its_own_name_with_a_sentence(sail):
 
 
 def test_a_gap_is_no_sensor_that_hangs(sail):
-    """Test: the log shows the same value on both sides of a gap of 40 s. Expected: the gap is named, no frozen sensor."""
+    """Test: the log shows the same value on both sides of a gap of 40 s. Expected: the gap is named, no
+    frozen sensor."""
     columns = sail()
     t = columns["time_s"]
     keep = (t < 300.0) | (t > 340.0)
@@ -235,19 +241,26 @@ def test_a_gap_is_no_sensor_that_hangs(sail):
 
 
 def messages(columns, digits):
-    """A log with a row for each message: heading and rate twice a second, rudder and engine once, place and speed once, stamped as they came."""
+    """A log with a row for each message: heading and rate twice a second, rudder and engine once, place and
+    speed once, stamped as they came."""
     rng, t, rows = np.random.default_rng(3), columns["time_s"], []
     apart = ((HEADING, RATE), (RUDDER,), (TURNS,), ("north_m", "east_m", SURGE, SWAY))
     for i in np.flatnonzero(np.isclose(t % 0.5, 0.0)):
-        rows += [(t[i] + rng.uniform(0.0, 0.03), names, i) for names in (apart if t[i] % 1.0 == 0.0 else apart[:1])]
+        rows += [
+            (t[i] + rng.uniform(0.0, 0.03), names, i) for names in (apart if t[i] % 1.0 == 0.0 else apart[:1])
+        ]
     rows.sort(key=lambda row: row[0])
-    out = {name: np.array([columns[name][i] if name in names else np.nan for _, names, i in rows]) for name in sum(apart, ())}
+    out = {
+        name: np.array([columns[name][i] if name in names else np.nan for _, names, i in rows])
+        for name in sum(apart, ())
+    }
     return out | {"time_s": np.round([stamp for stamp, _, _ in rows], digits)}
 
 
 @pytest.mark.parametrize("digits", [2, 3])
 def test_two_instruments_that_speak_at_one_moment_are_no_stamp_twice(sail, digits):
-    """Test: a row for each message, 2 % to a third of the stamps on two rows. Expected: no rounded stamps, no gaps."""
+    """Test: a row for each message, 2 % to a third of the stamps on two rows. Expected: no rounded stamps, no
+    gaps."""
     log = messages(sail(300.0), digits)
     assert (np.diff(log["time_s"]) == 0.0).mean() > 0.01
     found = answers(log)

@@ -28,10 +28,27 @@ def test_a_check_that_cannot_tell_is_not_marked_ok(sail, write_csv, tmp_path, ca
 
 def test_the_reference_voyage_of_a_new_ship_is_for_her_calibration(sail, write_csv, tmp_path, capsys):
     ship, out = tmp_path / "alma.toml", tmp_path / "v.mcap"
-    main(["init", "MV Alma", "--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5", "-o", str(ship)])
-    assert run(write_csv(sail()), "--ship", ship, "--accept", "propeller_rate", "--accept", "ship_size", "-o", out) == 0
+    main(
+        ["init", "MV Alma", "--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5", "-o", str(ship)]
+    )
+    assert (
+        run(
+            write_csv(sail()),
+            "--ship",
+            ship,
+            "--accept",
+            "propeller_rate",
+            "--accept",
+            "ship_size",
+            "-o",
+            out,
+        )
+        == 0
+    )
     said = capsys.readouterr().out
-    assert f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship}" in said and "twin diagnose LATER.mcap" in said
+    assert (
+        f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship}"
+    ) in said and "twin diagnose LATER.mcap" in said
 
 
 def test_a_good_file_goes_in_and_the_next_command_is_named(sail, write_csv, tmp_path, capsys):
@@ -55,7 +72,11 @@ def test_a_proved_mistake_is_refused_and_nothing_is_written(sail, write_csv, tmp
     columns = sail()
     columns["rudder_angle_deg"] = -columns["rudder_angle_deg"]
     path, out = write_csv(columns), tmp_path / "v.mcap"
-    with pytest.raises(DataError, match=r"sign = -1 for rudder_angle_deg.*into a map .*--accept rudder_sign") as caught:
+    with pytest.raises(
+        DataError,
+        match=r"sign = -1 for rudder_angle_deg.*into a map .*--accept "
+        r"rudder_sign",
+    ) as caught:
         run(path, "-o", out)
     assert "\n" not in str(caught.value) and caught.value.exit_code == 4
     assert [p.name for p in tmp_path.iterdir()] == ["voyage.csv"]

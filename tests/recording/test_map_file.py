@@ -27,13 +27,19 @@ MAP = {
 
 def test_a_map_names_columns_units_signs_frames_and_the_clock(tmp_path):
     rows = ["exported by somebody", "day;clock;lat;lon;hdg;sog;cog;RUD;n;w;wd"]
-    rows += [f"17.05.2024;08:30:{s:02d}.5;5530,00;10,0;0,5;10,0;33,65;-4;1,5;36;{'-99' if s == 3 else '10'}" for s in range(20)]
+    rows += [
+        f"17.05.2024;08:30:{s:02d}.5;5530,00;10,0;0,5;10,0;33,65;-4;1,5;36;{'-99' if s == 3 else '10'}"
+        for s in range(20)
+    ]
     path = tmp_path / "v.csv"
     path.write_text("\n".join(rows))
     v = read_voyage(path, parse_map(MAP, "my.toml"))
     assert v.meta["datum"] == {"latitude_deg": 55.5, "longitude_deg": 10.0} and v.meta["map"] == "my"
     assert v["heading_true_north_deg"][0] == pytest.approx(np.degrees(0.5) + 5.0)
-    assert v["surge_velocity_mps"][0] == pytest.approx(5.1444, abs=1e-3) and abs(v["sway_velocity_mps"][0]) < 0.01
+    assert (
+        v["surge_velocity_mps"][0] == pytest.approx(5.1444, abs=1e-3)
+        and abs(v["sway_velocity_mps"][0]) < 0.01
+    )
     assert v["rudder_angle_deg"][0] == 4.0 and v["propeller_rate_rpm"][0] == 90.0
     assert v["true_wind_speed_mps"][0] == pytest.approx(10.0) and v["true_wind_direction_deg"][0] == 190.0
     assert np.isnan(v["true_wind_direction_deg"][3]) and v["water_depth_m"][5] == 35.0
@@ -98,9 +104,16 @@ def test_a_map_that_asks_for_a_column_that_is_not_there(columns, write_csv, refu
 
 def test_an_optional_column_may_be_absent_and_any_other_may_not(columns, write_csv, refused):
     path = write_csv(columns)
-    by = {"columns": {n: n for n in columns if n != "time_s"} | {"roll_deg": {"column": "Heel", "optional": True}}}
+    by = {
+        "columns": {n: n for n in columns if n != "time_s"}
+        | {"roll_deg": {"column": "Heel", "optional": True}}
+    }
     voyage = read_voyage(path, parse_map(by, "m.toml"))
     assert not voyage.has("roll_deg") and "the optional column 'Heel' is not there" in voyage.meta["notes"]
-    refused(path, "no column 'Heel'", by=parse_map(by | {"columns": by["columns"] | {"roll_deg": "Heel"}}, "m.toml"))
+    refused(
+        path,
+        "no column 'Heel'",
+        by=parse_map(by | {"columns": by["columns"] | {"roll_deg": "Heel"}}, "m.toml"),
+    )
     with pytest.raises(SettingsError, match="cannot be optional"):
         parse_map({"columns": {"surge_velocity_mps": {"column": "u", "optional": True}}}, "m.toml")

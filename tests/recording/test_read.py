@@ -62,7 +62,9 @@ def test_latitude_and_longitude_become_north_and_east_across_the_antimeridian(co
     longitude = 179.9995 + 7.0 * t / 111_000.0
     longitude = np.where(longitude > 180.0, longitude - 360.0, longitude)
     placed = {n: x for n, x in columns.items() if n not in ("north_m", "east_m")}
-    v = read_voyage(write_csv(placed | {"latitude_deg": 0.001 + 0 * t, "longitude_deg": longitude}, digits=14))
+    v = read_voyage(
+        write_csv(placed | {"latitude_deg": 0.001 + 0 * t, "longitude_deg": longitude}, digits=14)
+    )
     np.testing.assert_allclose(v["east_m"], 7.0 * t * 111_319.5 / 111_000.0, atol=0.02)
     np.testing.assert_allclose(v["north_m"], 0.0, atol=0.01)
     assert v.meta["datum"]["longitude_deg"] == pytest.approx(179.9995)
@@ -88,26 +90,38 @@ def test_a_row_for_each_instrument_gives_the_same_motion(sail, write_csv, tmp_pa
     full = {n: x[::10] for n, x in sail(120.0, noise=0.0).items()}
     psi = np.radians(full["heading_true_north_deg"])
     over_ground = (full["surge_velocity_mps"] + 1j * full["sway_velocity_mps"]) * np.exp(1j * psi)
-    columns = {n: full[n] for n in ("north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg", "propeller_rate_rpm")}
+    columns = {
+        n: full[n]
+        for n in ("north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg", "propeller_rate_rpm")
+    }
     if positions != "alone":
         columns |= {"SOG": np.abs(over_ground), "COG": np.mod(np.degrees(np.angle(over_ground)), 360.0)}
     rows = np.full((full["time_s"].size, len(columns), 1 + len(columns)), np.nan)
     for j, x in enumerate(columns.values()):
         rows[:, j, 0], rows[:, j, 1 + j] = full["time_s"] + 0.05 * j, x
-    path = write_csv(dict(zip(("time_s", *columns), rows.reshape(-1, 1 + len(columns)).T, strict=True)), digits=12)
-    course = {"surge_velocity_mps": {"column": "SOG", "frame": "course"}, "sway_velocity_mps": {"column": "COG", "frame": "course"}}
+    path = write_csv(
+        dict(zip(("time_s", *columns), rows.reshape(-1, 1 + len(columns)).T, strict=True)), digits=12
+    )
+    course = {
+        "surge_velocity_mps": {"column": "SOG", "frame": "course"},
+        "sway_velocity_mps": {"column": "COG", "frame": "course"},
+    }
     own = {n: n for n in columns if n not in ("SOG", "COG")}
-    v = read_voyage(path, parse_map({"columns": own | (course if positions != "alone" else {})}, "m.toml")).on_grid(1.0)
+    v = read_voyage(
+        path, parse_map({"columns": own | (course if positions != "alone" else {})}, "m.toml")
+    ).on_grid(1.0)
     for name, size in (("surge_velocity_mps", 0.15), ("sway_velocity_mps", 0.25)):
         assert np.isfinite(v[name]).sum() > 110
         np.testing.assert_allclose(v[name][5:-5], full[name][5 : len(v) - 5], atol=size)
 
 
 def test_a_derived_rate_is_no_second_reading(sail, write_csv, required):
-    """Test: positions and headings alone. Expected: velocities and yaw rate are shown, but the study does not take them for
-    instruments of their own, and no effect of a gyro is judged."""
+    """Test: positions and headings alone. Expected: velocities and yaw rate are shown, but the study does not
+    take them for instruments of their own, and no effect of a gyro is judged."""
     full = sail(400.0)
-    v = read_voyage(write_csv({n: full[n] for n in required if "velocity" not in n and "rate_degps" not in n}))
+    v = read_voyage(
+        write_csv({n: full[n] for n in required if "velocity" not in n and "rate_degps" not in n})
+    )
     t = track(v, load("container"))
     there = np.isfinite(t.measured).any(0)
     assert [n for n, seen in zip(READINGS, there, strict=True) if seen] == ["x", "y", "psi"]
@@ -197,15 +211,24 @@ def test_a_column_by_another_name_is_said_to_be_missing_with_a_guess(columns, wr
 
 @pytest.mark.parametrize("frame", ["course", "earth"])
 def test_velocities_over_ground_by_course_or_by_north_and_east_need_no_map(columns, write_csv, frame):
-    psi, u, v = np.radians(columns["heading_true_north_deg"]), columns["surge_velocity_mps"], columns["sway_velocity_mps"]
+    psi, u, v = (
+        np.radians(columns["heading_true_north_deg"]),
+        columns["surge_velocity_mps"],
+        columns["sway_velocity_mps"],
+    )
     north, east = u * np.cos(psi) - v * np.sin(psi), u * np.sin(psi) + v * np.cos(psi)
-    ground = {"earth": (north, east), "course": (np.hypot(north, east), np.degrees(np.arctan2(east, north)) % 360.0)}[frame]
+    ground = {
+        "earth": (north, east),
+        "course": (np.hypot(north, east), np.degrees(np.arctan2(east, north)) % 360.0),
+    }[frame]
     others = {n: x for n, x in columns.items() if "surge" not in n and "sway" not in n}
     voyage = read_voyage(write_csv(others | dict(zip(GROUND[frame], ground, strict=True))))
     np.testing.assert_allclose(voyage["surge_velocity_mps"], u, atol=1e-6)
     np.testing.assert_allclose(voyage["sway_velocity_mps"], v, atol=1e-6)
     beside = read_voyage(write_csv(columns | dict(zip(GROUND[frame], ground, strict=True))))
-    assert "is not used (what is read as velocity over ground: surge_velocity_mps and" in " ".join(beside.meta["notes"])
+    assert ("is not used (what is read as velocity over ground: surge_velocity_mps and") in " ".join(
+        beside.meta["notes"]
+    )
     np.testing.assert_allclose(beside["surge_velocity_mps"], u)
 
 
@@ -230,7 +253,9 @@ def test_a_duplicated_header(columns, write_csv, tmp_path, refused):
 
 
 def test_a_header_of_numbers(tmp_path, refused):
-    refused(text(tmp_path, "0,1,2\n1,2,3\n"), "line 1 has numbers where column names should be", "header = false")
+    refused(
+        text(tmp_path, "0,1,2\n1,2,3\n"), "line 1 has numbers where column names should be", "header = false"
+    )
 
 
 def test_a_word_in_a_column_of_numbers(columns, write_csv, tmp_path, refused):
@@ -255,7 +280,9 @@ def test_a_short_line_in_the_middle_and_one_cut_off_at_the_end(columns, write_cs
 def test_time_that_goes_back_and_time_that_passes_midnight(columns, write_csv, refused):
     back = columns["time_s"].copy()
     back[300:] -= 10.0
-    refused(write_csv(columns | {"time_s": back}), "line 302: time goes back from 29.9 s to 20 s", "Split or sort")
+    refused(
+        write_csv(columns | {"time_s": back}), "line 302: time goes back from 29.9 s to 20 s", "Split or sort"
+    )
     midnight = np.mod(columns["time_s"] + 86380.0, 86400.0)
     refused(write_csv(columns | {"time_s": midnight}, digits=14), "passes midnight")
 
@@ -265,7 +292,9 @@ def test_a_time_that_is_no_time(columns, write_csv, tmp_path, refused):
     refused(text(tmp_path, body.replace("\n0.3,", "\n12.3.2024,", 1)), "line", "ISO 8601", "format")
 
 
-def test_an_mcap_that_is_none_one_cut_short_and_one_without_measurements(columns, write_csv, tmp_path, refused):
+def test_an_mcap_that_is_none_one_cut_short_and_one_without_measurements(
+    columns, write_csv, tmp_path, refused
+):
     refused(text(tmp_path, "time_s,north_m\n", "v.mcap"))
     whole = tmp_path / "whole.mcap"
     write_voyage(read_voyage(write_csv(columns)), whole)

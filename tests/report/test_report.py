@@ -15,7 +15,10 @@ from twin.report.page import content
 from twin.study.prediction.compare import compare
 
 BROWSER = next((b for b in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if b), None)
-FLAGS = "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking --enable-logging=stderr"
+FLAGS = (
+    "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
+    "--enable-logging=stderr"
+)
 
 
 @pytest.fixture
@@ -27,7 +30,9 @@ def stream(make, kvlcc2):
 def page(sailed, stream, kvlcc2, tmp_path):
     """A page of compare, with text that would break a careless one."""
     s = sailed(stream)
-    result = compare([s], Model.of(kvlcc2)).result | {"notes": ["</script><script>console.error('x')</script>"]}
+    result = compare([s], Model.of(kvlcc2)).result | {
+        "notes": ["</script><script>console.error('x')</script>"]
+    }
     report.write(tmp_path / "page.html", "compare", result, [s.track], Model.of(kvlcc2), voyages=[s.voyage])
     return tmp_path / "page.html"
 
@@ -68,14 +73,20 @@ def test_the_page_is_dark_when_it_is_asked_to_be(page):
     assert 'data-theme="dark"' in opened(page, "#theme=dark")[0]
 
 
-def test_the_page_of_diagnose_ranks_causes_in_newtons_with_the_command_beside(stream, sailed, kvlcc2, tmp_path):
+def test_the_page_of_diagnose_ranks_causes_in_newtons_with_the_command_beside(
+    stream, sailed, kvlcc2, tmp_path
+):
     number = {"name": "east", "value": 0.8, "low95": 0.7, "high95": 0.9, "unit": "m/s", "in_ship_file": 0.2}
     cause = {
         "effect": "Current", "probability": 0.97, "parameters": [number],
         "typical_force": {"X_N": 4.1e4, "Y_N": 5.12e5, "N_Nm": 3.2e7},
         "error_without": 72.0, "error_with": 13.0, "cannot_be_told_from": ["VaryingCurrent"],
     }  # fmt: skip
-    next_one = {"separates": ["Current", "VaryingCurrent"], "manoeuvre": "reciprocal runs", "why": "it changes sign"}
+    next_one = {
+        "separates": ["Current", "VaryingCurrent"],
+        "manoeuvre": "reciprocal runs",
+        "why": "it changes sign",
+    }
     result = {
         "schema_version": 1,
         "verdict": "missing",
@@ -98,18 +109,48 @@ def test_the_page_of_diagnose_ranks_causes_in_newtons_with_the_command_beside(st
         assert words in dom
 
 
-def test_the_page_of_an_unknown_cause_says_when_it_pushed_her_and_what_it_resembles(stream, sailed, kvlcc2, tmp_path):
+def test_the_page_of_an_unknown_cause_says_when_it_pushed_her_and_what_it_resembles(
+    stream, sailed, kvlcc2, tmp_path
+):
     track = sailed(stream).track
-    moment = {"voyage": track.name, "start_s": 60.0, "end_s": 95.0, "X_N": -6e4, "Y_N": 7.24e5, "N_Nm": -1.17e7}
-    loose = {"effect": "RudderPlay", "probability": 0.99, "parameters": [], "typical_force": {"X_N": 0.0, "Y_N": 1e5, "N_Nm": 0.0}, "says": "It hangs loose."}
+    moment = {
+        "voyage": track.name,
+        "start_s": 60.0,
+        "end_s": 95.0,
+        "X_N": -6e4,
+        "Y_N": 7.24e5,
+        "N_Nm": -1.17e7,
+    }
+    loose = {
+        "effect": "RudderPlay",
+        "probability": 0.99,
+        "parameters": [],
+        "typical_force": {"X_N": 0.0, "Y_N": 1e5, "N_Nm": 0.0},
+        "says": "It hangs loose.",
+    }
     stream_too = {"effect": "Current", "probability": 0.23, "parameters": []}
-    result = {"schema_version": 1, "verdict": "unknown", "missing": [], "candidates": [stream_too], "moments": [moment], "resembles": [loose]}
+    result = {
+        "schema_version": 1,
+        "verdict": "unknown",
+        "missing": [],
+        "candidates": [stream_too],
+        "moments": [moment],
+        "resembles": [loose],
+    }
     report.write(tmp_path / "d.html", "diagnose", result, [track], Model.of(kvlcc2))
     dom, complaints = opened(tmp_path / "d.html")
     assert complaints == []
-    for words in ("Moments at which something pushed her", "1:00 to 1:35", "724 kN", "-11.7 MN m", "It hangs loose.", "RudderPlay"):
+    for words in (
+        "Moments at which something pushed her",
+        "1:00 to 1:35",
+        "724 kN",
+        "-11.7 MN m",
+        "It hangs loose.",
+        "RudderPlay",
+    ):
         assert words in dom
-    assert "twin add Current" not in dom and "twin add RudderPlay" not in dom  # which does not explain it; and is no effect of the catalogue
+    # which does not explain it; and is no effect of the catalogue
+    assert "twin add Current" not in dom and "twin add RudderPlay" not in dom
 
 
 def test_the_page_of_add_shows_before_and_after(verb, on_disk, stream, tmp_path):
@@ -127,13 +168,22 @@ def test_every_verdict_has_a_sentence(sailed, make, kvlcc2, verdict):
     json.dumps(shown, allow_nan=False)
 
 
-def test_an_hour_at_ten_hertz_is_a_page_of_a_few_megabytes_that_opens_in_two_seconds(sailed, make, kvlcc2, tmp_path):
+def test_an_hour_at_ten_hertz_is_a_page_of_a_few_megabytes_that_opens_in_two_seconds(
+    sailed, make, kvlcc2, tmp_path
+):
     hour = make(seconds=3600.0, wind=8.0)
     import numpy as np
 
     t = np.arange(0.0, 3598.0, 0.1)
     dense = hour.with_rows(t, {k: np.interp(t, hour.time_s, x) for k, x in hour.columns.items()})
-    report.write(tmp_path / "h.html", "compare", {"verdict": "an hour"}, [sailed(hour).track], Model.of(kvlcc2), voyages=[dense])
+    report.write(
+        tmp_path / "h.html",
+        "compare",
+        {"verdict": "an hour"},
+        [sailed(hour).track],
+        Model.of(kvlcc2),
+        voyages=[dense],
+    )
     dom, complaints = opened(tmp_path / "h.html")
     ready = int(re.search(r'data-ready-ms="(\d+)"', dom).group(1))
     assert complaints == [] and (tmp_path / "h.html").stat().st_size < 8e6
@@ -142,4 +192,6 @@ def test_an_hour_at_ten_hertz_is_a_page_of_a_few_megabytes_that_opens_in_two_sec
 
 def test_a_page_that_cannot_be_written_is_one_clear_line(sailed, make, kvlcc2, tmp_path):
     with pytest.raises(TwinError, match="cannot be written"):
-        report.write(tmp_path / "no" / "p.html", "compare", {}, [sailed(make(seconds=400.0)).track], Model.of(kvlcc2))
+        report.write(
+            tmp_path / "no" / "p.html", "compare", {}, [sailed(make(seconds=400.0)).track], Model.of(kvlcc2)
+        )

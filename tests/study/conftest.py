@@ -1,5 +1,5 @@
-"""Voyages for the study's tests: of the reference sea with something hidden, and of the twin's own model where a test wants to know what is
-in it."""
+"""Voyages for the study's tests: of the reference sea with something hidden, and of the twin's own model
+where a test wants to know what is in it."""
 
 from dataclasses import replace
 from functools import lru_cache
@@ -40,8 +40,12 @@ def tanker():
 
 @pytest.fixture(scope="session")
 def voyages():
-    """One 20 min voyage for each name in HIDDEN, a straight one, and two to calibrate on; every second a sample."""
-    cases = {name: Case("kvlcc2", "mixed", hidden=h, seed=900 + i, duration_s=1200.0) for i, (name, h) in enumerate(HIDDEN.items())}
+    """One 20 min voyage for each name in HIDDEN, a straight one, and two to calibrate on; every second a
+    sample."""
+    cases = {
+        name: Case("kvlcc2", "mixed", hidden=h, seed=900 + i, duration_s=1200.0)
+        for i, (name, h) in enumerate(HIDDEN.items())
+    }
     cases["straight"] = Case("kvlcc2", "straight", seed=950, duration_s=1200.0)
     cases["calm"] = Case("kvlcc2", "zigzag_20", seed=960, duration_s=1200.0)
     cases["calm too"] = Case("kvlcc2", "speed_changes", seed=961, duration_s=1200.0)
@@ -75,7 +79,8 @@ def sail(
     name: str = "made",
     of: Ship | None = None,
 ) -> Voyage:
-    """Turns and straight legs of a ship with these effects, measured with noise; `wind` [m/s] from the east, if measured."""
+    """Turns and straight legs of a ship with these effects, measured with noise; `wind` [m/s] from the east,
+    if measured."""
     model, rng = Model.of(of or ship()).but(*effects), np.random.default_rng(seed)
     t = np.arange(0.0, seconds, step)
     legs = np.repeat(rng.choice([-20.0, -10.0, 0.0, 10.0, 20.0], t.size), rng.integers(50, 130, t.size))

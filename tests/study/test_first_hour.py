@@ -12,7 +12,9 @@ import pytest
 from twin.physics.ship import load
 
 PAGE = Path(__file__).parents[2] / "docs" / "tutorials" / "first-hour.md"
-COMMANDS = [line for block in re.findall(r"```sh\n(.*?)```", PAGE.read_text(), re.S) for line in block.splitlines()]
+COMMANDS = [
+    line for block in re.findall(r"```sh\n(.*?)```", PAGE.read_text(), re.S) for line in block.splitlines()
+]
 MODULES = {"twin": "twin.cli", "twin-bench": "bench.cli"}
 
 
@@ -22,7 +24,9 @@ def folder(tmp_path_factory):
     path = tmp_path_factory.mktemp("alma")
     for command in COMMANDS:
         program, *words = shlex.split(command)
-        done = subprocess.run([sys.executable, "-m", MODULES[program], *words], cwd=path, capture_output=True, text=True)
+        done = subprocess.run(
+            [sys.executable, "-m", MODULES[program], *words], cwd=path, capture_output=True, text=True
+        )
         assert done.returncode == 0, f"{command}\n{done.stderr[-800:]}"
     return path
 

@@ -25,8 +25,8 @@ CERTIFY_S = 20.0  # the longest the service's start waits for a certificate
 
 
 def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | None = CERTIFY_S) -> Loop:
-    """The loop these settings describe; SettingsError when they cannot be used. `patience_s`: how long her certificate may take,
-    None for as long as it takes.
+    """The loop these settings describe; SettingsError when they cannot be used. `patience_s`: how long her
+    certificate may take, None for as long as it takes.
 
     What loading a library leaves in memory is given back before the next one is loaded: their sum would be
     the peak.
@@ -45,12 +45,19 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
         notes += learned.adaptation.notes
     rate, stabilizer = settings["loop.rate_hz"], stabilizer_of(settings, ship, patience_s)
     loop = Loop(
-        ship, ears, voice, learned, rate, settings["observer.gain"] or stabilizer.gain,
+        ship,
+        ears,
+        voice,
+        learned,
+        rate,
+        settings["observer.gain"] or stabilizer.gain,
         stabilizer=stabilizer,
-        predictor=Predictor(ship, tuple(settings["prediction.horizons_s"]), settings["prediction.refresh_s"], rate),
+        predictor=Predictor(
+            ship, tuple(settings["prediction.horizons_s"]), settings["prediction.refresh_s"], rate
+        ),
         sensors=Sensors(ship, settings.sources, settings["sensors.max_delay_s"]),
         guard=Guard(ship, learned, settings["guard.reckoning_s"]),
-    )  # fmt: skip
+    )
     if said := loop.stabilizer.why_not:
         notes.append(f"certificate: {said}")
     loop.notes = notes
@@ -103,7 +110,8 @@ def stabilizer_of(settings: Settings, ship: Ship, patience_s: float | None = CER
 
 
 def _worked_out(patience_s: float | None, *arguments: object) -> tuple[Certificate | None, str]:
-    """The certificate from another process, which keeps it on file where it can; or None, and why in one line."""
+    """The certificate from another process, which keeps it on file where it can; or None, and why in one
+    line."""
     import subprocess  # here and not above: only the first start needs it
 
     command = [sys.executable, "-c", CERTIFY.format(*arguments)]
@@ -119,12 +127,15 @@ def _worked_out(patience_s: float | None, *arguments: object) -> tuple[Certifica
 
 
 def certificate_file(settings: Settings, wanted: str) -> Path:
-    """As the settings say, else in the state folder, else in ~/.cache/shiptwin, where many ships and settings lie: by its mark."""
+    """As the settings say, else in the state folder, else in ~/.cache/shiptwin, where many ships and settings
+    lie: by its mark."""
     if settings["observer.certificate"]:
         return Path(settings["observer.certificate"])
     if settings["state.folder"]:
         return Path(settings["state.folder"]) / "certificate.json"
-    return Path.home() / ".cache" / "shiptwin" / f"{Path(settings['ship.file']).stem}-{wanted}.certificate.json"
+    return (
+        Path.home() / ".cache" / "shiptwin" / f"{Path(settings['ship.file']).stem}-{wanted}.certificate.json"
+    )
 
 
 def certify_aside(ship_file: str, path: str, K: float | None, h: float, delay: int, adapted: bool) -> None:

@@ -33,8 +33,8 @@ class Clock(Protocol):
 
 
 class MonotonicClock:
-    """A tick each 1/rate_hz [s] on a fixed grid. A tick that comes too late skips whole periods; one that woke
-    more than half a period late skips the next as well, so no two are closer than half a period."""
+    """A tick each 1/rate_hz [s] on a fixed grid. A tick that comes too late skips whole periods; one that
+    woke more than half a period late skips the next as well, so no two are closer than half a period."""
 
     def __init__(
         self,

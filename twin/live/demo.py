@@ -43,8 +43,12 @@ SEEN = (
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--seconds", type=float, default=30.0, help="how long she sails (default: 30)")
-    parser.add_argument("--ship", default="kvlcc2", help="a bundled ship: kvlcc2 (320 m; the default), usv (2 m, lively), ...")
-    parser.add_argument("--manoeuvre", default="zigzag_20", help="what the helmsman does (default: zigzag_20)")
+    parser.add_argument(
+        "--ship", default="kvlcc2", help="a bundled ship: kvlcc2 (320 m; the default), usv (2 m, lively), ..."
+    )
+    parser.add_argument(
+        "--manoeuvre", default="zigzag_20", help="what the helmsman does (default: zigzag_20)"
+    )
     parser.add_argument("--logs", default="logs", metavar="FOLDER", help="where the log goes (default: logs)")
 
 
@@ -55,7 +59,9 @@ def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
     folder = Path(args.logs) / time.strftime("demo-%Y%m%d-%H%M%S")
     settings = settings_for(args.ship, folder)
-    print(f"{ship.name} sails a {args.manoeuvre} in the reference sea for {args.seconds:g} s; her twin listens.")
+    print(
+        f"{ship.name} sails a {args.manoeuvre} in the reference sea for {args.seconds:g} s; her twin listens."
+    )
     with reference_sea(settings, args, RUN_IN * ship.L_pp / ship.U_0):
         view = View(sys.stdout, f"shiptwin demo: {ship.name}", args.seconds, str(folder))
         code = service.serve(settings, args.seconds, view.show)
@@ -80,9 +86,12 @@ def settings_for(ship: str, folder: Path) -> Settings:
 
 @contextmanager
 def reference_sea(settings: Settings, args: argparse.Namespace, after_s: float) -> Iterator[None]:
-    """The ship and her instruments, in a process of its own, until the demo is over; she is under way for `after_s`."""
+    """The ship and her instruments, in a process of its own, until the demo is over; she is under way for
+    `after_s`."""
     if importlib.util.find_spec("bench") is None:
-        raise TwinError("The reference sea (package `bench`) is not installed here. Run `make demo` in the source folder.")
+        raise TwinError(
+            "The reference sea (package `bench`) is not installed here. Run `make demo` in the source folder."
+        )
     command = [sys.executable, "-m", SEA, "--connect", settings["bus.listen"], "--hull", args.ship]
     command += ["--manoeuvre", args.manoeuvre, "--after", f"{after_s:.0f}"]
     command += ["--base", settings["bus.base"], "--entity", settings["bus.entity"]]
@@ -101,7 +110,8 @@ def _wait_for(sea: "subprocess.Popen[bytes]", said: IO[str]) -> None:
     until, text = time.monotonic() + START_S, ""
     while UNDER_WAY not in text:
         ended = sea.poll() is not None or time.monotonic() > until
-        text = os.pread(said.fileno(), 10_000, 0).decode(errors="replace")  # its place in the file is the sea's too
+        # its place in the file is the sea's too
+        text = os.pread(said.fileno(), 10_000, 0).decode(errors="replace")
         if ended and UNDER_WAY not in text:
             raise TwinError(f"The reference sea did not start: {text.strip() or 'it said nothing'}")
         time.sleep(0.05)
@@ -122,10 +132,18 @@ def compared(log: Path, again: Path) -> str:
     """How far the replay's estimates are from those said live."""
     live, replayed = ({t.index: t.estimate for t in ticks_of(path)} for path in (log, again))
     worst = max(
-        (abs(getattr(live[i], name) - getattr(replayed[i], name)) for i in live.keys() & replayed.keys() for name in SEEN),
+        (
+            abs(getattr(live[i], name) - getattr(replayed[i], name))
+            for i in live.keys() & replayed.keys()
+            for name in SEEN
+        ),
         default=math.nan,
     )
-    return "the same estimates as live, bit for bit" if worst == 0.0 else f"estimates differ from live by {worst:.2g} at most"
+    return (
+        ("the same estimates as live, bit for bit")
+        if worst == 0.0
+        else f"estimates differ from live by {worst:.2g} at most"
+    )
 
 
 def ticks_of(path: Path) -> Iterator[Any]:

@@ -39,7 +39,9 @@ class Start(NamedTuple):
 class Foresight:
     """`look` after each tick, `judged` at the end."""
 
-    def __init__(self, loop: Loop, horizons_s: tuple[float, ...] = (10.0, 60.0, 120.0), every_s: float = 30.0):
+    def __init__(
+        self, loop: Loop, horizons_s: tuple[float, ...] = (10.0, 60.0, 120.0), every_s: float = 30.0
+    ):
         self.loop, self.horizons_s, self.every_s = loop, horizons_s, every_s
         self.step_s = min(STEP * loop.ship.L_pp / loop.ship.U_0, 1.0)
         self._starts: list[Start] = []
@@ -60,7 +62,13 @@ class Foresight:
             self._next_start = now_s + self.every_s
             known_now = self.loop.learned.as_known_now()
             dynamics = self.loop.dynamics
-            start = Start(now_s, replace(seen.situation), dynamics.now, lambda s, f: known_now.at(s, f).force, dynamics.steering())
+            start = Start(
+                now_s,
+                replace(seen.situation),
+                dynamics.now,
+                lambda s, f: known_now.at(s, f).force,
+                dynamics.steering(),
+            )
             self._starts.append(start)
 
     def judged(self) -> list[Sight]:
@@ -70,13 +78,19 @@ class Foresight:
             for horizon_s, error in self._sail(start).items():
                 errors[horizon_s].append(error)
         return [
-            Sight(h, len(found), sum(p for p, _ in found) / len(found), sum(q for _, q in found) / len(found)) for h, found in errors.items() if found
+            Sight(h, len(found), sum(p for p, _ in found) / len(found), sum(q for _, q in found) / len(found))
+            for h, found in errors.items()
+            if found
         ]
 
     def _sail(self, start: Start) -> dict[float, tuple[float, float]]:
         """(position error [m], heading error [deg]) after each horizon."""
         s, found, middle, steering = replace(start.situation), {}, Middle(), start.steering
-        course = [(t, si) for t, si in self._course if start.time_s <= t <= start.time_s + self.horizons_s[-1] + 2.0 * self.step_s]
+        course = [
+            (t, si)
+            for t, si in self._course
+            if start.time_s <= t <= start.time_s + self.horizons_s[-1] + 2.0 * self.step_s
+        ]
         left = list(self.horizons_s)
         for (t, si), (t_next, si_next) in itertools.pairwise(course):
             for name in INPUTS:
@@ -88,7 +102,14 @@ class Foresight:
                 break
             while left and start.time_s + left[0] <= t_next + 1e-6:
                 there = replace(s)
-                carry(there, start.physics, start.learned, start.time_s + left[0] - t, copy(middle), steering and steering.copy())
+                carry(
+                    there,
+                    start.physics,
+                    start.learned,
+                    start.time_s + left[0] - t,
+                    copy(middle),
+                    steering and steering.copy(),
+                )
                 if error := _error(there, si, si_next, (start.time_s + left[0] - t) / (t_next - t)):
                     found[left[0]] = error
                 left.pop(0)
@@ -98,7 +119,9 @@ class Foresight:
         return found
 
 
-def _error(s: Situation, before: dict[str, float], after: dict[str, float], share: float) -> tuple[float, float] | None:
+def _error(
+    s: Situation, before: dict[str, float], after: dict[str, float], share: float
+) -> tuple[float, float] | None:
     """Against what was measured, on the line between two moments; None where it was not."""
     if not all(name in si for name in ("x", "y", "psi") for si in (before, after)):
         return None

@@ -1,5 +1,5 @@
-"""How much may be believed: the ladder of modes, each step down with its reasons in words. What was lost counts
-again as soon as it is heard; the learned force, after a fault of its own, only after a while.
+"""How much may be believed: the ladder of modes, each step down with its reasons in words. What was lost
+counts again as soon as it is heard; the learned force, after a fault of its own, only after a while.
 
     hybrid -> physics only -> dead reckoning -> invalid          ("starting" before the first estimate)
 """
@@ -12,7 +12,13 @@ from twin.live.observer.estimate import Estimate
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
 
-STARTING, HYBRID, PHYSICS, RECKONING, INVALID = "starting", "hybrid", "physics only", "dead reckoning", "invalid"
+STARTING, HYBRID, PHYSICS, RECKONING, INVALID = (
+    "starting",
+    "hybrid",
+    "physics only",
+    "dead reckoning",
+    "invalid",
+)
 CONTROLS = {"delta": "rudder_angle_deg", "n": "propeller_rate_rpm"}
 WORSE, BETTER = 1.1, 0.9  # error with the learned force over the error without: off above, on again below
 CLIPPED_SHARE = 0.5
@@ -49,7 +55,8 @@ class Guard:
 
     def __init__(self, ship: Ship, learned: LearnedForce, reckoning_s: float = 60.0, hold_s: float = 0.0):
         T = ship.L_pp / ship.U_0
-        self.reckoning_s = reckoning_s  # how long the model may run without measurements before nothing is promised
+        # how long the model may run without measurements before nothing is promised
+        self.reckoning_s = reckoning_s
         self.learned = learned
         self.plausible = Plausibility(ship)
         hold_s = hold_s or 3.0 * T
@@ -77,10 +84,16 @@ class Guard:
         self._reckoning_since = None
         off = self._off(measured.now_s, dt)
         frozen = odd[0] if odd else next((text for text in sensors if _matters(text)), "")
-        return Verdict(PHYSICS if off else HYBRID, [*off, *([self._outside] if self._outside else []), *said], not off, frozen)
+        return Verdict(
+            PHYSICS if off else HYBRID,
+            [*off, *([self._outside] if self._outside else []), *said],
+            not off,
+            frozen,
+        )
 
     def note(self, learned: Learned, dt: float, unproved: str = "") -> None:
-        """How the learned force came out in this tick, and what broke the certificate in the last one; it counts in the next."""
+        """How the learned force came out in this tick, and what broke the certificate in the last one; it
+        counts in the next."""
         self._unproved = unproved
         share = min(dt / 10.0, 0.5)
         self._clipped_share += share * (learned.clipped - self._clipped_share)
@@ -96,9 +109,13 @@ class Guard:
         worse = evidence.judged and evidence.with_learned > limit * evidence.without
         broken = "gives" in self._bad or "failed" in self._bad or "absurd" in self._bad
         reasons = [
-            self._worse.feed("the learned force made it worse than the physics alone" if worse else "", now_s),
+            self._worse.feed(
+                "the learned force made it worse than the physics alone" if worse else "", now_s
+            ),
             self._broken.feed(self._bad if broken else "", now_s),
-            self._clipped.feed("the learned force stays at its bound" if self._clipped_share > CLIPPED_SHARE else "", now_s),
+            self._clipped.feed(
+                "the learned force stays at its bound" if self._clipped_share > CLIPPED_SHARE else "", now_s
+            ),
             self._bad if not broken else "",
             self._bound.feed(self._unproved, now_s),
         ]
@@ -109,14 +126,20 @@ class Guard:
             self._reckoning_since = now_s
         for_s = now_s - self._reckoning_since
         mode = INVALID if for_s > self.reckoning_s else RECKONING
-        return Verdict(mode, [f"{lost}, for {for_s:.0f} s; the model runs on alone", *said], mode == RECKONING, lost)
+        return Verdict(
+            mode, [f"{lost}, for {for_s:.0f} s; the model runs on alone", *said], mode == RECKONING, lost
+        )
 
     def _announce(self, measured: Measured) -> None:
         now_s = measured.now_s
         for attribute, step in measured.steps.items():
-            self._announced.append((now_s, f"{attribute} stepped by {step:.4g} (SI) and stayed: the new value is believed"))
+            self._announced.append(
+                (now_s, f"{attribute} stepped by {step:.4g} (SI) and stayed: the new value is believed")
+            )
         if measured.clock_step_s:
-            self._announced.append((now_s, f"the wall clock was set by {measured.clock_step_s:+.1f} s; the state is not touched"))
+            self._announced.append(
+                (now_s, f"the wall clock was set by {measured.clock_step_s:+.1f} s; the state is not touched")
+            )
         self._announced = [(t, text) for t, text in self._announced if now_s - t < 10.0][-8:]
 
 

@@ -23,8 +23,12 @@ SCHEMA_VERSION = 1
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--config", metavar="TWIN.toml", help="the settings the twin runs with (default: its defaults)")
-    parser.add_argument("--timeout", type=float, default=3.0, metavar="S", help="how long to listen at most (default: 3)")
+    parser.add_argument(
+        "--config", metavar="TWIN.toml", help="the settings the twin runs with (default: its defaults)"
+    )
+    parser.add_argument(
+        "--timeout", type=float, default=3.0, metavar="S", help="how long to listen at most (default: 3)"
+    )
     parser.add_argument("--json", metavar="FILE", help="write the answer as JSON, - for standard output")
 
 
@@ -81,7 +85,10 @@ def judged(tick: Any) -> tuple[int, str]:
     if tick is None:
         return 1, "not heard: is it running, and does it use these settings? See: systemctl status shiptwin"
     reasons = "; ".join(tick.reasons) or "all well"
-    said = f"{tick.mode}, {tick.rate_hz:g} Hz, {tick.overruns} periods skipped, {tick.rejected} samples refused: {reasons}"
+    said = (
+        f"{tick.mode}, {tick.rate_hz:g} Hz, {tick.overruns} periods skipped, {tick.rejected} samples "
+        f"refused: {reasons}"
+    )
     return (0 if tick.mode in (HYBRID, PHYSICS) else 1), said
 
 

@@ -75,7 +75,9 @@ class Loop:
         dt = self._elapsed(instant)
         arrived = self.ears.read(instant)
         measured = self.sensors.read(arrived, instant.time_s, instant.wall_s, self.observer.estimate)
-        estimate = self.observer.correct(self.faults.undo(measured, self.observer.estimate, self.observer.rates))
+        estimate = self.observer.correct(
+            self.faults.undo(measured, self.observer.estimate, self.observer.rates)
+        )
         situation, physics, forces = self.dynamics.known(estimate, measured)
         verdict = self.guard.judge(measured, estimate, self.sensors.reasons(), dt)
         learned = self.learned.at(situation, forces, verdict.use_learned)
@@ -84,10 +86,18 @@ class Loop:
         self.dynamics.adopt(self.learned.effects)
         self.observer.steer(self.dynamics.ahead(situation, forces, learned.force, self.period_s))
         ahead = self.predictor.advance(
-            instant.time_s, estimate, situation, physics, self.learned_at(verdict.use_learned), verdict.mode != INVALID, self.dynamics.steering
+            instant.time_s,
+            estimate,
+            situation,
+            physics,
+            self.learned_at(verdict.use_learned),
+            verdict.mode != INVALID,
+            self.dynamics.steering,
         )
         certified = self.stabilizer.step(self.observer, measured, situation, self.learned.helm.stuck)
-        self.last = Seen(instant, measured, estimate, situation, physics, forces, verdict, learned, ahead, certified)
+        self.last = Seen(
+            instant, measured, estimate, situation, physics, forces, verdict, learned, ahead, certified
+        )
         tick = self.publisher.tick(self.last, self._standing(self.last))
         self.voice.send(tick, self.ears.datum)
         return tick
@@ -96,11 +106,20 @@ class Loop:
         """Stop-watches around every part from now on (the bench asks)."""
         parts = Parts()
         for part, thing, method in (
-            ("read", self.ears, "read"), ("sensors", self.sensors, "read"), ("correct", self.observer, "correct"),
-            ("known", self.dynamics, "known"), ("guard", self.guard, "judge"), ("learned", self.learned, "at"), ("step", self.dynamics, "ahead"),
-            ("adapt", self.learned, "learn"), ("predict", self.predictor, "advance"), ("certificate", self.stabilizer, "step"),
-            ("publish", self.publisher, "tick"), ("record", self.voice, "send"), ("tick", self, "tick"),
-        ):  # fmt: skip
+            ("read", self.ears, "read"),
+            ("sensors", self.sensors, "read"),
+            ("correct", self.observer, "correct"),
+            ("known", self.dynamics, "known"),
+            ("guard", self.guard, "judge"),
+            ("learned", self.learned, "at"),
+            ("step", self.dynamics, "ahead"),
+            ("adapt", self.learned, "learn"),
+            ("predict", self.predictor, "advance"),
+            ("certificate", self.stabilizer, "step"),
+            ("publish", self.publisher, "tick"),
+            ("record", self.voice, "send"),
+            ("tick", self, "tick"),
+        ):
             parts.watch(part, thing, method)
         return parts
 
@@ -117,14 +136,26 @@ class Loop:
 
     def _standing(self, seen: Seen) -> Standing:
         adaptation = self.learned.adaptation
-        parameters = adaptation.parameters() if adaptation and seen.instant.number % PARAMETERS_EVERY == 0 else []
+        parameters = (
+            adaptation.parameters() if adaptation and seen.instant.number % PARAMETERS_EVERY == 0 else []
+        )
         share = self.learned.share(seen.learned, seen.forces)
-        return Standing(self.pace, self._reasons(seen), self.sensors.codes, share, parameters, self.sensors.rejected, self.dropped())
+        return Standing(
+            self.pace,
+            self._reasons(seen),
+            self.sensors.codes,
+            share,
+            parameters,
+            self.sensors.rejected,
+            self.dropped(),
+        )
 
     def _reasons(self, seen: Seen) -> list[str]:
         said = [*seen.verdict.reasons, *self.watched()]
         if self.dynamics.off:
-            said.append(f"effects without their inputs: {', '.join(type(e).__name__ for e in self.dynamics.off)}")
+            said.append(
+                f"effects without their inputs: {', '.join(type(e).__name__ for e in self.dynamics.off)}"
+            )
         if seen.instant.number < 10.0 * self.rate_hz:
             said += self.notes
         return said

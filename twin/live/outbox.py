@@ -15,7 +15,9 @@ TICK = next(output for output in OUTPUTS if output.subject == "twin_tick")
 class Outbox:
     """Says a tick; without a bus (replay) it is only logged, without a log only said."""
 
-    def __init__(self, publisher: Publisher, base: str, entity: str, bus: Bus | None = None, log: Log | None = None):
+    def __init__(
+        self, publisher: Publisher, base: str, entity: str, bus: Bus | None = None, log: Log | None = None
+    ):
         self.publisher, self.bus, self.log = publisher, bus, log
         self._keys = {output: key(base, entity, output.subject, output.source) for output in OUTPUTS}
 

@@ -27,25 +27,43 @@ class Publisher:
         finite, instant, measured, estimate = self._finite, seen.instant, seen.measured, seen.estimate
         ready, pace = estimate.ready, standing.pace
         return messages.Tick(
-            index=instant.number, time_s=instant.time_s, wall_s=instant.wall_s, mode=seen.verdict.mode, reasons=standing.reasons,
-            rate_hz=pace.rate_hz, slack_us=pace.slack_us, step_us=pace.step_us, overruns=pace.overruns, rejected=standing.rejected,
-            log_dropped=standing.log_dropped, measured=finite({**measured.border, "time_s": instant.wall_s}),
-            age_s=finite(measured.age_by_channel()), quality=standing.quality,
+            index=instant.number,
+            time_s=instant.time_s,
+            wall_s=instant.wall_s,
+            mode=seen.verdict.mode,
+            reasons=standing.reasons,
+            rate_hz=pace.rate_hz,
+            slack_us=pace.slack_us,
+            step_us=pace.step_us,
+            overruns=pace.overruns,
+            rejected=standing.rejected,
+            log_dropped=standing.log_dropped,
+            measured=finite({**measured.border, "time_s": instant.wall_s}),
+            age_s=finite(measured.age_by_channel()),
+            quality=standing.quality,
             estimate=finite(state_of(estimate)) if ready else None,
             sigma=finite(border_sigma(estimate.sigma)) if ready else None,
-            known=[{"name": name, **finite(named(force))} for name, force in zip(seen.physics.names, seen.forces, strict=True)],
-            learned=finite(learned_of(seen.learned, standing.share)), parameters=[
-                {"name": p.name, "unit": p.unit, "status": p.status, **finite(p.numbers())} for p in standing.parameters
+            known=[
+                {"name": name, **finite(named(force))}
+                for name, force in zip(seen.physics.names, seen.forces, strict=True)
+            ],
+            learned=finite(learned_of(seen.learned, standing.share)),
+            parameters=[
+                {"name": p.name, "unit": p.unit, "status": p.status, **finite(p.numbers())}
+                for p in standing.parameters
             ],
             predictions=[
                 {
-                    "horizon_s": p.horizon_s, "state": finite(border_state(*p.state)), "sigma": finite(border_sigma(p.sigma)),
-                    "age_s": p.age_s, "status": p.status,
+                    "horizon_s": p.horizon_s,
+                    "state": finite(border_state(*p.state)),
+                    "sigma": finite(border_sigma(p.sigma)),
+                    "age_s": p.age_s,
+                    "status": p.status,
                 }
                 for p in seen.ahead
             ],
             certificate=finite(seen.certified._asdict()),
-        )  # fmt: skip
+        )
 
     def due(self, tick: Any, datum: Datum | None) -> list[tuple[Output, bytes]]:
         """The subjects whose time has come, encoded; `datum` is the origin of north and east."""
@@ -109,7 +127,11 @@ def _encode(output: Output, tick: Any, datum: Datum | None, ns: int) -> bytes | 
     if output.subject == "twin_status":
         return messages.encode_string("; ".join([tick.mode, *tick.reasons]), ns)
     if output.subject == "location_fix":
-        return messages.encode_fix(*from_chart(datum, e.north_m, e.east_m), ns) if datum and e.HasField("north_m") else None
+        return (
+            messages.encode_fix(*from_chart(datum, e.north_m, e.east_m), ns)
+            if datum and e.HasField("north_m")
+            else None
+        )
     if output.subject in ("force_newton", "moment_newton_meter"):
         return _vector(output, tick, ns)
     return messages.encode_float(getattr(e, output.subject), ns) if e.HasField(output.subject) else None

@@ -36,7 +36,8 @@ def settle(priority: int = 0, cpu: int = -1, lock_memory: bool = True, drop: boo
 
 
 def save_memory() -> None:
-    """One heap for all threads, and what is freed goes back to the kernel; call it before the first thread starts."""
+    """One heap for all threads, and what is freed goes back to the kernel; call it before the first thread
+    starts."""
     libc = _libc()
     if libc is not None and hasattr(libc, "mallopt"):
         libc.mallopt(M_ARENA_MAX, 1)
@@ -81,7 +82,9 @@ def _relocated(path: str, lines: list[str], line: str) -> bool:
         return False
     following = _MAPPING.match(lines[at + 1])
     mine = _MAPPING.match(line)
-    return bool(following and mine and following[1] == mine[2] and "w" in following[3] and following[5] in (path, ""))
+    return bool(
+        following and mine and following[1] == mine[2] and "w" in following[3] and following[5] in (path, "")
+    )
 
 
 def _affinity(cpu: int) -> list[str]:
@@ -100,7 +103,10 @@ def _fifo(priority: int) -> list[str]:
             return []
         os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(priority))
     except OSError as error:
-        return [f"no real-time priority ({error.strerror}): under load ticks may come late. Allow it with LimitRTPRIO, or CAP_SYS_NICE"]
+        return [
+            f"no real-time priority ({error.strerror}): under load ticks may come late. Allow it with "
+            "LimitRTPRIO, or CAP_SYS_NICE"
+        ]
     return []
 
 
@@ -108,7 +114,10 @@ def _lock() -> list[str]:
     libc = _libc()
     if libc is None or libc.mlockall(MCL_CURRENT | MCL_FUTURE | MCL_ONFAULT) == 0:
         return []
-    return [f"memory is not locked ({os.strerror(ctypes.get_errno())}): a swap could delay a tick. Allow it with LimitMEMLOCK"]
+    return [
+        f"memory is not locked ({os.strerror(ctypes.get_errno())}): a swap could delay a tick. Allow it "
+        "with LimitMEMLOCK"
+    ]
 
 
 def _libc() -> ctypes.CDLL | None:

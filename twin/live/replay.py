@@ -28,15 +28,21 @@ PROGRESS = 20_000  # ticks between two words on standard error
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("log", metavar="LOG.mcap", help="a log of the twin, an imported voyage, or a log of Keelson scalars")
-    parser.add_argument("-o", "--output", metavar="OUT.mcap", help="write what the twin said, and what it heard, to a new log")
+    parser.add_argument(
+        "log", metavar="LOG.mcap", help="a log of the twin, an imported voyage, or a log of Keelson scalars"
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="OUT.mcap", help="write what the twin said, and what it heard, to a new log"
+    )
     parser.add_argument("--config", metavar="TWIN.toml", help="settings (default: as `twin run` without any)")
     parser.add_argument(
         "--ship",
         metavar="SHIP.toml",
         help="ship file or name of a bundled ship, instead of the settings' own",
     )
-    parser.add_argument("--realtime", action="store_true", help="as fast as the voyage was, not as fast as possible")
+    parser.add_argument(
+        "--realtime", action="store_true", help="as fast as the voyage was, not as fast as possible"
+    )
     parser.add_argument("--json", metavar="FILE", help="write the summary as JSON, - for standard output")
 
 
@@ -70,19 +76,25 @@ class Summary(NamedTuple):
     notes: list[str]
 
 
-def replay(log: str | Path, settings: Settings, output: str | Path | None = None, realtime: bool = False) -> Summary:
+def replay(
+    log: str | Path, settings: Settings, output: str | Path | None = None, realtime: bool = False
+) -> Summary:
     """The voyage through a new loop; `output` is written whole or not at all."""
     played = PlayedLog(log, settings["loop.rate_hz"])
     batches = played.batches()
     with ExitStack() as stack:
         file = stack.enter_context(LogFile(output)) if output else None
         ears = Played([])
-        voice = Outbox(Publisher(), settings["bus.base"], settings["bus.entity"], None, file.add if file else None)
+        voice = Outbox(
+            Publisher(), settings["bus.base"], settings["bus.entity"], None, file.add if file else None
+        )
         loop = build.loop_of(settings, ears, voice, patience_s=None)
         return _sailed(loop, ears, played, batches, file, realtime)
 
 
-def _sailed(loop: Loop, ears: Played, played: PlayedLog, batches: Any, file: LogFile | None, realtime: bool) -> Summary:
+def _sailed(
+    loop: Loop, ears: Played, played: PlayedLog, batches: Any, file: LogFile | None, realtime: bool
+) -> Summary:
     modes: Counter[str] = Counter()
     reasons: Counter[str] = Counter()
     foresight = Foresight(loop)
@@ -105,9 +117,18 @@ def _sailed(loop: Loop, ears: Played, played: PlayedLog, batches: Any, file: Log
     if first_s is None or last_s is None:
         raise DataError(f"{played.path}: not one tick could be made of it.")
     return Summary(
-        str(played.path), played.kind, loop.ship.name, sum(modes.values()), last_s - first_s, dict(modes), dict(reasons.most_common(12)),
-        loop.sensors.rejected, loop.publisher.withheld, foresight.judged(), [*played.notes, *loop.notes],
-    )  # fmt: skip
+        str(played.path),
+        played.kind,
+        loop.ship.name,
+        sum(modes.values()),
+        last_s - first_s,
+        dict(modes),
+        dict(reasons.most_common(12)),
+        loop.sensors.rejected,
+        loop.publisher.withheld,
+        foresight.judged(),
+        [*played.notes, *loop.notes],
+    )
 
 
 def _instants(batches: Any, waiting: list[Batch]) -> Any:
@@ -123,13 +144,20 @@ def _without_numbers(reason: str) -> str:
 
 def told(s: Summary, args: argparse.Namespace, ship: str) -> list[str]:
     """The summary for people, with the next command; `ship`: the file that was used."""
-    lines = [f"{s.log}: {s.kind}, {s.duration_s:.0f} s, {s.ticks} ticks with {s.ship}; {s.rejected} samples refused"]
+    lines = [
+        f"{s.log}: {s.kind}, {s.duration_s:.0f} s, {s.ticks} ticks with {s.ship}; {s.rejected} samples "
+        "refused"
+    ]
     lines.append("modes: " + ", ".join(f"{mode} {100 * n / s.ticks:.0f} %" for mode, n in s.modes.items()))
     lines += [f"  {n:6d} ticks: {reason}" for reason, n in s.reasons.items()]
     if s.foresight:
-        lines.append("ahead, open loop from the estimate, recorded helm, engine and weather (mean absolute error):")
+        lines.append(
+            "ahead, open loop from the estimate, recorded helm, engine and weather (mean absolute error):"
+        )
         lines += [
-            f"  {f.horizon_s:4.0f} s: position {f.position_m:7.2f} m, heading {f.heading_deg:6.2f} deg ({f.windows} starts)" for f in s.foresight
+            f"  {f.horizon_s:4.0f} s: position {f.position_m:7.2f} m, heading {f.heading_deg:6.2f} deg "
+            f"({f.windows} starts)"
+            for f in s.foresight
         ]
     lines += [f"note: {note}" for note in s.notes]
     return [*lines, f"next: twin compare {args.output or args.log} --ship {ship}"]

@@ -46,7 +46,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="ship file or name of a bundled ship, instead of the settings' own",
     )
     parser.add_argument("--duration", type=float, metavar="S", help="stop by itself after so many seconds")
-    parser.add_argument("--example-config", action="store_true", help="print a settings file with every key, and stop")
+    parser.add_argument(
+        "--example-config", action="store_true", help="print a settings file with every key, and stop"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -87,7 +89,9 @@ class Stop:
         self.code = 130 if number == signal.SIGINT else 0
 
 
-def serve(settings: Settings, duration_s: float | None = None, on_tick: Callable[[Any], None] | None = None) -> int:
+def serve(
+    settings: Settings, duration_s: float | None = None, on_tick: Callable[[Any], None] | None = None
+) -> int:
     """Serve until told to stop; `on_tick` sees each tick (a test, a view)."""
     stop = Stop()
     with opened(settings) as service:
@@ -190,7 +194,9 @@ class Service:
 
     def _greeting(self) -> str:
         learned = "hybrid" if self.loop.learned.residual else f"physics only ({self.loop.learned.why_not})"
-        return f"{self.loop.ship.name}: {self.loop.rate_hz:g} Hz, {learned}. " + " ".join(f"[{note}]" for note in self.loop.notes)
+        return f"{self.loop.ship.name}: {self.loop.rate_hz:g} Hz, {learned}. " + " ".join(
+            f"[{note}]" for note in self.loop.notes
+        )
 
 
 def bus_of(settings: Settings) -> Bus:

@@ -16,7 +16,8 @@ from twin.physics.state import Situation
 
 
 class Certified(NamedTuple):
-    """The certificate's margin, the live bound of the observer's error in speed [m/s], and whether it holds now."""
+    """The certificate's margin, the live bound of the observer's error in speed [m/s], and whether it holds
+    now."""
 
     margin: float = 0.0
     bound: float = 0.0

@@ -20,8 +20,8 @@ USELESS = 1e3  # m/s: a bound above every speed at sea
 
 class Stabilizer:
     """Steps the tube once a tick; without a certificate it promises nothing, and says so by `inside` being
-    false. Where she may have left the operating set the tube begins anew from what is measured, and promises again once all that a
-    late measurement looks back on is inside."""
+    false. Where she may have left the operating set the tube begins anew from what is measured, and promises
+    again once all that a late measurement looks back on is inside."""
 
     def __init__(self, tube: Tube | None = None, why_not: str = "no certificate"):
         self.tube, self.why_not = tube, why_not
@@ -62,27 +62,32 @@ class Stabilizer:
 
     @property
     def broken(self) -> str:
-        """What shows that the promise's conditions do not hold; "" when nothing does, or nothing was promised."""
+        """What shows that the promise's conditions do not hold; "" when nothing does, or nothing was
+        promised."""
         if self.tube is None or not self.tube.certificate.ok:
             return ""
         axis = next((a for a, share in self._surprised.items() if share > SURPRISED), "")
         return f"{axis} is measured farther from the estimate than its bound allows" if axis else ""
 
     def _watch(self, observer: Observer, got: tuple[bool, ...], tube: Tube) -> None:
-        """How often an accepted sample lies farther from the estimate than bound and noise allow: one in many may, a row of them tells
-        of a larger disturbance or a worse sensor than was assumed."""
+        """How often an accepted sample lies farther from the estimate than bound and noise allow: one in many
+        may, a row of them tells of a larger disturbance or a worse sensor than was assumed."""
         for axis, accepted, most, noise in zip(NU, got, tube.widest, tube.certificate.noise, strict=True):
             if accepted:
                 off = abs(observer.innovation[axis]) > most + noise
                 self._surprised[axis] += (off - self._surprised[axis]) / MEMORY
 
     def _first(self, observer: Observer, measured: Measured, tube: Tube) -> Three:
-        """What the estimate is off by at most, asking the instruments alone: how far it lies from what was measured, its noise and her way
-        since; where nothing was, all that a ship can."""
+        """What the estimate is off by at most, asking the instruments alone: how far it lies from what was
+        measured, its noise and her way since; where nothing was, all that a ship can."""
         c, e = tube.certificate, observer.estimate
         u, v, r = (
-            abs(measured.si[a] - now) + noise + measured.age_s(a) * way if self._in_time(a, measured, tube) else 2.0 * most
-            for a, now, noise, way, most in zip(NU, (e.u, e.v, e.r), c.noise, tube.way, observer.most, strict=True)
+            abs(measured.si[a] - now) + noise + measured.age_s(a) * way
+            if self._in_time(a, measured, tube)
+            else 2.0 * most
+            for a, now, noise, way, most in zip(
+                NU, (e.u, e.v, e.r), c.noise, tube.way, observer.most, strict=True
+            )
         )
         return u, v, r
 

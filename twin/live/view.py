@@ -36,7 +36,9 @@ class View:
         self._next_s = tick.time_s + (PAGE_S if self.pages else LINE_S)
         seconds = tick.time_s - self._start_s
         if self.pages:
-            self.stream.write(CLEAR + page(tick, self.title, seconds, self.total_s, self.log, self.ahead) + "\n")
+            self.stream.write(
+                CLEAR + page(tick, self.title, seconds, self.total_s, self.log, self.ahead) + "\n"
+            )
         else:
             self.stream.write(line(tick, seconds) + "\n")
         self.stream.flush()

@@ -2,9 +2,9 @@
 
     M nu_dot_r + C(nu_r) nu_r + D(nu_r) nu_r = tau_propeller + tau_rudder + ...        [Fossen 2021, ch. 6]
 
-Derivatives are stored in prime form, made non-dimensional by 1/2 rho L T U^2 (forces) and 1/2 rho L^2 T U^2 (moment), with
-v' = v/U and r' = r L/U, so that one set of priors serves every size of ship; `coefficients` gives them back their units.
-"""
+Derivatives are stored in prime form, made non-dimensional by 1/2 rho L T U^2 (forces) and 1/2 rho L^2 T U^2
+(moment), with v' = v/U and r' = r L/U, so that one set of priors serves every size of ship; `coefficients`
+gives them back their units."""
 
 from dataclasses import dataclass
 from math import pi
@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from .ship import Ship
 
 GRAVITY = 9.80665  # m/s2
-EVEN = 0.02  # flow across the rudder over that along it, about one degree, from which both sides differ in proportion to it
+# flow across the rudder over that along it, about one degree, from which both sides differ in proportion to
+# it
+EVEN = 0.02
 Tau = tuple[Number, Number, Number]  # (X, Y, N), as plain a tuple as can be: the loop makes thousands
 
 
@@ -85,29 +87,64 @@ def coefficients(ship: "Ship") -> Coefficients:
     m_r = ship.I_z - d.N_rdot * m_ * L**2
     D, n_scale = ship.D_P, rho * ship.D_P**4
     return Coefficients(
-        m=ship.m, mx_G=mx_G,
-        X_udot=d.X_udot * m_, Y_vdot=d.Y_vdot * m_, Y_rdot=d.Y_rdot * m_ * L, N_vdot=d.N_vdot * m_ * L,
-        N_rdot=d.N_rdot * m_ * L**2, m_u=m_u, m_v=m_v, m_vr=m_vr, m_rv=m_rv, m_r=m_r,
-        X_u=d.X_u * slow, X_uu=d.X_uu * f, X_uuu=d.X_uuu * f / wave, X_vv=d.X_vv * f, X_vr=d.X_vr * f * L, X_rr=d.X_rr * f * L**2,
-        Y_v=d.Y_v * slow, Y_uv=d.Y_uv * f, Y_ur=d.Y_ur * f * L,
-        Y_vv=d.Y_vv * f, Y_vr=d.Y_vr * f * L, Y_rv=d.Y_rv * f * L, Y_rr=d.Y_rr * f * L**2,
-        N_r=d.N_r * slow * L**2, N_uv=d.N_uv * f * L, N_ur=d.N_ur * f * L**2,
-        N_vv=d.N_vv * f * L, N_vr=d.N_vr * f * L**2, N_rv=d.N_rv * f * L**2, N_rr=d.N_rr * f * L**3,
-        T_nn=d.K_T0 * n_scale, T_nu=d.K_T1 * n_scale / D, thrust_share=1.0 - d.t, wake_share=1.0 - d.w,
-        slipstream=d.kappa * 8.0 / (pi * rho * D**2), inflow=d.epsilon**2, rudder=0.5 * rho * ship.A_R * d.C_L,
-        drag_R=1.0 - d.t_R, side_R=1.0 + d.a_H, lever_R=(d.x_R + d.a_H * d.x_H) * L,
-        gamma_v=d.gamma_v, gamma_r=d.gamma_r * L, gamma_a=d.gamma_a,
-    )  # fmt: skip
+        m=ship.m,
+        mx_G=mx_G,
+        X_udot=d.X_udot * m_,
+        Y_vdot=d.Y_vdot * m_,
+        Y_rdot=d.Y_rdot * m_ * L,
+        N_vdot=d.N_vdot * m_ * L,
+        N_rdot=d.N_rdot * m_ * L**2,
+        m_u=m_u,
+        m_v=m_v,
+        m_vr=m_vr,
+        m_rv=m_rv,
+        m_r=m_r,
+        X_u=d.X_u * slow,
+        X_uu=d.X_uu * f,
+        X_uuu=d.X_uuu * f / wave,
+        X_vv=d.X_vv * f,
+        X_vr=d.X_vr * f * L,
+        X_rr=d.X_rr * f * L**2,
+        Y_v=d.Y_v * slow,
+        Y_uv=d.Y_uv * f,
+        Y_ur=d.Y_ur * f * L,
+        Y_vv=d.Y_vv * f,
+        Y_vr=d.Y_vr * f * L,
+        Y_rv=d.Y_rv * f * L,
+        Y_rr=d.Y_rr * f * L**2,
+        N_r=d.N_r * slow * L**2,
+        N_uv=d.N_uv * f * L,
+        N_ur=d.N_ur * f * L**2,
+        N_vv=d.N_vv * f * L,
+        N_vr=d.N_vr * f * L**2,
+        N_rv=d.N_rv * f * L**2,
+        N_rr=d.N_rr * f * L**3,
+        T_nn=d.K_T0 * n_scale,
+        T_nu=d.K_T1 * n_scale / D,
+        thrust_share=1.0 - d.t,
+        wake_share=1.0 - d.w,
+        slipstream=d.kappa * 8.0 / (pi * rho * D**2),
+        inflow=d.epsilon**2,
+        rudder=0.5 * rho * ship.A_R * d.C_L,
+        drag_R=1.0 - d.t_R,
+        side_R=1.0 + d.a_H,
+        lever_R=(d.x_R + d.a_H * d.x_H) * L,
+        gamma_v=d.gamma_v,
+        gamma_r=d.gamma_r * L,
+        gamma_a=d.gamma_a,
+    )
 
 
 def resistance(u: Number, c: Coefficients) -> Number:
-    """Force ahead [N] on the bare hull in calm water, and what waves make of it as her speed nears theirs (X_uuu)."""
+    """Force ahead [N] on the bare hull in calm water, and what waves make of it as her speed nears theirs
+    (X_uuu)."""
     U = abs(u)
     return (c.X_u + (c.X_uu + c.X_uuu * U) * U) * u
 
 
 def damping(u: Number, v: Number, r: Number, c: Coefficients) -> Tau:
-    """-D(nu_r) nu_r: resistance, and linear, quadratic and cross-coupled drag of the hull, |.|. in Norrbin's second-order modulus form."""
+    """-D(nu_r) nu_r: resistance, and linear, quadratic and cross-coupled drag of the hull, |.|. in Norrbin's
+    second-order modulus form."""
     U, V, R = abs(u), abs(v), abs(r)
     return (
         resistance(u, c) + (c.X_vv * v + c.X_vr * r) * v + c.X_rr * r * r,
@@ -138,12 +175,13 @@ def propeller(thrust: Number, c: Coefficients) -> Tau:
 
 
 def rudder(u: Number, v: Number, r: Number, delta: Number, thrust: Number, c: Coefficients) -> Tau:
-    """Rudder force in the propeller's slipstream (momentum theory), with the flow that drift and turning send across it.
+    """Rudder force in the propeller's slipstream (momentum theory), with the flow that drift and turning send
+    across it.
 
-    q = eps^2 (u_a |u_a| + kappa 8 T/(pi rho D^2)),  F = 1/2 rho A_R C_L (q sin(delta) + sqrt|q| (w + gamma_a even(w)) cos(delta)),
-    w = gamma_v v + gamma_r L r, even(w) = sqrt(w^2 + e^2) - e, e = EVEN sqrt|q|: behind a single screw more of it arrives from one side
-    than from the other [Yasukawa & Yoshimura 2015: gamma_R of each side].
-    """
+    q = eps^2 (u_a |u_a| + kappa 8 T/(pi rho D^2)),  F = 1/2 rho A_R C_L (q sin(delta) + sqrt|q| (w + gamma_a
+    even(w)) cos(delta)), w = gamma_v v + gamma_r L r, even(w) = sqrt(w^2 + e^2) - e, e = EVEN sqrt|q|: behind
+    a single screw more of it arrives from one side than from the other [Yasukawa & Yoshimura 2015: gamma_R of
+    each side]."""
     u_a = c.wake_share * u
     q = c.inflow * (u_a * abs(u_a) + c.slipstream * positive(thrust))
     si, co = sin(delta), cos(delta)
@@ -162,7 +200,8 @@ def force_for(u_dot: Number, v_dot: Number, r_dot: Number, c: Coefficients, grow
 
 
 def accelerations(X: Number, Y: Number, N: Number, c: Coefficients, grown: Growth = LIGHT) -> Tau:
-    """M^-1 tau by components: surge stands alone, sway and yaw are a 2 x 2 system. `grown`: by how much their added mass has."""
+    """M^-1 tau by components: surge stands alone, sway and yaw are a 2 x 2 system. `grown`: by how much their
+    added mass has."""
     m_v, m_r = c.m_v - grown[0] * c.Y_vdot, c.m_r - grown[1] * c.N_rdot
     det = m_v * m_r - c.m_vr * c.m_rv
     return X / c.m_u, (m_r * Y - c.m_vr * N) / det, (m_v * N - c.m_rv * Y) / det

@@ -133,7 +133,9 @@ def where(condition: Any, yes: Any, no: Any) -> Dual:
         said = Unsure(said.yes, said.no)
     count = len((yes if isinstance(yes, Dual) else no).slopes)
     pairs = zip(_slopes(yes, count), _slopes(no, count), strict=True)
-    return Dual(value, tuple(0.0 if _nothing(a) and _nothing(b) else maths.where(said, a, b) for a, b in pairs))
+    return Dual(
+        value, tuple(0.0 if _nothing(a) and _nothing(b) else maths.where(said, a, b) for a, b in pairs)
+    )
 
 
 def sqrt(x: Dual) -> Dual:
@@ -190,7 +192,9 @@ def _times(slope: Any, factor: Any) -> Any:
 
 
 def _chain(outer: Any, slopes: tuple[Any, ...]) -> tuple[Any, ...]:
-    return tuple(0.0 if _nothing(s) else outer if type(s) is float and s == 1.0 else outer * s for s in slopes)
+    return tuple(
+        0.0 if _nothing(s) else outer if type(s) is float and s == 1.0 else outer * s for s in slopes
+    )
 
 
 def _sum(a: tuple[Any, ...], b: tuple[Any, ...]) -> tuple[Any, ...]:

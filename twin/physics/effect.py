@@ -1,8 +1,9 @@
-"""What an effect is: one physical cause, declared once, read by the loop, the study, the training and the documentation.
+"""What an effect is: one physical cause, declared once, read by the loop, the study, the training and the
+documentation.
 
-Four kinds. A Force pushes the ship. A Flow changes the water that the hull, propeller and rudder feel. A Lag gives an actuator
-a state of its own. A SensorFault leaves the ship alone and changes what an instrument says of it.
-"""
+Four kinds. A Force pushes the ship. A Flow changes the water that the hull, propeller and rudder feel. A Lag
+gives an actuator a state of its own. A SensorFault leaves the ship alone and changes what an instrument says
+of it."""
 
 from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
@@ -15,19 +16,20 @@ from .state import Number, Situation, Water
 if TYPE_CHECKING:
     from .ship import Ship
 
-FORM = 0.1  # by how much of its size a number may be off because nature writes the effect otherwise, unless more is known
+# by how much of its size a number may be off because nature writes the effect otherwise, unless more is known
+FORM = 0.1
 SCALES = ("force", "moment", "speed", "time", "length")
 
 
 class Param(NamedTuple):
     """One number of an effect: what it is, where it may lie, and what it is before any data (a prior).
 
-    `lo, hi` is the box of fits and of the adaptation; `sd` the width of the prior around `null`, the value at which the
-    effect is not there (half-normal where the box has one side). With `of`, the four are multiples of one of the ship's
-    own scales (see Ship.scale), so that one declaration serves a 2 m boat and a 320 m tanker. `form` is by how much of its
-    size it may be off (one standard deviation) because nature writes the effect otherwise than the catalogue does. `input` is a
-    field of Situation without which this number alone does nothing.
-    """
+    `lo, hi` is the box of fits and of the adaptation; `sd` the width of the prior around `null`, the value at
+    which the effect is not there (half-normal where the box has one side). With `of`, the four are multiples
+    of one of the ship's own scales (see Ship.scale), so that one declaration serves a 2 m boat and a 320 m
+    tanker. `form` is by how much of its size it may be off (one standard deviation) because nature writes the
+    effect otherwise than the catalogue does. `input` is a field of Situation without which this number alone
+    does nothing."""
 
     name: str
     default: float
@@ -50,10 +52,20 @@ class Param(NamedTuple):
 
 
 def param(
-    default: float, *, unit: str, lo: float, hi: float, doc: str, sd: float | None = None, null: float = 0.0, of: str | None = None,
-    form: float = FORM, input: str | None = None,
-) -> Any:  # fmt: skip
-    """Declare a parameter: its plausible value when the effect is there, unit, box, prior width, doubt about its form and meaning."""
+    default: float,
+    *,
+    unit: str,
+    lo: float,
+    hi: float,
+    doc: str,
+    sd: float | None = None,
+    null: float = 0.0,
+    of: str | None = None,
+    form: float = FORM,
+    input: str | None = None,
+) -> Any:
+    """Declare a parameter: its plausible value when the effect is there, unit, box, prior width, doubt about
+    its form and meaning."""
     if of is not None and of not in SCALES:
         raise ValueError(f"of={of!r}: one of {SCALES}")
     meta = {
@@ -68,19 +80,24 @@ def param(
         "input": input,
         "doc": doc,
     }
-    return field(default=MISSING if of and default else default, metadata=meta, kw_only=True)  # none of it is none on any ship
+    # none of it is none on any ship
+    return field(default=MISSING if of and default else default, metadata=meta, kw_only=True)
 
 
 class Effect:
-    """Base of the four kinds; a subclass is final and frozen, and its docstring is the plain sentence of the report."""
+    """Base of the four kinds; a subclass is final and frozen, and its docstring is the plain sentence of the
+    report."""
 
     kind: ClassVar[str]
     needs: ClassVar[tuple[str, ...]] = ()  # fields of Situation without which the effect is switched off
     needs_ship: ClassVar[tuple[str, ...]] = ()  # particulars without which it cannot be sized
-    holds: ClassVar[tuple[str, ...]] = ()  # effects that are a part of this one, so that beside it they say nothing
+    # effects that are a part of this one, so that beside it they say nothing
+    holds: ClassVar[tuple[str, ...]] = ()
     irregular: ClassVar[bool] = False  # whether it comes and goes with what no input shows
-    lever: ClassVar[float] = 0.0  # share of her length by which its side force may attack elsewhere than its form has it (one sd)
-    size: ClassVar[str] = ""  # the number without which the others are a form of nothing; of most effects any of them is enough
+    # share of her length by which its side force may attack elsewhere than its form has it (one sd)
+    lever: ClassVar[float] = 0.0
+    # the number without which the others are a form of nothing; of most effects any of them is enough
+    size: ClassVar[str] = ""
     source: ClassVar[str] = ""
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
@@ -117,12 +134,16 @@ class Effect:
             if not lo <= value <= hi:
                 unit = "" if p.unit == "-" else f" {p.unit}"
                 raise SettingsError(
-                    f"{where}effects.{name}.{p.name} = {value:g}{unit} lies outside its box [{lo:g}, {hi:g}]. "
+                    f"{where}effects.{name}.{p.name} = {value:g}{unit} lies outside its box [{lo:g}, "
+                    f"{hi:g}]. "
                     f"Correct the number, or remove [effects.{name}]."
                 )
         for particular in self.needs_ship:
             if getattr(ship, particular, None) is None:
-                raise SettingsError(f"{where}effects.{name} needs {particular}. Add it under [particulars], or remove [effects.{name}].")
+                raise SettingsError(
+                    f"{where}effects.{name} needs {particular}. Add it under [particulars], "
+                    f"or remove [effects.{name}]."
+                )
 
 
 class Force(Effect):
@@ -167,13 +188,14 @@ class SensorFault(Effect):
     """The ship is right, the instrument is wrong."""
 
     kind = "SensorFault"
-    attitude: ClassVar[bool] = False  # whether it is compass or gyro that is wrong: an antenna stands where the true heading puts it
+    # whether it is compass or gyro that is wrong: an antenna stands where the true heading puts it
+    attitude: ClassVar[bool] = False
 
     def read(self, s: Situation, ship: "Ship") -> Situation:
         """What the instruments say (a changed copy) of a ship that is truly in situation s."""
         raise NotImplementedError
 
     def prompt(self) -> "tuple[Number, SensorFault]":
-        """How old place and speed over ground are when they are shown [s], and the same fault were they not: who has the whole voyage need
-        not undo that to the order to which `read` gives it."""
+        """How old place and speed over ground are when they are shown [s], and the same fault were they not:
+        who has the whole voyage need not undo that to the order to which `read` gives it."""
         return 0.0, self

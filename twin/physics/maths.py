@@ -1,8 +1,7 @@
 """The few functions physics needs, for floats, arrays, tensors, symbols and intervals alike.
 
-Each looks at its argument and calls the library that the argument came from, so that one file of physics serves the loop, the
-study, the training and the certificate, and imports none of them.
-"""
+Each looks at its argument and calls the library that the argument came from, so that one file of physics
+serves the loop, the study, the training and the certificate, and imports none of them."""
 
 import math
 import sys
@@ -15,7 +14,9 @@ def _library(*values: Any) -> Any:
     """The module that owns the first value that is not a plain number."""
     for value in values:
         if type(value) not in _FLOATS:
-            return sys.modules[type(value).__module__.partition(".")[0] if not hasattr(value, "_maths") else value._maths]
+            return sys.modules[
+                type(value).__module__.partition(".")[0] if not hasattr(value, "_maths") else value._maths
+            ]
     return math
 
 
@@ -36,7 +37,8 @@ def exp(x: Any) -> Any:
 
 
 def sqrt(x: Any) -> Any:
-    """Square root; physics adds a floor under it wherever its argument can be zero (its gradient is infinite there)."""
+    """Square root; physics adds a floor under it wherever its argument can be zero (its gradient is infinite
+    there)."""
     return math.sqrt(x) if type(x) is float else _library(x).sqrt(x)
 
 
@@ -51,11 +53,16 @@ def atan2(y: Any, x: Any) -> Any:
 
 
 def where(condition: Any, yes: Any, no: Any) -> Any:
-    """`yes` where the condition holds, else `no`, element by element; both sides are evaluated, so both must be finite."""
+    """`yes` where the condition holds, else `no`, element by element; both sides are evaluated, so both must
+    be finite."""
     if isinstance(condition, bool):
         return yes if condition else no
     library = _library(condition)
-    return library.Piecewise((yes, condition), (no, True)) if hasattr(library, "Piecewise") else library.where(condition, yes, no)
+    return (
+        library.Piecewise((yes, condition), (no, True))
+        if hasattr(library, "Piecewise")
+        else library.where(condition, yes, no)
+    )
 
 
 def minimum(x: Any, y: Any) -> Any:

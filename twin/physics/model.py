@@ -18,8 +18,8 @@ Eta_nu = tuple[Number, Number, Number, Number, Number, Number]
 class Model:
     """What is known of a ship's motion; `residual`, if any, adds what was learned, and is kept apart.
 
-    `effects` are those of the ship; those whose inputs a situation lacks must be left out (see `without_inputs`).
-    """
+    `effects` are those of the ship; those whose inputs a situation lacks must be left out (see
+    `without_inputs`)."""
 
     ship: Ship
     effects: tuple[Effect, ...] = ()
@@ -35,8 +35,11 @@ class Model:
     def __post_init__(self) -> None:
         for name, kind in (("flows", Flow), ("pushes", ForceEffect), ("faults", SensorFault), ("lags", Lag)):
             object.__setattr__(self, name, tuple(e for e in self.effects if isinstance(e, kind)))
-        # whatever order they were put in: an antenna's place before its receiver is late, and what is turned by the compass last
-        object.__setattr__(self, "faults", tuple(sorted(self.faults, key=lambda f: (f.attitude, type(f).__name__))))
+        # whatever order they were put in: an antenna's place before its receiver is late, and what is turned
+        # by the compass last
+        object.__setattr__(
+            self, "faults", tuple(sorted(self.faults, key=lambda f: (f.attitude, type(f).__name__)))
+        )
         ship = self.ship
         for push in self.pushes:
             ship = push.alter(ship)
@@ -63,7 +66,11 @@ class Model:
     def without_inputs(self, missing: set[str]) -> tuple["Model", tuple[Effect, ...]]:
         """The model without the effects that need an input that is missing, and those effects."""
         off = tuple(e for e in self.effects if missing.intersection(e.needs))
-        return (replace(self, effects=tuple(e for e in self.effects if e not in off)), off) if off else (self, ())
+        return (
+            (replace(self, effects=tuple(e for e in self.effects if e not in off)), off)
+            if off
+            else (self, ())
+        )
 
     def water(self, s: Situation) -> Water:
         """The water as all flows together make it."""
@@ -91,7 +98,8 @@ class Model:
         ]
 
     def known(self, s: Situation, water: Water | None = None) -> dict[str, Force]:
-        """Every known force by its name: hull, Coriolis, propeller, rudder, and each effect. Sets s.u_r and s.v_r."""
+        """Every known force by its name: hull, Coriolis, propeller, rudder, and each effect. Sets s.u_r and
+        s.v_r."""
         forces = self.forces(s, self.water(s) if water is None else water)
         return {name: Force(*f) for name, f in zip(self.names, forces, strict=True)}
 

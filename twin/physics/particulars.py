@@ -1,8 +1,8 @@
 # ruff: noqa: RUF009  (a number is declared by a call)
 """What is known of one ship in numbers: her particulars, her derivatives and her effects, frozen.
 
-Each number is declared once: unit, the range outside which it is a mistake, meaning, and the width of its prior.
-"""
+Each number is declared once: unit, the range outside which it is a mistake, meaning, and the width of its
+prior."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
@@ -15,13 +15,17 @@ from .state import Number
 
 
 def number(default: float | None, unit: str, lo: float, hi: float, doc: str, sd: float = 0.0) -> Any:
-    """A number of the ship: value, unit, the range outside which it is a mistake, meaning, width of its prior."""
-    return field(default=default, metadata={"unit": unit, "lo": lo, "hi": hi, "doc": doc, "sd": sd}, kw_only=True)
+    """A number of the ship: value, unit, the range outside which it is a mistake, meaning, width of its
+    prior."""
+    return field(
+        default=default, metadata={"unit": unit, "lo": lo, "hi": hi, "doc": doc, "sd": sd}, kw_only=True
+    )
 
 
 @dataclass(frozen=True)
 class Derivatives:
-    """Hydrodynamic derivatives in prime form (see core.py); the defaults are those of a full, single-screw hull.
+    """Hydrodynamic derivatives in prime form (see core.py); the defaults are those of a full, single-screw
+    hull.
 
     `sd` in the metadata is the width of the prior: how far a published regression is usually off.
     """
@@ -31,9 +35,13 @@ class Derivatives:
     Y_rdot: Number = number(0.0, "-", -0.1, 0.1, "added mass, sway from yaw", sd=0.01)
     N_vdot: Number = number(0.0, "-", -0.1, 0.1, "added moment, yaw from sway", sd=0.01)
     N_rdot: Number = number(-0.011, "-", -0.1, 0.0, "added moment of inertia, yaw", sd=0.004)
-    X_u: Number = number(0.0, "-", -0.05, 0.0, "resistance, linear part (made non-dimensional by sqrt(g L))", sd=0.0003)
+    X_u: Number = number(
+        0.0, "-", -0.05, 0.0, "resistance, linear part (made non-dimensional by sqrt(g L))", sd=0.0003
+    )
     X_uu: Number = number(-0.022, "-", -0.4, -0.001, "resistance", sd=0.005)
-    X_uuu: Number = number(0.0, "-", -1.0, 0.1, "resistance that grows faster: waves (for u = sqrt(g L))", sd=0.05)
+    X_uuu: Number = number(
+        0.0, "-", -1.0, 0.1, "resistance that grows faster: waves (for u = sqrt(g L))", sd=0.05
+    )
     X_vv: Number = number(-0.04, "-", -1.0, 1.0, "resistance of drift", sd=0.05)
     X_vr: Number = number(0.0, "-", -1.0, 1.0, "resistance of drift while turning, beyond C(nu)", sd=0.07)
     X_rr: Number = number(0.011, "-", -0.3, 0.3, "resistance of turning", sd=0.02)
@@ -45,7 +53,9 @@ class Derivatives:
     Y_rv: Number = number(-0.2, "-", -3.0, 3.0, "|r| v", sd=0.15)
     Y_rr: Number = number(0.02, "-", -1.5, 1.5, "|r| r", sd=0.04)
     N_r: Number = number(0.0, "-", -0.1, 0.0, "yaw damping, linear at rest (sqrt(g L))", sd=0.0005)
-    N_uv: Number = number(0.0, "-", -0.6, 0.6, "yaw moment of drift, beyond the Munk moment in C(nu)", sd=0.05)
+    N_uv: Number = number(
+        0.0, "-", -0.6, 0.6, "yaw moment of drift, beyond the Munk moment in C(nu)", sd=0.05
+    )
     N_ur: Number = number(-0.049, "-", -0.4, 0.1, "yaw damping, lift of the hull", sd=0.015)
     N_vv: Number = number(0.0, "-", -1.0, 1.0, "|v| v", sd=0.06)
     N_vr: Number = number(-0.15, "-", -1.5, 1.5, "|v| r", sd=0.08)
@@ -56,15 +66,26 @@ class Derivatives:
     t: Number = number(0.2, "-", 0.0, 0.5, "thrust deduction fraction")
     w: Number = number(0.35, "-", 0.0, 0.6, "wake fraction at the propeller")
     epsilon: Number = number(1.05, "-", 0.4, 2.5, "rudder inflow over propeller inflow", sd=0.1)
-    kappa: Number = number(0.5, "-", 0.0, 1.5, "share of the slipstream's gain that the rudder feels", sd=0.15)
-    C_L: Number = number(2.6, "-", 0.5, 10.0, "slope of the rudder's normal force [1/rad], on the area that is known", sd=0.8)
+    kappa: Number = number(
+        0.5, "-", 0.0, 1.5, "share of the slipstream's gain that the rudder feels", sd=0.15
+    )
+    C_L: Number = number(
+        2.6, "-", 0.5, 10.0, "slope of the rudder's normal force [1/rad], on the area that is known", sd=0.8
+    )
     t_R: Number = number(0.35, "-", -0.5, 0.9, "steering resistance deduction", sd=0.15)
     a_H: Number = number(0.3, "-", -0.2, 1.2, "increase of the side force by the hull", sd=0.1)
     x_R: Number = number(-0.5, "L", -0.65, 0.65, "rudder ahead of midship")
     x_H: Number = number(-0.46, "L", -0.7, 0.5, "where the hull's share of the side force acts", sd=0.1)
     gamma_v: Number = number(0.45, "-", -0.2, 1.5, "how much of the drift reaches the rudder", sd=0.12)
     gamma_r: Number = number(-0.35, "-", -1.2, 0.2, "how much of the turning reaches the rudder", sd=0.1)
-    gamma_a: Number = number(0.0, "-", -0.9, 0.9, "how much more of both while the stern drifts to starboard, less to port", sd=0.15)
+    gamma_a: Number = number(
+        0.0,
+        "-",
+        -0.9,
+        0.9,
+        "how much more of both while the stern drifts to starboard, less to port",
+        sd=0.15,
+    )
 
 
 @dataclass(frozen=True)
@@ -87,7 +108,8 @@ class Ship:
     A_L: Number = number(None, "m2", 1e-4, 20000.0, "lateral area above the water")
     derivatives: Derivatives = field(default_factory=Derivatives, kw_only=True)
     effects: tuple[Effect, ...] = field(default=(), kw_only=True)
-    notes: Mapping[str, Any] = field(default_factory=dict, kw_only=True, compare=False)  # sources, sd, structural, history ...
+    # sources, sd, structural, history ...
+    notes: Mapping[str, Any] = field(default_factory=dict, kw_only=True, compare=False)
 
     @cached_property
     def c(self) -> Coefficients:
@@ -95,14 +117,19 @@ class Ship:
         return coefficients(self)
 
     def scale(self, of: str) -> Number:
-        """The ship's own size of a quantity: 'force' is 1 % of 1/2 rho L T U_0^2, about half of her resistance.
+        """The ship's own size of a quantity: 'force' is 1 % of 1/2 rho L T U_0^2, about half of her
+        resistance.
 
         'moment' = force L, 'speed' = U_0, 'length' = L, 'time' = L/U_0.
         """
         force = 0.005 * self.rho * self.L_pp * self.T * self.U_0**2
         return {
-            "force": force, "moment": force * self.L_pp, "speed": self.U_0, "length": self.L_pp, "time": self.L_pp / self.U_0,
-        }[of]  # fmt: skip
+            "force": force,
+            "moment": force * self.L_pp,
+            "speed": self.U_0,
+            "length": self.L_pp,
+            "time": self.L_pp / self.U_0,
+        }[of]
 
     def with_derivatives(self, **values: Number) -> "Ship":
         return replace(self, derivatives=replace(self.derivatives, **values))

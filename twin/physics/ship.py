@@ -1,9 +1,9 @@
 """A ship and the TOML file that holds her.
 
-Every number in a ship file is a table { value, unit, source } (a fitted one has its standard error `sd` too), so that an owner
-can see where each came from. Effects stand under [effects.NAME]; what calibration found stands under [structural];
-[[history]] is the ladder of what was added, on which voyages, and how far the error fell.
-"""
+Every number in a ship file is a table { value, unit, source } (a fitted one has its standard error `sd` too),
+so that an owner can see where each came from. Effects stand under [effects.NAME]; what calibration found
+stands under [structural]; [[history]] is the ladder of what was added, on which voyages, and how far the
+error fell."""
 
 import os
 import tomllib
@@ -18,17 +18,31 @@ from .effect import Effect
 from .particulars import DERIVATIVES, PARTICULARS, Derivatives, Ship
 from .ship_text import SCHEMA_VERSION, save, text, to_table
 
-__all__ = ["DERIVATIVES", "PARTICULARS", "Derivatives", "Ship", "bundled", "from_table", "load", "save", "text", "to_table"]
+__all__ = [
+    "DERIVATIVES",
+    "PARTICULARS",
+    "Derivatives",
+    "Ship",
+    "bundled",
+    "from_table",
+    "load",
+    "save",
+    "text",
+    "to_table",
+]
 
 
 def load(path: str | os.PathLike[str]) -> Ship:
-    """Read a ship file (or a bundled ship by its bare name, such as `kvlcc2`); SettingsError says what is wrong and where."""
+    """Read a ship file (or a bundled ship by its bare name, such as `kvlcc2`); SettingsError says what is
+    wrong and where."""
     path = _bundled(path)
     try:
         with open(path, "rb") as file:
             table = tomllib.load(file)
     except OSError as error:
-        raise SettingsError(f"{path}: cannot be read ({error.strerror}). Bundled ships: {', '.join(bundled())}.") from None
+        raise SettingsError(
+            f"{path}: cannot be read ({error.strerror}). Bundled ships: {', '.join(bundled())}."
+        ) from None
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
         raise SettingsError(f"{path}: not a valid TOML file: {error}. Save it as plain UTF-8 text.") from None
     return from_table(table, f"{path}: ")
@@ -47,23 +61,39 @@ def _bundled(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
 def from_table(table: Mapping[str, Any], where: str = "") -> Ship:
     """A ship from the content of its file; `where` begins every complaint."""
     if not table.get("name"):
-        raise SettingsError(f"{where}no `name`: this is not a ship file. `twin init` makes one from a ship's particulars.")
+        raise SettingsError(
+            f"{where}no `name`: this is not a ship file. `twin init` makes one from a ship's particulars."
+        )
     if table.get("schema_version", SCHEMA_VERSION) != SCHEMA_VERSION:
-        raise SettingsError(f"{where}schema_version {table['schema_version']}: this twin reads {SCHEMA_VERSION}. Update the twin.")
+        raise SettingsError(
+            f"{where}schema_version {table['schema_version']}: this twin reads "
+            f"{SCHEMA_VERSION}. Update the twin."
+        )
     particulars = _numbers(_section(table, "particulars", where), PARTICULARS, f"{where}particulars.")
     for f in PARTICULARS:
         if f.default is None and f.name not in particulars and f.name not in ("A_F", "A_L"):
-            raise SettingsError(f"{where}particulars.{f.name} ({f.metadata['doc']}, {f.metadata['unit']}) is missing. Add it.")
-    derivatives = Derivatives(**_numbers(_section(table, "derivatives", where), DERIVATIVES, f"{where}derivatives."))
+            raise SettingsError(
+                f"{where}particulars.{f.name} ({f.metadata['doc']}, {f.metadata['unit']}) is missing. Add it."
+            )
+    derivatives = Derivatives(
+        **_numbers(_section(table, "derivatives", where), DERIVATIVES, f"{where}derivatives.")
+    )
     ship = replace(Ship(str(table["name"]), **particulars), derivatives=derivatives, notes=dict(table))  # type: ignore[arg-type]
     effects = _section(table, "effects", where)
-    return replace(ship, effects=tuple(_effect(name, _section(effects, name, f"{where}effects."), ship, where) for name in effects))
+    return replace(
+        ship,
+        effects=tuple(
+            _effect(name, _section(effects, name, f"{where}effects."), ship, where) for name in effects
+        ),
+    )
 
 
 def _section(table: Mapping[str, Any], name: str, where: str) -> Mapping[str, Any]:
     found = table.get(name, {})
     if not isinstance(found, Mapping):
-        raise SettingsError(f"{where}{name} = {found!r}: a section of numbers is needed, under a line [{name}].")
+        raise SettingsError(
+            f"{where}{name} = {found!r}: a section of numbers is needed, under a line [{name}]."
+        )
     return found
 
 
@@ -95,8 +125,15 @@ def _same_unit(entry: Any, unit: str, where: str) -> None:
 
 def _value(entry: Any, where: str) -> float:
     value = entry.get("value") if isinstance(entry, Mapping) else entry
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or value != value or abs(value) == float("inf"):
-        raise SettingsError(f'{where} = {value!r}: a finite number is needed, as {{ value = 1.0, unit = "..." }}.')
+    if (
+        isinstance(value, bool)
+        or not isinstance(value, (int, float))
+        or value != value
+        or abs(value) == float("inf")
+    ):
+        raise SettingsError(
+            f'{where} = {value!r}: a finite number is needed, as {{ value = 1.0, unit = "..." }}.'
+        )
     return float(value)
 
 
@@ -109,7 +146,8 @@ def _numbers(table: Mapping[str, Any], known: tuple[Any, ...], where: str) -> di
         meta, value = by_name[key], _value(entry, where + key)
         if not meta["lo"] <= value <= meta["hi"]:
             raise SettingsError(
-                f"{where}{key} = {value:g} {meta['unit']} lies outside [{meta['lo']:g}, {meta['hi']:g}] ({meta['doc']}). Check its unit."
+                f"{where}{key} = {value:g} {meta['unit']} lies outside [{meta['lo']:g}, {meta['hi']:g}] "
+                f"({meta['doc']}). Check its unit."
             )
         _same_unit(entry, meta["unit"], where + key)
         out[key] = value

@@ -15,20 +15,28 @@ SECTIONS = ("schema_version", "name", "particulars", "derivatives", "effects")
 
 
 def to_table(ship: Ship) -> dict[str, Any]:
-    """What the ship's file holds; sources and standard errors are kept for the numbers that did not change."""
+    """What the ship's file holds; sources and standard errors are kept for the numbers that did not
+    change."""
     notes = ship.notes
 
     def entry(section: str, meta: Mapping[str, Any], name: str, value: float) -> dict[str, Any]:
         old = notes.get(section, {}).get(name, {})
         old = old if isinstance(old, Mapping) else {"value": old}
         kept = dict(old) if old.get("value") == value else {k: v for k, v in old.items() if k != "source"}
-        return {"value": float(value), "unit": meta["unit"]} | {k: v for k, v in kept.items() if k not in ("value", "unit")}
+        return {"value": float(value), "unit": meta["unit"]} | {
+            k: v for k, v in kept.items() if k not in ("value", "unit")
+        }
 
     table: dict[str, Any] = {"schema_version": SCHEMA_VERSION, "name": ship.name}
     table["particulars"] = {
-        f.name: entry("particulars", f.metadata, f.name, getattr(ship, f.name)) for f in PARTICULARS if getattr(ship, f.name) is not None
+        f.name: entry("particulars", f.metadata, f.name, getattr(ship, f.name))
+        for f in PARTICULARS
+        if getattr(ship, f.name) is not None
     }
-    table["derivatives"] = {f.name: entry("derivatives", f.metadata, f.name, getattr(ship.derivatives, f.name)) for f in DERIVATIVES}
+    table["derivatives"] = {
+        f.name: entry("derivatives", f.metadata, f.name, getattr(ship.derivatives, f.name))
+        for f in DERIVATIVES
+    }
     table["effects"] = {
         type(e).__name__: {
             p.name: {"value": float(getattr(e, p.name)), "unit": p.unit}
@@ -46,14 +54,22 @@ def _noted(notes: Mapping[str, Any], effect: str, name: str) -> Mapping[str, Any
 
 
 def text(table: Mapping[str, Any]) -> str:
-    """A ship's table as TOML, one line for each number with its meaning behind it; what else was noted follows."""
+    """A ship's table as TOML, one line for each number with its meaning behind it; what else was noted
+    follows."""
     meaning = {"particulars": PARTICULARS, "derivatives": DERIVATIVES}
     docs = {f"{section}.{f.name}": f.metadata["doc"] for section, known in meaning.items() for f in known}
     rest = {k: v for k, v in table.items() if k not in SECTIONS}
-    lists = {k: v for k, v in rest.items() if isinstance(v, list) and v and all(isinstance(item, Mapping) for item in v)}
+    lists = {
+        k: v
+        for k, v in rest.items()
+        if isinstance(v, list) and v and all(isinstance(item, Mapping) for item in v)
+    }
     tables = {k: v for k, v in rest.items() if isinstance(v, Mapping)}
     plain = {k: v for k, v in rest.items() if k not in lists and k not in tables}
-    lines = [f"{_key(k)} = {_inline(v)}" for k, v in ({k: table[k] for k in ("schema_version", "name")} | plain).items()]
+    lines = [
+        f"{_key(k)} = {_inline(v)}"
+        for k, v in ({k: table[k] for k in ("schema_version", "name")} | plain).items()
+    ]
     sections = {key: table[key] for key in ("particulars", "derivatives")}
     sections |= {f"effects.{name}": numbers for name, numbers in table["effects"].items()}
     for section, entries in (sections | {_key(k): v for k, v in tables.items()}).items():
@@ -74,7 +90,9 @@ def _key(name: str) -> str:
 def _inline(value: Any) -> str:
     """One value in TOML."""
     if isinstance(value, Mapping):
-        return "{ " + ", ".join(f"{_key(k)} = {_inline(v)}" for k, v in value.items()) + " }" if value else "{}"
+        return (
+            "{ " + ", ".join(f"{_key(k)} = {_inline(v)}" for k, v in value.items()) + " }" if value else "{}"
+        )
     if isinstance(value, str):
         return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")
     if isinstance(value, (list, tuple)):

@@ -1,7 +1,7 @@
 """Names, units and frames: what a ship is doing, what is done to it, and the force that results.
 
-Earth axes are north-east-down, body axes x forward, y to starboard, origin at midship on the centreline [Fossen 2021, ch. 2].
-SI and radians throughout. Every number may be a float, an array, a tensor or a symbol.
+Earth axes are north-east-down, body axes x forward, y to starboard, origin at midship on the centreline
+[Fossen 2021, ch. 2]. SI and radians throughout. Every number may be a float, an array, a tensor or a symbol.
 """
 
 from dataclasses import dataclass
@@ -26,12 +26,11 @@ class Force(NamedTuple):
 class Water(NamedTuple):
     """The water an effect makes the ship feel.
 
-    (u, v): its velocity in body axes [m/s]. (k_u, k_v, k_r): by how much it holds the hull harder in surge, sway and yaw, as
-    shares of the hull's damping, in yaw of the whole moment, Munk's included (a bottom squeezes the stream past her; propeller
-    and rudder, in the wake, do not feel it). k_m, k_j: by how much more of it sways and turns with her, as shares of the added
-    mass in sway and of the added inertia in yaw.
-    k_t: share of the thrust that drives her by which it takes the ship back (thrust deduction).
-    """
+    (u, v): its velocity in body axes [m/s]. (k_u, k_v, k_r): by how much it holds the hull harder in surge,
+    sway and yaw, as shares of the hull's damping, in yaw of the whole moment, Munk's included (a bottom
+    squeezes the stream past her; propeller and rudder, in the wake, do not feel it). k_m, k_j: by how much
+    more of it sways and turns with her, as shares of the added mass in sway and of the added inertia in yaw.
+    k_t: share of the thrust that drives her by which it takes the ship back (thrust deduction)."""
 
     u: Number = 0.0
     v: Number = 0.0
@@ -58,9 +57,8 @@ class Rates(NamedTuple):
 class Situation:
     """A ship at one moment (or at many: every field may be an array over time).
 
-    eta = (x, y, psi) [m, m, rad]; nu = (u, v, r) over ground, body axes [m/s, m/s, rad/s]; (u_r, v_r) through the water.
-    A field that is None was not measured; an effect that needs it is switched off.
-    """
+    eta = (x, y, psi) [m, m, rad]; nu = (u, v, r) over ground, body axes [m/s, m/s, rad/s]; (u_r, v_r) through
+    the water. A field that is None was not measured; an effect that needs it is switched off."""
 
     x: Number = 0.0
     y: Number = 0.0
@@ -86,7 +84,8 @@ class Situation:
     bank_starboard: Number = None
     phi: Number = None  # roll [rad], starboard side down positive
     p: Number = None  # and its rate [rad/s], where it was worked out: only a high antenna asks for it
-    u_dot: Number = 0.0  # acceleration over ground in body axes [m/s2], where it was worked out: only a late sensor asks for it
+    # acceleration over ground in body axes [m/s2], where it was worked out: only a late sensor asks for it
+    u_dot: Number = 0.0
     v_dot: Number = 0.0
 
     @property

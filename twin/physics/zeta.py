@@ -36,12 +36,18 @@ ZETA: dict[str, Zeta] = {
     "rudder": Zeta("delta [rad]", lambda s, ship: s.delta),
     "propeller": Zeta("n D_P / U_0", lambda s, ship: s.n * ship.D_P / ship.U_0),
     "air_ahead": Zeta("air past the ship towards the bow / U_0", lambda s, ship: _air(s)[0] / ship.U_0, WIND),
-    "air_starboard": Zeta("air past the ship towards starboard / U_0", lambda s, ship: _air(s)[1] / ship.U_0, WIND),
-    "wave_ahead": Zeta("H_s / L_pp cos(wave_to - psi)", lambda s, ship: s.H_s / ship.L_pp * cos(s.wave_to - s.psi), WAVES),
-    "wave_starboard": Zeta("H_s / L_pp sin(wave_to - psi)", lambda s, ship: s.H_s / ship.L_pp * sin(s.wave_to - s.psi), WAVES),
+    "air_starboard": Zeta(
+        "air past the ship towards starboard / U_0", lambda s, ship: _air(s)[1] / ship.U_0, WIND
+    ),
+    "wave_ahead": Zeta(
+        "H_s / L_pp cos(wave_to - psi)", lambda s, ship: s.H_s / ship.L_pp * cos(s.wave_to - s.psi), WAVES
+    ),
+    "wave_starboard": Zeta(
+        "H_s / L_pp sin(wave_to - psi)", lambda s, ship: s.H_s / ship.L_pp * sin(s.wave_to - s.psi), WAVES
+    ),
     "shallow": Zeta("T / depth", lambda s, ship: ship.T / s.depth, ("depth",)),
     "roll": Zeta("phi [rad]", lambda s, ship: s.phi, ("phi",)),
-}  # fmt: skip
+}
 
 
 def inputs(names: tuple[str, ...], s: Situation, ship: "Ship") -> list[Number]:

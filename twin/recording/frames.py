@@ -12,7 +12,9 @@ from twin.live.signals.sentinels import is_no_position
 SMOOTH_S = 2.0  # a derivative is the slope of the line through this much time
 
 
-def chart(latitude_deg: np.ndarray, longitude_deg: np.ndarray) -> tuple[np.ndarray, np.ndarray, dict[str, float]]:
+def chart(
+    latitude_deg: np.ndarray, longitude_deg: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, dict[str, float]]:
     """(north_m, east_m, datum) on the plane that touches the earth at the first position; NaN without one."""
     places = list(zip(latitude_deg.tolist(), longitude_deg.tolist(), strict=True))
     good = [not (a != a or b != b or is_no_position(a, b)) for a, b in places]
@@ -21,7 +23,9 @@ def chart(latitude_deg: np.ndarray, longitude_deg: np.ndarray) -> tuple[np.ndarr
         return nothing, nothing.copy(), {}
     first = places[good.index(True)]
     at = datum(*first)
-    points = [(to_chart(at, *p) if ok else None) or (np.nan, np.nan) for p, ok in zip(places, good, strict=True)]
+    points = [
+        (to_chart(at, *p) if ok else None) or (np.nan, np.nan) for p, ok in zip(places, good, strict=True)
+    ]
     north, east = np.array(points).T
     return north, east, {"latitude_deg": first[0], "longitude_deg": first[1]}
 

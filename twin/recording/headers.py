@@ -62,7 +62,9 @@ def unknown(path: Path, name: str) -> str:
         return f"{name!r} is not used (what is read as velocity over ground: {pairs})"
     near = nearest(name, ALLOWED)
     if near and difflib.SequenceMatcher(None, name, near).ratio() >= MISSPELT:
-        raise DataError(f"{path}: no column is called {name!r}. Did you mean {near!r}? Rename it, or use a map (--map).")
+        raise DataError(
+            f"{path}: no column is called {name!r}. Did you mean {near!r}? Rename it, or use a map (--map)."
+        )
     return f"{name!r} is not used" + (f" (did you mean {near!r}?)" if near else "")
 
 

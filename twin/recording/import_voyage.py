@@ -44,14 +44,20 @@ class Imported(NamedTuple):
             "step_s": v.step_s,
             "columns": [name for name in v.columns if v.has(name)],
             "absent": list(v.absent()),
-            **{key: v.meta[key] for key in ("source", "map", "ship", "datum", "start_time_utc") if key in v.meta},
+            **{
+                key: v.meta[key]
+                for key in ("source", "map", "ship", "datum", "start_time_utc")
+                if key in v.meta
+            },
             "derived": dict(v.meta.get("derived", {})),
             "notes": list(v.meta.get("notes", ())),
             "data_checks": [c.as_json() for c in self.checks],
         }
 
 
-def import_voyage(path: str | Path, map_path: str | Path | None = None, ship_path: str | Path | None = None) -> Imported:
+def import_voyage(
+    path: str | Path, map_path: str | Path | None = None, ship_path: str | Path | None = None
+) -> Imported:
     """Reads a file, through a map if it has its own columns, and checks it, with a ship if one is given."""
     ship = load(ship_path) if ship_path else None
     voyage = read_voyage(path, read_map(Path(map_path)) if map_path else None)
@@ -65,7 +71,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="measurements: CSV, text columns, or an MCAP log")
     parser.add_argument("--map", metavar="MAP.toml", help="the file's own columns, units, signs and clock")
     parser.add_argument("--ship", metavar="SHIP.toml", help="her particulars let the checks say more")
-    parser.add_argument("--accept", metavar="CHECK", action="append", default=[], help="import although CHECK refuses")
+    parser.add_argument(
+        "--accept", metavar="CHECK", action="append", default=[], help="import although CHECK refuses"
+    )
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
     parser.add_argument("-o", "--output", metavar="VOYAGE.mcap", required=True, help="the checked voyage")
 
@@ -89,12 +97,15 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _next(voyage: str, ship: str | None) -> str:
-    """A ship that was never calibrated is, on her reference voyages, before anything is compared with her; whether this is one, nobody knows."""
+    """A ship that was never calibrated is, on her reference voyages, before anything is compared with her;
+    whether this is one, nobody knows."""
     if ship and "structural" not in load(ship).notes:
         better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
         return (
-            "her model was not calibrated yet. Import the voyages on which nothing was wrong (three or more), then "
-            f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship} -o {better}; after that, twin diagnose LATER.mcap --ship {better}"
+            "her model was not calibrated yet. Import the voyages on which nothing was wrong (three or "
+            "more), then "
+            f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship} -o {better}; after that, twin diagnose "
+            f"LATER.mcap --ship {better}"
         )
     return f"twin compare {voyage} --ship {ship or 'SHIP.toml'}"
 
@@ -114,7 +125,11 @@ def mark(check: Check) -> str:
 
 def refusal(path: str, refused: Sequence[Check], map_path: str | None = None) -> str:
     """One line: what is wrong, and the two ways out."""
-    mend = f"Correct {map_path}" if map_path else "Write that into a map (docs/import.md) and give it with --map"
+    mend = (
+        f"Correct {map_path}"
+        if map_path
+        else ("Write that into a map (docs/import.md) and give it with --map")
+    )
     accept = " ".join(f"--accept {c.name}" for c in refused)
     said = " ".join(f"{c.name}: {c.text}" for c in refused)
     return f"{path}: not imported. {said} {mend}, or import it as it is with {accept}."

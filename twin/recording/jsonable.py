@@ -18,7 +18,8 @@ def plain(value: Any) -> Any:
 
 
 def short(value: Any, digits: int = 6) -> Any:
-    """The same with every number of fractions rounded to so many digits: what a person may read in a ship file."""
+    """The same with every number of fractions rounded to so many digits: what a person may read in a ship
+    file."""
     if isinstance(value, dict):
         return {k: short(v, digits) for k, v in value.items()}
     if isinstance(value, (list, tuple)):

@@ -62,7 +62,9 @@ def parse_map(data: Mapping[str, Any], where: str) -> Map:
     one_of(layout.separator, (None, *SEPARATORS), f"{where}: [file] separator")
     one_of(layout.decimal, (None, ".", ","), f"{where}: [file] decimal")
     if not number(scale, f"{where}: [scale] froude") > 0.0:
-        raise SettingsError(f"{where}: [scale] froude = {scale} must be positive (ship length / model length).")
+        raise SettingsError(
+            f"{where}: [scale] froude = {scale} must be positive (ship length / model length)."
+        )
     return Map(
         name=Path(where).stem,
         layout=layout,
@@ -85,7 +87,9 @@ def column(name: str, entry: Any, where: str) -> Column:
     if out.frame != "body" and name not in FRAMED:
         raise SettingsError(f"{where}: {name}: frame is for {' and '.join(FRAMED)} only. Remove it.")
     if out.optional and name in FRAMED:
-        raise SettingsError(f"{where}: {name}: a velocity has two parts and cannot be optional. Write a map without it.")
+        raise SettingsError(
+            f"{where}: {name}: a velocity has two parts and cannot be optional. Write a map without it."
+        )
     if out.unit is not None and not (name in PLACES and out.unit == "ddmm"):
         factor(target(name, out), out.unit, where)
     return out
@@ -102,7 +106,9 @@ def time_column(entry: Any, where: str) -> TimeColumn:
     out: TimeColumn = build(TimeColumn, entry, f"{where}: [time]")
     one_of(out.unit, (*UNITS["s"], "iso"), f"{where}: [time] unit")
     if not isinstance(out.rebuild, bool) and not out.rebuild > 0.0:
-        raise SettingsError(f"{where}: [time] rebuild = {out.rebuild:g} must be true, false or a step in seconds.")
+        raise SettingsError(
+            f"{where}: [time] rebuild = {out.rebuild:g} must be true, false or a step in seconds."
+        )
     return out
 
 

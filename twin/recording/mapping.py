@@ -51,7 +51,8 @@ class Column:
     unit: str | None = None
     sign: int = 1
     offset: float = 0.0
-    frame: str = "body"  # velocities: body; earth (north, east); course (speed over ground, course over ground)
+    # velocities: body; earth (north, east); course (speed over ground, course over ground)
+    frame: str = "body"
     direction: str = "from"  # wind and waves: where they come from, or go "to"
     despike: bool = False
     optional: bool = False  # a file without this column is read without it

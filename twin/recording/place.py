@@ -20,9 +20,8 @@ HEADING = "heading_true_north_deg"
 def placed(time_s: np.ndarray, columns: Columns, by: Map) -> tuple[Columns, dict[str, Any], list[str]]:
     """Columns with north/east and body velocities in place of latitude/longitude, earth or course velocities.
 
-    Numbers that belong together may stand in rows of their own: the others are brought to the time of the first.
-    Second: what is known of the place (`datum`). Third: sentences.
-    """
+    Numbers that belong together may stand in rows of their own: the others are brought to the time of the
+    first. Second: what is known of the place (`datum`). Third: sentences."""
     facts: dict[str, Any] = {}
     notes: list[str] = []
     if set(PLACES) <= set(columns):
@@ -37,7 +36,9 @@ def placed(time_s: np.ndarray, columns: Columns, by: Map) -> tuple[Columns, dict
     return turned(time_s, columns, by), facts, notes
 
 
-def _with(time_s: np.ndarray, values: np.ndarray, partner: np.ndarray, name: str, period: float | None = None) -> np.ndarray:
+def _with(
+    time_s: np.ndarray, values: np.ndarray, partner: np.ndarray, name: str, period: float | None = None
+) -> np.ndarray:
     """`values` of channel `name` wherever its partner was measured, NaN elsewhere."""
     ch, rows = BY_NAME[name], np.isfinite(partner)
     near = beside(time_s, values, rows, ch.stale_s, ch.wraps if period is None else period)
@@ -64,7 +65,10 @@ def derive(time_s: np.ndarray, columns: Columns) -> tuple[Columns, dict[str, str
     heading = continuous(columns[HEADING], 360.0)
     if not present(columns, *CHART):
         u = columns[FRAMED[0]]
-        v, psi = _with(time_s, columns[FRAMED[1]], u, FRAMED[1]), np.radians(_with(time_s, heading, u, HEADING))
+        v, psi = (
+            _with(time_s, columns[FRAMED[1]], u, FRAMED[1]),
+            np.radians(_with(time_s, heading, u, HEADING)),
+        )
         north, east = earth_from_body(u, v, psi)
         columns |= {"north_m": integral(time_s, north), "east_m": integral(time_s, east)}
         how |= dict.fromkeys(CHART, "integrated from the velocities and the heading")

@@ -48,7 +48,9 @@ def read_voyage(path: str | Path, by: Map | None = None) -> Voyage:
     """
     path = Path(path)
     if not path.is_file():
-        raise DataError(f"{path}: {'is a folder' if path.is_dir() else 'there is no such file'}. Give a CSV or MCAP file.")
+        raise DataError(
+            f"{path}: {'is a folder' if path.is_dir() else 'there is no such file'}. Give a CSV or MCAP file."
+        )
     if path.stat().st_size == 0:
         raise DataError(f"{path}: is empty (0 bytes). Export it again.")
     try:
@@ -66,7 +68,9 @@ def from_log(path: Path) -> Raw:
     time_s, columns = read_rows(path, notes)
     clock = clock_from_numbers(time_s, TimeColumn())
     known = {name: x for name, x in columns.items() if name in BY_NAME}
-    return Raw(path, np.arange(1, time_s.size + 1), clock.time_s, known, about(path, clock) | words(path), notes)
+    return Raw(
+        path, np.arange(1, time_s.size + 1), clock.time_s, known, about(path, clock) | words(path), notes
+    )
 
 
 def words(path: Path) -> dict[str, Any]:
@@ -86,10 +90,20 @@ def from_text(path: Path, by: Map | None) -> Raw:
     stamps: tuple[Key, ...] = spec.column if isinstance(spec.column, tuple) else (spec.column,)
     wanted = [c.column for c in by.columns.values()]
     optional = [c.column for c in by.columns.values() if c.optional]
-    table = read_table(path, by.layout, [*({} if spec.is_text else stamps), *wanted], stamps if spec.is_text else (), optional)
+    table = read_table(
+        path,
+        by.layout,
+        [*({} if spec.is_text else stamps), *wanted],
+        stamps if spec.is_text else (),
+        optional,
+    )
     clock = read_clock(path, table, stamps, spec)
     notes = [*table.notes, *unused]
-    columns = {name: converted(name, table, c, by.name, notes) for name, c in by.columns.items() if c.column in table.numbers}
+    columns = {
+        name: converted(name, table, c, by.name, notes)
+        for name, c in by.columns.items()
+        if c.column in table.numbers
+    }
     columns |= {name: np.full(table.lines.shape, x) for name, x in by.constant.items()}
     columns, facts, said = placed(clock.time_s, scaled(columns, by), by)
     slower = froude("time_s", by.froude_scale)
@@ -144,9 +158,14 @@ def with_time(raw: Raw) -> None:
     keep = np.isfinite(raw.time_s)
     rows = int(np.count_nonzero(keep))
     if rows < FEWEST_ROWS:
-        raise DataError(f"{raw.path}: has {rows} rows with a time; at least {FEWEST_ROWS} are needed. Is it the right time column?")
+        raise DataError(
+            f"{raw.path}: has {rows} rows with a time; at least {FEWEST_ROWS} are needed. Is it "
+            "the right time column?"
+        )
     if rows < keep.size:
-        raw.notes.append(f"{keep.size - rows} rows without a time left out (first in line {raw.lines[~keep][0]})")
+        raw.notes.append(
+            f"{keep.size - rows} rows without a time left out (first in line {raw.lines[~keep][0]})"
+        )
         raw.time_s, raw.lines = raw.time_s[keep], raw.lines[keep]
         raw.columns = {name: x[keep] for name, x in raw.columns.items()}
 

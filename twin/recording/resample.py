@@ -18,7 +18,9 @@ def wrapped(values: np.ndarray, period: float) -> np.ndarray:
     return np.mod(values, period) if period > 0.0 else values
 
 
-def resampled(time_s: np.ndarray, values: np.ndarray, grid: np.ndarray, step_s: float, max_gap_s: float, hold_s: float) -> np.ndarray:
+def resampled(
+    time_s: np.ndarray, values: np.ndarray, grid: np.ndarray, step_s: float, max_gap_s: float, hold_s: float
+) -> np.ndarray:
     """`values` at `time_s` brought to the times `grid` (a multiple of `step_s` from grid[0]).
 
     Samples within half a step are averaged, and the mean stands at the mean of their times, so that a moving
@@ -33,11 +35,14 @@ def resampled(time_s: np.ndarray, values: np.ndarray, grid: np.ndarray, step_s: 
     return np.where(reachable(grid, t, max_gap_s, hold_s, 1e-6 * step_s), out, np.nan)
 
 
-def beside(time_s: np.ndarray, values: np.ndarray, rows: np.ndarray, max_gap_s: float, period: float = 0.0) -> np.ndarray:
-    """`values` with a number in these `rows` (bool) too, from a line between its own neighbours no more than `max_gap_s` apart.
+def beside(
+    time_s: np.ndarray, values: np.ndarray, rows: np.ndarray, max_gap_s: float, period: float = 0.0
+) -> np.ndarray:
+    """`values` with a number in these `rows` (bool) too, from a line between its own neighbours no more than
+    `max_gap_s` apart.
 
-    For two quantities that belong together and were logged in rows of their own; where both stand in one row nothing is made up.
-    """
+    For two quantities that belong together and were logged in rows of their own; where both stand in one row
+    nothing is made up."""
     there = np.isfinite(values) & np.isfinite(time_s)
     fill = rows & ~there & np.isfinite(time_s)
     if not there.any() or not fill.any():

@@ -23,13 +23,16 @@ def plausible(name: str, values: np.ndarray, lines: np.ndarray) -> tuple[np.ndar
     notes = [f"{name}: {count(not_available, lines)} for 'not available'"] if not_available.any() else []
     if outside.any():
         i = int(np.flatnonzero(outside)[0])
-        notes.append(f"{name}: {count(outside, lines)} outside [{ch.low:g}, {ch.high:g}], the first {values[i]:g}: wrong unit?")
+        notes.append(
+            f"{name}: {count(outside, lines)} outside [{ch.low:g}, {ch.high:g}], the first "
+            f"{values[i]:g}: wrong unit?"
+        )
     return np.where(outside, np.nan, values), notes
 
 
 def sentinel(name: str, values: np.ndarray) -> np.ndarray:
-    """True where a value is a known code for "not available"; the generic ones count only out of range, and none where the ship was about
-    to read it anyway."""
+    """True where a value is a known code for "not available"; the generic ones count only out of range, and
+    none where the ship was about to read it anyway."""
     ch = BY_NAME[name]
     with np.errstate(invalid="ignore"):
         out = ~((values >= ch.low) & (values <= ch.high)) & np.isin(values, GENERIC)
@@ -61,7 +64,9 @@ def from_zero(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
     there = values[np.isfinite(values)]
     if not there.size or abs(there[0]) < FAR_M:
         return values, []
-    return values - there[0], [f"{name}: counted from its first sample, {there[0]:.3f} m (a map grid's numbers)"]
+    return values - there[0], [
+        f"{name}: counted from its first sample, {there[0]:.3f} m (a map grid's numbers)"
+    ]
 
 
 def spikes(values: np.ndarray, period: float = 0.0) -> np.ndarray:
@@ -77,7 +82,9 @@ def spikes(values: np.ndarray, period: float = 0.0) -> np.ndarray:
     x = continuous(values[at], period)
     middle = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(x, 2, mode="edge"), 5), axis=1)
     away = np.abs(x - middle)
-    limit = max(10.0 * 1.4826 * np.median(away), 6.0 * np.quantile(np.abs(np.diff(x)), 0.97), 5.0 * resolution(x))
+    limit = max(
+        10.0 * 1.4826 * np.median(away), 6.0 * np.quantile(np.abs(np.diff(x)), 0.97), 5.0 * resolution(x)
+    )
     return at[away > limit] if limit > 0.0 else at[:0]
 
 

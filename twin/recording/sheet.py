@@ -45,7 +45,9 @@ class Sheet:
                 "but one, or choose by number in a map."
             )
         if key not in self.names:
-            raise DataError(f"{self.path}: has no column {key!r}. Columns: {', '.join(self.names) or 'unnamed'}.")
+            raise DataError(
+                f"{self.path}: has no column {key!r}. Columns: {', '.join(self.names) or 'unnamed'}."
+            )
         return self.names.index(key)
 
     def has(self, key: Key) -> bool:
@@ -100,7 +102,9 @@ def open_text(path: Path, encoding: str | None) -> TextIO:
     try:
         return open(path, encoding=encoding, errors="replace", newline="")
     except LookupError:
-        raise SettingsError(f"{path}: encoding {encoding!r} is not known; try 'utf-8' or 'latin-1'.") from None
+        raise SettingsError(
+            f"{path}: encoding {encoding!r} is not known; try 'utf-8' or 'latin-1'."
+        ) from None
 
 
 def find_encoding(head: bytes) -> str:

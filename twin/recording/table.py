@@ -31,8 +31,15 @@ class Table:
     notes: tuple[str, ...] = ()
 
 
-def read_table(path: Path, layout: Layout, numbers: Sequence[Key], texts: Sequence[Key] = (), optional: Collection[Key] = ()) -> Table:
-    """The named columns of a file; `numbers` become floats with NaN for empty cells, `texts` stay text. Only an optional column may be absent."""
+def read_table(
+    path: Path,
+    layout: Layout,
+    numbers: Sequence[Key],
+    texts: Sequence[Key] = (),
+    optional: Collection[Key] = (),
+) -> Table:
+    """The named columns of a file; `numbers` become floats with NaN for empty cells, `texts` stay text. Only
+    an optional column may be absent."""
     with open_text(path, layout.encoding) as stream:
         sheet = Sheet(path, stream, layout)
         absent = [key for key in optional if not sheet.has(key)]
@@ -66,7 +73,9 @@ def check_width(sheet: Sheet, piece: list[Row]) -> None:
     for line, row in piece:
         if len(row) > sheet.width and any(map(str.strip, row[sheet.width :])):
             hint = "Decimal commas? Export with points, or with ';' between the columns."
-            raise DataError(f"{sheet.path}: line {line} has {len(row)} cells, the first line has {sheet.width}. {hint}")
+            raise DataError(
+                f"{sheet.path}: line {line} has {len(row)} cells, the first line has {sheet.width}. {hint}"
+            )
 
 
 def with_decimal(layout: Layout, piece: list[Row], notes: list[str]) -> Layout:

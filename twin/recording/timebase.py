@@ -74,7 +74,8 @@ def refuse_backwards(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
     if DAY_S * 0.9 < time_s[i] - time_s[i + 1] <= DAY_S:
         why = "The clock passes midnight: export the date too."
     raise DataError(
-        f"{path}: line {lines[i + 1]}: time goes back from {time_s[i]:g} s to {time_s[i + 1]:g} s ({back.size} times in all). {why}"
+        f"{path}: line {lines[i + 1]}: time goes back from {time_s[i]:g} s to {time_s[i + 1]:g} s "
+        f"({back.size} times in all). {why}"
     )
 
 

@@ -34,7 +34,9 @@ class Voyage:
             if name not in BY_NAME:
                 raise DataError(f"{self.name}: no channel is called {name!r}.{did_you_mean(name, BY_NAME)}")
             if values.shape != self.time_s.shape:
-                raise DataError(f"{self.name}: {name} has {values.size} samples, time_s has {self.time_s.size}.")
+                raise DataError(
+                    f"{self.name}: {name} has {values.size} samples, time_s has {self.time_s.size}."
+                )
 
     def __len__(self) -> int:
         return int(self.time_s.size)
@@ -78,7 +80,9 @@ class Voyage:
             raise DataError(f"{self.name}: cannot be put on a grid of {step_s:g} s with {len(self)} samples.")
         steps = int(np.floor(self.duration_s / step_s + 1e-6))
         grid = self.time_s[0] + step_s * np.arange(steps + 1)
-        return self.with_rows(grid, {name: self._on(grid, step_s, BY_NAME[name], max_gap_s) for name in self.columns})
+        return self.with_rows(
+            grid, {name: self._on(grid, step_s, BY_NAME[name], max_gap_s) for name in self.columns}
+        )
 
     def _on(self, grid: np.ndarray, step_s: float, ch: Channel, max_gap_s: float | None) -> np.ndarray:
         limit = max(ch.stale_s if max_gap_s is None else max_gap_s, 1.5 * step_s)

@@ -21,7 +21,11 @@ def write_voyage(voyage: Voyage, path: str | Path) -> None:
     names = sorted(voyage.columns)
     table = np.stack([voyage.columns[name] for name in names], axis=1)
     with LogFile(path) as log:
-        log.describe(ABOUT, {key: json.dumps(value) for key, value in (*voyage.meta.items(), ("name", voyage.name))})
-        for time_s, values, there in zip(voyage.time_s.tolist(), table.tolist(), np.isfinite(table).tolist(), strict=True):
+        log.describe(
+            ABOUT, {key: json.dumps(value) for key, value in (*voyage.meta.items(), ("name", voyage.name))}
+        )
+        for time_s, values, there in zip(
+            voyage.time_s.tolist(), table.tolist(), np.isfinite(table).tolist(), strict=True
+        ):
             row = Row(time_s=time_s, **{n: x for n, x, ok in zip(names, values, there, strict=True) if ok})
             log.add(TOPIC, "shiptwin.Row", row.SerializeToString(), max(start_ns + round(time_s * NS), 0))

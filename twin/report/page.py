@@ -28,9 +28,8 @@ def write(
 ) -> None:  # fmt: skip
     """Write the page of a verb (`compare`, `diagnose`, `add`), aside and renamed.
 
-    `before`: the model without what was added. `voyages`: the recordings behind the tracks, in the same order; with them the
-    page plots every sample instead of the grid's means.
-    """
+    `before`: the model without what was added. `voyages`: the recordings behind the tracks, in the same
+    order; with them the page plots every sample instead of the grid's means."""
     whole.write(path, html(content(kind, result, tracks, model, before, voyages)), "--report")
 
 
@@ -53,10 +52,17 @@ def content(
     longest = result["horizons"][-1]["horizon_s"] if result["horizons"] else asked[-1]
     models = {"before": before, "after": model} if before is not None else {"model": model}
     drawn = shown(tracks, windows, models, longest, structural, list(voyages) or [None] * len(tracks))
-    return plain({
-        "kind": kind, "title": title(kind, result), "verdict": sentence(kind, result), "result": result, "voyages": drawn,
-        "longest_s": longest, "floor": "sensors and structure" if structural else "sensors",
-    })  # fmt: skip
+    return plain(
+        {
+            "kind": kind,
+            "title": title(kind, result),
+            "verdict": sentence(kind, result),
+            "result": result,
+            "voyages": drawn,
+            "longest_s": longest,
+            "floor": "sensors and structure" if structural else "sensors",
+        }
+    )
 
 
 def _whole(
@@ -87,7 +93,11 @@ def _whole(
 def html(content: dict[str, Any]) -> str:
     """One file: template, style, scripts and data."""
     here = resources.files(__package__)
-    data = json.dumps(content, separators=(",", ":"), allow_nan=False).replace("</", "<\\/").replace("<!--", "<\\u0021--")
+    data = (
+        json.dumps(content, separators=(",", ":"), allow_nan=False)
+        .replace("</", "<\\/")
+        .replace("<!--", "<\\u0021--")
+    )
     page = (here / "page.html").read_text(encoding="utf-8")
     script = "\n".join((here / name).read_text(encoding="utf-8") for name in SCRIPTS)
     for mark, text in (

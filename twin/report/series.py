@@ -1,7 +1,8 @@
-"""What the page plots: measured, modelled and residual series, the heat strip and the track, as compact arrays.
+"""What the page plots: measured, modelled and residual series, the heat strip and the track, as compact
+arrays.
 
-The model's line is open loop: it is started anew from the measured state every `longest` seconds, never fitted to the voyage.
-"""
+The model's line is open loop: it is started anew from the measured state every `longest` seconds, never
+fitted to the voyage."""
 
 import base64
 from collections.abc import Sequence
@@ -21,9 +22,14 @@ SHORTEST_S = 5.0  # a last stretch at least so long is drawn too
 EVERY = 10**6  # leads: all of them
 HEAT_S = 60.0  # the heat strip shows errors up to this far ahead
 INPUTS = {  # what a track itself holds, when no voyage is given
-    "delta": "rudder_angle_deg", "n": "propeller_rate_rpm", "wind_speed": "true_wind_speed_mps", "depth": "water_depth_m",
-    "H_s": "wave_height_significant_m", "draught": "draught_mean_m", "phi": "roll_deg",
-}  # fmt: skip
+    "delta": "rudder_angle_deg",
+    "n": "propeller_rate_rpm",
+    "wind_speed": "true_wind_speed_mps",
+    "depth": "water_depth_m",
+    "H_s": "wave_height_significant_m",
+    "draught": "draught_mean_m",
+    "phi": "roll_deg",
+}
 
 
 def packed(values: np.ndarray) -> str:
@@ -32,8 +38,11 @@ def packed(values: np.ndarray) -> str:
 
 
 def stitched(track: Track, model: Model, longest_s: float) -> tuple[np.ndarray, np.ndarray]:
-    """(N, 8) open-loop readings along the whole track, begun anew every `longest_s`, and the steps (W,) at which they begin."""
-    w = predict(track, fed(model, track)[0], (min(SHORTEST_S, longest_s), longest_s), stride_s=longest_s, leads=EVERY)
+    """(N, 8) open-loop readings along the whole track, begun anew every `longest_s`, and the steps (W,) at
+    which they begin."""
+    w = predict(
+        track, fed(model, track)[0], (min(SHORTEST_S, longest_s), longest_s), stride_s=longest_s, leads=EVERY
+    )
     ahead = w.start[1] - w.start[0] if w.start.size > 1 else len(track)
     line = np.full((len(track), len(READINGS)), np.nan)
     for j, start in enumerate(w.start):
@@ -56,7 +65,11 @@ def drawn(
     times, inputs = _Times(), []
     grid = times.place(track.t)
     begun = next(iter(lines.values()))[1]
-    channels = [c for i in range(len(READINGS)) if (c := _reading(i, track, lines, w, structural, voyage, times, grid))]
+    channels = [
+        c
+        for i in range(len(READINGS))
+        if (c := _reading(i, track, lines, w, structural, voyage, times, grid))
+    ]
     inputs = _inputs(track, voyage, times, grid)
     return {
         "name": track.name, "start_s": float(track.t[0]), "end_s": float(track.t[-1]), "grid": grid,
@@ -86,17 +99,31 @@ class _Times:
 
 
 def _reading(
-    i: int, track: Track, lines: dict[str, tuple[np.ndarray, np.ndarray]], w: Windows, structural: bool, voyage: Voyage | None,
-    times: _Times, grid: int,
-) -> dict[str, Any] | None:  # fmt: skip
+    i: int,
+    track: Track,
+    lines: dict[str, tuple[np.ndarray, np.ndarray]],
+    w: Windows,
+    structural: bool,
+    voyage: Voyage | None,
+    times: _Times,
+    grid: int,
+) -> dict[str, Any] | None:
     name, k = list(MEASURED.values())[i], 180.0 / np.pi if READINGS[i] in ANGLES else 1.0
     if not np.isfinite(track.measured[:, i]).any():
         return None
     measured = times.series(track.t, track.measured[:, i] * k)
     if voyage is not None and voyage.has(name):
         measured = times.series(*_raw(voyage, name, track))
-    noise = np.nanmean(np.abs(w.off(STRUCTURE if structural else SENSORS)[..., i])) if w.valid.any() else np.nan
-    out: dict[str, Any] = {"name": name, "measured": measured, "noise": float(noise) * k, "lines": {}, "residuals": {}}
+    noise = (
+        np.nanmean(np.abs(w.off(STRUCTURE if structural else SENSORS)[..., i])) if w.valid.any() else np.nan
+    )
+    out: dict[str, Any] = {
+        "name": name,
+        "measured": measured,
+        "noise": float(noise) * k,
+        "lines": {},
+        "residuals": {},
+    }
     for word, (line, _) in lines.items():
         out["lines"][word] = {"t": grid, "y": packed(line[:, i] * k)}
         out["residuals"][word] = {"t": grid, "y": packed((w.seen[:, i] - line[:, i]) * k)}
@@ -140,7 +167,9 @@ def _track(track: Track, lines: dict[str, tuple[np.ndarray, np.ndarray]], most: 
     """Positions, thinned."""
     every = max(1, len(track) // most)
     cut = slice(None, None, every)
-    lines_xy = {name: {"x": packed(line[cut, 0]), "y": packed(line[cut, 1])} for name, (line, _) in lines.items()}
+    lines_xy = {
+        name: {"x": packed(line[cut, 0]), "y": packed(line[cut, 1])} for name, (line, _) in lines.items()
+    }
     return {
         "t": packed(track.t[cut]),
         "x": packed(track.state[cut, 0]),
@@ -150,8 +179,15 @@ def _track(track: Track, lines: dict[str, tuple[np.ndarray, np.ndarray]], most: 
 
 
 def shown(
-    tracks: Sequence[Track], windows: Sequence[Windows], models: dict[str, Model], longest_s: float, structural: bool,
+    tracks: Sequence[Track],
+    windows: Sequence[Windows],
+    models: dict[str, Model],
+    longest_s: float,
+    structural: bool,
     voyages: Sequence[Voyage | None],
-) -> list[dict[str, Any]]:  # fmt: skip
+) -> list[dict[str, Any]]:
     """All voyages."""
-    return [drawn(t, w, models, longest_s, structural, v) for t, w, v in zip(tracks, windows, voyages, strict=True)]
+    return [
+        drawn(t, w, models, longest_s, structural, v)
+        for t, w, v in zip(tracks, windows, voyages, strict=True)
+    ]

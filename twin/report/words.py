@@ -25,7 +25,10 @@ def _diagnosed(result: dict[str, Any]) -> str:
         said = [_named(name, candidates.get(name)) for name in result.get("missing", [])]
         return f"{' and '.join(said)} {'is' if len(said) == 1 else 'are'} missing from the model."
     if verdict == "nothing_missing":
-        return "Nothing is missing: what the model leaves over is what this ship's calibration and instruments explain."
+        return (
+            "Nothing is missing: what the model leaves over is what this ship's calibration and "
+            "instruments explain."
+        )
     if verdict == "unknown":
         return "Something is missing, but none of the effects in the catalogue explains it."
     manoeuvre = result.get("next_manoeuvre") or {}

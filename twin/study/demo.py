@@ -1,4 +1,5 @@
-"""`twin demo`: the whole story in a minute or two: a twin alive on board, then an owner who finds what his model lacks."""
+"""`twin demo`: the whole story in a minute or two: a twin alive on board, then an owner who finds what his
+model lacks."""
 
 import argparse
 import importlib.util

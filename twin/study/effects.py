@@ -1,4 +1,5 @@
-"""`twin effects`: the catalogue in words, formulas and numbers, for the terminal, for programs and for docs/effects.md."""
+"""`twin effects`: the catalogue in words, formulas and numbers, for the terminal, for programs and for
+docs/effects.md."""
 
 import argparse
 import inspect
@@ -21,20 +22,39 @@ KINDS = {
     "SensorFault": "leaves the ship alone and changes what an instrument says of her",
 }
 SCALES = {"force": "F_0", "moment": "F_0 L", "speed": "U_0", "time": "L/U_0", "length": "L"}
-SCALES_SAID = "U_0: service speed, L: length between perpendiculars, F_0 = 0.005 rho L T U_0^2, about half of a ship's resistance."
+SCALES_SAID = (
+    "U_0: service speed, L: length between perpendiculars, F_0 = 0.005 rho L T U_0^2, about half "
+    "of a ship's resistance."
+)
 INPUTS = {
-    "wind_speed": "true_wind_speed_mps", "wind_to": "true_wind_direction_deg", "depth": "water_depth_m", "H_s": "wave_height_significant_m",
-    "T_p": "wave_period_peak_s", "wave_to": "wave_direction_deg", "bank_port": "bank_distance_port_m", "bank_starboard": "bank_distance_starboard_m",
-    "phi": "roll_deg", "u_r": "surge_velocity_through_water_mps", "v_r": "sway_velocity_through_water_mps", "t": "time_s",
+    "wind_speed": "true_wind_speed_mps",
+    "wind_to": "true_wind_direction_deg",
+    "depth": "water_depth_m",
+    "H_s": "wave_height_significant_m",
+    "T_p": "wave_period_peak_s",
+    "wave_to": "wave_direction_deg",
+    "bank_port": "bank_distance_port_m",
+    "bank_starboard": "bank_distance_starboard_m",
+    "phi": "roll_deg",
+    "u_r": "surge_velocity_through_water_mps",
+    "v_r": "sway_velocity_through_water_mps",
+    "t": "time_s",
     "r": "yaw_rate_degps",
-}  # fmt: skip
+}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", nargs="?", metavar="NAME", help="one effect, with its formula; without it, the whole catalogue")
+    parser.add_argument(
+        "name",
+        nargs="?",
+        metavar="NAME",
+        help="one effect, with its formula; without it, the whole catalogue",
+    )
     parser.add_argument("--ship", metavar="SHIP.toml", help="give boxes and sizes in this ship's own units")
     parser.add_argument("--json", metavar="FILE", help="the same as JSON; - is standard output")
-    parser.add_argument("--markdown", metavar="FILE", help="the whole catalogue as a page (docs/effects.md is made by it)")
+    parser.add_argument(
+        "--markdown", metavar="FILE", help="the whole catalogue as a page (docs/effects.md is made by it)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -42,7 +62,14 @@ def run(args: argparse.Namespace) -> int:
     by_form = [e for e in UNNAMED if e.__name__ == args.name]
     chosen = by_form or ([find(args.name)] if args.name else list(catalogue().values()))
     if args.json:
-        _write(args.json, json.dumps({"schema_version": 1, "effects": [as_table(e, ship) for e in chosen]}, indent=2, ensure_ascii=False))
+        _write(
+            args.json,
+            json.dumps(
+                {"schema_version": 1, "effects": [as_table(e, ship) for e in chosen]},
+                indent=2,
+                ensure_ascii=False,
+            ),
+        )
     if args.markdown:
         _write(args.markdown, page(list(BUILT_IN)))
     if "-" not in (args.json, args.markdown):
@@ -84,18 +111,29 @@ def _attacks(effect: type[Effect]) -> str:
 
 
 def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:
-    """Everything that is declared of it; with a ship, sizes in SI instead of multiples of the ship's own scales."""
+    """Everything that is declared of it; with a ship, sizes in SI instead of multiples of the ship's own
+    scales."""
     params = []
     for p in effect.params():
         k = p.scale(ship) if ship else 1.0
         sizes = {key: getattr(p, key) * k for key in ("default", "lo", "hi", "sd", "null")} | {"form": p.form}
         only_with = INPUTS.get(p.input) if p.input else None
         times = SCALES[p.of] if p.of and not ship else None
-        params.append({"name": p.name, "unit": p.unit, **sizes, "times": times, "input": only_with, "doc": p.doc})
+        params.append(
+            {"name": p.name, "unit": p.unit, **sizes, "times": times, "input": only_with, "doc": p.doc}
+        )
     return {
-        "name": effect.__name__, "kind": effect.kind, "doc": sentence(effect), "formula": formula(effect), "needs": inputs(effect),
-        "needs_ship": list(effect.needs_ship), "lever": effect.lever, "size": effect.size or None, "source": effect.source, "parameters": params,
-    }  # fmt: skip
+        "name": effect.__name__,
+        "kind": effect.kind,
+        "doc": sentence(effect),
+        "formula": formula(effect),
+        "needs": inputs(effect),
+        "needs_ship": list(effect.needs_ship),
+        "lever": effect.lever,
+        "size": effect.size or None,
+        "source": effect.source,
+        "parameters": params,
+    }
 
 
 def overview(effects: list[type[Effect]], width: int) -> str:
@@ -106,22 +144,37 @@ def overview(effects: list[type[Effect]], width: int) -> str:
         lines += [bold(kind) + f"  {means}"]
         for effect in (e for e in effects if e.kind == kind):
             text = textwrap.wrap(sentence(effect), width - name_width - 2)
-            lines += [f"  {effect.__name__:{name_width}}{text[0]}", *(" " * (name_width + 2) + more for more in text[1:])]
+            lines += [
+                f"  {effect.__name__:{name_width}}{text[0]}",
+                *(" " * (name_width + 2) + more for more in text[1:]),
+            ]
         lines += [""]
     return "\n".join([*lines, f"{len(effects)} effects. One in full: twin effects {effects[0].__name__}"])
 
 
 def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
     """One effect in full."""
-    lines = [f"{bold(effect.__name__)}  {effect.kind}: {KINDS[effect.kind]}", "", *textwrap.wrap(sentence(effect), width), ""]
+    lines = [
+        f"{bold(effect.__name__)}  {effect.kind}: {KINDS[effect.kind]}",
+        "",
+        *textwrap.wrap(sentence(effect), width),
+        "",
+    ]
     lines += [f"  {line}".rstrip() for line in formula(effect).splitlines()] + [""]
-    rows = [("parameter", "unit", "plausible", "box", "prior sd", "meaning"), *(row(p, ship) for p in effect.params())]
+    rows = [
+        ("parameter", "unit", "plausible", "box", "prior sd", "meaning"),
+        *(row(p, ship) for p in effect.params()),
+    ]
     widths = [max(len(r[i]) for r in rows) + 2 for i in range(5)]
-    lines += ["  " + "".join(f"{cell:{w}}" for cell, w in zip(r, (*widths, 0), strict=True)).rstrip() for r in rows]
+    lines += [
+        "  " + "".join(f"{cell:{w}}" for cell, w in zip(r, (*widths, 0), strict=True)).rstrip() for r in rows
+    ]
     if ship is None and any(p.of for p in effect.params()):
         lines += ["", *(f"  {line}" for line in textwrap.wrap(SCALES_SAID, width - 2))]
     needs = (", ".join(inputs(effect)) or "nothing beyond the ship's own motion") + _instead(effect)
-    lines += ["", f"needs     {needs}"] + ([f"of a ship {', '.join(effect.needs_ship)}"] if effect.needs_ship else [])
+    lines += ["", f"needs     {needs}"] + (
+        [f"of a ship {', '.join(effect.needs_ship)}"] if effect.needs_ship else []
+    )
     lines += [f"attacks   {_attacks(effect)}"] if effect.lever else []
     lines += [textwrap.fill(f"source    {effect.source}", width, subsequent_indent=" " * 10)]
     add = f"next: twin add {effect.__name__} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"
@@ -143,30 +196,44 @@ def bold(text: str) -> str:
 def page(effects: list[type[Effect]]) -> str:
     """docs/effects.md."""
     lines = [
-        "# The catalogue of effects", "",
-        "Made by `twin effects --markdown docs/effects.md`; a test holds it current. Symbols: [notation](notation.md). "
-        "To add one of your own: [tutorial](tutorials/own-effect.md).", "",
-        f"A size that stands with a letter is a multiple of the ship's own. {SCALES_SAID} Plausible: what one would "
-        "expect where the effect is clearly there (what `twin effects NAME` and a ship file that gives no number take). Prior sd: how far a "
-        "parameter may lie from none before it counts as unlikely; the prior is normal about none, and one-sided where the box ends there. None "
-        "is the ship as `twin calibrate` found her: what acted on the reference voyages alike is hers, and not missing.", "",
-    ]  # fmt: skip
+        "# The catalogue of effects",
+        "",
+        "Made by `twin effects --markdown docs/effects.md`; a test holds it current. Symbols: "
+        "[notation](notation.md). "
+        "To add one of your own: [tutorial](tutorials/own-effect.md).",
+        "",
+        f"A size that stands with a letter is a multiple of the ship's own. {SCALES_SAID} Plausible: what "
+        "one would "
+        "expect where the effect is clearly there (what `twin effects NAME` and a ship file that gives no "
+        "number take). Prior sd: how far a "
+        "parameter may lie from none before it counts as unlikely; the prior is normal about none, and "
+        "one-sided where the box ends there. None "
+        "is the ship as `twin calibrate` found her: what acted on the reference voyages alike is hers, and "
+        "not missing.",
+        "",
+    ]
     for kind, means in KINDS.items():
         lines += [f"## {kind}", "", f"{means.capitalize()}.", ""]
         for effect in (e for e in effects if e.kind == kind):
             lines += _entry(effect)
     lines += [
-        "## Known by their form alone", "",
-        "No members of the catalogue, and not to be added to a ship file: what a repair mends is no part of a ship. `twin diagnose` asks for them, "
-        "so that nothing else is named in their place; where one explains the voyages best the answer is `unknown`, and what it resembles.", "",
-    ]  # fmt: skip
+        "## Known by their form alone",
+        "",
+        "No members of the catalogue, and not to be added to a ship file: what a repair mends is no part of "
+        "a ship. `twin diagnose` asks for them, "
+        "so that nothing else is named in their place; where one explains the voyages best the answer is "
+        "`unknown`, and what it resembles.",
+        "",
+    ]
     for effect in UNNAMED:
         lines += _entry(effect)
     return "\n".join(lines)
 
 
 def _entry(effect: type[Effect]) -> list[str]:
-    needs = (", ".join(f"`{name}`" for name in inputs(effect)) or "nothing beyond the ship's own motion") + _instead(effect)
+    needs = (
+        ", ".join(f"`{name}`" for name in inputs(effect)) or "nothing beyond the ship's own motion"
+    ) + _instead(effect)
     if effect.needs_ship:
         needs += f"; of the ship {', '.join(effect.needs_ship)}"
     needs += f". Attacks {_attacks(effect)}" if effect.lever else ""

@@ -1,4 +1,5 @@
-"""The study's story on the voyages that come with the twin: she sails badly on Monday; by evening the twin knows why."""
+"""The study's story on the voyages that come with the twin: she sails badly on Monday; by evening the twin
+knows why."""
 
 import json
 import shlex
@@ -12,10 +13,14 @@ SHIP, MONDAY, TUESDAY = (FOLDER / name for name in ("tanker.toml", "monday.mcap"
 
 
 def story(folder: Path) -> None:
-    """Compare, diagnose, add what the diagnosis names, compare again on a voyage that was not used; each command is shown first."""
+    """Compare, diagnose, add what the diagnosis names, compare again on a voyage that was not used; each
+    command is shown first."""
     folder = Path(tempfile.mkdtemp(prefix="study-", dir=folder))
     answer, page, better = folder / "diagnosis.json", folder / "diagnosis.html", folder / "tanker-better.toml"
-    print("\nA tanker, calibrated on calm voyages. On Monday she is not where her twin expects her. How wrong, and where?")
+    print(
+        "\nA tanker, calibrated on calm voyages. On Monday she is not where her twin expects her. How "
+        "wrong, and where?"
+    )
     _say(f"compare {_q(MONDAY)} --ship {_q(SHIP)}")
     print("\nWhich physical effect is missing?")
     _say(f"diagnose {_q(MONDAY)} --ship {_q(SHIP)} --json {_q(answer)} --report {_q(page)}")
@@ -23,7 +28,10 @@ def story(folder: Path) -> None:
     if not missing:
         raise TwinError(f"The diagnosis of {MONDAY.name} names nothing; it should. See {answer}.")
     print("\nAdd it, and prove it on Tuesday's voyage, which was not used:")
-    _say(f"add {' '.join(missing)} --ship {_q(SHIP)} --voyage {_q(MONDAY)} --held-out {_q(TUESDAY)} -o {_q(better)}")
+    _say(
+        f"add {' '.join(missing)} --ship {_q(SHIP)} --voyage {_q(MONDAY)} --held-out {_q(TUESDAY)} -o "
+        f"{_q(better)}"
+    )
     print("\nTuesday again, with the better twin:")
     _say(f"compare {_q(TUESDAY)} --ship {_q(better)}")
     print(f"\nopen {page} in a browser: the same story with plots")

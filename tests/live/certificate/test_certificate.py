@@ -146,9 +146,12 @@ def test_a_small_boat_is_told_to_run_faster():
     assert certify(windy("usv"), 20.0, 0.02, 0, noise=(0.06, 0.06, 0.008)).ok
 
 
-@pytest.mark.parametrize(("name", "hz", "least"), [("kvlcc2", 10.0, 0.29), ("container", 10.0, 0.7), ("usv", 50.0, 13.0)])
+@pytest.mark.parametrize(
+    ("name", "hz", "least"), [("kvlcc2", 10.0, 0.29), ("container", 10.0, 0.7), ("usv", 50.0, 13.0)]
+)
 def test_the_loops_own_gain_is_that_of_the_ship(name, hz, least):
-    """Expected: the usual 12 U_0/L for a tanker, more for the others, and a bound that is narrower than the operating set on every axis."""
+    """Expected: the usual 12 U_0/L for a tanker, more for the others, and a bound that is narrower than the
+    operating set on every axis."""
     ship = load(name)
     c = certify(Model.of(ship), None, 1.0 / hz, 1, cert.usual_noise(ship), heading_noise=0.005)
     assert c.ok and c.K[0] >= gain_for(ship) * (1.0 - 1e-9) and least < c.K[0] < 1.6 * least
@@ -156,7 +159,8 @@ def test_the_loops_own_gain_is_that_of_the_ship(name, hz, least):
 
 
 def test_a_measurement_one_sample_late_costs_a_strongly_damped_boat_little():
-    """Test: the 2 m boat, whose yaw dies in a sixth of a second, at 50 Hz. Expected: a bound within twice that of measurements in time."""
+    """Test: the 2 m boat, whose yaw dies in a sixth of a second, at 50 Hz. Expected: a bound within twice
+    that of measurements in time."""
     model, K = windy("usv"), 17.0
     late, prompt = (certify(model, K, 0.02, m, noise=(0.06, 0.06, 0.008)) for m in (1, 0))
     assert all(b < 2.0 * a for a, b in zip(prompt.bound, late.bound, strict=True))
@@ -244,7 +248,8 @@ def test_the_loop_reads_a_certificate_without_numpy(vlcc, tmp_path):
     path = tmp_path / "c.json"
     path.write_text(vlcc[1].to_json())
     code = (
-        "import sys; from twin.live.certificate.certificate import Certificate, Tube; from pathlib import Path;"
+        "import sys; from twin.live.certificate.certificate import Certificate, Tube; from pathlib import "
+        "Path;"
         f"t = Tube(Certificate.from_json(Path({str(path)!r}).read_text())); t.step((True, True, False)); "
         "print('numpy' in sys.modules)"
     )

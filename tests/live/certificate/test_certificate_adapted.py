@@ -1,4 +1,5 @@
-"""The certificate of a ship whose effects' numbers move on board: everything holds wherever in their boxes they are."""
+"""The certificate of a ship whose effects' numbers move on board: everything holds wherever in their boxes
+they are."""
 
 from math import pi, sin
 
@@ -25,13 +26,20 @@ def models(model, numbers, count):
     rng = np.random.default_rng(1)
     shares = [np.zeros(len(numbers)), np.ones(len(numbers)), *rng.random((count, len(numbers)))]
     for share in shares:
-        yield Model(model.ship, moved(model.effects, numbers, [m.low + x * (m.high - m.low) for m, x in zip(numbers, share, strict=True)]))
+        yield Model(
+            model.ship,
+            moved(
+                model.effects,
+                numbers,
+                [m.low + x * (m.high - m.low) for m, x in zip(numbers, share, strict=True)],
+            ),
+        )
 
 
 @pytest.mark.parametrize("Kind", KINDS, ids=lambda kind: kind.__name__)
 def test_slopes_and_distance_hold_for_every_number_in_its_box(Kind):
-    """Test: the equations of motion at random numbers and motions. Expected: slopes inside the sure ones, and nu_dot no further from
-    that of the ship file's numbers than `moved` says."""
+    """Test: the equations of motion at random numbers and motions. Expected: slopes inside the sure ones, and
+    nu_dot no further from that of the ship file's numbers than `moved` says."""
     model = Model.of(SHIP).but(Kind.plausible(SHIP))
     numbers, ranges = movable(model.effects, SHIP), {**cert.of_ship(model).ranges, "stream": (0.0, 0.0)}
     sure = slopes(model, ranges, dict.fromkeys(ranges, 3), numbers)
@@ -59,7 +67,11 @@ def test_each_effect_may_move_and_the_usual_gain_of_a_tanker_still_holds(Kind):
     """Expected: a bound, and a wider one: what moves has its price."""
     model = Model.of(SHIP).but(Kind.plausible(SHIP))
     still, moving = (certify(model, gain_for(SHIP), 0.1, adapted=a) for a in (False, True))
-    assert moving.ok and all(a <= b for a, b in zip(still.bound, moving.bound, strict=True)) and moving.margin <= still.margin
+    assert (
+        moving.ok
+        and all(a <= b for a, b in zip(still.bound, moving.bound, strict=True))
+        and moving.margin <= still.margin
+    )
     assert sum(moving.plant.moved) > 0.0 == sum(still.plant.moved)
 
 
@@ -72,9 +84,12 @@ def test_a_certificate_of_numbers_that_stand_still_is_not_taken_for_one_of_numbe
 
 
 def run(certificate, model, numbers, seconds=150.0, h=0.1):
-    """Whether an observer stays inside the tube whose numbers an adversary moves: each sample to the end of its box that makes the
-    yaw error grow. Measurements are exact; nothing else is wrong."""
-    ends = [Model(model.ship, moved(model.effects, numbers, [getattr(m, e) for m in numbers])) for e in ("low", "high")]
+    """Whether an observer stays inside the tube whose numbers an adversary moves: each sample to the end of
+    its box that makes the yaw error grow. Measurements are exact; nothing else is wrong."""
+    ends = [
+        Model(model.ship, moved(model.effects, numbers, [getattr(m, e) for m in numbers]))
+        for e in ("low", "high")
+    ]
     tube, K, largest = Tube(certificate, start=(1e-6, 1e-6, 1e-9)), certificate.K, np.zeros(3)
     state, nu = (0.0, 0.0, 0.0, 0.75 * SHIP.U_0, 0.0, 0.0), np.array([0.75 * SHIP.U_0, 0.0, 0.0])
     for k in range(int(seconds / h)):
@@ -93,7 +108,8 @@ def run(certificate, model, numbers, seconds=150.0, h=0.1):
 
 
 def test_an_adversary_who_moves_the_numbers_never_leaves_the_tube():
-    """Expected: inside the tube of moving numbers, and far outside that of numbers that stand still, which promises nothing here."""
+    """Expected: inside the tube of moving numbers, and far outside that of numbers that stand still, which
+    promises nothing here."""
     model = Model.of(SHIP).but(find("RudderWear")(loss=0.2), find("HullFouling")(extra=0.3))
     numbers = movable(model.effects, SHIP)
     moving, still = (certify(model, gain_for(SHIP), 0.1, adapted=a, **QUIET) for a in (True, False))

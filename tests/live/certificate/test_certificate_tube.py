@@ -137,8 +137,8 @@ def test_two_hundred_hostile_runs_never_break_the_bound(case, runs, seconds):
     ids=["tanker", "drop-outs", "container", "boat"],
 )
 def test_hostile_ships_do_not_break_the_bound_of_the_twins_own_loop(case, seconds, share):
-    """Test: three ships against the whole loop, its gates and its own K. Expected: it says that its certificate holds, and no error
-    leaves the tube, which is nearly touched."""
+    """Test: three ships against the whole loop, its gates and its own K. Expected: it says that its
+    certificate holds, and no error leaves the tube, which is nearly touched."""
     outcome = trial(Loops(case, 3, seed=11), seconds)
     assert outcome.violations == 0 and outcome.samples > share * outcome.runs * outcome.steps
     assert max(outcome.of_tube) > 0.7

@@ -1,4 +1,5 @@
-"""A rudder's feedback that is stuck: found by how she turns, and what it taught taken back; a rudder that is truly held is not accused."""
+"""A rudder's feedback that is stuck: found by how she turns, and what it taught taken back; a rudder that is
+truly held is not accused."""
 
 from dataclasses import replace
 
@@ -15,7 +16,9 @@ RUDDER = "rudder_angle_deg"
 def stuck():
     """The rudder's feedback stays at its last value."""
     last = {}
-    return lambda readings, b: [r._replace(value=last.setdefault("v", r.value)) if r.channel == RUDDER else r for r in readings]
+    return lambda readings, b: [
+        r._replace(value=last.setdefault("v", r.value)) if r.channel == RUDDER else r for r in readings
+    ]
 
 
 def learning(ship, make_bridge, **sailing):
@@ -24,7 +27,9 @@ def learning(ship, make_bridge, **sailing):
 
 
 def farthest(new, old):
-    return max(abs(a - b) for row, other in zip(new, old, strict=True) for a, b in zip(row, other, strict=True))
+    return max(
+        abs(a - b) for row, other in zip(new, old, strict=True) for a, b in zip(row, other, strict=True)
+    )
 
 
 def zigzag(angle_deg):
@@ -33,8 +38,9 @@ def zigzag(angle_deg):
 
 @pytest.mark.parametrize(("angle_deg", "found"), [(15.0, True), (5.0, False)])
 def test_I6_a_rudder_feedback_that_is_stuck_teaches_nothing(kvlcc2, make_bridge, angle_deg, found):
-    """Test: a zigzag with learning on, then the feedback says the same for three minutes. Expected: learning stands still within three lengths,
-    what acts is again what acted at a moment before, and helm of 15 deg that is not seen is said; of 5 deg the model could be that wrong."""
+    """Test: a zigzag with learning on, then the feedback says the same for three minutes. Expected: learning
+    stands still within three lengths, what acts is again what acted at a moment before, and helm of 15 deg
+    that is not seen is said; of 5 deg the model could be that wrong."""
     bridge, learned = learning(kvlcc2, make_bridge, helm_deg=zigzag(angle_deg))
     bridge.run(240.0)
     before = []
@@ -73,9 +79,14 @@ def test_a_zigzag_is_not_accused_even_where_half_of_the_rudder_is_worn_away(kvlc
 
 @pytest.mark.parametrize("held_deg", [0.0, 35.0], ids=["straight course", "turning circle"])
 def test_a_rudder_that_is_truly_held_is_not_accused(kvlcc2, make_bridge, held_deg):
-    """Test: after some helm the rudder stays for eight minutes, feedback without noise. Expected: nothing is said against it; learning rests."""
-    bridge, learned = learning(kvlcc2, make_bridge, helm_deg=lambda t: zigzag(10.0)(t) if t < 200.0 else held_deg)
-    exact = lambda readings, b: [r._replace(value=b.sailing.rudder) if r.channel == RUDDER else r for r in readings]  # noqa: E731
+    """Test: after some helm the rudder stays for eight minutes, feedback without noise. Expected: nothing is
+    said against it; learning rests."""
+    bridge, learned = learning(
+        kvlcc2, make_bridge, helm_deg=lambda t: zigzag(10.0)(t) if t < 200.0 else held_deg
+    )
+    exact = lambda readings, b: [
+        r._replace(value=b.sailing.rudder) if r.channel == RUDDER else r for r in readings
+    ]  # noqa: E731
     ticks = bridge.run(680.0, exact)
     assert not [t for t in ticks if any(RUDDER in text for text in t.reasons)]
     assert "nothing is learned until it moves" in learned.adaptation.frozen

@@ -181,7 +181,9 @@ def test_I12_a_doubled_message_is_dropped_without_a_word(bridge):
     assert not said(ticks, HEADING)
 
 
-@pytest.mark.parametrize("shift, quality", ((-3.0, Quality.OLD), (3600.0, Quality.FUTURE), (-3600.0, Quality.OLD)))
+@pytest.mark.parametrize(
+    "shift, quality", ((-3.0, Quality.OLD), (3600.0, Quality.FUTURE), (-3600.0, Quality.OLD))
+)
 def test_I13_I14_stamps_far_from_now_are_refused(bridge, shift, quality):
     bridge.run(10.0)
     ticks = bridge.run(0.5, only(HEADING, lambda r, b: r._replace(time_s=r.time_s + shift)))
@@ -210,7 +212,9 @@ def test_I13_samples_older_than_their_channel_may_be_are_of_no_use_and_do_no_har
 def test_I17_I18_a_yaw_rate_in_the_wrong_unit_or_sign_is_named(bridge, factor, word):
     """Test: the rate of turn times 57.3, over 57.3, or negated. Expected: said within two ship lengths of
     turning."""
-    ticks = bridge.run(160.0, only(YAW, lambda r, b: r._replace(value=max(min(r.value * factor, 89.0), -89.0))))
+    ticks = bridge.run(
+        160.0, only(YAW, lambda r, b: r._replace(value=max(min(r.value * factor, 89.0), -89.0)))
+    )
     assert said(ticks, word)
     assert all(isfinite(t.estimate.yaw_rate_degps) for t in ticks)
 
@@ -242,7 +246,9 @@ def test_I19_the_heading_runs_through_north_without_a_jump(make_bridge):
 def test_I25_two_publishers_of_one_channel_are_named_and_the_first_is_used(bridge):
     """Test: a second heading source 5 deg off. Expected: both named within 2 s, the first believed."""
     bridge.run(10.0)
-    ticks = bridge.run(2.0, only(HEADING, lambda r, b: [r, r._replace(value=(r.value + 5.0) % 360.0, source="other")]))
+    ticks = bridge.run(
+        2.0, only(HEADING, lambda r, b: [r, r._replace(value=(r.value + 5.0) % 360.0, source="other")])
+    )
     assert said(ticks, "ship and other both publish it")
     assert abs(bridge.error(HEADING)) < 0.2
 
@@ -251,7 +257,10 @@ def test_I25_when_the_first_falls_silent_the_second_takes_over(bridge):
     bridge.run(10.0)
     bridge.run(3.0, only(HEADING, lambda r, b: r._replace(source="other")))
     tick = bridge.ticks[-1]
-    assert tick.quality.heading_true_north_deg == Quality.OK and bridge.loop.sensors.gates[HEADING].source == "other"
+    assert (
+        tick.quality.heading_true_north_deg == Quality.OK
+        and bridge.loop.sensors.gates[HEADING].source == "other"
+    )
 
 
 def test_the_owner_may_choose_who_speaks(kvlcc2, make_bridge):
@@ -264,14 +273,17 @@ def test_the_owner_may_choose_who_speaks(kvlcc2, make_bridge):
 
 
 def test_F3_a_source_that_nobody_is_is_named_after_ten_seconds(kvlcc2, make_bridge):
-    """Test: the owner names a compass that does not exist. Expected: said within 10 s, and no more once it speaks."""
+    """Test: the owner names a compass that does not exist. Expected: said within 10 s, and no more once it
+    speaks."""
     from twin.live.gates.sensors import Sensors
 
     bridge = make_bridge(loop={"sensors": Sensors(kvlcc2, {HEADING: "gyro 2"})})
     assert not said(bridge.run(9.9), "never been heard")
     assert said(bridge.run(0.4), f"{HEADING}: its source 'gyro 2' has never been heard")
     bridge.run(1.0, only(HEADING, lambda r, b: r._replace(source="gyro 2")))
-    assert not said(bridge.run(1.0, only(HEADING, lambda r, b: r._replace(source="gyro 2"))), "never been heard")
+    assert not said(
+        bridge.run(1.0, only(HEADING, lambda r, b: r._replace(source="gyro 2"))), "never been heard"
+    )
 
 
 def test_I8_a_sensor_silent_for_hours_is_only_stale(bridge):
@@ -287,8 +299,8 @@ def test_I8_a_sensor_silent_for_hours_is_only_stale(bridge):
 
 @pytest.mark.parametrize("name", (HEADING, SURGE, YAW))
 def test_I6_of_a_reading_that_is_stuck_for_minutes_nothing_is_learned(kvlcc2, make_bridge, name):
-    """Test: a zigzag with learning on, then one instrument says the same for three minutes. Expected: learning stands still after five
-    seconds, and what they taught moved no number by a hundredth."""
+    """Test: a zigzag with learning on, then one instrument says the same for three minutes. Expected:
+    learning stands still after five seconds, and what they taught moved no number by a hundredth."""
     learned = LearnedForce(kvlcc2, load(bundled(kvlcc2), kvlcc2))
     bridge = make_bridge(loop={"learned": learned})
     bridge.run(400.0)
@@ -296,5 +308,9 @@ def test_I6_of_a_reading_that_is_stuck_for_minutes_nothing_is_learned(kvlcc2, ma
     before, updates = adaptation.numbers(), adaptation.updates
     bridge.run(180.0, only(name, lambda r, b: r._replace(value=value.setdefault("v", r.value))))
     assert updates > 500 and adaptation.updates - updates < 55
-    moved = [abs(a - b) for new, old in zip(adaptation.numbers(), before, strict=True) for a, b in zip(new, old, strict=True)]
+    moved = [
+        abs(a - b)
+        for new, old in zip(adaptation.numbers(), before, strict=True)
+        for a, b in zip(new, old, strict=True)
+    ]
     assert max(moved) < 0.01

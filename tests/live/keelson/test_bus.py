@@ -19,7 +19,10 @@ from twin.live.keelson.zenoh_bus import ZenohBus
 from twin.live.keelson.zenoh_config import BusSettings, configuration
 
 HEADING = topics.key("twin", "ship", "heading_true_north_deg", "gyro")
-IMPORTS = "from twin.live.keelson.zenoh_bus import ZenohBus\nfrom twin.live.keelson.zenoh_config import BusSettings\n"
+IMPORTS = (
+    "from twin.live.keelson.zenoh_bus import ZenohBus\nfrom twin.live.keelson.zenoh_config import "
+    "BusSettings\n"
+)
 RUDDER = topics.key("twin", "ship", "rudder_angle_deg", "steering")
 
 

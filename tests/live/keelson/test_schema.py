@@ -10,24 +10,49 @@ from twin.errors import TwinError
 from twin.live.keelson import messages, proto_file
 from twin.live.keelson.schema import keelson_class
 
-FIELDS = [("time_s", "double"), ("name", "string?"), ("state", "State"), ("parts", "State*"), ("n", "int64?"), ("on", "bool")]
+FIELDS = [
+    ("time_s", "double"),
+    ("name", "string?"),
+    ("state", "State"),
+    ("parts", "State*"),
+    ("n", "int64?"),
+    ("on", "bool"),
+]
 
 
 def test_a_file_written_by_hand_is_the_file_googles_classes_would_write():
-    """Test: a message with every kind of field. Expected: parsed by google's own class it says what the table says."""
-    data = proto_file.file("x.proto", "x", ("y.proto",), [proto_file.message("All", FIELDS, "x"), proto_file.message("State", [], "x")])
+    """Test: a message with every kind of field. Expected: parsed by google's own class it says what the table
+    says."""
+    data = proto_file.file(
+        "x.proto",
+        "x",
+        ("y.proto",),
+        [proto_file.message("All", FIELDS, "x"), proto_file.message("State", [], "x")],
+    )
     found = FileDescriptorProto.FromString(data)
-    assert (found.name, found.package, found.syntax, list(found.dependency)) == ("x.proto", "x", "proto3", ["y.proto"])
+    assert (found.name, found.package, found.syntax, list(found.dependency)) == (
+        "x.proto",
+        "x",
+        "proto3",
+        ["y.proto"],
+    )
     message = found.message_type[0]
     assert [f.name for f in message.field] == [name for name, _ in FIELDS]
     assert [f.number for f in message.field] == [1, 2, 3, 4, 5, 6]
     assert [f.proto3_optional for f in message.field] == [False, True, False, False, True, False]
     assert [o.name for o in message.oneof_decl] == ["_name", "_n"] and message.field[4].oneof_index == 1
-    kinds = FileDescriptorProto.DESCRIPTOR.file.message_types_by_name["FieldDescriptorProto"].enum_types_by_name["Type"]
+    kinds = FileDescriptorProto.DESCRIPTOR.file.message_types_by_name[
+        "FieldDescriptorProto"
+    ].enum_types_by_name["Type"]
     said = [kinds.values_by_number[f.type].name for f in message.field]
     assert said == ["TYPE_DOUBLE", "TYPE_STRING", "TYPE_MESSAGE", "TYPE_MESSAGE", "TYPE_INT64", "TYPE_BOOL"]
-    assert message.field[3].label == message.field[3].LABEL_REPEATED and message.field[3].type_name == ".x.State"
-    assert found.SerializeToString(deterministic=True) == FileDescriptorProto.FromString(found.SerializeToString()).SerializeToString()
+    assert (
+        message.field[3].label == message.field[3].LABEL_REPEATED and message.field[3].type_name == ".x.State"
+    )
+    assert (
+        found.SerializeToString(deterministic=True)
+        == FileDescriptorProto.FromString(found.SerializeToString()).SerializeToString()
+    )
 
 
 @pytest.mark.parametrize("name", ["shiptwin.Tick", "keelson.TimestampedFloat", "foxglove.LocationFix"])
@@ -57,10 +82,18 @@ def test_another_build_of_protobuf_serves_as_well():
     program = (
         "import sys; sys.modules['google._upb._message'] = None\n"
         "from twin.live import messages as m\n"
-        "t = m.Tick(index=3, mode='hybrid', known=[{'name': 'hull', 'X_N': 2.0}], measured={'roll_deg': 1.5})\n"
+        "t = m.Tick(index=3, mode='hybrid', known=[{'name': 'hull', 'X_N': 2.0}], measured={'roll_deg': "
+        "1.5})\n"
         "print(m.wrap(t.SerializeToString(), 5).hex(), len(m.schema_bytes('shiptwin.Tick')))"
     )
     env = {"PROTOCOL_BUFFERS_PYTHON_IMPLEMENTATION": "python", "PATH": "/usr/bin:/bin"}
-    said = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, env=env, check=True).stdout.split()
-    tick = messages.Tick(index=3, mode="hybrid", known=[{"name": "hull", "X_N": 2.0}], measured={"roll_deg": 1.5})
-    assert said == [messages.wrap(tick.SerializeToString(), 5).hex(), str(len(messages.schema_bytes("shiptwin.Tick")))]
+    said = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, env=env, check=True
+    ).stdout.split()
+    tick = messages.Tick(
+        index=3, mode="hybrid", known=[{"name": "hull", "X_N": 2.0}], measured={"roll_deg": 1.5}
+    )
+    assert said == [
+        messages.wrap(tick.SerializeToString(), 5).hex(),
+        str(len(messages.schema_bytes("shiptwin.Tick"))),
+    ]

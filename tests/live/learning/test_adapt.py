@@ -48,20 +48,32 @@ def test_it_finds_a_hull_force_that_is_20_percent_off(kvlcc2):
 
 
 BEFORE = {  # what the law learned of this stream before it knew of the effects' numbers, to the last bit
-    "surge hull": 0.197467375767115, "surge propeller": -0.0005763422988400406, "sway rudder": -0.09775649023860748,
-    "yaw feature 2": 0.0017137539413891632, "yaw constant": -0.0007259170573265312,
-}  # fmt: skip
+    "surge hull": 0.197467375767115,
+    "surge propeller": -0.0005763422988400406,
+    "sway rudder": -0.09775649023860748,
+    "yaw feature 2": 0.0017137539413891632,
+    "yaw constant": -0.0007259170573265312,
+}
 
 
 def test_a_ship_without_effects_learns_bit_for_bit_what_she_did(kvlcc2):
-    """Test: a stream made of sums and products alone, the same on every machine. Expected: the numbers of the law of before."""
+    """Test: a stream made of sums and products alone, the same on every machine. Expected: the numbers of the
+    law of before."""
     adaptation, S, dice, walk = made(kvlcc2), scale_of(kvlcc2), random.Random(5), [0.0] * 8
     for _ in range(3000):
         walk = [0.98 * x + 0.3 * (dice.random() - 0.5) for x in walk]
-        hull, rudder = Force(S.X * walk[0], S.Y * walk[1], S.N * walk[2]), Force(0.0, S.Y * walk[4], S.N * walk[5])
+        hull, rudder = (
+            Force(S.X * walk[0], S.Y * walk[1], S.N * walk[2]),
+            Force(0.0, S.Y * walk[4], S.N * walk[5]),
+        )
         q = adaptation.regressors(walk[6:], [hull, Force(), Force(0.4 * S.X + S.X * walk[3]), rudder])
         noise = [0.1 * (dice.random() - 0.5) for _ in range(3)]
-        adaptation.learn((0.2 * walk[0] + noise[0], 0.2 * walk[1] - 0.1 * walk[4] + noise[1], 0.1 * walk[5] + noise[2]), q, 0.5, "")
+        adaptation.learn(
+            (0.2 * walk[0] + noise[0], 0.2 * walk[1] - 0.1 * walk[4] + noise[1], 0.1 * walk[5] + noise[2]),
+            q,
+            0.5,
+            "",
+        )
     found = {p.name: p.value for p in adaptation.parameters()}
     assert {name: found[name] for name in BEFORE} == BEFORE
     assert adaptation.correction(q) == (0.07604378070045646, 0.16832388416106928, -0.005521047532571734)
@@ -121,7 +133,9 @@ def test_M12_saved_numbers_come_back_clamped_and_must_prove_themselves_again(kvl
     again = made(kvlcc2)
     again.restore(path, "mark")
     values = {p.name: p.value for p in again.parameters()}
-    assert values["sway hull"] == pytest.approx({p.name: p.value for p in adaptation.parameters()}["sway hull"])
+    assert values["sway hull"] == pytest.approx(
+        {p.name: p.value for p in adaptation.parameters()}["sway hull"]
+    )
     assert values["surge feature 1"] <= 0.5 and again.correction(rows) == (0.0, 0.0, 0.0)
 
 
@@ -170,14 +184,19 @@ def test_it_learns_from_a_ship_whose_rudder_is_weaker_than_the_model_thinks(kvlc
 
 
 def test_what_only_follows_the_moment_stays_behind_the_gate(kvlcc2):
-    """Test: an unexplained force that wanders by itself within half a ship length, and tells nothing of the next. Expected: the gate
-    asks the numbers of a while ago, and they do not help: hardly anything acts, at any time."""
+    """Test: an unexplained force that wanders by itself within half a ship length, and tells nothing of the
+    next. Expected: the gate asks the numbers of a while ago, and they do not help: hardly anything acts, at
+    any time."""
     adaptation, dice, wander = made(kvlcc2), random.Random(3), [0.0, 0.0, 0.0]
     acted = []
     for k in range(6000):
         t = 0.5 * k
         wander = [0.975 * x + 0.05 * dice.gauss(0.0, 1.0) for x in wander]
-        forces = known(kvlcc2, hull=(0.5, 0.6 * sin(t / 35.0), 0.5 * sin(t / 30.0)), rudder=(0, sin(t / 50.0), sin(t / 45.0)))
+        forces = known(
+            kvlcc2,
+            hull=(0.5, 0.6 * sin(t / 35.0), 0.5 * sin(t / 30.0)),
+            rudder=(0, sin(t / 50.0), sin(t / 45.0)),
+        )
         q = adaptation.regressors([sin(t / 40.0), sin(t / 27.0 + 1.0)], forces)
         adaptation.learn(tuple(wander), q, 0.5, "")
         acted.append(sum(x * x for x in adaptation.correction(q)))

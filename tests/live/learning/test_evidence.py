@@ -14,8 +14,8 @@ DT = 0.1
 
 
 def heard(ship, force, seconds=900.0):
-    """(d, regressor) in sway after each step, of a ship that only force(t), in units of the force scale, pushes aside; force is the
-    regressor too."""
+    """(d, regressor) in sway after each step, of a ship that only force(t), in units of the force scale,
+    pushes aside; force is the regressor too."""
     physics, scale = Known(Model(ship)), scale_of(ship)
     evidence, v, r, out = Evidence(ship, scale), 0.0, 0.0, []
     for k in range(int(seconds / DT)):

@@ -20,9 +20,26 @@ STILL = ("Current", "VaryingCurrent", "SteeringLag")  # and every SensorFault
 def turning(**more):
     """Every component of the motion away from zero, every input measured."""
     return Situation(
-        0.0, 0.0, 0.6, 6.5, -0.7, -0.006, delta=0.3, n=1.3, wind_speed=12.0, wind_to=2.0, H_s=2.0, T_p=8.0, wave_to=1.5, depth=35.0,
-        bank_port=150.0, bank_starboard=400.0, phi=0.04, t=100.0, **more,
-    )  # fmt: skip
+        0.0,
+        0.0,
+        0.6,
+        6.5,
+        -0.7,
+        -0.006,
+        delta=0.3,
+        n=1.3,
+        wind_speed=12.0,
+        wind_to=2.0,
+        H_s=2.0,
+        T_p=8.0,
+        wave_to=1.5,
+        depth=35.0,
+        bank_port=150.0,
+        bank_starboard=400.0,
+        phi=0.04,
+        t=100.0,
+        **more,
+    )
 
 
 def columns(ship, *effects, without=()):
@@ -48,13 +65,17 @@ def test_foulings_column_is_the_calm_water_resistance(kvlcc2):
 
 
 def test_a_heavier_ships_column_holds_her_inertia(kvlcc2):
-    """Expected: M times what her accelerations change by, by a model loaded so; she has no force of that name."""
+    """Expected: M times what her accelerations change by, by a model loaded so; she has no force of that
+    name."""
     loaded = find("Loading")(mass=0.02, draught=0.0, x_G=0.0)
     numbers, found, s = columns(kvlcc2, loaded)
     j = [n.label for n in numbers].index("Loading.mass")
     before, after = (Known(Model.of(kvlcc2.with_effects(e))) for e in (loaded, loaded.but(mass=0.021)))
     change = [b - a for a, b in zip(before.rates(s, Force()), after.rates(s, Force()), strict=True)]
-    push = [x * numbers[j].sd / 0.001 / size for x, size in zip(before.force_for(*change), scale_of(kvlcc2), strict=True)]
+    push = [
+        x * numbers[j].sd / 0.001 / size
+        for x, size in zip(before.force_for(*change), scale_of(kvlcc2), strict=True)
+    ]
     assert found[3 * j : 3 * j + 3] == pytest.approx(push, rel=0.02) and abs(push[2]) > 0.1
 
 
@@ -84,7 +105,8 @@ def test_a_situation_that_cannot_be_has_columns_of_a_usual_size(kvlcc2, speed):
 @pytest.mark.parametrize("Kind", BUILT_IN, ids=lambda k: k.__name__)
 @pytest.mark.parametrize("name", ("kvlcc2", "usv"))
 def test_every_number_that_moves_stays_in_the_catalogues_box(Kind, name):
-    """Expected: start inside, every corner accepted by the catalogue; currents, late gears and instruments do not move at all."""
+    """Expected: start inside, every corner accepted by the catalogue; currents, late gears and instruments do
+    not move at all."""
     ship = load(name)
     effect = Kind.plausible(ship)
     numbers = movable((effect,), ship)

@@ -1,4 +1,5 @@
-"""The named effects' numbers on board: they arrive where they should, never leave their boxes, and stand still when they should."""
+"""The named effects' numbers on board: they arrive where they should, never leave their boxes, and stand
+still when they should."""
 
 import json
 import random
@@ -15,7 +16,8 @@ from twin.physics.ship import load
 from twin.physics.state import Force
 
 DT = 0.5
-MOTION = ((0.1, 0.5, 0.45), (0.4, 0.05, 0.02))  # what one prior deviation of each number does, in units of the force scale
+# what one prior deviation of each number does, in units of the force scale
+MOTION = ((0.1, 0.5, 0.45), (0.4, 0.05, 0.02))
 
 
 @pytest.fixture(scope="module")
@@ -40,9 +42,20 @@ def teach(adaptation, truth, seconds=4000, noise=0.1, seed=1, frozen="", lie=lam
     for k in range(int(seconds / DT)):
         t = start_s + DT * k
         c = columns(t)
-        q = [sin(t / 40.0), sin(t / 27.0 + 1.0), *(0.3 * sin(t / (33.0 + 5 * i) + i) for i in range(3 * SIZES))] if adaptation._rows else []
+        q = (
+            [
+                sin(t / 40.0),
+                sin(t / 27.0 + 1.0),
+                *(0.3 * sin(t / (33.0 + 5 * i) + i) for i in range(3 * SIZES)),
+            ]
+            if adaptation._rows
+            else []
+        )
         q = q if q else [0.0] * (2 + 3 * SIZES)
-        d = [sum(x * line[r] for x, line in zip(truth, c, strict=True)) + noise * dice.gauss(0.0, 1.0) for r in range(3)]
+        d = [
+            sum(x * line[r] for x, line in zip(truth, c, strict=True)) + noise * dice.gauss(0.0, 1.0)
+            for r in range(3)
+        ]
         adaptation.learn(tuple(lie(k, d)), [*q, *c[0], *c[1]], DT, frozen)
     return adaptation
 
@@ -54,9 +67,12 @@ def published(adaptation):
 def test_both_numbers_arrive_in_their_own_units_with_intervals_that_hold_them(worn):
     found = published(teach(made(worn), (1.0, 0.8)))
     loss, extra = found["RudderWear.loss"], found["HullFouling.extra"]
-    assert abs(loss.value - 0.30) < 1.96 * loss.sigma < 0.05 and loss.status == "estimated" and loss.unit == "-"
+    assert (
+        abs(loss.value - 0.30) < 1.96 * loss.sigma < 0.05 and loss.status == "estimated" and loss.unit == "-"
+    )
     assert abs(extra.value - 0.40) < 1.96 * extra.sigma < 0.1 and extra.status == "estimated"
-    assert (loss.low, loss.high) == pytest.approx((0.0, 0.45))  # two prior deviations from the file's, or the catalogue's end
+    # two prior deviations from the file's, or the catalogue's end
+    assert (loss.low, loss.high) == pytest.approx((0.0, 0.45))
 
 
 def test_a_number_that_grows_is_followed(worn):
@@ -65,7 +81,9 @@ def test_a_number_that_grows_is_followed(worn):
     teach(adaptation, (1.0, 0.0), seconds=1500, seed=2, start_s=1200.0)
     assert abs(published(adaptation)["RudderWear.loss"].value - 0.30) < 0.02
     acting = {type(e).__name__: e for e in adaptation.named.effects}
-    assert acting["RudderWear"].loss == pytest.approx(0.30, abs=0.03) and acting["HullFouling"].extra == pytest.approx(0.2, abs=0.02)
+    assert acting["RudderWear"].loss == pytest.approx(0.30, abs=0.03) and acting[
+        "HullFouling"
+    ].extra == pytest.approx(0.2, abs=0.02)
 
 
 def test_without_a_network_the_effects_are_learned_alone(worn):
@@ -84,7 +102,8 @@ def test_with_nothing_to_find_next_to_nothing_acts(worn):
 
 
 def test_what_only_follows_the_moment_stays_behind_the_gate(worn):
-    """Test: a force along the columns that wanders within half a ship length. Expected: hardly anything acts."""
+    """Test: a force along the columns that wanders within half a ship length. Expected: hardly anything
+    acts."""
     adaptation, dice, wander, acted = made(worn), random.Random(3), 0.0, []
     for k in range(6000):
         wander = 0.975 * wander + 0.15 * dice.gauss(0.0, 1.0)
@@ -96,15 +115,24 @@ def test_what_only_follows_the_moment_stays_behind_the_gate(worn):
 
 
 def test_the_rows_give_back_what_a_name_explains(worn):
-    """Test: the rudder's size is a regressor of a row as well, and the force that misses is the worn rudder's. Expected: number and
-    row together never give more than a quarter above what is missing, and at the end what is missing."""
+    """Test: the rudder's size is a regressor of a row as well, and the force that misses is the worn
+    rudder's. Expected: number and row together never give more than a quarter above what is missing, and at
+    the end what is missing."""
     adaptation, dice = made(worn), random.Random(4)
     sway = 2 + SIZES + 1  # the rudder of the row
     for k in range(8000):
         t = DT * k
-        c, q = columns(t), [sin(t / 40.0), sin(t / 27.0 + 1.0)] + [0.2 * sin(t / (30.0 + i)) for i in range(3 * SIZES)]
+        c, q = (
+            columns(t),
+            [sin(t / 40.0), sin(t / 27.0 + 1.0)] + [0.2 * sin(t / (30.0 + i)) for i in range(3 * SIZES)],
+        )
         q[sway], missing = -c[0][1] / 0.15, c[0][1]
-        adaptation.learn((c[0][0] + 0.05 * dice.gauss(0.0, 1.0), missing + 0.05 * dice.gauss(0.0, 1.0), c[0][2]), q + c[0] + c[1], DT, "")
+        adaptation.learn(
+            (c[0][0] + 0.05 * dice.gauss(0.0, 1.0), missing + 0.05 * dice.gauss(0.0, 1.0), c[0][2]),
+            q + c[0] + c[1],
+            DT,
+            "",
+        )
         given = adaptation.correction(q)[1] + adaptation.named.acting()[0] * c[0][1]
         if abs(missing) > 0.2:
             assert given / missing < 1.25
@@ -114,7 +142,8 @@ def test_the_rows_give_back_what_a_name_explains(worn):
 
 @pytest.mark.parametrize("seed", range(3))
 def test_M12_whatever_they_are_fed_they_stay_finite_and_in_their_boxes(worn, seed):
-    """Test: columns at their ends, forces of any size and none. Expected: every value in its box at every step, effects that the catalogue accepts."""
+    """Test: columns at their ends, forces of any size and none. Expected: every value in its box at every
+    step, effects that the catalogue accepts."""
     adaptation, dice = made(worn), random.Random(seed)
     wild = (-1e6, 1e6, 0.0, 1e300, -1e300, float("nan"), float("inf"))
     for _ in range(3000):
@@ -130,11 +159,17 @@ def test_M12_whatever_they_are_fed_they_stay_finite_and_in_their_boxes(worn, see
 
 def test_outliers_and_drop_outs_do_not_lead_them_astray(worn):
     dice = random.Random(5)
-    out = teach(made(worn), (1.0, 0.0), lie=lambda k, d: [x + 10.0 * dice.gauss(0.0, 1.0) * (dice.random() < 0.03) for x in d])
+    out = teach(
+        made(worn),
+        (1.0, 0.0),
+        lie=lambda k, d: [x + 10.0 * dice.gauss(0.0, 1.0) * (dice.random() < 0.03) for x in d],
+    )
     assert published(out)["RudderWear.loss"].value == pytest.approx(0.30, abs=0.04)
     holes = made(worn)
     for part in range(20):
-        teach(holes, (1.0, 0.0), seconds=200, seed=part, start_s=200.0 * part, frozen="out" if part % 2 else "")
+        teach(
+            holes, (1.0, 0.0), seconds=200, seed=part, start_s=200.0 * part, frozen="out" if part % 2 else ""
+        )
     assert published(holes)["RudderWear.loss"].value == pytest.approx(0.30, abs=0.04)
 
 
@@ -158,7 +193,10 @@ def test_while_frozen_and_without_a_manoeuvre_nothing_changes(worn):
 
 def test_a_number_at_the_end_of_its_box_is_called_invalid(worn):
     found = published(teach(made(worn), (4.0, 0.0), noise=0.01))
-    assert found["RudderWear.loss"].value == found["RudderWear.loss"].high and found["RudderWear.loss"].status == "invalid"
+    assert (
+        found["RudderWear.loss"].value == found["RudderWear.loss"].high
+        and found["RudderWear.loss"].status == "invalid"
+    )
 
 
 def test_M12_saved_numbers_come_back_clamped_and_must_prove_themselves_again(worn, tmp_path):
@@ -172,10 +210,17 @@ def test_M12_saved_numbers_come_back_clamped_and_must_prove_themselves_again(wor
     found = published(again)
     assert found["RudderWear.loss"].value == pytest.approx(published(adaptation)["RudderWear.loss"].value)
     assert found["HullFouling.extra"].value == pytest.approx(found["HullFouling.extra"].high)
-    assert again.named.gate == 0.0 and again.named.effects is worn.effects and found["RudderWear.loss"].status == "unestimated"
+    assert (
+        again.named.gate == 0.0
+        and again.named.effects is worn.effects
+        and found["RudderWear.loss"].status == "unestimated"
+    )
 
 
-@pytest.mark.parametrize("effects", ({}, {"RudderWear.loss": float("nan"), "HullFouling.extra": 0.1}, {"RudderWear.loss": "x"}, [], None))
+@pytest.mark.parametrize(
+    "effects",
+    ({}, {"RudderWear.loss": float("nan"), "HullFouling.extra": 0.1}, {"RudderWear.loss": "x"}, [], None),
+)
 def test_M12_garbage_instead_of_numbers_is_left_out_and_said(worn, tmp_path, effects):
     path = tmp_path / "adaptation.json"
     path.write_text(json.dumps(json.loads(made(worn).saved("mark")) | {"effects": effects}))
@@ -185,18 +230,24 @@ def test_M12_garbage_instead_of_numbers_is_left_out_and_said(worn, tmp_path, eff
 
 
 def test_in_the_loop_a_worn_rudder_is_found_and_acts_in_the_known_force(kvlcc2, make_bridge):
-    """Test: a rudder that lost 0.5 where the ship file says 0.3, a zigzag, no network. Expected: the number grows to the truth, the
-    force that is published as known is that of the number, the mode stays physics only."""
+    """Test: a rudder that lost 0.5 where the ship file says 0.3, a zigzag, no network. Expected: the number
+    grows to the truth, the force that is published as known is that of the number, the mode stays physics
+    only."""
     ship = kvlcc2.with_effects(find("RudderWear")(loss=0.3))
     learned = LearnedForce(ship, None, "none in this test")
     bridge = make_bridge(ship, loop={"learned": learned}, noise=0.2)
     bridge.sailing.model = Model.of(kvlcc2.with_effects(find("RudderWear")(loss=0.5)))
     ticks = bridge.run(900.0)
     said = {p.name: p for tick in ticks[-20:] for p in tick.parameters}
-    assert said["RudderWear.loss"].value == pytest.approx(0.5, abs=0.05) and said["RudderWear.loss"].status == "estimated"
+    assert (
+        said["RudderWear.loss"].value == pytest.approx(0.5, abs=0.05)
+        and said["RudderWear.loss"].status == "estimated"
+    )
     forces = {f.name: f for f in ticks[-1].known}
     acting = learned.effects[0].loss
-    assert forces["RudderWear"].N_Nm == pytest.approx(-acting * forces["rudder"].N_Nm, rel=1e-6) and acting > 0.4
+    assert (
+        forces["RudderWear"].N_Nm == pytest.approx(-acting * forces["rudder"].N_Nm, rel=1e-6) and acting > 0.4
+    )
     assert ticks[-1].mode == "physics only"
 
 

@@ -31,8 +31,11 @@ def test_of_noise_nothing_comes_true(seed):
 
 
 def test_a_row_in_a_heavy_sea_is_vouched_for_by_the_others():
-    """Test: the third row's noise is five times what it was promised, as in a sea way. Expected: the two others open the gate."""
-    assert after(lambda r, p, dice: p + dice.gauss(0.0, 1.5 if r == 2 else 0.1), spread=(0.01, 0.01, 2.25)) > 0.9
+    """Test: the third row's noise is five times what it was promised, as in a sea way. Expected: the two
+    others open the gate."""
+    assert (
+        after(lambda r, p, dice: p + dice.gauss(0.0, 1.5 if r == 2 else 0.1), spread=(0.01, 0.01, 2.25)) > 0.9
+    )
 
 
 def test_promises_of_nothing_open_nothing():

@@ -107,11 +107,14 @@ def hand_made(make_nodes, inputs=((1, 5),), outputs=((1, 64),), kind=1, weights=
     ins = [helper.make_tensor_value_info(f"in{i}", kind, shape) for i, shape in enumerate(inputs)]
     outs = [helper.make_tensor_value_info(f"out{i}", kind, shape) for i, shape in enumerate(outputs)]
     graph = helper.make_graph(make_nodes(helper), "g", ins, outs, list(weights))
-    return helper.make_model(graph, opset_imports=[helper.make_opsetid("", opset)], ir_version=8).SerializeToString()
+    return helper.make_model(
+        graph, opset_imports=[helper.make_opsetid("", opset)], ir_version=8
+    ).SerializeToString()
 
 
 @pytest.mark.parametrize("what, words", (
-    ({"inputs": ((1, 6),)}, "input is element type 1 shape [1, 6]; one of element type 1 (float32) shape [1, 5]"),
+    ({"inputs": ((1, 6),)}, "input is element type 1 shape [1, 6]; one of element type 1 (float32) shape [1, "
+                            "5]"),
     ({"outputs": ((1, 63),)}, "shape [1, 63]"), ({"inputs": ((5,),)}, "shape [5]"), ({"kind": 11}, "element type 11"),
     ({"opset": 9}, "opset 9"), ({"inputs": ((1, 5), (1, 5))}, "shape [1, 5], element type 1 shape [1, 5]"),
 ))  # fmt: skip
@@ -162,7 +165,9 @@ def test_M5_a_network_that_gives_no_number_is_off_at_once_and_says_so(kvlcc2, pa
     assert "not finite" in residual.features(s).why and residual.features(s).weight == 0.0
 
 
-@pytest.mark.parametrize("data", (b"", b"\x00", b"\xff" * 64, b"not a model at all", b"\x3a\xff\xff\xff\xff\x0f"))
+@pytest.mark.parametrize(
+    "data", (b"", b"\x00", b"\xff" * 64, b"not a model at all", b"\x3a\xff\xff\xff\xff\x0f")
+)
 def test_M4_bytes_that_are_no_model_are_refused(kvlcc2, parts, data):
     assert "residual" in refusal(with_model(parts, data), kvlcc2)
 
@@ -183,18 +188,24 @@ def test_M13_a_residual_of_another_ship_or_model_is_never_used(kvlcc2, parts):
     with pytest.raises(WrongShip, match="another model"):
         check(*parts, kvlcc2.with_derivatives(X_uu=-0.03))
     assert ship_hash(kvlcc2) == ship_hash(load_ship("kvlcc2"))
-    assert ship_hash(kvlcc2) == json.loads(parts[1])["ship"]["hash"]  # made before the core knew two sides of a rudder's inflow
+    # made before the core knew two sides of a rudder's inflow
+    assert ship_hash(kvlcc2) == json.loads(parts[1])["ship"]["hash"]
     with pytest.raises(WrongShip, match="another model"):
         check(*parts, kvlcc2.with_derivatives(gamma_a=-0.1))
     drag, harder = find("CrossFlowDrag")(c_d=0.3), find("CrossFlowDrag")(c_d=0.3, c_mid=0.1)
-    assert ship_hash(kvlcc2.with_effects(drag)) == "2869635e5d42bc0d" != ship_hash(kvlcc2.with_effects(harder))  # before drag had a place along her
+    # before drag had a place along her
+    assert (
+        ship_hash(kvlcc2.with_effects(drag)) == "2869635e5d42bc0d" != ship_hash(kvlcc2.with_effects(harder))
+    )
 
 
 def test_M7_outside_its_envelope_the_learned_force_shrinks_smoothly_to_nothing(kvlcc2):
     learned = LearnedForce(kvlcc2, load(PATH, kvlcc2))
     high = learned.residual.manifest.inputs[2].high  # yaw
     low = learned.residual.manifest.inputs[2].low
-    weights = [learned.at(*ahead(kvlcc2, r=high + k / 20.0 * MARGIN * (high - low))).weight for k in range(25)]
+    weights = [
+        learned.at(*ahead(kvlcc2, r=high + k / 20.0 * MARGIN * (high - low))).weight for k in range(25)
+    ]
     assert weights[0] == 1.0 and weights[20:] == [0.0] * 5
     assert all(a >= b for a, b in itertools.pairwise(weights)) and 0.2 < weights[10] < 0.3
     assert "yaw" in learned.at(*ahead(kvlcc2, r=2.0 * high)).why
@@ -222,7 +233,11 @@ def test_the_output_agrees_with_the_python_binding(kvlcc2, parts):
 
     residual = load(PATH, kvlcc2)
     zeta = [0.3, -0.2, 0.1, 0.4, 0.0]
-    phi = onnxruntime.InferenceSession(parts[0]).run(None, {"zeta": np.array([zeta], np.float32)})[0][0].astype(float)
+    phi = (
+        onnxruntime.InferenceSession(parts[0])
+        .run(None, {"zeta": np.array([zeta], np.float32)})[0][0]
+        .astype(float)
+    )
     m = residual.manifest
     wanted = [*(np.array(m.W) @ phi), *(np.array(m.whitening[1]) @ (phi - np.array(m.whitening[0])))]
     assert residual.network.run(zeta) == pytest.approx(wanted, abs=1e-5)

@@ -148,7 +148,8 @@ def test_a_burst_is_written_in_small_chunks() -> None:
 
 
 def test_four_chunks_a_second_for_a_quarter_of_an_hour_do_not_fill_the_memory() -> None:
-    """Expected: what is remembered for the index is what will be written of it, 200 bytes a chunk and no objects."""
+    """Expected: what is remembered for the index is what will be written of it, 200 bytes a chunk and no
+    objects."""
     writer = McapWriter(lambda data: None, compress=bytes)
     writer.start()
     channels = [writer.channel(f"{TOPIC}{i}", SCALAR, messages.schema_bytes) for i in range(10)]
@@ -168,7 +169,8 @@ def test_four_chunks_a_second_for_a_quarter_of_an_hour_do_not_fill_the_memory() 
 
 
 def test_a_flood_does_not_wait_for_the_next_period(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Test: a thread that would write once an hour, and 300 messages. Expected: it writes as soon as 256 wait."""
+    """Test: a thread that would write once an hour, and 300 messages. Expected: it writes as soon as 256
+    wait."""
     monkeypatch.setattr("twin.live.log.record.PERIOD_S", 3600.0)
     with Recorder(tmp_path) as recorder:
         put(recorder, 300, 0)

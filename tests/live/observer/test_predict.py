@@ -49,7 +49,9 @@ def test_the_coarse_steps_of_a_prediction_agree_with_fine_ones(name):
 def test_a_round_is_spread_over_ticks(kvlcc2):
     e, s = start(kvlcc2)
     predictor = Predictor(kvlcc2, refresh_s=2.0, rate_hz=10.0)
-    rounds = [bool(predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, True)) for k in range(60)]
+    rounds = [
+        bool(predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, True)) for k in range(60)
+    ]
     assert 2 <= sum(rounds) <= 4 and predictor.steps_a_tick <= 4
 
 
@@ -101,7 +103,9 @@ def test_on_a_voyage_the_predictions_come_true_at_the_time_they_name(make_bridge
 def test_without_a_good_estimate_nothing_is_foretold(kvlcc2):
     e, s = start(kvlcc2)
     predictor = Predictor(kvlcc2)
-    assert all(not predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, False) for k in range(100))
+    assert all(
+        not predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, False) for k in range(100)
+    )
 
 
 def test_a_model_that_runs_away_foretells_nothing_and_does_no_harm(kvlcc2):
@@ -109,7 +113,9 @@ def test_a_model_that_runs_away_foretells_nothing_and_does_no_harm(kvlcc2):
     e, s = start(kvlcc2)
     s.n = 100.0
     predictor = Predictor(kvlcc2)
-    assert all(not predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, True) for k in range(100))
+    assert all(
+        not predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, True) for k in range(100)
+    )
 
 
 def test_an_ensemble_of_64_ships_sails_as_64_single_ones(kvlcc2):
@@ -137,16 +143,16 @@ def test_an_ensemble_of_64_ships_sails_as_64_single_ones(kvlcc2):
 
 
 def test_the_learned_force_of_a_step_is_that_of_its_middle():
-    """Test: a force that grows by 2 N each second, steps of 5, 5 and 3 s. Expected: the first is held at its beginning, the others
-    are exact: 2 x 7.5 and 2 x 11.5 N."""
+    """Test: a force that grows by 2 N each second, steps of 5, 5 and 3 s. Expected: the first is held at its
+    beginning, the others are exact: 2 x 7.5 and 2 x 11.5 N."""
     middle = Middle()
     said = [middle.of(Force(2.0 * t, 0.0, 0.0), h).X for t, h in ((0.0, 5.0), (5.0, 5.0), (10.0, 3.0))]
     assert said == pytest.approx([0.0, 15.0, 23.0])
 
 
 def test_a_rudder_that_is_still_on_its_way_is_foretold_where_a_slow_gear_will_have_it(kvlcc2):
-    """Test: 20 deg ordered 5 s ago, a gear with 2 s of dead time and 28 s of travel. Expected: the turn of that order, not of the
-    angle that the rudder has by now."""
+    """Test: 20 deg ordered 5 s ago, a gear with 2 s of dead time and 28 s of travel. Expected: the turn of
+    that order, not of the angle that the rudder has by now."""
     slow = kvlcc2.with_effects(find("SteeringLag")(delay=2.0, travel_time=28.0))
     dynamics, measured = Dynamics(slow), SimpleNamespace(si={"delta": 0.0, "n": 1.2}, now_s=0.0)
     e = Estimate(u=7.0)

@@ -1,4 +1,5 @@
-"""Calibration: the held-out error falls, what is not excited keeps its prior, and the file carries what remains."""
+"""Calibration: the held-out error falls, what is not excited keeps its prior, and the file carries what
+remains."""
 
 import json
 from dataclasses import replace
@@ -73,17 +74,32 @@ def test_calibrating_again_starts_from_the_prior_and_not_from_its_own_answer(cal
 def test_what_no_ship_can_show_is_not_told_as_usual(calibrated):
     ship, _ = calibrated
     labels = ["SteeringLag.delay", "HeadingBias.bias"]
-    told = clearly_hers(ship, {"labels": labels, "offset": [-0.4, 0.02], "covariance": [[1e-4, 0.0], [0.0, 1e-6]]})
+    told = clearly_hers(
+        ship, {"labels": labels, "offset": [-0.4, 0.02], "covariance": [[1e-4, 0.0], [0.0, 1e-6]]}
+    )
     assert [t["name"] for t in told] == ["HeadingBias.bias"]
 
 
 def test_a_calibration_that_ended_badly_says_so_and_a_good_one_does_not(calibrated):
     _, said = calibrated
     assert said["doubts"] == []
-    fell = {"horizon_s": 120.0, "windows": 9, "position_m": 4.0, "before_m": 9.0, "heading_deg": 1.0, "before_deg": 2.0}
-    at_its_end = [{"name": "N_rr", "value": -0.6, "excited": True}, {"name": "X_u", "value": 0.0, "excited": True}]
+    fell = {
+        "horizon_s": 120.0,
+        "windows": 9,
+        "position_m": 4.0,
+        "before_m": 9.0,
+        "heading_deg": 1.0,
+        "before_deg": 2.0,
+    }
+    at_its_end = [
+        {"name": "N_rr", "value": -0.6, "excited": True},
+        {"name": "X_u", "value": 0.0, "excited": True},
+    ]
     assert doubts(at_its_end, [fell], (0.1, 0.1, 0.1))[0].startswith("N_rr stopped")
-    flow = [{"name": "gamma_v", "value": -0.15, "sd": 0.03, "excited": True}, {"name": "gamma_r", "value": 0.05, "sd": 0.03, "excited": True}]
+    flow = [
+        {"name": "gamma_v", "value": -0.15, "sd": 0.03, "excited": True},
+        {"name": "gamma_r", "value": 0.05, "sd": 0.03, "excited": True},
+    ]
     (backwards,) = doubts(flow, [fell], (0.1, 0.1, 0.1))
     assert backwards.startswith("gamma_v -0.15: ") and "sign" in backwards
     (rose,) = doubts([], [fell | {"position_m": 12.0}], (0.1, 0.1, 0.1))
@@ -93,33 +109,54 @@ def test_a_calibration_that_ended_badly_says_so_and_a_good_one_does_not(calibrat
     (coarse,) = doubts([], [fell], (0.1, 0.4, 0.1))
     assert "40 % in sway" in coarse
     assert "--held-out" in doubts([], [fell | {"windows": 0}], (0.1, 0.1, 0.1))[0]
-    (late,) = doubts([], [fell], (0.1, 0.1, 0.1), [{"name": "SteeringLag.travel_time"}, {"name": "HeadingBias.bias"}])
+    (late,) = doubts(
+        [], [fell], (0.1, 0.1, 0.1), [{"name": "SteeringLag.travel_time"}, {"name": "HeadingBias.bias"}]
+    )
     assert "record the rudder's feedback" in late
-    (blind,) = doubts([], [fell], (0.1, 0.1, 0.1), (), {"RudderWear.loss": 1.6, "HeadingBias.bias": 0.2, "core.N_rr": 1.6})
+    (blind,) = doubts(
+        [], [fell], (0.1, 0.1, 0.1), (), {"RudderWear.loss": 1.6, "HeadingBias.bias": 0.2, "core.N_rr": 1.6}
+    )
     assert blind.startswith("RudderWear.loss (1.6") and "core" not in blind
 
 
 def test_a_file_that_is_no_voyage_leaves_no_ship_file(tmp_path, capsys):
     (tmp_path / "empty.csv").write_text("")
-    code = cli.main(["calibrate", str(tmp_path / "empty.csv"), "--ship", "kvlcc2", "-o", str(tmp_path / "x.toml")])
+    code = cli.main(
+        ["calibrate", str(tmp_path / "empty.csv"), "--ship", "kvlcc2", "-o", str(tmp_path / "x.toml")]
+    )
     assert code == 4
     assert not (tmp_path / "x.toml").exists()
     assert len(capsys.readouterr().err.strip().splitlines()[-1]) > 20
 
 
 def test_an_antenna_that_stands_elsewhere_on_the_references_becomes_a_part_of_the_ship(voyages, tmp_path):
-    """64 m ahead of where the ship file has it, as if the receiver were never told her length; predictions are better for it."""
+    """64 m ahead of where the ship file has it, as if the receiver were never told her length; predictions
+    are better for it."""
     paths = []
     for name in ("calm", "calm too", "nothing"):
         paths.append(str(tmp_path / f"{name.replace(' ', '-')}.mcap"))
         write_voyage(antenna_elsewhere(voyages[name], 64.0), paths[-1])
     out, said = tmp_path / "better.toml", tmp_path / "said.json"
-    words = ["calibrate", *paths[:2], "--held-out", paths[2], "--ship", "kvlcc2", "-o", str(out), "--json", str(said)]
+    words = [
+        "calibrate",
+        *paths[:2],
+        "--held-out",
+        paths[2],
+        "--ship",
+        "kvlcc2",
+        "-o",
+        str(out),
+        "--json",
+        str(said),
+    ]
     assert cli.main(words) == 0
     ship, result = load(out), json.loads(said.read_text())
     (antenna,) = [e for e in ship.effects if type(e).__name__ == "AntennaOffset"]
     assert antenna.ahead == pytest.approx(64.0, rel=0.25)
-    assert result["antenna"]["ahead"]["value"] == antenna.ahead and "measured there" in ship.notes["effects"]["AntennaOffset"]["ahead"]["source"]
+    assert (
+        result["antenna"]["ahead"]["value"] == antenna.ahead
+        and "measured there" in ship.notes["effects"]["AntennaOffset"]["ahead"]["source"]
+    )
     assert "AntennaOffset" in ship.notes["structural"]["beside_effects"]
 
 
@@ -130,20 +167,39 @@ def on_a_mast(v, height):
     swing = np.gradient(aside, v.time_s)
     c, s = np.cos(q.psi), np.sin(q.psi)
     swung = replace(q, x=q.x - aside * s, y=q.y + aside * c)
-    return replace(swung, north=q.north - aside * q.r * c - swing * s, east=q.east - aside * q.r * s + swing * c).into(v)
+    return replace(
+        swung, north=q.north - aside * q.r * c - swing * s, east=q.east - aside * q.r * s + swing * c
+    ).into(v)
 
 
 def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship(tmp_path):
-    """Test: three voyages of a container ship that heels by some degrees in her turns, seen by an antenna 30 m above the axis of roll, and by a low one.
-    Expected: its height and no place ahead, and predictions as good as with the low one (the heel of her turns had been taken for sway)."""
-    sailed = simulate([Case("container", m, seed=970 + i, duration_s=900.0) for i, m in enumerate(("zigzag_20", "turning_circle", "mixed"))])
+    """Test: three voyages of a container ship that heels by some degrees in her turns, seen by an antenna 30
+    m above the axis of roll, and by a low one. Expected: its height and no place ahead, and predictions as
+    good as with the low one (the heel of her turns had been taken for sway)."""
+    sailed = simulate(
+        [
+            Case("container", m, seed=970 + i, duration_s=900.0)
+            for i, m in enumerate(("zigzag_20", "turning_circle", "mixed"))
+        ]
+    )
     off, ships = [], []
     for height in (0.0, 30.0):
         paths = [tmp_path / f"{height:g}-{i}.mcap" for i in range(3)]
         for path, r in zip(paths, sailed, strict=True):
             write_voyage(on_a_mast(recorded(path.stem, r.columns, every=10), height), path)
         out, said = tmp_path / f"{height:g}.toml", tmp_path / "said.json"
-        words = ["calibrate", *map(str, paths[:2]), "--held-out", str(paths[2]), "--ship", "container", "-o", str(out), "--json", str(said)]
+        words = [
+            "calibrate",
+            *map(str, paths[:2]),
+            "--held-out",
+            str(paths[2]),
+            "--ship",
+            "container",
+            "-o",
+            str(out),
+            "--json",
+            str(said),
+        ]
         assert cli.main(words) == 0
         ships.append(load(out))
         off.append(json.loads(said.read_text())["held_out"][-1]["position_m"])
@@ -157,19 +213,41 @@ def test_a_ship_whose_antenna_is_where_her_file_has_it_gets_none(calibrated):
     assert said["antenna"] == {} and not ship.effects
 
 
-def test_wind_that_blew_on_the_references_becomes_a_part_of_the_ship_and_none_does_that_did_not(calibrated, tmp_path):
-    """Test: three voyages of the 2 m boat in a wind that was recorded; the tanker's in a calm. Expected: how it pushes the boat, clearly, and that
-    no calibration of it is taken for one of any other day's wind; of the tanker nothing."""
-    sailed = simulate([Case("usv", m, hidden=(("Wind", 0.6),), seed=980 + i, duration_s=600.0) for i, m in enumerate(("zigzag_20", "mixed", "speed_changes"))])
+def test_wind_that_blew_on_the_references_becomes_a_part_of_the_ship_and_none_does_that_did_not(
+    calibrated, tmp_path
+):
+    """Test: three voyages of the 2 m boat in a wind that was recorded; the tanker's in a calm. Expected: how
+    it pushes the boat, clearly, and that no calibration of it is taken for one of any other day's wind; of
+    the tanker nothing."""
+    sailed = simulate(
+        [
+            Case("usv", m, hidden=(("Wind", 0.6),), seed=980 + i, duration_s=600.0)
+            for i, m in enumerate(("zigzag_20", "mixed", "speed_changes"))
+        ]
+    )
     paths = [tmp_path / f"{i}.mcap" for i in range(3)]
     for path, r in zip(paths, sailed, strict=True):
         write_voyage(recorded(path.stem, r.columns, every=2), path)
     out, said = tmp_path / "better.toml", tmp_path / "said.json"
-    words = ["calibrate", *map(str, paths[:2]), "--held-out", str(paths[2]), "--ship", "usv", "-o", str(out), "--json", str(said)]
+    words = [
+        "calibrate",
+        *map(str, paths[:2]),
+        "--held-out",
+        str(paths[2]),
+        "--ship",
+        "usv",
+        "-o",
+        str(out),
+        "--json",
+        str(said),
+    ]
     assert cli.main(words) == 0
     ship, result = load(out), json.loads(said.read_text())
     (wind,) = [e for e in ship.effects if type(e).__name__ == "Wind"]
     sd = ship.notes["effects"]["Wind"]["c_y"]["sd"]
     assert wind.c_y > 4.0 * sd and result["wind"]["c_y"]["value"] == wind.c_y
-    assert "Wind" not in ship.notes["structural"]["beside_effects"] and "Wind" not in ship.notes["structural"]["weather"]
+    assert (
+        "Wind" not in ship.notes["structural"]["beside_effects"]
+        and "Wind" not in ship.notes["structural"]["weather"]
+    )
     assert result["too_faint"] == [] and calibrated[1]["wind"] == {}

@@ -1,4 +1,5 @@
-"""The core is led to where the ship went: from a wrong one it finds its way, and stays inside what ships have."""
+"""The core is led to where the ship went: from a wrong one it finds its way, and stays inside what ships
+have."""
 
 import numpy as np
 import pytest
@@ -29,7 +30,18 @@ def sailed(model: Model, lengths: float = 40.0) -> Track:
     path = np.array(states)
     measured = np.full((steps, len(READINGS)), np.nan)
     measured[:, :6] = path
-    return Track("z", h * np.arange(steps), h, path, np.array(rudder), np.full(steps, n), {}, measured, np.full(8, 0.01), np.ones(steps, bool))
+    return Track(
+        "z",
+        h * np.arange(steps),
+        h,
+        path,
+        np.array(rudder),
+        np.full(steps, n),
+        {},
+        measured,
+        np.full(8, 0.01),
+        np.ones(steps, bool),
+    )
 
 
 def miss(track: Track, model: Model) -> float:
@@ -44,7 +56,10 @@ def true():
 
 def test_a_core_that_is_15_percent_off_is_led_back_to_the_path(true):
     track = sailed(true)
-    off = {name: getattr(true.ship.derivatives, name) * factor for name, factor in zip(NAMES, (0.85, 1.15, 1.15, 0.85, 0.85), strict=True)}
+    off = {
+        name: getattr(true.ship.derivatives, name) * factor
+        for name, factor in zip(NAMES, (0.85, 1.15, 1.15, 0.85, 0.85), strict=True)
+    }
     wrong = Model(true.ship.with_derivatives(**off))
     unknowns = [u for u in core_unknowns(wrong) if u.name in NAMES]
     found = rolled_out([track], wrong, unknowns, {})
@@ -65,6 +80,12 @@ def test_windows_begin_only_where_they_may_and_perhaps_nowhere():
     model = Model.of(load("kvlcc2"))
     t = sailed(model)
     late = np.arange(len(t)) > len(t) // 2
-    some, every, none = (coarse(t, model, 60.0, leads=1, begins=begins) for begins in (late, None, late & ~late))
-    assert some.start.tolist() == [k for k in every.start if late[k]] and 0 < some.start.size < every.start.size and none.start.size == 0
+    some, every, none = (
+        coarse(t, model, 60.0, leads=1, begins=begins) for begins in (late, None, late & ~late)
+    )
+    assert (
+        some.start.tolist() == [k for k in every.start if late[k]]
+        and 0 < some.start.size < every.start.size
+        and none.start.size == 0
+    )
     np.testing.assert_array_equal(some.promised[0], every.promised[0][:, late[every.start]])

@@ -49,7 +49,9 @@ def test_doubt_is_added_to_what_was_known_and_the_mean_stays(case):
     assert np.diag(covariance[1]) == pytest.approx(np.diag(covariance[0]) + SCATTER**2)
     assert covariance[1] @ wider.pull == pytest.approx(covariance[0] @ case.nuisance.pull, abs=1e-9)
     same = _scattered(case.nuisance, 0.0 * extra)
-    assert replace(same, information=case.nuisance.information, pull=same.pull).pull == pytest.approx(case.nuisance.pull, abs=1e-6)
+    assert replace(same, information=case.nuisance.information, pull=same.pull).pull == pytest.approx(
+        case.nuisance.pull, abs=1e-6
+    )
 
 
 def loaded(case, **numbers):

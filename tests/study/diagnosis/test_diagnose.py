@@ -1,4 +1,5 @@
-"""Plant and find: an effect hidden in a truth of another form is named; with nothing hidden the answer is nothing."""
+"""Plant and find: an effect hidden in a truth of another form is named; with nothing hidden the answer is
+nothing."""
 
 import json
 from dataclasses import replace
@@ -31,7 +32,15 @@ def test_the_hidden_effect_of_the_bundled_voyage_is_named(monday):
 def test_the_answer_has_the_keys_of_the_contract(monday):
     assert {"schema_version", "verdict", "missing", "candidates", "next_manoeuvre"} <= monday.keys()
     first = monday["candidates"][0]
-    assert {"effect", "probability", "parameters", "typical_force", "error_without", "error_with", "cannot_be_told_from"} <= first.keys()
+    assert {
+        "effect",
+        "probability",
+        "parameters",
+        "typical_force",
+        "error_without",
+        "error_with",
+        "cannot_be_told_from",
+    } <= first.keys()
     assert {"name", "value", "low95", "high95", "unit"} <= first["parameters"][0].keys()
     assert first["typical_force"].keys() == {"X_N", "Y_N", "N_Nm"}
 
@@ -70,19 +79,25 @@ def test_nothing_hidden_means_nothing_missing(tanker, voyages):
     assert result["missing"] == []
 
 
-def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_resembles_is_said(tanker, voyages):
-    """Test: a rudder that hangs loose by 2.5 deg to either side. Expected: unknown, and not a worn rudder; what it looks like, with its size."""
+def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_resembles_is_said(
+    tanker, voyages
+):
+    """Test: a rudder that hangs loose by 2.5 deg to either side. Expected: unknown, and not a worn rudder;
+    what it looks like, with its size."""
     result = diagnose([voyages["RudderBacklash"]], tanker).result
     assert result["verdict"] == "unknown" and result["missing"] == []
     (like,) = result["resembles"]
     assert like["effect"] == "RudderPlay" and "RudderPlay" not in catalogue()
     (gap,) = like["parameters"]
     assert gap["low95"] <= np.radians(2.5) <= gap["high95"] and gap["unit"] == "rad"
-    assert "looks like RudderPlay: The rudder hangs loose" in sentence(result) and any("gap" in line for line in told(result))
+    assert ("looks like RudderPlay: The rudder hangs loose") in sentence(result) and any(
+        "gap" in line for line in told(result)
+    )
 
 
 def test_liquid_that_swings_in_a_slack_tank_is_no_load(tanker, voyages):
-    """Test: a tank of an eighth of her mass, forward or aft, whose liquid swings aside. Expected: unknown, no name, and what it looks like."""
+    """Test: a tank of an eighth of her mass, forward or aft, whose liquid swings aside. Expected: unknown, no
+    name, and what it looks like."""
     result = diagnose([voyages["Sloshing"]], tanker).result
     assert result["verdict"] == "unknown" and result["missing"] == [], "\n".join(told(result))
     (like,) = result["resembles"]
@@ -91,10 +106,13 @@ def test_liquid_that_swings_in_a_slack_tank_is_no_load(tanker, voyages):
 
 
 def test_a_ship_whose_own_reference_voyages_are_half_unexplained_is_no_witness(tanker, voyages):
-    """Test: a stream that is named else, asked of a ship file that leaves half of what turns her unexplained. Expected: undecided, and why."""
+    """Test: a stream that is named else, asked of a ship file that leaves half of what turns her unexplained.
+    Expected: undecided, and why."""
     notes = tanker.notes["structural"]
     coarse = notes | {"floor": notes["floor"] | {"share": [0.02, 0.05, 0.52]}}
-    result = diagnose([voyages["Current"]], replace(tanker, notes={**tanker.notes, "structural": coarse})).result
+    result = diagnose(
+        [voyages["Current"]], replace(tanker, notes={**tanker.notes, "structural": coarse})
+    ).result
     assert result["verdict"] == "undecided" and result["missing"] == result["one_of"] == []
     assert "left 52 % in yaw of the forces at work unexplained" in told(result)[0]
 
@@ -110,7 +128,9 @@ def test_what_was_not_recorded_cannot_be_judged_and_the_answer_says_so(tanker, v
     whole = voyages["nothing"]
     blind = Voyage("blind", whole.time_s, {n: x for n, x in whole.columns.items() if "wind" not in n})
     result = diagnose([blind], tanker).result
-    assert {"effect": "Wind", "lacks": ["true_wind_speed_mps", "true_wind_direction_deg"]} in result["not_judged"]
+    assert {"effect": "Wind", "lacks": ["true_wind_speed_mps", "true_wind_direction_deg"]} in result[
+        "not_judged"
+    ]
     assert any("Wind cannot be judged: no true_wind_speed_mps and no" in line for line in told(result))
 
 
@@ -128,7 +148,9 @@ def test_a_wind_is_news_unless_it_blew_as_hard_on_the_reference_voyages(tanker, 
     assert (news["missing"], news["as_on_references"]) == (["Wind"], []), "\n".join(told(news))
     known = diagnose([voyages["Wind"]], tanker, [voyages["calm"], voyages["Wind again"]]).result
     assert "Wind" not in known["missing"] and known["as_on_references"] == ["Wind"], "\n".join(told(known))
-    assert "Wind was no stronger than on the reference voyages: it is reckoned with, and not called missing." in told(known)
+    assert (
+        "Wind was no stronger than on the reference voyages: it is reckoned with, and not called missing."
+    ) in told(known)
 
 
 def test_references_given_on_the_command_count_like_a_calibration(tanker, voyages):

@@ -7,7 +7,17 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.diagnosis.assemble import assemble
-from twin.study.diagnosis.led import FORM, LUXURY, Led, _astray, _measured, held_out_error, horizon_s, led, roughly
+from twin.study.diagnosis.led import (
+    FORM,
+    LUXURY,
+    Led,
+    _astray,
+    _measured,
+    held_out_error,
+    horizon_s,
+    led,
+    roughly,
+)
 from twin.study.diagnosis.refine import Found, refine
 from twin.study.diagnosis.search import search
 from twin.study.diagnosis.verdict import weights
@@ -19,10 +29,15 @@ FLOOR_M = float(np.hypot(8.0, FORM * 20.0))  # where nothing is off by 20 m
 
 
 def asked(levered=None, **off_m):
-    """What a few hypotheses were off by [m] at a floor of 8 m in the usual world and of 16 m in a rough one."""
+    """What a few hypotheses were off by [m] at a floor of 8 m in the usual world and of 16 m in a rough
+    one."""
     sets = {tuple(n for n in name.split("_") if n != "nothing"): off for name, off in off_m.items()}
-    found = {s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off, FLOOR_M) for s, off in sets.items()}
-    return Led(found, {"usual": 8.0, "rough": 16.0}, {(): 0.0} | (levered or {}), TEN, frozenset(["WaveDrift"]))
+    found = {
+        s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off, FLOOR_M) for s, off in sets.items()
+    }
+    return Led(
+        found, {"usual": 8.0, "rough": 16.0}, {(): 0.0} | (levered or {}), TEN, frozenset(["WaveDrift"])
+    )
 
 
 def says(*effects, world="usual"):
@@ -30,25 +45,34 @@ def says(*effects, world="usual"):
 
 
 def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_too(tanker, voyages):
-    """Test: a model that holds the wind since she was calibrated, on a windy voyage; the same calibrated with it. Expected: a tenth of where she
-    would end without it belongs to the floor, with what a wind that pushes a twentieth of her length farther ahead or aft would do; and nothing."""
+    """Test: a model that holds the wind since she was calibrated, on a windy voyage; the same calibrated with
+    it. Expected: a tenth of where she would end without it belongs to the floor, with what a wind that pushes
+    a twentieth of her length farther ahead or aft would do; and nothing."""
     windy = tanker.with_effects(find("Wind").plausible(tanker))
-    hers = replace(windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}})
+    hers = replace(
+        windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}}
+    )
     case, known = (assemble([voyages["Wind"]], ship) for ship in (windy, hers))
     (without, share), *others = added(case.model)
     assert share == KNOWN and not others and added(known.model) == []
     (ahead, aft), *more = elsewhere(case.model)
     moved = 0.5 * (_astray(case, ahead) ** 2 + _astray(case, aft) ** 2) - _astray(case, case.model) ** 2
     assert moved > 0.0 and not more and elsewhere(known.model) == []
-    assert roughly(case) == pytest.approx(np.hypot(KNOWN * _astray(case, without), moved**0.5)) and roughly(known) == 0.0
+    assert (
+        roughly(case) == pytest.approx(np.hypot(KNOWN * _astray(case, without), moved**0.5))
+        and roughly(known) == 0.0
+    )
     assert without.effects == tanker.effects
 
 
 def test_a_wind_may_lead_her_as_far_off_as_its_side_force_would_that_attacks_elsewhere():
-    """Test: 10 m off at a floor of hypot(8, 2) m, alone and with what was not run beside it. Expected: no word against either where the lever may
-    leave 6 m."""
+    """Test: 10 m off at a floor of hypot(8, 2) m, alone and with what was not run beside it. Expected: no
+    word against either where the lever may leave 6 m."""
     sure, levered = asked(nothing=20.0, Wind=10.0), asked({("Wind",): 6.0}, nothing=20.0, Wind=10.0)
-    assert all(sure.log_probability(says(*s)) < -3.0 and levered.log_probability(says(*s)) == 0.0 for s in (("Wind",), ("Wind", "Bank")))
+    assert all(
+        sure.log_probability(says(*s)) < -3.0 and levered.log_probability(says(*s)) == 0.0
+        for s in (("Wind",), ("Wind", "Bank"))
+    )
 
 
 def test_what_is_no_farther_off_than_noise_and_structure_would_be_is_not_judged_by_it():
@@ -56,10 +80,14 @@ def test_what_is_no_farther_off_than_noise_and_structure_would_be_is_not_judged_
     assert path.log_probability(says("Wind")) == path.log_probability(says("Bank")) == 0.0
 
 
-def test_the_path_has_the_floor_of_the_model_alone_and_the_steps_the_one_beside_all_that_is_usual(tanker, voyages):
+def test_the_path_has_the_floor_of_the_model_alone_and_the_steps_the_one_beside_all_that_is_usual(
+    tanker, voyages
+):
     case = assemble([voyages["nothing"]], tanker)
     notes = tanker.notes["structural"]
-    assert case.path.share == pytest.approx(notes["floor"]["share"]) and case.floor.share == pytest.approx(notes["beside"]["share"])
+    assert case.path.share == pytest.approx(notes["floor"]["share"]) and case.floor.share == pytest.approx(
+        notes["beside"]["share"]
+    )
     weighed, found, _ = search(case)
     floor = led(case, found, weighed).floor
     assert floor["usual"] <= floor["rough"] <= floor["strange"] < 4.0 * floor["usual"]
@@ -82,7 +110,10 @@ def test_the_form_of_an_effect_may_miss_a_part_of_what_it_does_to_the_path():
 def test_a_force_that_comes_and_goes_leaves_half_of_what_it_does_to_the_path():
     at = np.hypot(8.0, 0.5 * 20.0)
     path = asked(nothing=20.0, WaveDrift=at, Wind=at)
-    assert path.log_probability(says("WaveDrift")) == pytest.approx(0.0) and path.log_probability(says("Wind")) < -1.0
+    assert (
+        path.log_probability(says("WaveDrift")) == pytest.approx(0.0)
+        and path.log_probability(says("Wind")) < -1.0
+    )
 
 
 def test_a_hypothesis_that_was_not_asked_leads_as_well_as_the_best_part_of_it():
@@ -98,13 +129,17 @@ def test_a_pair_that_was_asked_is_not_excused_by_its_better_half():
 
 def test_a_second_effect_costs_more_where_one_leads_her_there_and_nothing_where_none_does():
     pair, none = says("Wind", "Bank"), says()
-    for path, cost in ((asked(nothing=20.0, Wind=7.0, Wind_Bank=7.0), LUXURY), (asked(nothing=20.0, Wind=15.0, Wind_Bank=7.0), 0.0)):
+    for path, cost in (
+        (asked(nothing=20.0, Wind=7.0, Wind_Bank=7.0), LUXURY),
+        (asked(nothing=20.0, Wind=15.0, Wind_Bank=7.0), 0.0),
+    ):
         weighed = {h.effects: h.log_evidence for h in path.weigh([none, pair])}
         assert weighed["Wind", "Bank"] == pytest.approx(pair.log_evidence - cost)
 
 
 def test_a_stream_is_not_asked_for_in_hours_that_were_left_out(tanker, voyages):
-    """Expected: the current's own numbers come from the other half, those of a stream that changes from the whole voyage."""
+    """Expected: the current's own numbers come from the other half, those of a stream that changes from the
+    whole voyage."""
     case = assemble([voyages["Current"]], tanker)
     for name, same in (("VaryingCurrent", True), ("Current", False)):
         found, _ = refine(case, (name,), "usual", np.zeros(len(case.effects)), ())
@@ -113,8 +148,9 @@ def test_a_stream_is_not_asked_for_in_hours_that_were_left_out(tanker, voyages):
 
 
 def test_a_stream_as_strong_as_any_day_brings_leads_her_without_being_named(tanker, voyages):
-    """Test: a hidden stream, on a ship whose reference voyages met streams of 0 (nobody told), half and twice its size. Expected: nothing missing
-    leads her astray by all of it, by what two such days do not bring, and not at all."""
+    """Test: a hidden stream, on a ship whose reference voyages met streams of 0 (nobody told), half and twice
+    its size. Expected: nothing missing leads her astray by all of it, by what two such days do not bring, and
+    not at all."""
     case = assemble([voyages["Current"]], tanker)
     named, _ = refine(case, ("Current",), "usual", np.zeros(len(case.effects)), ())
     axes = [i for i, u in enumerate(case.effects) if u.owner == "Current"]
@@ -140,19 +176,23 @@ def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker
     assert found["RudderWear",].off_m < 0.7 * found[()].off_m
     path = led(case, found, weighed)
     assert path.windows == pytest.approx(case.tracks[0].t[-1] / horizon_s(case.tracks[0], case.model))
-    worn, healthy = (path.log_probability(replace(found[s].hypothesis, world="usual")) for s in (("RudderWear",), ()))
+    worn, healthy = (
+        path.log_probability(replace(found[s].hypothesis, world="usual")) for s in (("RudderWear",), ())
+    )
     assert worn > healthy
     assert held_out_error(case, found[()]) == pytest.approx(found[()].off_m)
 
 
 def test_what_is_likely_by_now_is_asked_however_unlikely_it_was_where_it_was_found(tanker, voyages):
-    """Test: a worn rudder that was found far below the best, and is the best since another set left the rest of it to what any day brings.
-    Expected: she is led by it, too, and not only by nothing."""
+    """Test: a worn rudder that was found far below the best, and is the best since another set left the rest
+    of it to what any day brings. Expected: she is led by it, too, and not only by nothing."""
     case = assemble([voyages["RudderWear"]], tanker)
     weighed, found, _ = search(case)
     worn = replace(found["RudderWear",].hypothesis, log_evidence=-1e4)
     stale = found | {("RudderWear",): replace(found["RudderWear",], hypothesis=worn)}
-    assert ("RudderWear",) in led(case, stale, weighed).found and ("RudderWear",) not in led(case, stale, [worn, found[()].hypothesis]).found
+    assert ("RudderWear",) in led(case, stale, weighed).found and ("RudderWear",) not in led(
+        case, stale, [worn, found[()].hypothesis]
+    ).found
 
 
 def test_the_floor_is_no_lower_than_what_the_calibration_measured_on_other_voyages(tanker, voyages):
@@ -169,9 +209,15 @@ def test_the_floor_is_no_lower_than_what_the_calibration_measured_on_other_voyag
 
 
 def test_two_that_lead_her_farther_astray_than_one_of_them_are_no_hypothesis():
-    """Test: a gear alone, and with a second effect, at a floor of 8.2 m. Expected: the two are dropped where they end outside it and farther off than
-    the gear; not where both end alike, nor where the two end within the floor."""
+    """Test: a gear alone, and with a second effect, at a floor of 8.2 m. Expected: the two are dropped where
+    they end outside it and farther off than the gear; not where both end alike, nor where the two end within
+    the floor."""
     both = says("SteeringLag", "Loading")
-    for alone, together, kept in ((5.0, 9.0, False), (12.0, 14.0, False), (13.8, 14.0, True), (5.0, 8.0, True)):
+    for alone, together, kept in (
+        (5.0, 9.0, False),
+        (12.0, 14.0, False),
+        (13.8, 14.0, True),
+        (5.0, 8.0, True),
+    ):
         path = asked(nothing=20.0, SteeringLag=alone, SteeringLag_Loading=together)
         assert (both.effects in [h.effects for h in path.weigh([both, says("SteeringLag"), says()])]) is kept

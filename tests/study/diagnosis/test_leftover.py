@@ -31,19 +31,35 @@ from twin.study.estimation.columns import Unknown, with_values
 from twin.study.reference.evidence import Hypothesis
 
 UNDECIDED = {
-    "verdict": "undecided", "candidates": [], "one_of": [], "voyages_hold_a_manoeuvre": True, "calibrated_too_coarsely": [],
-    "undo_each_other": [], "unclear": [], "moments": [], "resembles": [], "weather_may_mislead": False,
-}  # fmt: skip
+    "verdict": "undecided",
+    "candidates": [],
+    "one_of": [],
+    "voyages_hold_a_manoeuvre": True,
+    "calibrated_too_coarsely": [],
+    "undo_each_other": [],
+    "unclear": [],
+    "moments": [],
+    "resembles": [],
+    "weather_may_mislead": False,
+}
 
 
 def test_a_push_where_waves_toss_her_is_told_with_its_time_and_decides_nothing():
     pushed = {"voyage": "june", "start_s": 600.0, "end_s": 655.0, "X_N": -8e4, "Y_N": 0.0, "N_Nm": 0.0}
-    said = sentence(UNDECIDED | {"moments": [pushed], "probabilities": {"unknown": 0.9, "nothing_missing": 0.1}})
+    said = sentence(
+        UNDECIDED | {"moments": [pushed], "probabilities": {"unknown": 0.9, "nothing_missing": 0.1}}
+    )
     assert said.startswith("Undecided: from 10:00 to 10:55 on june something pushed her") and "waves" in said
 
 
 def test_what_the_readings_say_in_weather_that_may_mislead_is_told_with_that():
-    likely = {"effect": "CrossFlowDrag", "probability": 0.99, "error_with": 4.0, "error_without": 6.0, "parameters": []}
+    likely = {
+        "effect": "CrossFlowDrag",
+        "probability": 0.99,
+        "error_with": 4.0,
+        "error_without": 6.0,
+        "parameters": [],
+    }
     said = sentence(UNDECIDED | {"candidates": [likely], "weather_may_mislead": True})
     assert "CrossFlowDrag (99%)" in said and "calmer" in said
 
@@ -58,7 +74,9 @@ def test_under_its_true_cause_a_ship_is_as_quiet_as_on_her_reference_voyages(jud
     assert quiet(*judged)
 
 
-@pytest.mark.parametrize("off_m, asked", [(0.9, ["RudderWear", "HeadingBias"]), (1.1, ["RudderWear", "TowForce", "HeadingBias"])])
+@pytest.mark.parametrize(
+    "off_m, asked", [(0.9, ["RudderWear", "HeadingBias"]), (1.1, ["RudderWear", "TowForce", "HeadingBias"])]
+)
 def test_where_the_model_alone_leads_her_no_force_is_named_for_the_group_it_belongs_to(judged, off_m, asked):
     case, found = judged
     nothing = {(): replace(found, off_m=off_m, floor_m=1.0)}
@@ -68,7 +86,10 @@ def test_where_the_model_alone_leads_her_no_force_is_named_for_the_group_it_belo
 
 def as_if(found, **worlds):
     """The same hypothesis as likely as said in each of these worlds."""
-    return [replace(found.hypothesis, world=w, log_evidence=e - found.hypothesis.log_prior) for w, e in worlds.items()]
+    return [
+        replace(found.hypothesis, world=w, log_evidence=e - found.hypothesis.log_prior)
+        for w, e in worlds.items()
+    ]
 
 
 def test_a_ship_that_is_tossed_about_is_not_quiet(judged):
@@ -78,7 +99,10 @@ def test_a_ship_that_is_tossed_about_is_not_quiet(judged):
     state, measured = line.shown.state.copy(), line.shown.measured.copy()
     for column in (state[:, 4], measured[:, 4], measured[:, 7]):
         column += swing
-    assert not quiet(replace(case, lines=(replace(line, shown=replace(line.shown, state=state, measured=measured)),)), found)
+    assert not quiet(
+        replace(case, lines=(replace(line, shown=replace(line.shown, state=state, measured=measured)),)),
+        found,
+    )
 
 
 def test_a_world_that_is_clearly_rougher_is_no_explanation_unless_a_sea_was_measured(judged):
@@ -89,21 +113,33 @@ def test_a_world_that_is_clearly_rougher_is_no_explanation_unless_a_sea_was_meas
     assert not explains(case, [rough, plain], off, nothing)
     assert explains(case, [rough, plain], led, nothing)
     assert explains(case, [rough, replace(plain, log_evidence=plain.log_evidence + 0.2)], off, nothing)
-    astray = [replace(h, log_evidence=h.log_evidence - 50.0) for h in (plain, rough)]  # what the path says counts for all worlds alike
+    # what the path says counts for all worlds alike
+    astray = [replace(h, log_evidence=h.log_evidence - 50.0) for h in (plain, rough)]
     assert explains(case, astray, found, nothing)
     (track,) = case.tracks
     waves = np.full(len(track), 0.01 * case.model.ship.L_pp)
-    assert explains(replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),)), [rough], off, nothing)
+    assert explains(
+        replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),)),
+        [rough],
+        off,
+        nothing,
+    )
 
 
-@pytest.mark.parametrize("off_m, asked", [(1.4, ["WaveDrift", "HeadingBias"]), (1.6, ["CrossFlowDrag", "WaveDrift", "HeadingBias"])])
-def test_in_a_sea_in_which_the_model_alone_leads_her_nearly_no_force_but_the_seas_own_is_named(judged, off_m, asked):
+@pytest.mark.parametrize(
+    "off_m, asked",
+    [(1.4, ["WaveDrift", "HeadingBias"]), (1.6, ["CrossFlowDrag", "WaveDrift", "HeadingBias"])],
+)
+def test_in_a_sea_in_which_the_model_alone_leads_her_nearly_no_force_but_the_seas_own_is_named(
+    judged, off_m, asked
+):
     case, found = judged
     sure = dict.fromkeys(["CrossFlowDrag", "WaveDrift", "HeadingBias"], 0.99)
     nothing = {(): replace(found, off_m=off_m, floor_m=1.0)}
     assert asked_for(case, nothing, sure, list(sure), rough=True) == asked
     knows = replace(case, model=case.model.but(find("WaveDrift").plausible(case.model.ship)))
-    assert asked_for(knows, nothing, sure, list(sure), rough=True) == [n for n in asked if n != "WaveDrift"]  # a change of it the readings must ask for
+    # a change of it the readings must ask for
+    assert asked_for(knows, nothing, sure, list(sure), rough=True) == [n for n in asked if n != "WaveDrift"]
 
 
 @pytest.mark.parametrize("more, asked", [(2.0, []), (4.0, ["Wind"])])
@@ -111,16 +147,26 @@ def test_a_change_of_a_wind_that_the_file_knows_must_be_asked_for_by_the_reading
     case, found = judged
     knows = replace(case, model=case.model.but(find("Wind").plausible(case.model.ship)))
     before = replace(found, off_m=3.0, floor_m=1.0, hypothesis=Hypothesis((), "usual", 100.0, 0.0))
-    sets = {(): before, ("Wind",): replace(before, off_m=0.9, hypothesis=Hypothesis(("Wind",), "usual", 100.0 + more, 0.0))}
+    sets = {
+        (): before,
+        ("Wind",): replace(before, off_m=0.9, hypothesis=Hypothesis(("Wind",), "usual", 100.0 + more, 0.0)),
+    }
     assert asked_for(knows, sets, {"Wind": 0.99}, ["Wind"], rough=False) == asked
     assert asked_for(case, sets, {"Wind": 0.99}, ["Wind"], rough=False) == ["Wind"]
 
 
 @pytest.mark.parametrize("more, asked", [(50.0, []), (70.0, ["RudderWear"])])
-def test_what_stands_far_above_all_that_a_known_wind_misleads_to_is_named_but_not_in_a_sea(judged, more, asked):
+def test_what_stands_far_above_all_that_a_known_wind_misleads_to_is_named_but_not_in_a_sea(
+    judged, more, asked
+):
     case, found = judged
     nothing = replace(found, off_m=1.2, floor_m=1.0, hypothesis=Hypothesis((), "usual", 100.0, 0.0))
-    sets = {(): nothing, ("RudderWear",): replace(nothing, off_m=0.9, hypothesis=Hypothesis(("RudderWear",), "usual", 100.0 + more, 0.0))}
+    sets = {
+        (): nothing,
+        ("RudderWear",): replace(
+            nothing, off_m=0.9, hypothesis=Hypothesis(("RudderWear",), "usual", 100.0 + more, 0.0)
+        ),
+    }
     assert asked_for(case, sets, {"RudderWear": 0.99}, ["RudderWear"], rough=True) == asked
     (track,) = case.tracks
     waves = np.full(len(track), 0.01 * case.model.ship.L_pp)
@@ -130,11 +176,19 @@ def test_what_stands_far_above_all_that_a_known_wind_misleads_to_is_named_but_no
 
 def test_a_known_wind_misleads_where_a_tenth_of_it_matters_to_where_she_went(tanker, voyages):
     windy = tanker.with_effects(find("Wind").plausible(tanker))
-    hers = replace(windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}})
+    hers = replace(
+        windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}}
+    )
     since, then = (assemble([voyages["Wind"]], ship) for ship in (windy, hers))
-    nothing = lambda floor_m: Found(Hypothesis((), "usual", 0.0, 0.0), None, since.model, 0.0, floor_m, floor_m)  # noqa: E731
+    nothing = lambda floor_m: Found(
+        Hypothesis((), "usual", 0.0, 0.0), None, since.model, 0.0, floor_m, floor_m
+    )  # noqa: E731
     matters = roughly(since)
-    assert matters > 0.0 and weathered(since, nothing(2.0 * matters)) and not weathered(since, nothing(4.0 * matters))
+    assert (
+        matters > 0.0
+        and weathered(since, nothing(2.0 * matters))
+        and not weathered(since, nothing(4.0 * matters))
+    )
     assert not weathered(then, nothing(2.0 * matters))
 
 
@@ -146,7 +200,9 @@ def test_what_was_so_unlikely_that_nobody_asked_where_it_leads_her_explains_noth
 def test_where_the_best_leaves_too_much_a_part_that_cannot_be_told_from_it_may_explain(judged):
     case, found = judged
     best = replace(found.hypothesis, effects=("RudderWear", "SteeringLag"), world="usual", log_evidence=0.0)
-    part = replace(found.hypothesis, world="usual", log_evidence=best.log_weight - found.hypothesis.log_prior - 1.0)
+    part = replace(
+        found.hypothesis, world="usual", log_evidence=best.log_weight - found.hypothesis.log_prior - 1.0
+    )
     sets = {
         (): replace(found, hypothesis=replace(part, effects=()), off_m=1.5, floor_m=0.9),
         best.effects: replace(found, hypothesis=best, off_m=2.5, floor_m=1.0),
@@ -183,17 +239,25 @@ def test_as_long_as_others_may_do_better_more_is_asked(monkeypatch, judged):
     far = replace(found, off_m=1.8, floor_m=1.0)
     assert explains(case, [found.hypothesis], far, replace(found, off_m=3.7), strict=True)
     assert not explains(case, [found.hypothesis], far, replace(found, off_m=3.5), strict=True)
-    monkeypatch.setattr(leftover, "quiet", lambda *_: False)  # restless one step ahead, and led where she went
+    # restless one step ahead, and led where she went
+    monkeypatch.setattr(leftover, "quiet", lambda *_: False)
     near, nothing = replace(found, off_m=0.9, floor_m=1.0), replace(found, off_m=1.5)
     assert explains(case, [found.hypothesis], near, nothing)
     assert not explains(case, [found.hypothesis], near, nothing, strict=True)
     assert not explains(case, [found.hypothesis], replace(near, off_m=1.1), nothing)
 
 
-@pytest.mark.parametrize("delay, travel_time, other", [(1.0, 25.0, False), (1.5, 31.0, True), (4.0, 25.0, True), (1.5, 25.0, False)])
+@pytest.mark.parametrize(
+    "delay, travel_time, other",
+    [(1.0, 25.0, False), (1.5, 31.0, True), (4.0, 25.0, True), (1.5, 25.0, False)],
+)
 def test_what_the_ship_has_is_otherwise_only_by_more_than_its_form_may_be_off(delay, travel_time, other):
-    """Test: a gear in the ship's file, 1.5 s and 25 s; its dead time may be off by half, the other by a tenth (one standard deviation)."""
-    own = [Unknown("SteeringLag", name, "s", centre, sd, 0.0, 300.0) for name, centre, sd in (("delay", 1.5, 0.5), ("travel_time", 25.0, 10.0))]
+    """Test: a gear in the ship's file, 1.5 s and 25 s; its dead time may be off by half, the other by a tenth
+    (one standard deviation)."""
+    own = [
+        Unknown("SteeringLag", name, "s", centre, sd, 0.0, 300.0)
+        for name, centre, sd in (("delay", 1.5, 0.5), ("travel_time", 25.0, 10.0))
+    ]
     z = np.array([(value - u.centre) / u.sd for value, u in zip((delay, travel_time), own, strict=True)])
     found = SimpleNamespace(posterior=SimpleNamespace(z=z))
     case = SimpleNamespace(present={"SteeringLag"}, catalogue=catalogue(), effects=own)
@@ -206,9 +270,13 @@ def test_what_the_ship_has_is_otherwise_only_by_more_than_its_form_may_be_off(de
     (("GyroBias", "RudderWear"), 1.0, ("GyroBias",)), (("GyroBias", "RudderWear"), 0.9, ("GyroBias", "RudderWear")),
     (("WaveDrift",), 1.05, ("WaveDrift",)), (("WaveDrift",), 1.15, ()),
 ])  # fmt: skip
-def test_a_force_must_lead_her_better_than_without_it_and_a_fault_of_an_instrument_need_not(judged, effects, off, named):
+def test_a_force_must_lead_her_better_than_without_it_and_a_fault_of_an_instrument_need_not(
+    judged, effects, off, named
+):
     case, found = judged
-    clear = replace(found.posterior, z=np.ones(len(case.effects)), covariance=0.01 * np.eye(len(case.effects)))
+    clear = replace(
+        found.posterior, z=np.ones(len(case.effects)), covariance=0.01 * np.eye(len(case.effects))
+    )
     found = replace(found, off_m=1.0, floor_m=0.5, posterior=clear)
     led = dict.fromkeys(((), ("GyroBias",), ("RudderWear",)), found) | {effects: replace(found, off_m=off)}
     assert helpful(case, led, effects) == list(named)
@@ -220,22 +288,53 @@ def test_an_instruments_fault_is_named_only_if_one_of_its_numbers_is_clear(judge
     z, covariance = np.zeros(len(case.effects)), np.eye(len(case.effects))
     covariance[np.ix_(rows, rows)] = [[0.04, 0.039], [0.039, 0.04]]  # each to 0.2, their difference to 0.045
     alone = ("SensorDelay",)
-    for delay, turned, named in ((0.3, 0.0, []), (0.3, -0.5, []), (0.7, 0.7, ["SensorDelay"]), (0.7, 0.0, ["SensorDelay"])):
+    for delay, turned, named in (
+        (0.3, 0.0, []),
+        (0.3, -0.5, []),
+        (0.7, 0.7, ["SensorDelay"]),
+        (0.7, 0.0, ["SensorDelay"]),
+    ):
         z[rows] = delay, turned
-        led = {s: replace(found, off_m=0.9, floor_m=1.0, posterior=replace(found.posterior, z=z.copy(), covariance=covariance)) for s in ((), alone)}
+        led = {
+            s: replace(
+                found,
+                off_m=0.9,
+                floor_m=1.0,
+                posterior=replace(found.posterior, z=z.copy(), covariance=covariance),
+            )
+            for s in ((), alone)
+        }
         assert helpful(case, led, alone) == named and not too_small(case, led, alone, rough=False)
     undecided = UNDECIDED | {"unclear": ["SensorDelay"]}
-    one = {"effect": "SensorDelay", "probability": 0.99, "parameters": [], "error_with": 1.0, "error_without": 1.0}
-    assert "SensorDelay (99%), but not one of its numbers is clearly" in sentence(undecided | {"candidates": [one]})
+    one = {
+        "effect": "SensorDelay",
+        "probability": 0.99,
+        "parameters": [],
+        "error_with": 1.0,
+        "error_without": 1.0,
+    }
+    assert ("SensorDelay (99%), but not one of its numbers is clearly") in sentence(
+        undecided | {"candidates": [one]}
+    )
 
 
 def test_a_force_that_stands_alone_is_too_small_to_show_where_she_is_led_already_but_not_in_a_sea(judged):
     case, found = judged
-    led = {(): replace(found, off_m=0.9, floor_m=1.0), ("RudderWear",): replace(found, off_m=0.9, floor_m=1.0)}
+    led = {
+        (): replace(found, off_m=0.9, floor_m=1.0),
+        ("RudderWear",): replace(found, off_m=0.9, floor_m=1.0),
+    }
     assert too_small(case, led, ("RudderWear",), rough=False)
-    assert too_small(case, led | {("RudderWear",): replace(found, off_m=0.99, floor_m=1.0)}, ("RudderWear",), rough=False)
-    assert not too_small(case, led | {("RudderWear",): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",), rough=False)  # it leads her astray
-    assert not too_small(case, led | {(): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",), rough=False)
+    assert too_small(
+        case, led | {("RudderWear",): replace(found, off_m=0.99, floor_m=1.0)}, ("RudderWear",), rough=False
+    )
+    # it leads her astray
+    assert not too_small(
+        case, led | {("RudderWear",): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",), rough=False
+    )
+    assert not too_small(
+        case, led | {(): replace(found, off_m=1.01, floor_m=1.0)}, ("RudderWear",), rough=False
+    )
     pair = ("RudderWear", "Wind")
     assert not too_small(case, led | {("Wind",): led[()], pair: led["RudderWear",]}, pair, rough=False)
     (track,) = case.tracks
@@ -243,8 +342,17 @@ def test_a_force_that_stands_alone_is_too_small_to_show_where_she_is_led_already
     tossed = replace(case, tracks=(replace(track, weather=dict(track.weather) | {"H_s": waves}),))
     assert weathered(tossed, led[()]) and not weathered(case, led[()])
     assert not too_small(tossed, led, ("RudderWear",), rough=True)
-    for off_m, small in ((0.9, True), (0.99, True), (1.01, False)):  # waves' own force comes and goes, and leads her anywhere within the floor
-        assert too_small(tossed, led | {("WaveDrift",): replace(found, off_m=off_m, floor_m=1.0)}, ("WaveDrift",), rough=True) is small
+    # waves' own force comes and goes, and leads her anywhere within the floor
+    for off_m, small in ((0.9, True), (0.99, True), (1.01, False)):
+        assert (
+            too_small(
+                tossed,
+                led | {("WaveDrift",): replace(found, off_m=off_m, floor_m=1.0)},
+                ("WaveDrift",),
+                rough=True,
+            )
+            is small
+        )
 
 
 def test_and_it_is_said_how_far_off_that_is():
@@ -255,20 +363,28 @@ def test_and_it_is_said_how_far_off_that_is():
     assert "what, if anything" in sentence(result | {"path": path | {"error_without": 13.0}})
 
 
-def test_on_a_ship_that_does_not_go_where_the_model_leads_her_something_may_be_missing_and_nobody_is_acquitted(judged):
+def test_on_a_ship_that_does_not_go_where_the_model_leads_her_something_may_be_missing_and_nobody_is_acquitted(
+    judged,
+):
     _, found = judged
-    assert missed(replace(found, off_m=1.51, floor_m=1.0)) and not missed(replace(found, off_m=1.49, floor_m=1.0))
+    assert missed(replace(found, off_m=1.51, floor_m=1.0)) and not missed(
+        replace(found, off_m=1.49, floor_m=1.0)
+    )
 
 
 def test_and_else_it_is_said_that_she_goes_hardly_elsewhere_than_she_is_led():
     path = {"horizon_s": 48.0, "error_without": 1.93, "error_floor": 1.93}
     result = UNDECIDED | {"probabilities": {"nothing_missing": 0.0, "unknown": 1.0}, "path": path}
-    assert "leads her no clearly farther off than usual (1.93 m after 48 s, 1.93 m would be usual)" in sentence(result)
+    assert (
+        "leads her no clearly farther off than usual (1.93 m after 48 s, 1.93 m would be usual)"
+    ) in sentence(result)
     assert "where she went (" not in sentence(result | {"path": path | {"error_without": 3.0}})
 
 
 @pytest.mark.parametrize(("ahead_m", "no_pair"), [(16.0, True), (-16.0, False), (60.0, False)])
-def test_a_late_position_and_an_antenna_as_far_ahead_as_she_sails_meanwhile_are_no_pair(judged, ahead_m, no_pair):
+def test_a_late_position_and_an_antenna_as_far_ahead_as_she_sails_meanwhile_are_no_pair(
+    judged, ahead_m, no_pair
+):
     case, found = judged
     pair = ("AntennaOffset", "SensorDelay")
     delay_s = 16.0 / float(np.mean(case.tracks[0].state[:, 3]))
@@ -277,14 +393,26 @@ def test_a_late_position_and_an_antenna_as_far_ahead_as_she_sails_meanwhile_are_
     model = with_values(case.model, own, [sizes[u.label] for u in own], case.catalogue)
     both = replace(found, model=model, hypothesis=replace(found.hypothesis, effects=pair))
     assert undone(case, both) is no_pair
-    assert not undone(case, replace(both, hypothesis=replace(found.hypothesis, effects=("RudderWear", "SensorDelay"))))
+    assert not undone(
+        case, replace(both, hypothesis=replace(found.hypothesis, effects=("RudderWear", "SensorDelay")))
+    )
     said = sentence(UNDECIDED | {"undo_each_other": list(pair)})
     assert "AntennaOffset and SensorDelay would fit, but each takes back" in said
 
 
 def test_two_faults_of_a_log_may_undo_each_other_for_they_do_not_move_her(judged):
     case, found = judged
-    sizes = {"SpeedLogBias.bias": 0.5, "SpeedLogScale.scale": -0.5 / float(np.mean(case.tracks[0].state[:, 3]))}
+    sizes = {
+        "SpeedLogBias.bias": 0.5,
+        "SpeedLogScale.scale": -0.5 / float(np.mean(case.tracks[0].state[:, 3])),
+    }
     own = [u for u in case.effects if u.label in sizes]
     model = with_values(case.model, own, [sizes[u.label] for u in own], case.catalogue)
-    assert not undone(case, replace(found, model=model, hypothesis=replace(found.hypothesis, effects=("SpeedLogBias", "SpeedLogScale"))))
+    assert not undone(
+        case,
+        replace(
+            found,
+            model=model,
+            hypothesis=replace(found.hypothesis, effects=("SpeedLogBias", "SpeedLogScale")),
+        ),
+    )

@@ -27,7 +27,11 @@ def test_a_ship_with_which_nothing_is_wrong_had_no_push_of_its_own(tanker, voyag
     case = assemble([voyages["nothing"]], tanker)
     asked = stretches(case, as_she_is(case))
     assert max(m.log_evidence for m in asked) < 0.5 * CLEAR and moments(case, as_she_is(case)) == []
-    assert {m.voyage for m in asked} == {"nothing"} and min(m.start_s for m in asked) < 60.0 and max(m.end_s for m in asked) > 1100.0
+    assert (
+        {m.voyage for m in asked} == {"nothing"}
+        and min(m.start_s for m in asked) < 60.0
+        and max(m.end_s for m in asked) > 1100.0
+    )
 
 
 def test_what_lasts_all_voyage_is_no_moment_once_it_is_known(tanker, voyages):
@@ -38,12 +42,15 @@ def test_what_lasts_all_voyage_is_no_moment_once_it_is_known(tanker, voyages):
 
 @pytest.fixture(scope="module")
 def passed():
-    sailed = simulate([Case("kvlcc2", "zigzag_20", hidden=(("PassingShip", 1.0),), seed=909, duration_s=1200.0)])
+    sailed = simulate(
+        [Case("kvlcc2", "zigzag_20", hidden=(("PassingShip", 1.0),), seed=909, duration_s=1200.0)]
+    )
     return recorded("passed", sailed[0].columns, every=10)
 
 
 def test_ships_that_pass_are_seen_when_they_pass_and_nobody_is_acquitted(tanker, passed):
-    """Test: ships that pass every 11 lengths (439 s), each for about one. Expected: unknown, and the times at which they did."""
+    """Test: ships that pass every 11 lengths (439 s), each for about one. Expected: unknown, and the times at
+    which they did."""
     result = diagnose([passed], tanker).result
     seen = sorted(0.5 * (m["start_s"] + m["end_s"]) for m in result["moments"])
     assert result["verdict"] == "unknown" and len(seen) >= 2
@@ -54,13 +61,16 @@ def test_ships_that_pass_are_seen_when_they_pass_and_nobody_is_acquitted(tanker,
 
 
 def test_where_waves_toss_her_more_is_asked_of_a_push(monkeypatch, tanker, voyages):
-    """Test: a healthy voyage of which one stretch is 20 nats likelier with a push, what swings her slowly, and waves.
-    Expected: a moment, but in waves none."""
+    """Test: a healthy voyage of which one stretch is 20 nats likelier with a push, what swings her slowly,
+    and waves. Expected: a moment, but in waves none."""
     case = assemble([voyages["nothing"]], tanker)
     monkeypatch.setattr(moment_of, "stretches", lambda *_: [Moment("nothing", 60.0, 90.0, 20.0, np.ones(3))])
     (track,) = case.tracks
     slow, swift = (np.full((len(track), 6), 2.0 * np.pi / period_s) for period_s in (40.0, 10.0))
-    calm, slow, swift = (moments(replace(case, tracks=(replace(track, swell=x),)), as_she_is(case)) for x in (None, slow, swift))
+    calm, slow, swift = (
+        moments(replace(case, tracks=(replace(track, swell=x),)), as_she_is(case))
+        for x in (None, slow, swift)
+    )
     assert len(calm) == len(slow) == 1 and swift == []
 
 
@@ -70,14 +80,21 @@ def test_what_is_most_probable_of_everything_is_where_the_sum_of_squares_stands_
     normal = SimpleNamespace(total=lambda: (G.T @ G, G.T @ e, float(e @ e)), logdet=np.zeros(1))
     widths = {"core.0": 1.0, "core.1": 2.0, "A.2": 0.5, "A.3": 1.0, "B.4": 3.0}
     every = tuple(Unknown(*label.split("."), "-", 0.0, sd, -9.0, 9.0) for label, sd in widths.items())
-    nuisance = Nuisance(every[:3], np.diag([1.0, 2.0, 4.0]), np.array([0.3, -0.2, 0.1]))  # the third is a fault's number, too
+    # the third is a fault's number, too
+    nuisance = Nuisance(every[:3], np.diag([1.0, 2.0, 4.0]), np.array([0.3, -0.2, 0.1]))
     at = np.array([0.0, 0.4, 0.0])
     theta = likeliest(normal, nuisance, every, every[2:], 1.5, at, ("A",))
 
     def cost(x, z):
         moved = np.r_[x * [1.0, 2.0, 0.5], 0.0, 0.0] + np.r_[0.0, 0.0, (z - at) * [0.5, 1.0, 3.0]]
         left, width = e - G @ moved, np.array([1.0, 1.0, 0.01])
-        return 0.5 * left @ left / 1.5 + 0.5 * x @ nuisance.information @ x - nuisance.pull @ x + 0.5 * np.sum((z / width) ** 2), moved
+        return (
+            0.5 * left @ left / 1.5
+            + 0.5 * x @ nuisance.information @ x
+            - nuisance.pull @ x
+            + 0.5 * np.sum((z / width) ** 2),
+            moved,
+        )
 
     best = np.zeros(6)
     step = 1e-4
@@ -100,7 +117,12 @@ def test_a_moment_is_told_as_a_force(tanker, voyages):
 
 def test_voyages_that_were_logged_at_different_rates_are_asked_side_by_side(tanker, voyages):
     every = voyages["nothing"]
-    seldom = replace(every, name="seldom", time_s=every.time_s[::6], columns={name: x[::6] for name, x in every.columns.items()})
+    seldom = replace(
+        every,
+        name="seldom",
+        time_s=every.time_s[::6],
+        columns={name: x[::6] for name, x in every.columns.items()},
+    )
     case = assemble([every, seldom], tanker)
     asked = stretches(case, as_she_is(case))
     assert case.tracks[1].h > 2.0 * case.tracks[0].h

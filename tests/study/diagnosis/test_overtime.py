@@ -22,7 +22,10 @@ def test_an_effect_that_is_always_there_is_as_strong_in_every_part(tanker, voyag
 def test_an_effect_that_came_between_two_voyages_is_told_by_voyage(tanker, voyages):
     result = diagnose([voyages["nothing"], voyages["RudderWear"]], tanker).result
     found = parts(result, "RudderWear")
-    share = {name: np.mean([p["share"] for p in found if p["voyage"] == name]) for name in {p["voyage"] for p in found}}
+    share = {
+        name: np.mean([p["share"] for p in found if p["voyage"] == name])
+        for name in {p["voyage"] for p in found}
+    }
     before, after = share[voyages["nothing"].name], share[voyages["RudderWear"].name]
     assert changes(found) and before < 0.5 < 1.0 < after
     assert any("all the time" in line for line in told(result))

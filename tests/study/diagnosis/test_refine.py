@@ -8,7 +8,18 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.diagnosis.assemble import assemble
-from twin.study.diagnosis.refine import DOUBTS, IRREGULAR, _bends, _bent, _climb, _doubt, _place, _told, _Top, about
+from twin.study.diagnosis.refine import (
+    DOUBTS,
+    IRREGULAR,
+    _bends,
+    _bent,
+    _climb,
+    _doubt,
+    _place,
+    _told,
+    _Top,
+    about,
+)
 from twin.study.estimation.respond import standard
 from twin.study.reference.evidence import Hypothesis
 
@@ -32,7 +43,9 @@ def test_a_gears_travel_time_is_not_in_proportion_to_what_it_does_and_a_rudders_
 def test_only_what_bends_is_looked_for_far_out(case):
     gear, offset = rows(case, "SteeringLag"), rows(case, "RudderOffset")
     for size in (0.0, 1.0):
-        assert {case.effects[i].name for i in _bent(case, gear, np.full(len(case.effects), size))} >= {"travel_time"}
+        assert {case.effects[i].name for i in _bent(case, gear, np.full(len(case.effects), size))} >= {
+            "travel_time"
+        }
         assert _bent(case, offset, np.full(len(case.effects), size)) == []
 
 
@@ -43,7 +56,8 @@ def test_what_no_day_brings_steers_no_climb(case):
     whole = _climb(case, ("SteeringLag",), rows(case, "SteeringLag"), "usual", z)[1]
     alone = _climb(narrow, ("SteeringLag",), rows(narrow, "SteeringLag"), "usual", z[kept])[1]
     assert len(narrow.unknowns) < 0.5 * len(case.unknowns) and kept.sum() == len(narrow.effects)
-    assert alone == pytest.approx(whole[kept], abs=0.15)  # prior widths, along a ridge of the gear's own numbers
+    # prior widths, along a ridge of the gear's own numbers
+    assert alone == pytest.approx(whole[kept], abs=0.15)
 
 
 @pytest.mark.parametrize("start", [0.3, 1.0, 3.0])
@@ -64,13 +78,17 @@ def test_a_ship_that_no_filter_can_follow_is_no_step_to_take(case):
     z[mine] = [-1e6, 0.0, 0.0]
     here = about(case, np.zeros_like(z), mine, [case.effects[i] for i in mine])[1]
     wild = [replace(line, F=line.F * 1e8) for line in here]
-    assert _told(case, here, "usual", np.zeros_like(z)) is not None and _told(case, wild, "usual", np.zeros_like(z)) is None
+    assert (
+        _told(case, here, "usual", np.zeros_like(z)) is not None
+        and _told(case, wild, "usual", np.zeros_like(z)) is None
+    )
     end = _climb(case, ("Loading",), mine, "usual", z)[1]
     assert np.isfinite(end).all()
 
 
 def test_a_slow_gear_is_found_however_far_out_it_stands(case):
-    """From the linear guess, which sees the delay alone, and from far out: no place is more probable than where it is said to stand."""
+    """From the linear guess, which sees the delay alone, and from far out: no place is more probable than
+    where it is said to stand."""
     mine, guess = rows(case, "SteeringLag"), np.zeros(len(case.effects))
     guess[mine] = [0.5, 0.2, 0.0]
     top = _place(case, ("SteeringLag",), "usual", guess, -np.inf)
@@ -95,29 +113,56 @@ def test_a_climb_that_got_no_higher_is_asked_in_no_other_world(case, monkeypatch
     assert replace(top, judged=lower).or_from(case, ("RudderWear",), mine, z) is top and asked
 
 
-@pytest.mark.parametrize("chosen, most", [(("WaveDrift",), IRREGULAR[0]), (("RudderWear", "WaveDrift"), IRREGULAR[0]), (("RudderWear",), DOUBTS[0])])
-def test_what_comes_and_goes_with_wave_groups_may_be_something_else_as_a_whole(case, monkeypatch, chosen, most):
+@pytest.mark.parametrize(
+    "chosen, most",
+    [
+        (("WaveDrift",), IRREGULAR[0]),
+        (("RudderWear", "WaveDrift"), IRREGULAR[0]),
+        (("RudderWear",), DOUBTS[0]),
+    ],
+)
+def test_what_comes_and_goes_with_wave_groups_may_be_something_else_as_a_whole(
+    case, monkeypatch, chosen, most
+):
     asked = []
-    monkeypatch.setattr(type(case), "reduced", lambda self, lines, floors, at: asked.extend(floors) or [None] * len(floors))
-    monkeypatch.setattr("twin.study.diagnosis.refine.posterior", lambda r, chosen: SimpleNamespace(log_evidence=0.0))
-    _doubt(case, chosen, _Top(np.zeros(len(case.effects)), case.lines, {"usual": Hypothesis(chosen, "usual", 0.0, 0.0)}))
+    monkeypatch.setattr(
+        type(case), "reduced", lambda self, lines, floors, at: asked.extend(floors) or [None] * len(floors)
+    )
+    monkeypatch.setattr(
+        "twin.study.diagnosis.refine.posterior", lambda r, chosen: SimpleNamespace(log_evidence=0.0)
+    )
+    _doubt(
+        case,
+        chosen,
+        _Top(np.zeros(len(case.effects)), case.lines, {"usual": Hypothesis(chosen, "usual", 0.0, 0.0)}),
+    )
     assert max(floor.doubt for floor in asked) == most and min(floor.doubt for floor in asked) == DOUBTS[-1]
 
 
 def test_no_hypothesis_is_likelier_for_what_it_makes_of_the_noise(case):
-    """Expected: a ship half as heavy again errs, in m/s2, by what the ship of the file was found to err by."""
+    """Expected: a ship half as heavy again errs, in m/s2, by what the ship of the file was found to err
+    by."""
     mine, z = rows(case, "Loading"), np.zeros(len(case.effects))
     z[mine[0]] = 0.5 / case.effects[mine[0]].sd
     model, lines = about(case, z, mine, [case.effects[i] for i in mine])
     assert model.c.m_v > 1.2 * case.model.c.m_v and standard(model) == pytest.approx(standard(case.model))
-    assert all(np.array_equal(after.busy, before.busy) for before, after in zip(case.lines, lines, strict=True))
+    assert all(
+        np.array_equal(after.busy, before.busy) for before, after in zip(case.lines, lines, strict=True)
+    )
 
 
 def test_an_antenna_that_the_ship_file_knows_is_taken_out_of_the_motion_once(tanker, voyages):
-    """Expected: about nothing, what the readings are off by is what it was: not the antenna's place once more."""
+    """Expected: about nothing, what the readings are off by is what it was: not the antenna's place once
+    more."""
     antenna = find("AntennaOffset").absent(tanker).but(ahead=0.1 * tanker.L_pp)
     case = assemble([voyages["SteeringLag"]], tanker.with_effects(*tanker.effects, antenna))
     mine = rows(case, "SensorDelay")
-    for before, after in zip(case.lines, about(case, np.zeros(len(case.effects)), mine, [case.effects[i] for i in mine])[1], strict=True):
+    for before, after in zip(
+        case.lines,
+        about(case, np.zeros(len(case.effects)), mine, [case.effects[i] for i in mine])[1],
+        strict=True,
+    ):
         assert after.e == pytest.approx(before.e, abs=1e-9, nan_ok=True) and after.shown is before.shown
-        assert np.hypot(*(before.track.state - before.shown.state).T[:2]) == pytest.approx(0.1 * tanker.L_pp, rel=1e-6)
+        assert np.hypot(*(before.track.state - before.shown.state).T[:2]) == pytest.approx(
+            0.1 * tanker.L_pp, rel=1e-6
+        )

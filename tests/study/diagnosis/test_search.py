@@ -36,11 +36,14 @@ def weighed(case, *judged):
 def test_a_pair_is_weighed_about_the_part_where_it_explains_more_whichever_was_judged_first(case):
     worn, slow = weighed(case, PAIR[:1]), weighed(case, PAIR[1:])
     for both in (weighed(case, PAIR[:1], PAIR[1:]), weighed(case, PAIR[1:], PAIR[:1])):
-        assert both == pytest.approx({world: max(worn[world], slow[world]) for world in worn}, abs=1.0)  # a climb ends there to a nat
+        # a climb ends there to a nat
+        assert both == pytest.approx({world: max(worn[world], slow[world]) for world in worn}, abs=1.0)
     assert max(slow.values()) > max(worn.values())
 
 
-def test_a_pair_begins_where_the_likelier_of_its_parts_was_found_and_that_is_not_looked_for_again(case, monkeypatch):
+def test_a_pair_begins_where_the_likelier_of_its_parts_was_found_and_that_is_not_looked_for_again(
+    case, monkeypatch
+):
     held = book(case)
     held.judge(PAIR[:1])
     held.judge(PAIR[1:])
@@ -49,7 +52,9 @@ def test_a_pair_begins_where_the_likelier_of_its_parts_was_found_and_that_is_not
 
     def begins(case, chosen, world, z, wider, hoped, known):
         began.update(z=z, known=known)
-        return replace(held.found[PAIR[1:]], hypothesis=replace(held.found[PAIR[1:]].hypothesis, effects=chosen)), []
+        return replace(
+            held.found[PAIR[1:]], hypothesis=replace(held.found[PAIR[1:]].hypothesis, effects=chosen)
+        ), []
 
     monkeypatch.setattr("twin.study.diagnosis.search.refine", begins)
     held.judge(PAIR)
@@ -61,7 +66,11 @@ def test_a_pair_begins_where_the_likelier_of_its_parts_was_found_and_that_is_not
 def test_beside_weather_that_is_no_news_only_what_is_not_hopeless_is_judged(case):
     held = book(replace(case, no_news=("Wind",)))
     best, three = held.weighed()[0], ("Wind", "RudderWear", "SteeringLag")
-    for part, behind in ((("Wind", "SteeringLag"), 10.0), (("Wind", "RudderWear"), 100.0), (("Wind",), 100.0)):
+    for part, behind in (
+        (("Wind", "SteeringLag"), 10.0),
+        (("Wind", "RudderWear"), 100.0),
+        (("Wind",), 100.0),
+    ):
         held.entries = {key: h for key, h in held.entries.items() if key[0] != part}
         held._enter(replace(best, effects=part, log_evidence=best.log_weight - behind, log_prior=0.0))
     assert held._parts(three) == [("RudderWear",), ("SteeringLag",), ("Wind", "SteeringLag")]
@@ -85,12 +94,16 @@ def test_a_set_that_was_never_weighed_can_be_judged(case):
 
 def test_an_effect_and_a_part_of_it_are_no_pair(case):
     assert case.log_prior(("Current", "VaryingCurrent"), "usual") == -np.inf
-    assert np.isfinite(case.log_prior(("VaryingCurrent",), "usual")) and np.isfinite(case.log_prior(("Current", "HullFouling"), "usual"))
+    assert np.isfinite(case.log_prior(("VaryingCurrent",), "usual")) and np.isfinite(
+        case.log_prior(("Current", "HullFouling"), "usual")
+    )
     assert ("Current", "VaryingCurrent") not in {h.effects for h in search(case)[0]}
 
 
 def test_beside_a_stream_that_changes_a_steady_one_is_judged_too(case):
-    assert book(case)._simpler(("VaryingCurrent", "HullFouling")) == [tuple(n for n in case.candidates if n in ("Current", "HullFouling"))]
+    assert book(case)._simpler(("VaryingCurrent", "HullFouling")) == [
+        tuple(n for n in case.candidates if n in ("Current", "HullFouling"))
+    ]
     assert book(case)._simpler(("HullFouling",)) == []
 
 
@@ -101,7 +114,8 @@ def test_what_an_effect_holds_is_in_the_catalogue():
 
 
 def test_an_effect_that_ended_at_nothing_says_no_more_than_the_rest(case, monkeypatch):
-    """A loss below nothing cannot be: it stays at nothing, and whatever it would explain, the set leaves the list."""
+    """A loss below nothing cannot be: it stays at nothing, and whatever it would explain, the set leaves the
+    list."""
     held = book(case)
 
     def at_nothing(case, chosen, world, z, wider, hoped, known):
@@ -126,8 +140,9 @@ def test_what_any_day_brings_much_of_is_judged_about_its_own_size_without_having
 
 
 def test_what_any_day_brings_is_no_news_where_it_stands_today(tanker, voyages):
-    """Test: a stream as strong as any day's, and a ship that knows that and one that does not. Expected: that it is nothing new is likelier once
-    it was judged where it stands, and nobody calls it missing; to the ship that knows no streams it is one."""
+    """Test: a stream as strong as any day's, and a ship that knows that and one that does not. Expected: that
+    it is nothing new is likelier once it was judged where it stands, and nobody calls it missing; to the ship
+    that knows no streams it is one."""
     case = assemble([voyages["Current"]], tanker)
     daily = dict.fromkeys(("Current.north", "Current.east"), 0.5)
     usual = replace(case, nuisance=replace(case.nuisance, daily=daily))
@@ -145,7 +160,9 @@ def test_what_any_day_brings_is_no_news_where_it_stands_today(tanker, voyages):
 @pytest.mark.parametrize("c_d, hollow", [(0.0, True), (0.1, False)])
 def test_drag_that_is_none_but_lies_otherwise_along_her_is_none(case, c_d, hollow):
     held, chosen = book(case), ("CrossFlowDrag",)
-    z = np.array([{"c_d": c_d, "c_aft": -0.4}.get(u.name, 0.0) if u.owner == chosen[0] else 0.0 for u in case.effects])
+    z = np.array(
+        [{"c_d": c_d, "c_aft": -0.4}.get(u.name, 0.0) if u.owner == chosen[0] else 0.0 for u in case.effects]
+    )
     nothing = held.found[()]
     held.found[chosen] = replace(nothing, posterior=replace(nothing.posterior, z=z))
     assert held._hollow(chosen) is hollow
@@ -153,5 +170,9 @@ def test_drag_that_is_none_but_lies_otherwise_along_her_is_none(case, c_d, hollo
 
 def test_what_shows_another_moment_is_judged_about_its_own_size_if_it_promises_anything(case):
     held = book(case)
-    assert held._of_another_moment(("SensorDelay",)) and not held._of_another_moment(("HeadingBias",)) and not held._of_another_moment(("SteeringLag",))
+    assert (
+        held._of_another_moment(("SensorDelay",))
+        and not held._of_another_moment(("HeadingBias",))
+        and not held._of_another_moment(("SteeringLag",))
+    )
     assert (("SensorDelay",) in held.first) == (("SensorDelay",) in held._promising())

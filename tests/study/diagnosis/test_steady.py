@@ -24,7 +24,9 @@ def test_what_changes_is_told_as_a_share_of_the_whole_stream(case):
     still, turning = VaryingCurrent(north=0.3, east=0.4), VaryingCurrent(north_c3=0.3)
     assert changes(still, case.model, case.tracks) == pytest.approx(0.0, abs=1e-6)
     north = 0.3 * np.cos(3.0 * 2.0 * np.pi / 3600.0 * track.t)
-    assert changes(turning, case.model, case.tracks) == pytest.approx(north.std() / np.sqrt((north**2).mean()))
+    assert changes(turning, case.model, case.tracks) == pytest.approx(
+        north.std() / np.sqrt((north**2).mean())
+    )
 
 
 def judged(case, stream):
@@ -42,7 +44,9 @@ def test_only_a_stream_that_may_change_and_does_not_is_called_steady(case):
 def test_a_set_with_a_stream_that_did_not_change_is_not_asked_again_nor_any_that_holds_it(case, monkeypatch):
     names = list(WORLDS)
     held = _Book(case, dict(zip(names, case.reduced(case.lines, case.worlds(names)), strict=True)))
-    monkeypatch.setattr("twin.study.diagnosis.search.steady", lambda case, found: "VaryingCurrent" in found.hypothesis.effects)
+    monkeypatch.setattr(
+        "twin.study.diagnosis.search.steady", lambda case, found: "VaryingCurrent" in found.hypothesis.effects
+    )
     assert any("VaryingCurrent" in s for s, _ in held.entries)
     held.judge(("VaryingCurrent",))
     held.judge(("HullFouling",))

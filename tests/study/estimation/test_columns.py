@@ -23,7 +23,8 @@ def gear(tanker, voyages):
 
 
 def test_a_fit_that_stands_at_nothing_still_sees_what_a_slow_gear_would_do(gear):
-    """A gear that is a little slow is not slow at all: about nothing the derivative is zero, and a fit would stay there for ever."""
+    """A gear that is a little slow is not slow at all: about nothing the derivative is zero, and a fit would
+    stay there for ever."""
     assert np.abs(gear(0.0)).max() > 0.0
     assert np.array_equal(gear(0.0), gear(None))
 

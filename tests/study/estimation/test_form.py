@@ -41,7 +41,9 @@ def test_in_a_stream_every_term_is_what_it_would_be_at_the_speed_through_the_wat
     state[:, 3] -= north * np.cos(psi) + east * np.sin(psi)
     state[:, 4] -= east * np.cos(psi) - north * np.sin(psi)
     stream = model.but(find("Current")(north=north, east=east))
-    assert form.accelerations(t, stream, name) == pytest.approx(form.accelerations(replace(t, state=state), model, name))
+    assert form.accelerations(t, stream, name) == pytest.approx(
+        form.accelerations(replace(t, state=state), model, name)
+    )
     assert form.accelerations(t, stream, name) != pytest.approx(form.accelerations(t, model, name), rel=0.02)
 
 
@@ -53,35 +55,46 @@ def test_without_a_measured_heel_its_terms_are_nothing(sailed):
 
 
 def test_the_cubic_terms_are_what_a_published_polynomial_has_and_the_modulus_form_has_not():
-    """KVLCC2 by Yasukawa & Yoshimura (2015): sway and yaw of the hull, fitted with the core's terms and with these beside them."""
+    """KVLCC2 by Yasukawa & Yoshimura (2015): sway and yaw of the hull, fitted with the core's terms and with
+    these beside them."""
     v, r = (a.ravel() for a in np.meshgrid(np.linspace(-0.4, 0.4, 21), np.linspace(-0.7, 0.7, 21)))
     u = np.sqrt(1.0 - v * v)
     Y = -0.315 * v + 0.083 * r - 1.607 * v**3 + 0.379 * v * v * r - 0.391 * v * r * r + 0.008 * r**3
     modulus = np.stack([v, u * v, u * r, abs(v) * v, abs(v) * r, abs(r) * v, abs(r) * r], 1)
     a = form.Along(v, r, 0 * v, 0 * v, 0 * v, 0 * v)
     cubic = np.stack([term(a) for axis, _, term in form.HULL.values() if axis == "Y"], 1)
-    left = [np.linalg.norm(Y - c @ np.linalg.lstsq(c, Y, rcond=None)[0]) for c in (modulus, np.hstack([modulus, cubic]))]
+    left = [
+        np.linalg.norm(Y - c @ np.linalg.lstsq(c, Y, rcond=None)[0])
+        for c in (modulus, np.hstack([modulus, cubic]))
+    ]
     assert left[1] < 0.01 * left[0]
 
 
 def test_resistance_may_be_otherwise_about_every_speed_and_between_two_of_them_in_shares():
-    """By hand: at 0.7 U_0 the terms about 0.6 and 0.8 U_0 count half; ahead and astern they push her the same way round; all of them together are one
-    coefficient of the square of the speed."""
+    """By hand: at 0.7 U_0 the terms about 0.6 and 0.8 U_0 count half; ahead and astern they push her the same
+    way round; all of them together are one coefficient of the square of the speed."""
     zero, ahead = np.zeros(5), np.array([0.7, -0.7, 0.6, 1.0, 1.3])
     a = form.Along(zero, zero, zero, zero, zero, ahead)
     about = {name: term(a) for name, (_, _, term) in form.HULL.items() if name.startswith("X_at")}
-    assert about["X_at_0.6_U"] == pytest.approx([0.5, -0.5, 1.0, 0.0, 0.0]) and about["X_at_0.8_U"][:2] == pytest.approx([0.5, -0.5])
+    assert about["X_at_0.6_U"] == pytest.approx([0.5, -0.5, 1.0, 0.0, 0.0]) and about["X_at_0.8_U"][
+        :2
+    ] == pytest.approx([0.5, -0.5])
     assert sum(about.values())[:4] == pytest.approx([1.0, -1.0, 1.0, 1.0])
 
 
 @pytest.mark.parametrize("label, sd", [("form.Y_vvv", 0.8), ("core.X_uuu", 0.05)])
 def test_what_an_earlier_calibration_did_not_learn_of_the_form_is_none_and_not_anything(tanker, label, sd):
     unknowns = nuisance_unknowns(Model.of(tanker), {})
-    stored = {k: v for k, v in tanker.notes["structural"].items() if k not in ("labels", "offset", "covariance")}
+    stored = {
+        k: v for k, v in tanker.notes["structural"].items() if k not in ("labels", "offset", "covariance")
+    }
     keep = [i for i, name in enumerate(tanker.notes["structural"]["labels"]) if name != label]
     labels = [tanker.notes["structural"]["labels"][i] for i in keep]
-    rest = {"labels": labels, "offset": np.array(tanker.notes["structural"]["offset"])[keep].tolist(),
-            "covariance": np.array(tanker.notes["structural"]["covariance"])[np.ix_(keep, keep)].tolist()}  # fmt: skip
+    rest = {
+        "labels": labels,
+        "offset": np.array(tanker.notes["structural"]["offset"])[keep].tolist(),
+        "covariance": np.array(tanker.notes["structural"]["covariance"])[np.ix_(keep, keep)].tolist(),
+    }
     (i,) = [k for k, u in enumerate(unknowns) if u.label == label]
     assert unknowns[i].sd == sd
     for notes, width in ((stored | rest, 1e-3), ({}, 1.0)):

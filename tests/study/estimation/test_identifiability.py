@@ -38,7 +38,9 @@ def sailed(seconds=500.0, helm=15.0, log=True, wind=None):
         rows.append(state)
         state = model.step(state, Situation(delta=delta, n=1.6), STEP)
     x, y, psi, u, v, r = np.array(rows).T
-    noise = rng.normal(size=(8, t.size)) * np.array([[0.4], [0.4], [0.06], [0.02], [0.02], [1e-3], [0.03], [0.03]])
+    noise = rng.normal(size=(8, t.size)) * np.array(
+        [[0.4], [0.4], [0.06], [0.02], [0.02], [1e-3], [0.03], [0.03]]
+    )
     columns = {
         "north_m": x + noise[0],
         "east_m": y + noise[1],
@@ -84,7 +86,10 @@ def test_without_position_only_place_is_lost(told):
 
 
 def test_a_straight_run_without_a_log_tells_less_than_a_zigzag():
-    straight, zigzag = (observability(track(sailed(helm=h, log=False), SHIP), Model.of(SHIP))["as measured"] for h in (0.0, 15.0))
+    straight, zigzag = (
+        observability(track(sailed(helm=h, log=False), SHIP), Model.of(SHIP))["as measured"]
+        for h in (0.0, 15.0)
+    )
     assert straight["log10_condition"] > zigzag["log10_condition"] + 1.0
 
 
@@ -93,7 +98,9 @@ def test_a_gramian_of_known_rank_and_weakness():
     S[0, 0, 0], S[0, 1, 1] = 100.0, 10.0
     g = gramian(S)
     assert (g["rank"], g["informative"]) == (2, 2)
-    assert g["still_unknown"]["x"] == pytest.approx(0.01, rel=1e-3) and g["still_unknown"]["v"] == pytest.approx(1.0)
+    assert g["still_unknown"]["x"] == pytest.approx(0.01, rel=1e-3) and g["still_unknown"][
+        "v"
+    ] == pytest.approx(1.0)
 
 
 def test_principal_angles_of_planes_by_hand():
@@ -120,12 +127,14 @@ def test_features_that_are_the_cores_terms_meet_it_and_others_do_not(zigzag, tol
     same = residual_angles(t, model, lambda s: np.column_stack([s.v_r * abs(s.v_r), s.r * abs(s.r)]))
     other = residual_angles(t, model, lambda s: np.random.default_rng(1).normal(size=(s.u.size, 2)))
     assert same["sway"]["smallest_deg"] < 0.1 and "disjoint" in " ".join(verdict(told | {"residual": same}))
-    assert other["sway"]["smallest_deg"] > 60.0 and "do not meet" in " ".join(verdict(told | {"residual": other}))
+    assert other["sway"]["smallest_deg"] > 60.0 and "do not meet" in " ".join(
+        verdict(told | {"residual": other})
+    )
 
 
 def test_what_was_learned_is_judged_by_its_features_and_by_its_force(zigzag, told):
-    """Test: the bundled tanker's residual. Expected: features times last layer are the force that the loop adds; shares of it by axis,
-    and in words."""
+    """Test: the bundled tanker's residual. Expected: features times last layer are the force that the loop
+    adds; shares of it by axis, and in words."""
     phi, W = features(str(bundled(SHIP)), SHIP)
     s = Situation(u=7.5, v=0.1, r=1e-3, u_r=7.5, v_r=0.1, delta=0.1, n=1.6)
     force = np.array([x[0] for x in learned_force(str(bundled(SHIP)), SHIP)(s)])

@@ -30,19 +30,29 @@ def test_a_tenth_of_a_known_wind_is_doubted_at_each_moment_and_for_each_course(w
     terms, usual = accelerations(track, model), np.sqrt(np.mean(doubt**2, axis=0))
     strength = np.linalg.norm(doubt / standard(model), axis=1)
     assert tuple(terms) == TERMS
-    np.testing.assert_allclose(terms["sway_sin"][:, 1], usual[1] * strength / np.sqrt(np.mean(strength**2)) * np.sin(track.state[:, 2]))
-    assert not terms["sway_sin"][:, [0, 2]].any() and np.sqrt(np.mean(terms["yaw_always"][:, 2] ** 2)) == pytest.approx(usual[2])
+    np.testing.assert_allclose(
+        terms["sway_sin"][:, 1],
+        usual[1] * strength / np.sqrt(np.mean(strength**2)) * np.sin(track.state[:, 2]),
+    )
+    assert not terms["sway_sin"][:, [0, 2]].any() and np.sqrt(
+        np.mean(terms["yaw_always"][:, 2] ** 2)
+    ) == pytest.approx(usual[2])
 
 
 def test_only_a_ship_that_learned_an_effect_after_her_calibration_has_such_columns(windy, tanker, voyages):
-    assert sum(u.owner == ROUGH for u in windy.unknowns) == len(TERMS) == sum(u.owner == ROUGH for u in windy.nuisance.unknowns)
+    assert (
+        sum(u.owner == ROUGH for u in windy.unknowns)
+        == len(TERMS)
+        == sum(u.owner == ROUGH for u in windy.nuisance.unknowns)
+    )
     case = assemble([voyages["nothing"]], tanker)
     assert not any(u.owner == ROUGH for u in case.unknowns)
 
 
 def test_a_steady_pull_that_a_known_wind_may_have_missed_tells_little(windy):
-    """Test: what a voyage in a known wind says of a constant force over ground, with and without the doubt about the wind's form. Expected: less
-    with it, for the wind blew from one side; and as much of a compass that is off."""
+    """Test: what a voyage in a known wind says of a constant force over ground, with and without the doubt
+    about the wind's form. Expected: less with it, for the wind blew from one side; and as much of a compass
+    that is off."""
     sure = replace(windy, nuisance=_sure(windy.nuisance))
     with_doubt, without = (case.reduced(case.lines, case.worlds(["usual"]))[0] for case in (windy, sure))
     pull, compass = (with_doubt.rows((name,)) for name in ("ExternalForce", "HeadingBias"))

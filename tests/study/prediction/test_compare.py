@@ -1,4 +1,5 @@
-"""`twin compare`: the contract's JSON, the verdict first, thresholds, and a clear line for what cannot be used."""
+"""`twin compare`: the contract's JSON, the verdict first, thresholds, and a clear line for what cannot be
+used."""
 
 import json
 from pathlib import Path
@@ -52,10 +53,16 @@ def test_a_perfect_model_is_said_to_be_no_worse_than_one_would_look(sailed, make
     assert result["where"] == []
 
 
-@pytest.mark.parametrize("off, said", [((1.2, 3.0, 1.1), "After 60 s"), ((1.2, 3.0, 1.6), "After 120 s"), ((1.2, 1.4, 1.1), "After 120 s")])
+@pytest.mark.parametrize(
+    "off, said",
+    [((1.2, 3.0, 1.1), "After 60 s"), ((1.2, 3.0, 1.6), "After 120 s"), ((1.2, 1.4, 1.1), "After 120 s")],
+)
 def test_the_verdict_is_of_the_longest_horizon_or_of_the_one_that_stands_out(off, said):
     floor = {"position_mae_m": 2.0, "heading_mae_deg": 1.0, "of": "sensors and structure"}
-    rows = [{"horizon_s": h, "position_mae_m": 2.0 * x, "heading_mae_deg": 1.0, "noise_floor": floor} for h, x in zip((10.0, 60.0, 120.0), off, strict=True)]
+    rows = [
+        {"horizon_s": h, "position_mae_m": 2.0 * x, "heading_mae_deg": 1.0, "noise_floor": floor}
+        for h, x in zip((10.0, 60.0, 120.0), off, strict=True)
+    ]
     words = verdict({"horizons": rows, "where": []})
     assert words.startswith(said) and ("no worse" in words) == (max(off) < 1.5)
 
@@ -79,7 +86,10 @@ def test_a_calibrated_ship_is_held_against_her_structural_floor(sailed, make, kv
     from dataclasses import replace
 
     notes = dict(kvlcc2.notes) | {"structural": {"floor": {"share": [0.05, 0.05, 0.05], "calm": 0.5}}}
-    rows = [compare([sailed(make())], Model.of(s)).result["horizons"][-1] for s in (kvlcc2, replace(kvlcc2, notes=notes))]
+    rows = [
+        compare([sailed(make())], Model.of(s)).result["horizons"][-1]
+        for s in (kvlcc2, replace(kvlcc2, notes=notes))
+    ]
     assert [r["noise_floor"]["of"] for r in rows] == ["sensors", "sensors and structure"]
     assert rows[1]["noise_floor"]["position_mae_m"] > 3.0 * rows[0]["noise_floor"]["position_mae_m"]
 
@@ -95,7 +105,14 @@ def test_json_on_standard_output_is_alone_there(verb, on_disk, make, capsys):
     assert [h["horizon_s"] for h in json.loads(capsys.readouterr().out)["horizons"]] == [30.0]
 
 
-UNKNOWN = ("x", "position_mae=1", "nonsense=1", "channels.yaw_rate_dps.mae=1", "learned_share@60=1", "position_mae_m@soon=1")
+UNKNOWN = (
+    "x",
+    "position_mae=1",
+    "nonsense=1",
+    "channels.yaw_rate_dps.mae=1",
+    "learned_share@60=1",
+    "position_mae_m@soon=1",
+)
 
 
 @pytest.mark.parametrize(
@@ -107,7 +124,9 @@ def test_a_threshold_that_is_passed_is_exit_code_3(verb, on_disk, make, limit, c
     assert verb("compare", on_disk(make()), "--ship", "kvlcc2", "--fail-above", limit) == code
 
 
-@pytest.mark.parametrize("words", [["--fail-above", x] for x in UNKNOWN] + [["--horizon", "-3"], ["--horizon", "soon"]])
+@pytest.mark.parametrize(
+    "words", [["--fail-above", x] for x in UNKNOWN] + [["--horizon", "-3"], ["--horizon", "soon"]]
+)
 def test_words_that_mean_nothing_are_a_usage_error(verb, words):
     with pytest.raises(SystemExit) as stop:
         verb("compare", "v.mcap", "--ship", "kvlcc2", *words)
@@ -127,12 +146,16 @@ def bad_files(tmp_path, on_disk, make):
     return [*(str(tmp_path / n) for n in names), short, str(tmp_path)]
 
 
-def test_voyages_that_cannot_be_used_are_one_clear_line_and_exit_code_4(verb, tmp_path, on_disk, make, capsys):
+def test_voyages_that_cannot_be_used_are_one_clear_line_and_exit_code_4(
+    verb, tmp_path, on_disk, make, capsys
+):
     for path in bad_files(tmp_path, on_disk, make):
         page = tmp_path / "page.html"
         assert verb("compare", path, "--ship", "kvlcc2", "--report", page) == 4, path
         error = capsys.readouterr().err.strip().splitlines()
-        assert error[-1].startswith("DataError: ") and "Traceback" not in "\n".join(error) and not page.exists()
+        assert (
+            error[-1].startswith("DataError: ") and "Traceback" not in "\n".join(error) and not page.exists()
+        )
 
 
 def test_a_voyage_given_twice_is_refused(verb, on_disk, make, capsys):
@@ -141,7 +164,9 @@ def test_a_voyage_given_twice_is_refused(verb, on_disk, make, capsys):
     assert "same voyage" in capsys.readouterr().err
 
 
-def test_a_ship_file_with_an_unknown_effect_is_exit_code_5_and_names_the_nearest(verb, on_disk, make, tmp_path, kvlcc2, capsys):
+def test_a_ship_file_with_an_unknown_effect_is_exit_code_5_and_names_the_nearest(
+    verb, on_disk, make, tmp_path, kvlcc2, capsys
+):
     save(kvlcc2, tmp_path / "s.toml")
     (tmp_path / "s.toml").write_text((tmp_path / "s.toml").read_text() + "\n[effects.Wnid]\n")
     assert verb("compare", on_disk(make()), "--ship", tmp_path / "s.toml") == 5

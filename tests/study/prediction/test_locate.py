@@ -1,4 +1,5 @@
-"""Where it fails: noise yields no regime, a planted one is found in words, and the worst windows are the worst."""
+"""Where it fails: noise yields no regime, a planted one is found in words, and the worst windows are the
+worst."""
 
 import numpy as np
 import pytest
@@ -34,7 +35,9 @@ def test_the_wind_comes_from_the_side_it_comes_from(make, kvlcc2):
     assert asked["wind from the starboard beam"].mean() > 0.9
 
 
-def test_errors_that_wander_by_themselves_yield_a_regime_in_one_voyage_of_twenty(windows, kvlcc2, monkeypatch):
+def test_errors_that_wander_by_themselves_yield_a_regime_in_one_voyage_of_twenty(
+    windows, kvlcc2, monkeypatch
+):
     rng, size = np.random.default_rng(3), windows[0].start.size
     hits = 0
     for _ in range(40):

@@ -1,4 +1,5 @@
-"""Open-loop prediction: true to the model that made the voyage, honest about noise, whole about instruments and holes."""
+"""Open-loop prediction: true to the model that made the voyage, honest about noise, whole about instruments
+and holes."""
 
 from dataclasses import replace
 
@@ -30,8 +31,8 @@ def test_the_model_that_made_a_voyage_without_noise_predicts_it_within_centimetr
 
 @pytest.mark.parametrize("lengths", [0.75, 1.5])
 def test_a_log_slower_than_the_ship_is_stepped_finer_and_stays_in_the_world(make, kvlcc2, lengths):
-    """Test: one row while she sails so many lengths. Expected: the model that made the voyage is off by what the rudder did in
-    between, not by what steps too long for her make of it (before: 1e6 m)."""
+    """Test: one row while she sails so many lengths. Expected: the model that made the voyage is off by what
+    the rudder did in between, not by what steps too long for her make of it (before: 1e6 m)."""
     full = make(noise=0.0)
     rows = slice(None, None, round(32 * lengths))
     slow = full.with_rows(full.time_s[rows], {n: x[rows] for n, x in full.columns.items()})
@@ -51,13 +52,21 @@ def test_a_perfect_model_errs_as_much_as_the_noise_floor_says(make, kvlcc2, name
     assert 0.6 < error / floor < 1.6
 
 
-def test_a_structural_floor_is_no_lower_than_the_calibrated_ship_was_off_on_voyages_she_was_not_fitted_to(make, kvlcc2):
-    """Test: a ship file says that 120 s ahead she was once 300 m and 9 deg off, 10 s ahead hardly. Expected: the structural floor says so, too, and
-    in between as a power of the time; the sensors' floor and the model's error are what they were."""
-    off = [{"horizon_s": h, "position_m": p, "heading_deg": a} for h, p, a in ((10.0, 1e-6, 1e-6), (120.0, 300.0, 9.0))]
+def test_a_structural_floor_is_no_lower_than_the_calibrated_ship_was_off_on_voyages_she_was_not_fitted_to(
+    make, kvlcc2
+):
+    """Test: a ship file says that 120 s ahead she was once 300 m and 9 deg off, 10 s ahead hardly. Expected:
+    the structural floor says so, too, and in between as a power of the time; the sensors' floor and the
+    model's error are what they were."""
+    off = [
+        {"horizon_s": h, "position_m": p, "heading_deg": a}
+        for h, p, a in ((10.0, 1e-6, 1e-6), (120.0, 300.0, 9.0))
+    ]
     once = replace(kvlcc2, notes={**kvlcc2.notes, "structural": {"held_out": off}})
     before, after = (predict(track(make(), s), Model.of(s), floor=Floor()) for s in (kvlcc2, once))
-    assert mean(after, "position", 120.0, STRUCTURE) == pytest.approx(300.0) and mean(after, "heading", 120.0, STRUCTURE) == pytest.approx(np.radians(9.0))
+    assert mean(after, "position", 120.0, STRUCTURE) == pytest.approx(300.0) and mean(
+        after, "heading", 120.0, STRUCTURE
+    ) == pytest.approx(np.radians(9.0))
     assert mean(after, "position", 10.0, STRUCTURE) == mean(before, "position", 10.0, STRUCTURE)
     for run in (MODEL, SENSORS):
         assert mean(after, "position", 120.0, run) == mean(before, "position", 120.0, run)
@@ -79,7 +88,9 @@ def test_a_structural_floor_stands_above_that_of_the_sensors(make, kvlcc2):
         ("SpeedLogScale", {"scale": 0.1}),
     ],
 )
-def test_a_known_fault_of_an_instrument_is_undone_at_the_start_and_shown_in_the_readings(make, kvlcc2, name, values):
+def test_a_known_fault_of_an_instrument_is_undone_at_the_start_and_shown_in_the_readings(
+    make, kvlcc2, name, values
+):
     effect = find(name).absent(kvlcc2).but(**values)
     t = track(make(effect, noise=0.0), kvlcc2)
     aware, unaware = predict(t, Model.of(kvlcc2).but(effect)), predict(t, Model.of(kvlcc2))
@@ -88,18 +99,28 @@ def test_a_known_fault_of_an_instrument_is_undone_at_the_start_and_shown_in_the_
 
 
 def test_a_high_antenna_that_heel_carries_aside_is_undone_where_roll_was_recorded(make, kvlcc2):
-    """Test: 40 m above the axis of roll, heeling by 5 deg in a minute and a half (written by hand, not by the effect). Expected: a model that has the
-    antenna there predicts as well as one without it does the voyage of a low antenna."""
+    """Test: 40 m above the axis of roll, heeling by 5 deg in a minute and a half (written by hand, not by the
+    effect). Expected: a model that has the antenna there predicts as well as one without it does the voyage
+    of a low antenna."""
     made, high = make(noise=0.0), 40.0
-    turn, heel = np.radians(made["heading_true_north_deg"]), np.radians(5.0) * np.sin(2.0 * np.pi * made.time_s / 90.0)
+    turn, heel = (
+        np.radians(made["heading_true_north_deg"]),
+        np.radians(5.0) * np.sin(2.0 * np.pi * made.time_s / 90.0),
+    )
     swung = high * np.sin(heel)
     columns = {**made.columns, "roll_deg": np.degrees(heel)}
-    columns["north_m"], columns["east_m"] = made["north_m"] - swung * np.sin(turn), made["east_m"] + swung * np.cos(turn)
+    columns["north_m"], columns["east_m"] = (
+        made["north_m"] - swung * np.sin(turn),
+        made["east_m"] + swung * np.cos(turn),
+    )
     columns["surge_velocity_mps"] = made["surge_velocity_mps"] - swung * np.radians(made["yaw_rate_degps"])
     columns["sway_velocity_mps"] = made["sway_velocity_mps"] + np.gradient(swung, made.time_s)
     there = track(made.with_rows(made.time_s, columns), kvlcc2)
     aware = Model.of(kvlcc2).but(find("AntennaOffset").absent(kvlcc2).but(above=high))
-    off = [mean(predict(t, m), "position", 120.0) for t, m in ((track(made, kvlcc2), Model.of(kvlcc2)), (there, aware), (there, Model.of(kvlcc2)))]
+    off = [
+        mean(predict(t, m), "position", 120.0)
+        for t, m in ((track(made, kvlcc2), Model.of(kvlcc2)), (there, aware), (there, Model.of(kvlcc2)))
+    ]
     assert off[1] < off[0] + 0.1 * (off[2] - off[0]) and off[2] > 5.0 * off[0]
 
 
@@ -125,7 +146,9 @@ def test_an_effect_whose_input_was_not_recorded_is_switched_off_and_said(make, k
     t = track(make(), kvlcc2)
     model, off = fed(windy, t)
     assert [type(e).__name__ for e in off] == ["Wind"] and not model.pushes
-    assert switched_off(windy, [t]) == [{"effect": "Wind", "voyage": "made", "not_measured": ["wind_speed", "wind_to"]}]
+    assert switched_off(windy, [t]) == [
+        {"effect": "Wind", "voyage": "made", "not_measured": ["wind_speed", "wind_to"]}
+    ]
 
 
 def test_a_learned_force_acts_as_a_force_of_the_same_size_does(make, kvlcc2):
@@ -133,7 +156,11 @@ def test_a_learned_force_acts_as_a_force_of_the_same_size_does(make, kvlcc2):
 
     t, push = track(make(), kvlcc2), 3e5
     learned = replace(Model.of(kvlcc2), residual=lambda s: Force(s.u * 0.0, s.u * 0.0 + push, s.u * 0.0))
-    known = with_effect(kvlcc2, "TowForce", **{p.name: push for p in find("TowForce").params() if p.name in ("Y", "aside", "starboard")})
+    known = with_effect(
+        kvlcc2,
+        "TowForce",
+        **{p.name: push for p in find("TowForce").params() if p.name in ("Y", "aside", "starboard")},
+    )
     a, b = predict(t, learned).promised[0], predict(t, known).promised[0]
     assert known.pushes[0] != find("TowForce").absent(kvlcc2)
     assert np.allclose(a[-1, :, :2], b[-1, :, :2], atol=0.05)

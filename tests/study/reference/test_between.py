@@ -59,21 +59,30 @@ def test_log_probability_is_that_of_the_readings_with_the_numbers_integrated_out
     spread = root @ covariance @ root.T + np.eye(9)
     off = e - root @ mean
     straight = -0.5 * (off @ np.linalg.solve(spread, off) + np.linalg.slogdet(spread)[1])
-    assert Told(root.T @ root, root.T @ e, float(e @ e)).log_probability(mean, covariance) == pytest.approx(straight)
+    assert Told(root.T @ root, root.T @ e, float(e @ e)).log_probability(mean, covariance) == pytest.approx(
+        straight
+    )
 
 
 def test_its_slope_by_each_variance_is_the_difference_quotient():
     rng = np.random.default_rng(4)
     root, e = rng.standard_normal((9, P)), rng.standard_normal(9)
-    told, mean, covariance = Told(root.T @ root, root.T @ e, float(e @ e)), rng.standard_normal(P), 0.3 * np.eye(P)
+    told, mean, covariance = (
+        Told(root.T @ root, root.T @ e, float(e @ e)),
+        rng.standard_normal(P),
+        0.3 * np.eye(P),
+    )
     slope, _ = told.score(mean, covariance)
     for i in range(P):
         up, down = (covariance + s * 1e-5 * np.diag(np.eye(P)[i]) for s in (1.0, -1.0))
-        assert (told.log_probability(mean, up) - told.log_probability(mean, down)) / 2e-5 == pytest.approx(slope[i], rel=1e-4)
+        assert (told.log_probability(mean, up) - told.log_probability(mean, down)) / 2e-5 == pytest.approx(
+            slope[i], rel=1e-4
+        )
 
 
 def segments_of(truth, spread, seed=0, count=40):
-    """Normal equations of segments that all know the same numbers, scattered by `spread` times what white readings would."""
+    """Normal equations of segments that all know the same numbers, scattered by `spread` times what white
+    readings would."""
     rng = np.random.default_rng(seed)
     A, b = [], []
     for _ in range(count):
@@ -93,7 +102,13 @@ def test_what_the_unknowns_explain_tempers_nothing_and_what_they_cannot_does():
 
 
 def test_what_any_day_brings_is_as_much_as_the_days_had_whatever_its_direction():
-    named = [("core", "X_uu"), ("Current", "north"), ("Current", "east"), ("ExternalForce", "north"), ("ExternalForce", "turn_north")]
+    named = [
+        ("core", "X_uu"),
+        ("Current", "north"),
+        ("Current", "east"),
+        ("ExternalForce", "north"),
+        ("ExternalForce", "turn_north"),
+    ]
     unknowns = [Unknown(owner, name, "", 0.0, 1.0, -9.0, 9.0) for owner, name in named]
     much = of_any_day(np.array([1.0, 2.0, -3.0, 0.5, 7.0]), np.array([0.1, 0.6, 0.8, 0.75, 9.0]), unknowns)
     stream = np.sqrt(0.5 * ((0.6 + 2.0**2) + (0.8 + 3.0**2)))

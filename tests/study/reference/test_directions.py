@@ -13,11 +13,14 @@ C, Q = 12, 3  # numbers of the nuisance, and of the effects
 
 
 def equations():
-    """Normal equations of columns that are alike in part, with a nuisance of which some is known well and some not."""
+    """Normal equations of columns that are alike in part, with a nuisance of which some is known well and
+    some not."""
     rng = np.random.default_rng(7)
     G = rng.normal(size=(60, C + Q)) * np.geomspace(3.0, 1e-3, C + Q)[rng.permutation(C + Q)]
     e = rng.normal(size=60)
-    unknowns = tuple(Unknown("core" if i < C else "Effect", str(i), "", 0.0, 1.0, -9.0, 9.0) for i in range(C + Q))
+    unknowns = tuple(
+        Unknown("core" if i < C else "Effect", str(i), "", 0.0, 1.0, -9.0, 9.0) for i in range(C + Q)
+    )
     root = rng.normal(size=(C, C))
     information = root @ root.T + np.eye(C)
     return G, e, unknowns, Nuisance(unknowns[:C], information, information @ rng.normal(size=C))
@@ -55,8 +58,17 @@ def test_what_is_not_asked_about_stays_where_it_is_expected():
 
 def test_the_usual_amount_of_what_is_chosen_is_no_direction():
     _, _, unknowns, nuisance = equations()
-    owned = tuple(Unknown("Effect", u.name, "", 0.0, 1.0, -9.0, 9.0) if i < 2 else u for i, u in enumerate(nuisance.unknowns))
-    along = directions(1e6 * np.eye(C + Q), Nuisance(owned, nuisance.information, nuisance.pull), (*owned, *unknowns[C:]), 1.5, ("Effect",))
+    owned = tuple(
+        Unknown("Effect", u.name, "", 0.0, 1.0, -9.0, 9.0) if i < 2 else u
+        for i, u in enumerate(nuisance.unknowns)
+    )
+    along = directions(
+        1e6 * np.eye(C + Q),
+        Nuisance(owned, nuisance.information, nuisance.pull),
+        (*owned, *unknowns[C:]),
+        1.5,
+        ("Effect",),
+    )
     assert along.columns.shape == (C, 1 + C - 2)
     assert not along.columns[:2, 1:].any()
 
@@ -65,9 +77,15 @@ def test_a_case_of_few_columns_tells_of_its_effects_what_the_whole_case_tells(ta
     case = assemble([voyages["RudderWear"]], tanker)
     few, kept = case.along(case.lines)
     assert kept.all() and len(few.unknowns) < len(case.unknowns)
-    whole, small = (posterior(c.reduced(c.lines, c.worlds(["usual"]))[0], ("RudderWear",)) for c in (case, few))
+    whole, small = (
+        posterior(c.reduced(c.lines, c.worlds(["usual"]))[0], ("RudderWear",)) for c in (case, few)
+    )
     assert small.z == pytest.approx(whole.z, abs=0.05)
     assert small.log_evidence == pytest.approx(whole.log_evidence, abs=0.5)
     column = [u.label for u in case.unknowns].index("RudderWear.loss")
     lines = innovate(few.lines, few.worlds(["usual"]))[0].A.shape[-1]
-    assert lines == len(few.unknowns) and few.lines[0].A[..., -len(few.effects) :].any() and case.lines[0].A[..., column].any()
+    assert (
+        lines == len(few.unknowns)
+        and few.lines[0].A[..., -len(few.effects) :].any()
+        and case.lines[0].A[..., column].any()
+    )

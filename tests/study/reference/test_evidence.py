@@ -6,7 +6,16 @@ import numpy as np
 import pytest
 
 from twin.study.estimation.columns import Unknown
-from twin.study.reference.evidence import SPIKE, Reduced, boxed, given, log_evidence, posterior, weigh_all, weigh_with
+from twin.study.reference.evidence import (
+    SPIKE,
+    Reduced,
+    boxed,
+    given,
+    log_evidence,
+    posterior,
+    weigh_all,
+    weigh_with,
+)
 
 
 def unknowns():
@@ -32,7 +41,8 @@ def test_low_rank_steps_give_the_evidence_of_the_whole_posterior(reduced):
 
 
 def test_the_same_where_any_day_brings_some_of_an_effect(reduced):
-    """B is no spike but half as wide as when it is there: then it takes some of the credit also when it is not."""
+    """B is no spike but half as wide as when it is there: then it takes some of the credit also when it is
+    not."""
     usual = replace(reduced, spike=np.array([SPIKE, 0.5, 0.5, SPIKE]))
     for chosen, value in weigh_all(usual, ["A", "B", "C"]):
         assert value == pytest.approx(log_evidence(usual, chosen, posterior(usual, chosen)), abs=1e-8), chosen
@@ -49,7 +59,11 @@ def test_evidence_does_not_depend_on_where_the_equations_were_linearised(reduced
     """The same quadratic about another point: e' = e - G at, and the prior still centred on nothing."""
     at = np.array([0.0, 1.2, -0.3, 0.0])
     moved = Reduced(
-        reduced.A, reduced.b - reduced.A @ at, reduced.base + float(reduced.b @ at) - 0.5 * float(at @ reduced.A @ at), unknowns(), at
+        reduced.A,
+        reduced.b - reduced.A @ at,
+        reduced.base + float(reduced.b @ at) - 0.5 * float(at @ reduced.A @ at),
+        unknowns(),
+        at,
     )
     here, there = posterior(reduced, ("B",)), posterior(moved, ("B",))
     np.testing.assert_allclose(here.z, there.z, atol=1e-10)
@@ -72,25 +86,37 @@ def test_one_effect_more_beside_those_found_gives_the_evidence_of_the_whole_post
 
 
 def test_what_is_left_given_some_values_is_the_whole_posterior_conditioned_on_them(reduced):
-    at, known, z = np.array([0.3, 1.2, -0.3, 0.1]), np.array([False, True, False, False]), np.array([0.0, 0.7, 0.0, 0.0])
+    at, known, z = (
+        np.array([0.3, 1.2, -0.3, 0.1]),
+        np.array([False, True, False, False]),
+        np.array([0.0, 0.7, 0.0, 0.0]),
+    )
     moved = Reduced(reduced.A, reduced.b - reduced.A @ at, reduced.base, unknowns(), at)
     whole, left = posterior(moved, ("A", "B")), posterior(given(moved, z, known), ("A", "B"))
     along = whole.covariance[~known][:, known] / whole.covariance[known][:, known]
-    np.testing.assert_allclose(left.z, whole.z[~known] + along[:, 0] * (z[known] - whole.z[known]), atol=1e-10)
+    np.testing.assert_allclose(
+        left.z, whole.z[~known] + along[:, 0] * (z[known] - whole.z[known]), atol=1e-10
+    )
     assert np.abs(left.z - whole.z[~known]).max() > 0.01
 
 
 @pytest.mark.parametrize("pull", [(2.0, -2.0), (1.0, -4.0), (3.0, 1.0), (-0.5, -0.5)])
 def test_of_two_numbers_that_do_for_each_other_none_stands_outside_its_box_for_the_other(pull):
-    """Test: two numbers from 0 to 5 that work alike, of which the readings would have one far out and the other as far below nothing.
-    Expected: the most probable place, and the evidence, that a fine grid over the box finds (within a tenth of what leaving the box cost)."""
+    """Test: two numbers from 0 to 5 that work alike, of which the readings would have one far out and the
+    other as far below nothing. Expected: the most probable place, and the evidence, that a fine grid over the
+    box finds (within a tenth of what leaving the box cost)."""
     own = (Unknown("A", "a", "-", 0.0, 1.0, 0.0, 5.0), Unknown("A", "b", "-", 0.0, 1.0, 0.0, 5.0))
     A = 40.0 * np.array([[1.0, 0.95], [0.95, 1.0]])
     reduced = Reduced(A, A @ np.array(pull), 0.0, own, np.zeros(2))
     found = posterior(reduced, ("A",))
     grid = np.linspace(0.0, 5.0, 2001)
     a, b = np.meshgrid(grid, grid, indexing="ij")
-    log_density = a * reduced.b[0] + b * reduced.b[1] - 0.5 * (A[0, 0] * a**2 + 2.0 * A[0, 1] * a * b + A[1, 1] * b**2) - 0.5 * (a**2 + b**2)
+    log_density = (
+        a * reduced.b[0]
+        + b * reduced.b[1]
+        - 0.5 * (A[0, 0] * a**2 + 2.0 * A[0, 1] * a * b + A[1, 1] * b**2)
+        - 0.5 * (a**2 + b**2)
+    )
     top = np.unravel_index(np.argmax(log_density), log_density.shape)
     np.testing.assert_allclose(boxed(reduced, ("A",), found).z, [a[top], b[top]], atol=5e-3)
     weight = np.exp(log_density - log_density.max())
@@ -102,7 +128,8 @@ def test_of_two_numbers_that_do_for_each_other_none_stands_outside_its_box_for_t
 
 
 def test_what_stands_at_the_edge_of_its_box_stands_there_to_the_last_digit():
-    """Test: three numbers, two of them pulled below nothing. Expected: exactly nothing (0.4e-15 before), for an effect that ended there is none."""
+    """Test: three numbers, two of them pulled below nothing. Expected: exactly nothing (0.4e-15 before), for
+    an effect that ended there is none."""
     numbers = tuple(Unknown("A", name, "", 0.0, 1.0, 0.0, 10.0) for name in "abc")
     A = np.array([[54.0, -19.5, -16.5], [-19.5, 21.9, 18.4], [-16.5, 18.4, 23.0]])
     reduced = Reduced(A, np.array([14.0, -24.0, -13.0]), 0.0, numbers, np.zeros(3))

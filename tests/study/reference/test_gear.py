@@ -1,4 +1,5 @@
-"""The rudder's order in place of the rudder: the gear between them is found on the references and becomes a part of the ship's model."""
+"""The rudder's order in place of the rudder: the gear between them is found on the references and becomes a
+part of the ship's model."""
 
 import json
 from dataclasses import replace
@@ -24,17 +25,33 @@ GYRO = 1e-6  # rad/s that the ship file already says of the gyro
 
 @pytest.fixture(scope="module")
 def ordered(tmp_path_factory):
-    """Two voyages of the tanker that hold the rudder's order behind a gear slower than usual, and one behind a gear that is slower still;
-    what was hidden in each; and the ship calibrated on the first two."""
+    """Two voyages of the tanker that hold the rudder's order behind a gear slower than usual, and one behind
+    a gear that is slower still; what was hidden in each; and the ship calibrated on the first two."""
     folder, paths, hidden = tmp_path_factory.mktemp("gear"), {}, {}
-    for name, manoeuvre, strength, seed in (("zigzag", "zigzag_20", 0.5, 970), ("mixed", "mixed", 0.5, 971), ("slower", "mixed", 2.0, 972)):
-        made = simulate([Case("kvlcc2", manoeuvre, hidden=(("SteeringLag", strength),), seed=seed, duration_s=1200.0)])[0]
+    for name, manoeuvre, strength, seed in (
+        ("zigzag", "zigzag_20", 0.5, 970),
+        ("mixed", "mixed", 0.5, 971),
+        ("slower", "mixed", 2.0, 972),
+    ):
+        made = simulate(
+            [Case("kvlcc2", manoeuvre, hidden=(("SteeringLag", strength),), seed=seed, duration_s=1200.0)]
+        )[0]
         paths[name], hidden[name] = folder / f"{name}.mcap", made.hidden["SteeringLag"]
         write_voyage(recorded(name, made.columns, every=10), paths[name])
     start, out, said = folder / "start.toml", folder / "tanker.toml", folder / "said.json"
     ship = load("kvlcc2")
     save(replace(ship, effects=(catalogue()["GyroBias"].absent(ship).but(bias=GYRO),)), start)
-    words = ["calibrate", str(paths["zigzag"]), str(paths["mixed"]), "--ship", str(start), "-o", str(out), "--json", str(said)]
+    words = [
+        "calibrate",
+        str(paths["zigzag"]),
+        str(paths["mixed"]),
+        "--ship",
+        str(start),
+        "-o",
+        str(out),
+        "--json",
+        str(said),
+    ]
     assert cli.main(words) == 0
     return paths, hidden, out, json.loads(said.read_text())
 
@@ -49,7 +66,11 @@ def test_the_gear_between_order_and_rudder_is_found_on_the_references(ordered):
 
 def test_what_else_the_ship_file_held_stays_as_it_was(ordered):
     ship = load(ordered[2])
-    assert [type(e).__name__ for e in ship.effects] == ["GyroBias", "SteeringLag"] == ship.notes["structural"]["beside_effects"]
+    assert (
+        [type(e).__name__ for e in ship.effects]
+        == ["GyroBias", "SteeringLag"]
+        == ship.notes["structural"]["beside_effects"]
+    )
     assert ship.effects[0].bias == GYRO
 
 
@@ -62,13 +83,19 @@ def test_a_gear_that_became_slower_than_the_ship_file_has_it_is_named_as_a_chang
     assert "a change of SteeringLag" in capsys.readouterr().out
     travel = next(p for p in said["candidates"][0]["parameters"] if p["name"] == "travel_time")
     assert travel["low95"] < np.degrees(TRAVEL) / hidden["slower"]["rate_degps"] < travel["high95"]
-    assert travel["in_ship_file"] == pytest.approx(next(e for e in load(out).effects if type(e) is SteeringLag).travel_time)
+    assert travel["in_ship_file"] == pytest.approx(
+        next(e for e in load(out).effects if type(e) is SteeringLag).travel_time
+    )
 
 
 def test_an_effect_that_the_ship_has_is_asked_about_from_where_it_stands(ordered):
     model = Model.of(load(ordered[2]))
     (gear,) = model.lags
-    assert [u.centre for u in effect_unknowns(SteeringLag, model)] == [gear.delay, gear.travel_time, gear.ease]
+    assert [u.centre for u in effect_unknowns(SteeringLag, model)] == [
+        gear.delay,
+        gear.travel_time,
+        gear.ease,
+    ]
 
 
 def test_of_an_effect_added_after_calibration_the_ship_file_knows_nothing_but_its_prior(ordered):
@@ -89,4 +116,8 @@ def test_a_change_is_asked_of_what_she_has_and_of_the_weather_that_she_knows(tan
     assert {"Wind", "RudderWear"} <= set(judgeable(tracks, has, known))
     assert of_known_weather(Model.of(tanker), known) == {}
     usual = of_known_weather(has, known)
-    assert usual and {label.split(".")[0] for label in usual} == {"Wind"} and usual["Wind.c_y"] == pytest.approx(USUAL * 0.8)
+    assert (
+        usual
+        and {label.split(".")[0] for label in usual} == {"Wind"}
+        and usual["Wind.c_y"] == pytest.approx(USUAL * 0.8)
+    )

@@ -24,19 +24,26 @@ def calm(tanker, voyages):
 
 
 def in_waves(t, yaw=YAW, sway=SWAY, period_s=PERIOD_S):
-    """The same track in a sea that yaws and sways her, seen by all instruments alike, and her roll and rudder swinging with it."""
+    """The same track in a sea that yaws and sways her, seen by all instruments alike, and her roll and rudder
+    swinging with it."""
     omega = 2.0 * np.pi / period_s
     swing, rate = np.sin(omega * t.t), omega * np.cos(omega * t.t)
     psi, v = yaw * swing, sway * omega * swing / omega
     aside = -sway / omega * np.cos(omega * t.t)
     c, s = np.cos(t.state[:, 2]), np.sin(t.state[:, 2])
     zero = np.zeros_like(swing)
-    off = np.column_stack([-s * aside, c * aside, psi, t.state[:, 4] * psi, v - t.state[:, 3] * psi, yaw * rate, zero, zero])
+    off = np.column_stack(
+        [-s * aside, c * aside, psi, t.state[:, 4] * psi, v - t.state[:, 3] * psi, yaw * rate, zero, zero]
+    )
     measured = t.measured + off
     measured[:, 6:] = np.nan
     return replace(
-        t, state=t.state + off[:, :6], measured=measured, delta=t.delta + 0.02 * swing, weather=dict(t.weather) | {"phi": 0.1 * swing}
-    )  # fmt: skip
+        t,
+        state=t.state + off[:, :6],
+        measured=measured,
+        delta=t.delta + 0.02 * swing,
+        weather=dict(t.weather) | {"phi": 0.1 * swing},
+    )
 
 
 @pytest.fixture(scope="module")
@@ -62,11 +69,20 @@ def test_a_sea_that_was_measured_but_moves_nobody_is_no_sea(calm, tanker):
     assert swung(measured, Model.of(tanker)) is measured
 
 
-@pytest.mark.parametrize("gain, measured, believed", [(1.0, True, True), (-1.0, True, False), (1.0, False, False), (99.0, False, True)])
-def test_a_sea_that_was_measured_need_only_be_the_likelier(monkeypatch, calm, tanker, gain, measured, believed):
+@pytest.mark.parametrize(
+    "gain, measured, believed",
+    [(1.0, True, True), (-1.0, True, False), (1.0, False, False), (99.0, False, True)],
+)
+def test_a_sea_that_was_measured_need_only_be_the_likelier(
+    monkeypatch, calm, tanker, gain, measured, believed
+):
     rough = in_waves(calm)
-    recorded = replace(calm, weather=dict(calm.weather) | ({"H_s": np.full(len(calm), 3.0)} if measured else {}))
-    monkeypatch.setattr(seaway, "_likeliest", lambda *_: (replace(rough, swell=np.ones((len(calm), 6))), gain, 0.0))
+    recorded = replace(
+        calm, weather=dict(calm.weather) | ({"H_s": np.full(len(calm), 3.0)} if measured else {})
+    )
+    monkeypatch.setattr(
+        seaway, "_likeliest", lambda *_: (replace(rough, swell=np.ones((len(calm), 6))), gain, 0.0)
+    )
     assert (swung(recorded, Model.of(tanker)).swell is not None) is believed
 
 
@@ -123,7 +139,8 @@ def test_what_carries_waves_on_keeps_their_strength(rough):
 
 
 def test_waves_push_nobody_for_long():
-    """|w / noise| = |s / (s2 + 2 zeta o1 s + o1^2)| |s / (s2 + 2 zeta o2 s + o2^2)|: a fifth of their frequency shows a thousandth of its middle."""
+    """|w / noise| = |s / (s2 + 2 zeta o1 s + o1^2)| |s / (s2 + 2 zeta o2 s + o2^2)|: a fifth of their
+    frequency shows a thousandth of its middle."""
     gain = [abs(np.linalg.solve(1j * x * np.eye(4) - RATE, [0.0, 0.0, 1.0, 0.0])[0]) for x in (0.0, 0.2, 1.0)]
     assert gain[0] == pytest.approx(0.0, abs=1e-12)
     by_hand = np.prod([x / abs((o**2 - x**2) + 0.2j * o * x) for x in (0.2,) for o in (0.9, 1.1)])
@@ -132,7 +149,8 @@ def test_waves_push_nobody_for_long():
 
 
 def test_waves_stir_the_mean_of_what_drag_does_and_nothing_without_waves(rough, calm, tanker):
-    """Half of |v + a| (v + a) + |v - a| (v - a) is more than |v| v by a^2 sign v: of cross-flow drag with swings of 0.5 m/s about 1 m/s."""
+    """Half of |v + a| (v + a) + |v - a| (v - a) is more than |v| v by a^2 sign v: of cross-flow drag with
+    swings of 0.5 m/s about 1 m/s."""
     model = Model.of(tanker)
     assert not stirred(calm, model).any()
     swing = 0.5 * np.sin(2.0 * np.pi / PERIOD_S * rough.t)

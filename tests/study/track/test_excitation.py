@@ -1,4 +1,5 @@
-"""What counts as a manoeuvre: a turn or a change of the engine's speed; holding a course in a seaway does not."""
+"""What counts as a manoeuvre: a turn or a change of the engine's speed; holding a course in a seaway does
+not."""
 
 import numpy as np
 import pytest
@@ -14,19 +15,38 @@ def ship(request):
 
 
 def sailed(ship, turn_deg=0.0, wiggle_deg=0.0, shaft=0.0, lengths=100.0):
-    """`turn_deg` in the middle, over two lengths; `wiggle_deg`: an autopilot's weaving; `shaft`: a step, as a share."""
+    """`turn_deg` in the middle, over two lengths; `wiggle_deg`: an autopilot's weaving; `shaft`: a step, as a
+    share."""
     h = float(ship.scale("time")) / 4.0
     n = int(4 * lengths)
     s = np.arange(n) / 4.0
     state = np.zeros((n, 6))
-    state[:, 2] = np.radians(turn_deg) * np.clip((s - 50.0) / 2.0, 0.0, 1.0) + np.radians(wiggle_deg) * np.sin(s / 2.0)
+    state[:, 2] = np.radians(turn_deg) * np.clip((s - 50.0) / 2.0, 0.0, 1.0) + np.radians(
+        wiggle_deg
+    ) * np.sin(s / 2.0)
     revolutions = np.where(s > 50.0, 1.0 + shaft, 1.0)
-    return Track("t", h * np.arange(n), h, state, np.zeros(n), revolutions, {}, np.zeros((n, len(READINGS))), np.ones(8), np.ones(n, bool))
+    return Track(
+        "t",
+        h * np.arange(n),
+        h,
+        state,
+        np.zeros(n),
+        revolutions,
+        {},
+        np.zeros((n, len(READINGS))),
+        np.ones(8),
+        np.ones(n, bool),
+    )
 
 
-@pytest.mark.parametrize("what, answer", [({"turn_deg": 20.0}, True), ({"shaft": -0.2}, True), ({"wiggle_deg": 2.0}, False), ({}, False)])
+@pytest.mark.parametrize(
+    "what, answer",
+    [({"turn_deg": 20.0}, True), ({"shaft": -0.2}, True), ({"wiggle_deg": 2.0}, False), ({}, False)],
+)
 @pytest.mark.parametrize("lengths", [60.0, 2000.0])
-def test_one_turn_or_one_change_of_speed_is_a_manoeuvre_however_long_the_voyage_and_weaving_is_none(ship, what, answer, lengths):
+def test_one_turn_or_one_change_of_speed_is_a_manoeuvre_however_long_the_voyage_and_weaving_is_none(
+    ship, what, answer, lengths
+):
     assert manoeuvred(sailed(ship, lengths=lengths, **what), ship) is answer
 
 

@@ -1,4 +1,5 @@
-"""Readings that scatter more at some times than at others are trusted less then, and make nothing else of the voyage rougher."""
+"""Readings that scatter more at some times than at others are trusted less then, and make nothing else of the
+voyage rougher."""
 
 from dataclasses import replace
 
@@ -10,14 +11,17 @@ from twin.study.track.track import READINGS, track
 from twin.study.track.unrest import shaken
 
 GYRO = READINGS.index("r")
-PERIOD_S, SWING_DEGPS = 4.0, 0.15  # shorter than what the smooth motion of a tanker holds; forty times her gyro's usual scatter
+# shorter than what the smooth motion of a tanker holds; forty times her gyro's usual scatter
+PERIOD_S, SWING_DEGPS = 4.0, 0.15
 
 
 def rippled(voyage):
     """The same voyage with ripples that only the gyro shows, on the courses of the second half."""
     late = voyage.time_s > 0.5 * (voyage.time_s[0] + voyage.time_s[-1])
     swing = SWING_DEGPS * np.sin(2.0 * np.pi * voyage.time_s / PERIOD_S) * late
-    return replace(voyage, columns=dict(voyage.columns) | {"yaw_rate_degps": voyage["yaw_rate_degps"] + swing})
+    return replace(
+        voyage, columns=dict(voyage.columns) | {"yaw_rate_degps": voyage["yaw_rate_degps"] + swing}
+    )
 
 
 @pytest.fixture(scope="module")
@@ -42,7 +46,9 @@ def test_one_wild_reading_is_no_unrest(voyages, tanker):
     assert shaken(t, time).unrest is None and shaken(replace(t, measured=wild), time).unrest is None
 
 
-def test_ripples_that_one_instrument_shows_are_no_rough_world_and_the_cause_is_found_in_them(ripples, voyages, tanker):
+def test_ripples_that_one_instrument_shows_are_no_rough_world_and_the_cause_is_found_in_them(
+    ripples, voyages, tanker
+):
     still, rippling = (assemble([v], tanker) for v in (voyages["RudderWear"], ripples))
     assert all(x.track.unrest is None for x in still.lines)
     assert all(x.track.unrest is not None for x in rippling.lines)

@@ -1,4 +1,5 @@
-"""`twin add`: fits only what it was asked for, proves the fall where it was not fitted, and refuses when there is none."""
+"""`twin add`: fits only what it was asked for, proves the fall where it was not fitted, and refuses when
+there is none."""
 
 import json
 from pathlib import Path
@@ -65,7 +66,10 @@ def test_the_ship_file_remembers_voyages_interval_errors_and_date(added):
     assert [e["horizon_s"] for e in step["errors"]] == [10.0, 60.0, 120.0]
     assert step["errors"][-1]["after_m"] < step["errors"][-1]["before_m"]
     entry = to_table(ship)["effects"]["Current"]["east"]
-    assert entry["value"] == result["parameters"]["Current"]["east"]["value"] and entry["low95"] < entry["high95"]
+    assert (
+        entry["value"] == result["parameters"]["Current"]["east"]["value"]
+        and entry["low95"] < entry["high95"]
+    )
 
 
 def test_without_a_held_out_voyage_the_last_third_is_held_back_and_it_is_said(sailed, stream, kvlcc2):
@@ -75,7 +79,9 @@ def test_without_a_held_out_voyage_the_last_third_is_held_back_and_it_is_said(sa
     assert made.held[0].t[0] == pytest.approx(1000.0, abs=2.0)
 
 
-def test_an_effect_that_is_not_there_is_refused_with_the_numbers_and_nothing_is_written(verb, on_disk, make, tmp_path, capsys):
+def test_an_effect_that_is_not_there_is_refused_with_the_numbers_and_nothing_is_written(
+    verb, on_disk, make, tmp_path, capsys
+):
     out, result = tmp_path / "worse.toml", tmp_path / "r.json"
     words = ("--ship", "kvlcc2", "--voyage", on_disk(make()), "-o", out, "--json", result)
     assert verb("add", "PropellerWalk", *words) == 3
@@ -96,14 +102,20 @@ def test_a_fault_that_moves_no_track_is_judged_by_the_instrument_it_touches(sail
 def test_a_log_of_one_axis_is_judged_by_the_axis_it_has(sailed, make, kvlcc2):
     """The scale of a log touches the drift through the water too, which most ships do not measure."""
     whole = make(find("SpeedLogScale").absent(kvlcc2).but(scale=-0.08))
-    one = whole.with_rows(whole.time_s, {k: x for k, x in whole.columns.items() if k != "sway_velocity_through_water_mps"})
+    one = whole.with_rows(
+        whole.time_s, {k: x for k, x in whole.columns.items() if k != "sway_velocity_through_water_mps"}
+    )
     made = add(kvlcc2, [find("SpeedLogScale")], [sailed(one)])
     assert made.fall.proved and "sway_velocity_through_water_mps" not in made.fall.measure
 
 
 def test_two_effects_are_fitted_together(sailed, make, kvlcc2):
     hidden = [find("Current").absent(kvlcc2).but(east=0.5), find("HullFouling").absent(kvlcc2).but(extra=0.4)]
-    made = add(kvlcc2, [find("Current"), find("HullFouling")], [sailed(make(*hidden, seed=k, name=str(k))) for k in range(2)])
+    made = add(
+        kvlcc2,
+        [find("Current"), find("HullFouling")],
+        [sailed(make(*hidden, seed=k, name=str(k))) for k in range(2)],
+    )
     found = made.result["parameters"]
     assert found["Current"]["east"]["value"] == pytest.approx(0.5, abs=0.06)
     assert found["HullFouling"]["extra"]["value"] == pytest.approx(0.4, abs=0.2)
@@ -120,7 +132,9 @@ def test_a_current_judged_on_another_day_is_said_to_belong_to_its_voyage(added):
         ("Wind", 4, "true_wind_speed_mps, true_wind_direction_deg, which was not recorded"),
     ],
 )
-def test_what_cannot_be_added_is_one_clear_line_and_no_file(verb, on_disk, make, tmp_path, capsys, effect, code, said):
+def test_what_cannot_be_added_is_one_clear_line_and_no_file(
+    verb, on_disk, make, tmp_path, capsys, effect, code, said
+):
     out = tmp_path / "never.toml"
     assert verb("add", effect, "--ship", "kvlcc2", "--voyage", on_disk(make()), "-o", out) == code
     error = capsys.readouterr().err
@@ -146,7 +160,11 @@ def test_a_better_model_is_proved_better_and_chance_is_not(make, kvlcc2):
 def test_an_effect_that_was_fitted_to_nothing_is_said_to_change_nothing(make, kvlcc2):
     windows = [predict(track(make("calm"), kvlcc2), Model.of(kvlcc2), HORIZONS_S)]
     assert fall(windows, windows, 60.0).idle and not fall(windows, windows, 60.0).proved
-    better = [predict(windows[0].track, Model.of(kvlcc2).but(find("Current").absent(kvlcc2).but(north=0.3)), HORIZONS_S)]
+    better = [
+        predict(
+            windows[0].track, Model.of(kvlcc2).but(find("Current").absent(kvlcc2).but(north=0.3)), HORIZONS_S
+        )
+    ]
     assert not fall(windows, better, 60.0).idle
 
 
@@ -166,7 +184,8 @@ def test_five_minutes_are_too_short_to_prove_anything(verb, on_disk, make, tmp_p
 
 
 def test_a_short_voyage_is_judged_nearer_ahead_when_the_ship_is_small(make, kvlcc2):
-    """700 s hold six times two minutes, of which a boat sails 90 lengths and a tanker three; and eleven times one minute."""
+    """700 s hold six times two minutes, of which a boat sails 90 lengths and a tanker three; and eleven times
+    one minute."""
     windows = [predict(track(make(seconds=700.0), kvlcc2), Model.of(kvlcc2), HORIZONS_S)]
     assert judged_at(windows, HORIZONS_S, load("usv")) == 60.0
     assert judged_at(windows, HORIZONS_S, kvlcc2) == 120.0
@@ -180,9 +199,14 @@ def test_few_windows_make_a_wide_interval():
 
 
 def test_the_interval_of_an_added_number_is_about_that_of_the_diagnosis():
-    """Test: the growth on the bundled tanker. Expected: 0.32 to 0.34 with a quarter of doubt either way, by both; about another place than where the
-    number was found its doubt had been five times as large."""
+    """Test: the growth on the bundled tanker. Expected: 0.32 to 0.34 with a quarter of doubt either way, by
+    both; about another place than where the number was found its doubt had been five times as large."""
     ship, voyage = load(story.SHIP), read_voyage(story.MONDAY)
     (extra,) = fitted(ship, [find("HullFouling")], [track(voyage, ship)])[1]
-    (said,) = next(c["parameters"] for c in diagnose([voyage], ship).result["candidates"] if c["effect"] == "HullFouling")
-    assert (extra.low95, extra.high95) == (pytest.approx(said["low95"], abs=0.06), pytest.approx(said["high95"], abs=0.06))
+    (said,) = next(
+        c["parameters"] for c in diagnose([voyage], ship).result["candidates"] if c["effect"] == "HullFouling"
+    )
+    assert (extra.low95, extra.high95) == (
+        pytest.approx(said["low95"], abs=0.06),
+        pytest.approx(said["high95"], abs=0.06),
+    )

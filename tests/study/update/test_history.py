@@ -27,7 +27,11 @@ def test_remove_undoes_add_and_history_keeps_both_steps(verb, better, tmp_path, 
     out = tmp_path / "again.toml"
     assert verb("remove", "Current", "--ship", better, "-o", out) == 0
     again = load(out)
-    assert again.effects == () and again.derivatives == kvlcc2.derivatives and "Current" not in again.notes.get("effects", {})
+    assert (
+        again.effects == ()
+        and again.derivatives == kvlcc2.derivatives
+        and "Current" not in again.notes.get("effects", {})
+    )
     assert [sorted(set(s) & {"added", "removed"}) for s in ladder(again)] == [["added"], ["removed"]]
 
 

@@ -30,7 +30,16 @@ from twin.live.certificate.plant import (
     usual_disturbance,
     usual_noise,
 )
-from twin.live.certificate.theorem import Ages, Promise, Recursion, assess, best_gain, gains_that_do, suited_gain, usual_gain
+from twin.live.certificate.theorem import (
+    Ages,
+    Promise,
+    Recursion,
+    assess,
+    best_gain,
+    gains_that_do,
+    suited_gain,
+    usual_gain,
+)
 from twin.live.certificate.tube import Tube
 from twin.live.learning.movable import movable
 from twin.live.observer.estimate import fastest_gain, gain_for
@@ -39,10 +48,29 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 
 __all__ = [
-    "Certificate", "Confined", "Disturbance", "OperatingSet", "Plant", "Tube", "assess", "best_gain",
-    "certify", "gains_that_do", "kept", "lipschitz", "mark", "of_ship", "on_file", "output_bound", "plant_of", "self_regressor",
-    "suited_gain", "usual_disturbance", "usual_gain", "usual_noise",
-]  # fmt: skip
+    "Certificate",
+    "Confined",
+    "Disturbance",
+    "OperatingSet",
+    "Plant",
+    "Tube",
+    "assess",
+    "best_gain",
+    "certify",
+    "gains_that_do",
+    "kept",
+    "lipschitz",
+    "mark",
+    "of_ship",
+    "on_file",
+    "output_bound",
+    "plant_of",
+    "self_regressor",
+    "suited_gain",
+    "usual_disturbance",
+    "usual_gain",
+    "usual_noise",
+]
 
 VERSION = 5
 
@@ -131,13 +159,17 @@ def certify(
     return Certificate(**parts, K=K, delays=m, noise=noise, disturbance=d, plant=plant, ship=model.ship.name)  # type: ignore[arg-type]
 
 
-def kept(path: str | os.PathLike[str], model: Model, K: float | Sequence[float] | None, h: float, **settings: Any) -> Certificate:
-    """The certificate from its file if it is of this ship, K and settings; else worked out and, where possible, written there."""
+def kept(
+    path: str | os.PathLike[str], model: Model, K: float | Sequence[float] | None, h: float, **settings: Any
+) -> Certificate:
+    """The certificate from its file if it is of this ship, K and settings; else worked out and, where
+    possible, written there."""
     wanted = mark(model, K, h, settings)
     if found := on_file(path, wanted):
         return found
     made = replace(certify(model, K, h, **settings), fingerprint=wanted)
-    with suppress(OSError, TwinError):  # a folder one may not write to costs half a second at each start, nothing else
+    # a folder one may not write to costs half a second at each start, nothing else
+    with suppress(OSError, TwinError):
         Path(path).parent.mkdir(parents=True, exist_ok=True)
         whole.write(path, made.to_json())
     return made
@@ -154,11 +186,17 @@ def on_file(path: str | os.PathLike[str], wanted: str) -> Certificate | None:
 
 def on_board(ship: Ship, delay_samples: int, adapted: bool) -> dict[str, Any]:
     """What the loop's own certificate is asked for."""
-    return {"delay_samples": delay_samples, "adapted": adapted, "noise": usual_noise(ship), "heading_noise": HEADING_NOISE}
+    return {
+        "delay_samples": delay_samples,
+        "adapted": adapted,
+        "noise": usual_noise(ship),
+        "heading_noise": HEADING_NOISE,
+    }
 
 
 def mark(model: Model, *settings: Any) -> str:
-    """What the certificate depends on, as a hash: the ship's numbers, her effects, the settings and the theorem's version."""
+    """What the certificate depends on, as a hash: the ship's numbers, her effects, the settings and the
+    theorem's version."""
     ship = replace(model.ship, notes={})
     return hashlib.sha256(repr((VERSION, ship, model.effects, *settings)).encode()).hexdigest()[:16]
 

@@ -49,7 +49,8 @@ class Slopes:
     hi: tuple[tuple[float, ...], ...]
     rate: tuple[tuple[float, float], ...]
     boxes: int
-    moved: tuple[float, ...] = (0.0, 0.0, 0.0)  # how far nu_dot can be from the ship file's, for the numbers that adaptation moves
+    # how far nu_dot can be from the ship file's, for the numbers that adaptation moves
+    moved: tuple[float, ...] = (0.0, 0.0, 0.0)
 
     @property
     def most(self) -> tuple[float, ...]:
@@ -58,21 +59,29 @@ class Slopes:
 
     @classmethod
     def of(cls, lo: list[float], hi: list[float], boxes: int, numbers: Sequence[Movable] = ()) -> "Slopes":
-        """From rows of (value, four slopes, and one for each number that moves) for each of the three rates."""
+        """From rows of (value, four slopes, and one for each number that moves) for each of the three
+        rates."""
         k = WIDTH + len(numbers)
         rows = [tuple(tuple(x[k * i + 1 : k * i + WIDTH]) for i in range(3)) for x in (lo, hi)]
-        steep = [[max(-a, b) for a, b in zip(lo[k * i + WIDTH : k * i + k], hi[k * i + WIDTH : k * i + k], strict=True)] for i in range(3)]
+        steep = [
+            [
+                max(-a, b)
+                for a, b in zip(lo[k * i + WIDTH : k * i + k], hi[k * i + WIDTH : k * i + k], strict=True)
+            ]
+            for i in range(3)
+        ]
         far = [max(m.high - m.start, m.start - m.low) for m in numbers]
         moved = tuple(sum(a * b for a, b in zip(row, far, strict=True)) for row in steep)
         return cls(rows[0], rows[1], tuple((lo[k * i], hi[k * i]) for i in range(3)), boxes, moved)
 
 
-def slopes(model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES, numbers: Sequence[Movable] = ()) -> Slopes:
+def slopes(
+    model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES, numbers: Sequence[Movable] = ()
+) -> Slopes:
     """Sure bounds of the slopes of the known physics (the learned residual is an input, not a slope).
 
-    They hold as well while effects are switched off for want of an input, and wherever in their boxes `numbers` of the effects
-    are.
-    """
+    They hold as well while effects are switched off for want of an input, and wherever in their boxes
+    `numbers` of the effects are."""
     model, ranges = _seen_from_the_water(model, ranges)
     model = anywhere(model, numbers)
     k = WIDTH + len(numbers)
@@ -87,16 +96,22 @@ def slopes(model: Model, ranges: Ranges, pieces: Mapping[str, int] = PIECES, num
             parts = _flat(contribution(model, s, names), k)
             boxes += max(np.broadcast(of(p).lo).size for p in parts)
             parts = [Interval(np.min(p.lo, axis=1), np.max(p.hi, axis=1)) for p in map(_two_axes, parts)]
-            total = [a + (p if group is GROUPS[0] else hull(p, 0.0)) for a, p in zip(total, parts, strict=True)]
+            total = [
+                a + (p if group is GROUPS[0] else hull(p, 0.0)) for a, p in zip(total, parts, strict=True)
+            ]
     total = _with_the_stream(total, ranges, k)
     lo, hi = [float(np.min(t.lo)) for t in total], [float(np.max(t.hi)) for t in total]
     return Slopes.of(lo, hi, boxes, numbers)
 
 
 def anywhere(model: Model, numbers: Sequence[Movable]) -> Model:
-    """The model whose effects' numbers are anywhere in their boxes, each with slope one along its own direction."""
+    """The model whose effects' numbers are anywhere in their boxes, each with slope one along its own
+    direction."""
     count = len(numbers)
-    values = [Dual(Interval(m.low, m.high), tuple(1.0 if i == j else 0.0 for i in range(-len(STATES), count))) for j, m in enumerate(numbers)]
+    values = [
+        Dual(Interval(m.low, m.high), tuple(1.0 if i == j else 0.0 for i in range(-len(STATES), count)))
+        for j, m in enumerate(numbers)
+    ]
     return Model(model.ship, moved(model.effects, numbers, values)) if numbers else model
 
 
@@ -123,8 +138,8 @@ def _points(ranges: Ranges, count: int, seed: int) -> dict[str, np.ndarray]:
 
 
 def boxed(ranges: Ranges, group: tuple[str, ...], pieces: Mapping[str, int], more: int = 0) -> Situation:
-    """The operating set as boxes: motions along the first axis, the inputs of one group along the second. `more`: directions of
-    slopes beside the states."""
+    """The operating set as boxes: motions along the first axis, the inputs of one group along the second.
+    `more`: directions of slopes beside the states."""
     axes = tuple(_cut(NU, ranges, pieces)), tuple(_cut(group, ranges, pieces))
     values = {name: Interval(lo, hi) for name, (lo, hi) in ranges.items()}
     values |= {name: Interval(lo[:, None], hi[:, None]) for name, lo, hi in axes[0]}
@@ -194,7 +209,9 @@ def _seed(name: str, value: Any, more: int) -> Dual:
     return Dual(value, (*(1.0 if name == state else 0.0 for state in STATES), *(0.0,) * more))
 
 
-def _cut(names: tuple[str, ...], ranges: Ranges, pieces: Mapping[str, int]) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+def _cut(
+    names: tuple[str, ...], ranges: Ranges, pieces: Mapping[str, int]
+) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
     """(name, lo, hi) of every box of the grid over these names, flattened."""
     names = tuple(n for n in names if n in ranges)
     edges = [_edges(*ranges[n], pieces.get(n, 1)) for n in names]

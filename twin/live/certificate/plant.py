@@ -21,8 +21,8 @@ class Plant:
 
     lo, hi: slopes of nu_dot with (u, v, r) [1/s, and m, 1/m where units differ]; heading: greatest slope with
     psi; most: greatest |nu_dot|; inertia: |M^-1|; h: sample period [s]; bend: of a step's slopes beyond I + h
-    A (see `at_period`); moved: how far adaptation of the effects' numbers can take nu_dot from the ship file's.
-    """
+    A (see `at_period`); moved: how far adaptation of the effects' numbers can take nu_dot from the ship
+    file's."""
 
     lo: Matrix
     hi: Matrix
@@ -47,7 +47,8 @@ class Plant:
         return replace(self, h=h, bend=c3.beyond_first((*rows, (0.0, 0.0, h, 0.0))))
 
     def swing(self) -> tuple[tuple[float, ...], ...]:
-        """exp(h |A|) |A|, heading and all: how steep the way of one sample can be, whatever the step's method lies off it."""
+        """exp(h |A|) |A|, heading and all: how steep the way of one sample can be, whatever the step's method
+        lies off it."""
         size = self.magnitude()
         rows = (*((*size[i], self.heading[i]) for i in AXES), (0.0, 0.0, 1.0, 0.0))
         whole = [[float(i == j) + self.h * rows[i][j] + self.bend[i][j] for j in range(4)] for i in range(4)]
@@ -105,8 +106,8 @@ HEADING_NOISE = 0.005  # rad: three deviations of a usual compass
 
 
 def usual_noise(ship: Ship) -> Row:
-    """Three deviations of what usual instruments of a ship of this size and speed read wrongly [m/s, m/s, rad/s]: a log to 0.15 m/s or
-    4 % of U_0, a rate of turn to 0.0005 rad/s or 1 % of U_0/L."""
+    """Three deviations of what usual instruments of a ship of this size and speed read wrongly [m/s, m/s,
+    rad/s]: a log to 0.15 m/s or 4 % of U_0, a rate of turn to 0.0005 rad/s or 1 % of U_0/L."""
     speed = min(0.15, 0.04 * ship.U_0)
     return (speed, speed, max(5e-4, 0.0106 * ship.U_0 / ship.L_pp))
 

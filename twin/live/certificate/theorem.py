@@ -53,10 +53,11 @@ class Recursion:
 
     @property
     def pushed(self) -> Row:
-        """How much of the push of one sample reaches p with a measurement: by itself, by way of older samples, and by what her path
-        between two samples leaves the line."""
+        """How much of the push of one sample reaches p with a measurement: by itself, by way of older
+        samples, and by what her path between two samples leaves the line."""
         return tuple(
-            1.0 + (b + 0.5) * pull if m else keep for m, b, pull, keep in zip(self.m, self.before, self.pull, self.keep, strict=True)
+            1.0 + (b + 0.5) * pull if m else keep
+            for m, b, pull, keep in zip(self.m, self.before, self.pull, self.keep, strict=True)
         )  # type: ignore[return-value]
 
     @property
@@ -143,20 +144,29 @@ def assess(
     if end is None:
         none = c3.matrix(lambda i, j: NEVER)
         return Promise(False, reason, 1.0 - ratio, -NEVER, NOWHERE, none, none, step.G, push, calm, step)
-    by_force, by_noise = c3.product(c3.product(end, step.share()), push), c3.product(end, c3.diagonal(step.heard))
+    by_force, by_noise = (
+        c3.product(c3.product(end, step.share()), push),
+        c3.product(end, c3.diagonal(step.heard)),
+    )
     sampling = c3.apply(c3.product(end, step.share()), calm)
     bound = c3.add(c3.apply(by_force, d.calm), c3.apply(by_noise, noise), sampling)
-    return Promise(True, reason, 1.0 - ratio, _rate(step, plant.h), bound, by_force, by_noise, step.G, push, calm, step)
+    return Promise(
+        True, reason, 1.0 - ratio, _rate(step, plant.h), bound, by_force, by_noise, step.G, push, calm, step
+    )
 
 
 def pushed(plant: Plant, heading_noise: float) -> tuple[Matrix, Row]:
-    """d = push force + calm: a bounded force, an error of heading, what one step misses of her path, what adaptation moves."""
+    """d = push force + calm: a bounded force, an error of heading, what one step misses of her path, what
+    adaptation moves."""
     h, swing = plant.h, plant.swing()
     along = c3.plus(c3.IDENTITY, c3.matrix(lambda i, j: 0.75 * h * swing[i][j]))
     rates = (*plant.most, max(abs(x) for x in plant.operating.ranges["r"]))
     curve = [0.25 * h * h * sum(a * b for a, b in zip(row, rates, strict=True)) for row in swing]
     moved = c3.apply(along, plant.moved)
-    calm = tuple((h * p + plant.bend[i][3]) * heading_noise + curve[i] + h * moved[i] for i, p in enumerate(plant.heading))
+    calm = tuple(
+        (h * p + plant.bend[i][3]) * heading_noise + curve[i] + h * moved[i]
+        for i, p in enumerate(plant.heading)
+    )
     return c3.scaled(h, c3.product(along, plant.inertia)), calm  # type: ignore[return-value]
 
 
@@ -183,8 +193,9 @@ def usual_gain(plant: Plant, m: Ages, extra: Matrix | None = None) -> Row | None
 
 
 def suited_gain(plant: Plant, m: Ages, usual: float, fastest: float) -> Row:
-    """The loop's K: the usual one, or three times the least if that is more, so that a third of it would do; not above the middle of
-    what is allowed, nor above what the loop lets act. The usual one where none holds."""
+    """The loop's K: the usual one, or three times the least if that is more, so that a third of it would do;
+    not above the middle of what is allowed, nor above what the loop lets act. The usual one where none
+    holds."""
     limits = gains_that_do(plant, m)
     k = usual
     if limits is not None and limits[0] < fastest:
@@ -192,7 +203,9 @@ def suited_gain(plant: Plant, m: Ages, usual: float, fastest: float) -> Row:
     return k, k, k
 
 
-def best_gain(plant: Plant, m: Ages, noise: Row, d: Disturbance, H_s: float = 0.0, extra: Matrix | None = None) -> Row | None:
+def best_gain(
+    plant: Plant, m: Ages, noise: Row, d: Disturbance, H_s: float = 0.0, extra: Matrix | None = None
+) -> Row | None:
     """The K with the smallest bound against hostile noise and disturbance, each axis in units of its range;
     None when none is certified.
     """

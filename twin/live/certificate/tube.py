@@ -93,7 +93,9 @@ class Tube:
     def _and_pulled(self, beta: list[float], received: tuple[bool, bool, bool], pulled: Three) -> list[float]:
         """A rejected sample's pull counts in full now, and shows in late measurements for a while."""
         step = self.certificate.step
-        late = [step.before[i] * step.pull[i] * max((p[i] for p in self._pulls), default=0.0) for i in (0, 1, 2)]
+        late = [
+            step.before[i] * step.pull[i] * max((p[i] for p in self._pulls), default=0.0) for i in (0, 1, 2)
+        ]
         self._pulls.append(pulled)
         if not any(any(p) for p in self._pulls):
             self._pulls.clear()
@@ -106,7 +108,9 @@ class Tube:
         step, d = c.step, add(pushed, c.calm)
         self.way = add(c.plant.most, scaled_row(1.0 / c.h, pushed))
         told = step.told(d, c.noise)
-        self._table = tuple((*step.V[i], d[i], *step.now[i], step.again[i], *step.drift[i], told[i]) for i in (0, 1, 2))
+        self._table = tuple(
+            (*step.V[i], d[i], *step.now[i], step.again[i], *step.drift[i], told[i]) for i in (0, 1, 2)
+        )
 
     @property
     def widest(self) -> Three:
@@ -114,9 +118,11 @@ class Tube:
         return self._widest
 
     def outside(self, s: Situation, within: Three | None = None) -> str | None:
-        """What leaves the operating set, or may within a sample, in words; None when the ship is surely in it. `within`: how far she
-        may be from the estimate, where that is known better than by the tube."""
-        return self.certificate.operating.outside(s, add(within or self.beta, scaled_row(self.certificate.h, self.way)))
+        """What leaves the operating set, or may within a sample, in words; None when the ship is surely in
+        it. `within`: how far she may be from the estimate, where that is known better than by the tube."""
+        return self.certificate.operating.outside(
+            s, add(within or self.beta, scaled_row(self.certificate.h, self.way))
+        )
 
     def says_nothing(self) -> str | None:
         """In words, while the bound is as wide as the operating set itself; else None."""

@@ -1,7 +1,8 @@
-"""Instruments whose faults are known: what the ship file says is wrong with them is taken off before anybody uses it.
+"""Instruments whose faults are known: what the ship file says is wrong with them is taken off before anybody
+uses it.
 
-measured' = measured - (read(s) - s), read being what the instruments would say of the ship where she is believed to be.
-"""
+measured' = measured - (read(s) - s), read being what the instruments would say of the ship where she is
+believed to be."""
 
 from dataclasses import fields
 
@@ -31,7 +32,9 @@ class KnownFaults:
             return measured
         si = measured.si
         drift = e.current_body()
-        true = Situation(e.x, e.y, e.psi, e.u, e.v, e.r, e.u - drift[0], e.v - drift[1], u_dot=rates.u, v_dot=rates.v)
+        true = Situation(
+            e.x, e.y, e.psi, e.u, e.v, e.r, e.u - drift[0], e.v - drift[1], u_dot=rates.u, v_dot=rates.v
+        )
         for name in FIELDS[8:]:
             if name in si:
                 setattr(true, name, si[name])

@@ -17,10 +17,23 @@ MOVED = 5.0  # how many grains it should have moved
 class Frozen:
     """The memory of one channel; `repeats(...)` is asked for each good sample."""
 
-    __slots__ = ("_change", "_grain", "_last", "_moved", "_noisy", "_repeating", "_repeats", "_since", "_t", "least", "patience_s")
+    __slots__ = (
+        "_change",
+        "_grain",
+        "_last",
+        "_moved",
+        "_noisy",
+        "_repeating",
+        "_repeats",
+        "_since",
+        "_t",
+        "least",
+        "patience_s",
+    )
 
     def __init__(self, patience_s: float = 4.0, least: float = inf):
-        self.patience_s, self.least = patience_s, least  # `least`: the smallest motion that counts, border units
+        # `least`: the smallest motion that counts, border units
+        self.patience_s, self.least = patience_s, least
         self._last: float | None = None
         self._t = 0.0
         self._grain, self._change, self._repeating = inf, 0.0, 0.0

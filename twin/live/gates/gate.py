@@ -21,7 +21,9 @@ class Gate:
     """The last good sample of one channel (`value` in border units, at `time_s` on the monotonic clock)
     and its quality."""
 
-    def __init__(self, channel: Channel, floor: float, frozen: Frozen | None = None, source: str | None = None):
+    def __init__(
+        self, channel: Channel, floor: float, frozen: Frozen | None = None, source: str | None = None
+    ):
         self.channel, self.floor = channel, floor  # `floor`: what noise may add to a change, border units
         self.chosen = source  # the only source that may speak, if the owner chose one
         self.low, self.high = channel.low, channel.high
@@ -131,7 +133,9 @@ class Gate:
             late = 3.0 * usual if 0.0 < 3.0 * usual < dt else dt
             self.interval_s = usual + (late - usual) * (1.0 / self.samples if self.samples < 500 else 0.002)
         gone = (received_s - self._rate_s) / WINDOW_S
-        self._rate = (self._rate / (1.0 + gone + 0.5 * gone * gone) if gone > 0.0 else self._rate) + 1.0 / WINDOW_S
+        self._rate = (
+            self._rate / (1.0 + gone + 0.5 * gone * gone) if gone > 0.0 else self._rate
+        ) + 1.0 / WINDOW_S
         self._rate_s = received_s
         self.value, self.time_s, self.received_s = reading.value, t, received_s
         self.source, self._stamp = reading.source, reading.time_s

@@ -1,12 +1,13 @@
-"""Is the rudder where its feedback says? One that stands still says nothing by itself: a helmsman may hold his rudder. But then
-the ship may not turn as if it moved.
+"""Is the rudder where its feedback says? One that stands still says nothing by itself: a helmsman may hold
+his rudder. But then the ship may not turn as if it moved.
 
-    n = N_unexplained / (N of one radian of rudder)          how far the rudder would have to be elsewhere [rad]
+    n = N_unexplained / (N of one radian of rudder)          how far the rudder would have to be elsewhere
+    [rad]
 
-While the feedback stands, n may change by what a wrong model explains: SLACK, a share of the moments at work, and a greater share of
-what the feedback's own last movement still does in the filters. More than that, and the feedback is stuck. A rudder that has not moved
-for long teaches nothing either way, so learning waits, and what it taught since it came to stand is taken back (learned.py).
-"""
+While the feedback stands, n may change by what a wrong model explains: SLACK, a share of the moments at work,
+and a greater share of what the feedback's own last movement still does in the filters. More than that, and
+the feedback is stuck. A rudder that has not moved for long teaches nothing either way, so learning waits, and
+what it taught since it came to stand is taken back (learned.py)."""
 
 from math import degrees, radians
 
@@ -18,7 +19,8 @@ from twin.physics.state import Situation
 
 STILL = radians(0.5)  # a feedback within this of where it was has not moved
 SLACK = radians(4.0)  # rudder that gusts and the model's errors may look like
-OF_MOMENTS, OF_MOVEMENT = 0.15, 0.4  # shares of hull's and rudder's moments, and of a movement, that a model may be wrong by
+# shares of hull's and rudder's moments, and of a movement, that a model may be wrong by
+OF_MOMENTS, OF_MOVEMENT = 0.15, 0.4
 STANDS = 0.25  # L/U_0 after which it has come to stand
 RESTS = 3.0  # L/U_0 after which a rudder that has not moved teaches no more
 FADES = 2.5  # L/U_0 until the filters have forgotten what a stuck feedback told them
@@ -26,7 +28,8 @@ HULL, RUDDER = CORE.index("hull"), CORE.index("rudder")
 
 
 class Helm:
-    """Fed with each lesson; `stuck` and `resting` say in words what is wrong with the rudder's feedback, "" when nothing is."""
+    """Fed with each lesson; `stuck` and `resting` say in words what is wrong with the rudder's feedback, ""
+    when nothing is."""
 
     def __init__(self, ship: Ship):
         self.time_s, self.U_0 = ship.L_pp / ship.U_0, ship.U_0
@@ -34,12 +37,13 @@ class Helm:
         self.stuck = self.resting = ""
         self._at: float | None = None  # where the feedback stands [rad]
         self._still_s = self._fades_s = 0.0
-        self._start = self._moved = self._work = 0.0  # unexplained and rudder's moment as it came to stand, greatest moments since
+        # unexplained and rudder's moment as it came to stand, greatest moments since
+        self._start = self._moved = self._work = 0.0
         self._low = self._lower = 0.0  # the rudder's moment through the filters of evidence.py
 
     def feed(self, s: Situation, forces: Forces, unexplained_Nm: float, dt: float) -> bool:
-        """One lesson: the rudder as reported, the moments at work, and the yaw moment that nothing explains, low-passed twice. True when
-        the rudder has just come to stand."""
+        """One lesson: the rudder as reported, the moments at work, and the yaw moment that nothing explains,
+        low-passed twice. True when the rudder has just come to stand."""
         delta, rudder = float(s.delta), float(forces[RUDDER][2])
         a = min(2.0 * dt / self.time_s, 0.5)
         self._low += a * (rudder - self._low)
@@ -78,11 +82,16 @@ class Helm:
         if abs(unexplained_Nm - self._start) > allowed:
             self.stuck = f"rudder_angle_deg stays at {said:.1f} while she turns as if it moved"
         if self._still_s > RESTS * self.time_s:
-            self.resting = f"rudder_angle_deg has stayed at {said:.1f} for {RESTS * self.time_s:.0f} s: nothing is learned until it moves"
+            self.resting = (
+                f"rudder_angle_deg has stayed at {said:.1f} for {RESTS * self.time_s:.0f} s: "
+                "nothing is learned until it moves"
+            )
 
     @staticmethod
     def _moment_of_a_radian(ship: Ship) -> float:
         """[N m] at service speed, straight ahead."""
         model, angle = Model(ship, ()), 0.1  # the core alone: nothing is measured yet
-        forces = model.forces(Situation(u=model.loaded.U_0, n=propeller_rate(model), delta=angle), model.water(Situation()))
+        forces = model.forces(
+            Situation(u=model.loaded.U_0, n=propeller_rate(model), delta=angle), model.water(Situation())
+        )
         return abs(float(forces[RUDDER][2])) / angle

@@ -1,6 +1,7 @@
 """Do the instruments agree with each other? Signs and units, by pairs that must move together.
 
-    yaw rate against the turning of the heading, speed over ground against the positions, yaw rate against the rudder
+    yaw rate against the turning of the heading, speed over ground against the positions, yaw rate against the
+    rudder
 
 Each pair is two slow sums, k = sum(a b)/sum(b b) over a few ship lengths; a factor near -1, 57.3 or 1.94 has
 a name.
@@ -14,9 +15,11 @@ from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
 
 TURNS = (
-    (-1.0, "has the wrong sign"), (60.0, "is per minute"), (57.2958, "is in degrees where radians were meant"),
+    (-1.0, "has the wrong sign"),
+    (60.0, "is per minute"),
+    (57.2958, "is in degrees where radians were meant"),
     (0.0174533, "is in radians where degrees were meant"),
-)  # fmt: skip
+)
 SPEEDS = ((1.943844, "is in knots"), (0.514444, "was converted from knots twice"))
 
 
@@ -65,7 +68,9 @@ class Plausibility:
         if "psi" in measured.fresh and "r" in si and "r" not in measured.derived:
             self._compare_turn(si["psi"], si["r"], measured.now_s - measured.age_s("psi"))
         if "x" in measured.fresh and measured.has("y", "u", "v") and "u" not in measured.derived:
-            self._compare_speed(si["x"], si["y"], sqrt(si["u"] ** 2 + si["v"] ** 2), measured.now_s - measured.age_s("x"))
+            self._compare_speed(
+                si["x"], si["y"], sqrt(si["u"] ** 2 + si["v"] ** 2), measured.now_s - measured.age_s("x")
+            )
         if measured.has("delta", "r", "n") and si["n"] > 0.0 and si.get("u", 0.0) > 0.0:
             self._rudder += min(dt / self.time_s, 0.5) * (si["delta"] - self._rudder)
             self._helm.feed(si["r"] * self.time_s, self._rudder, dt)
@@ -97,7 +102,10 @@ class Plausibility:
             if pair.judged and (word := _word(pair.factor(), mistakes)):
                 said.append(f"{what}: it {word} (factor {pair.factor():.3g})")
         if self._helm.judged and self._helm.correlation() < -0.3:
-            said.append("yaw_rate_degps against rudder_angle_deg: she turns against her rudder; one of the two has the wrong sign")
+            said.append(
+                "yaw_rate_degps against rudder_angle_deg: she turns against her rudder; one of the "
+                "two has the wrong sign"
+            )
         return said
 
 

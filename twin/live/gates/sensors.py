@@ -20,9 +20,16 @@ from twin.physics.ship import Ship
 
 MOVING = ("north_m", "east_m", "heading_true_north_deg")  # a ship under way changes them for certain
 NOISY = (
-    "surge_velocity_mps", "sway_velocity_mps", "surge_velocity_through_water_mps", "sway_velocity_through_water_mps",
-    "yaw_rate_degps", "true_wind_speed_mps", "true_wind_direction_deg", "apparent_wind_speed_mps", "apparent_wind_angle_deg",
-)  # fmt: skip
+    "surge_velocity_mps",
+    "sway_velocity_mps",
+    "surge_velocity_through_water_mps",
+    "sway_velocity_through_water_mps",
+    "yaw_rate_degps",
+    "true_wind_speed_mps",
+    "true_wind_direction_deg",
+    "apparent_wind_speed_mps",
+    "apparent_wind_angle_deg",
+)
 FROM = {"wind_from": "wind_to", "wave_from": "wave_to"}  # physics says where wind and waves go
 FAR = inf
 SILENT_S = 10.0  # a source that the owner named and that has not spoken for so long since the start is named
@@ -35,9 +42,15 @@ class Sensors:
     def __init__(self, ship: Ship, sources: dict[str, str] | None = None, max_delay_s: float = 2.0):
         floors = noise_floors(ship)
         self._awaited = sources = dict(sources or {})  # channel: the source that should speak and has not yet
-        self.gates = {c.name: Gate(c, floors.get(c.name, FAR), _frozen(c.name, floors), sources.get(c.name)) for c in CHANNELS}
+        self.gates = {
+            c.name: Gate(c, floors.get(c.name, FAR), _frozen(c.name, floors), sources.get(c.name))
+            for c in CHANNELS
+        }
         shaft = self.gates["propeller_rate_rpm"]
-        shaft.low, shaft.high = -FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0, FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0
+        shaft.low, shaft.high = (
+            -FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
+            FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
+        )
         self.stamps = Stamps(max_delay_s)
         self.rejected = 0
         self.codes: dict[str, int] = {name: int(Quality.NEVER_SEEN) for name in self.gates}
@@ -55,7 +68,9 @@ class Sensors:
         self._motion: dict[str, float] = {}
         self._derived: dict[str, tuple[float, str]] = {}  # attribute: value, what it was derived from
 
-    def read(self, arrived: Sequence[Reading | Rejected], now_s: float, wall_s: float, own: Estimate) -> Measured:
+    def read(
+        self, arrived: Sequence[Reading | Rejected], now_s: float, wall_s: float, own: Estimate
+    ) -> Measured:
         """Takes what arrived since the last tick; `own` is where the twin believes the ship to be."""
         step_s = self.stamps.observe(now_s, wall_s)
         self._began_s = now_s if self._began_s is None else self._began_s
@@ -171,7 +186,10 @@ class Sensors:
             quality = self.codes[name]
             gate = self.gates[name]
             if quality == Quality.CONFLICT:
-                said.append(f"{name}: {gate.source} and {gate.rival} both publish it; {gate.source} is used. Choose one under [sources]")
+                said.append(
+                    f"{name}: {gate.source} and {gate.rival} both publish it; {gate.source} is used. "
+                    "Choose one under [sources]"
+                )
             elif quality not in (Quality.OK, Quality.NEVER_SEEN):
                 said.append(f"{name}: {WORDS[Quality(quality)]}")
             elif name in self._losing:

@@ -1,7 +1,7 @@
 """What the loop sees of the outside world: messages in without waiting, messages out without waiting.
 
-`MemoryBus` is the bus of a test or a replay: two lists. `twin.live.keelson.zenoh_bus.ZenohBus` is the real one.
-"""
+`MemoryBus` is the bus of a test or a replay: two lists. `twin.live.keelson.zenoh_bus.ZenohBus` is the real
+one."""
 
 from typing import NamedTuple, Protocol
 

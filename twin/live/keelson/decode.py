@@ -100,7 +100,10 @@ class Decoder:
             return _reject(topic, refusal.quality, str(refusal), received_s, source)
         if len(values) == 1:
             return [Reading(topic.channels[0], values[0], time_s, received_s, source)]
-        return [Reading(channel, value, time_s, received_s, source) for channel, value in zip(topic.channels, values, strict=True)]
+        return [
+            Reading(channel, value, time_s, received_s, source)
+            for channel, value in zip(topic.channels, values, strict=True)
+        ]
 
     def _fix(self, topic: Topic, payload: bytes) -> tuple[float, tuple[float, ...]]:
         message = _parse(messages.LocationFix, payload)
@@ -137,7 +140,9 @@ class Decoder:
             place = to_chart(at, latitude, longitude)
             if place is not None and hypot(*place) <= NEAR_M:
                 return at
-        raise Refuse(Quality.UNCONFIRMED, f"{latitude:.4f}, {longitude:.4f} waits for a second position near it")
+        raise Refuse(
+            Quality.UNCONFIRMED, f"{latitude:.4f}, {longitude:.4f} waits for a second position near it"
+        )
 
 
 def check(channel: str, value: float) -> Quality:

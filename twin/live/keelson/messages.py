@@ -35,16 +35,25 @@ TABLE: dict[str, list[Field]] = {
     "State": STATE,
     "NamedForce": [("name", "string"), *FORCE],
     "LearnedForce": [
-        *FORCE, ("bound_N", "double"), ("bound_Nm", "double"),
+        *FORCE,
+        ("bound_N", "double"),
+        ("bound_Nm", "double"),
         ("weight", "double"),  # 0 switched off .. 1 inside its training envelope
         ("share", "double"),  # of the whole force, 0..1
     ],
     "Parameter": [
-        ("name", "string"), ("value", "double"), ("low", "double"), ("high", "double"), ("sigma", "double?"),
-        ("unit", "string"), ("status", "string"),  # unestimated | estimated | invalid
+        ("name", "string"),
+        ("value", "double"),
+        ("low", "double"),
+        ("high", "double"),
+        ("sigma", "double?"),
+        ("unit", "string"),
+        ("status", "string"),  # unestimated | estimated | invalid
     ],
     "Prediction": [
-        ("horizon_s", "double"), ("state", "State"), ("sigma", "State"),
+        ("horizon_s", "double"),
+        ("state", "State"),
+        ("sigma", "State"),
         ("age_s", "double"),  # of the estimate it started from
         ("status", "string"),  # of sigma: prior | learned
     ],

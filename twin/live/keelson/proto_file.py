@@ -56,7 +56,11 @@ def message(name: str, fields: list[tuple[str, str]], package: str) -> bytes:
 
 
 def _field(number: int, name: str, kind: str, package: str) -> bytes:
-    head = _bytes(NAME, name.encode()) + _number(NUMBER, number) + _number(LABEL, MANY if kind.endswith("*") else ONE)
+    head = (
+        _bytes(NAME, name.encode())
+        + _number(NUMBER, number)
+        + _number(LABEL, MANY if kind.endswith("*") else ONE)
+    )
     kind = kind.rstrip("?*")
     if kind in SCALARS:
         return head + _number(TYPE, SCALARS[kind])
@@ -68,9 +72,13 @@ def _file(data: bytes) -> File:
     found: dict[int, list[bytes]] = {}
     for number, value in _fields(data):
         found.setdefault(number, []).append(value)
-    names = [next(value for number, value in _fields(m) if number == NAME).decode() for m in found.get(MESSAGE, [])]
+    names = [
+        next(value for number, value in _fields(m) if number == NAME).decode() for m in found.get(MESSAGE, [])
+    ]
     package = found.get(PACKAGE, [b""])[0].decode()
-    return File(found[NAME][0].decode(), package, [need.decode() for need in found.get(DEPENDENCY, [])], names, data)
+    return File(
+        found[NAME][0].decode(), package, [need.decode() for need in found.get(DEPENDENCY, [])], names, data
+    )
 
 
 def _fields(data: bytes) -> Iterator[tuple[int, bytes]]:

@@ -64,7 +64,9 @@ def _alike(block: np.ndarray, layout: Layout) -> np.ndarray:
     return np.asarray((block[:, tags] == block[0, tags]).all(axis=1))
 
 
-def _cut(columns: dict[int, np.ndarray], block: np.ndarray, rows: np.ndarray, layout: Layout, size: int) -> None:
+def _cut(
+    columns: dict[int, np.ndarray], block: np.ndarray, rows: np.ndarray, layout: Layout, size: int
+) -> None:
     for number, _, value in layout:
         column = columns.setdefault(number, np.full(size, np.nan))
         column[rows] = np.ascontiguousarray(block[:, value : value + 8]).view("<f8")[:, 0]

@@ -48,7 +48,10 @@ class BusSettings(NamedTuple):
     @classmethod
     def of(cls, settings: Settings) -> "BusSettings":
         """What the section [bus] says."""
-        values = {name: settings[f"bus.{name}"] for name in ("base", "entity", "listen", "connect", "router", "file")}
+        values = {
+            name: settings[f"bus.{name}"]
+            for name in ("base", "entity", "listen", "connect", "router", "file")
+        }
         return cls(**values | {"connect": tuple(values["connect"])})
 
 

@@ -1,8 +1,9 @@
 """Slow learning on board: a few numbers on top of the trained last layer, kept small, unused when they do
 not help; and the numbers of the named effects (`twin add`), inside their boxes.
 
-    learned force_r = W_r phi + g a_r q_r           q_r = [whitened components of phi | known forces of row r | 1]
-    a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x - a_r q_f)^2/(NOISE_S s_r^2) + |a_r/usual|^2
+    learned force_r = W_r phi + g a_r q_r           q_r = [whitened components of phi | known forces of row r
+    | 1] a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x - a_r q_f)^2/(NOISE_S s_r^2) +
+    |a_r/usual|^2
 
 each row a ridge regression on fading evidence (evidence.py): what nothing teaches fades back to the trained
 weights. What usually changes are the known forces' sizes; features only fill in, else they would explain the
@@ -36,7 +37,8 @@ BESIDE = SIZES + 1  # numbers of a row beside its components: sizes and a consta
 CORES = tuple(tuple(CORE.index(name) for name in row) for row in COLUMNS)  # where they stand among the forces
 A_MAX = 1.0  # norm of all numbers together
 BOX_COMPONENT, BOX_KNOWN, BOX_CONSTANT = 0.5, 0.3, 0.5
-USUAL_COMPONENT, USUAL_KNOWN, USUAL_CONSTANT = 0.01, 0.2, 0.02  # how far a number is usually off: the prior's deviations
+# how far a number is usually off: the prior's deviations
+USUAL_COMPONENT, USUAL_KNOWN, USUAL_CONSTANT = 0.01, 0.2, 0.02
 EXCITED = 0.02  # rms of the regressors' motion below which there is nothing to learn from
 
 
@@ -72,8 +74,9 @@ class Row:
 
 
 class Adaptation:
-    """Learns from the unexplained force; `correction(regressors)` is what the rows add, in units of the force scale, and
-    `named.effects` are the ship's effects with the numbers that act. `rows` False: no network, so the effects alone."""
+    """Learns from the unexplained force; `correction(regressors)` is what the rows add, in units of the force
+    scale, and `named.effects` are the ship's effects with the numbers that act. `rows` False: no network, so
+    the effects alone."""
 
     def __init__(self, ship: Ship, scale: Force, components: int, rows: bool = True):
         self.time_s = ship.L_pp / ship.U_0
@@ -95,11 +98,15 @@ class Adaptation:
         self._remembered: tuple[list[Row], Proof, Named] | None = None
 
     def regressors(self, components: list[float], forces: Forces) -> list[float]:
-        """The whitened components, then for each row its known forces; `learn` wants those of the named effects' numbers after them."""
+        """The whitened components, then for each row its known forces; `learn` wants those of the named
+        effects' numbers after them."""
         sizes = []
         for r, (scale, core) in enumerate(zip(self.scale, CORES, strict=True)):
             sizes += [forces[i][r] / scale for i in core]
-        return [*(components or [0.0] * self.components), *[-LARGEST if x < -LARGEST else LARGEST if x > LARGEST else x for x in sizes]]
+        return [
+            *(components or [0.0] * self.components),
+            *[-LARGEST if x < -LARGEST else LARGEST if x > LARGEST else x for x in sizes],
+        ]
 
     def correction(self, regressors: list[float]) -> Three:
         """g A q, in units of the force scale."""
@@ -107,10 +114,12 @@ class Adaptation:
         return tuple([gate * dot(row.a, self._of_row(r, regressors)) for r, row in rows])  # type: ignore[return-value]
 
     def learn(self, wanted: Three, regressors: list[float], dt: float, frozen: str) -> None:
-        """What is missing beside the ship file's model and the trained force (low-passed, like the regressors), the time since the
-        last call, why not to learn, or ""."""
+        """What is missing beside the ship file's model and the trained force (low-passed, like the
+        regressors), the time since the last call, why not to learn, or ""."""
         self._watch(regressors, dt)
-        self.frozen = frozen or ("" if self._excited > EXCITED else "waits for a manoeuvre: nothing moves that could teach it")
+        self.frozen = frozen or (
+            "" if self._excited > EXCITED else "waits for a manoeuvre: nothing moves that could teach it"
+        )
         if self.frozen:
             self._since = [0.0, 0.0, 0.0]
             return
@@ -131,7 +140,11 @@ class Adaptation:
     def _watch(self, regressors: list[float], dt: float) -> None:
         """How much the regressors move about their slow means."""
         a = min(dt / (3.0 * self.time_s), 0.5)
-        self._slow = [m + a * (x - m) for m, x in zip(self._slow, regressors, strict=True)] if self._slow else regressors
+        self._slow = (
+            [m + a * (x - m) for m, x in zip(self._slow, regressors, strict=True)]
+            if self._slow
+            else regressors
+        )
         motion = sum([(x - m) ** 2 for x, m in zip(regressors, self._slow, strict=True)])
         self._excited = sqrt(max(self._excited**2 + a * (motion - self._excited**2), 0.0))
 
@@ -173,8 +186,14 @@ class Adaptation:
         """The same with the named effects' part in the evidence, and taken off as it is known now."""
         keep, weight, x = 1.0 - min(h / MEMORY, 0.5), h / (NOISE_S * row.spread), self.named.acting()
         row.b = [b + weight * named * y for b, y in zip(row.b, q, strict=True)]
-        row.B = [[keep * b + weight * z * y for b, y in zip(line, q, strict=True)] for line, z in zip(row.B, c, strict=True)]
-        row.a = solve(row.L, [b - sum([z * line[i] for z, line in zip(x, row.B, strict=True)]) for i, b in enumerate(row.b)])
+        row.B = [
+            [keep * b + weight * z * y for b, y in zip(line, q, strict=True)]
+            for line, z in zip(row.B, c, strict=True)
+        ]
+        row.a = solve(
+            row.L,
+            [b - sum([z * line[i] for z, line in zip(x, row.B, strict=True)]) for i, b in enumerate(row.b)],
+        )
 
     def _project(self, row: Row) -> None:
         """On the boxes, then on the ball of all three rows."""
@@ -218,9 +237,13 @@ class Adaptation:
         out, pressed = [], self.norm() > 0.999 * A_MAX
         for r, row in enumerate(self._rows):
             names = [*(f"feature {i + 1}" for i in range(self.components)), *COLUMNS[r], "constant"]
-            for name, value, box, sigma, usual in zip(names, row.a, self._boxes, row.sigma, self._usual, strict=True):
+            for name, value, box, sigma, usual in zip(
+                names, row.a, self._boxes, row.sigma, self._usual, strict=True
+            ):
                 known = sigma < 0.7 * usual and self._proof.gate > 0.3
-                status = "invalid" if pressed or abs(value) >= box else "estimated" if known else "unestimated"
+                status = (
+                    "invalid" if pressed or abs(value) >= box else "estimated" if known else "unestimated"
+                )
                 out.append(Parameter(f"{ROWS[r]} {name}", value, -box, box, sigma, "-", status))
         return out + self._of_effects()
 
@@ -236,7 +259,10 @@ class Adaptation:
     def saved(self, mark: str) -> str:
         """The numbers as a text to keep; `mark` names ship and network they belong to."""
         effects = dict(zip([m.label for m in self.named.numbers], self.named.values(), strict=True))
-        return json.dumps({"mark": mark, "rows": [{"a": row.a} for row in self._rows]} | ({"effects": effects} if effects else {}))
+        return json.dumps(
+            {"mark": mark, "rows": [{"a": row.a} for row in self._rows]}
+            | ({"effects": effects} if effects else {})
+        )
 
     def restore(self, path: str | Path, mark: str) -> None:
         """Read the numbers back, clamped; what cannot be used is left out, and `notes` says why."""
@@ -270,4 +296,13 @@ class Adaptation:
         n = self.width
         blank = [[0.0] * n for _ in range(n)]
         beside = [[0.0] * n for _ in self.named.numbers]
-        return Row([0.0] * n, blank, [0.0] * n, factor(blank, self._prior), list(self._usual), [0.0] * n, [0.0] * n, beside)
+        return Row(
+            [0.0] * n,
+            blank,
+            [0.0] * n,
+            factor(blank, self._prior),
+            list(self._usual),
+            [0.0] * n,
+            [0.0] * n,
+            beside,
+        )

@@ -2,12 +2,12 @@
 regression.
 
     y_f' = lam (y - y_f),  F_f' = lam (nu_dot_known - F_f),  q_f' = lam (q - q_f)
-    d = S^-1 M [lam (y - y_f) - F_f]   the force that the known ones do not explain, low-passed, in units of the force scale S
+    d = S^-1 M [lam (y - y_f) - F_f]   the force that the known ones do not explain, low-passed, in units of
+    the force scale S
 
-All pass the same filter, so d = (learned force)_f + noise, whatever the manoeuvre; and all pass it a second time. Noise of speeds
-that are as good as differentiated, and waves, lie above the manoeuvres: behind one filter they are most of d in a sea way, behind two
-little of it.
-"""
+All pass the same filter, so d = (learned force)_f + noise, whatever the manoeuvre; and all pass it a second
+time. Noise of speeds that are as good as differentiated, and waves, lie above the manoeuvres: behind one
+filter they are most of d in a sea way, behind two little of it."""
 
 from collections.abc import Sequence
 
@@ -49,9 +49,16 @@ class Evidence:
         return self._twice[9:]
 
     def feed(
-        self, nu: Three, known: Rates, learned: Three, trained: Three, regressors: Sequence[float], physics: Known, dt: float,
+        self,
+        nu: Three,
+        known: Rates,
+        learned: Three,
+        trained: Three,
+        regressors: Sequence[float],
+        physics: Known,
+        dt: float,
         grown: Growth = LIGHT,
-    ) -> None:  # fmt: skip
+    ) -> None:
         """Measured nu, accelerations the known forces give, learned and trained force [S], seconds since
         the last time, growth of the added mass."""
         new = [*nu, *known, *learned, *trained, *regressors]
@@ -59,7 +66,8 @@ class Evidence:
         if len(self._low) != len(new):
             self._low, self._heard_s = new, 0.0
         self._low = low = _low_passed(self._low, new, a)
-        lam = self.lam / (1.0 - a)  # exact for steps of dt: the low-pass has already taken in a share a of the newest nu
+        # exact for steps of dt: the low-pass has already taken in a share a of the newest nu
+        lam = self.lam / (1.0 - a)
         u, v, r = (lam * (y - f) - F for y, f, F in zip(nu, low[:3], low[3:6], strict=True))
         X, Y, N = physics.force_for(u, v, r, grown)
         x, y, n = X / self.scale.X, Y / self.scale.Y, N / self.scale.N

@@ -73,7 +73,17 @@ class LearnedForce:
             x, y, n = x * self.bound / size, y * self.bound / size, n * self.bound / size
         S = self.scale
         force = Force(x * S[0], y * S[1], n * S[2]) if allowed else ZERO
-        return Learned(force, (x, y, n), trained, w if allowed else 0.0, self.bound_N, self.bound_Nm, clipped, why, components)
+        return Learned(
+            force,
+            (x, y, n),
+            trained,
+            w if allowed else 0.0,
+            self.bound_N,
+            self.bound_Nm,
+            clipped,
+            why,
+            components,
+        )
 
     @property
     def effects(self) -> tuple[Effect, ...]:
@@ -93,10 +103,23 @@ class LearnedForce:
         x, y, n = learned.shadow
         size = abs(x) + abs(y) + abs(n)
         for X, Y, N in forces:
-            x, y, n = abs(x) + abs(X / self.scale[0]), abs(y) + abs(Y / self.scale[1]), abs(n) + abs(N / self.scale[2])
+            x, y, n = (
+                abs(x) + abs(X / self.scale[0]),
+                abs(y) + abs(Y / self.scale[1]),
+                abs(n) + abs(N / self.scale[2]),
+            )
         return size / (abs(x) + abs(y) + abs(n) or 1.0)
 
-    def learn(self, nu: Three | None, s: Situation, forces: Forces, learned: Learned, physics: Known, dt: float, frozen: str) -> None:
+    def learn(
+        self,
+        nu: Three | None,
+        s: Situation,
+        forces: Forces,
+        learned: Learned,
+        physics: Known,
+        dt: float,
+        frozen: str,
+    ) -> None:
         """Weigh the evidence of one tick (`nu` None: not measured), and adapt unless `frozen` says why
         not."""
         self._waited_s += dt
@@ -116,7 +139,9 @@ class LearnedForce:
         if named:
             columns = named.columns.at(s, forces, physics, learned.force)
             regressors = [*regressors, *columns, *named.shift(columns)]
-        evidence.feed(nu, physics.rates_of(s, forces), learned.shadow, learned.trained, regressors, physics, dt, s.grown)
+        evidence.feed(
+            nu, physics.rates_of(s, forces), learned.shadow, learned.trained, regressors, physics, dt, s.grown
+        )
         if evidence.ready:
             self._doubt_the_helm(s, forces, dt)
         frozen = frozen or self.helm.stuck or self.helm.resting
@@ -124,12 +149,14 @@ class LearnedForce:
             frozen = frozen or ("" if evidence.ready else "has just begun")
             dx, dy, dn = evidence.unexplained
             tx, ty, tn = evidence.trained
-            regressors, (sx, sy, sn) = (evidence.regressors[:-3], evidence.regressors[-3:]) if named else (evidence.regressors, ZERO)
+            regressors, (sx, sy, sn) = (
+                (evidence.regressors[:-3], evidence.regressors[-3:]) if named else (evidence.regressors, ZERO)
+            )
             adaptation.learn((dx - tx + sx, dy - ty + sy, dn - tn + sn), regressors, dt, frozen)
 
-
     def _doubt_the_helm(self, s: Situation, forces: Forces, dt: float) -> None:
-        """What a rudder that stands still taught counts once it has moved again, and is taken back when it does not."""
+        """What a rudder that stands still taught counts once it has moved again, and is taken back when it
+        does not."""
         came_to_stand = self.helm.feed(s, forces, self.evidence.left_over * self.scale.N, dt)
         if self.adaptation and came_to_stand:
             self.adaptation.remember()

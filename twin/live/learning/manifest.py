@@ -102,8 +102,13 @@ def _golden(table: dict[str, Any], inputs: int, features: int) -> tuple[Any, ...
     if not isinstance(asked, list) or not isinstance(answers, list):
         raise ManifestError("golden: lists of inputs and outputs are needed")
     if len(asked) != len(answers) or len(asked) < 2:
-        raise ManifestError(f"golden: {len(asked)} inputs and {len(answers)} outputs; two or more pairs are needed")
-    return tuple((_vector(z, inputs, "golden.inputs"), _vector(phi, features, "golden.outputs")) for z, phi in zip(asked, answers, strict=True))
+        raise ManifestError(
+            f"golden: {len(asked)} inputs and {len(answers)} outputs; two or more pairs are needed"
+        )
+    return tuple(
+        (_vector(z, inputs, "golden.inputs"), _vector(phi, features, "golden.outputs"))
+        for z, phi in zip(asked, answers, strict=True)
+    )
 
 
 def _whitening(table: Any, features: int) -> tuple[tuple[float, ...], tuple[tuple[float, ...], ...]] | None:

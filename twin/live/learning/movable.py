@@ -2,10 +2,9 @@
 
     column_j = M [nu_dot(theta + e_j step) - nu_dot(theta)]/step        [N, N, N m for one unit of theta_j]
 
-The column is a secant of the one physics: whatever a number does, by a force, by the ship's inertia or by the water she feels,
-stands in it. What has no column of this kind does not move: a current has a filter of its own (estimate.py), a late gear has a
-state, and a wrong instrument leaves the ship alone.
-"""
+The column is a secant of the one physics: whatever a number does, by a force, by the ship's inertia or by the
+water she feels, stands in it. What has no column of this kind does not move: a current has a filter of its
+own (estimate.py), a late gear has a state, and a wrong instrument leaves the ship alone."""
 
 from collections.abc import Sequence
 from copy import copy
@@ -20,12 +19,15 @@ from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 
 REACH = 2.0  # how far a number may go from the ship file's, in deviations of its prior
-NEAR = 0.5  # the same where it changes her inertia or the water she feels: all slopes change with it, and the certificate must hold
+# the same where it changes her inertia or the water she feels: all slopes change with it, and the certificate
+# must hold
+NEAR = 0.5
 STEP = 0.1  # of a secant, in deviations of the prior
 
 
 class Movable(NamedTuple):
-    """One number of one effect: where the ship file has it, its box and its prior deviation, all in its own unit."""
+    """One number of one effect: where the ship file has it, its box and its prior deviation, all in its own
+    unit."""
 
     kind: type[Effect]
     name: str
@@ -45,7 +47,8 @@ class Movable(NamedTuple):
 
 
 def adaptable(effect: Effect) -> bool:
-    """Whether an effect's numbers may move: it pushes the ship, or changes how she feels the water without carrying her along."""
+    """Whether an effect's numbers may move: it pushes the ship, or changes how she feels the water without
+    carrying her along."""
     return isinstance(effect, ForceEffect) or (isinstance(effect, Flow) and not effect.stream)
 
 
@@ -56,7 +59,8 @@ def reach(effect: Effect) -> float:
 
 
 def movable(effects: Sequence[Effect], ship: Ship) -> tuple[Movable, ...]:
-    """Every number that may move: inside the catalogue's box, and within reach of where the ship file has it."""
+    """Every number that may move: inside the catalogue's box, and within reach of where the ship file has
+    it."""
     out = []
     for effect in effects:
         for p in effect.params() if adaptable(effect) else ():
@@ -68,7 +72,9 @@ def movable(effects: Sequence[Effect], ship: Ship) -> tuple[Movable, ...]:
     return tuple(out)
 
 
-def moved(effects: Sequence[Effect], numbers: Sequence[Movable], values: Sequence[object]) -> tuple[Effect, ...]:
+def moved(
+    effects: Sequence[Effect], numbers: Sequence[Movable], values: Sequence[object]
+) -> tuple[Effect, ...]:
     """The effects with these values in them (any kind of number), in the same order."""
     new: dict[type[Effect], dict[str, object]] = {}
     for number, value in zip(numbers, values, strict=True):
@@ -77,7 +83,8 @@ def moved(effects: Sequence[Effect], numbers: Sequence[Movable], values: Sequenc
 
 
 class Columns:
-    """What one prior deviation of each number does, in units of the force scale; probes are made anew when the model changes."""
+    """What one prior deviation of each number does, in units of the force scale; probes are made anew when
+    the model changes."""
 
     def __init__(self, numbers: Sequence[Movable], scale: Force):
         self.numbers, self.scale = numbers, scale
@@ -85,7 +92,8 @@ class Columns:
         self._probes: list[tuple[Model, float] | None] = []
 
     def at(self, s: Situation, forces: Forces, physics: Known, learned: Force) -> list[float]:
-        """(surge, sway, yaw) of the first number, of the second, ...; nothing from effects that are switched off."""
+        """(surge, sway, yaw) of the first number, of the second, ...; nothing from effects that are switched
+        off."""
         if physics.model is not self._model:
             self._model, self._probes = physics.model, [self.probe(physics.model, n) for n in self.numbers]
         u, v, r = physics.rates_of(s, forces, learned)
@@ -102,7 +110,8 @@ class Columns:
 
     @staticmethod
     def probe(model: Model, number: Movable) -> tuple[Model, float] | None:
-        """The model with the number a step on, away from the nearer end of its box, and that step in prior deviations."""
+        """The model with the number a step on, away from the nearer end of its box, and that step in prior
+        deviations."""
         value = number.of(model.effects)
         if value is None:
             return None

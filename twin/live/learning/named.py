@@ -1,12 +1,12 @@
 """The numbers of the named effects, learned on board from the force that all three rows together miss.
 
     x = (theta - theta_file)/sd,   d_r = c_r x + what the rows' own numbers explain (adapt.py)
-    x = argmin  sum_r sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x)^2/(NOISE_S s_r^2) + |x|^2,      low <= theta <= high
+    x = argmin  sum_r sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x)^2/(NOISE_S s_r^2) + |x|^2,      low <=
+    theta <= high
 
-Few numbers and three rows to learn them from, so the memory is half of a row's. theta_file + g (theta - theta_file) acts, in the known
-physics; the gate g asks how much of what x promised a while ago has come true (proof.py). What has a name explains first; the rows
-explain what is left.
-"""
+Few numbers and three rows to learn them from, so the memory is half of a row's. theta_file + g (theta -
+theta_file) acts, in the known physics; the gate g asks how much of what x promised a while ago has come true
+(proof.py). What has a name explains first; the rows explain what is left."""
 
 from copy import copy, deepcopy
 from math import isfinite, sqrt
@@ -25,7 +25,8 @@ STIRRED = 0.01  # prior deviations by which what acts must have moved before the
 
 
 class Named:
-    """Learns x; `effects` are those of the ship with the numbers that act, the same object until one of them moves."""
+    """Learns x; `effects` are those of the ship with the numbers that act, the same object until one of them
+    moves."""
 
     def __init__(self, ship: Ship, scale: Force):
         self.numbers = movable(ship.effects, ship)
@@ -61,7 +62,8 @@ class Named:
         return dot(a, columns[0::3]), dot(a, columns[1::3]), dot(a, columns[2::3])
 
     def learn(self, r: int, wanted: float, c: list[float], h: float) -> None:
-        """What row r wants beyond the ship file's numbers, its columns, and the time since it was last asked [L/U_0]."""
+        """What row r wants beyond the ship file's numbers, its columns, and the time since it was last asked
+        [L/U_0]."""
         limit = 3.0 * sqrt(self._spread[r])
         error = min(max(wanted - dot(self.x, c), -limit), limit)
         if not (isfinite(error) and h > 0.0):
@@ -69,12 +71,18 @@ class Named:
         self._spread[r] += min(h / SPREAD, 0.2) * (error * error + 1e-5 - self._spread[r])
         self._proof.weigh(r, wanted, dot(self._then, c), self._spread[r], h)
         self._keep(h)
-        keep, weight = 1.0 - min(h / MEMORY, 0.5) / 3.0, h / (NOISE_S * self._spread[r])  # a third: each of three rows fades it
+        # a third: each of three rows fades it
+        keep, weight = 1.0 - min(h / MEMORY, 0.5) / 3.0, h / (NOISE_S * self._spread[r])
         y = weight * (dot(self.x, c) + error)
-        self._I = [[keep * i + w * x for i, x in zip(line, c, strict=True)] for line, w in zip(self._I, [weight * x for x in c], strict=True)]
+        self._I = [
+            [keep * i + w * x for i, x in zip(line, c, strict=True)]
+            for line, w in zip(self._I, [weight * x for x in c], strict=True)
+        ]
         self._b = [keep * b + y * x for b, x in zip(self._b, c, strict=True)]
         self._L = factor(self._I, self._prior)
-        self.x = [min(max(x, lo), hi) for x, (lo, hi) in zip(solve(self._L, self._b), self._boxes, strict=True)]
+        self.x = [
+            min(max(x, lo), hi) for x, (lo, hi) in zip(solve(self._L, self._b), self._boxes, strict=True)
+        ]
         self._act()
 
     def _keep(self, h: float) -> None:

@@ -19,11 +19,25 @@ from twin.errors import TwinError
 
 _API_VERSION = 1
 _INDEX = {
-    "GetErrorMessage": 2, "CreateEnv": 3, "DisableTelemetryEvents": 6, "CreateSessionFromArray": 8, "Run": 9,
-    "CreateSessionOptions": 10, "DisableMemPattern": 17, "DisableCpuMemArena": 19, "SetSessionGraphOptimizationLevel": 23,
-    "SetIntraOpNumThreads": 24, "SetInterOpNumThreads": 25, "CreateTensorWithDataAsOrtValue": 49, "CreateCpuMemoryInfo": 69,
-    "ReleaseStatus": 93, "ReleaseMemoryInfo": 94, "ReleaseSession": 95, "ReleaseValue": 96, "ReleaseSessionOptions": 100,
-}  # fmt: skip
+    "GetErrorMessage": 2,
+    "CreateEnv": 3,
+    "DisableTelemetryEvents": 6,
+    "CreateSessionFromArray": 8,
+    "Run": 9,
+    "CreateSessionOptions": 10,
+    "DisableMemPattern": 17,
+    "DisableCpuMemArena": 19,
+    "SetSessionGraphOptimizationLevel": 23,
+    "SetIntraOpNumThreads": 24,
+    "SetInterOpNumThreads": 25,
+    "CreateTensorWithDataAsOrtValue": 49,
+    "CreateCpuMemoryInfo": 69,
+    "ReleaseStatus": 93,
+    "ReleaseMemoryInfo": 94,
+    "ReleaseSession": 95,
+    "ReleaseValue": 96,
+    "ReleaseSessionOptions": 100,
+}
 _FLOAT_TENSOR, _DEVICE_ALLOCATOR, _DEFAULT_MEMORY, _ALL_OPTIMIZATIONS, _ERROR = 1, 0, 0, 99, 3
 
 
@@ -32,7 +46,10 @@ class NetworkError(TwinError):
 
 
 class _Base(ctypes.Structure):
-    _fields_ = (("get_api", ctypes.CFUNCTYPE(POINTER(c_void_p), c_uint32)), ("version", ctypes.CFUNCTYPE(c_char_p)))
+    _fields_ = (
+        ("get_api", ctypes.CFUNCTYPE(POINTER(c_void_p), c_uint32)),
+        ("version", ctypes.CFUNCTYPE(c_char_p)),
+    )
 
 
 class _Runtime:
@@ -54,7 +71,8 @@ class _Runtime:
 
     def call(self, name: str, *arguments: Any) -> None:
         """Call a function that returns a status; a bad one becomes a NetworkError."""
-        types = [c_void_p if type(a).__name__ == "CArgObject" else type(a) for a in arguments]  # byref() gives a CArgObject
+        # byref() gives a CArgObject
+        types = [c_void_p if type(a).__name__ == "CArgObject" else type(a) for a in arguments]
         self.check(self.function(name, c_void_p, *types)(*arguments))
 
     def check(self, status: int | None) -> None:
@@ -80,8 +98,19 @@ class Network:
         self._values = ((c_void_p * 1)(self._tensor(self._in)), (c_void_p * 1)(self._tensor(self._out)))
         self._names = ((c_char_p * 1)(input_name.encode()), (c_char_p * 1)(output_name.encode()))
         pointers = (c_void_p, c_void_p, POINTER(c_char_p), POINTER(c_void_p), c_size_t)
-        self._run = self._runtime.function("Run", c_void_p, *pointers, POINTER(c_char_p), c_size_t, POINTER(c_void_p))
-        self._arguments = (self._session, None, self._names[0], self._values[0], 1, self._names[1], 1, self._values[1])
+        self._run = self._runtime.function(
+            "Run", c_void_p, *pointers, POINTER(c_char_p), c_size_t, POINTER(c_void_p)
+        )
+        self._arguments = (
+            self._session,
+            None,
+            self._names[0],
+            self._values[0],
+            1,
+            self._names[1],
+            1,
+            self._values[1],
+        )
 
     def run(self, values: list[float]) -> list[float]:
         """The network's output; the caller has checked that the values are finite."""
@@ -106,18 +135,29 @@ class Network:
         call("DisableCpuMemArena", options)
         call("DisableMemPattern", options)
         call("SetSessionGraphOptimizationLevel", options, c_int(_ALL_OPTIMIZATIONS))
-        call("CreateSessionFromArray", self._runtime.env, c_char_p(model), c_size_t(len(model)), options, byref(session))
+        call(
+            "CreateSessionFromArray",
+            self._runtime.env,
+            c_char_p(model),
+            c_size_t(len(model)),
+            options,
+            byref(session),
+        )
         self._runtime.release("ReleaseSessionOptions", options)
         return session
 
     def _tensor(self, buffer: Any) -> int:
         info, value = c_void_p(), c_void_p()
-        self._runtime.call("CreateCpuMemoryInfo", c_int(_DEVICE_ALLOCATOR), c_int(_DEFAULT_MEMORY), byref(info))
+        self._runtime.call(
+            "CreateCpuMemoryInfo", c_int(_DEVICE_ALLOCATOR), c_int(_DEFAULT_MEMORY), byref(info)
+        )
         shape = (c_int64 * 2)(1, len(buffer))
         data = ctypes.cast(buffer, c_void_p)
         size, kind = c_size_t(ctypes.sizeof(buffer)), c_int(_FLOAT_TENSOR)
         shape_at = ctypes.cast(shape, c_void_p)
-        self._runtime.call("CreateTensorWithDataAsOrtValue", info, data, size, shape_at, c_size_t(2), kind, byref(value))
+        self._runtime.call(
+            "CreateTensorWithDataAsOrtValue", info, data, size, shape_at, c_size_t(2), kind, byref(value)
+        )
         self._runtime.release("ReleaseMemoryInfo", info)
         return value.value or 0
 
@@ -134,7 +174,8 @@ def open_library(breathe: Callable[[], object]) -> None:
 
 @lru_cache(maxsize=1)
 def _load() -> ctypes.CDLL:
-    os.environ["ORT_DISABLE_TELEMETRY"] = "1"  # before the library is loaded: a thread and a database otherwise
+    # before the library is loaded: a thread and a database otherwise
+    os.environ["ORT_DISABLE_TELEMETRY"] = "1"
     return ctypes.CDLL(str(_library()))
 
 

@@ -49,7 +49,9 @@ def look(data: bytes) -> OnnxModel:
         raise OnnxError(f"not an ONNX model ({error})") from None
 
 
-def with_rows(model: bytes, source: str, rows: Sequence[Sequence[float]], offsets: Sequence[float], output: str) -> bytes:
+def with_rows(
+    model: bytes, source: str, rows: Sequence[Sequence[float]], offsets: Sequence[float], output: str
+) -> bytes:
     """The model with one more output, rows (R, n) times `source` (1, n) plus offsets (R): products that
     Python is slow at.
 
@@ -58,10 +60,18 @@ def with_rows(model: bytes, source: str, rows: Sequence[Sequence[float]], offset
     """
     size, width = len(rows), len(rows[0])
     names = [f"{output}_weights", f"{output}_offsets"]
-    node = b"".join(_field(1, name.encode()) for name in (source, *names)) + _field(2, output.encode()) + _field(4, b"Gemm")
+    node = (
+        b"".join(_field(1, name.encode()) for name in (source, *names))
+        + _field(2, output.encode())
+        + _field(4, b"Gemm")
+    )
     node += _field(5, _field(1, b"transB") + _number(3, 1) + _number(20, 2))
     weights = _tensor(names[0], (size, width), [x for row in rows for x in row])
-    added = _field(NODES, node) + _field(INITIALIZERS, weights) + _field(INITIALIZERS, _tensor(names[1], (size,), offsets))
+    added = (
+        _field(NODES, node)
+        + _field(INITIALIZERS, weights)
+        + _field(INITIALIZERS, _tensor(names[1], (size,), offsets))
+    )
     shape = b"".join(_field(1, _number(1, n)) for n in (1, size))
     kind = _field(1, _number(1, FLOAT) + _field(2, shape))
     return model + _field(GRAPH, added + _field(OUTPUTS, _field(1, output.encode()) + _field(2, kind)))
@@ -69,7 +79,12 @@ def with_rows(model: bytes, source: str, rows: Sequence[Sequence[float]], offset
 
 def _tensor(name: str, shape: Sequence[int], values: Sequence[float]) -> bytes:
     data = struct.pack(f"<{len(values)}f", *values)
-    return b"".join(_number(1, n) for n in shape) + _number(2, FLOAT) + _field(8, name.encode()) + _field(9, data)
+    return (
+        b"".join(_number(1, n) for n in shape)
+        + _number(2, FLOAT)
+        + _field(8, name.encode())
+        + _field(9, data)
+    )
 
 
 def _field(number: int, data: bytes) -> bytes:

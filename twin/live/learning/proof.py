@@ -2,10 +2,9 @@
 
     g = [beta - its deviation]/ENOUGH in [0, 1],   beta = sum_r <d_r p_r>/s_r^2 / sum_r <p_r^2>/s_r^2
 
-p_r is what the numbers of a while ago (HINDSIGHT) promise for now, d_r what is wanted now, s_r its usual error. All three rows are asked
-together, each by its own scatter: what changes a ship shows in all of them, and is seen first in the one that is least noisy. Of what
-was only noise nothing comes true.
-"""
+p_r is what the numbers of a while ago (HINDSIGHT) promise for now, d_r what is wanted now, s_r its usual
+error. All three rows are asked together, each by its own scatter: what changes a ship shows in all of them,
+and is seen first in the one that is least noisy. Of what was only noise nothing comes true."""
 
 from math import sqrt
 
@@ -20,11 +19,13 @@ class Proof:
 
     def __init__(self) -> None:
         self.gate = 0.0
-        self._kept = [[0.0, 0.0, 0.0] for _ in range(3)]  # of each row: means of wanted times promised, promised^2, wanted^2
+        # of each row: means of wanted times promised, promised^2, wanted^2
+        self._kept = [[0.0, 0.0, 0.0] for _ in range(3)]
         self._spread = [1.0] * 3
 
     def weigh(self, r: int, wanted: float, promised: float, spread: float, h: float) -> None:
-        """One row's word: both in units of the force scale, its usual error squared, the time since it last spoke [L/U_0]."""
+        """One row's word: both in units of the force scale, its usual error squared, the time since it last
+        spoke [L/U_0]."""
         kept, g, self._spread[r] = self._kept[r], min(h / GATE, 0.2), spread
         limit = 3.0 * sqrt(kept[2] + spread)
         cut = min(max(wanted, -limit), limit)

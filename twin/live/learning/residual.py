@@ -1,7 +1,8 @@
 """The learned residual's trunk: phi(zeta) by ONNX, believed only where it was trained, and only after it
 proved to be whole.
 
-    phi = trunk((zeta - offset)/scale),  zeta clamped to its envelope;  weight = prod_i (1 - d_i/MARGIN)^2 over inputs outside,
+    phi = trunk((zeta - offset)/scale),  zeta clamped to its envelope;  weight = prod_i (1 - d_i/MARGIN)^2
+    over inputs outside,
 
 d_i being how far input i is outside its envelope, in widths of the envelope. Loading checks the hash of the
 bytes, the operators, shapes, element types and opset, the ship, and that golden inputs still give golden
@@ -25,12 +26,32 @@ from twin.physics.ship import Ship
 from twin.physics.state import Situation
 from twin.physics.zeta import ZETA
 
-OPERATORS = frozenset(("Gemm", "MatMul", "Add", "Sub", "Mul", "Div", "Sigmoid", "Tanh", "Relu", "Clip", "Concat", "Identity", "Softplus", "Swish"))
+OPERATORS = frozenset(
+    (
+        "Gemm",
+        "MatMul",
+        "Add",
+        "Sub",
+        "Mul",
+        "Div",
+        "Sigmoid",
+        "Tanh",
+        "Relu",
+        "Clip",
+        "Concat",
+        "Identity",
+        "Softplus",
+        "Swish",
+    )
+)
 MAX_BYTES = 8_000_000
 OPSETS = range(13, 26)
-LATER = {  # numbers that came after the first residuals, by section or effect: a ship without them is the model she was
-    "derivatives": ("gamma_a", "X_uuu"), "CrossFlowDrag": ("c_aft", "c_mid"), "AntennaOffset": ("above",),
-}  # fmt: skip
+# numbers that came after the first residuals, by section or effect: a ship without them is the model she was
+LATER = {
+    "derivatives": ("gamma_a", "X_uuu"),
+    "CrossFlowDrag": ("c_aft", "c_mid"),
+    "AntennaOffset": ("above",),
+}
 MARGIN = 0.25  # how far outside its envelope the residual is shrunk to nothing
 GOLDEN = 1e-4  # how closely golden outputs must be met, relative to their size
 ABSURD = 1e6  # a feature beyond this is no feature
@@ -59,8 +80,12 @@ class Residual:
     """A checked trunk with its last layer; `features(s)` never raises."""
 
     def __init__(self, manifest: Manifest, network: Network, ship: Ship):
-        self.manifest, self.network, self.ship = manifest, network, ship  # the network gives W phi and the components
-        self._inputs = [(i.name, ZETA[i.name].of, ZETA[i.name].needs, i.low, i.high, i.offset, i.scale) for i in manifest.inputs]
+        # the network gives W phi and the components
+        self.manifest, self.network, self.ship = manifest, network, ship
+        self._inputs = [
+            (i.name, ZETA[i.name].of, ZETA[i.name].needs, i.low, i.high, i.offset, i.scale)
+            for i in manifest.inputs
+        ]
 
     def features(self, s: Situation) -> Features:
         """What the network says of this situation (s.u_r and s.v_r set)."""
@@ -71,7 +96,8 @@ class Residual:
             out = self.network.run(scaled)
         except NetworkError as error:
             return Features([], [], 0.0, f"the network failed ({error})")
-        if not (abs(sum(out)) < ABSURD and max(out) < ABSURD and min(out) > -ABSURD):  # the sum is NaN if one is
+        # the sum is NaN if one is
+        if not (abs(sum(out)) < ABSURD and max(out) < ABSURD and min(out) > -ABSURD):
             return Features([], [], 0.0, "the network gives numbers that are not finite or absurd")
         return Features(out[:3], [-3.0 if x < -3.0 else 3.0 if x > 3.0 else x for x in out[3:]], weight, why)
 
@@ -115,10 +141,15 @@ def check(model: bytes, text: bytes, ship: Ship, where: str = "residual") -> Res
     _same_ship(manifest, ship, where)
     norm = sqrt(sum(w * w for row in manifest.W for w in row))
     if norm > manifest.W_max:
-        raise ResidualError(f"{where}: its last layer has the norm {norm:.3g}, the manifest allows {manifest.W_max:.3g}")
+        raise ResidualError(
+            f"{where}: its last layer has the norm {norm:.3g}, the manifest allows {manifest.W_max:.3g}"
+        )
     digest = hashlib.sha256(model).hexdigest()
     if digest != manifest.sha256:
-        raise ResidualError(f"{where}: its bytes changed (sha256 {digest[:12]}..., the manifest says {manifest.sha256[:12]}...). Copy it again")
+        raise ResidualError(
+            f"{where}: its bytes changed (sha256 {digest[:12]}..., the manifest says "
+            f"{manifest.sha256[:12]}...). Copy it again"
+        )
     names = _structure(model, manifest, where)
     try:
         _golden(Network(model, names[0], len(manifest.inputs), names[1], manifest.features), manifest, where)
@@ -152,7 +183,10 @@ def ship_hash(ship: Ship) -> str:
     """Identifies the model that a residual was trained on top of: every number of the ship and her
     effects."""
     table = ships.to_table(ship)
-    numbers = {section: {name: entry["value"] for name, entry in table[section].items()} for section in ("particulars", "derivatives")}
+    numbers = {
+        section: {name: entry["value"] for name, entry in table[section].items()}
+        for section in ("particulars", "derivatives")
+    }
     effects = {name: {k: p["value"] for k, p in entry.items()} for name, entry in table["effects"].items()}
     for owner, entry in (numbers | effects).items():
         for name in LATER.get(owner, ()):
@@ -164,10 +198,14 @@ def ship_hash(ship: Ship) -> str:
 
 def _same_ship(manifest: Manifest, ship: Ship, where: str) -> None:
     if manifest.ship_name != ship.name:
-        raise WrongShip(f"{where}: made for the ship {manifest.ship_name!r}, this one is {ship.name!r}. Give her own residual, or none")
+        raise WrongShip(
+            f"{where}: made for the ship {manifest.ship_name!r}, this one is {ship.name!r}. Give "
+            "her own residual, or none"
+        )
     if manifest.ship_hash and manifest.ship_hash != ship_hash(ship):
         raise WrongShip(
-            f"{where}: made for {ship.name!r} with another model (hash {manifest.ship_hash}, now {ship_hash(ship)}). "
+            f"{where}: made for {ship.name!r} with another model (hash {manifest.ship_hash}, now "
+            f"{ship_hash(ship)}). "
             'Train it again with `twin train`, or run without it (residual.file = "none")'
         )
 
@@ -183,16 +221,24 @@ def _structure(model: bytes, manifest: Manifest, where: str) -> tuple[str, str]:
     strange = sorted(set(found.operators) - OPERATORS)
     if strange or found.oddities or not found.operators:
         what = ", ".join([*strange, *sorted(set(found.oddities))]) or "nothing to compute"
-        raise ResidualError(f"{where}: the network holds {what}; allowed operators: {', '.join(sorted(OPERATORS))}")
+        raise ResidualError(
+            f"{where}: the network holds {what}; allowed operators: {', '.join(sorted(OPERATORS))}"
+        )
     opset = found.opsets.get("", found.opsets.get("ai.onnx", 0))
     if opset != manifest.opset or opset not in OPSETS:
-        raise ResidualError(f"{where}: opset {opset}, the manifest says {manifest.opset}, {OPSETS[0]} to {OPSETS[-1]} can be used")
+        raise ResidualError(
+            f"{where}: opset {opset}, the manifest says {manifest.opset}, {OPSETS[0]} to "
+            f"{OPSETS[-1]} can be used"
+        )
     wanted = [("input", found.inputs, len(manifest.inputs)), ("output", found.outputs, manifest.features)]
     for what, tensors, size in wanted:
         shapes = [(kind, shape) for _, kind, shape in tensors]
         if shapes != [(FLOAT, [1, size])]:
             said = ", ".join(f"element type {kind} shape {shape}" for kind, shape in shapes) or "none"
-            raise ResidualError(f"{where}: {what} is {said}; one of element type {FLOAT} (float32) shape [1, {size}] is needed")
+            raise ResidualError(
+                f"{where}: {what} is {said}; one of element type {FLOAT} (float32) shape [1, "
+                f"{size}] is needed"
+            )
     return found.inputs[0][0], found.outputs[0][0]
 
 
@@ -203,5 +249,7 @@ def _golden(trunk: Network, manifest: Manifest, where: str) -> None:
         size = max(1.0, *(abs(w) for w in wanted))
         worst = max(abs(p - w) if isfinite(p) else inf for p, w in zip(phi, wanted, strict=True))
         if not worst <= GOLDEN * size:
-            raise ResidualError(f"{where}: a golden input gives another output than in training (off by {worst:.3g})")
+            raise ResidualError(
+                f"{where}: a golden input gives another output than in training (off by {worst:.3g})"
+            )
     trunk.close()

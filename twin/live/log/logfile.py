@@ -34,7 +34,9 @@ class LogFile:
         self._writer.start()
         return self
 
-    def add(self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int | None = None) -> None:
+    def add(
+        self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int | None = None
+    ) -> None:
         """One message without its envelope; times are nanoseconds since 1970."""
         channel = self._writer.channel(topic, type_name, schema_bytes)
         try:

@@ -54,7 +54,8 @@ class Summary:
         self.channels: dict[int, bytes] = {}
         self.chunks = 0
         self.first_ns = self.last_ns = 0
-        self._chunk_index = bytearray()  # records as they will be written: four chunks a second must not fill the memory
+        # records as they will be written: four chunks a second must not fill the memory
+        self._chunk_index = bytearray()
         self.counts: dict[int, int] = {}
         self.metadata: list[tuple[int, int, str]] = []  # offset, length, name
 
@@ -91,7 +92,9 @@ class Summary:
     def _statistics(self) -> bytes:
         sizes = (len(self.schemas), len(self.channels), 0, len(self.metadata), self.chunks)
         total = sum(self.counts.values())
-        return record(STATISTICS, pack("<QHIIIIQQ", total, *sizes, self.first_ns, self.last_ns), number_map(self.counts))
+        return record(
+            STATISTICS, pack("<QHIIIIQQ", total, *sizes, self.first_ns, self.last_ns), number_map(self.counts)
+        )
 
 
 def message_indexes(entries: dict[int, list[tuple[int, int]]], offset: int) -> tuple[bytes, dict[int, int]]:

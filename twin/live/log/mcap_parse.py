@@ -34,7 +34,9 @@ def open_log(path: Path) -> IO[bytes]:
     if start != MAGIC:
         stream.close()
         what = "it is empty" if not start else f"it begins with {start!r}"
-        raise DataError(f"{path}: not an MCAP log ({what}). Give a .mcap file, or use 'twin import' for a table.")
+        raise DataError(
+            f"{path}: not an MCAP log ({what}). Give a .mcap file, or use 'twin import' for a table."
+        )
     return stream
 
 
@@ -49,7 +51,9 @@ def records(stream: IO[bytes]) -> Iterator[tuple[int, int, bytes]]:
             raise Broken(f"it breaks off at byte {here}")
         opcode, length = HEAD.unpack(head)
         if length > min(size - here - 9, MAX_RECORD):
-            raise Broken(f"it breaks off at byte {here}: a record of {length} bytes, {size - here - 9} are left")
+            raise Broken(
+                f"it breaks off at byte {here}: a record of {length} bytes, {size - here - 9} are left"
+            )
         if not 1 <= opcode <= DATA_END:
             raise Broken(f"no MCAP record begins at byte {here} (opcode {opcode})")
         yield opcode, here, stream.read(length)

@@ -60,7 +60,9 @@ class PlayedLog:
         if any(_topic_type(message.topic) for message in first):
             self.kind = "a log of Keelson scalars"
             return self._on_grid(self._scalars(whole))
-        raise DataError(f"{self.path}: no measurements in it: no {TICK}, no {ROW}, no Keelson subject the twin knows.")
+        raise DataError(
+            f"{self.path}: no measurements in it: no {TICK}, no {ROW}, no Keelson subject the twin knows."
+        )
 
     def _as_ticked(self, source: Iterator[Message]) -> Iterator[Batch]:
         raw: list[Message] = []

@@ -1,10 +1,9 @@
 """The log: a thread that writes MCAP files and never holds up the loop.
 
 `Recorder.write` only puts a message in a queue. The thread writes a chunk each `PERIOD_S`, or when `FULL`
-messages wait, and calls fdatasync, so a kill or a power cut loses at most half a second. When the disk is full, read-only or gone, the
-log stops, says so in words and counts what it could not keep; the twin goes on, and the log resumes by
-itself.
-"""
+messages wait, and calls fdatasync, so a kill or a power cut loses at most half a second. When the disk is
+full, read-only or gone, the log stops, says so in words and counts what it could not keep; the twin goes on,
+and the log resumes by itself."""
 
 import os
 import time
@@ -80,7 +79,9 @@ class Recorder:
         self.repaired = recover_folder(self.folder)
         self._thread.start()
 
-    def write(self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int | None = None) -> None:
+    def write(
+        self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int | None = None
+    ) -> None:
         """Queues one message (no envelope); never waits. Times are nanoseconds since 1970."""
         if len(self._queue) == QUEUE:
             self._dropped += 1
@@ -167,4 +168,7 @@ class Recorder:
             self._segment.give_up()
             if self._segment.broken:
                 self._close_segment(finish=False)
-        self._alarm = f"log stopped: {self.folder}: {why}. Free or remount the disk: the log resumes by itself, the twin goes on without it"
+        self._alarm = (
+            f"log stopped: {self.folder}: {why}. Free or remount the disk: the log resumes by "
+            "itself, the twin goes on without it"
+        )

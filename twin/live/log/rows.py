@@ -72,7 +72,9 @@ class Found:
             return self._of_ticks()
         if self._samples:
             return on_one_base({k: (np.array(t), np.array(x)) for k, (t, x) in self._samples.items()})
-        raise DataError(f"{self._reader.path}: no measurements in it: no {ROW}, no {TICK}, no Keelson subject we know.")
+        raise DataError(
+            f"{self._reader.path}: no measurements in it: no {ROW}, no {TICK}, no Keelson subject we know."
+        )
 
     def _of_ticks(self) -> tuple[np.ndarray, Columns]:
         parts = list(self._parts_of_ticks())

@@ -18,7 +18,9 @@ from twin.live.log.mcap_write import Compress, McapWriter
 class Segment:
     """The file being written; raises OSError from the constructor, `add`, `sync` and `finish`."""
 
-    def __init__(self, folder: Path, name: str, now_s: float, sync: Callable[[int], None], compress: Compress):
+    def __init__(
+        self, folder: Path, name: str, now_s: float, sync: Callable[[int], None], compress: Compress
+    ):
         folder.mkdir(parents=True, exist_ok=True)
         self.opened_s = now_s
         self.size = 0

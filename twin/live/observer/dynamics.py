@@ -97,7 +97,8 @@ class Dynamics:
     """Which physics holds now: `now` is rebuilt by `situation` from what is measured."""
 
     def __init__(self, ship: Ship):
-        streams = [e for e in ship.effects if isinstance(e, Flow) and e.stream]  # the observer's filter follows all of them together
+        # the observer's filter follows all of them together
+        streams = [e for e in ship.effects if isinstance(e, Flow) and e.stream]
         north, east = (sum((getattr(e, axis, 0.0) for e in streams), 0.0) for axis in ("north", "east"))
         self.first_current = north, east
         self.ship = ship

@@ -3,10 +3,10 @@
     nu_hat+  = nu_hat + h nu_dot(model) + h K (nu - nu_hat)         (compared at the time nu was measured)
     eta_hat+ = eta_hat + h R(psi_hat) nu_hat + h K (eta - eta_hat)
 
-K = 12 U_0/L unless settings or certificate say otherwise (0.3 1/s for a 320 m ship), less for a sensor too slow or too
-late for that. A sample pulls until the next one is due; what comes late is compared with the corrected estimate of its time, so
-that no pull is answered twice. What is not measured is predicted, and its uncertainty grows.
-"""
+K = 12 U_0/L unless settings or certificate say otherwise (0.3 1/s for a 320 m ship), less for a sensor too
+slow or too late for that. A sample pulls until the next one is due; what comes late is compared with the
+corrected estimate of its time, so that no pull is answered twice. What is not measured is predicted, and its
+uncertainty grows."""
 
 from collections import deque
 from dataclasses import dataclass
@@ -61,9 +61,12 @@ class Observer:
     def __init__(self, ship: Ship, gain: float = 0.0, current: tuple[float, float] = (0.0, 0.0)):
         self.gain = gain or gain_for(ship)
         self.estimate = Estimate(current_north=current[0], current_east=current[1])
-        self.innovation: dict[str, float] = {}  # measured less estimated of its time, by state, as corrected so far
-        self.received: dict[str, bool] = dict.fromkeys(STATES, False)  # which pulled in this tick, unclipped and by the whole of K
-        self.pulled: dict[str, float] = dict.fromkeys(STATES, 0.0)  # by how much each was pulled in this tick, received or not
+        # measured less estimated of its time, by state, as corrected so far
+        self.innovation: dict[str, float] = {}
+        # which pulled in this tick, unclipped and by the whole of K
+        self.received: dict[str, bool] = dict.fromkeys(STATES, False)
+        # by how much each was pulled in this tick, received or not
+        self.pulled: dict[str, float] = dict.fromkeys(STATES, 0.0)
         self.restarts = 0
         self.sigma = Sigma(ship)
         self.rates = Rates(0.0, 0.0, 0.0)
@@ -197,7 +200,8 @@ class Observer:
         setattr(e, state, getattr(e, state) + a * pull)
         if source in measured.fresh:
             doubt.learn(pull)
-            if measured.age_s(source) < dt:  # of its own time the estimate is corrected as well; on the line to the tick before, in part
+            # of its own time the estimate is corrected as well; on the line to the tick before, in part
+            if measured.age_s(source) < dt:
                 self.innovation[state] = gap - (1.0 - measured.age_s(source) / dt) * a * pull
         doubt.shrink(a)
 
@@ -231,9 +235,11 @@ class Sigma:
 
     def __init__(self, ship: Ship):
         speed, rate, push = 0.03 * ship.U_0, 0.05 * ship.U_0 / ship.L_pp, 0.015 * ship.U_0**2 / ship.L_pp
-        usual = {"x": 3.0, "y": 3.0, "psi": 0.01, "u": speed, "v": speed, "r": rate}  # an innovation, to begin with
+        # an innovation, to begin with
+        usual = {"x": 3.0, "y": 3.0, "psi": 0.01, "u": speed, "v": speed, "r": rate}
         self.of = {state: Doubt(usual[state]) for state in STATES}
-        self._astray = push, 1.5 * push / ship.L_pp  # how fast the model alone goes astray in speed and in turning
+        # how fast the model alone goes astray in speed and in turning
+        self._astray = push, 1.5 * push / ship.L_pp
 
     def all(self) -> tuple[float, ...]:
         return tuple([doubt.sigma for doubt in self.of.values()])
@@ -290,5 +296,6 @@ def gain_for(ship: Ship) -> float:
 
 
 def fastest_gain(h: float, samples: int) -> float:
-    """The greatest K [1/s] that acts in full at a period of h seconds, with an instrument heard in each tick and as late as that."""
+    """The greatest K [1/s] that acts in full at a period of h seconds, with an instrument heard in each tick
+    and as late as that."""
     return min(DELAYED / (HELD + samples), A_MAX) / h

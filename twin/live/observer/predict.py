@@ -44,23 +44,33 @@ class Prediction(NamedTuple):
 class Predictor:
     """`advance(...)` each tick; gives the predictions when a round is done, [] otherwise."""
 
-    def __init__(self, ship: Ship, horizons_s: tuple[float, ...] = (10.0, 60.0, 120.0), refresh_s: float = 2.0, rate_hz: float = 10.0):
+    def __init__(
+        self,
+        ship: Ship,
+        horizons_s: tuple[float, ...] = (10.0, 60.0, 120.0),
+        refresh_s: float = 2.0,
+        rate_hz: float = 10.0,
+    ):
         self.horizons_s = tuple(sorted(horizons_s))
         first = self.horizons_s[0]
         self.step_s = first / ceil(first / (STEP * ship.L_pp / ship.U_0))
         steps = ceil(self.horizons_s[-1] / self.step_s) + len(self.horizons_s) + 1
-        self.steps_a_tick = min(steps / (refresh_s * rate_hz), MOST_STEPS)  # not whole: some ticks have one more than others
+        # not whole: some ticks have one more than others
+        self.steps_a_tick = min(steps / (refresh_s * rate_hz), MOST_STEPS)
         self.lead_s = ceil(steps / self.steps_a_tick) / rate_hz  # what a round says is for when it is done
         self._credit = 0.0
         self.sureness = {h: Sureness(ship, h) for h in self.horizons_s}
         self._round: Round | None = None
-        self._due: dict[float, deque[tuple[float, tuple[float, ...]]]] = {h: deque(maxlen=1024) for h in self.horizons_s}
+        self._due: dict[float, deque[tuple[float, tuple[float, ...]]]] = {
+            h: deque(maxlen=1024) for h in self.horizons_s
+        }
 
     def advance(
         self, now_s: float, e: Estimate, s: Situation, physics: Known, learned: LearnedAt, good: bool,
         steering: Callable[[], Steering | None] = lambda: None,
     ) -> list[Prediction]:  # fmt: skip
-        """Check what fell due, then carry the present round on by a few steps; `steering` gives the gear as a new round finds it."""
+        """Check what fell due, then carry the present round on by a few steps; `steering` gives the gear as a
+        new round finds it."""
         if not (e.ready and good):
             self._round = None
             for waiting in self._due.values():
@@ -68,7 +78,15 @@ class Predictor:
             return []
         self._check(now_s, e)
         if self._round is None:
-            self._round = Round(now_s, e, replace(s), physics, self.step_s, [h + self.lead_s for h in self.horizons_s], steering())
+            self._round = Round(
+                now_s,
+                e,
+                replace(s),
+                physics,
+                self.step_s,
+                [h + self.lead_s for h in self.horizons_s],
+                steering(),
+            )
         self._credit += self.steps_a_tick
         try:
             done = self._round.run(int(self._credit), learned)
@@ -83,11 +101,15 @@ class Predictor:
         self._round = None
         return [self._finished(made, h, state, now_s) for h, state in zip(self.horizons_s, done, strict=True)]
 
-    def _finished(self, made: "Round", horizon_s: float, state: tuple[float, ...], now_s: float) -> Prediction:
+    def _finished(
+        self, made: "Round", horizon_s: float, state: tuple[float, ...], now_s: float
+    ) -> Prediction:
         due_s = made.start_s + self.lead_s + horizon_s
         self._due[horizon_s].append((due_s, state))
         sure = self.sureness[horizon_s]
-        return Prediction(round(due_s - now_s, 6), state, sure.sigma(made.sigma), now_s - made.start_s, sure.status)
+        return Prediction(
+            round(due_s - now_s, 6), state, sure.sigma(made.sigma), now_s - made.start_s, sure.status
+        )
 
     def _check(self, now_s: float, e: Estimate) -> None:
         """Predictions for this moment against the estimate."""
@@ -106,7 +128,14 @@ class Round:
     """One prediction under way, to a few moments ahead of its start."""
 
     def __init__(
-        self, start_s: float, e: Estimate, s: Situation, physics: Known, step_s: float, moments_s: list[float], steering: Steering | None = None
+        self,
+        start_s: float,
+        e: Estimate,
+        s: Situation,
+        physics: Known,
+        step_s: float,
+        moments_s: list[float],
+        steering: Steering | None = None,
     ):
         self.start_s, self.sigma, self.step_s = start_s, e.sigma, step_s
         self._s, self._physics, self._moments_s = s, physics, moments_s
@@ -145,7 +174,14 @@ class Middle:
         return Force(*[f + by * (f - b) for f, b in zip(force, before, strict=True)])
 
 
-def carry(s: Situation, physics: Known, learned: LearnedAt, h: float, middle: Middle, steering: Steering | None = None) -> None:
+def carry(
+    s: Situation,
+    physics: Known,
+    learned: LearnedAt,
+    h: float,
+    middle: Middle,
+    steering: Steering | None = None,
+) -> None:
     """Puts s h seconds on: nu by one Runge-Kutta step, eta along the mean of old and new nu; learned force
     that of the step's middle, the rudder where a slow gear has it by then."""
     if steering:
@@ -166,7 +202,13 @@ class Sureness:
         push = 0.015 * ship.U_0**2 / ship.L_pp
         psi = min(0.75 * push / ship.L_pp * horizon_s**2 + 0.01, 1.0)
         place = 0.5 * push * horizon_s**2 + 0.3 * ship.U_0 * horizon_s * psi + 1.0
-        first = (place, psi, push * horizon_s + 0.01, push * horizon_s + 0.01, 1.5 * push / ship.L_pp * horizon_s + 1e-5)
+        first = (
+            place,
+            psi,
+            push * horizon_s + 0.01,
+            push * horizon_s + 0.01,
+            1.5 * push / ship.L_pp * horizon_s + 1e-5,
+        )
         self._log_q = [log(q) for q in first]
         self.seen = 0
 
@@ -177,7 +219,11 @@ class Sureness:
     def feed(self, predicted: tuple[float, ...], true: tuple[float, ...]) -> None:
         """One prediction and what came."""
         place = hypot(predicted[0] - true[0], predicted[1] - true[1]) / RAYLEIGH
-        errors = (place, abs(turn(predicted[2] - true[2])), *(abs(p - t) for p, t in zip(predicted[3:], true[3:], strict=True)))
+        errors = (
+            place,
+            abs(turn(predicted[2] - true[2])),
+            *(abs(p - t) for p, t in zip(predicted[3:], true[3:], strict=True)),
+        )
         self.seen += 1
         eta = max(1.0 / (1.0 + 0.1 * self.seen), 0.1)
         self._log_q = [q + eta * ((e > exp(q)) - 0.32) for q, e in zip(self._log_q, errors, strict=True)]

@@ -1,4 +1,5 @@
-"""The one table of channels: what a ship can measure, its name, unit, plausible range and how fast it grows old.
+"""The one table of channels: what a ship can measure, its name, unit, plausible range and how fast it grows
+old.
 
 A channel's name is its CSV column, its field in the wide log record and, where Keelson has one, its subject.
 """
@@ -11,10 +12,9 @@ from math import inf, pi
 class Channel:
     """One measured quantity.
 
-    `attribute` is its name inside physics, `to_si` the factor there; a sample outside [low, high] (border units)
-    is not a measurement. `max_rate` is the fastest plausible change per second (border units), `stale_s` the age after which
-    the channel counts as lost.
-    """
+    `attribute` is its name inside physics, `to_si` the factor there; a sample outside [low, high] (border
+    units) is not a measurement. `max_rate` is the fastest plausible change per second (border units),
+    `stale_s` the age after which the channel counts as lost."""
 
     name: str
     attribute: str
@@ -32,28 +32,92 @@ DEG = pi / 180.0
 CHANNELS: tuple[Channel, ...] = (
     Channel("north_m", "x", 1.0, -1e6, 1e6, 60.0, doc="position north of the voyage's datum"),
     Channel("east_m", "y", 1.0, -1e6, 1e6, 60.0, doc="position east of the voyage's datum"),
-    Channel("heading_true_north_deg", "psi", DEG, -360.0, 720.0, 60.0, wraps=360.0, doc="heading from true north"),
+    Channel(
+        "heading_true_north_deg", "psi", DEG, -360.0, 720.0, 60.0, wraps=360.0, doc="heading from true north"
+    ),
     Channel("surge_velocity_mps", "u", 1.0, -40.0, 40.0, 10.0, doc="speed ahead over ground"),
     Channel("sway_velocity_mps", "v", 1.0, -20.0, 20.0, 10.0, doc="speed to starboard over ground"),
-    Channel("surge_velocity_through_water_mps", "u_r", 1.0, -40.0, 40.0, 10.0, doc="speed ahead through water"),
-    Channel("sway_velocity_through_water_mps", "v_r", 1.0, -20.0, 20.0, 10.0, doc="speed to starboard through water"),
-    Channel("yaw_rate_degps", "r", DEG, -90.0, 90.0, 180.0, doc="rate of turn, positive to starboard"),
-    Channel("rudder_angle_deg", "delta", DEG, -90.0, 90.0, 200.0, doc="rudder, positive turns the ship to starboard"),
-    Channel("propeller_rate_rpm", "n", 1.0 / 60.0, -6000.0, 6000.0, 6000.0, doc="shaft speed, positive ahead"),
-    Channel("true_wind_speed_mps", "wind_speed", 1.0, 0.0, 90.0, stale_s=15.0, doc="wind over ground"),
-    Channel("true_wind_direction_deg", "wind_from", DEG, -360.0, 720.0, stale_s=15.0, wraps=360.0, doc="wind from, true"),
-    Channel("apparent_wind_speed_mps", "apparent_wind_speed", 1.0, 0.0, 110.0, stale_s=15.0, doc="wind on the moving ship"),
     Channel(
-        "apparent_wind_angle_deg", "apparent_wind_from", DEG, -360.0, 720.0, stale_s=15.0, wraps=360.0,
+        "surge_velocity_through_water_mps", "u_r", 1.0, -40.0, 40.0, 10.0, doc="speed ahead through water"
+    ),
+    Channel(
+        "sway_velocity_through_water_mps",
+        "v_r",
+        1.0,
+        -20.0,
+        20.0,
+        10.0,
+        doc="speed to starboard through water",
+    ),
+    Channel("yaw_rate_degps", "r", DEG, -90.0, 90.0, 180.0, doc="rate of turn, positive to starboard"),
+    Channel(
+        "rudder_angle_deg",
+        "delta",
+        DEG,
+        -90.0,
+        90.0,
+        200.0,
+        doc="rudder, positive turns the ship to starboard",
+    ),
+    Channel(
+        "propeller_rate_rpm", "n", 1.0 / 60.0, -6000.0, 6000.0, 6000.0, doc="shaft speed, positive ahead"
+    ),
+    Channel("true_wind_speed_mps", "wind_speed", 1.0, 0.0, 90.0, stale_s=15.0, doc="wind over ground"),
+    Channel(
+        "true_wind_direction_deg",
+        "wind_from",
+        DEG,
+        -360.0,
+        720.0,
+        stale_s=15.0,
+        wraps=360.0,
+        doc="wind from, true",
+    ),
+    Channel(
+        "apparent_wind_speed_mps",
+        "apparent_wind_speed",
+        1.0,
+        0.0,
+        110.0,
+        stale_s=15.0,
+        doc="wind on the moving ship",
+    ),
+    Channel(
+        "apparent_wind_angle_deg",
+        "apparent_wind_from",
+        DEG,
+        -360.0,
+        720.0,
+        stale_s=15.0,
+        wraps=360.0,
         doc="apparent wind from, off the bow, positive to starboard",
     ),
     Channel("water_depth_m", "depth", 1.0, 0.05, 12000.0, stale_s=60.0, doc="surface to bottom"),
-    Channel("wave_height_significant_m", "H_s", 1.0, 0.0, 25.0, stale_s=3600.0, doc="significant wave height"),
+    Channel(
+        "wave_height_significant_m", "H_s", 1.0, 0.0, 25.0, stale_s=3600.0, doc="significant wave height"
+    ),
     Channel("wave_period_peak_s", "T_p", 1.0, 0.2, 40.0, stale_s=3600.0, doc="peak wave period"),
-    Channel("wave_direction_deg", "wave_from", DEG, -360.0, 720.0, stale_s=3600.0, wraps=360.0, doc="waves from, true"),
+    Channel(
+        "wave_direction_deg",
+        "wave_from",
+        DEG,
+        -360.0,
+        720.0,
+        stale_s=3600.0,
+        wraps=360.0,
+        doc="waves from, true",
+    ),
     Channel("draught_mean_m", "draught", 1.0, 0.01, 40.0, stale_s=3600.0, doc="mean draught"),
     Channel("bank_distance_port_m", "bank_port", 1.0, 0.0, 1e5, stale_s=60.0, doc="side to bank, port"),
-    Channel("bank_distance_starboard_m", "bank_starboard", 1.0, 0.0, 1e5, stale_s=60.0, doc="side to bank, starboard"),
+    Channel(
+        "bank_distance_starboard_m",
+        "bank_starboard",
+        1.0,
+        0.0,
+        1e5,
+        stale_s=60.0,
+        doc="side to bank, starboard",
+    ),
     Channel("roll_deg", "phi", DEG, -90.0, 90.0, 90.0, doc="heel, starboard side down positive"),
 )
 BY_NAME: dict[str, Channel] = {c.name: c for c in CHANNELS}

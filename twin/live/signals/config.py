@@ -48,7 +48,9 @@ KEYS: tuple[Key, ...] = (
     Key("log.folder", str, "logs", 'where the logs go, "" for no log'),
     Key("log.segment_mb", float, 256.0, "a new file after this size", "MB", 1.0, 4096.0),
     Key("log.segment_s", float, 900.0, "a new file after this time", "s", 10.0, 86400.0),
-    Key("sensors.max_delay_s", float, 2.0, "a sample stamped longer ago than this is refused", "s", 0.1, 60.0),
+    Key(
+        "sensors.max_delay_s", float, 2.0, "a sample stamped longer ago than this is refused", "s", 0.1, 60.0
+    ),
     Key("observer.gain", float, 0.0, "K, 0 for 12 U_0/L or what her certificate asks for", "1/s", 0.0, 20.0),
     Key(
         "observer.oldest_s",
@@ -76,7 +78,9 @@ KEYS: tuple[Key, ...] = (
     Key("adaptation.save_s", float, 60.0, "how often learned numbers are kept", "s", 1.0, 86400.0),
     Key("prediction.horizons_s", list, [10.0, 60.0, 120.0], "how far ahead", "s", 1.0, 3600.0),
     Key("prediction.refresh_s", float, 2.0, "how often, at best", "s", 0.1, 600.0),
-    Key("guard.reckoning_s", float, 60.0, "how long the model may run without measurements", "s", 1.0, 3600.0),
+    Key(
+        "guard.reckoning_s", float, 60.0, "how long the model may run without measurements", "s", 1.0, 3600.0
+    ),
     Key("state.folder", str, "", 'where learned numbers are kept between starts, "" for nowhere'),
 )
 BY_KEY = {key.name: key for key in KEYS}
@@ -161,15 +165,21 @@ def _text(path: Path) -> str:
     try:
         data = path.read_bytes()
     except OSError as error:
-        raise SettingsError(f"{path}: cannot be read ({error.strerror}). Check the path and its permissions.") from None
+        raise SettingsError(
+            f"{path}: cannot be read ({error.strerror}). Check the path and its permissions."
+        ) from None
     if data.startswith((b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")):
         raise SettingsError(f"{path}: begins with a byte-order mark. Save it as plain UTF-8 without BOM.")
     try:
         text = data.decode()
     except UnicodeDecodeError as error:
-        raise SettingsError(f"{path}: byte {error.start} is not UTF-8. Save it as plain UTF-8 text.") from None
+        raise SettingsError(
+            f"{path}: byte {error.start} is not UTF-8. Save it as plain UTF-8 text."
+        ) from None
     if not text.strip():
-        raise SettingsError(f"{path}: is empty. Leave out --config for the defaults, or write at least [ship] file = ...")
+        raise SettingsError(
+            f"{path}: is empty. Leave out --config for the defaults, or write at least [ship] file = ..."
+        )
     return text
 
 
@@ -178,14 +188,19 @@ def _settings(table: dict[str, Any], lines: Lines) -> Settings:
     sections = sorted({name.partition(".")[0] for name in BY_KEY} | {SOURCES})
     for section, entries in table.items():
         if section not in sections or not isinstance(entries, dict):
-            raise SettingsError(f"{lines.say(section)}: no section is called [{section}].{did_you_mean(section, sections)}")
+            raise SettingsError(
+                f"{lines.say(section)}: no section is called [{section}].{did_you_mean(section, sections)}"
+            )
         if section == SOURCES:
             continue
         for name, value in entries.items():
             key = BY_KEY.get(f"{section}.{name}")
             if key is None:
                 known = [k.partition(".")[2] for k in BY_KEY if k.startswith(f"{section}.")]
-                raise SettingsError(f"{lines.say(f'{section}.{name}')}: [{section}] has no key {name!r}.{did_you_mean(name, known)}")
+                raise SettingsError(
+                    f"{lines.say(f'{section}.{name}')}: [{section}] has no key "
+                    f"{name!r}.{did_you_mean(name, known)}"
+                )
             values[key.name] = _value(key, value, lines)
     return Settings(values, _sources(table.get(SOURCES, {}), lines), lines.path)
 
@@ -195,7 +210,9 @@ def _value(key: Key, value: Any, lines: Lines) -> Any:
     where = f"{lines.say(key.name)}: {key.name}"
     if key.kind is list:
         if not isinstance(value, list):
-            raise SettingsError(f"{where} = {value!r}: a list is needed, as in {_toml(key.default or ['tcp/10.0.0.2:7447'])}.")
+            raise SettingsError(
+                f"{where} = {value!r}: a list is needed, as in {_toml(key.default or ['tcp/10.0.0.2:7447'])}."
+            )
         number = bool(key.default) and isinstance(key.default[0], float)
         values = [_number(key, v, where) if number else _word(v, where) for v in value]
         if number and not values:
@@ -211,11 +228,16 @@ def _value(key: Key, value: Any, lines: Lines) -> Any:
 def _number(key: Key, value: Any, where: str) -> Any:
     unit = f" in {key.unit}" if key.unit else ""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise SettingsError(f"{where} = {value!r}: a plain number{unit} is needed, as in {_toml(key.default)}.")
+        raise SettingsError(
+            f"{where} = {value!r}: a plain number{unit} is needed, as in {_toml(key.default)}."
+        )
     if key.kind is int and not isinstance(value, int):
         raise SettingsError(f"{where} = {value!r}: a whole number is needed.")
     if not key.low <= value <= key.high:
-        raise SettingsError(f"{where} = {value:g}{f' {key.unit}' if key.unit else ''} lies outside {key.low:g} to {key.high:g} ({key.doc}).")
+        raise SettingsError(
+            f"{where} = {value:g}{f' {key.unit}' if key.unit else ''} lies outside "
+            f"{key.low:g} to {key.high:g} ({key.doc})."
+        )
     return value if key.kind is int else float(value)
 
 
@@ -239,4 +261,8 @@ def _toml(value: Any) -> str:
         return str(value).lower()
     if isinstance(value, list):
         return f"[{', '.join(map(_toml, value))}]"
-    return '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"' if isinstance(value, str) else f"{value!r}"
+    return (
+        '"' + value.replace("\\", "\\\\").replace('"', '\\"') + '"'
+        if isinstance(value, str)
+        else f"{value!r}"
+    )

@@ -75,7 +75,8 @@ def turn(angle: float) -> float:
 def true_wind(speed: float, angle_from: float, psi: float, u: float, v: float) -> tuple[float, float]:
     """(speed [m/s], direction it blows to [rad]) over ground, from the wind felt on a ship that moves with
     (u, v)."""
-    ahead, starboard = u - speed * cos(angle_from), v - speed * sin(angle_from)  # the air over ground, body axes
+    # the air over ground, body axes
+    ahead, starboard = u - speed * cos(angle_from), v - speed * sin(angle_from)
     return hypot(ahead, starboard), (psi + atan2(starboard, ahead)) % (2.0 * pi)
 
 

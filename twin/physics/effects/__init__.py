@@ -36,13 +36,33 @@ from .wave_drift import WaveDrift
 from .wind import Wind
 
 BUILT_IN: tuple[type[Effect], ...] = (
-    Wind, WaveDrift, CrossFlowDrag, HullFouling, PropellerWear, RudderWear, RudderOffset, Loading, Bank, TowForce, ExternalForce,
-    PropellerWalk, RollCoupling,
-    Current, VaryingCurrent, ShallowWater,
+    Wind,
+    WaveDrift,
+    CrossFlowDrag,
+    HullFouling,
+    PropellerWear,
+    RudderWear,
+    RudderOffset,
+    Loading,
+    Bank,
+    TowForce,
+    ExternalForce,
+    PropellerWalk,
+    RollCoupling,
+    Current,
+    VaryingCurrent,
+    ShallowWater,
     SteeringLag,
-    HeadingBias, SpeedLogBias, SpeedLogScale, SpeedLogMisalignment, AntennaOffset, SensorDelay, GyroBias,
-)  # fmt: skip
-UNNAMED: tuple[type[Effect], ...] = (RudderPlay, SwayingMass)  # known by their form, so that nothing of the catalogue is named in their place
+    HeadingBias,
+    SpeedLogBias,
+    SpeedLogScale,
+    SpeedLogMisalignment,
+    AntennaOffset,
+    SensorDelay,
+    GyroBias,
+)
+# known by their form, so that nothing of the catalogue is named in their place
+UNNAMED: tuple[type[Effect], ...] = (RudderPlay, SwayingMass)
 
 
 @lru_cache(maxsize=1)
@@ -62,7 +82,10 @@ def find(name: str) -> type[Effect]:
         if effect.__name__ == name:
             return effect
     if name in (e.__name__ for e in UNNAMED):
-        raise SettingsError(f"{name} is known by its form alone: what a repair mends is no part of a ship file. What it is: twin effects {name}.")
+        raise SettingsError(
+            f"{name} is known by its form alone: what a repair mends is no part of a ship "
+            f"file. What it is: twin effects {name}."
+        )
     known = catalogue()
     if name not in known:
         raise SettingsError(f"Unknown effect {name!r}.{did_you_mean(name, known)}")

@@ -1,10 +1,10 @@
-"""The antenna is not where it is said to be: position and velocity over ground are those of another point of the ship.
+"""The antenna is not where it is said to be: position and velocity over ground are those of another point of
+the ship.
 
-a_x ahead, a_y to starboard, from the point whose position the settings promise (midship; docs/import.md); a_z above the axis of roll, from where
-heel phi carries it aside (a_z = 0 where roll was not recorded; p is its rate):
-x_m = x + a_x cos(psi) - a sin(psi),   y_m = y + a_x sin(psi) + a cos(psi),   a = a_y + a_z sin(phi)
-u_m = u - a r,                         v_m = v + a_x r + a_z cos(phi) p
-"""
+a_x ahead, a_y to starboard, from the point whose position the settings promise (midship; docs/import.md); a_z
+above the axis of roll, from where heel phi carries it aside (a_z = 0 where roll was not recorded; p is its
+rate): x_m = x + a_x cos(psi) - a sin(psi),   y_m = y + a_x sin(psi) + a cos(psi),   a = a_y + a_z sin(phi)
+u_m = u - a r,                         v_m = v + a_x r + a_z cos(phi) p"""
 
 from dataclasses import replace
 
@@ -15,14 +15,32 @@ from twin.physics.state import Situation
 
 
 class AntennaOffset(SensorFault):
-    """The satellite antenna stands elsewhere on board than the settings say: she seems to swing about the wrong point."""
+    """The satellite antenna stands elsewhere on board than the settings say: she seems to swing about the
+    wrong point."""
 
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 2 and 13 (lever arms)"
 
-    ahead: float = param(0.1, unit="m", lo=-0.6, hi=0.6, sd=0.1, of="length", doc="antenna ahead of where the settings put it")
-    starboard: float = param(0.0, unit="m", lo=-0.1, hi=0.1, sd=0.015, of="length", doc="antenna to starboard of where the settings put it")
+    ahead: float = param(
+        0.1, unit="m", lo=-0.6, hi=0.6, sd=0.1, of="length", doc="antenna ahead of where the settings put it"
+    )
+    starboard: float = param(
+        0.0,
+        unit="m",
+        lo=-0.1,
+        hi=0.1,
+        sd=0.015,
+        of="length",
+        doc="antenna to starboard of where the settings put it",
+    )
     above: float = param(
-        0.0, unit="m", lo=-0.1, hi=0.5, sd=0.1, of="length", input="phi", doc="antenna above the axis of roll, where roll was recorded"
+        0.0,
+        unit="m",
+        lo=-0.1,
+        hi=0.5,
+        sd=0.1,
+        of="length",
+        input="phi",
+        doc="antenna above the axis of roll, where roll was recorded",
     )
 
     def read(self, s: Situation, ship: Ship) -> Situation:

@@ -1,12 +1,10 @@
-"""Bank suction: the stream between hull and bank runs faster, and pulls the ship to the bank and her bow off it.
+"""Bank suction: the stream between hull and bank runs faster, and pulls the ship to the bank and her bow off
+it.
 
-d: from the ship's side to the bank (where there is none, 10000 m)
-e = f(d_starboard) - f(d_port),  f(d) = eta (1 + steep (3 eta - 1)),  eta = B/(B + 2 d)
-Y =  1/2 rho L T   u_r^2     suction  e
-N = -1/2 rho L^2 T u_r|u_r|  bow_out  e
-How fast the suction falls off with the distance depends on hull and bank, and those who measured it disagree: with eta, or with its square;
-one beam off both say the same.
-"""
+d: from the ship's side to the bank (where there is none, 10000 m) e = f(d_starboard) - f(d_port),  f(d) = eta
+(1 + steep (3 eta - 1)),  eta = B/(B + 2 d) Y =  1/2 rho L T   u_r^2     suction  e N = -1/2 rho L^2 T
+u_r|u_r|  bow_out  e How fast the suction falls off with the distance depends on hull and bank, and those who
+measured it disagree: with eta, or with its square; one beam off both say the same."""
 
 from twin.physics.effect import Force, param
 from twin.physics.particulars import Ship
@@ -19,13 +17,18 @@ class Bank(Force):
 
     needs = ("bank_port", "bank_starboard")
     source = (
-        "Norrbin (1974) Bank effects on a ship moving through a short dredged channel, 10th Symp. Naval Hydrodynamics; "
+        "Norrbin (1974) Bank effects on a ship moving through a short dredged channel, 10th Symp. Naval "
+        "Hydrodynamics; "
         "Ch'ng, Doctors & Renilson (1993) ISP 40"
     )
 
     suction: float = param(0.03, unit="-", lo=0.0, hi=0.5, sd=0.05, doc="side force toward the nearer bank")
-    bow_out: float = param(0.008, unit="-", lo=0.0, hi=0.15, sd=0.015, doc="moment that turns the bow from the nearer bank")
-    steep: float = param(0.5, unit="-", lo=0.0, hi=1.0, sd=0.5, doc="share of both that falls off with eta squared")
+    bow_out: float = param(
+        0.008, unit="-", lo=0.0, hi=0.15, sd=0.015, doc="moment that turns the bow from the nearer bank"
+    )
+    steep: float = param(
+        0.5, unit="-", lo=0.0, hi=1.0, sd=0.5, doc="share of both that falls off with eta squared"
+    )
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:
         e = self._pull(s.bank_starboard, ship) - self._pull(s.bank_port, ship)

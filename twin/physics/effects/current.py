@@ -10,7 +10,8 @@ from twin.physics.state import Situation, Water
 
 
 class Current(Flow):
-    """A steady current carries the ship over ground; hull, propeller and rudder feel only the motion through the water."""
+    """A steady current carries the ship over ground; hull, propeller and rudder feel only the motion through
+    the water."""
 
     stream = True
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.3"

@@ -12,14 +12,33 @@ from twin.physics.state import Situation
 
 
 class ExternalForce(Force):
-    """Something pulls at her from a fixed bearing: a mooring or tug line from shore, a swell that was not measured."""
+    """Something pulls at her from a fixed bearing: a mooring or tug line from shore, a swell that was not
+    measured."""
 
-    source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 2 (rotation from NED to body)"
+    source = (
+        "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 2 (rotation from NED to body)"
+    )
 
     north: float = param(0.4, unit="N", lo=-8.0, hi=8.0, sd=0.6, of="force", doc="force toward north")
     east: float = param(0.0, unit="N", lo=-8.0, hi=8.0, sd=0.6, of="force", doc="force toward east")
-    turn_north: float = param(0.0, unit="N m", lo=-3.0, hi=3.0, sd=0.1, of="moment", doc="north force times its lever ahead of midship")
-    turn_east: float = param(0.0, unit="N m", lo=-3.0, hi=3.0, sd=0.1, of="moment", doc="east force times its lever ahead of midship")
+    turn_north: float = param(
+        0.0,
+        unit="N m",
+        lo=-3.0,
+        hi=3.0,
+        sd=0.1,
+        of="moment",
+        doc="north force times its lever ahead of midship",
+    )
+    turn_east: float = param(
+        0.0,
+        unit="N m",
+        lo=-3.0,
+        hi=3.0,
+        sd=0.1,
+        of="moment",
+        doc="east force times its lever ahead of midship",
+    )
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:
         c, si = cos(s.psi), sin(s.psi)

@@ -17,7 +17,9 @@ class GyroBias(SensorFault):
     attitude = True
     source = "IEEE Std 952-1997 (gyro bias); IMO A.526(13) (rate-of-turn indicators: 0.5 deg/min)"
 
-    bias: float = param(0.0005, unit="rad/s", lo=-0.02, hi=0.02, sd=0.0007, doc="shown yaw rate less the true one")
+    bias: float = param(
+        0.0005, unit="rad/s", lo=-0.02, hi=0.02, sd=0.0007, doc="shown yaw rate less the true one"
+    )
 
     def read(self, s: Situation, ship: Ship) -> Situation:
         return replace(s, r=s.r + self.bias)

@@ -2,9 +2,8 @@
 
     psi_m = psi + bias,   wind_to_m = wind_to + bias
     u_m = u cos(turned) + v sin(turned),   v_m = v cos(turned) - u sin(turned)      (over ground)
-`turned` = bias where the velocity over ground is turned into body axes by this compass, and 0 where the receiver has an
-attitude of its own (an inertial unit, two antennas).
-"""
+`turned` = bias where the velocity over ground is turned into body axes by this compass, and 0 where the
+receiver has an attitude of its own (an inertial unit, two antennas)."""
 
 from dataclasses import replace
 
@@ -15,13 +14,21 @@ from twin.physics.state import Situation
 
 
 class HeadingBias(SensorFault):
-    """The compass shows a heading that is off by a constant, so she seems to drift sideways wherever she goes."""
+    """The compass shows a heading that is off by a constant, so she seems to drift sideways wherever she
+    goes."""
 
     attitude = True
     source = "ISO 8728 and IMO A.424(XI) (gyro-compass settle-point error)"
 
     bias: float = param(0.02, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="shown heading less the true one")
-    turned: float = param(0.0, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="by what speed over ground is turned: bias, or 0 (see above)")
+    turned: float = param(
+        0.0,
+        unit="rad",
+        lo=-0.2,
+        hi=0.2,
+        sd=0.02,
+        doc="by what speed over ground is turned: bias, or 0 (see above)",
+    )
 
     def read(self, s: Situation, ship: Ship) -> Situation:
         c, si = cos(self.turned), sin(self.turned)

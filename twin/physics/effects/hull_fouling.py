@@ -13,9 +13,14 @@ from twin.physics.state import Situation
 class HullFouling(Force):
     """Growth on the hull makes her harder to drive: the same shaft speed gives less speed."""
 
-    source = "ITTC 7.5-02-03-01.4 (roughness allowance); Schultz (2007) Biofouling 23, 331-341 (+10 % slime to +80 % heavy shell)"
+    source = (
+        "ITTC 7.5-02-03-01.4 (roughness allowance); Schultz (2007) Biofouling 23, 331-341 (+10 % slime "
+        "to +80 % heavy shell)"
+    )
 
-    extra: float = param(0.3, unit="-", lo=0.0, hi=2.0, sd=0.25, doc="added resistance over calm-water resistance")
+    extra: float = param(
+        0.3, unit="-", lo=0.0, hi=2.0, sd=0.25, doc="added resistance over calm-water resistance"
+    )
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:
         return ForceVector(X=self.extra * resistance(s.u_r, ship.c))

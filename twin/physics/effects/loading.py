@@ -1,12 +1,15 @@
 """Another loading condition: heavier or lighter, deeper or shallower, trimmed.
 
-    m -> (1 + mass) m,  T -> k T with k = 1 + draught,  x_G -> x_G + shift,  I_z -> (1 + mass) I_z + m (x_G^2 - x_G0^2)
-Added masses in sway and yaw and the hull's lift grow with T^2 + a B T, as regressions have them (a slender body's with T^2 alone),
-cross-flow drag with T, the added mass in surge with m, the resistance with the wetted surface 1.7 L T + C_b L B. Derivatives are stored
-over T, so that one power of k is there already.
+    m -> (1 + mass) m,  T -> k T with k = 1 + draught,  x_G -> x_G + shift,  I_z -> (1 + mass) I_z + m (x_G^2
+    - x_G0^2)
+Added masses in sway and yaw and the hull's lift grow with T^2 + a B T, as regressions have them (a slender
+body's with T^2 alone), cross-flow drag with T, the added mass in surge with m, the resistance with the wetted
+surface 1.7 L T + C_b L B. Derivatives are stored over T, so that one power of k is there already.
 
-A load that stands farther aft trims her by the stern, trim / T = -(shift / L) C_b / C_IL, and her lift moves aft with her draught:
-    Y_uv -> (1 + 0.67 trim / T) Y_uv,  N_uv -> N_uv - 0.27 trim / T Y_uv,  Y_ur -> (1 + 0.8 trim / T) Y_ur,  N_ur -> (1 + 0.3 trim / T) N_ur
+A load that stands farther aft trims her by the stern, trim / T = -(shift / L) C_b / C_IL, and her lift moves
+aft with her draught:
+    Y_uv -> (1 + 0.67 trim / T) Y_uv,  N_uv -> N_uv - 0.27 trim / T Y_uv,  Y_ur -> (1 + 0.8 trim / T) Y_ur,
+    N_ur -> (1 + 0.3 trim / T) N_ur
 """
 
 from dataclasses import replace
@@ -17,28 +20,47 @@ from twin.physics.particulars import Ship
 from twin.physics.state import Number
 
 BLUNT = {
-    "Y_vdot": (0.0, 0.16), "Y_rdot": (0.0, 0.0), "N_vdot": (0.0, 0.0), "N_rdot": (0.0, 0.2), "Y_uv": (0.0, 0.4), "Y_ur": (0.16, 0.0),
-    "N_uv": (0.0, 0.0), "N_ur": (0.16, 0.0),
-}  # a of each, and a over C_b; the terms in B/L left out  # fmt: skip
+    "Y_vdot": (0.0, 0.16),
+    "Y_rdot": (0.0, 0.0),
+    "N_vdot": (0.0, 0.0),
+    "N_rdot": (0.0, 0.2),
+    "Y_uv": (0.0, 0.4),
+    "Y_ur": (0.16, 0.0),
+    "N_uv": (0.0, 0.0),
+    "N_ur": (0.16, 0.0),
+}  # a of each, and a over C_b; the terms in B/L left out
 LIFT = {"Y_uv": 0.67, "Y_ur": 0.8, "N_ur": 0.3}  # share by which a trim of one draught raises them
 LEVER = -0.27  # [L] by which N_uv changes with Y_uv
 LEAST = 0.2  # share of the area above the water that stays: superstructure, however deep she lies
 
 
 class Loading(Force):
-    """She is loaded otherwise than the model believes: mass, draught or trim differ, so she answers slower or quicker."""
+    """She is loaded otherwise than the model believes: mass, draught or trim differ, so she answers slower or
+    quicker."""
 
     source = (
-        "Clarke, Gedling & Hine (1983) Trans. RINA 125 (T/L powers); Inoue, Hirano & Kijima (1981) Int. Shipbuild. Prog. 28 (trim); D'Arcangelo "
-        "(1969) in Parsons (2003) Parametric design, ch. 11 (C_IL); Denny-Mumford wetted surface in Molland et al. (2017)"
+        "Clarke, Gedling & Hine (1983) Trans. RINA 125 (T/L powers); Inoue, Hirano & Kijima (1981) Int. "
+        "Shipbuild. Prog. 28 (trim); D'Arcangelo "
+        "(1969) in Parsons (2003) Parametric design, ch. 11 (C_IL); Denny-Mumford wetted surface in Molland "
+        "et al. (2017)"
     )
 
-    mass: float = param(0.2, unit="-", lo=-0.7, hi=0.6, sd=0.15, doc="mass beyond the model's, as a fraction of it")
-    draught: float = param(0.15, unit="-", lo=-0.7, hi=0.6, sd=0.12, doc="draught beyond the model's, as a fraction of it")
+    mass: float = param(
+        0.2, unit="-", lo=-0.7, hi=0.6, sd=0.15, doc="mass beyond the model's, as a fraction of it"
+    )
+    draught: float = param(
+        0.15, unit="-", lo=-0.7, hi=0.6, sd=0.12, doc="draught beyond the model's, as a fraction of it"
+    )
     x_G: float = param(
-        0.0, unit="m", lo=-0.06, hi=0.06, sd=0.01, of="length",
-        doc="shift of the centre of gravity, ahead positive; with the trim that follows, so that a loading computer's number is near it",
-    )  # fmt: skip
+        0.0,
+        unit="m",
+        lo=-0.06,
+        hi=0.06,
+        sd=0.01,
+        of="length",
+        doc="shift of the centre of gravity, ahead positive; with the trim that follows, so that a loading "
+        "computer's number is near it",
+    )
 
     def alter(self, ship: Ship) -> Ship:
         m, k, x_G = ship.m * (1.0 + self.mass), 1.0 + self.draught, ship.x_G + self.x_G
@@ -73,11 +95,13 @@ def deeper(ship: Ship, name: str, k: Number) -> Number:
 
 
 def trim_per_shift(ship: Ship) -> Number:
-    """Trim over draught for a shift of the centre of gravity of one metre: L / BM_L, BM_L = C_IL L^2 / (C_b T) [1/m]."""
+    """Trim over draught for a shift of the centre of gravity of one metre: L / BM_L, BM_L = C_IL L^2 / (C_b
+    T) [1/m]."""
     C_wp = waterplane(ship)
     return ship.C_b / ((0.35 * C_wp * C_wp - 0.405 * C_wp + 0.146) * ship.L_pp)
 
 
 def waterplane(ship: Ship) -> Number:
-    """C_wp as hulls of this fullness usually have it [Schneekluth & Bertram 1998, ship design for efficiency and economy, sec. 1.6]."""
+    """C_wp as hulls of this fullness usually have it [Schneekluth & Bertram 1998, ship design for efficiency
+    and economy, sec. 1.6]."""
     return (1.0 + 2.0 * ship.C_b) / 3.0

@@ -1,8 +1,7 @@
 """Propeller walk: the blades push the stern sideways, with the square of the shaft speed.
 
-Two screws that turn outward or inward alike have none; what is left where one of them gives less turns her, too, and is called this.
-Y = rho D^4   c_y n |n|,   N = rho D^4 L c_n n |n|
-"""
+Two screws that turn outward or inward alike have none; what is left where one of them gives less turns her,
+too, and is called this. Y = rho D^4   c_y n |n|,   N = rho D^4 L c_n n |n|"""
 
 from twin.physics.effect import Force, param
 from twin.physics.particulars import Ship
@@ -11,12 +10,22 @@ from twin.physics.state import Situation
 
 
 class PropellerWalk(Force):
-    """The single screw pushes her stern to one side, the more the harder it turns: helm to go straight, at any speed."""
+    """The single screw pushes her stern to one side, the more the harder it turns: helm to go straight, at
+    any speed."""
 
     source = "Brix (1993) Manoeuvring Technical Manual (side force of a single screw)"
 
-    c_y: float = param(0.01, unit="-", lo=-0.1, hi=0.1, sd=0.01, doc="side force, positive to starboard when going ahead")
-    c_n: float = param(-0.005, unit="-", lo=-0.05, hi=0.05, sd=0.005, doc="yaw moment, positive to starboard when going ahead")
+    c_y: float = param(
+        0.01, unit="-", lo=-0.1, hi=0.1, sd=0.01, doc="side force, positive to starboard when going ahead"
+    )
+    c_n: float = param(
+        -0.005,
+        unit="-",
+        lo=-0.05,
+        hi=0.05,
+        sd=0.005,
+        doc="yaw moment, positive to starboard when going ahead",
+    )
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:
         f = ship.rho * ship.D_P**4 * s.n * abs(s.n)

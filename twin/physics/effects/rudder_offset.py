@@ -11,11 +11,19 @@ from twin.physics.state import Situation
 
 
 class RudderOffset(Force):
-    """The rudder's zero is not where the indicator says, so she needs the same angle to go straight at every speed."""
+    """The rudder's zero is not where the indicator says, so she needs the same angle to go straight at every
+    speed."""
 
     source = "IMO MSC/Circ.1053 (2002), neutral rudder angle; Yasukawa & Yoshimura (2015) eq. (20)-(27)"
 
-    offset: float = param(0.02, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="true rudder angle less the indicated one, positive to starboard")
+    offset: float = param(
+        0.02,
+        unit="rad",
+        lo=-0.2,
+        hi=0.2,
+        sd=0.02,
+        doc="true rudder angle less the indicated one, positive to starboard",
+    )
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:
         c = ship.c

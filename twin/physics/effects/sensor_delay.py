@@ -1,11 +1,10 @@
-"""GNSS is late: what it says now was true `delay` seconds ago; the place to second order in the delay, the velocity to first.
+"""GNSS is late: what it says now was true `delay` seconds ago; the place to second order in the delay, the
+velocity to first.
 
-    (x, y)_m = (x, y) - delay R(psi - r delay/2) (u - du/dt delay/2, v - dv/dt delay/2)      the velocity of half the delay ago
-    u_m = u - delay du/dt + turned r v
-    v_m = v - delay dv/dt - turned r u
-`turned` = delay where a late velocity over ground is turned into body axes by the present heading (a compass), and 0 where
-the receiver does so itself by an attitude of its own (an inertial unit).
-"""
+    (x, y)_m = (x, y) - delay R(psi - r delay/2) (u - du/dt delay/2, v - dv/dt delay/2)      the velocity of
+    half the delay ago u_m = u - delay du/dt + turned r v v_m = v - delay dv/dt - turned r u
+`turned` = delay where a late velocity over ground is turned into body axes by the present heading (a
+compass), and 0 where the receiver does so itself by an attitude of its own (an inertial unit)."""
 
 from dataclasses import replace
 
@@ -18,10 +17,22 @@ from twin.physics.state import Number, Situation
 class SensorDelay(SensorFault):
     """Satellite position and velocity come late, so she seems to lag behind herself on the track."""
 
-    source = "Skog & Haendel (2011) Time synchronization errors in loosely coupled GPS-aided INS, IEEE Trans. ITS 12, 1014-1023"
+    source = (
+        "Skog & Haendel (2011) Time synchronization errors in loosely coupled GPS-aided INS, IEEE "
+        "Trans. ITS 12, 1014-1023"
+    )
 
-    delay: float = param(0.6, unit="s", lo=0.0, hi=6.0, sd=0.6, doc="age of position and velocity over ground")
-    turned: float = param(0.0, unit="s", lo=0.0, hi=6.0, sd=0.6, doc="age of the turning of the velocity: delay, or 0 (see above)")
+    delay: float = param(
+        0.6, unit="s", lo=0.0, hi=6.0, sd=0.6, doc="age of position and velocity over ground"
+    )
+    turned: float = param(
+        0.0,
+        unit="s",
+        lo=0.0,
+        hi=6.0,
+        sd=0.6,
+        doc="age of the turning of the velocity: delay, or 0 (see above)",
+    )
 
     def read(self, s: Situation, ship: Ship) -> Situation:
         d, half, turned = self.delay, 0.5 * self.delay, self.turned * s.r

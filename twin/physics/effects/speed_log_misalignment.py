@@ -15,9 +15,19 @@ class SpeedLogMisalignment(SensorFault):
     """The speed log is mounted askew, so speed ahead shows up as drift in proportion."""
 
     needs = ("u_r", "v_r")
-    source = "Kinsey & Whitcomb (2007) In situ alignment calibration of attitude and Doppler sensors, IEEE J. Oceanic Eng. 32, 286-299"
+    source = (
+        "Kinsey & Whitcomb (2007) In situ alignment calibration of attitude and Doppler sensors, IEEE "
+        "J. Oceanic Eng. 32, 286-299"
+    )
 
-    angle: float = param(0.03, unit="rad", lo=-0.3, hi=0.3, sd=0.03, doc="how far the log's axis ahead points to starboard of the ship's")
+    angle: float = param(
+        0.03,
+        unit="rad",
+        lo=-0.3,
+        hi=0.3,
+        sd=0.03,
+        doc="how far the log's axis ahead points to starboard of the ship's",
+    )
 
     def read(self, s: Situation, ship: Ship) -> Situation:
         c, si = cos(self.angle), sin(self.angle)

@@ -11,12 +11,15 @@ from twin.physics.state import Situation
 
 
 class SpeedLogScale(SensorFault):
-    """The speed log shows a fixed percentage too much or too little (the boundary layer, a wrong calibration)."""
+    """The speed log shows a fixed percentage too much or too little (the boundary layer, a wrong
+    calibration)."""
 
     needs = ("u_r",)
     source = "IMO MSC.96(72) (performance of speed logs: 2 % or 0.2 kn)"
 
-    scale: float = param(0.04, unit="-", lo=-0.4, hi=0.4, sd=0.04, doc="shown speed over the true one, less 1")
+    scale: float = param(
+        0.04, unit="-", lo=-0.4, hi=0.4, sd=0.04, doc="shown speed over the true one, less 1"
+    )
 
     def read(self, s: Situation, ship: Ship) -> Situation:
         return replace(s, u_r=s.u_r * (1.0 + self.scale), v_r=s.v_r * (1.0 + self.scale))

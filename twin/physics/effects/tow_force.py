@@ -10,13 +10,16 @@ from twin.physics.state import Situation
 
 
 class TowForce(Force):
-    """Something pulls at her that turns with her: a tow, a thruster left on, a dragging anchor, a list that nobody recorded."""
+    """Something pulls at her that turns with her: a tow, a thruster left on, a dragging anchor, a list that
+    nobody recorded."""
 
     source = "Newton's second law; size: shares of her own resistance"
 
     ahead: float = param(-0.5, unit="N", lo=-8.0, hi=8.0, sd=0.6, of="force", doc="force ahead")
     starboard: float = param(0.3, unit="N", lo=-8.0, hi=8.0, sd=0.5, of="force", doc="force to starboard")
-    turning: float = param(0.1, unit="N m", lo=-3.0, hi=3.0, sd=0.15, of="moment", doc="moment turning to starboard")
+    turning: float = param(
+        0.1, unit="N m", lo=-3.0, hi=3.0, sd=0.15, of="moment", doc="moment turning to starboard"
+    )
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:
         return ForceVector(self.ahead, self.starboard, self.turning)

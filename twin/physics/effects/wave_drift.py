@@ -1,13 +1,13 @@
 """Mean second-order drift: the momentum of the waves that the hull throws back.
 
     beta_wave: direction to which the waves run
-    chi = beta_wave - psi,  q = 1/16 rho g H_s^2 R,  R = 1 - exp(-2 k T),  k = (2 pi / T_p)^2 / g   (R = 1 where T_p is unknown)
-    X = q B sqrt(B/L)  c_x cos(chi)
+    chi = beta_wave - psi,  q = 1/16 rho g H_s^2 R,  R = 1 - exp(-2 k T),  k = (2 pi / T_p)^2 / g   (R = 1
+    where T_p is unknown) X = q B sqrt(B/L)  c_x cos(chi)
     Y = q L            c_y |sin(chi)| sin(chi)
     N = q L^2          c_n sin(2 chi)
-A vertical wall that reflects everything has c_y = 1; long waves pass under the keel, which R takes off. Waves come in groups, and the
-force with them: it follows the square of their envelope, which in a narrow band scatters as much as its mean is (Newman 1974).
-"""
+A vertical wall that reflects everything has c_y = 1; long waves pass under the keel, which R takes off. Waves
+come in groups, and the force with them: it follows the square of their envelope, which in a narrow band
+scatters as much as its mean is (Newman 1974)."""
 
 from math import pi
 
@@ -20,14 +20,20 @@ from twin.physics.state import Number, Situation
 
 
 class WaveDrift(Force):
-    """The sea pushes the ship slowly along with the waves, slows her in head seas and turns her across them."""
+    """The sea pushes the ship slowly along with the waves, slows her in head seas and turns her across
+    them."""
 
     needs = ("H_s", "wave_to")  # T_p is used where it is known
     irregular = True
     lever = 0.05
-    source = "Faltinsen (1990) Sea Loads on Ships and Offshore Structures, ch. 5 (wall reflection); ITTC 7.5-04-01-01.2 STAWAVE-1 (c_x = 1)"
+    source = (
+        "Faltinsen (1990) Sea Loads on Ships and Offshore Structures, ch. 5 (wall reflection); ITTC "
+        "7.5-04-01-01.2 STAWAVE-1 (c_x = 1)"
+    )
 
-    c_x: float = param(1.0, unit="-", lo=0.0, hi=6.0, sd=1.2, doc="added resistance in head sea, in units of STAWAVE-1")
+    c_x: float = param(
+        1.0, unit="-", lo=0.0, hi=6.0, sd=1.2, doc="added resistance in head sea, in units of STAWAVE-1"
+    )
     c_y: float = param(0.8, unit="-", lo=0.0, hi=2.0, sd=0.6, doc="beam drift, in units of a reflecting wall")
     c_n: float = param(0.0, unit="-", lo=-0.3, hi=0.3, sd=0.06, doc="yaw moment of bow and quartering seas")
 

@@ -22,13 +22,28 @@ class Wind(Force):
     needs = ("wind_speed", "wind_to")
     needs_ship = ("A_F", "A_L")
     lever = 0.05  # it moves along her with the direction, by more than four coefficients say
-    source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.1; Blendermann (1994) coefficient ranges"
+    source = (
+        "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.1; Blendermann (1994) "
+        "coefficient ranges"
+    )
 
     c_x: float = param(0.7, unit="-", lo=0.0, hi=1.6, sd=0.7, doc="head-wind drag on the frontal area A_F")
     c_y: float = param(0.85, unit="-", lo=0.0, hi=1.8, sd=0.8, doc="beam-wind drag on the lateral area A_L")
-    c_n: float = param(0.08, unit="-", lo=-0.3, hi=0.4, sd=0.1, doc="yaw moment that bow and stern quartering winds add (sin 2 gamma)")
+    c_n: float = param(
+        0.08,
+        unit="-",
+        lo=-0.3,
+        hi=0.4,
+        sd=0.1,
+        doc="yaw moment that bow and stern quartering winds add (sin 2 gamma)",
+    )
     c_m: float = param(
-        0.0, unit="-", lo=-0.3, hi=0.3, sd=0.05, doc="yaw moment of beam wind: c_y times the lever of the lateral area's centre, in L"
+        0.0,
+        unit="-",
+        lo=-0.3,
+        hi=0.3,
+        sd=0.05,
+        doc="yaw moment of beam wind: c_y times the lever of the lateral area's centre, in L",
     )
 
     def force(self, s: Situation, ship: Ship) -> ForceVector:

@@ -12,9 +12,13 @@ GAP_STEPS, GAP_S = 5.0, 5.0
 
 
 def beats(voyage: Voyage) -> np.ndarray:
-    """When the instrument that speaks most often spoke [s]: every row of a table, and of a log with a row for each message those of one
-    instrument, for what two instruments say at one moment is no stamp twice."""
-    heard = [np.isfinite(values) for name, values in voyage.columns.items() if name not in voyage.meta.get("derived", {})]
+    """When the instrument that speaks most often spoke [s]: every row of a table, and of a log with a row for
+    each message those of one instrument, for what two instruments say at one moment is no stamp twice."""
+    heard = [
+        np.isfinite(values)
+        for name, values in voyage.columns.items()
+        if name not in voyage.meta.get("derived", {})
+    ]
     often = max(heard, key=np.count_nonzero, default=np.ones(len(voyage), bool))
     return voyage.time_s[often] if np.count_nonzero(often) > 1 else voyage.time_s
 
@@ -36,7 +40,9 @@ def time_stamps(view: View) -> Check:
         )
     if repeated.any():
         i = int(np.flatnonzero(repeated)[0])
-        return doubtful(name, f"{repeated.sum()} time stamps repeat, the first at {t[i]:g} s; such samples are averaged.")
+        return doubtful(
+            name, f"{repeated.sum()} time stamps repeat, the first at {t[i]:g} s; such samples are averaged."
+        )
     inside = steps[steps < GAP_STEPS * usual]
     scatter = float(np.std(inside) / usual)
     if scatter > UNEVEN:

@@ -55,7 +55,9 @@ def velocity_frame(view: View) -> Check:
         return course_against_heading(NAME, view)
     legs = cut(view)
     if not np.isfinite(legs.moved).any() or rms(legs.moved) < 5.0 * legs.noise + 1e-9:
-        far = f"the ship moves {rms(legs.moved):.2g} m in a window, the position's noise is {legs.noise:.2g} m."
+        far = (
+            f"the ship moves {rms(legs.moved):.2g} m in a window, the position's noise is {legs.noise:.2g} m."
+        )
         return cannot_tell(NAME, far)
     off = legs.miss(AS_THEY_ARE)
     if off <= legs.allowed:
@@ -85,7 +87,9 @@ def nearly_straight(legs: Legs) -> Check | None:
     swing = np.exp(1j * legs.view.psi)
     summed, arm = legs.summed(AS_THEY_ARE.flow(legs.view)), swing[legs.last] - swing[legs.first]
     best = float(np.sqrt(fit([summed, 1j * summed, arm, 1j * arm], legs.moved)[2]))
-    saw = f"position and velocities differ by {100 * best:.1f} % of the distance whatever the heading's offset"
+    saw = (
+        f"position and velocities differ by {100 * best:.1f} % of the distance whatever the heading's offset"
+    )
     left, mistake = min(((legs.miss(m), m) for m in GEOMETRY[1:]), key=lambda t: t[0])
     stream, drifting = steady_stream(legs, saw)
     if best < SLIGHT + 3.0 * legs.noise_share or min(left, stream) > EXPLAINS * best:

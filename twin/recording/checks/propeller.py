@@ -35,7 +35,8 @@ def propeller_rate(view: View) -> Check:
         )
     return good(
         name,
-        f"{60 * rate:.3g} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked closer.",
+        f"{60 * rate:.3g} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked "
+        "closer.",
     )
 
 
@@ -51,4 +52,6 @@ def advance(name: str, way: float, rate: float, diameter: float) -> Check:
                 name,
                 f"{saw}; {j * factor:.2g} if {said}: that is believed, unless the file is of {other} ship.",
             )
-    return doubtful(name, f"{saw}, expected {low:g} to {high:g}: another ship's file, a wrong unit, or a wrong diameter?")
+    return doubtful(
+        name, f"{saw}, expected {low:g} to {high:g}: another ship's file, a wrong unit, or a wrong diameter?"
+    )

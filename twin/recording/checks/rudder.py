@@ -21,11 +21,15 @@ def rudder_sign(view: View) -> Check:
     name = "rudder_sign"
     same, against = held_turns(view)
     if same + against and min(same, against) == 0:
-        return sign_seen(name, f"with the rudder held over ({same + against} x) the ship turns", same > 0, True)
+        return sign_seen(
+            name, f"with the rudder held over ({same + against} x) the ship turns", same > 0, True
+        )
     share, b = best_gain(view)
     saw = f"the rudder explains {100 * share:.0f} % of the changes of yaw rate"
     if share < RUDDER_SHARE:
-        return cannot_tell(name, f"{saw}; held over until she has turned by {HELD_TURN_DEG:.0f} deg it would show.")
+        return cannot_tell(
+            name, f"{saw}; held over until she has turned by {HELD_TURN_DEG:.0f} deg it would show."
+        )
     return sign_seen(name, saw, b > 0.0, share > PROOF_SHARE)
 
 
@@ -91,7 +95,9 @@ def rudder_unit(view: View) -> Check:
     if most >= LEAST_RUDDER_DEG:
         return good(name, f"the rudder reaches {most:.1f} deg.")
     if swung < 20.0:
-        return cannot_tell(name, f"the rudder stays within {most:.2g} deg, and the heading within {swung:.0f} deg.")
+        return cannot_tell(
+            name, f"the rudder stays within {most:.2g} deg, and the heading within {swung:.0f} deg."
+        )
     return wrong(
         name,
         f"the rudder stays within {most:.2g} 'deg' while the heading swings {swung:.0f} deg: it is believed "

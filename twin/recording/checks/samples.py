@@ -8,7 +8,9 @@ from twin.recording.checks.view import View
 from twin.recording.samples import spikes as spike_rows
 from twin.recording.voyage import Voyage
 
-JUMPY = frozenset(("rudder_angle_deg", "propeller_rate_rpm", "true_wind_direction_deg", "apparent_wind_angle_deg"))
+JUMPY = frozenset(
+    ("rudder_angle_deg", "propeller_rate_rpm", "true_wind_direction_deg", "apparent_wind_angle_deg")
+)
 # orders jump, and a light wind comes from anywhere: a lonely sample of these is no sign of a bad sensor
 
 
@@ -18,13 +20,23 @@ def missing_samples(view: View) -> Check:
     found = [text for name in v.columns if (text := hole(v, name))]
     absent = ", ".join(name for name in v.absent() if not _follows(v, name)) or "nothing"
     if found:
-        return doubtful("missing_samples", f"{'; '.join(found)}. Nothing is made up there. Absent altogether: {absent}.")
-    return good("missing_samples", f"no channel is without a sample for longer than it may be old. Absent altogether: {absent}.")
+        return doubtful(
+            "missing_samples", f"{'; '.join(found)}. Nothing is made up there. Absent altogether: {absent}."
+        )
+    return good(
+        "missing_samples",
+        f"no channel is without a sample for longer than it may be old. Absent altogether: {absent}.",
+    )
 
 
 def _follows(v: Voyage, name: str) -> bool:
-    """Whether an absent channel is found from others: the true wind from the apparent one and her own motion."""
-    return name.startswith("true_wind_") and v.has("apparent_wind_speed_mps") and v.has("apparent_wind_angle_deg")
+    """Whether an absent channel is found from others: the true wind from the apparent one and her own
+    motion."""
+    return (
+        name.startswith("true_wind_")
+        and v.has("apparent_wind_speed_mps")
+        and v.has("apparent_wind_angle_deg")
+    )
 
 
 def hole(v: Voyage, name: str) -> str:
@@ -46,7 +58,9 @@ def plausible_values(view: View) -> Check:
     """What reading blanked because no ship measures it."""
     notes = [n for n in view.voyage.meta.get("notes", ()) if "blanked" in n]
     if any("outside" in n for n in notes):
-        return doubtful("plausible_values", f"{'; '.join(notes)}. In the map: unit, or [file] missing = [...].")
+        return doubtful(
+            "plausible_values", f"{'; '.join(notes)}. In the map: unit, or [file] missing = [...]."
+        )
     return good("plausible_values", "; ".join(notes) or "every sample is one that a ship can have.")
 
 
@@ -60,27 +74,37 @@ def spikes(view: View) -> Check:
             i = int(rows[0])
             found.append(f"{name} {rows.size}, first {values[i]:.4g} at {view.voyage.time_s[i]:g} s")
     if found:
-        return doubtful("spikes", f"lonely samples: {'; '.join(found)}. In the map: despike = true blanks them.")
+        return doubtful(
+            "spikes", f"lonely samples: {'; '.join(found)}. In the map: despike = true blanks them."
+        )
     return good("spikes", "no lonely samples.")
 
 
 def frozen(view: View) -> Check:
     """Channels that stand still, to the last digit, while another one says that they cannot."""
-    found = [text for f in (frozen_heading, frozen_position, frozen_speed, frozen_yaw_rate) if (text := f(view))]
+    found = [
+        text for f in (frozen_heading, frozen_position, frozen_speed, frozen_yaw_rate) if (text := f(view))
+    ]
     if found:
-        return doubtful("frozen", f"{'; '.join(found)}. A sensor that hangs: blank this stretch, or cut it off.")
+        return doubtful(
+            "frozen", f"{'; '.join(found)}. A sensor that hangs: blank this stretch, or cut it off."
+        )
     return good("frozen", "nothing stands still that should move.")
 
 
 def frozen_heading(view: View) -> str:
     turned = running(view, view.si("yaw_rate_degps")) if not view.derived("yaw_rate_degps") else None
-    return standing(view, "heading_true_north_deg", turned, np.radians(5.0), "the yaw rate turns {:.0f} deg", 180 / np.pi)
+    return standing(
+        view, "heading_true_north_deg", turned, np.radians(5.0), "the yaw rate turns {:.0f} deg", 180 / np.pi
+    )
 
 
 def frozen_yaw_rate(view: View) -> str:
     r = view.si("yaw_rate_degps")
     rest = view.psi - running(view, r)
-    return standing(view, "yaw_rate_degps", rest, np.radians(5.0), "the heading turns {:.0f} deg otherwise", 180 / np.pi)
+    return standing(
+        view, "yaw_rate_degps", rest, np.radians(5.0), "the heading turns {:.0f} deg otherwise", 180 / np.pi
+    )
 
 
 def frozen_position(view: View) -> str:
@@ -89,7 +113,9 @@ def frozen_position(view: View) -> str:
     w = view.velocity * np.exp(1j * view.psi)
     far = max(5.0, 20.0 * view.speed * view.step_s)
     north = standing(view, "north_m", running(view, w.real), far, "the ship sails {:.0f} m north or south")
-    return north or standing(view, "east_m", running(view, w.imag), far, "the ship sails {:.0f} m east or west")
+    return north or standing(
+        view, "east_m", running(view, w.imag), far, "the ship sails {:.0f} m east or west"
+    )
 
 
 def frozen_speed(view: View) -> str:
@@ -97,7 +123,9 @@ def frozen_speed(view: View) -> str:
         return ""
     rest = view.place - running(view, view.velocity * np.exp(1j * view.psi))
     far = max(10.0, 20.0 * view.speed * view.step_s)
-    return standing(view, "surge_velocity_mps", np.abs(rest - rest[0]), far, "the position moves {:.0f} m otherwise")
+    return standing(
+        view, "surge_velocity_mps", np.abs(rest - rest[0]), far, "the position moves {:.0f} m otherwise"
+    )
 
 
 def running(view: View, rate: np.ndarray) -> np.ndarray:
@@ -105,14 +133,17 @@ def running(view: View, rate: np.ndarray) -> np.ndarray:
     return np.cumsum(np.where(np.isfinite(rate), rate, 0.0)) * view.step_s
 
 
-def standing(view: View, name: str, other: np.ndarray | None, far: float, text: str, unit: float = 1.0) -> str:
+def standing(
+    view: View, name: str, other: np.ndarray | None, far: float, text: str, unit: float = 1.0
+) -> str:
     """The longest stretch of one same value of `name` in which `other` changes by more than `far`."""
     x = view.even[name]
     if other is None or x.size < 20:
         return ""
     with np.errstate(invalid="ignore"):
         moves = np.abs(np.diff(x)) > 1e-9 * np.nanmax(np.abs(x))
-    starts = np.flatnonzero(np.r_[True, moves | np.diff(np.isfinite(x))])  # what is not there does not stand still
+    # what is not there does not stand still
+    starts = np.flatnonzero(np.r_[True, moves | np.diff(np.isfinite(x))])
     ends = np.r_[starts[1:], x.size] - 1
     long = (ends - starts >= 10) & np.isfinite(x[starts])
     moved = [spread(other[a : b + 1]) if ok else 0.0 for a, b, ok in zip(starts, ends, long, strict=True)]

@@ -24,13 +24,17 @@ def ship_size(view: View) -> Check:
     turning = tightest(view, length)
     draught = float(np.nanmedian(view.voyage["draught_mean_m"])) if view.voyage.has("draught_mean_m") else 0.0
     saw = f"Froude number {froude:.3f}, tightest turn r L/U = {turning:.2f} with L = {length:.4g} m"
-    other = f"Another ship's file, or a model's ([scale] froude = ...)? {view.ship.name} is {length:.4g} m long."
+    other = (
+        f"Another ship's file, or a model's ([scale] froude = ...)? {view.ship.name} is {length:.4g} m long."
+    )
     if froude > FASTEST_FROUDE:
         return doubtful(name, f"{saw}: {speed:.3g} m/s is too fast for her. {other}")
     if turning > TIGHTEST_TURN:
         return doubtful(name, f"{saw}: no ship turns within {1 / turning:.2f} lengths. {other}")
     if draught and not 0.4 < draught / float(view.ship.T) < 2.0:
-        return doubtful(name, f"draught {draught:.3g} m, but {view.ship.name} has {float(view.ship.T):.3g} m. {other}")
+        return doubtful(
+            name, f"draught {draught:.3g} m, but {view.ship.name} has {float(view.ship.T):.3g} m. {other}"
+        )
     return good(name, f"{saw}: possible for {view.ship.name}.")
 
 
@@ -50,7 +54,11 @@ def duration(view: View) -> Check:
     name, seconds = "duration", view.voyage.duration_s
     sailed = float(np.nansum(np.abs(view.velocity)) * view.step_s)
     rudder = float(np.nanstd(view.voyage["rudder_angle_deg"]))
-    calm = " The rudder hardly moves: nothing about turning can be learned from it." if rudder < STEADY_RUDDER_DEG else ""
+    calm = (
+        (" The rudder hardly moves: nothing about turning can be learned from it.")
+        if rudder < STEADY_RUDDER_DEG
+        else ""
+    )
     if view.ship is not None:
         lengths = sailed / float(view.ship.L_pp)
         saw = f"{seconds:.4g} s, {lengths:.0f} ship lengths"
@@ -60,6 +68,7 @@ def duration(view: View) -> Check:
     if short:
         return doubtful(
             name,
-            f"{saw}: too short to judge a cause by. Use it beside other voyages; 20 minutes with manoeuvres are good.{calm}",
+            f"{saw}: too short to judge a cause by. Use it beside other voyages; 20 minutes with manoeuvres "
+            f"are good.{calm}",
         )
     return good(name, f"{saw}.{calm}")

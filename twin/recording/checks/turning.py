@@ -32,15 +32,24 @@ def yaw_rate(view: View) -> Check:
     (k, _), (error, _), left = fit([summed, np.ones(summed.size)], swung)
     turn = np.degrees(rms(swung))
     if not np.isfinite(k) or (turn < 0.5 and np.degrees(rms(summed)) < 5.0):
-        return cannot_tell(name, f"the heading changes by {turn:.2g} deg in {window_s:.3g} s; a turn would show it.")
+        return cannot_tell(
+            name, f"the heading changes by {turn:.2g} deg in {window_s:.3g} s; a turn would show it."
+        )
     ratio, said, fix = min(RATES, key=lambda c: abs(np.log(abs(k / c[0]))) if k * c[0] > 0 else np.inf)
     saw = f"the heading turns by {k:.3g} x the summed yaw rate"
     if left > 0.5 or error > 0.3 * abs(k):
         if rms(summed) < 3.0 * rms(swung) and turn < 2.0:
-            return cannot_tell(name, f"the heading changes by {turn:.2g} deg in {window_s:.3g} s, too little beside the noise.")
-        return doubtful(name, f"heading and yaw rate do not tell of the same turning ({100 * left:.0f} % of it is left).")
+            return cannot_tell(
+                name,
+                f"the heading changes by {turn:.2g} deg in {window_s:.3g} s, too little beside the noise.",
+            )
+        return doubtful(
+            name, f"heading and yaw rate do not tell of the same turning ({100 * left:.0f} % of it is left)."
+        )
     if 0.75 < k < 1.33:
         return good(name, f"{saw} (1 expected).")
     if abs(np.log(abs(k / ratio))) < 0.25:
         return wrong(name, f"{saw}: {said}, that is believed. In the map: {fix}.")
-    return doubtful(name, f"{saw}, and no known unit explains it. Look at the units of yaw rate, heading and time.")
+    return doubtful(
+        name, f"{saw}, and no known unit explains it. Look at the units of yaw rate, heading and time."
+    )

@@ -18,7 +18,9 @@ def speed_log(view: View) -> Check:
     name = "speed_log"
     water = view.si("surge_velocity_through_water_mps")
     if not np.isfinite(water).any():
-        return cannot_tell(name, "no speed through water was recorded, so a current cannot be told from a slow ship.")
+        return cannot_tell(
+            name, "no speed through water was recorded, so a current cannot be told from a slow ship."
+        )
     if view.derived("surge_velocity_mps") and not view.voyage.has("north_m"):
         return cannot_tell(name, "no speed over ground was recorded.")
     ground = view.velocity.real
@@ -34,14 +36,19 @@ def speed_log(view: View) -> Check:
     if unit and (sure or apart > FASTEST_CURRENT_MPS):
         return wrong(name, f'{saw}: it is believed to be in {unit}. In the map: unit = "{unit}" for it.')
     if apart > FASTEST_CURRENT_MPS or (sure and abs(k - 1.0) > 0.3):
-        return doubtful(name, f"{saw}, {apart:.2f} m/s apart: look at the log's unit, calibration and fouling.")
+        return doubtful(
+            name, f"{saw}, {apart:.2f} m/s apart: look at the log's unit, calibration and fouling."
+        )
     doubt = f" In {unit}, or a current? A turn, or another speed, would tell." if unit else ""
     return good(name, f"{saw}.{doubt}")
 
 
-def factor(ground: np.ndarray, water: np.ndarray, psi: np.ndarray, step_s: float, rough: bool = False) -> tuple[float, float, bool]:
-    """(k, size of the current [m/s], whether k stands by itself). A speed over ground that is the slope of positions scatters more than a log
-    (`rough`), and what scatters must not be the cause in a fit: it would come out too small, and a current would stand in for the rest."""
+def factor(
+    ground: np.ndarray, water: np.ndarray, psi: np.ndarray, step_s: float, rough: bool = False
+) -> tuple[float, float, bool]:
+    """(k, size of the current [m/s], whether k stands by itself). A speed over ground that is the slope of
+    positions scatters more than a log (`rough`), and what scatters must not be the cause in a fit: it would
+    come out too small, and a current would stand in for the rest."""
     if rough:
         inverse, north, east, sure = _fitted(water, ground, psi, step_s)
         return 1.0 / (inverse or np.nan), float(np.hypot(north, east)), sure
@@ -49,7 +56,9 @@ def factor(ground: np.ndarray, water: np.ndarray, psi: np.ndarray, step_s: float
     return k, float(np.hypot(north, east) / max(abs(k), 1e-9)), sure
 
 
-def _fitted(cause: np.ndarray, shown: np.ndarray, psi: np.ndarray, step_s: float) -> tuple[float, float, float, bool]:
+def _fitted(
+    cause: np.ndarray, shown: np.ndarray, psi: np.ndarray, step_s: float
+) -> tuple[float, float, float, bool]:
     """shown = x cause - a cos psi - b sin psi: (x, a, b, whether x stands by itself)."""
     x, error, _ = fit([cause, -np.cos(psi), -np.sin(psi)], shown)
     shape = np.stack([cause, np.cos(psi), np.sin(psi)], axis=1)

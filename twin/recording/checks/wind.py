@@ -12,7 +12,8 @@ from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wro
 from twin.recording.checks.view import View, fit, rms
 from twin.recording.units import DEG_PER_RAD, KNOT_MPS
 
-AGREES = 0.35  # share of the wind by which the triangle may stay open (gusts, mast height, flow around the ship)
+# share of the wind by which the triangle may stay open (gusts, mast height, flow around the ship)
+AGREES = 0.35
 EXPLAINS = 0.5
 Pair = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
@@ -91,7 +92,9 @@ def triangle(name: str, view: View) -> Check:
         return wrong(name, f"{saw}, by {100 * left:.0f} % if {text}: that is believed. In the map: {fix}.")
     if off <= AGREES:
         return good(name, f"{saw}.")
-    return doubtful(name, f"{saw}, and no mistake that is known explains it. Look at units, signs and the anemometer.")
+    return doubtful(
+        name, f"{saw}, and no mistake that is known explains it. Look at units, signs and the anemometer."
+    )
 
 
 def relative_taken_as_true(t: np.ndarray, h: np.ndarray, a: np.ndarray, b: np.ndarray, view: View) -> bool:
@@ -107,9 +110,13 @@ def alone(name: str, view: View, true: bool) -> Check:
     raw = view.voyage[column]
     raw = raw[np.isfinite(raw)]
     if raw.max() <= 2.0 * np.pi and np.std(raw) > 1.0:
-        return wrong(name, f'{column} stays within 0 and {raw.max():.2f}: radians. In the map: unit = "rad" for it.')
+        return wrong(
+            name, f'{column} stays within 0 and {raw.max():.2f}: radians. In the map: unit = "rad" for it.'
+        )
     if not true:
-        return cannot_tell(name, "only the apparent wind was recorded; the true wind follows from it and the ship's motion.")
+        return cannot_tell(
+            name, "only the apparent wind was recorded; the true wind follows from it and the ship's motion."
+        )
     if np.degrees(np.nanstd(view.psi)) < 15.0:
         return cannot_tell(name, "only the true wind was recorded, and the ship hardly turns.")
     followed = follows_heading(view.si(column), view.psi)
@@ -122,11 +129,14 @@ def alone(name: str, view: View, true: bool) -> Check:
         )
     return good(
         name,
-        f"the wind direction does not turn with the heading ({followed:.2f}). From or to, only the apparent wind beside it would show.",
+        f"the wind direction does not turn with the heading ({followed:.2f}). From or to, only the apparent "
+        "wind beside it would show.",
     )
 
 
 def follows_heading(direction: np.ndarray, psi: np.ndarray) -> float:
     """d(direction)/d(psi); 0 for a true direction, -1 for one counted from the bow."""
-    (k, _), (error, _), left = fit([psi - np.nanmean(psi), np.ones(psi.size)], direction - np.nanmean(direction))
+    (k, _), (error, _), left = fit(
+        [psi - np.nanmean(psi), np.ones(psi.size)], direction - np.nanmean(direction)
+    )
     return float(k) if left < 0.5 and error < 0.3 else 0.0

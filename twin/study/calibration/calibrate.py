@@ -1,4 +1,5 @@
-"""`twin calibrate`: fits the core to reference voyages, and learns what a model of this kind still leaves unexplained."""
+"""`twin calibrate`: fits the core to reference voyages, and learns what a model of this kind still leaves
+unexplained."""
 
 import argparse
 import datetime
@@ -24,7 +25,14 @@ from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import Floor
 from twin.study.estimation.start import told_of_waves, waves_on
-from twin.study.reference.derivatives import Derivative, first_prior, noted, told_by, with_core_of, with_derivatives
+from twin.study.reference.derivatives import (
+    Derivative,
+    first_prior,
+    noted,
+    told_by,
+    with_core_of,
+    with_derivatives,
+)
 from twin.study.reference.gear import with_or_without_gear
 from twin.study.reference.nuisance import TEMPER, WEATHER, instruments, temper_of
 from twin.study.reference.sailed import Sailed, read_all
@@ -35,19 +43,22 @@ from twin.study.reference.weather import FAINT, HARDER
 from twin.study.track.track import Track
 
 SCHEMA_VERSION = 1
-FITTED_BY = ("steps", "paths")  # one step ahead through a filter, or several lengths ahead without (rollout.py)
+# one step ahead through a filter, or several lengths ahead without (rollout.py)
+FITTED_BY = ("steps", "paths")
 BETTER = 0.05  # share by which paths must be better than steps: a diagnosis judges by steps
 PARTS = {  # of the ship and not of the core, found with it
     SteeringLag.__name__: "the recorded rudder angle is its order",
     AntennaOffset.__name__: "the place was measured there on the reference voyages",
     Wind.__name__: "it blew on the reference voyages",
 }
-ASKED_FOR = (SteeringLag.__name__, Wind.__name__)  # by the probability of the voyages; the antenna by predictions
+# by the probability of the voyages; the antenna by predictions
+ASKED_FOR = (SteeringLag.__name__, Wind.__name__)
 SAID = {"gear": SteeringLag, "antenna": AntennaOffset, "wind": Wind}  # their numbers in --json
 EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weather or with the wind recorded: zigzags, circles, speed changes.
-Without --held-out the last third of the voyages (or of a single voyage) is held back to measure the error. The standard errors, and the structural
-error that remains, are stored in the ship file: they keep an imperfect model from being called a missing effect.
-Exit code 4: a voyage cannot be used; 5: the ship file is not valid.
+Without --held-out the last third of the voyages (or of a single voyage) is held back to measure the error.
+The standard errors, and the structural error that remains, are stored in the ship file: they keep an
+imperfect model from being called a missing effect. Exit code 4: a voyage cannot be used; 5: the ship file is
+not valid.
 """
 
 
@@ -72,17 +83,24 @@ class Core:
     tracks: list[Track]  # with what waves do to her taken for that
     model: Model
     derivatives: list[Derivative]
-    effects: tuple[Effect, ...]  # of the ship file; a steering gear and wind among them if the voyages asked for these
-    numbers: dict[str, dict[str, dict[str, Any]]]  # of the gear, the antenna and the wind, with their standard errors
+    # of the ship file; a steering gear and wind among them if the voyages asked for these
+    effects: tuple[Effect, ...]
+    # of the gear, the antenna and the wind, with their standard errors
+    numbers: dict[str, dict[str, dict[str, Any]]]
     antenna: AntennaOffset | None  # where it was found, if not where the ship file has it
     floor: Floor
     temper: float
 
 
 def calibrate(
-    fitted: Sequence[Sailed], held_out: HeldOut, ship: Ship, progress: Callable[[str], None] = lambda text: None, by: str | None = None
+    fitted: Sequence[Sailed],
+    held_out: HeldOut,
+    ship: Ship,
+    progress: Callable[[str], None] = lambda text: None,
+    by: str | None = None,
 ) -> Calibrated:
-    """Fit the core to the tracks. `by`: one of FITTED_BY; None: the one that predicts what was held out better."""
+    """Fit the core to the tracks. `by`: one of FITTED_BY; None: the one that predicts what was held out
+    better."""
     sailed = [s.track for s in fitted]
     core = _core(sailed, ship, progress)
     if core.antenna is not None:
@@ -104,12 +122,22 @@ def calibrate(
     return Calibrated(after, plain(_result(ship, after, core, way, errors(Model.of(ship), held_out))))
 
 
-def _with_antenna(first: AntennaOffset, sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
-    """The same with the antenna in the model from the start: what heel and turning carry it about is no sway of hers, and had bent the core."""
+def _with_antenna(
+    first: AntennaOffset, sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]
+) -> Core:
+    """The same with the antenna in the model from the start: what heel and turning carry it about is no sway
+    of hers, and had bent the core."""
     found = _core(sailed, ship.with_effects(first), progress)
-    antenna = AntennaOffset(**{name: number["value"] for name, number in found.numbers[AntennaOffset.__name__].items()})
-    hers = (e for e in ship.effects if isinstance(e, AntennaOffset))  # until predictions are better with the other (`placed`)
-    return replace(found, effects=(*hers, *(e for e in found.effects if not isinstance(e, AntennaOffset))), antenna=antenna)
+    antenna = AntennaOffset(
+        **{name: number["value"] for name, number in found.numbers[AntennaOffset.__name__].items()}
+    )
+    # until predictions are better with the other (`placed`)
+    hers = (e for e in ship.effects if isinstance(e, AntennaOffset))
+    return replace(
+        found,
+        effects=(*hers, *(e for e in found.effects if not isinstance(e, AntennaOffset))),
+        antenna=antenna,
+    )
 
 
 def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
@@ -154,9 +182,24 @@ def _beside(ship: Ship, core: Core) -> Ship:
 def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
     """The ship with what remains of these voyages, in place of what an earlier calibration left."""
     today, voyages = datetime.date.today().isoformat(), [s.provenance() for s in fitted]
-    names = [name for e in ship.effects if (name := type(e).__name__) not in WEATHER]  # tomorrow's wind is another one
-    structural = {"floor": plain(asdict(core.floor)), "temper": core.temper, "date": today, "voyages": voyages, "beside_effects": names}
-    after = noted(ship, "effects", {name: numbers for name, numbers in core.numbers.items() if numbers and _found_here(name, ship, core)})
+    # tomorrow's wind is another one
+    names = [name for e in ship.effects if (name := type(e).__name__) not in WEATHER]
+    structural = {
+        "floor": plain(asdict(core.floor)),
+        "temper": core.temper,
+        "date": today,
+        "voyages": voyages,
+        "beside_effects": names,
+    }
+    after = noted(
+        ship,
+        "effects",
+        {
+            name: numbers
+            for name, numbers in core.numbers.items()
+            if numbers and _found_here(name, ship, core)
+        },
+    )
     return replace(after, notes={**after.notes, "structural": structural})
 
 
@@ -177,10 +220,16 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         **{key: _said(owner.__name__, after, core) for key, owner in SAID.items()},
         "waves": waves_on(core.tracks),
         "too_faint": [name for name, felt in hers["weather"].items() if felt > FAINT],
-        "usual": clearly_hers(after, hers), "between_voyages": hers["between_voyages"],
-        "floor": asdict(core.floor), "temper": core.temper, "by_regime": hers["by_regime"],
-        "held_out": [e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]} for b, e in zip(before, hers["held_out"], strict=True)],
-    }  # fmt: skip
+        "usual": clearly_hers(after, hers),
+        "between_voyages": hers["between_voyages"],
+        "floor": asdict(core.floor),
+        "temper": core.temper,
+        "by_regime": hers["by_regime"],
+        "held_out": [
+            e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]}
+            for b, e in zip(before, hers["held_out"], strict=True)
+        ],
+    }
 
 
 def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
@@ -196,10 +245,24 @@ def _row(d: Derivative, ship: Ship, after: Ship) -> dict[str, Any]:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = f"{parser.epilog or ''}\n\n{EPILOG}"
-    parser.add_argument("voyages", metavar="VOYAGE", nargs="+", help="reference voyages: nothing wrong, manoeuvring, calm or with the wind recorded")
-    parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the ship file to start from, or a bundled ship's name")
-    parser.add_argument("-o", "--output", metavar="SHIP2.toml", required=True, help="the calibrated ship file")
-    parser.add_argument("--held-out", metavar="VOYAGE", nargs="+", default=[], help="voyages on which the error is measured")
+    parser.add_argument(
+        "voyages",
+        metavar="VOYAGE",
+        nargs="+",
+        help="reference voyages: nothing wrong, manoeuvring, calm or with the wind recorded",
+    )
+    parser.add_argument(
+        "--ship",
+        metavar="SHIP.toml",
+        required=True,
+        help="the ship file to start from, or a bundled ship's name",
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="SHIP2.toml", required=True, help="the calibrated ship file"
+    )
+    parser.add_argument(
+        "--held-out", metavar="VOYAGE", nargs="+", default=[], help="voyages on which the error is measured"
+    )
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
 
 
@@ -223,7 +286,10 @@ def run(args: argparse.Namespace) -> int:
         write_json(result, args.json)
     page = sys.stderr if args.json == "-" else sys.stdout
     print("\n".join(told(result)), file=page)
-    print(f"\nwrote {args.output}\nnext: twin compare VOYAGE.mcap --ship {args.output} --report compare.html", file=page)
+    print(
+        f"\nwrote {args.output}\nnext: twin compare VOYAGE.mcap --ship {args.output} --report compare.html",
+        file=page,
+    )
     return 0
 
 
@@ -236,24 +302,47 @@ def told(result: dict[str, Any]) -> list[str]:
                 f"  {e['horizon_s']:>4.0f} s   {e['before_m']:>8.3g} m -> {e['position_m']:<8.3g} m    "
                 f"{e['before_deg']:>7.3g} deg -> {e['heading_deg']:<7.3g} deg   ({e['windows']} windows)"
             )
-    lines += [f"  after {r['horizon_s']:.0f} s while {r['regime']}: {r['position_m']:.3g} m ({r['windows']} windows)" for r in result["by_regime"]]
-    lines.append("  fitted to " + ("where she went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading"))
-    if gear := result["gear"]:
-        lines.append(f"  rudder_angle_deg is the rudder's order: the gear between them is now part of the model (SteeringLag: {_sizes(gear)})")
-    if antenna := result["antenna"]:
-        lines.append(f"  place is measured elsewhere than the ship file had it: where is now part of the model (AntennaOffset: {_sizes(antenna)})")
-    if wind := result["wind"]:
-        lines.append(f"  wind pushed her on these voyages: how is now part of the model (Wind: {_sizes(wind)})")
     lines += [
-        f"  {name} was measured and too faint to be told: up to {HARDER:g} times as hard a push is reckoned with and not called missing"
+        f"  after {r['horizon_s']:.0f} s while {r['regime']}: {r['position_m']:.3g} m ({r['windows']} "
+        "windows)"
+        for r in result["by_regime"]
+    ]
+    lines.append(
+        "  fitted to "
+        + ("where she went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading")
+    )
+    if gear := result["gear"]:
+        lines.append(
+            "  rudder_angle_deg is the rudder's order: the gear between them is now part of the "
+            f"model (SteeringLag: {_sizes(gear)})"
+        )
+    if antenna := result["antenna"]:
+        lines.append(
+            "  place is measured elsewhere than the ship file had it: where is now part of the "
+            f"model (AntennaOffset: {_sizes(antenna)})"
+        )
+    if wind := result["wind"]:
+        lines.append(
+            f"  wind pushed her on these voyages: how is now part of the model (Wind: {_sizes(wind)})"
+        )
+    lines += [
+        f"  {name} was measured and too faint to be told: up to {HARDER:g} times as hard a push is reckoned "
+        "with and not called missing"
         for name in result["too_faint"]
     ]
     lines += [f"  {text}" for text in told_of_waves(result["waves"])]
     share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
-    lines += [f"usual on this ship: {i['name']} {i['value']:.3g} +- {i['sd']:.1g} (kept in mind by diagnose)" for i in result["usual"]]
+    lines += [
+        f"usual on this ship: {i['name']} {i['value']:.3g} +- {i['sd']:.1g} (kept in mind by diagnose)"
+        for i in result["usual"]
+    ]
     lines += ["", f"{'derivative':<10}{'before':>11}{'now':>11}{'+-':>9}"]
-    lines += [f"{d['name']:<10}{d['before']:>11.4g}{d['value']:>11.4g}{d['sd']:>9.2g}" for d in result["derivatives"] if d["excited"]]
+    lines += [
+        f"{d['name']:<10}{d['before']:>11.4g}{d['value']:>11.4g}{d['sd']:>9.2g}"
+        for d in result["derivatives"]
+        if d["excited"]
+    ]
     if result["unexcited"]:
         lines.append(f"not excited by these voyages, prior kept: {', '.join(result['unexcited'])}")
     return lines + [f"careful: {text}" for text in result["doubts"]]

@@ -8,7 +8,8 @@ from twin.physics.ship import DERIVATIVES
 
 EDGE = 1e-6  # of the box: a value nearer than this to its end was stopped by it
 LARGE = 0.25  # share of the forces at work that is much to leave unexplained
-BLIND = 1.0  # widths of its prior by which an effect's number may differ between healthy voyages and still be seen
+# widths of its prior by which an effect's number may differ between healthy voyages and still be seen
+BLIND = 1.0
 STRAIGHTENS = {"gamma_v": 1.0, "gamma_r": -1.0}  # the sign that a hull gives them
 CLEARLY = 3.0  # standard errors
 AXES = ("surge", "sway", "yaw")
@@ -18,9 +19,16 @@ def doubts(
     derivatives: Sequence[Mapping[str, Any]], held_out: Sequence[Mapping[str, Any]], share: Sequence[float],
     usual: Sequence[Mapping[str, Any]] = (), between: Mapping[str, float] = MappingProxyType({}),
 ) -> list[str]:  # fmt: skip
-    """Sentences; none when the calibration is as it should be. `usual`: lasting effects that she shows; `between`: by how many widths of
-    their priors numbers differ from voyage to voyage."""
-    return [*_stopped(derivatives), *_backwards(derivatives), *_no_better(held_out), *_coarse(share), *_ordered(usual), *_blind(between)]
+    """Sentences; none when the calibration is as it should be. `usual`: lasting effects that she shows;
+    `between`: by how many widths of their priors numbers differ from voyage to voyage."""
+    return [
+        *_stopped(derivatives),
+        *_backwards(derivatives),
+        *_no_better(held_out),
+        *_coarse(share),
+        *_ordered(usual),
+        *_blind(between),
+    ]
 
 
 def _stopped(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
@@ -29,19 +37,26 @@ def _stopped(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
     if not names:
         return []
     return [
-        f"{', '.join(names)} stopped at the end of what ships have: check mass, draught, rudder and propeller in the ship file, "
+        f"{', '.join(names)} stopped at the end of what ships have: check mass, draught, rudder and "
+        "propeller in the ship file, "
         "and that nothing was wrong on the reference voyages"
     ]
 
 
 def _backwards(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Behind every hull drift and turning send the flow against the rudder's angle in a turn; less of it than none there is no hull."""
+    """Behind every hull drift and turning send the flow against the rudder's angle in a turn; less of it than
+    none there is no hull."""
     flow = [d for d in derivatives if d["name"] in STRAIGHTENS]
-    wrong = [f"{d['name']} {d['value']:.2g}" for d in flow if STRAIGHTENS[d["name"]] * d["value"] < -CLEARLY * d["sd"]]
+    wrong = [
+        f"{d['name']} {d['value']:.2g}"
+        for d in flow
+        if STRAIGHTENS[d["name"]] * d["value"] < -CLEARLY * d["sd"]
+    ]
     if not wrong:
         return []
     return [
-        f"{', '.join(wrong)}: the stern's own drift would help her rudder, as on no ship. Is rudder, yaw rate or sway of the other sign, or late? "
+        f"{', '.join(wrong)}: the stern's own drift would help her rudder, as on no ship. Is rudder, yaw "
+        "rate or sway of the other sign, or late? "
         "twin compare, and the checks of twin import"
     ]
 
@@ -65,13 +80,15 @@ def _no_better(held_out: Sequence[Mapping[str, Any]]) -> list[str]:
     if not rose:
         return []
     return [
-        f"the error after {last['horizon_s']:.0f} s did not fall ({', '.join(rose)}): current, wind or a fault on a reference voyage, or too few "
+        f"the error after {last['horizon_s']:.0f} s did not fall ({', '.join(rose)}): current, wind or a "
+        "fault on a reference voyage, or too few "
         "of them? Look at each with twin compare, leave out one that stands apart, and give more"
     ]
 
 
 def coarse_axes(share: Sequence[float]) -> list[str]:
-    """In which the calibration leaves so much of the forces at work unexplained that the model is no witness, in words."""
+    """In which the calibration leaves so much of the forces at work unexplained that the model is no witness,
+    in words."""
     return [f"{100 * s:.0f} % in {axis}" for s, axis in zip(share, AXES, strict=True) if s > LARGE]
 
 
@@ -80,7 +97,8 @@ def _coarse(share: Sequence[float]) -> list[str]:
     if not large:
         return []
     return [
-        f"{', '.join(large)} of the forces at work stays unexplained, so twin diagnose will name nothing: give more, or calmer, reference voyages, "
+        f"{', '.join(large)} of the forces at work stays unexplained, so twin diagnose will name nothing: "
+        "give more, or calmer, reference voyages, "
         "and leave out one that stands apart (twin compare)"
     ]
 
@@ -90,14 +108,22 @@ def _ordered(usual: Sequence[Mapping[str, Any]]) -> list[str]:
     if not any(u["name"].startswith("SteeringLag.") for u in usual):
         return []
     return [
-        "the ship answers otherwise than rudder and steering gear of the model would have it: record the rudder's feedback if you can, "
+        "the ship answers otherwise than rudder and steering gear of the model would have it: record the "
+        "rudder's feedback if you can, "
         "else a fault of rudder or gear is hard to see"
     ]
 
 
 def _blind(between: Mapping[str, float]) -> list[str]:
-    large = {label: widths for label, widths in between.items() if widths >= BLIND and not label.startswith(("core.", "form.", "late."))}
+    large = {
+        label: widths
+        for label, widths in between.items()
+        if widths >= BLIND and not label.startswith(("core.", "form.", "late."))
+    }
     if not large:
         return []
     told = ", ".join(f"{label} ({widths:.1f} times its usual width)" for label, widths in large.items())
-    return [f"{told} differs so much between these voyages that a fault of its kind will hardly be seen: was something wrong on one of them?"]
+    return [
+        f"{told} differs so much between these voyages that a fault of its kind will hardly be seen: was "
+        "something wrong on one of them?"
+    ]

@@ -1,4 +1,5 @@
-"""What a fit does not see, and how wrong a model is on it, open loop: by horizon, and by how hard she turns."""
+"""What a fit does not see, and how wrong a model is on it, open loop: by horizon, and by how hard she
+turns."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -25,7 +26,11 @@ def split(fitted: list[Sailed], held_out: list[Sailed]) -> tuple[list[Sailed], H
         return fitted[:keep], [(s.track, 0) for s in fitted[keep:]], LAST
     cuts = [int(0.7 * len(s.track)) for s in fitted]
     parts = [replace(s, track=s.track.part(0, cut)) for s, cut in zip(fitted, cuts, strict=True)]
-    return parts, [(s.track, cut) for s, cut in zip(fitted, cuts, strict=True)], "the last 30 % of each voyage"
+    return (
+        parts,
+        [(s.track, cut) for s, cut in zip(fitted, cuts, strict=True)],
+        "the last 30 % of each voyage",
+    )
 
 
 def errors(model: Model, held_out: HeldOut) -> list[dict[str, float]]:
@@ -35,7 +40,12 @@ def errors(model: Model, held_out: HeldOut) -> list[dict[str, float]]:
 
 def _mean(horizon_s: float, position: np.ndarray, heading: np.ndarray) -> dict[str, float]:
     place, turn = (float(e.mean()) if e.size else float("nan") for e in (position, heading))
-    return {"horizon_s": float(horizon_s), "windows": position.size, "position_m": place, "heading_deg": float(np.degrees(turn))}
+    return {
+        "horizon_s": float(horizon_s),
+        "windows": position.size,
+        "position_m": place,
+        "heading_deg": float(np.degrees(turn)),
+    }
 
 
 def by_regime(model: Model, held_out: HeldOut) -> list[dict[str, Any]]:
@@ -43,7 +53,11 @@ def by_regime(model: Model, held_out: HeldOut) -> list[dict[str, Any]]:
     horizon = HORIZONS_S[1]
     turning, position, _ = _ends(model, held_out, horizon)
     parts = [(name, position[(turning >= lo) & (turning < hi)]) for name, lo, hi in BANDS]
-    return [{"regime": name, "horizon_s": float(horizon), "windows": e.size, "position_m": float(e.mean())} for name, e in parts if e.size]
+    return [
+        {"regime": name, "horizon_s": float(horizon), "windows": e.size, "position_m": float(e.mean())}
+        for name, e in parts
+        if e.size
+    ]
 
 
 def size(errors: Sequence[dict[str, float]]) -> float:
@@ -53,7 +67,8 @@ def size(errors: Sequence[dict[str, float]]) -> float:
 
 
 def _ends(model: Model, held_out: HeldOut, horizon_s: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of every window that begins in what was held out: |r| L/U_0 as it begins, and how far off its end is in place [m] and heading [rad]."""
+    """Of every window that begins in what was held out: |r| L/U_0 as it begins, and how far off its end is in
+    place [m] and heading [rad]."""
     found: list[list[np.ndarray]] = [[np.empty(0)], [np.empty(0)], [np.empty(0)]]
     for track, first in held_out:
         windows = predict(track, fed(model, track)[0], [horizon_s], leads=1)

@@ -1,10 +1,10 @@
-"""Parts of the ship that are found with her core, if the reference voyages ask for them: where her antenna stands, and how wind pushes her.
+"""Parts of the ship that are found with her core, if the reference voyages ask for them: where her antenna
+stands, and how wind pushes her.
 
-Nothing is wrong on a reference voyage, so an antenna that clearly stands elsewhere was never where the file has it (a receiver that
-reports her centre of gravity, a lever arm left at zero). Wind that was recorded there pushed her, and a small ship seldom has a calm;
-left out, it would bend the core, and the floor would grow until it hides what is missing. Kept in mind alone, either would leave every
-prediction off.
-"""
+Nothing is wrong on a reference voyage, so an antenna that clearly stands elsewhere was never where the file
+has it (a receiver that reports her centre of gravity, a lever arm left at zero). Wind that was recorded there
+pushed her, and a small ship seldom has a calm; left out, it would bend the core, and the floor would grow
+until it hides what is missing. Kept in mind alone, either would leave every prediction off."""
 
 from collections.abc import Sequence
 
@@ -22,11 +22,14 @@ from twin.study.track.track import Track
 
 CLEAR = 4.0  # standard errors
 BETTER = 0.05  # share by which predictions of what was not used for the fit must be better with it
-PUSHED = 0.08  # of the standard acceleration, by a plausible wind: what a fainter one seems to do is her own way through the air, and no wind's
+# of the standard acceleration, by a plausible wind: what a fainter one seems to do is her own way through the
+# air, and no wind's
+PUSHED = 0.08
 
 
 def with_or_without_wind(tracks: Sequence[Track], without: Fit, known: Catalogue, temper: float) -> Fit:
-    """The fit with wind beside the core, if it was recorded on every voyage and makes them clearly more probable."""
+    """The fit with wind beside the core, if it was recorded on every voyage and makes them clearly more
+    probable."""
     pushed = strengths(tracks, without.model, known).get(Wind.__name__, 0.0) > PUSHED
     if not pushed or any(t.missing().intersection(Wind.needs) for t in tracks):
         return without
@@ -37,7 +40,11 @@ def with_or_without_wind(tracks: Sequence[Track], without: Fit, known: Catalogue
 
 def clearly(found: Fit) -> AntennaOffset | None:
     """Where the antenna was found, if that is clearly not where the fit began."""
-    numbers = [(u, v, sd) for u, v, sd in zip(found.unknowns, found.value, found.sd, strict=True) if u.owner == AntennaOffset.__name__]
+    numbers = [
+        (u, v, sd)
+        for u, v, sd in zip(found.unknowns, found.value, found.sd, strict=True)
+        if u.owner == AntennaOffset.__name__
+    ]
     if not any(abs(v - u.centre) > CLEAR * sd for u, v, sd in numbers):
         return None
     return AntennaOffset(**{u.name: float(v) for u, v, _ in numbers})

@@ -1,11 +1,12 @@
-"""The core fitted to where the ship really went: open-loop predictions over a few lengths, begun again and again along the voyages.
+"""The core fitted to where the ship really went: open-loop predictions over a few lengths, begun again and
+again along the voyages.
 
-A filter's innovations tell the fast part of a motion from the noise to any precision, and believe it: where a sensor's timing or the
-form of a force is a little off, the derivatives that explain it best one step ahead need not be the ones that lead the ship to the
-right place. What the twin promises is the place. So from the innovations' answer, or from the first model where that predicts
-better, Gauss-Newton goes on with the errors after HORIZON ship lengths, under the same priors (output error, multiple shooting;
-Ljung 1999, sec. 7.2; Bock 1983).
-"""
+A filter's innovations tell the fast part of a motion from the noise to any precision, and believe it: where a
+sensor's timing or the form of a force is a little off, the derivatives that explain it best one step ahead
+need not be the ones that lead the ship to the right place. What the twin promises is the place. So from the
+innovations' answer, or from the first model where that predicts better, Gauss-Newton goes on with the errors
+after HORIZON ship lengths, under the same priors (output error, multiple shooting; Ljung 1999, sec. 7.2; Bock
+1983)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -36,7 +37,10 @@ class _Problem:
     catalogue: Catalogue
 
     def __post_init__(self) -> None:
-        self.centre, self.sd = np.array([u.centre for u in self.unknowns]), np.array([u.sd for u in self.unknowns])
+        self.centre, self.sd = (
+            np.array([u.centre for u in self.unknowns]),
+            np.array([u.sd for u in self.unknowns]),
+        )
         self.box = (np.array([[u.lo, u.hi] for u in self.unknowns]).T - self.centre) / self.sd
         self.scale = np.ones(1)
 
@@ -54,7 +58,8 @@ class _Problem:
         return np.concatenate(parts)
 
     def weigh(self, z: np.ndarray) -> None:
-        """Sets the usual size of an error, by lead and channel, as it is at z; neighbouring predictions share most of theirs."""
+        """Sets the usual size of an error, by lead and channel, as it is at z; neighbouring predictions share
+        most of theirs."""
         usual = 1.4826 * np.median(np.abs(self.off(z)), axis=0)
         self.scale = np.maximum(usual, 1e-9) * np.sqrt(len(SEEN) * LEADS * HORIZON / STRIDE)
 
@@ -66,10 +71,15 @@ class _Problem:
         return 0.5 * float(residual @ residual) + 0.5 * float(z @ z)
 
 
-def rolled_out(tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue) -> Model:
-    """The model whose core leads the ship most nearly where she went, begun from `model` or from the unknowns' centres."""
+def rolled_out(
+    tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue
+) -> Model:
+    """The model whose core leads the ship most nearly where she went, begun from `model` or from the
+    unknowns' centres."""
     problem = _Problem(tracks, model, unknowns, catalogue)
-    here = (np.array([float(getattr(model.ship.derivatives, u.name)) for u in unknowns]) - problem.centre) / problem.sd
+    here = (
+        np.array([float(getattr(model.ship.derivatives, u.name)) for u in unknowns]) - problem.centre
+    ) / problem.sd
     starts = [here, np.zeros_like(here)]
     problem.weigh(starts[0])
     z = min(starts, key=lambda start: problem.cost(problem.residual(start), start))

@@ -1,9 +1,10 @@
-"""A ship that is loaded otherwise has other derivatives, which regressions over many hulls give: for any one hull they are only roughly right.
+"""A ship that is loaded otherwise has other derivatives, which regressions over many hulls give: for any one
+hull they are only roughly right.
 
-How much heavier, deeper or trimmed she is, is then known no better than those regressions let it be. So the numbers of an effect that
-alters the ship are told with each derivative that it changes free to change by a share of that more or less. And it is a load only if
-something of it still shows then, and if she floats with it: what is heavier lies deeper, by the area of her waterplane.
-"""
+How much heavier, deeper or trimmed she is, is then known no better than those regressions let it be. So the
+numbers of an effect that alters the ship are told with each derivative that it changes free to change by a
+share of that more or less. And it is a load only if something of it still shows then, and if she floats with
+it: what is heavier lies deeper, by the area of her waterplane."""
 
 from dataclasses import replace
 
@@ -19,14 +20,22 @@ from twin.study.reference.evidence import Nuisance, Posterior, posterior
 
 HULL = ("X_", "Y_", "N_")
 SCATTER = 0.5  # of single hulls about a regression, as a share of what it says
-SHOWS = 8.0  # chi squared of a load's numbers from which they are more than derivatives that differ (95 % of three)
-AFLOAT = 0.02  # share of her draught by which mass and draught may disagree: other water, a waterplane that is not as usual
+# chi squared of a load's numbers from which they are more than derivatives that differ (95 % of three)
+SHOWS = 8.0
+# share of her draught by which mass and draught may disagree: other water, a waterplane that is not as usual
+AFLOAT = 0.02
 SURE = 2.5  # standard deviations beyond which they do
 
 
 def sized(case: Case, found: Found) -> Posterior:
-    """What the voyages say of a hypothesis' numbers; of one that alters the ship, beside derivatives that scatter."""
-    moved = _moved(case, Model(found.model.ship, tuple(e for e in found.model.effects if type(e).__name__ not in case.unnamed)))
+    """What the voyages say of a hypothesis' numbers; of one that alters the ship, beside derivatives that
+    scatter."""
+    moved = _moved(
+        case,
+        Model(
+            found.model.ship, tuple(e for e in found.model.effects if type(e).__name__ not in case.unnamed)
+        ),
+    )
     if not moved.any():
         return found.posterior
     lines, at = standing(case, found, case.unknowns)
@@ -36,8 +45,15 @@ def sized(case: Case, found: Found) -> Posterior:
 
 
 def floats(case: Case, found: Found) -> bool:
-    """Whether what alters the ship under a hypothesis can be a load; what does not alter her can be what it says."""
-    own = [u for u in case.effects if u.owner in found.hypothesis.effects and u.owner not in case.unnamed and _alters(case.catalogue[u.owner])]
+    """Whether what alters the ship under a hypothesis can be a load; what does not alter her can be what it
+    says."""
+    own = [
+        u
+        for u in case.effects
+        if u.owner in found.hypothesis.effects
+        and u.owner not in case.unnamed
+        and _alters(case.catalogue[u.owner])
+    ]
     if not own:
         return True
     known, mine = sized(case, found), [case.effects.index(u) for u in own]
@@ -48,7 +64,9 @@ def floats(case: Case, found: Found) -> bool:
 
     def deeper(z: np.ndarray) -> float:
         """Than her mass would have her, as a share of her draught."""
-        after = with_values(case.model, own, [u.centre + u.sd * x for u, x in zip(own, z, strict=True)], case.catalogue).loaded
+        after = with_values(
+            case.model, own, [u.centre + u.sd * x for u, x in zip(own, z, strict=True)], case.catalogue
+        ).loaded
         return float(after.T / before.T - 1.0 - (after.m / before.m - 1.0) * before.C_b / waterplane(before))
 
     slope = np.array([deeper(z + step) - deeper(z - step) for step in 0.01 * np.eye(z.size)]) / 0.02
@@ -60,14 +78,17 @@ def _alters(kind: type[Effect]) -> bool:
 
 
 def _moved(case: Case, model: Model) -> np.ndarray:
-    """(C,) how far the effects move each of the nuisance's numbers, in its own unit: derivatives over the draught of the ship as she was."""
+    """(C,) how far the effects move each of the nuisance's numbers, in its own unit: derivatives over the
+    draught of the ship as she was."""
     before, after = case.model.loaded, model.loaded
     deeper = float(after.T) / float(before.T)
 
     def change(name: str) -> float:
         return deeper * float(getattr(after.derivatives, name)) - float(getattr(before.derivatives, name))
 
-    return np.array([change(u.name) if u.owner == "core" and u.name[:2] in HULL else 0.0 for u in case.nuisance.unknowns])
+    return np.array(
+        [change(u.name) if u.owner == "core" and u.name[:2] in HULL else 0.0 for u in case.nuisance.unknowns]
+    )
 
 
 def _scattered(nuisance: Nuisance, extra: np.ndarray) -> Nuisance:

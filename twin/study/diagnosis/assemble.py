@@ -13,10 +13,28 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, settle
-from twin.study.estimation.columns import FORM, ROUGH, SEA, Unknown, core_unknowns, effect_unknowns, lateness_unknowns, rough_unknowns
+from twin.study.estimation.columns import (
+    FORM,
+    ROUGH,
+    SEA,
+    Unknown,
+    core_unknowns,
+    effect_unknowns,
+    lateness_unknowns,
+    rough_unknowns,
+)
 from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
 from twin.study.estimation.rough import doubted
-from twin.study.reference.nuisance import TEMPER, from_references, from_ship, lasting, nuisance_unknowns, of_known_weather, temper_of, usual_unknowns
+from twin.study.reference.nuisance import (
+    TEMPER,
+    from_references,
+    from_ship,
+    lasting,
+    nuisance_unknowns,
+    of_known_weather,
+    temper_of,
+    usual_unknowns,
+)
 from twin.study.reference.seaway import levelled, stirred, swung
 from twin.study.reference.structure import floor_beside, floor_of, structural_floor
 from twin.study.reference.weather import as_usual, strengths
@@ -27,7 +45,12 @@ from twin.study.track.track import Track, track
 Progress = Callable[[str], None]
 
 
-def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage] = (), progress: Progress = lambda text: None) -> Case:
+def assemble(
+    voyages: Sequence[Voyage],
+    ship: Ship,
+    references: Sequence[Voyage] = (),
+    progress: Progress = lambda text: None,
+) -> Case:
     """Everything `search` needs; DataError when the voyages cannot be used at all."""
     if not voyages:
         raise DataError("no voyage given. Name at least one file with measurements.")
@@ -60,15 +83,31 @@ def assemble(voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage]
     known = replace(known.beside(rough), daily=dict(known.daily) | of_known_weather(model, catalogue))
     progress("linearising")
     case = Case(
-        tracks, model, judged, candidates, unknowns, effects, known, floor, path, temper,
-        _odds(tracks, candidates, ship) | dict.fromkeys(no_news, CERTAIN) | dict.fromkeys(unnamed, ODDS_UNNAMED),
-        _lines(tracks, model, unknowns, judged, MOST_SEGMENTS), any(manoeuvred(t, ship) for t in tracks), floor.white, no_news,
+        tracks,
+        model,
+        judged,
+        candidates,
+        unknowns,
+        effects,
+        known,
+        floor,
+        path,
+        temper,
+        _odds(tracks, candidates, ship)
+        | dict.fromkeys(no_news, CERTAIN)
+        | dict.fromkeys(unnamed, ODDS_UNNAMED),
+        _lines(tracks, model, unknowns, judged, MOST_SEGMENTS),
+        any(manoeuvred(t, ship) for t in tracks),
+        floor.white,
+        no_news,
         tuple(unnamed),
-    )  # fmt: skip
+    )
     return settle(case)
 
 
-def _felt_before(references: Sequence[Voyage], model: Model, catalogue: dict[str, type[Effect]]) -> dict[str, float]:
+def _felt_before(
+    references: Sequence[Voyage], model: Model, catalogue: dict[str, type[Effect]]
+) -> dict[str, float]:
     """How hard measured weather pushed her on the reference voyages, or on those of her calibration."""
     if references:
         return strengths([track(v, model.ship) for v in references], model, catalogue)
@@ -92,7 +131,9 @@ def judgeable(tracks: Sequence[Track], model: Model, catalogue: dict[str, type[E
     return tuple(name for name in catalogue if not unjudged_because(name, tracks, model, catalogue))
 
 
-def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]) -> tuple[str, ...]:
+def unjudged_because(
+    name: str, tracks: Sequence[Track], model: Model, catalogue: dict[str, type[Effect]]
+) -> tuple[str, ...]:
     """The inputs or particulars for want of which this effect cannot be judged on any of the voyages."""
     effect = catalogue[name]
     lacking = [tuple(n for n in effect.needs if n in t.missing()) for t in tracks]
@@ -102,14 +143,25 @@ def unjudged_because(name: str, tracks: Sequence[Track], model: Model, catalogue
 
 
 def _lines(
-    tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], most: int | None = None
+    tracks: Sequence[Track],
+    model: Model,
+    unknowns: Sequence[Unknown],
+    catalogue: dict[str, type[Effect]],
+    most: int | None = None,
 ) -> tuple[Linear, ...]:
-    """The tracks with what waves do to them taken for that, linearised where they will be read (`most` segments); what waves change of
-    the ship's own forces, and what is only roughly known, no hypothesis takes away."""
+    """The tracks with what waves do to them taken for that, linearised where they will be read (`most`
+    segments); what waves change of the ship's own forces, and what is only roughly known, no hypothesis takes
+    away."""
     models = [model.without_inputs(t.missing())[0] for t in tracks]
     parts = read_parts([levelled(t) for t in tracks], float(model.ship.scale("time")), most)
-    slack = [np.hypot(stirred(t, m)[p.steps()], doubted(p, m)) for t, p, m in zip(tracks, parts, models, strict=True)]
-    return tuple(replace(linearise(p, m, unknowns, catalogue), slack=s) for p, m, s in zip(parts, models, slack, strict=True))
+    slack = [
+        np.hypot(stirred(t, m)[p.steps()], doubted(p, m))
+        for t, p, m in zip(tracks, parts, models, strict=True)
+    ]
+    return tuple(
+        replace(linearise(p, m, unknowns, catalogue), slack=s)
+        for p, m, s in zip(parts, models, slack, strict=True)
+    )
 
 
 def _odds(tracks: Sequence[Track], candidates: Sequence[str], ship: Ship) -> dict[str, float]:
@@ -118,7 +170,8 @@ def _odds(tracks: Sequence[Track], candidates: Sequence[str], ship: Ship) -> dic
         "Wind": _typical(tracks, "wind_speed") > max(8.0 * min(1.0, float(ship.U_0) / 8.0), 0.5),
         "WaveDrift": _typical(tracks, "H_s") > 0.008 * float(ship.L_pp),
         "ShallowWater": _typical(tracks, "depth", np.nanmin) < 3.0 * float(ship.T),
-        "Bank": min(_typical(tracks, "bank_port", np.nanmin), _typical(tracks, "bank_starboard", np.nanmin)) < 6.0 * float(ship.B),
+        "Bank": min(_typical(tracks, "bank_port", np.nanmin), _typical(tracks, "bank_starboard", np.nanmin))
+        < 6.0 * float(ship.B),
     }
     present = {type(e).__name__ for e in ship.effects}
     return {name: ODDS_MEASURED if strong.get(name) and name not in present else ODDS for name in candidates}

@@ -1,4 +1,5 @@
-"""A case: voyages to be judged, linearised about the ship's model, and everything that is known beforehand."""
+"""A case: voyages to be judged, linearised about the ship's model, and everything that is known
+beforehand."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -16,13 +17,14 @@ from twin.study.reference.evidence import Nuisance, Reduced, posterior, reduce
 from twin.study.track.track import Track
 from twin.study.track.unrest import shaken
 
-MOST_SEGMENTS = 20  # of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
+# of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
+MOST_SEGMENTS = 20
 
 
 @dataclass(frozen=True)
 class World:
-    """One state of the world: factors on the floor's slow acceleration error (beside all that is usual; or `alone`, of the core alone) and on
-    the water's own motion, and its odds."""
+    """One state of the world: factors on the floor's slow acceleration error (beside all that is usual; or
+    `alone`, of the core alone) and on the water's own motion, and its odds."""
 
     share: float
     flow: float
@@ -72,8 +74,10 @@ class Case:
     lines: tuple[Linear, ...]  # of what is read of each track
     excited: bool  # whether one of the voyages holds a manoeuvre
     white: tuple[float, float, float]  # fast part of the floor on the reference voyages, before `settle`
-    no_news: tuple[str, ...] = ()  # weather that the reference voyages felt as much: part of a hypothesis, never of the answer
-    unnamed: tuple[str, ...] = ()  # what is known by its form alone: part of a hypothesis that is then something unknown
+    # weather that the reference voyages felt as much: part of a hypothesis, never of the answer
+    no_news: tuple[str, ...] = ()
+    # what is known by its form alone: part of a hypothesis that is then something unknown
+    unnamed: tuple[str, ...] = ()
 
     @cached_property
     def present(self) -> frozenset[str]:
@@ -88,12 +92,17 @@ class Case:
         """And those of them that may be the answer."""
         return tuple(name for name in self.news(chosen) if name not in self.unnamed)
 
-    def reduced(self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None) -> list[Reduced]:
+    def reduced(
+        self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None
+    ) -> list[Reduced]:
         normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))
         return [reduce(n, self.nuisance, self.unknowns, self.effects, self.temper, at) for n in normals]
 
     def worlds(self, names: Sequence[str], doubt: float = 0.0) -> list[Floor]:
-        floors = ((self.path if w.alone else self.floor).scaled(w.share, flow=w.flow) for w in map(WORLDS.__getitem__, names))
+        floors = (
+            (self.path if w.alone else self.floor).scaled(w.share, flow=w.flow)
+            for w in map(WORLDS.__getitem__, names)
+        )
         return [replace(floor, doubt=doubt) for floor in floors]
 
     @cached_property
@@ -102,15 +111,26 @@ class Case:
         return innovate(self.lines, self.worlds(["usual"]), MOST_SEGMENTS)[0].total()[0]
 
     def along(self, lines: Sequence[Linear], chosen: Sequence[str] = ()) -> tuple["Case", np.ndarray]:
-        """The same with these lines and few columns: the directions in the place of the nuisance's own, and the numbers of all effects, or
-        of those that are `chosen` or that any day brings (others have a hundredth of a prior width each, which steers nothing); and which of
-        `effects` are left."""
-        kept = np.array([not chosen or u.owner in chosen or u.label in self.nuisance.daily for u in self.effects])
-        effects, column = tuple(compress(self.effects, kept)), {u.label: i for i, u in enumerate(self.unknowns)}
+        """The same with these lines and few columns: the directions in the place of the nuisance's own, and
+        the numbers of all effects, or of those that are `chosen` or that any day brings (others have a
+        hundredth of a prior width each, which steers nothing); and which of `effects` are left."""
+        kept = np.array(
+            [not chosen or u.owner in chosen or u.label in self.nuisance.daily for u in self.effects]
+        )
+        effects, column = (
+            tuple(compress(self.effects, kept)),
+            {u.label: i for i, u in enumerate(self.unknowns)},
+        )
         others = [column[u.label] for u in effects]
         along = directions(self.told, self.nuisance, self.unknowns, self.temper, chosen)
         few = tuple(along.line(x, others) for x in lines)
-        return replace(self, unknowns=(*along.nuisance.unknowns, *effects), effects=effects, lines=few, nuisance=along.nuisance), kept
+        return replace(
+            self,
+            unknowns=(*along.nuisance.unknowns, *effects),
+            effects=effects,
+            lines=few,
+            nuisance=along.nuisance,
+        ), kept
 
     def log_prior(self, chosen: Sequence[str], world: str) -> float:
         if (world == "flooding" and "VaryingCurrent" not in chosen) or self._twice(chosen):
@@ -123,12 +143,17 @@ class Case:
 
 
 def settle(case: Case) -> Case:
-    """The same case with the fast part of the floor and the readings' scatter as these voyages show them (waves, a worn sensor).
+    """The same case with the fast part of the floor and the readings' scatter as these voyages show them
+    (waves, a worn sensor).
 
     Judged with every effect allowed, so that no cause is mistaken for noise.
     """
     white, time = case.floor.white, float(case.model.ship.scale("time"))
-    grid = [(float(level), sensor) for sensor in (1.0, 3.0) for level in np.geomspace(min(white), max(WAVES, 4.0 * max(white)), 5)]
+    grid = [
+        (float(level), sensor)
+        for sensor in (1.0, 3.0)
+        for level in np.geomspace(min(white), max(WAVES, 4.0 * max(white)), 5)
+    ]
     floors = [_rougher(case.floor, *factors) for factors in grid]
     uneven = tuple(_uneven(x, time) for x in case.lines)
 
@@ -148,6 +173,7 @@ def _uneven(line: Linear, time: float) -> Linear:
 
 
 def _rougher(floor: Floor, white: float, sensor: float) -> Floor:
-    """The floor with a fast part of at least `white` in each axis, and so many times the readings' scatter."""
+    """The floor with a fast part of at least `white` in each axis, and so many times the readings'
+    scatter."""
     surge, sway, yaw = (max(white, w) for w in floor.white)
     return replace(floor, white=(surge, sway, yaw), sensor=sensor * floor.sensor)

@@ -1,4 +1,5 @@
-"""`twin diagnose`: which physical effect is missing, in newtons, with its confidence, or an honest answer that is none."""
+"""`twin diagnose`: which physical effect is missing, in newtons, with its confidence, or an honest answer
+that is none."""
 
 import argparse
 import sys
@@ -18,7 +19,16 @@ from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.assemble import assemble, unjudged_because
 from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.led import held_out_error, horizon_s
-from twin.study.diagnosis.leftover import asked_for, changed, explaining, helpful, missed, too_small, undone, weathered
+from twin.study.diagnosis.leftover import (
+    asked_for,
+    changed,
+    explaining,
+    helpful,
+    missed,
+    too_small,
+    undone,
+    weathered,
+)
 from twin.study.diagnosis.manoeuvres import next_manoeuvre
 from twin.study.diagnosis.moments import moments
 from twin.study.diagnosis.overtime import over_time
@@ -34,10 +44,11 @@ SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
 LEAST = 0.05
 EPILOG = """Verdicts: missing (named, with size and interval, and with what cannot be told from it), nothing_missing, unknown (something is there
-that no effect of the catalogue explains; resembles: what it looks like, where that is known by its form), undecided (the voyages cannot
-tell; one_of: the few of which one is surely there; next_manoeuvre: what to sail). Reference voyages are those of the same ship on which
-nothing was wrong: they set the floor below which an imperfect model is not called a missing effect.
-Exit code 4: a voyage cannot be used; 5: the ship file is not valid.
+that no effect of the catalogue explains; resembles: what it looks like, where that is known by its form),
+undecided (the voyages cannot tell; one_of: the few of which one is surely there; next_manoeuvre: what to
+sail). Reference voyages are those of the same ship on which nothing was wrong: they set the floor below which
+an imperfect model is not called a missing effect. Exit code 4: a voyage cannot be used; 5: the ship file is
+not valid.
 """
 
 
@@ -51,7 +62,10 @@ class Diagnosis:
 
 
 def diagnose(
-    voyages: Sequence[Voyage], ship: Ship, references: Sequence[Voyage] = (), progress: Callable[[str], None] = lambda text: None
+    voyages: Sequence[Voyage],
+    ship: Ship,
+    references: Sequence[Voyage] = (),
+    progress: Callable[[str], None] = lambda text: None,
 ) -> Diagnosis:
     """Judge all candidates jointly on these voyages."""
     case = assemble(voyages, ship, references, progress)
@@ -69,13 +83,25 @@ def diagnose(
     blurred = no_pair or rough or (not explained and not missed(found[()]))
     coarse, happened = coarse_axes(case.path.share), moments(case, best)
     able = case.excited and not coarse
-    verdict, missing = judge(weighed, w, like, leads, able=able, sharp=sharp, explained=explained, blurred=blurred, pushed=bool(happened))
+    verdict, missing = judge(
+        weighed,
+        w,
+        like,
+        leads,
+        able=able,
+        sharp=sharp,
+        explained=explained,
+        blurred=blurred,
+        pushed=bool(happened),
+    )
     nothing = 0.0 if happened and verdict == "unknown" else w.nothing
     likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
     likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
     progress("predicting held-out parts")
     candidates = [_candidate(case, weighed, found, missing, name, w.effects[name]) for name in likely]
-    resembles = [_candidate(case, weighed, found, missing, name, p) for name, p in w.unnamed.items() if p >= SURE]
+    resembles = [
+        _candidate(case, weighed, found, missing, name, p) for name, p in w.unnamed.items() if p >= SURE
+    ]
     if w.best.effects:
         progress("asking each part of the voyages")
         parts = over_time(case, best, w.best.effects)
@@ -88,18 +114,43 @@ def diagnose(
         "verdict": verdict,
         "missing": missing,
         "one_of": group(weighed, w) if verdict == "undecided" and able and explained else [],
-        "probabilities": {"nothing_missing": nothing, "unknown": w.unknown + w.nothing - nothing if explained else 1.0 - nothing},
+        "probabilities": {
+            "nothing_missing": nothing,
+            "unknown": w.unknown + w.nothing - nothing if explained else 1.0 - nothing,
+        },
         "candidates": [c for c in candidates if c],
         "resembles": resembles if verdict in ("unknown", "missing") else [],
         "undo_each_other": list(w.best.effects) if no_pair else [],
-        "unclear": [n for n in explain if n not in leads and (case.catalogue[n].kind == "SensorFault" or n in case.present)],
+        "unclear": [
+            n
+            for n in explain
+            if n not in leads and (case.catalogue[n].kind == "SensorFault" or n in case.present)
+        ],
         "moments": [m.told(case.model) for m in happened],
-        "path": {"horizon_s": horizon_s(case.tracks[0], case.model), "error_without": found[()].off_m, "error_floor": found[()].floor_m},
-        "next_manoeuvre": _next(case, found, verdict, missing, candidates, {n: p for n, p in w.effects.items() if seen[n]}, progress),
+        "path": {
+            "horizon_s": horizon_s(case.tracks[0], case.model),
+            "error_without": found[()].off_m,
+            "error_floor": found[()].floor_m,
+        },
+        "next_manoeuvre": _next(
+            case,
+            found,
+            verdict,
+            missing,
+            candidates,
+            {n: p for n, p in w.effects.items() if seen[n]},
+            progress,
+        ),
         "not_judged": _not_judged(case),
         "as_on_references": list(case.no_news),
-        "not_visible": [n for n, can in seen.items() if not can and n not in [*missing, *case.no_news, *case.present]],
-        "floor": {"share_surge_sway_yaw": case.floor.share, "sensor_factor": case.floor.sensor, "temper": case.temper},
+        "not_visible": [
+            n for n, can in seen.items() if not can and n not in [*missing, *case.no_news, *case.present]
+        ],
+        "floor": {
+            "share_surge_sway_yaw": case.floor.share,
+            "sensor_factor": case.floor.sensor,
+            "temper": case.temper,
+        },
         "voyages": [v.name for v in voyages],
         "waves": waves_on(case.tracks),
         "weather_may_mislead": rough,
@@ -111,9 +162,15 @@ def diagnose(
 
 
 def _candidate(
-    case: Case, weighed: Sequence[Any], found: dict[tuple[str, ...], Found], missing: Sequence[str], name: str, probability: float
-) -> dict[str, Any]:  # fmt: skip
-    """One effect with its numbers: what is named as it stands in the answer, the others as they stand in the best set that holds them."""
+    case: Case,
+    weighed: Sequence[Any],
+    found: dict[tuple[str, ...], Found],
+    missing: Sequence[str],
+    name: str,
+    probability: float,
+) -> dict[str, Any]:
+    """One effect with its numbers: what is named as it stands in the answer, the others as they stand in the
+    best set that holds them."""
     sets = [h.effects for h in weighed if name in h.effects and h.effects in found]
     sets.sort(key=lambda s: name not in missing or set(s) != set(missing))
     if not sets:
@@ -135,14 +192,27 @@ def _candidate(
 
 
 def _next(
-    case: Case, found: dict[tuple[str, ...], Found], verdict: str, missing: Sequence[str], candidates: Sequence[dict[str, Any]],
-    likely: dict[str, float], progress: Callable[[str], None],
-) -> dict[str, Any] | None:  # fmt: skip
+    case: Case,
+    found: dict[tuple[str, ...], Found],
+    verdict: str,
+    missing: Sequence[str],
+    candidates: Sequence[dict[str, Any]],
+    likely: dict[str, float],
+    progress: Callable[[str], None],
+) -> dict[str, Any] | None:
     """What to sail next, when two effects stand in each other's way or the voyages could not tell."""
     if verdict == "nothing_missing":
         return None
     listed = [c for c in candidates if c]
-    rivals = next(((c["effect"], o) for c in listed for o in c["cannot_be_told_from"] if c["effect"] in missing or verdict != "missing"), None)
+    rivals = next(
+        (
+            (c["effect"], o)
+            for c in listed
+            for o in c["cannot_be_told_from"]
+            if c["effect"] in missing or verdict != "missing"
+        ),
+        None,
+    )
     if rivals is None and verdict == "undecided" and len(likely) > 1:
         first, second, *_ = sorted(likely, key=lambda n: -likely[n])
         rivals = (first, second)
@@ -157,7 +227,12 @@ def _next(
 def _not_judged(case: Case) -> list[dict[str, Any]]:
     """Effects that could not be judged, and for want of which columns or particulars."""
     return [
-        {"effect": name, "lacks": [INPUTS.get(n, n) for n in unjudged_because(name, case.tracks, case.model, case.catalogue)]}
+        {
+            "effect": name,
+            "lacks": [
+                INPUTS.get(n, n) for n in unjudged_because(name, case.tracks, case.model, case.catalogue)
+            ],
+        }
         for name in case.catalogue
         if name not in case.candidates and name not in case.present
     ]
@@ -165,13 +240,29 @@ def _not_judged(case: Case) -> list[dict[str, Any]]:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = f"{parser.epilog or ''}\n\n{EPILOG}"
-    parser.add_argument("voyages", metavar="VOYAGE", nargs="+", help="voyages on which something may be wrong")
-    parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name")
-    parser.add_argument("--reference", metavar="VOYAGE", nargs="+", default=[], help="voyages of the same ship on which nothing was wrong")
+    parser.add_argument(
+        "voyages", metavar="VOYAGE", nargs="+", help="voyages on which something may be wrong"
+    )
+    parser.add_argument(
+        "--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name"
+    )
+    parser.add_argument(
+        "--reference",
+        metavar="VOYAGE",
+        nargs="+",
+        default=[],
+        help="voyages of the same ship on which nothing was wrong",
+    )
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
     parser.add_argument("--report", metavar="FILE.html", help="one self-contained page with the plots")
-    parser.add_argument("--identifiability", action="store_true", help="also say what the first of these voyages can tell at all")
-    parser.add_argument("--residual", metavar="FILE.onnx", help="also say whether what was learned stands apart from the core")
+    parser.add_argument(
+        "--identifiability",
+        action="store_true",
+        help="also say what the first of these voyages can tell at all",
+    )
+    parser.add_argument(
+        "--residual", metavar="FILE.onnx", help="also say whether what was learned stands apart from the core"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
@@ -195,7 +286,9 @@ def run(args: argparse.Namespace) -> int:
     if args.report:
         from twin import report
 
-        report.write(args.report, "diagnose", result, list(done.case.tracks), done.case.model, voyages=voyages)
+        report.write(
+            args.report, "diagnose", result, list(done.case.tracks), done.case.model, voyages=voyages
+        )
         print(f"\nwrote {args.report}", file=page)
     print(f"\nnext: {_next_command(args, result)}", file=page)
     return 0

@@ -1,9 +1,10 @@
-"""Whether a hypothesis would also have led the ship where she went: a second witness beside the readings one step ahead.
+"""Whether a hypothesis would also have led the ship where she went: a second witness beside the readings one
+step ahead.
 
-One step ahead, a hypothesis is judged by what is fast; a little misfit of the core, repeated at every step, may then decide between
-two causes that explain the voyages nearly alike. Run free from measured states over parts it was not fitted to, a wrong cause goes
-astray where the true one does not. What noise and structure would do to a true model anyway says nothing.
-"""
+One step ahead, a hypothesis is judged by what is fast; a little misfit of the core, repeated at every step,
+may then decide between two causes that explain the voyages nearly alike. Run free from measured states over
+parts it was not fitted to, a wrong cause goes astray where the true one does not. What noise and structure
+would do to a true model anyway says nothing."""
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -23,8 +24,11 @@ from twin.study.reference.structure import once_off
 from twin.study.track.track import Track
 
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
-LUXURY = 10.0  # log odds against a second effect that the path does not ask for: of two forms that are only roughly right, one mends the other
-MOST = 40.0  # windows that count: what the core misses is the same in all of them, and more of the same tells no more
+# log odds against a second effect that the path does not ask for: of two forms that are only roughly right,
+# one mends the other
+LUXURY = 10.0
+# windows that count: what the core misses is the same in all of them, and more of the same tells no more
+MOST = 40.0
 FORM = 0.1  # share of what an effect does to the path that its form may miss
 ANY_DAY = 2.0  # standard deviations of what any day brings, that nobody need name
 SPOILT = 0.05  # share by which two effects lead her farther off than one of them, so that the other is none
@@ -33,7 +37,8 @@ REACH = 60.0  # log odds behind the best up to which a hypothesis is asked
 
 @dataclass(frozen=True)
 class Led:
-    """How far from the measured path each hypothesis ended, and what noise and structure alone would have made of it."""
+    """How far from the measured path each hypothesis ended, and what noise and structure alone would have
+    made of it."""
 
     found: Mapping[Sets, Found]  # with `off_m`; "nothing" is among them
     floor: Mapping[str, float]  # [m], by world
@@ -42,42 +47,78 @@ class Led:
     irregular: frozenset[str]  # effects that come and go
 
     def log_probability(self, h: Hypothesis) -> float:
-        """Of the path under a hypothesis; one that was not asked leads no worse than the best part of it that was."""
-        own, levered = self.found.get(h.effects), max(m for s, m in self.levered.items() if set(s) <= set(h.effects))
+        """Of the path under a hypothesis; one that was not asked leads no worse than the best part of it that
+        was."""
+        own, levered = (
+            self.found.get(h.effects),
+            max(m for s, m in self.levered.items() if set(s) <= set(h.effects)),
+        )
         floor = _floor(h, self.floor, self.found[()].off_m, self.irregular, levered)
         error = own.off_m if own else min(f.off_m for s, f in self.found.items() if set(s) <= set(h.effects))
         return self._path(error, floor)
 
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """The same hypotheses with this evidence too, best first, but for those that spoil what a part of them does. As far as one effect leads
-        her there alone, two are a luxury."""
-        luxury = max(0.0, LUXURY + max((self._path(f.off_m, f.floor_m) for s, f in self.found.items() if len(s) == 1), default=-LUXURY))
+        """The same hypotheses with this evidence too, best first, but for those that spoil what a part of
+        them does. As far as one effect leads her there alone, two are a luxury."""
+        luxury = max(
+            0.0,
+            LUXURY
+            + max(
+                (self._path(f.off_m, f.floor_m) for s, f in self.found.items() if len(s) == 1),
+                default=-LUXURY,
+            ),
+        )
         kept = [h for h in weighed if not self._spoils(h.effects)]
         extra = (self.log_probability(h) - luxury * (len(h.effects) > 1) for h in kept)
-        return sorted((replace(h, log_evidence=h.log_evidence + e) for h, e in zip(kept, extra, strict=True)), key=lambda h: -h.log_weight)
+        return sorted(
+            (replace(h, log_evidence=h.log_evidence + e) for h, e in zip(kept, extra, strict=True)),
+            key=lambda h: -h.log_weight,
+        )
 
     def _spoils(self, effects: Sets) -> bool:
-        """Whether a set leads her farther off than is usual, and than a part of it does: of two that are there neither does that, but one that mends
-        the steps of another's form."""
-        own, parts = self.found.get(effects), (f.off_m for s, f in self.found.items() if s and set(s) < set(effects))
-        return own is not None and own.off_m > own.floor_m and min(parts, default=np.inf) < (1.0 - SPOILT) * own.off_m
+        """Whether a set leads her farther off than is usual, and than a part of it does: of two that are
+        there neither does that, but one that mends the steps of another's form."""
+        own, parts = (
+            self.found.get(effects),
+            (f.off_m for s, f in self.found.items() if s and set(s) < set(effects)),
+        )
+        return (
+            own is not None
+            and own.off_m > own.floor_m
+            and min(parts, default=np.inf) < (1.0 - SPOILT) * own.off_m
+        )
 
     def _path(self, error: float, floor: float) -> float:
-        """Log probability of ending so far off where the floor is all that a true hypothesis would leave: two directions, a normal error of
-        unknown size."""
+        """Log probability of ending so far off where the floor is all that a true hypothesis would leave: two
+        directions, a normal error of unknown size."""
         return -2.0 * self.windows * float(np.log(max(error, floor) / floor))
 
 
-def led(case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis], before: Led | None = None) -> Led:
-    """Run nothing and every hypothesis that could still be the answer over the held-out parts (`weighed`: what is known of all of them by now;
-    one is likelier than where it was found if it leaves to any day what another had found). What was asked `before` is not run again."""
+def led(
+    case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis], before: Led | None = None
+) -> Led:
+    """Run nothing and every hypothesis that could still be the answer over the held-out parts (`weighed`:
+    what is known of all of them by now; one is likelier than where it was found if it leaves to any day what
+    another had found). What was asked `before` is not run again."""
     known = {s: f.off_m for s, f in before.found.items()} if before else {}
     likely = {s: max((h.log_weight for h in weighed if h.effects == s), default=-np.inf) for s in found}
     best = max(likely.values())
-    off = {s: known[s] if s in known else held_out_error(case, f) for s, f in found.items() if not s or likely[s] > best - REACH}
+    off = {
+        s: known[s] if s in known else held_out_error(case, f)
+        for s, f in found.items()
+        if not s or likely[s] > best - REACH
+    }
     floor = before.floor if before else _floors(case)
-    irregular = frozenset(name for name in case.candidates if case.catalogue[name].irregular and name not in case.present)  # the floor has the others
-    levered = {s: before.levered[s] if s in known and before else _levered(case, found[s].model, set(s) - case.present) for s in off}
+    # the floor has the others
+    irregular = frozenset(
+        name for name in case.candidates if case.catalogue[name].irregular and name not in case.present
+    )
+    levered = {
+        s: before.levered[s]
+        if s in known and before
+        else _levered(case, found[s].model, set(s) - case.present)
+        for s in off
+    }
     ends = {s: _floor(plain(found[s].hypothesis), floor, off[()], irregular, levered[s]) for s in off}
     asked = {s: replace(found[s], off_m=m, floor_m=ends[s]) for s, m in off.items()}
     windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
@@ -87,19 +128,28 @@ def led(case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis], 
 def _floors(case: Case) -> dict[str, float]:
     """[m] by world: what noise and structure alone would make of the path."""
     steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
-    least = max(steps["coarse"], _measured(case))  # what is run free is a core alone, and no better than it was when nothing was wrong
+    # what is run free is a core alone, and no better than it was when nothing was wrong
+    least = max(steps["coarse"], _measured(case))
     known = roughly(case)
     return {name: float(np.hypot(max(m, least), known)) for name, m in steps.items()}
 
 
 def plain(h: Hypothesis) -> Hypothesis:
     """The same in a world that is no rougher than on the reference voyages."""
-    return h if WORLDS[h.world].plain else replace(h, world=next(n for n, w in WORLDS.items() if w.plain and w.flow == WORLDS[h.world].flow))
+    return (
+        h
+        if WORLDS[h.world].plain
+        else replace(
+            h, world=next(n for n, w in WORLDS.items() if w.plain and w.flow == WORLDS[h.world].flow)
+        )
+    )
 
 
-def _floor(h: Hypothesis, floor: Mapping[str, float], nothing_m: float, irregular: frozenset[str], levered_m: float) -> float:
-    """How far off a true hypothesis may be [m]: nature writes an effect otherwise, so a part of what it does is left; more of one that
-    comes and goes, or whose side force may attack elsewhere."""
+def _floor(
+    h: Hypothesis, floor: Mapping[str, float], nothing_m: float, irregular: frozenset[str], levered_m: float
+) -> float:
+    """How far off a true hypothesis may be [m]: nature writes an effect otherwise, so a part of what it does
+    is left; more of one that comes and goes, or whose side force may attack elsewhere."""
     left = COMES_AND_GOES if irregular.intersection(h.effects) else FORM if h.effects else 0.0
     return float(np.hypot.reduce([floor[h.world], left * nothing_m, levered_m]))
 
@@ -110,14 +160,17 @@ def horizon_s(track: Track, model: Model) -> float:
 
 
 def held_out_error(case: Case, found: Found) -> float:
-    """Mean position error [m] with the effects of a hypothesis, each half of the segments predicted with the parameters that the other half
-    asks for, about where the hypothesis stands; the water and air of any day are there too, as far as they usually go. What changes with the
-    clock is taken as the whole voyage has it: no other hour tells of it."""
+    """Mean position error [m] with the effects of a hypothesis, each half of the segments predicted with the
+    parameters that the other half asks for, about where the hypothesis stands; the water and air of any day
+    are there too, as far as they usually go. What changes with the clock is taken as the whole voyage has it:
+    no other hour tells of it."""
     chosen = found.hypothesis.effects
     lines, at = standing(case, found)
     day = {label: width for label, width in case.nuisance.daily.items() if label in DAILY}
     mine = [i for i, u in enumerate(case.effects) if u.owner in chosen or u.label in day]
-    most = np.array([np.inf if u.owner in chosen else ANY_DAY * day.get(u.label, 0.0) / u.sd for u in case.effects])
+    most = np.array(
+        [np.inf if u.owner in chosen else ANY_DAY * day.get(u.label, 0.0) / u.sd for u in case.effects]
+    )
     lasts = np.array(["t" not in case.catalogue[u.owner].needs for u in case.effects])
     normal = innovate(lines, case.worlds([found.hypothesis.world], found.doubt), MOST_SEGMENTS)[0]
     half = np.arange(len(normal.where)) % 2
@@ -125,7 +178,9 @@ def held_out_error(case: Case, found: Found) -> float:
     for side in (0, 1):
         z = found.posterior.z.copy()
         if half.any():
-            part = reduce(normal.only(half != side), case.nuisance, case.unknowns, case.effects, case.temper, at)
+            part = reduce(
+                normal.only(half != side), case.nuisance, case.unknowns, case.effects, case.temper, at
+            )
             z[lasts] = posterior(given(part, z, ~lasts), chosen).z
         z = np.clip(z, -most, most)
         values = [case.effects[i].centre + case.effects[i].sd * z[i] for i in mine]
@@ -145,19 +200,22 @@ def _usual(case: Case, floor: Floor) -> float:
     errors = []
     for track in case.tracks:
         model = case.model.without_inputs(track.missing())[0]
-        errors.append(_errors(predict(track, model, [horizon_s(track, case.model)], leads=1, floor=floor), STRUCTURE))
+        errors.append(
+            _errors(predict(track, model, [horizon_s(track, case.model)], leads=1, floor=floor), STRUCTURE)
+        )
     return max(float(np.nanmean(np.concatenate(errors))), 1e-9)
 
 
 def roughly(case: Case) -> float:
-    """How far off [m] the forms of effects may leave her that are in the model since she was calibrated: a share of where she would be without,
-    and where she would be if their side force attacked elsewhere."""
+    """How far off [m] the forms of effects may leave her that are in the model since she was calibrated: a
+    share of where she would be without, and where she would be if their side force attacked elsewhere."""
     left = [share * _astray(case, without) for without, share in added(case.model)]
     return float(np.hypot.reduce([_levered(case, case.model), *left]))
 
 
 def _levered(case: Case, model: Model, names: Collection[str] | None = None) -> float:
-    """How far off [m] the side forces of a model's effects may leave her that attack elsewhere along her than their forms have it."""
+    """How far off [m] the side forces of a model's effects may leave her that attack elsewhere along her than
+    their forms have it."""
     left = 0.0
     for both in elsewhere(model, names):
         left += max(0.0, 0.5 * sum(_astray(case, m) ** 2 for m in both) - _astray(case, model) ** 2)
@@ -166,13 +224,21 @@ def _levered(case: Case, model: Model, names: Collection[str] | None = None) -> 
 
 def _astray(case: Case, model: Model) -> float:
     """Mean position error [m] of a model over all of the voyages."""
-    errors = (_errors(coarse(t, model.without_inputs(t.missing())[0], horizon_s(t, case.model), leads=1), MODEL) for t in case.tracks)
+    errors = (
+        _errors(coarse(t, model.without_inputs(t.missing())[0], horizon_s(t, case.model), leads=1), MODEL)
+        for t in case.tracks
+    )
     return float(np.nanmean(np.concatenate(list(errors))))
 
 
 def _measured(case: Case) -> float:
-    """Mean position error [m] of the calibrated ship on voyages that she was not fitted to; nothing where no calibration measured it."""
-    return float(once_off(case.model.ship, "position_m", np.array([horizon_s(t, case.model) for t in case.tracks])).mean())
+    """Mean position error [m] of the calibrated ship on voyages that she was not fitted to; nothing where no
+    calibration measured it."""
+    return float(
+        once_off(
+            case.model.ship, "position_m", np.array([horizon_s(t, case.model) for t in case.tracks])
+        ).mean()
+    )
 
 
 def _errors(windows: Windows, run: int) -> np.ndarray:

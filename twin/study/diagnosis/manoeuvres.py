@@ -1,7 +1,7 @@
 """Standard manoeuvres, sailed by the model itself, and which of them would tell two effects apart.
 
-The one to sail is the one after which the wrong effect would explain least of what the right one does (expected information).
-"""
+The one to sail is the one after which the wrong effect would explain least of what the right one does
+(expected information)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -53,21 +53,40 @@ def _steer(course: Callable[[float], float], power: Callable[[float], float]) ->
 
 
 MANOEUVRES: dict[str, tuple[Order, str]] = {
-    "zigzag 10/10": (_zigzag(10 * DEG), "10 deg of rudder to each side whenever the heading has changed by 10 deg, at constant power"),
-    "zigzag 20/20": (_zigzag(20 * DEG), "20 deg of rudder to each side whenever the heading has changed by 20 deg, at constant power"),
-    "turning circles": (lambda h: (25 * DEG if h.lengths < LENGTHS / 2 else -25 * DEG, 1.0), "a circle to each side at 25 deg"),
-    "speed changes": (_steer(lambda s: 0.0, lambda s: (1.0, 0.6, 1.0, 0.4)[int(s / 10) % 4]), "straight, at 100, 60, 100, 40 % of the shaft speed"),
-    "reciprocal runs": (_steer(lambda s: pi * (s > LENGTHS / 2), lambda s: 1.0), "the same straight run there and back at constant power"),
-    "square": (_steer(lambda s: 0.5 * pi * int(s / 10), lambda s: 1.0), "four straight legs at right angles at constant power"),
+    "zigzag 10/10": (
+        _zigzag(10 * DEG),
+        "10 deg of rudder to each side whenever the heading has changed by 10 deg, at constant power",
+    ),
+    "zigzag 20/20": (
+        _zigzag(20 * DEG),
+        "20 deg of rudder to each side whenever the heading has changed by 20 deg, at constant power",
+    ),
+    "turning circles": (
+        lambda h: (25 * DEG if h.lengths < LENGTHS / 2 else -25 * DEG, 1.0),
+        "a circle to each side at 25 deg",
+    ),
+    "speed changes": (
+        _steer(lambda s: 0.0, lambda s: (1.0, 0.6, 1.0, 0.4)[int(s / 10) % 4]),
+        "straight, at 100, 60, 100, 40 % of the shaft speed",
+    ),
+    "reciprocal runs": (
+        _steer(lambda s: pi * (s > LENGTHS / 2), lambda s: 1.0),
+        "the same straight run there and back at constant power",
+    ),
+    "square": (
+        _steer(lambda s: 0.5 * pi * int(s / 10), lambda s: 1.0),
+        "four straight legs at right angles at constant power",
+    ),
     "zigzag with speed changes": (
         lambda h: (_zigzag(20 * DEG)(h)[0], (1.0, 0.6, 1.0, 0.4)[int(h.lengths / 10) % 4]),
         "a 20/20 zigzag at 100, 60, 100 and 40 % of the usual shaft speed",
     ),
-}  # fmt: skip
+}
 
 
 def sail(case: Case, model: Model, order: Order) -> Track:
-    """The track of a manoeuvre that the model sails in the weather of the case's first track; NaN from where it runs away."""
+    """The track of a manoeuvre that the model sails in the weather of the case's first track; NaN from where
+    it runs away."""
     like = case.tracks[0]
     h = float(model.ship.scale("time")) / STEPS_PER_LENGTH
     steps = LENGTHS * STEPS_PER_LENGTH
@@ -87,11 +106,20 @@ def sail(case: Case, model: Model, order: Order) -> Track:
         helm.lengths, helm.turned, helm.rate = helm.lengths + speed * h / L, state[2], state[5] * L / speed
     measured = np.full((steps, len(READINGS)), np.nan)
     seen = np.isfinite(like.measured).any(0)
-    measured[:, seen] = 0.0  # only which readings there are counts: information does not depend on their values
+    # only which readings there are counts: information does not depend on their values
+    measured[:, seen] = 0.0
     return Track(
-        "planned", h * np.arange(steps), h, states, orders[:, 0], orders[:, 1],
-        {name: np.full(steps, value) for name, value in weather.items()}, measured, like.sd, np.ones(steps, bool),
-    )  # fmt: skip
+        "planned",
+        h * np.arange(steps),
+        h,
+        states,
+        orders[:, 0],
+        orders[:, 1],
+        {name: np.full(steps, value) for name, value in weather.items()},
+        measured,
+        like.sd,
+        np.ones(steps, bool),
+    )
 
 
 def separation(case: Case, model: Model, track: Track, first: str, second: str, z: np.ndarray) -> float:
@@ -106,7 +134,9 @@ def separation(case: Case, model: Model, track: Track, first: str, second: str, 
     return 0.5 * (alone - mimic)
 
 
-def next_manoeuvre(case: Case, model: Model, first: str, second: str, z: np.ndarray) -> dict[str, object] | None:
+def next_manoeuvre(
+    case: Case, model: Model, first: str, second: str, z: np.ndarray
+) -> dict[str, object] | None:
     """The manoeuvre that tells these two apart best, or None when none would."""
     scores = {}
     for name, (order, _) in MANOEUVRES.items():

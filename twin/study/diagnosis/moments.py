@@ -1,9 +1,10 @@
-"""Moments at which something pushed her that was not there before and after: a ship that passed, a gust, a net that was caught and lost.
+"""Moments at which something pushed her that was not there before and after: a ship that passed, a gust, a
+net that was caught and lost.
 
-What lasts all voyage is an effect. What lasts a few ship lengths is lost in the whole of it, and a ship with which nothing else is wrong
-would be acquitted. So, beside the best hypothesis, each stretch of a few lengths is asked whether it is likelier with a push of its own: a
-constant acceleration in surge, sway and yaw of about the size of the ship's own forces, integrated out.
-"""
+What lasts all voyage is an effect. What lasts a few ship lengths is lost in the whole of it, and a ship with
+which nothing else is wrong would be acquitted. So, beside the best hypothesis, each stretch of a few lengths
+is asked whether it is likelier with a push of its own: a constant acceleration in surge, sway and yaw of
+about the size of the ship's own forces, integrated out."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -30,7 +31,8 @@ SWELL_S = 25.0  # the longest waves; what swings her more slowly may be what is 
 
 @dataclass(frozen=True)
 class Moment:
-    """A stretch of a voyage, how much likelier it is with a push of its own, and that push in standard accelerations of surge, sway, yaw."""
+    """A stretch of a voyage, how much likelier it is with a push of its own, and that push in standard
+    accelerations of surge, sway, yaw."""
 
     voyage: str
     start_s: float
@@ -42,15 +44,25 @@ class Moment:
         """With the push as a force on this ship [N, N, N m]."""
         surge, sway, yaw = (standard(model) * self.push).tolist()
         X, Y, N = core.force_for(surge, sway, yaw, model.c)
-        return {"voyage": self.voyage, "start_s": self.start_s, "end_s": self.end_s, "X_N": float(X), "Y_N": float(Y), "N_Nm": float(N)}
+        return {
+            "voyage": self.voyage,
+            "start_s": self.start_s,
+            "end_s": self.end_s,
+            "X_N": float(X),
+            "Y_N": float(Y),
+            "N_Nm": float(N),
+        }
 
 
 def moments(case: Case, found: Found) -> list[Moment]:
-    """The stretches that clearly had a push of their own under a hypothesis, the likeliest first; none that overlaps a likelier one."""
+    """The stretches that clearly had a push of their own under a hypothesis, the likeliest first; none that
+    overlaps a likelier one."""
     out: list[Moment] = []
     enough = {t.name: TOSSED if 0.0 < wave_period_s(t) < SWELL_S else CLEAR for t in case.tracks}
     for m in sorted(stretches(case, found), key=lambda m: -m.log_evidence):
-        if m.log_evidence > enough[m.voyage] and not any(m.voyage == o.voyage and m.start_s < o.end_s and o.start_s < m.end_s for o in out):
+        if m.log_evidence > enough[m.voyage] and not any(
+            m.voyage == o.voyage and m.start_s < o.end_s and o.start_s < m.end_s for o in out
+        ):
             out.append(m)
     return out
 
@@ -60,7 +72,9 @@ def stretches(case: Case, found: Found) -> list[Moment]:
     lines, at = standing(case, found)
     floor = case.worlds([plain(found.hypothesis).world], found.doubt)[0]
     normal = innovate(lines, [floor], MOST_SEGMENTS)[0]
-    theta = likeliest(normal, case.nuisance, case.unknowns, case.effects, case.temper, at, found.hypothesis.effects)
+    theta = likeliest(
+        normal, case.nuisance, case.unknowns, case.effects, case.temper, at, found.hypothesis.effects
+    )
     known = [_in_one(line, theta) for line in lines]
     return [m for lengths in LENGTHS for m in _asked(case, known, floor, lengths)]
 
@@ -76,7 +90,9 @@ def _asked(case: Case, lines: Sequence[Linear], floor: Floor, lengths: float) ->
     where = segments([line.track for line in lines], time, MOST_SEGMENTS)
     steps = [max(4, round(lengths * time / line.track.h)) for line in lines]
     most = max(-(-(b - a) // (steps[i] // 2)) for i, a, b in where)
-    pushed = [_pushed(case, x, [(a, b) for j, a, b in where if j == i], steps[i], most) for i, x in enumerate(lines)]
+    pushed = [
+        _pushed(case, x, [(a, b) for j, a, b in where if j == i], steps[i], most) for i, x in enumerate(lines)
+    ]
     normal, out = innovate(pushed, [floor], MOST_SEGMENTS)[0], []
     for (i, a, b), A, pull in zip(where, normal.A / case.temper, normal.b / case.temper, strict=True):
         for k in range(most):
@@ -91,7 +107,8 @@ def _asked(case: Case, lines: Sequence[Linear], floor: Floor, lengths: float) ->
 
 
 def _pushed(case: Case, line: Linear, where: Sequence[tuple[int, int]], steps: int, most: int) -> Linear:
-    """The track with, behind its own column, three more for each stretch of its segments: a push of one standard acceleration in each axis."""
+    """The track with, behind its own column, three more for each stretch of its segments: a push of one
+    standard acceleration in each axis."""
     A = np.zeros((len(line.track), 3, 1 + 3 * most), line.A.dtype)
     R = np.zeros((len(line.track), line.R.shape[1], A.shape[2]), line.R.dtype)
     A[:, :, :1], R[:, :, :1] = line.A, line.R

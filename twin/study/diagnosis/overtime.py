@@ -1,9 +1,10 @@
-"""Whether a named effect was there all the time: how strong each part of the voyages says it is, as a share of what all say together.
+"""Whether a named effect was there all the time: how strong each part of the voyages says it is, as a share
+of what all say together.
 
-A rope in the propeller, a ballast tank that was filled, a gear that failed under way: the effect is named rightly, and its size over the
-whole voyage is an average that it never had. Each part has its own core and instruments (the reference voyages' knowledge of them),
-so a part in which the effect does not show says little and does so with a wide interval.
-"""
+A rope in the propeller, a ballast tank that was filled, a gear that failed under way: the effect is named
+rightly, and its size over the whole voyage is an average that it never had. Each part has its own core and
+instruments (the reference voyages' knowledge of them), so a part in which the effect does not show says
+little and does so with a wide interval."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -21,7 +22,8 @@ CLEAR = 4.0  # standard deviations by which two parts must differ
 
 
 def over_time(case: Case, found: Found, names: Sequence[str]) -> dict[str, list[dict[str, Any]]]:
-    """For each of these effects of the hypothesis: voyage, start_s, end_s, share and its standard deviation, part by part."""
+    """For each of these effects of the hypothesis: voyage, start_s, end_s, share and its standard deviation,
+    part by part."""
     lines, at = standing(case, found)
     normal = innovate(lines, case.worlds([found.hypothesis.world], found.doubt))[0]
     directions = np.array([np.where([u.owner == name for u in case.effects], at, 0.0) for name in names])

@@ -1,12 +1,13 @@
-"""Whether a force is what its name says: how large a share of it the voyages would rather have something else.
+"""Whether a force is what its name says: how large a share of it the voyages would rather have something
+else.
 
-A wrong name may lead a ship most of the way, for its size is what suits the voyages best. But it pulls in moments when nothing does,
-and a squall that is taken for a load, or a play of the gear for a slow gear, is explained by it here and there only. Then the voyages
-are more probable if most of what the effect does is left open at every moment. Nature writes a true effect otherwise than a catalogue
-does, by a fifth of it as a rule (DOUBTS, refine.py): to leave more open makes true voyages less probable. Now and then its form is farther
-off; then it still leads her where she went, as the model alone does not, and voyages on which it were not at work at all would be less
-probable.
-"""
+A wrong name may lead a ship most of the way, for its size is what suits the voyages best. But it pulls in
+moments when nothing does, and a squall that is taken for a load, or a play of the gear for a slow gear, is
+explained by it here and there only. Then the voyages are more probable if most of what the effect does is
+left open at every moment. Nature writes a true effect otherwise than a catalogue does, by a fifth of it as a
+rule (DOUBTS, refine.py): to leave more open makes true voyages less probable. Now and then its form is
+farther off; then it still leads her where she went, as the model alone does not, and voyages on which it were
+not at work at all would be less probable."""
 
 from dataclasses import replace
 
@@ -25,8 +26,8 @@ CLEAR = 3.0  # log evidence by which the voyages must ask for one of them
 
 
 def otherwise(case: Case, found: Found, nothing: Found) -> list[str]:
-    """The effects of a hypothesis whose force the voyages would clearly rather have otherwise, whatever the others explain (`nothing`: the
-    hypothesis without any)."""
+    """The effects of a hypothesis whose force the voyages would clearly rather have otherwise, whatever the
+    others explain (`nothing`: the hypothesis without any)."""
     kinds = ((name, case.catalogue[name]) for name in found.hypothesis.effects)
     asked = [name for name, kind in kinds if kind.kind in PUSH and not kind.irregular]
     if not asked:
@@ -37,9 +38,15 @@ def otherwise(case: Case, found: Found, nothing: Found) -> list[str]:
     out = []
     for name in asked:
         bare = without(found.model, case.model, name)
-        own = [np.abs(respond(x.track, x.model)[0] - respond(x.track, bare.without_inputs(x.track.missing())[0])[0]) for x in lines]
+        own = [
+            np.abs(
+                respond(x.track, x.model)[0] - respond(x.track, bare.without_inputs(x.track.missing())[0])[0]
+            )
+            for x in lines
+        ]
         doubted = [
-            replace(x, doubted=force, slack=np.hypot(x.slack, found.doubt * x.doubted)) for x, force in zip(lines, own, strict=True)
+            replace(x, doubted=force, slack=np.hypot(x.slack, found.doubt * x.doubted))
+            for x, force in zip(lines, own, strict=True)
         ]
         reduced = case.reduced(doubted, [case.worlds([world], share)[0] for share in shares], at)
         says = np.array([posterior(r, found.hypothesis.effects).log_evidence for r in reduced])
@@ -49,8 +56,8 @@ def otherwise(case: Case, found: Found, nothing: Found) -> list[str]:
 
 
 def leads_her(found: Found, nothing: Found) -> bool:
-    """Whether a hypothesis leads her within what is usual of where she went, as the model alone does not (to each its own floor would make
-    the water restless for who needs it so)."""
+    """Whether a hypothesis leads her within what is usual of where she went, as the model alone does not (to
+    each its own floor would make the water restless for who needs it so)."""
     return found.off_m <= found.floor_m < nothing.off_m
 
 

@@ -1,8 +1,9 @@
-"""A hypothesis judged about its own size: linearised anew where its effects stand, so that what is not linear counts in full.
+"""A hypothesis judged about its own size: linearised anew where its effects stand, so that what is not linear
+counts in full.
 
-An effect is granted that its form is only roughly right: a share of its own force may be something else, the one of DOUBTS under
-which the voyages are most probable (no share of what the ship meets because a stream carries her: that is the hull's own force).
-"""
+An effect is granted that its form is only roughly right: a share of its own force may be something else, the
+one of DOUBTS under which the voyages are most probable (no share of what the ship meets because a stream
+carries her: that is the hull's own force)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -14,13 +15,22 @@ from twin.study.diagnosis.case import WORLDS, Case
 from twin.study.estimation.columns import ROUGH, Unknown, changed, with_values
 from twin.study.estimation.innovations import Linear, linearise
 from twin.study.estimation.respond import respond, standard
-from twin.study.reference.evidence import Hypothesis, Posterior, Reduced, boxed, log_evidence, posterior, weigh_with
+from twin.study.reference.evidence import (
+    Hypothesis,
+    Posterior,
+    Reduced,
+    boxed,
+    log_evidence,
+    posterior,
+    weigh_with,
+)
 
 DOUBTS = (0.2, 0.1, 0.05)
 IRREGULAR = (1.0, 0.5)  # and of one that comes and goes with what no input shows
 Sets = tuple[str, ...]
 NEWTON = 8  # steps, at most
-FARTHER = (2.0, 4.0)  # times the linear guess, where Newton begins again when it ended in no plain world, or at nothing
+# times the linear guess, where Newton begins again when it ended in no plain world, or at nothing
+FARTHER = (2.0, 4.0)
 BENT = 0.3  # share of what a number does that is not in proportion to it
 BEHIND = 60.0  # log odds behind the likeliest world from which a restless one is out of the question
 LEAST = 0.2  # of a step that a climb tries: of 345 climbs four got higher by less
@@ -36,18 +46,27 @@ class Found:
     model: Model
     doubt: float = 0.0  # share of its own force that may be something else
     off_m: float = float("nan")  # held-out position error, when it was asked (led.py)
-    floor_m: float = float("nan")  # and what it would be were this the truth, in a world as it was on the reference voyages
-    reduced: Reduced | None = field(default=None, repr=False)  # what the voyages say about that place, in its world
+    # and what it would be were this the truth, in a world as it was on the reference voyages
+    floor_m: float = float("nan")
+    # what the voyages say about that place, in its world
+    reduced: Reduced | None = field(default=None, repr=False)
 
 
 def refine(
-    case: Case, chosen: Sets, world: str, z: np.ndarray, wider: Sequence[str], hoped: float = -np.inf, known: Sets = ()
+    case: Case,
+    chosen: Sets,
+    world: str,
+    z: np.ndarray,
+    wider: Sequence[str],
+    hoped: float = -np.inf,
+    known: Sets = (),
 ) -> tuple[Found, list[Hypothesis]]:
-    """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand; begun again farther out when
-    that explains nothing plainly, or when a number whose effect is bent ended at nothing, or the whole below the log weight that was
-    `hoped` for to first order (not those of effects that were found already, `known`: they were looked for far out when they were). What was
-    found; and, about it, the hypothesis in every world, every one that has one of `wider` beside it, and every one without what any day
-    brings."""
+    """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand; begun
+    again farther out when that explains nothing plainly, or when a number whose effect is bent ended at
+    nothing, or the whole below the log weight that was `hoped` for to first order (not those of effects that
+    were found already, `known`: they were looked for far out when they were). What was found; and, about it,
+    the hypothesis in every world, every one that has one of `wider` beside it, and every one without what any
+    day brings."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     narrow, kept = case.along(case.lines, chosen)
     at = np.zeros_like(z)
@@ -62,7 +81,11 @@ def refine(
     far = [h for world, h in top.judged.items() if world not in reduced]
     others = [*_beside(case, chosen, reduced, wider), *_any_day(case, chosen, reduced)]
     here = reduced[best.world]
-    return Found(best, boxed(here, chosen, own[best.world]), model, doubt, reduced=here), [*judged, *far, *others]
+    return Found(best, boxed(here, chosen, own[best.world]), model, doubt, reduced=here), [
+        *judged,
+        *far,
+        *others,
+    ]
 
 
 def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float, known: Sets = ()) -> "_Top":
@@ -76,13 +99,15 @@ def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float, kn
         plain, fallen = WORLDS[top.best.world].plain, top.best.log_weight < hoped
         bent = [] if plain and not fallen and top.at[new].all() else _bent(case, new, top.at)
         lost = [i for i in bent if fallen or top.at[i] == 0.0]
-        if not lost and (plain or (k and not bent)):  # numbers that work in proportion have one best place, which the first climb from afar found
+        # numbers that work in proportion have one best place, which the first climb from afar found
+        if not lost and (plain or (k and not bent)):
             break
         first[[i for i in lost if top.at[i] == 0.0]] = 1.0
         far = z.copy()
         far[new] = factor * first[new]
         top = top.or_from(case, chosen, mine, far)
-    if all(case.catalogue[name].kind == "Lag" for name in chosen):  # about none, a slow gear is seen by its delay alone
+    # about none, a slow gear is seen by its delay alone
+    if all(case.catalogue[name].kind == "Lag" for name in chosen):
         for i in mine:
             top = top.or_from(case, chosen, mine, FARTHER[-1] * np.eye(z.size)[i])
     return top
@@ -90,7 +115,8 @@ def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float, kn
 
 @dataclass(frozen=True)
 class _Top:
-    """The best place that was climbed to so far, the tracks about it, and the hypothesis there in every world (by columns of its own alone)."""
+    """The best place that was climbed to so far, the tracks about it, and the hypothesis there in every world
+    (by columns of its own alone)."""
 
     at: np.ndarray
     lines: Sequence[Linear] = field(repr=False)
@@ -99,29 +125,44 @@ class _Top:
     @classmethod
     def of(cls, case: Case, chosen: Sets, at: np.ndarray, lines: Sequence[Linear]) -> "_Top":
         names = [n for n in WORLDS if np.isfinite(case.log_prior(chosen, n))]
-        return cls(at, lines, {h.world: h for h in _judged(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0], names))[0]})
+        return cls(
+            at,
+            lines,
+            {
+                h.world: h
+                for h in _judged(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0], names))[0]
+            },
+        )
 
     @property
     def near(self) -> list[str]:
-        """The worlds that may still be the likeliest once others are beside it: the plain ones, and those that are not far behind."""
-        return [n for n, h in self.judged.items() if WORLDS[n].plain or h.log_weight > self.best.log_weight - BEHIND]
+        """The worlds that may still be the likeliest once others are beside it: the plain ones, and those
+        that are not far behind."""
+        return [
+            n
+            for n, h in self.judged.items()
+            if WORLDS[n].plain or h.log_weight > self.best.log_weight - BEHIND
+        ]
 
     @property
     def best(self) -> Hypothesis:
         return max(self.judged.values(), key=lambda h: h.log_weight)
 
     def or_from(self, case: Case, chosen: Sets, mine: np.ndarray, z: np.ndarray) -> "_Top":
-        """This place, or a better one to which a climb in the usual world leads from `z`; other worlds are asked only if that one is better."""
+        """This place, or a better one to which a climb in the usual world leads from `z`; other worlds are
+        asked only if that one is better."""
         here, at, lines = _climb(case, chosen, mine, "usual", z)
         if here.log_weight <= self.judged["usual"].log_weight:
             return self
         return max(self, _Top.of(case, chosen, at, lines), key=lambda top: top.best.log_weight)
 
 
-def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray) -> tuple[Hypothesis, np.ndarray, Sequence[Linear]]:
-    """Where the effects' parameters come to stand: the hypothesis there (in that world, by columns of its own alone), the place, and the tracks
-    about it. A step after which the voyages are less probable is taken back by half, and by half again: what is bent may lead a whole step
-    astray."""
+def _climb(
+    case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray
+) -> tuple[Hypothesis, np.ndarray, Sequence[Linear]]:
+    """Where the effects' parameters come to stand: the hypothesis there (in that world, by columns of its own
+    alone), the place, and the tracks about it. A step after which the voyages are less probable is taken back
+    by half, and by half again: what is bent may lead a whole step astray."""
     lines: Sequence[Linear] = case.lines
     merit, best, aim, share, here = -np.inf, np.zeros_like(z), z, 1.0, Hypothesis(chosen, world, -np.inf, 0.0)
     for _ in range(NEWTON):
@@ -131,7 +172,9 @@ def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray
         reduced = _told(case, tried, world, at)
         if reduced and (now := reduced.base - 0.5 * float(at @ at)) > merit:
             own = posterior(reduced, chosen)
-            here = Hypothesis(chosen, world, log_evidence(reduced, chosen, own), case.log_prior(chosen, world))
+            here = Hypothesis(
+                chosen, world, log_evidence(reduced, chosen, own), case.log_prior(chosen, world)
+            )
             merit, best, lines, share, aim = now, at, tried, 1.0, boxed(reduced, chosen, own).z
         else:
             share *= 0.5
@@ -141,7 +184,8 @@ def _climb(case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray
 
 
 def _told(case: Case, lines: Sequence[Linear], world: str, at: np.ndarray) -> Reduced | None:
-    """What the voyages say there; nothing where no filter can follow such a ship (without her mass, she answers within a step)."""
+    """What the voyages say there; nothing where no filter can follow such a ship (without her mass, she
+    answers within a step)."""
     try:
         return case.reduced(lines, case.worlds([world], DOUBTS[0]), at)[0]
     except np.linalg.LinAlgError:
@@ -149,9 +193,12 @@ def _told(case: Case, lines: Sequence[Linear], world: str, at: np.ndarray) -> Re
 
 
 def _bent(case: Case, mine: np.ndarray, at: np.ndarray) -> list[int]:
-    """Parameters of which what they do is not in proportion to them: about nothing they may not be seen, and a climb may end on a lower top."""
+    """Parameters of which what they do is not in proportion to them: about nothing they may not be seen, and
+    a climb may end on a lower top."""
     own = [case.effects[i] for i in mine]
-    model = with_values(case.model, own, [u.centre + u.sd * at[i] for i, u in zip(mine, own, strict=True)], case.catalogue)
+    model = with_values(
+        case.model, own, [u.centre + u.sd * at[i] for i, u in zip(mine, own, strict=True)], case.catalogue
+    )
     return [int(i) for i, u in zip(mine, own, strict=True) if _bends(case, model, u)]
 
 
@@ -160,22 +207,33 @@ def _bends(case: Case, model: Model, unknown: Unknown) -> bool:
     for line in case.lines:
         here = model.without_inputs(line.track.missing())[0]
         none, one, far = (
-            respond(line.track, changed(here, unknown, unknown.centre + k * unknown.sd, case.catalogue))[0] for k in (0.0, 1.0, FARTHER[-1])
+            respond(line.track, changed(here, unknown, unknown.centre + k * unknown.sd, case.catalogue))[0]
+            for k in (0.0, 1.0, FARTHER[-1])
         )
-        did, missed = (far - none) / standard(here), (far - none - FARTHER[-1] * (one - none)) / standard(here)
+        did, missed = (
+            (far - none) / standard(here),
+            (far - none - FARTHER[-1] * (one - none)) / standard(here),
+        )
         if np.linalg.norm(missed) > BENT * np.linalg.norm(did):
             return True
     return False
 
 
-def _everywhere(case: Case, chosen: Sets, lines: Sequence[Linear], at: np.ndarray, doubt: float, names: Sequence[str]) -> dict[str, Reduced]:
+def _everywhere(
+    case: Case, chosen: Sets, lines: Sequence[Linear], at: np.ndarray, doubt: float, names: Sequence[str]
+) -> dict[str, Reduced]:
     """In each of these worlds."""
     return dict(zip(names, case.reduced(lines, case.worlds(names, doubt), at), strict=True))
 
 
-def _judged(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> tuple[list[Hypothesis], dict[str, Posterior]]:
+def _judged(
+    case: Case, chosen: Sets, reduced: dict[str, Reduced]
+) -> tuple[list[Hypothesis], dict[str, Posterior]]:
     own = {n: posterior(r, chosen) for n, r in reduced.items()}
-    return [Hypothesis(chosen, n, log_evidence(r, chosen, own[n]), case.log_prior(chosen, n)) for n, r in reduced.items()], own
+    return [
+        Hypothesis(chosen, n, log_evidence(r, chosen, own[n]), case.log_prior(chosen, n))
+        for n, r in reduced.items()
+    ], own
 
 
 def _doubt(case: Case, chosen: Sets, top: _Top) -> float:
@@ -195,7 +253,8 @@ def _beside(case: Case, chosen: Sets, reduced: dict[str, Reduced], wider: Sequen
 
 
 def _any_day(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> list[Hypothesis]:
-    """The hypotheses that leave one of these effects to what any day brings of it, about the size that it has today."""
+    """The hypotheses that leave one of these effects to what any day brings of it, about the size that it has
+    today."""
     daily = {u.owner for u in case.effects if u.label in case.nuisance.daily}
     left = [tuple(n for n in chosen if n != name) for name in chosen if name in daily]
     return [h for rest in left for h in _judged(case, rest, reduced)[0]]
@@ -208,9 +267,11 @@ def clipped(case: Case, z: np.ndarray) -> np.ndarray:
     return np.clip(z, lo, hi)
 
 
-def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown]) -> tuple[Model, list[Linear]]:
-    """The model with the parameters `mine` in it, and the tracks linearised about it (columns of other unknowns than `fresh` stay
-    what they were)."""
+def about(
+    case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown]
+) -> tuple[Model, list[Linear]]:
+    """The model with the parameters `mine` in it, and the tracks linearised about it (columns of other
+    unknowns than `fresh` stay what they were)."""
     own = [case.effects[i] for i in mine]
     values = [u.centre + u.sd * z[i] for i, u in zip(mine, own, strict=True)]
     model = with_values(case.model, own, values, case.catalogue)
@@ -232,8 +293,8 @@ def about(case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown])
 
 
 def standing(case: Case, found: Found, fresh: Sequence[Unknown] = ()) -> tuple[list[Linear], np.ndarray]:
-    """The tracks linearised where a hypothesis was found to stand (columns of its own numbers, or of all that are to be `fresh`), and that
-    place, in prior widths."""
+    """The tracks linearised where a hypothesis was found to stand (columns of its own numbers, or of all that
+    are to be `fresh`), and that place, in prior widths."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in found.hypothesis.effects], dtype=int)
     at = np.zeros(len(case.effects))
     at[mine] = found.posterior.z[mine]

@@ -1,8 +1,9 @@
-"""The search for what is missing: every effect and every pair in a linear pass, then the best again where they stand.
+"""The search for what is missing: every effect and every pair in a linear pass, then the best again where
+they stand.
 
-The linear pass costs milliseconds a hypothesis, and is right for small effects. Then the best hypothesis that was not yet judged
-about its own size is, and with it all that have one effect more, until none is left that could still win.
-"""
+The linear pass costs milliseconds a hypothesis, and is right for small effects. Then the best hypothesis that
+was not yet judged about its own size is, and with it all that have one effect more, until none is left that
+could still win."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,18 +24,23 @@ from twin.study.reference.nuisance import DAILY
 MOST = 2  # effects at once that would be news
 ROUNDS = 20  # hypotheses judged about their own size, at most
 SINGLES = 3  # of which so many single effects first, unless nothing at all explains the voyages
-LAST = 6  # and so many more single effects, when nothing plain was found, or what was found (nothing, too) leaves too much
+# and so many more single effects, when nothing plain was found, or what was found (nothing, too) leaves too
+# much
+LAST = 6
 CLOSE = 3.0  # log odds behind the best within which a hypothesis is judged about its own size
-VISIBLE = 4.0  # log odds that an effect of plausible size would have to show, or the data could not have seen it
-MUCH = 0.05  # of an effect's plausible size that any day brings, from which it is judged about its own size without having earned it
+# log odds that an effect of plausible size would have to show, or the data could not have seen it
+VISIBLE = 4.0
+# of an effect's plausible size that any day brings, from which it is judged about its own size without having
+# earned it
+MUCH = 0.05
 EARNED = 1.5  # log evidence that an effect must add to deserve a second look
 
 Searched = tuple[list[Hypothesis], dict[Sets, Found], dict[str, bool]]
 
 
 def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> Searched:
-    """All hypotheses with their weights, best first; the few that were judged about their own size; and whether each candidate,
-    had it its plausible size, would have shown."""
+    """All hypotheses with their weights, best first; the few that were judged about their own size; and
+    whether each candidate, had it its plausible size, would have shown."""
     progress("every effect and every pair")
     worlds = dict(zip(WORLDS, case.reduced(case.lines, case.worlds(list(WORLDS))), strict=True))
     seen = {name: visible(worlds["usual"], name) for name in case.names(case.candidates)}
@@ -63,14 +69,20 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
 
 def _explained(case: Case, weighed: list[Hypothesis], found: dict[Sets, Found]) -> bool:
     best, nothing = weighed[0].effects, found[()]
-    return bool(answer(case, weighed, found, best, strict=True)) if best else nothing.off_m <= NEARLY * nothing.floor_m
+    return (
+        bool(answer(case, weighed, found, best, strict=True))
+        if best
+        else nothing.off_m <= NEARLY * nothing.floor_m
+    )
 
 
 def visible(reduced: Reduced, name: str) -> bool:
     """Whether this effect, had it its plausible size, would have shown in these voyages."""
     rows = reduced.rows((name,))
     A = reduced.A[np.ix_(rows, rows)]
-    return 0.5 * float(np.max(np.diag(A))) - 0.5 * float(np.linalg.slogdet(A + np.eye(rows.size))[1]) > VISIBLE
+    return (
+        0.5 * float(np.max(np.diag(A))) - 0.5 * float(np.linalg.slogdet(A + np.eye(rows.size))[1]) > VISIBLE
+    )
 
 
 class _Book:
@@ -81,16 +93,21 @@ class _Book:
         self.wide = False  # whether every promising effect is judged, because the best so far leaves too much
         self.asked: Led | None = None  # where those that could be the answer lead her
         self.entries: dict[tuple[Sets, str], Hypothesis] = {}
-        self.steady: list[Sets] = []  # with a stream that may change and did not: no set that holds one of these is asked again
+        # with a stream that may change and did not: no set that holds one of these is asked again
+        self.steady: list[Sets] = []
         for world, reduced in worlds.items():
             for chosen, evidence in weigh_all(reduced, case.candidates, MOST):
                 self._enter(Hypothesis(chosen, world, evidence, case.log_prior(chosen, world)))
         nothing = max((h for h in self.entries.values() if not h.effects), key=lambda h: h.log_weight)
         self.found: dict[Sets, Found] = {(): Found(nothing, posterior(worlds[nothing.world], ()), case.model)}
         ranked = self.weighed()
-        first = 0 if not ranked[0].effects and WORLDS[ranked[0].world].plain else SINGLES  # none when the plain answer is that nothing is there
+        # none when the plain answer is that nothing is there
+        first = 0 if not ranked[0].effects and WORLDS[ranked[0].world].plain else SINGLES
         singles = self._promising()
-        self.first = [*singles[:first], *((*self._of_the_day(), *filter(self._of_another_moment, singles)) if first else ())]
+        self.first = [
+            *singles[:first],
+            *((*self._of_the_day(), *filter(self._of_another_moment, singles)) if first else ()),
+        ]
         self.last = singles[first : first + LAST]
 
     def _enter(self, h: Hypothesis) -> None:
@@ -110,21 +127,32 @@ class _Book:
         """The single effects that explain something, best first."""
         ranked = self.weighed()
         nothing = {h.world: h.log_evidence for h in ranked if not h.effects}
-        singles: list[Sets] = [h.effects for h in ranked if len(h.effects) == 1 and h.log_evidence > nothing.get(h.world, -np.inf) + EARNED]
+        singles: list[Sets] = [
+            h.effects
+            for h in ranked
+            if len(h.effects) == 1 and h.log_evidence > nothing.get(h.world, -np.inf) + EARNED
+        ]
         return list(dict.fromkeys(singles))
 
     def _of_the_day(self) -> list[Sets]:
-        """What every day brings much of on this ship: to first order what is usual takes the credit, and only its own size tells."""
-        usual = {u.owner: self.case.nuisance.daily.get(u.label, 0.0) / u.sd for u in self.case.effects if u.label in DAILY}
+        """What every day brings much of on this ship: to first order what is usual takes the credit, and only
+        its own size tells."""
+        usual = {
+            u.owner: self.case.nuisance.daily.get(u.label, 0.0) / u.sd
+            for u in self.case.effects
+            if u.label in DAILY
+        }
         return [(name,) for name, width in usual.items() if width > MUCH]
 
     def _of_another_moment(self, chosen: Sets) -> bool:
-        """Whether an instrument shows what was true before: about none, slopes of this moment tell little of it."""
+        """Whether an instrument shows what was true before: about none, slopes of this moment tell little of
+        it."""
         kinds = [self.case.catalogue[name] for name in chosen]
         return any(issubclass(kind, SensorFault) and kind.prompt is not SensorFault.prompt for kind in kinds)
 
     def next(self) -> Sets | None:
-        """What to judge about its own size next; each effect of a set alone before the set, and beside what is no news: it may do what took two."""
+        """What to judge about its own size next; each effect of a set alone before the set, and beside what
+        is no news: it may do what took two."""
         while self.first:
             if (chosen := self.first.pop(0)) not in self.found:
                 return chosen
@@ -143,8 +171,9 @@ class _Book:
         return None
 
     def _parts(self, effects: Sets) -> list[Sets]:
-        """Each effect of a set by itself, and what would be left of the set without it if that is enough to be asked for; of what is beside
-        weather that is no news only what is not hopeless: that weather does in proportion what it does, and would be seen to do it."""
+        """Each effect of a set by itself, and what would be left of the set without it if that is enough to
+        be asked for; of what is beside weather that is no news only what is not hopeless: that weather does
+        in proportion what it does, and would be seen to do it."""
         without = [tuple(n for n in effects if n != name) for name in effects]
         parts: list[Sets] = [*((name,) for name in effects), *(rest for rest in without if len(rest) >= MOST)]
         return [part for part in parts if len(self.case.news(part)) == len(part) == 1 or self._reaches(part)]
@@ -152,20 +181,38 @@ class _Book:
     def _reaches(self, part: Sets) -> bool:
         """Whether a set that holds weather that is no news may be as likely as the best."""
         mine = [h.log_weight for h in self.entries.values() if h.effects == part]
-        return len(self.case.news(part)) < len(part) and max(mine, default=-np.inf) > self.weighed()[0].log_weight - REACH
+        return (
+            len(self.case.news(part)) < len(part)
+            and max(mine, default=-np.inf) > self.weighed()[0].log_weight - REACH
+        )
 
     def _simpler(self, effects: Sets) -> list[Sets]:
-        """The same set with a part in the place of an effect that holds it: a current that does not change is a steady one."""
-        swaps = [(name, part) for name in effects for part in self.case.catalogue[name].holds if part in self.case.candidates]
-        return [tuple(n for n in self.case.candidates if n == part or (n in effects and n != name)) for name, part in swaps]
+        """The same set with a part in the place of an effect that holds it: a current that does not change is
+        a steady one."""
+        swaps = [
+            (name, part)
+            for name in effects
+            for part in self.case.catalogue[name].holds
+            if part in self.case.candidates
+        ]
+        return [
+            tuple(n for n in self.case.candidates if n == part or (n in effects and n != name))
+            for name, part in swaps
+        ]
 
     def judge(self, chosen: Sets) -> None:
-        """Enter what the voyages say of this set, and of every set with one effect more, about its own size."""
-        start = max((self.found[s] for s in self.found if set(s) < set(chosen)), key=lambda f: (len(f.hypothesis.effects), f.hypothesis.log_weight))
-        guess = next((h for h in self.weighed() if h.effects == chosen), None)  # of three, one in another's place was never weighed
+        """Enter what the voyages say of this set, and of every set with one effect more, about its own
+        size."""
+        start = max(
+            (self.found[s] for s in self.found if set(s) < set(chosen)),
+            key=lambda f: (len(f.hypothesis.effects), f.hypothesis.log_weight),
+        )
+        # of three, one in another's place was never weighed
+        guess = next((h for h in self.weighed() if h.effects == chosen), None)
         world, hoped = (guess.world, guess.log_weight) if guess else (start.hypothesis.world, -np.inf)
         part = start.hypothesis.effects
-        about = start.reduced if part and start.reduced else self.worlds[world]  # where a part of the set was found to stand
+        # where a part of the set was found to stand
+        about = start.reduced if part and start.reduced else self.worlds[world]
         z = boxed(about, chosen, posterior(about, chosen)).z
         wider = self.case.candidates if len(self.case.news(chosen)) < MOST else self.case.no_news
         self.found[chosen], judged = refine(self.case, chosen, world, z, wider, hoped, part)
@@ -180,10 +227,13 @@ class _Book:
                 self._enter(h)
 
     def _hollow(self, chosen: Sets) -> bool:
-        """Whether an effect of this set ended at nothing (or its size did), or is a load that cannot be: it would help only with sizes that cannot
-        be, and the set says no more than the rest."""
+        """Whether an effect of this set ended at nothing (or its size did), or is a load that cannot be: it
+        would help only with sizes that cannot be, and the set says no more than the rest."""
         z = self.found[chosen].posterior.z
-        nothing = any(not np.any(z[[i for i, u in enumerate(self.case.effects) if u.owner == name and self._sizes(u)]]) for name in chosen)
+        nothing = any(
+            not np.any(z[[i for i, u in enumerate(self.case.effects) if u.owner == name and self._sizes(u)]])
+            for name in chosen
+        )
         return nothing or not floats(self.case, self.found[chosen])
 
     def _sizes(self, u: Unknown) -> bool:
@@ -191,8 +241,9 @@ class _Book:
         return self.case.catalogue[u.owner].size in ("", u.name)
 
     def _counts(self, chosen: Sets, h: Hypothesis) -> bool:
-        """Whether what was said about the size of `chosen` is the better word on this hypothesis: on that set itself; on what leaves a part of
-        it to what any day brings, if it is likelier so; and on a wider set that was not judged about its own size, if this part is nearer."""
+        """Whether what was said about the size of `chosen` is the better word on this hypothesis: on that set
+        itself; on what leaves a part of it to what any day brings, if it is likelier so; and on a wider set
+        that was not judged about its own size, if this part is nearer."""
         if h.effects == chosen:
             return True
         if set(h.effects) < set(chosen):
@@ -201,8 +252,9 @@ class _Book:
         return h.effects not in self.found and self._nearer(chosen, h)
 
     def _nearer(self, chosen: Sets, wider: Hypothesis) -> bool:
-        """Whether no other part of the wider set was judged so far, or none about which the whole explains more: a slow gear is nothing
-        to first order, and shows beside another effect only about its own size."""
+        """Whether no other part of the wider set was judged so far, or none about which the whole explains
+        more: a slow gear is nothing to first order, and shows beside another effect only about its own
+        size."""
         parts = [s for s in self.found if s and s != chosen and set(s) < set(wider.effects)]
         before = self.entries.get((wider.effects, wider.world))
         return not parts or before is None or wider.log_weight > before.log_weight

@@ -1,9 +1,9 @@
-"""Whether a stream that may change did: no water on earth stands quite still beside its mean, and an eddying stream is a steady one.
+"""Whether a stream that may change did: no water on earth stands quite still beside its mean, and an eddying
+stream is a steady one.
 
-What changes with the clock has a number for every twenty minutes, and where a core or another effect is only roughly right these find
-something to mend: a full `Current` of the 2 m boat was a `VaryingCurrent` by 35 in log evidence, for changes of 3 to 4 % of it; of true
-ones two thirds and more change.
-"""
+What changes with the clock has a number for every twenty minutes, and where a core or another effect is only
+roughly right these find something to mend: a full `Current` of the 2 m boat was a `VaryingCurrent` by 35 in
+log evidence, for changes of 3 to 4 % of it; of true ones two thirds and more change."""
 
 import numpy as np
 
@@ -18,9 +18,12 @@ EDDIES = 0.2  # of a stream, beside its mean, that nobody calls a change (root m
 
 
 def steady(case: Case, found: Found) -> bool:
-    """Whether a hypothesis holds a stream that may change, and that stays what it is but for eddies: it is the simpler effect that it `holds`."""
+    """Whether a hypothesis holds a stream that may change, and that stays what it is but for eddies: it is
+    the simpler effect that it `holds`."""
     chosen = found.hypothesis.effects
-    streams = [e for e in found.model.effects if isinstance(e, Flow) and e.holds and type(e).__name__ in chosen]
+    streams = [
+        e for e in found.model.effects if isinstance(e, Flow) and e.holds and type(e).__name__ in chosen
+    ]
     return any(changes(stream, found.model, case.tracks) < EDDIES for stream in streams)
 
 

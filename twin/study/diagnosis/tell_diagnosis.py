@@ -23,15 +23,29 @@ def told(result: dict[str, Any]) -> list[str]:
     for c in result["candidates"]:
         lines += _candidate(c) + _not_named(c, result)
     chances = result["probabilities"]
-    lines.append(f"nothing missing: {chances['nothing_missing']:.0%}   something unknown: {chances['unknown']:.0%}")
+    lines.append(
+        f"nothing missing: {chances['nothing_missing']:.0%}   something unknown: {chances['unknown']:.0%}"
+    )
     if result["next_manoeuvre"]:
         m = result["next_manoeuvre"]
-        lines += ["", f"To tell {m['separates'][0]} from {m['separates'][1]}, sail: {m['manoeuvre']} ({m['why']})."]
-    lines += [f"{n['effect']} cannot be judged: no {' and no '.join(n['lacks'])} was recorded." for n in result["not_judged"]]
-    lines += [f"{n} was no stronger than on the reference voyages: it is reckoned with, and not called missing." for n in result["as_on_references"]]
+        lines += [
+            "",
+            f"To tell {m['separates'][0]} from {m['separates'][1]}, sail: {m['manoeuvre']} ({m['why']}).",
+        ]
+    lines += [
+        f"{n['effect']} cannot be judged: no {' and no '.join(n['lacks'])} was recorded."
+        for n in result["not_judged"]
+    ]
+    lines += [
+        f"{n} was no stronger than on the reference voyages: it is reckoned with, and not called missing."
+        for n in result["as_on_references"]
+    ]
     lines += told_of_waves(result["waves"])
     if result["not_visible"]:
-        lines.append(f"Too small to be seen in these voyages, even at a plausible size: {', '.join(result['not_visible'])}.")
+        lines.append(
+            "Too small to be seen in these voyages, even at a plausible size: "
+            f"{', '.join(result['not_visible'])}."
+        )
     return lines
 
 
@@ -46,62 +60,97 @@ def sentence(result: dict[str, Any]) -> str:
         rivals = [_likely(by_name, n) for n in first["cannot_be_told_from"]]
         doubt = f" These voyages cannot tell it from {' or '.join(rivals)}." if rivals else ""
         small = f" {SMALL}" if size and len(result["missing"]) == 1 and not nearer(first) else ""
-        more = "".join(f" Beside it is something like {c['effect']}, or its form is another than nature's." for c in result["resembles"])
+        more = "".join(
+            f" Beside it is something like {c['effect']}, or its form is another than nature's."
+            for c in result["resembles"]
+        )
         return f"Missing: {names}. {first['says']}{size}{doubt}{small}{more}"
     if result["verdict"] == "nothing_missing":
-        return "Nothing is missing: what the model cannot explain is no more than it left unexplained on good voyages."
+        return (
+            "Nothing is missing: what the model cannot explain is no more than it left unexplained on "
+            "good voyages."
+        )
     if result["verdict"] == "unknown":
         near = [c["effect"] for c in result["candidates"] if c["probability"] >= NEAR]
         if result["resembles"]:
             like = result["resembles"][0]
             beside = f" Beside it: {' with '.join(near)}." if near else ""
-            return f"Something is missing that is none of the effects of the catalogue. It looks like {like['effect']}: {like['says']}{beside}"
+            return (
+                "Something is missing that is none of the effects of the catalogue. It looks like "
+                f"{like['effect']}: {like['says']}{beside}"
+            )
         if result["moments"] and not near:
-            return f"Something is missing that no effect I know would do: it pushed her {_when(result['moments'][0])} as it did not before."
+            return (
+                "Something is missing that no effect I know would do: it pushed her "
+                f"{_when(result['moments'][0])} as it did not before."
+            )
         nearest = f" Nearest, but not enough: {' with '.join(near)}." if near else ""
         return f"Something is missing, but none of the effects I know explains it.{nearest}"
     if result["one_of"]:
         *others, last = [_likely(by_name, n) for n in result["one_of"]]
-        return f"Undecided: something is missing, {', '.join(others)} or {last}; these voyages cannot tell them apart."
+        return (
+            f"Undecided: something is missing, {', '.join(others)} or {last}; these voyages cannot tell "
+            "them apart."
+        )
     if result["calibrated_too_coarsely"]:
         left = ", ".join(result["calibrated_too_coarsely"])
         return (
-            f"Undecided: on her reference voyages the model left {left} of the forces at work unexplained, and is no witness. Calibrate with more, "
+            f"Undecided: on her reference voyages the model left {left} of the forces at work unexplained, "
+            "and is no witness. Calibrate with more, "
             "or calmer, voyages, and leave out one that stands apart."
         )
     likely = [c for c in result["candidates"] if c["probability"] >= SURE]
     if not result["voyages_hold_a_manoeuvre"]:
-        return "Undecided: no manoeuvre was sailed, and a ship that holds her course and speed tells one cause from no other."
+        return (
+            "Undecided: no manoeuvre was sailed, and a ship that holds her course and speed tells one "
+            "cause from no other."
+        )
     if result["undo_each_other"]:
         first, second = result["undo_each_other"]
-        return f"Undecided: {first} and {second} would fit, but each takes back most of what the other does, as two faults hardly ever do."
+        return (
+            f"Undecided: {first} and {second} would fit, but each takes back most of what the other "
+            "does, "
+            "as two faults hardly ever do."
+        )
     if likely and likely[0]["effect"] in result["unclear"]:
-        return f"Undecided: the readings ask for {_likely(by_name, likely[0]['effect'])}, but {_unclear(likely[0])}."
+        return (
+            f"Undecided: the readings ask for {_likely(by_name, likely[0]['effect'])}, but "
+            f"{_unclear(likely[0])}."
+        )
     if likely and not nearer(likely[0]):
         c = likely[0]
         return (
-            f"Undecided: step by step the readings say {_likely(by_name, c['effect'])}, but it does not lead her to where she went any better "
+            f"Undecided: step by step the readings say {_likely(by_name, c['effect'])}, but it does not lead "
+            "her to where she went any better "
             f"({c['error_with']:.3g} m off with it, {c['error_without']:.3g} m without)."
         )
     if likely and result["weather_may_mislead"]:
         return (
-            f"Undecided: the readings say {_likely(by_name, likely[0]['effect'])}, but in weather like this, whose force the model knows only "
+            f"Undecided: the readings say {_likely(by_name, likely[0]['effect'])}, but in weather like this, "
+            "whose force the model knows only "
             "roughly, that may be the weather's doing. A calmer voyage would tell."
         )
     if result["moments"] and not likely:
         return (
-            f"Undecided: {_when(result['moments'][0])} something pushed her as it did not before and after. Where waves toss her that may be a group "
+            f"Undecided: {_when(result['moments'][0])} something pushed her as it did not before and after. "
+            "Where waves toss her that may be a group "
             "of them."
         )
     path = result["path"]
     if result["probabilities"]["unknown"] >= LOST and path["error_without"] <= NEARLY * path["error_floor"]:
         return (
-            f"Undecided: the readings are not what they usually are, as no effect explains, but the model leads her no clearly farther off than "
-            f"usual ({path['error_without']:.3g} m after {path['horizon_s']:.0f} s, {path['error_floor']:.3g} m would be usual)."
+            "Undecided: the readings are not what they usually are, as no effect explains, but the model "
+            "leads her no clearly farther off than "
+            f"usual ({path['error_without']:.3g} m after {path['horizon_s']:.0f} s, "
+            f"{path['error_floor']:.3g} m would be usual)."
         )
-    if result["probabilities"]["nothing_missing"] >= ACQUITTED and path["error_without"] > NEARLY * path["error_floor"]:
+    if (
+        result["probabilities"]["nothing_missing"] >= ACQUITTED
+        and path["error_without"] > NEARLY * path["error_floor"]
+    ):
         return (
-            f"Undecided: no effect that I know is likely, but after {path['horizon_s']:.0f} s the model ends {path['error_without']:.3g} m from "
+            f"Undecided: no effect that I know is likely, but after {path['horizon_s']:.0f} s the model ends "
+            f"{path['error_without']:.3g} m from "
             f"where she went ({path['error_floor']:.3g} m would be usual)."
         )
     return "Undecided: these voyages cannot tell what, if anything, is missing."
@@ -135,13 +184,17 @@ def _candidate(c: dict[str, Any]) -> list[str]:
     lines = [head]
     for p in c["parameters"]:
         file = f"   (ship file: {p['in_ship_file']:.4g})" if "in_ship_file" in p else ""
-        lines.append(f"          {p['name']:<12} {p['value']:>11.4g} {p['unit']:<5} 95 %: {p['low95']:.4g} to {p['high95']:.4g}{file}")
+        lines.append(
+            f"          {p['name']:<12} {p['value']:>11.4g} {p['unit']:<5} 95 %: {p['low95']:.4g} "
+            f"to {p['high95']:.4g}{file}"
+        )
     force = c["typical_force"]
     if _force(force):
         lines.append(f"          typically    {_force(force)}")
     floor = f" (a true cause may leave {c['error_floor']:.3g} m)" if c["error_floor"] is not None else ""
     lines.append(
-        f"          {c['error_horizon_s']:.0f} s error  {c['error_without']:.3g} m without, {c['error_with']:.3g} m with it{floor}, "
+        f"          {c['error_horizon_s']:.0f} s error  {c['error_without']:.3g} m without, "
+        f"{c['error_with']:.3g} m with it{floor}, "
         "on parts not used for the fit"
     )
     if changes(c.get("over_time", ())):
@@ -156,7 +209,11 @@ def _not_named(c: dict[str, Any], result: dict[str, Any]) -> list[str]:
     """Why what is likely is not named beside what is."""
     if result["verdict"] != "missing" or c["effect"] in result["missing"] or c["probability"] < SURE:
         return []
-    why = _unclear(c) if c["effect"] in result["unclear"] else "the path does not ask for it: the form of what is named may be another"
+    why = (
+        _unclear(c)
+        if c["effect"] in result["unclear"]
+        else ("the path does not ask for it: the form of what is named may be another")
+    )
     return [f"          not named: {why}"]
 
 
@@ -167,7 +224,11 @@ def _unclear(c: dict[str, Any]) -> str:
 
 
 def _part(p: dict[str, Any]) -> str:
-    return f"            {p['voyage']} {_clock(p['start_s'])} to {_clock(p['end_s'])}  {p['share']:>6.2f} +- {p['sd']:.2f}"
+    return (
+        f"            {p['voyage']} {_clock(p['start_s'])} to {_clock(p['end_s'])}  {p['share']:>6.2f} "
+        "+- "
+        f"{p['sd']:.2f}"
+    )
 
 
 def _clock(seconds: float) -> str:
@@ -177,7 +238,11 @@ def _clock(seconds: float) -> str:
 def _force(force: dict[str, float]) -> str:
     """The components that are there, in words."""
     forces = {key: force[key] for key in ("X_N", "Y_N", "N_Nm")}
-    return ", ".join(f"{key[0]} {_si(value, 'N m' if key == 'N_Nm' else 'N')}" for key, value in forces.items() if abs(value) > 1e-9)
+    return ", ".join(
+        f"{key[0]} {_si(value, 'N m' if key == 'N_Nm' else 'N')}"
+        for key, value in forces.items()
+        if abs(value) > 1e-9
+    )
 
 
 def _si(value: float, unit: str) -> str:

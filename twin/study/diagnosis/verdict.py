@@ -1,4 +1,5 @@
-"""From weighed hypotheses to an answer: missing, nothing missing, unknown or undecided, with numbers an engineer can check."""
+"""From weighed hypotheses to an answer: missing, nothing missing, unknown or undecided, with numbers an
+engineer can check."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,10 +16,13 @@ from twin.study.reference.evidence import Hypothesis, Posterior, probabilities
 from twin.study.reference.nuisance import SURROUNDINGS
 
 SURE = 0.8  # probability from which an effect is named
-SURE_GROUP = 0.95  # and from which one is named with those that these voyages cannot tell it from: one of them is there
+# and from which one is named with those that these voyages cannot tell it from: one of them is there
+SURE_GROUP = 0.95
 LARGEST_GROUP = 4  # effects that may stand for each other and still be an answer
 LOST = 0.5  # probability of something unknown from which no name is given
-SURE_TOO = 0.9  # another beside it when that is nearly certain: of two forms that are only roughly right, one may mend the other
+# another beside it when that is nearly certain: of two forms that are only roughly right, one may mend the
+# other
+SURE_TOO = 0.9
 ACQUITTED = 0.8  # probability from which nothing is said to be missing
 ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
 
@@ -49,8 +53,9 @@ def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
 
 
 def _nameless(case: Case, h: Hypothesis, alone: Mapping[str, float]) -> bool:
-    """Whether what is at work under a hypothesis has no name: the world is so restless without a sea that pushes her, or what is known by its
-    form alone is there and does not merely mend the form of an effect that does clearly more `alone` (log weight of each effect by itself)."""
+    """Whether what is at work under a hypothesis has no name: the world is so restless without a sea that
+    pushes her, or what is known by its form alone is there and does not merely mend the form of an effect
+    that does clearly more `alone` (log weight of each effect by itself)."""
     known = [alone.get(name, -np.inf) for name in case.names(h.effects)]
     formed = [alone.get(name, -np.inf) for name in h.effects if name in case.unnamed]
     restless = WORLDS[h.world].unknown and not any(of_the_sea(case, name) for name in h.effects)
@@ -78,12 +83,14 @@ def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
 
 def one_of(weighed: Sequence[Hypothesis], names: Sequence[str]) -> float:
     """Probability that at least one of these effects is there."""
-    return float(sum(p for h, p in zip(weighed, probabilities(weighed), strict=True) if set(names) & set(h.effects)))
+    return float(
+        sum(p for h, p in zip(weighed, probabilities(weighed), strict=True) if set(names) & set(h.effects))
+    )
 
 
 def group(weighed: Sequence[Hypothesis], w: Weights) -> list[str]:
-    """The fewest effects, likeliest first, of which one is surely there though none of them is likely enough to be named; none when that
-    takes too many, or when it may be nothing or something unknown."""
+    """The fewest effects, likeliest first, of which one is surely there though none of them is likely enough
+    to be named; none when that takes too many, or when it may be nothing or something unknown."""
     likeliest = sorted(w.effects, key=lambda n: -w.effects[n])
     if w.unknown >= LOST or w.effects[likeliest[0]] >= SURE:
         return []
@@ -92,17 +99,33 @@ def group(weighed: Sequence[Hypothesis], w: Weights) -> list[str]:
 
 
 def judge(
-    weighed: Sequence[Hypothesis], w: Weights, like: Mapping[str, Sequence[str]], leads: Sequence[str], *, able: bool = True,
-    sharp: bool = True, explained: bool = True, blurred: bool = False, pushed: bool = False,
-) -> tuple[str, list[str]]:  # fmt: skip
-    """The verdict, and the effects to add, first the one that explains most. One that others could stand in for (`like`) is named
-    when one of them is surely there, and only if it leads her better (`leads`). Voyages without a manoeuvre decide nothing, nor does a model
-    that is no witness (`able`); those that would not have shown most effects, or on which the model alone leads her astray, acquit nobody
-    (`sharp`); what the best hypothesis leaves over, or has otherwise than its form, is unknown (`explained`), but decides nothing where weather
-    may mislead, or faults that undo each other, or where the model alone leads her as near as it ever did (`blurred`). Who was `pushed` for a moment
-    by something that no effect gives is not acquitted either: that is unknown."""
+    weighed: Sequence[Hypothesis],
+    w: Weights,
+    like: Mapping[str, Sequence[str]],
+    leads: Sequence[str],
+    *,
+    able: bool = True,
+    sharp: bool = True,
+    explained: bool = True,
+    blurred: bool = False,
+    pushed: bool = False,
+) -> tuple[str, list[str]]:
+    """The verdict, and the effects to add, first the one that explains most. One that others could stand in
+    for (`like`) is named when one of them is surely there, and only if it leads her better (`leads`). Voyages
+    without a manoeuvre decide nothing, nor does a model that is no witness (`able`); those that would not
+    have shown most effects, or on which the model alone leads her astray, acquit nobody (`sharp`); what the
+    best hypothesis leaves over, or has otherwise than its form, is unknown (`explained`), but decides nothing
+    where weather may mislead, or faults that undo each other, or where the model alone leads her as near as
+    it ever did (`blurred`). Who was `pushed` for a moment by something that no effect gives is not acquitted
+    either: that is unknown."""
     alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
-    named = [n for n in w.best.effects if n in w.effects and n in leads and (w.effects[n] >= SURE or one_of(weighed, [n, *like[n]]) >= SURE_GROUP)]
+    named = [
+        n
+        for n in w.best.effects
+        if n in w.effects
+        and n in leads
+        and (w.effects[n] >= SURE or one_of(weighed, [n, *like[n]]) >= SURE_GROUP)
+    ]
     named.sort(key=lambda n: -alone.get((n,), -np.inf))
     named = [n for i, n in enumerate(named) if i == 0 or w.effects[n] >= SURE_TOO]
     strange = w.unknown >= LOST or not explained
@@ -118,14 +141,16 @@ def judge(
 
 
 def shows(seen: dict[str, bool]) -> bool:
-    """Whether the voyages would have shown three in four of the effects that do not depend on the day's weather and water."""
+    """Whether the voyages would have shown three in four of the effects that do not depend on the day's
+    weather and water."""
     lasting = [can for name, can in seen.items() if name not in SURROUNDINGS]
     return sum(lasting) >= 0.75 * len(lasting)
 
 
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:
-    """Each parameter of one effect that what was recorded tells of, with its 95 % interval, inside its box; that the form is only roughly right
-    is part of it. Of an effect that the ship has already, also what her file says."""
+    """Each parameter of one effect that what was recorded tells of, with its 95 % interval, inside its box;
+    that the form is only roughly right is part of it. Of an effect that the ship has already, also what her
+    file says."""
     params = {p.name: p for p in case.catalogue[name].params()}
     recorded = {key for track in case.tracks for key in track.weather}
     out = []
@@ -135,15 +160,21 @@ def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object
             sd = u.sd * float(np.hypot(np.sqrt(found.covariance[i, i]), params[u.name].form * found.z[i]))
             low, high = value - 1.96 * sd, value + 1.96 * sd
             out.append(
-                {"name": u.name, "value": float(np.clip(value, u.lo, u.hi)), "low95": float(np.clip(low, u.lo, u.hi)),
-                 "high95": float(np.clip(high, u.lo, u.hi)), "unit": u.unit}
+                {
+                    "name": u.name,
+                    "value": float(np.clip(value, u.lo, u.hi)),
+                    "low95": float(np.clip(low, u.lo, u.hi)),
+                    "high95": float(np.clip(high, u.lo, u.hi)),
+                    "unit": u.unit,
+                }
                 | ({"in_ship_file": u.centre} if name in case.present else {})
-            )  # fmt: skip
+            )
     return out
 
 
 def typical_force(case: Case, model: Model, name: str) -> dict[str, float]:
-    """Root mean square of the force by which the model changes when this effect is taken out, or put back to what it was [N, N, N m]."""
+    """Root mean square of the force by which the model changes when this effect is taken out, or put back to
+    what it was [N, N, N m]."""
     bare = without(model, case.model, name)
     total, count = np.zeros(3), 0
     for track in case.tracks:

@@ -1,8 +1,8 @@
-"""Every number that could be wrong, as a column: what one unit of it does to the accelerations and to the readings.
+"""Every number that could be wrong, as a column: what one unit of it does to the accelerations and to the
+readings.
 
-Derivatives of the core and parameters of the effects are treated alike; a column is a secant over a plausible size, so that a
-parameter which is not quite linear counts with what it would really do.
-"""
+Derivatives of the core and parameters of the effects are treated alike; a column is a secant over a plausible
+size, so that a parameter which is not quite linear counts with what it would really do."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -19,7 +19,8 @@ from twin.study.track.track import Track
 
 @dataclass(frozen=True)
 class Unknown:
-    """One number to be found: whose it is, where it may lie and how wide its prior is (all in the number's own unit)."""
+    """One number to be found: whose it is, where it may lie and how wide its prior is (all in the number's
+    own unit)."""
 
     owner: str  # "core" or the name of an effect
     name: str
@@ -40,7 +41,8 @@ FIXED = ("t", "w", "x_R", "epsilon")  # scale other derivatives one for one: the
 LATE = "late"  # owner of the instruments' usual lateness: a column, but no part of any model
 FORM = "form"  # owner of what the core leaves out of calm water (form.py): the same
 SEA = "sea"  # owner of what one wave does at once (tossed.py): the same
-ROUGH = "rough"  # owner of what the forms of effects that were added since calibration miss (rough.py): the same
+# owner of what the forms of effects that were added since calibration miss (rough.py): the same
+ROUGH = "rough"
 NO_MODEL = (LATE, FORM, SEA, ROUGH)
 LATENESS = {"log": [6, 7], "compass": [2], "gyro": [5]}  # instrument -> its readings
 
@@ -61,7 +63,8 @@ def sea_unknowns() -> list[Unknown]:
 
 
 def rough_unknowns(model: Model) -> list[Unknown]:
-    """How much the forms of weather, and of effects that were added since calibration, miss, in units of what they may."""
+    """How much the forms of weather, and of effects that were added since calibration, miss, in units of what
+    they may."""
     return _beside_the_model(ROUGH, dict.fromkeys(rough.TERMS, 1.0)) if rough.added(model) else []
 
 
@@ -85,23 +88,34 @@ def core_unknowns(model: Model) -> list[Unknown]:
 
 
 def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:
-    """The parameters of one effect on this ship, centred on what the model holds of it: on "not there" where it does not."""
+    """The parameters of one effect on this ship, centred on what the model holds of it: on "not there" where
+    it does not."""
     present = next((e for e in model.effects if type(e) is effect), None) or effect.absent(model.ship)
     out = []
     for p in effect.params():
         k, (lo, hi) = p.scale(model.ship), p.box(model.ship)
-        out.append(Unknown(effect.__name__, p.name, p.unit, float(getattr(present, p.name)), p.sd * k, lo, hi))
+        out.append(
+            Unknown(effect.__name__, p.name, p.unit, float(getattr(present, p.name)), p.sd * k, lo, hi)
+        )
     return out
 
 
 def columns(
-    track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None
+    track: Track,
+    model: Model,
+    unknowns: Sequence[Unknown],
+    catalogue: dict[str, type[Effect]],
+    at: dict[str, float] | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(N, 3, P) accelerations and (N, 8, P) readings for one unit of each unknown, about the model (or `at` label -> value)."""
+    """(N, 3, P) accelerations and (N, 8, P) readings for one unit of each unknown, about the model (or `at`
+    label -> value)."""
     acceleration, reading = respond(track, model)
     A = np.zeros((len(track), 3, len(unknowns)))
     R = np.zeros((len(track), 8, len(unknowns)))
-    missing, missed = track.missing(), rough.accelerations(track, model) if any(u.owner == ROUGH for u in unknowns) else {}
+    missing, missed = (
+        track.missing(),
+        rough.accelerations(track, model) if any(u.owner == ROUGH for u in unknowns) else {},
+    )
     for j, unknown in enumerate(unknowns):
         if unknown.owner == ROUGH:
             A[:, :, j] = missed[unknown.name]
@@ -114,23 +128,35 @@ def columns(
             A[:, :, j] = form.accelerations(track, model, unknown.name)
             continue
         if unknown.owner == SEA:
-            A[:, :, j], R[:, :, j] = tossed.accelerations(track, model, unknown.name), tossed.readings(track, model, unknown.name)
+            A[:, :, j], R[:, :, j] = (
+                tossed.accelerations(track, model, unknown.name),
+                tossed.readings(track, model, unknown.name),
+            )
             continue
         if unknown.owner != "core" and missing.intersection(catalogue[unknown.owner].needs):
             continue  # without its input the effect does nothing on this track
         here = (at or {}).get(unknown.label)
-        step = _step(unknown, here, unknown.owner != "core" and catalogue[unknown.owner].kind == "SensorFault")
-        a, r = respond(track, changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue))
+        step = _step(
+            unknown, here, unknown.owner != "core" and catalogue[unknown.owner].kind == "SensorFault"
+        )
+        a, r = respond(
+            track, changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue)
+        )
         A[:, :, j], R[:, :, j] = (a - acceleration) / step, (r - reading) / step
     return A, R
 
 
 def turns(
-    track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None
+    track: Track,
+    model: Model,
+    unknowns: Sequence[Unknown],
+    catalogue: dict[str, type[Effect]],
+    at: dict[str, float] | None = None,
 ) -> dict[int, np.ndarray]:
-    """Of each number of a fault that the model's instruments have (its column): (N, 8, 8) what one unit of it changes of the readings per unit
-    of what they show beside the smooth motion. That motion holds a little of the instruments' noise: alone it would tell a fault wrongly that
-    turns, scales or delays what they show. (Of one they do not have yet: what they show beside it may be that fault's own doing.)"""
+    """Of each number of a fault that the model's instruments have (its column): (N, 8, 8) what one unit of it
+    changes of the readings per unit of what they show beside the smooth motion. That motion holds a little of
+    the instruments' noise: alone it would tell a fault wrongly that turns, scales or delays what they show.
+    (Of one they do not have yet: what they show beside it may be that fault's own doing.)"""
     present = {type(fault).__name__ for fault in model.faults}
     if not present.intersection(u.owner for u in unknowns):
         return {}
@@ -144,12 +170,20 @@ def turns(
 
 
 def beside(
-    track: Track, model: Model, unknown: Unknown, catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None
+    track: Track,
+    model: Model,
+    unknown: Unknown,
+    catalogue: dict[str, type[Effect]],
+    at: dict[str, float] | None = None,
 ) -> tuple[Model, float] | None:
-    """The model with a little more of a number, and how much more; None if that moves nothing on this track."""
+    """The model with a little more of a number, and how much more; None if that moves nothing on this
+    track."""
     if unknown.owner in NO_MODEL:
         return None
-    if unknown.owner != "core" and (catalogue[unknown.owner].kind == "SensorFault" or track.missing().intersection(catalogue[unknown.owner].needs)):
+    if unknown.owner != "core" and (
+        catalogue[unknown.owner].kind == "SensorFault"
+        or track.missing().intersection(catalogue[unknown.owner].needs)
+    ):
         return None
     here = (at or {}).get(unknown.label, unknown.centre)
     step = 0.1 * unknown.sd if here + 0.1 * unknown.sd <= unknown.hi else -0.1 * unknown.sd
@@ -157,8 +191,9 @@ def beside(
 
 
 def _step(unknown: Unknown, here: float | None, fine: bool) -> float:
-    """A plausible step that stays in the box: a whole prior width from null (a gear that is a little slow is not slow at all, to first
-    order), a tenth of one about a found value, and where the instruments are so `fine` that what is not linear shows: their own faults."""
+    """A plausible step that stays in the box: a whole prior width from null (a gear that is a little slow is
+    not slow at all, to first order), a tenth of one about a found value, and where the instruments are so
+    `fine` that what is not linear shows: their own faults."""
     size = unknown.sd if here in (None, unknown.centre) and not fine else 0.1 * unknown.sd
     start = unknown.centre if here is None else here
     return size if start + size <= unknown.hi else -size
@@ -175,7 +210,9 @@ def changed(model: Model, unknown: Unknown, value: float, catalogue: dict[str, t
     return model.but(effect.but(**{unknown.name: value}))
 
 
-def with_values(model: Model, unknowns: Sequence[Unknown], values: Sequence[float], catalogue: dict[str, type[Effect]]) -> Model:
+def with_values(
+    model: Model, unknowns: Sequence[Unknown], values: Sequence[float], catalogue: dict[str, type[Effect]]
+) -> Model:
     """The model with all these numbers put in, each kept inside its box."""
     for unknown, value in zip(unknowns, values, strict=True):
         model = changed(model, unknown, float(np.clip(value, unknown.lo, unknown.hi)), catalogue)

@@ -1,30 +1,36 @@
 """Many Kalman filters side by side, each with its tangents: every segment of every track, under every floor.
 
-The state is delta = (x, y, psi, u, v, r), b and c as in innovations.py, and in a sea that was seen to work the waves' accelerations with
-what carries them on. X holds its mean and how that depends on each unknown, C its covariance; both are corrected by the readings of a
-step, and carried on to the next. All that is the same at every step is made ready before the first.
-"""
+The state is delta = (x, y, psi, u, v, r), b and c as in innovations.py, and in a sea that was seen to work
+the waves' accelerations with what carries them on. X holds its mean and how that depends on each unknown, C
+its covariance; both are corrected by the readings of a step, and carried on to the next. All that is the same
+at every step is made ready before the first."""
 
 from dataclasses import dataclass
 
 import numpy as np
 
-MOTION, PLACE, SPEEDS, SLOW, FLOW = slice(0, 6), slice(0, 2), slice(3, 6), slice(6, 9), slice(9, 11)  # places in the state
+# places in the state
+MOTION, PLACE, SPEEDS, SLOW, FLOW = slice(0, 6), slice(0, 2), slice(3, 6), slice(6, 9), slice(9, 11)
 BENDS = [2, 3, 4, 5, 9, 10]  # what accelerations depend on: heading, velocities, the water's own
 STATES = 11
-SHIP, WAVE, WAVES = slice(0, STATES), slice(11, 14), slice(11, 23)  # in a sea; WAVE is what pushes her in each axis
+# in a sea; WAVE is what pushes her in each axis
+SHIP, WAVE, WAVES = slice(0, STATES), slice(11, 14), slice(11, 23)
 LIGHT = np.float32  # of the many tangents; covariances and sums need more
 
 
 @dataclass(frozen=True)
 class Stretches:
-    """Segments begun together, of T steps and S of them. What is not there (a reading, a segment's end) shows nothing: its rows are zero."""
+    """Segments begun together, of T steps and S of them. What is not there (a reading, a segment's end) shows
+    nothing: its rows are zero."""
 
     F: np.ndarray  # (T, S, 11, 11)
     H: np.ndarray  # (T, S, 8, 11): no instrument shows a wave by itself
     here: np.ndarray  # (T, S, 8) which readings there were
-    shown: np.ndarray  # (T, S, 8, 1 + P) measured less read along the smooth motion, and less what one of each unknown makes of it
-    pushed: np.ndarray  # (T, S, 6, 1 + P) what a step adds to the motion: the model's defect, and what one of each unknown pushes
+    # (T, S, 8, 1 + P) measured less read along the smooth motion, and less what one of each unknown makes of
+    # it
+    shown: np.ndarray
+    # (T, S, 6, 1 + P) what a step adds to the motion: the model's defect, and what one of each unknown pushes
+    pushed: np.ndarray
     spread: np.ndarray  # (T, S, 6, 3) accelerations to what they add to the motion in a step
     turns: dict[int, np.ndarray]  # column -> (T, S, 8, 8)
     bends: np.ndarray | None = None  # (T, S, 3, 6, P)
@@ -41,7 +47,8 @@ class Noise:
 
 
 class Filters:
-    """A filter for every floor and segment, all at the same step; begun with the covariance C (W, S, n, n), n being 11, or 23 at sea."""
+    """A filter for every floor and segment, all at the same step; begun with the covariance C (W, S, n, n), n
+    being 11, or 23 at sea."""
 
     def __init__(self, told: Stretches, noise: Noise, C: np.ndarray) -> None:
         self.told, self.noise, self.C = told, noise, C
@@ -51,8 +58,8 @@ class Filters:
         self.light = _On(told.F.astype(LIGHT), None if told.swing is None else told.swing.astype(LIGHT))
 
     def correct(self, k: int) -> tuple[np.ndarray, np.ndarray]:
-        """By the readings of step k; gives the whitened innovations with their tangents (W, S, 8, 1 + P), and the diagonal of the root of their
-        covariance (W, S, 8)."""
+        """By the readings of step k; gives the whitened innovations with their tangents (W, S, 8, 1 + P), and
+        the diagonal of the root of their covariance (W, S, 8)."""
         told, H = self.told, self.told.H[k]
         E = told.shown[k] - self.H[k] @ self.X[..., SHIP, :]
         for column, turn in told.turns.items():
@@ -70,7 +77,11 @@ class Filters:
     def advance(self, k: int) -> None:
         """From step k to the next: by the linear ship, what the unknowns push, and noise."""
         told = self.told
-        bent = None if told.bends is None else told.spread[k] @ np.einsum("kaip,wki->wkap", told.bends[k], self.X[..., BENDS, 0])
+        bent = (
+            None
+            if told.bends is None
+            else told.spread[k] @ np.einsum("kaip,wki->wkap", told.bends[k], self.X[..., BENDS, 0])
+        )
         self.X = self.light(k, self.X)
         self.X[..., MOTION, :] += told.pushed[k]
         if bent is not None:
@@ -82,7 +93,8 @@ class Filters:
 
 
 class _On:
-    """What takes states a step on: the ship by F, pushed by the waves as by what is slow; the waves by themselves."""
+    """What takes states a step on: the ship by F, pushed by the waves as by what is slow; the waves by
+    themselves."""
 
     def __init__(self, F: np.ndarray, swing: np.ndarray | None) -> None:
         self.F, self.swing, self.pushed = F, swing, F[..., SLOW].copy()

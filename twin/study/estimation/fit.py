@@ -1,8 +1,8 @@
 """Fit unknown numbers to tracks: Gauss-Newton on the filter's innovations, with priors, inside boxes.
 
-Each unknown is z = (value - centre)/sd, so that its prior is N(0, 1) whatever its unit. Evidence is tempered by `temper`: what a
-model leaves over is not white, and a likelihood taken at face value believes itself too much.
-"""
+Each unknown is z = (value - centre)/sd, so that its prior is N(0, 1) whatever its unit. Evidence is tempered
+by `temper`: what a model leaves over is not white, and a likelihood taken at face value believes itself too
+much."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -20,7 +20,8 @@ from twin.study.track.track import Track
 Catalogue = dict[str, type[Effect]]
 STEPS = 12
 NEAR = 1.0  # prior widths that no number may move by in the first step
-POOR, GOOD = 0.1, 0.5  # shares of the gain that a step promised: below it went too far, above the next may go further
+# shares of the gain that a step promised: below it went too far, above the next may go further
+POOR, GOOD = 0.1, 0.5
 LEVEL = 0.5  # by which a step may seem worse: the filter is linearised anew
 STANDS = 0.02  # prior widths that a step may still move
 NOTHING = 0.1  # of the cost, that a step may still gain
@@ -28,7 +29,8 @@ NOTHING = 0.1  # of the cost, that a step may still gain
 
 @dataclass(frozen=True)
 class Fit:
-    """What a fit found: `model` holds the values; `value`, `sd` (P,) in the unknowns' units; `gained` (P,): 1 - posterior/prior variance."""
+    """What a fit found: `model` holds the values; `value`, `sd` (P,) in the unknowns' units; `gained` (P,): 1
+    - posterior/prior variance."""
 
     model: Model
     unknowns: tuple[Unknown, ...]
@@ -54,11 +56,12 @@ def fit(
 ) -> Fit:  # fmt: skip
     """The most probable values of the unknowns, given the tracks and their priors, after at most STEPS steps.
 
-    Each goes to where the equations at the last place are most probable, inside the boxes and no further than they were found to hold: a
-    step that kept its promise lets the next one go twice as far, one that did not is not taken but made shorter (trust region; Nocedal &
-    Wright 2006, sec. 4.1), so that a fit of many numbers that is begun far off does not end in a corner of their boxes; the last one is not judged.
-    `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the filter follows is not found yet,
-    and errs by more than they do."""
+    Each goes to where the equations at the last place are most probable, inside the boxes and no further than
+    they were found to hold: a step that kept its promise lets the next one go twice as far, one that did not
+    is not taken but made shorter (trust region; Nocedal & Wright 2006, sec. 4.1), so that a fit of many
+    numbers that is begun far off does not end in a corner of their boxes; the last one is not judged.
+    `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the
+    filter follows is not found yet, and errs by more than they do."""
     problem = _Problem(tracks, model, tuple(unknowns), catalogue, floor, temper, smooth)
     here, far = problem.at(problem.start()), NEAR
     for _ in range(STEPS):
@@ -67,7 +70,15 @@ def fit(
             break
         here = problem.at(z)
     covariance = here.covariance * np.outer(problem.sd, problem.sd)
-    return Fit(problem.with_values(z), problem.unknowns, problem.values(z), covariance, here.lines, here.normal, here.cost)
+    return Fit(
+        problem.with_values(z),
+        problem.unknowns,
+        problem.values(z),
+        covariance,
+        here.lines,
+        here.normal,
+        here.cost,
+    )
 
 
 @dataclass(frozen=True)
@@ -126,13 +137,19 @@ class _Problem:
     @cached_property
     def box(self) -> np.ndarray:
         """(2, P)"""
-        return (np.array([[u.lo for u in self.unknowns], [u.hi for u in self.unknowns]]) - self.centre) / self.sd
+        return (
+            np.array([[u.lo for u in self.unknowns], [u.hi for u in self.unknowns]]) - self.centre
+        ) / self.sd
 
     def start(self) -> np.ndarray:
-        return np.clip((np.array([_present(self.model, u) for u in self.unknowns]) - self.centre) / self.sd, *self.box)
+        return np.clip(
+            (np.array([_present(self.model, u) for u in self.unknowns]) - self.centre) / self.sd, *self.box
+        )
 
     def values(self, z: np.ndarray) -> np.ndarray:
-        return np.clip(self.centre + self.sd * z, [u.lo for u in self.unknowns], [u.hi for u in self.unknowns])
+        return np.clip(
+            self.centre + self.sd * z, [u.lo for u in self.unknowns], [u.hi for u in self.unknowns]
+        )
 
     def at(self, z: np.ndarray) -> _Here:
         """Linearised there, with what every unknown does."""
@@ -146,7 +163,11 @@ class _Problem:
     def better(self, here: _Here, far: float) -> tuple[np.ndarray, float]:
         """A more probable place (or one that is as good as here), and how far the step after it may go."""
         while True:
-            z, _ = stopped(here.z + here.covariance @ here.pull, here.covariance, *np.clip(self.box, here.z - far, here.z + far))
+            z, _ = stopped(
+                here.z + here.covariance @ here.pull,
+                here.covariance,
+                *np.clip(self.box, here.z - far, here.z + far),
+            )
             if here.as_good_as(z):
                 return z, far
             promised, gain = here.promised(z), here.cost - self._cost(z)
@@ -161,11 +182,16 @@ class _Problem:
         lines = self._linearised(z, [u for u in self.unknowns if u.owner == LATE])
         return _cost(z, innovate(lines, [self.floor])[0], self.temper)
 
-    def _linearised(self, z: np.ndarray, unknowns: Sequence[Unknown], exact: bool = False) -> tuple[Linear, ...]:
+    def _linearised(
+        self, z: np.ndarray, unknowns: Sequence[Unknown], exact: bool = False
+    ) -> tuple[Linear, ...]:
         model = self.with_values(z)
         value = dict(zip((u.label for u in self.unknowns), self.values(z).tolist(), strict=True))
         about = [replace(u, centre=value[u.label]) if u.owner == "core" else u for u in unknowns]
-        return tuple(linearise(t, model, about, self.catalogue, value, smooth=self.smooth, exact=exact) for t in self.tracks)
+        return tuple(
+            linearise(t, model, about, self.catalogue, value, smooth=self.smooth, exact=exact)
+            for t in self.tracks
+        )
 
 
 def _present(model: Model, unknown: Unknown) -> float:

@@ -1,11 +1,13 @@
-"""What the core leaves out of calm water: terms of higher order, and of the heel, each a column of its own and no part of any model.
+"""What the core leaves out of calm water: terms of higher order, and of the heel, each a column of its own
+and no part of any model.
 
-A hull in Norrbin's modulus form is a good one to predict with, and not the truth. What it leaves out has the same sign all through
-a voyage, so that a diagnosis would sooner or later take it for an effect. Reference voyages tell how much of each term this ship
-has; what they leave open is kept in mind when another voyage is judged.
+A hull in Norrbin's modulus form is a good one to predict with, and not the truth. What it leaves out has the
+same sign all through a voyage, so that a diagnosis would sooner or later take it for an effect. Reference
+voyages tell how much of each term this ship has; what they leave open is kept in mind when another voyage is
+judged.
 
-Forms: cubic hull and its scale, Yasukawa & Yoshimura (2015); wake that thins with drift, ibid.; heel, Son & Nomoto (1981).
-"""
+Forms: cubic hull and its scale, Yasukawa & Yoshimura (2015); wake that thins with drift, ibid.; heel, Son &
+Nomoto (1981)."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -39,7 +41,8 @@ Term = Callable[[Along], np.ndarray]
 
 
 def _about(speed: float) -> Term:
-    """Resistance about one speed, falling to none at the next: waves, wake and friction give a curve with humps that no square of the speed has."""
+    """Resistance about one speed, falling to none at the next: waves, wake and friction give a curve with
+    humps that no square of the speed has."""
     return lambda a: np.sign(a.ahead) * np.maximum(0.0, 1.0 - np.abs(np.abs(a.ahead) - speed) / APART)
 
 
@@ -65,7 +68,9 @@ RUDDER: dict[str, tuple[float, Term]] = {  # name: prior width, times the rudder
     "q_vv": (1.0, lambda a: a.v**2),
     "q_rr": (1.0, lambda a: a.r**2),
 }
-TERMS = {name: width for name, (_, width, _) in HULL.items()} | {name: width for name, (width, _) in RUDDER.items()}
+TERMS = {name: width for name, (_, width, _) in HULL.items()} | {
+    name: width for name, (width, _) in RUDDER.items()
+}
 
 
 def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
@@ -99,7 +104,11 @@ def _speed(track: Track, model: Model) -> np.ndarray:
 def _along(track: Track, model: Model) -> Along:
     U, time = _speed(track, model), float(model.ship.scale("time"))
     u, v = _through_water(track, model)
-    phi = _smooth(track.weather["phi"], ROLLED * time / track.h) if "phi" in track.weather else np.zeros(len(track))
+    phi = (
+        _smooth(track.weather["phi"], ROLLED * time / track.h)
+        if "phi" in track.weather
+        else np.zeros(len(track))
+    )
     p = np.gradient(phi, track.h) * time
     r = track.state[:, 5] * model.ship.L_pp / U
     return Along(v / U, r, phi, p, np.gradient(p, track.h) * time, u / model.ship.U_0)

@@ -39,7 +39,9 @@ ROWS = 1500  # of the voyage used for the angles
 Features = Callable[[Situation], np.ndarray]  # (N, F) of a situation of arrays
 
 
-def report(voyage: Voyage, model: Model, residual: Features | None = None, W: np.ndarray | None = None) -> dict[str, Any]:
+def report(
+    voyage: Voyage, model: Model, residual: Features | None = None, W: np.ndarray | None = None
+) -> dict[str, Any]:
     """`observability` by set of sensors, `angles` by effect, `residual` where its features (and last layer)
     are given; see `text`.
     """
@@ -98,8 +100,12 @@ def sensitivities(t: Track, model: Model) -> list[np.ndarray]:
     steps = max(int(LENGTHS * float(model.ship.scale("time")) / t.h), 8)
     starts = [k for k in range(0, len(t) - steps, steps) if t.whole[k : k + steps].all()]
     if not starts:
-        raise DataError(f"{t.name}: no window of {steps * t.h:.0f} s has rudder and propeller throughout. Sail longer.")
-    up, down = (_run(t, model, np.array(starts), steps, sign * NUDGE * prior_widths(model)) for sign in (1.0, -1.0))
+        raise DataError(
+            f"{t.name}: no window of {steps * t.h:.0f} s has rudder and propeller throughout. Sail longer."
+        )
+    up, down = (
+        _run(t, model, np.array(starts), steps, sign * NUDGE * prior_widths(model)) for sign in (1.0, -1.0)
+    )
     answer = (up - down) / (2.0 * NUDGE) / t.sd[:, None]
     return [answer[:, w] for w in range(len(starts))]
 
@@ -108,7 +114,9 @@ def prior_widths(model: Model) -> np.ndarray:
     """(11,) what is not known of UNKNOWNS before any measurement, in the ship's own scales."""
     ship = model.ship
     L, U, time, force = (float(ship.scale(of)) for of in ("length", "speed", "time", "force"))
-    return np.array([0.1 * L, 0.1 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time, 0.1 * U, 0.1 * U, force, 3.0 * force, force * L])
+    return np.array(
+        [0.1 * L, 0.1 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time, 0.1 * U, 0.1 * U, force, 3.0 * force, force * L]
+    )
 
 
 def _run(t: Track, model: Model, starts: np.ndarray, steps: int, nudges: np.ndarray) -> np.ndarray:
@@ -161,7 +169,9 @@ def angles(t: Track, model: Model) -> dict[str, dict[str, Any]]:
     return out
 
 
-def residual_angles(t: Track, model: Model, features: Features, W: np.ndarray | None = None) -> dict[str, dict[str, Any]]:
+def residual_angles(
+    t: Track, model: Model, features: Features, W: np.ndarray | None = None
+) -> dict[str, dict[str, Any]]:
     """For each axis: the residual's features against the core's columns of that axis (the paper's F_theta
     against F_D); with its last layer W (3, F) also how much of the learned force the core could give itself.
     """
@@ -171,7 +181,9 @@ def residual_angles(t: Track, model: Model, features: Features, W: np.ndarray | 
     model.nu_dot(s)
     phi = np.asarray(features(s), float)
     if phi.shape[0] != len(thin):
-        raise DataError(f"the residual gave {phi.shape} features for {len(thin)} situations: one row each is needed.")
+        raise DataError(
+            f"the residual gave {phi.shape} features for {len(thin)} situations: one row each is needed."
+        )
     out = {}
     for i, axis in enumerate(("surge", "sway", "yaw")):
         core = basis(A[:, i])
@@ -249,11 +261,18 @@ def text(result: Mapping[str, Any]) -> list[str]:
     lines += ["", f"{'effect':<20}{'angle to core':>15}{'inside core':>13}  most alike"]
     for name, a in sorted(result["angles"].items(), key=lambda item: item[1]["smallest_deg"]):
         nearest = f"{a['nearest']} ({a['nearest_deg']:.1f} deg)" if a["nearest"] else "-"
-        lines.append(f"{name:<20}{a['smallest_deg']:>11.1f} deg{100.0 * a['share_inside_core']:>11.0f} %  {nearest}")
-    for axis, a in (result["residual"] or {}).items():
-        force = f", of its force {100.0 * a['force_inside_core']:.0f} % inside" if "force_inside_core" in a else ""
         lines.append(
-            f"residual, {axis:<10}{a['smallest_deg']:>11.1f} deg{100.0 * a['share_inside_core']:>11.0f} %  {a['dimensions']} directions{force}"
+            f"{name:<20}{a['smallest_deg']:>11.1f} deg{100.0 * a['share_inside_core']:>11.0f} %  {nearest}"
+        )
+    for axis, a in (result["residual"] or {}).items():
+        force = (
+            (f", of its force {100.0 * a['force_inside_core']:.0f} % inside")
+            if "force_inside_core" in a
+            else ""
+        )
+        lines.append(
+            f"residual, {axis:<10}{a['smallest_deg']:>11.1f} deg{100.0 * a['share_inside_core']:>11.0f} %  "
+            f"{a['dimensions']} directions{force}"
         )
     return [*lines, "", *verdict(result)]
 
@@ -266,12 +285,16 @@ def verdict(result: Mapping[str, Any]) -> list[str]:
     lines = []
     if measured["rank"] < measured["of"]:
         names = ", ".join(measured["weakest"])
-        lines.append(f"Not everything can be seen: {names} move together. Turn, or change speed, to tell them apart.")
+        lines.append(
+            f"Not everything can be seen: {names} move together. Turn, or change speed, to tell them apart."
+        )
     alike = [name for name, a in result["angles"].items() if a["smallest_deg"] < 5.0]
     if alike:
         lines.append(f"Within 5 deg of what the core can say by itself: {', '.join(alike)}.")
     if result["residual"]:
         least = min(a["smallest_deg"] for a in result["residual"].values())
         apart = "do not meet" if least > 5.0 else "meet; a regularizer does not make them disjoint"
-        lines.append(f"Here learned features and the core's columns {apart} (smallest angle {least:.2f} deg).")
+        lines.append(
+            f"Here learned features and the core's columns {apart} (smallest angle {least:.2f} deg)."
+        )
     return lines or ["Every unknown of the Gramian can be seen, and no effect is hidden in the core."]

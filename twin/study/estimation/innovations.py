@@ -1,13 +1,15 @@
-"""What the model cannot predict one step ahead, and how that depends on every unknown: a Kalman filter with its tangents.
+"""What the model cannot predict one step ahead, and how that depends on every unknown: a Kalman filter with
+its tangents.
 
-Along the smooth motion the ship is linear: delta = (x, y, psi, u, v, r), a slowly varying acceleration b (what any model of this
-kind leaves over: its structural error) and a slowly varying current c, both first-order Gauss-Markov; and, where a sea was seen to
-work, what waves do (waves.py). The filter's gains do not depend on the unknowns theta, so its innovations are affine in them:
-epsilon = e - G theta. Whitened, they give the normal equations A = G'G, b = G'e of every later question. Tracks are cut into
-segments that are filtered side by side.
+Along the smooth motion the ship is linear: delta = (x, y, psi, u, v, r), a slowly varying acceleration b
+(what any model of this kind leaves over: its structural error) and a slowly varying current c, both
+first-order Gauss-Markov; and, where a sea was seen to work, what waves do (waves.py). The filter's gains do
+not depend on the unknowns theta, so its innovations are affine in them: epsilon = e - G theta. Whitened, they
+give the normal equations A = G'G, b = G'e of every later question. Tracks are cut into segments that are
+filtered side by side.
 
-Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy & O'Hagan (2001) (model discrepancy).
-"""
+Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy & O'Hagan (2001) (model
+discrepancy)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -18,9 +20,33 @@ from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.study.estimation.columns import LATE, Unknown, beside, columns, turns
-from twin.study.estimation.filters import FLOW, LIGHT, MOTION, PLACE, SHIP, SLOW, SPEEDS, STATES, WAVES, Filters, Noise, Stretches
+from twin.study.estimation.filters import (
+    FLOW,
+    LIGHT,
+    MOTION,
+    PLACE,
+    SHIP,
+    SLOW,
+    SPEEDS,
+    STATES,
+    WAVES,
+    Filters,
+    Noise,
+    Stretches,
+)
 from twin.study.estimation.normal import Normal, Sums
-from twin.study.estimation.respond import SATELLITES, accelerations, advance, faulty, jacobian, lagged, later, respond, standard, when_true
+from twin.study.estimation.respond import (
+    SATELLITES,
+    accelerations,
+    advance,
+    faulty,
+    jacobian,
+    lagged,
+    later,
+    respond,
+    standard,
+    when_true,
+)
 from twin.study.estimation.start import undone
 from twin.study.track import waves
 from twin.study.track.segments import segments
@@ -35,11 +61,12 @@ MEMORY_B, MEMORY_C = 3.0, 12.0  # correlation times of b and c, in ship lengths 
 class Floor:
     """What a correct model of this kind still leaves unexplained on this ship: the structural floor.
 
-    `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller cause at that moment,
-    in surge, sway, yaw; `calm`: the same share of a standard acceleration, there even when nothing happens; `white` (3,): fast part, of
-    a standard acceleration; `flow`: scatter of the water's own motion, as a share of U_0; `sensor`: factor on the readings' scatter;
-    `wander`: how far the position that satellites show strays from itself in one second, and sqrt(t) times as far in t [m/sqrt(s)];
-    `doubt`: share of the force of the effects under judgement that may be something else (none on a reference voyage).
+    `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller cause
+    at that moment, in surge, sway, yaw; `calm`: the same share of a standard acceleration, there even when
+    nothing happens; `white` (3,): fast part, of a standard acceleration; `flow`: scatter of the water's own
+    motion, as a share of U_0; `sensor`: factor on the readings' scatter; `wander`: how far the position that
+    satellites show strays from itself in one second, and sqrt(t) times as far in t [m/sqrt(s)]; `doubt`:
+    share of the force of the effects under judgement that may be something else (none on a reference voyage).
     """
 
     share: tuple[float, float, float] = (0.05, 0.05, 0.05)
@@ -52,7 +79,12 @@ class Floor:
 
     def scaled(self, factor: float = 1.0, white: float = 1.0, flow: float = 1.0) -> "Floor":
         (a, b, c), (d, e, f) = self.share, self.white
-        return replace(self, share=(factor * a, factor * b, factor * c), white=(white * d, white * e, white * f), flow=flow * self.flow)
+        return replace(
+            self,
+            share=(factor * a, factor * b, factor * c),
+            white=(white * d, white * e, white * f),
+            flow=flow * self.flow,
+        )
 
 
 @dataclass(frozen=True)
@@ -67,11 +99,13 @@ class Linear:
     e: np.ndarray  # (N, 8): measured minus read, NaN where there was none
     A: np.ndarray  # (N, 3, P) float32, m/s2 per unit of each unknown
     R: np.ndarray  # (N, 8, P) float32
-    turns: dict[int, np.ndarray]  # column of a faulty instrument's number -> (N, 8, 8) float32 (see `columns.turns`)
+    # column of a faulty instrument's number -> (N, 8, 8) float32 (see `columns.turns`)
+    turns: dict[int, np.ndarray]
     bends: np.ndarray | None  # (N, 3, 6, P) float32: A by heading, velocities and current
     busy: np.ndarray  # (N, 3): acceleration that hull, rudder and propeller cause
     model: Model = field(repr=False)
-    doubted: np.ndarray | float = 0.0  # (N, 3): acceleration by the effects under judgement, whose forms are only roughly right
+    # (N, 3): acceleration by the effects under judgement, whose forms are only roughly right
+    doubted: np.ndarray | float = 0.0
     slack: np.ndarray | float = 0.0  # (N, 3): and one that no hypothesis takes away, of effects in the model
 
     def only(self, columns: np.ndarray) -> "Linear":
@@ -82,14 +116,22 @@ class Linear:
 
 
 def linearise(
-    track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None = None,
-    *, smooth: bool = False, exact: bool = False,
-) -> Linear:  # fmt: skip
-    """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model already holds), about the
-    motion as it was if the model's sensor faults are there. `smooth`: these are judged along that motion alone. `exact`: what unknowns push
-    is known beside that motion, too, where the filter believes her to be."""
+    track: Track,
+    model: Model,
+    unknowns: Sequence[Unknown],
+    catalogue: dict[str, type[Effect]],
+    at: dict[str, float] | None = None,
+    *,
+    smooth: bool = False,
+    exact: bool = False,
+) -> Linear:
+    """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model
+    already holds), about the motion as it was if the model's sensor faults are there. `smooth`: these are
+    judged along that motion alone. `exact`: what unknowns push is known beside that motion, too, where the
+    filter believes her to be."""
     shown, track = track, undone(track, model)
-    late_s, prompt = model.prompt()  # what is late shows another moment: no slope of this one says a wave two seconds ago
+    # what is late shows another moment: no slope of this one says a wave two seconds ago
+    late_s, prompt = model.prompt()
     reading = later(track, respond(track, prompt)[1], late_s)
     A, R = columns(track, model, unknowns, catalogue, at)
     bent = _bends(track, model, unknowns, catalogue, at) if exact else None
@@ -109,7 +151,20 @@ def linearise(
     if late_s:  # what was true between two steps is read at the nearer one, on her way to the other
         off = round(late_s / track.h) - late_s / track.h
         reader[:, SATELLITES] = reader[:, SATELLITES] @ (np.eye(STATES) + off * (system - np.eye(STATES)))
-    return Linear(track, shown, system, defect, reader, e, A.astype(np.float32), R.astype(np.float32), turned, bent, busy(track, model), model)
+    return Linear(
+        track,
+        shown,
+        system,
+        defect,
+        reader,
+        e,
+        A.astype(np.float32),
+        R.astype(np.float32),
+        turned,
+        bent,
+        busy(track, model),
+        model,
+    )
 
 
 def _system(track: Track, model: Model) -> np.ndarray:
@@ -132,10 +187,14 @@ def _system(track: Track, model: Model) -> np.ndarray:
 
 
 def _bends(
-    track: Track, model: Model, unknowns: Sequence[Unknown], catalogue: dict[str, type[Effect]], at: dict[str, float] | None
+    track: Track,
+    model: Model,
+    unknowns: Sequence[Unknown],
+    catalogue: dict[str, type[Effect]],
+    at: dict[str, float] | None,
 ) -> np.ndarray:
-    """(N, 3, 6, P) what one unit of each unknown changes of the slopes of the accelerations, by filters.BENDS: at some steps, and along straight
-    lines between them."""
+    """(N, 3, 6, P) what one unit of each unknown changes of the slopes of the accelerations, by
+    filters.BENDS: at some steps, and along straight lines between them."""
     steps = np.unique(np.append(np.arange(0, len(track), EVERY), len(track) - 1))
     some = track.where(steps)
 
@@ -148,13 +207,19 @@ def _bends(
         if (other := beside(track, model, unknown, catalogue, at)) is not None:
             out[..., j] = (slopes(other[0]) - here) / other[1]
     after = np.searchsorted(steps, np.arange(len(track)), "right").clip(1, steps.size - 1)
-    share = ((np.arange(len(track)) - steps[after - 1]) / (steps[after] - steps[after - 1])).astype(np.float32)[:, None, None, None]
+    share = ((np.arange(len(track)) - steps[after - 1]) / (steps[after] - steps[after - 1])).astype(
+        np.float32
+    )[:, None, None, None]
     return (1.0 - share) * out[after - 1] + share * out[after]
 
 
 def _by_current(track: Track, model: Model) -> np.ndarray:
     """(N, 3, 2) acceleration per m/s of current to the north and to the east."""
-    current, still, step = find("Current").absent(model.ship), _without_current(model), 0.02 * float(model.ship.scale("speed"))
+    current, still, step = (
+        find("Current").absent(model.ship),
+        _without_current(model),
+        0.02 * float(model.ship.scale("speed")),
+    )
     here = accelerations(track, still)
     there = [accelerations(track, still.but(current.but(**{axis: step}))) for axis in ("north", "east")]
     return np.stack([(a - here) / step for a in there], axis=2)
@@ -175,7 +240,8 @@ def _without_current(model: Model) -> Model:
 
 
 def busy(track: Track, model: Model) -> np.ndarray:
-    """(N, 3) how hard hull, propeller and rudder are at work, as accelerations [m/s2, m/s2, rad/s2], over the last length."""
+    """(N, 3) how hard hull, propeller and rudder are at work, as accelerations [m/s2, m/s2, rad/s2], over the
+    last length."""
     s = track.situation(delta=lagged(track, model))
     forces = model.known(s)
     width = max(3, int(model.ship.scale("time") / track.h))
@@ -190,11 +256,14 @@ def busy(track: Track, model: Model) -> np.ndarray:
 
 
 def innovate(lines: Sequence[Linear], floors: Sequence[Floor], most: int | None = None) -> list[Normal]:
-    """Filter every segment of every track (or an even choice of `most`), under every floor, side by side; the normal equations
-    for each floor."""
+    """Filter every segment of every track (or an even choice of `most`), under every floor, side by side; the
+    normal equations for each floor."""
     where = segments([line.track for line in lines], float(lines[0].model.ship.scale("time")), most)
     told, noise = _stretches(lines, where), _noise(lines, floors, where)
-    filters, sums = Filters(told, noise, _start(lines, floors, where)), Sums(len(floors), len(where), told.shown.shape[-1] - 1)
+    filters, sums = (
+        Filters(told, noise, _start(lines, floors, where)),
+        Sums(len(floors), len(where), told.shown.shape[-1] - 1),
+    )
     for k in range(len(told.here)):
         sums.add(*filters.correct(k))
         filters.advance(k)
@@ -203,23 +272,34 @@ def innovate(lines: Sequence[Linear], floors: Sequence[Floor], most: int | None 
 
 def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
     e, defect = _abreast([x.e for x in lines], where, np.nan), _abreast([x.defect for x in lines], where)
-    A, R, spread = (_abreast(M, where) for M in ([x.A for x in lines], [x.R for x in lines], [_spread(x) for x in lines]))
+    A, R, spread = (
+        _abreast(M, where) for M in ([x.A for x in lines], [x.R for x in lines], [_spread(x) for x in lines])
+    )
     here = np.isfinite(e)
     shown = np.concatenate([np.where(here, e, 0.0)[..., None], -R * here[..., None]], axis=3, dtype=LIGHT)
     pushed = np.concatenate([defect[..., None], spread @ A], axis=3, dtype=LIGHT)
     return Stretches(
-        F=_abreast([x.F for x in lines], where), H=_abreast([x.H for x in lines], where) * here[..., None], here=here,
-        shown=shown, pushed=pushed, spread=spread,
+        F=_abreast([x.F for x in lines], where),
+        H=_abreast([x.H for x in lines], where) * here[..., None],
+        here=here,
+        shown=shown,
+        pushed=pushed,
+        spread=spread,
         turns={j: turn * here[..., None] for j, turn in _turns(lines, where).items()},
-        bends=None if lines[0].bends is None else _abreast([x.bends for x in lines if x.bends is not None], where),
+        bends=None
+        if lines[0].bends is None
+        else _abreast([x.bends for x in lines if x.bends is not None], where),
         swing=_abreast([waves.swinging(x.track) for x in lines], where) if _in_waves(lines) else None,
-    )  # fmt: skip
+    )
 
 
 def _turns(lines: Sequence[Linear], where: Where) -> dict[int, np.ndarray]:
     """Of every column that any of the tracks has; nothing on one whose instruments lack what is at fault."""
     some = {j for x in lines for j in x.turns}
-    return {j: _abreast([x.turns.get(j, np.zeros((len(x.track), 8, 8), np.float32)) for x in lines], where) for j in some}
+    return {
+        j: _abreast([x.turns.get(j, np.zeros((len(x.track), 8, 8), np.float32)) for x in lines], where)
+        for j in some
+    }
 
 
 def _in_waves(lines: Sequence[Linear]) -> bool:
@@ -270,25 +350,39 @@ def _spread(line: Linear) -> np.ndarray:
 def _slow(line: Linear, floor: Floor) -> np.ndarray:
     """(N, 3) variance of the slowly varying acceleration error."""
     calm = floor.calm * standard(line.model)
-    return (np.array(floor.share) ** 2) * (line.busy**2 + calm**2) + np.square(floor.doubt * line.doubted) + np.square(line.slack)
+    return (
+        (np.array(floor.share) ** 2) * (line.busy**2 + calm**2)
+        + np.square(floor.doubt * line.doubted)
+        + np.square(line.slack)
+    )
 
 
 def _reading(track: Track, floor: Floor) -> np.ndarray:
     """(N, 8) variance of each reading."""
-    return np.square(floor.sensor * np.broadcast_to(track.sd if track.unrest is None else track.sd * track.unrest, (len(track), 8)))
+    return np.square(
+        floor.sensor
+        * np.broadcast_to(track.sd if track.unrest is None else track.sd * track.unrest, (len(track), 8))
+    )
 
 
 def _start(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> np.ndarray:
-    """(W, S, n, n) covariance at the start of each segment: the motion nearly unknown, b, c and the waves as they usually are."""
+    """(W, S, n, n) covariance at the start of each segment: the motion nearly unknown, b, c and the waves as
+    they usually are."""
     ship, first = lines[0].model.ship, [(i, a, a + 1) for i, a, _ in where]
     L, U, time = float(ship.L_pp), float(ship.scale("speed")), float(ship.scale("time"))
     diagonal = np.zeros((len(floors), len(where), STATES))
     diagonal[..., MOTION] = np.array([0.05 * L, 0.05 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time]) ** 2
     for usual, floor in zip(diagonal, floors, strict=True):
-        usual[:, SLOW], usual[:, FLOW] = _abreast([_slow(x, floor) for x in lines], first)[0], (floor.flow * U) ** 2
+        usual[:, SLOW], usual[:, FLOW] = (
+            _abreast([_slow(x, floor) for x in lines], first)[0],
+            (floor.flow * U) ** 2,
+        )
     C = np.eye(STATES) * diagonal[..., None, :]
     if not _in_waves(lines):
         return C
     out = np.zeros((*C.shape[:2], WAVES.stop, WAVES.stop))
-    out[..., SHIP, SHIP], out[..., WAVES, WAVES] = C, _abreast([waves.lasting(x.track) for x in lines], first)[0]
+    out[..., SHIP, SHIP], out[..., WAVES, WAVES] = (
+        C,
+        _abreast([waves.lasting(x.track) for x in lines], first)[0],
+    )
     return out

@@ -35,11 +35,16 @@ class Sums:
     """Running sums of whitened innovations by floor and segment: W and S of them, with P unknowns."""
 
     def __init__(self, W: int, S: int, P: int) -> None:
-        self.M, self.logdet, self.energy = np.zeros((W, S, 1 + P, 1 + P)), np.zeros((W, S)), np.zeros((W, S, 8))
+        self.M, self.logdet, self.energy = (
+            np.zeros((W, S, 1 + P, 1 + P)),
+            np.zeros((W, S)),
+            np.zeros((W, S, 8)),
+        )
         self.held: list[tuple[np.ndarray, np.ndarray]] = []
 
     def add(self, white: np.ndarray, root: np.ndarray) -> None:
-        """One step: innovations with their tangents (W, S, 8, 1 + P), and the diagonal of the root of their covariance (W, S, 8)."""
+        """One step: innovations with their tangents (W, S, 8, 1 + P), and the diagonal of the root of their
+        covariance (W, S, 8)."""
         self.held.append((white, root))
         if len(self.held) == FOLD:
             self._fold()
@@ -57,4 +62,7 @@ class Sums:
         self._fold()
         count = here.sum((0, 2)).astype(float)
         told = zip(self.M, self.logdet, self.energy, strict=True)
-        return [Normal(M[:, 1:, 1:], -M[:, 1:, 0], M[:, 0, 0], logdet, count, energy, where) for M, logdet, energy in told]
+        return [
+            Normal(M[:, 1:, 1:], -M[:, 1:, 0], M[:, 0, 0], logdet, count, energy, where)
+            for M, logdet, energy in told
+        ]

@@ -1,4 +1,5 @@
-"""What a model says along a track: the accelerations it would give the ship there, and what the instruments would read."""
+"""What a model says along a track: the accelerations it would give the ship there, and what the instruments
+would read."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,7 +15,8 @@ from twin.study.track.track import READINGS, STATE, Track
 
 
 def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
-    """(N, 3) accelerations [m/s2, m/s2, rad/s2] and (N, 8) readings (see READINGS) of a ship that moves along the track."""
+    """(N, 3) accelerations [m/s2, m/s2, rad/s2] and (N, 8) readings (see READINGS) of a ship that moves along
+    the track."""
     s = track.situation(delta=lagged(track, model))
     nu_dot = _nu_dot(s, model)
     s.u_dot, s.v_dot, _ = nu_dot.T
@@ -27,8 +29,8 @@ def accelerations(track: Track, model: Model) -> np.ndarray:
 
 
 def standard(model: Model) -> np.ndarray:
-    """(3,) accelerations by the force and moment scale of the ship as her file has her [m/s2, m/s2, rad/s2]: no hypothesis is likelier for
-    what it makes of the noise."""
+    """(3,) accelerations by the force and moment scale of the ship as her file has her [m/s2, m/s2, rad/s2]:
+    no hypothesis is likelier for what it makes of the noise."""
     c: core.Coefficients = model.ship.c
     force, moment = float(model.ship.scale("force")), float(model.ship.scale("moment"))
     return np.array([force / c.m_u, force / c.m_v, 0.3 * moment / c.m_r])
@@ -39,7 +41,8 @@ def _nu_dot(s: Situation, model: Model) -> np.ndarray:
 
 
 def readings(s: Situation, model: Model) -> np.ndarray:
-    """(N, 8): what the instruments say of situation s (whose u_r and v_r the model has set), faults and all."""
+    """(N, 8): what the instruments say of situation s (whose u_r and v_r the model has set), faults and
+    all."""
     for fault in model.faults:
         s = fault.read(replace(s), model.loaded)
     return np.column_stack([np.broadcast_to(getattr(s, name), np.shape(s.psi)) for name in READINGS])
@@ -49,8 +52,8 @@ SATELLITES = [READINGS.index(name) for name in ("x", "y", "u", "v")]
 
 
 def later(track: Track, shown: np.ndarray, late_s: float) -> np.ndarray:
-    """The readings (N, 8), those of the satellites as they were so long ago: on each stretch of consecutive steps, along a straight line
-    before its first and behind its last."""
+    """The readings (N, 8), those of the satellites as they were so long ago: on each stretch of consecutive
+    steps, along a straight line before its first and behind its last."""
     if not late_s:
         return shown
     out = shown.copy()
@@ -65,8 +68,9 @@ def later(track: Track, shown: np.ndarray, late_s: float) -> np.ndarray:
 
 
 def when_true(track: Track, e: np.ndarray, late_s: float) -> np.ndarray:
-    """What readings (N, 8) are off by, the satellites' at the step at which what they show was true, so that a filter mends the motion of that
-    step by them; on each stretch what was shown before its first step goes to its last ones, that nothing is lost or won by being late."""
+    """What readings (N, 8) are off by, the satellites' at the step at which what they show was true, so that
+    a filter mends the motion of that step by them; on each stretch what was shown before its first step goes
+    to its last ones, that nothing is lost or won by being late."""
     out, steps = e.copy(), round(late_s / track.h)
     for a, b in stretches(track) if steps else ():
         out[a:b, SATELLITES] = np.roll(e[a:b, SATELLITES], -steps, axis=0)
@@ -121,7 +125,8 @@ def _between(values: np.ndarray) -> np.ndarray:
 
 
 def jacobian(track: Track, model: Model) -> np.ndarray:
-    """(N, 3, 6) derivative of the accelerations by x, y, psi, u, v, r, by central differences (position does not matter)."""
+    """(N, 3, 6) derivative of the accelerations by x, y, psi, u, v, r, by central differences (position does
+    not matter)."""
     delta = lagged(track, model)
     U, r = float(model.ship.scale("speed")), 1.0 / float(model.ship.scale("time"))
     out = np.zeros((len(track), 3, 6))
@@ -136,13 +141,16 @@ def jacobian(track: Track, model: Model) -> np.ndarray:
 
 
 def faulty(track: Track, model: Model) -> np.ndarray:
-    """(N, 8, 8) derivative of what the model's faulty instruments show by what they would show were they right: a compass that is off
-    turns what is left of one speed into the other."""
+    """(N, 8, 8) derivative of what the model's faulty instruments show by what they would show were they
+    right: a compass that is off turns what is left of one speed into the other."""
     L, U, time = float(model.ship.L_pp), float(model.ship.scale("speed")), float(model.ship.scale("time"))
     out = np.zeros((len(track), len(READINGS), len(READINGS)))
     right = track.situation()
     right.u_dot, right.v_dot, _ = model.nu_dot(right)
     for j, (name, size) in enumerate(zip(READINGS, (L, L, 1.0, U, U, 1.0 / time, U, U), strict=True)):
-        sides = [readings(replace(right, **{name: getattr(right, name) + sign * 1e-3 * size}), model) for sign in (1.0, -1.0)]
+        sides = [
+            readings(replace(right, **{name: getattr(right, name) + sign * 1e-3 * size}), model)
+            for sign in (1.0, -1.0)
+        ]
         out[:, :, j] = (sides[0] - sides[1]) / (2e-3 * size)
     return out

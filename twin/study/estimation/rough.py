@@ -1,9 +1,10 @@
-"""Weather that the model knows, and effects that were added since she was calibrated: their forms are only roughly right, and another day shows it.
+"""Weather that the model knows, and effects that were added since she was calibrated: their forms are only
+roughly right, and another day shows it.
 
-What such a form misses changes from moment to moment (the filter's slack), and it lasts: of a wind that blows from one side all voyage, and whose
-force is known to a tenth, a tenth is left over that would be a tow, a drag or a list. So a share of the known force may stand in each axis, as a
-Fourier series in the heading: each term a column of its own, and no part of any model.
-"""
+What such a form misses changes from moment to moment (the filter's slack), and it lasts: of a wind that blows
+from one side all voyage, and whose force is known to a tenth, a tenth is left over that would be a tow, a
+drag or a list. So a share of the known force may stand in each axis, as a Fourier series in the heading: each
+term a column of its own, and no part of any model."""
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -18,7 +19,8 @@ from twin.study.estimation.respond import respond, standard
 from twin.study.track.track import Track
 
 KNOWN = 0.1  # share of the force of an effect in the model that may be something else
-COMES_AND_GOES = 0.5  # share of an irregular effect's force, and of what it does to the path, that no size of it explains
+# share of an irregular effect's force, and of what it does to the path, that no size of it explains
+COMES_AND_GOES = 0.5
 TINY = 1e-12
 AXES = ("surge", "sway", "yaw")
 COURSES = ("always", "cos", "sin", "cos_twice", "sin_twice")  # of the heading
@@ -26,20 +28,27 @@ TERMS = tuple(f"{axis}_{course}" for axis in AXES for course in COURSES)
 
 
 def added(model: Model) -> list[tuple[Model, float]]:
-    """Of every effect of the model that was not there when she was calibrated, and of weather (another one on each day): the model without it, and
-    by what share of its force its form may be wrong."""
+    """Of every effect of the model that was not there when she was calibrated, and of weather (another one on
+    each day): the model without it, and by what share of its force its form may be wrong."""
     return [(_but(model, e), COMES_AND_GOES if e.irregular else KNOWN) for e in _since(model)]
 
 
 def elsewhere(model: Model, names: Collection[str] | None = None) -> list[tuple[Model, Model]]:
-    """Of every such effect (or those of `names`) whose side force may attack elsewhere along her: the model with it farther ahead, and aft."""
-    mine = [e for e in _since(model) if isinstance(e, Force) and e.lever and (names is None or type(e).__name__ in names)]
+    """Of every such effect (or those of `names`) whose side force may attack elsewhere along her: the model
+    with it farther ahead, and aft."""
+    mine = [
+        e
+        for e in _since(model)
+        if isinstance(e, Force) and e.lever and (names is None or type(e).__name__ in names)
+    ]
     return [(_turned(model, e, 1.0), _turned(model, e, -1.0)) for e in mine]
 
 
 def _since(model: Model) -> list[Effect]:
     calibrated = model.ship.notes.get("structural", {}).get("beside_effects", ())
-    return [e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in calibrated]
+    return [
+        e for e in model.effects if not getattr(e, "stream", False) and type(e).__name__ not in calibrated
+    ]
 
 
 def _but(model: Model, effect: Effect) -> Model:
@@ -54,8 +63,8 @@ def _turned(model: Model, effect: Force, side: float) -> Model:
 
 
 def doubted(track: Track, model: Model) -> np.ndarray:
-    """(N, 3) [m/s2, m/s2, rad/s2] by which the accelerations of these effects may be wrong at each moment: a share of each, and of the turning
-    what a push aside makes that attacks elsewhere."""
+    """(N, 3) [m/s2, m/s2, rad/s2] by which the accelerations of these effects may be wrong at each moment: a
+    share of each, and of the turning what a push aside makes that attacks elsewhere."""
     out = np.zeros((len(track), 3))
     for without, share in added(model):
         out += np.square(share * (respond(track, model)[0] - respond(track, without)[0]))
@@ -65,7 +74,8 @@ def doubted(track: Track, model: Model) -> np.ndarray:
 
 
 def accelerations(track: Track, model: Model) -> dict[str, np.ndarray]:
-    """(N, 3) of one unit of each term: in each axis what is doubted of it as a rule, stronger where all of it together is stronger."""
+    """(N, 3) of one unit of each term: in each axis what is doubted of it as a rule, stronger where all of it
+    together is stronger."""
     each = doubted(track, model)
     strength, usual = np.linalg.norm(each / standard(model), axis=1), np.sqrt(np.mean(each**2, axis=0))
     size = strength / max(float(np.sqrt(np.mean(strength**2))), TINY)

@@ -1,4 +1,5 @@
-"""Where a prediction begins: the smooth motion without what waves swing, the instruments' known faults undone, and how far off it may be."""
+"""Where a prediction begins: the smooth motion without what waves swing, the instruments' known faults
+undone, and how far off it may be."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -18,12 +19,12 @@ ROUNDS = 3  # of the fixed point: faults of place, heading and wind together
 
 
 def true_motion(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray | None]:
-    """(N, 6) the smooth motion as it would be without the model's sensor faults, and the wind's direction (N,) likewise.
+    """(N, 6) the smooth motion as it would be without the model's sensor faults, and the wind's direction
+    (N,) likewise.
 
-    Late places are shown earlier; then place and heading are corrected until the faulty instruments would show what they showed; speeds
-    follow from them. What a fault depends on beyond them is taken from the motion shown: differences of differences would blow up
-    whatever is fast.
-    """
+    Late places are shown earlier; then place and heading are corrected until the faulty instruments would
+    show what they showed; speeds follow from them. What a fault depends on beyond them is taken from the
+    motion shown: differences of differences would blow up whatever is fast."""
     wind_to = track.weather.get("wind_to")
     if not _moved(track, model, wind_to):
         return track.state, wind_to
@@ -47,8 +48,9 @@ def _earlier(track: Track, late_s: float) -> np.ndarray:
 
 
 def steadied(track: Track) -> Track:
-    """The track with the motion that is slower than the waves, where a sea was seen to work (seaway.py): a heading that a wave turned by a
-    degree would lead her astray. A parabola is fitted about each point, over so long that waves fall out of it (Savitzky & Golay 1964)."""
+    """The track with the motion that is slower than the waves, where a sea was seen to work (seaway.py): a
+    heading that a wave turned by a degree would lead her astray. A parabola is fitted about each point, over
+    so long that waves fall out of it (Savitzky & Golay 1964)."""
     steps = min(2 * round(0.5 * ABOUT * wave_period_s(track) / track.h) + 1, len(track) - 1 + len(track) % 2)
     return replace(track, state=savgol_filter(track.state, steps, 2, axis=0)) if steps > 3 else track
 
@@ -70,8 +72,8 @@ def told_of_waves(waves: Sequence[dict[str, Any]]) -> list[str]:
 
 
 def undone(track: Track, model: Model) -> Track:
-    """The track with the model's sensor faults taken out of the motion and the wind, each stretch of consecutive steps by itself; its
-    measurements stay what was shown."""
+    """The track with the model's sensor faults taken out of the motion and the wind, each stretch of
+    consecutive steps by itself; its measurements stay what was shown."""
     if not _moved(track, model, track.weather.get("wind_to")):
         return track
     state, wind_to = zip(*(true_motion(track.part(a, b), model) for a, b in stretches(track)), strict=True)
@@ -82,11 +84,14 @@ def undone(track: Track, model: Model) -> Track:
 def _moved(track: Track, model: Model, wind_to: np.ndarray | None) -> bool:
     """Whether any fault touches place, heading or wind direction (most only touch a log or a gyro)."""
     read = _read(track, model, track.state, wind_to)
-    return read.wind_to is not wind_to or not np.array_equal(np.column_stack([read.x, read.y, read.psi]), track.state[:, :3])
+    return read.wind_to is not wind_to or not np.array_equal(
+        np.column_stack([read.x, read.y, read.psi]), track.state[:, :3]
+    )
 
 
 def _turned(shown: np.ndarray, place: np.ndarray) -> np.ndarray:
-    """(N, 6) the motion shown, with this place and heading: the same speed over ground, in the axes of that heading."""
+    """(N, 6) the motion shown, with this place and heading: the same speed over ground, in the axes of that
+    heading."""
     c, s = np.cos(shown[:, 2] - place[:, 2]), np.sin(shown[:, 2] - place[:, 2])
     u, v = shown[:, 3], shown[:, 4]
     return np.column_stack([place, u * c - v * s, u * s + v * c, shown[:, 5]])
@@ -111,14 +116,18 @@ def _read(track: Track, model: Model, state: np.ndarray, wind_to: np.ndarray | N
 
 
 def noisy(track: Track, model: Model, rng: np.random.Generator) -> np.ndarray:
-    """(N, 6) one draw of how far the smooth motion is off, when the readings scatter as they do: smoothed like the readings."""
+    """(N, 6) one draw of how far the smooth motion is off, when the readings scatter as they do: smoothed
+    like the readings."""
     exact = np.column_stack([track.state, track.measured[:, 6:]])
-    shaken = np.where(np.isfinite(track.measured), exact + track.sd * rng.standard_normal(exact.shape), np.nan)
+    shaken = np.where(
+        np.isfinite(track.measured), exact + track.sd * rng.standard_normal(exact.shape), np.nan
+    )
     return smooth_motion(shaken, track.h, model.ship)[0] - track.state
 
 
 def seen(track: Track) -> np.ndarray:
-    """(N, 8) the readings, each joined by straight lines over holes of at most BRIDGE_S, so that a slow one can be compared."""
+    """(N, 8) the readings, each joined by straight lines over holes of at most BRIDGE_S, so that a slow one
+    can be compared."""
     out = track.measured.copy()
     steps = np.arange(len(track))
     for column in out.T:

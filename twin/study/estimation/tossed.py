@@ -1,11 +1,12 @@
-"""What one wave does at once, in columns: a helmsman who answers it, and sway and surge that swing with the yaw. No part of any model.
+"""What one wave does at once, in columns: a helmsman who answers it, and sway and surge that swing with the
+yaw. No part of any model.
 
-The filter carries waves in a band of each axis (`waves.py`) that knows nothing of the others, nor of the rudder. But the helm follows each wave
-and a wave passes the rudder, so that what she does in time with the waves is read as her answer to the helm, stronger or later than it is: a
-slow gear (identification in closed loop, Ljung 1999, sec. 13.4). And one wave swings her in sway and surge as it does in yaw, a quarter of a period
-apart or not at all: as if she were watched from elsewhere on board. How strong, and when, is left open here for what is in time with the waves;
-what she does more slowly is not touched.
-"""
+The filter carries waves in a band of each axis (`waves.py`) that knows nothing of the others, nor of the
+rudder. But the helm follows each wave and a wave passes the rudder, so that what she does in time with the
+waves is read as her answer to the helm, stronger or later than it is: a slow gear (identification in closed
+loop, Ljung 1999, sec. 13.4). And one wave swings her in sway and surge as it does in yaw, a quarter of a
+period apart or not at all: as if she were watched from elsewhere on board. How strong, and when, is left open
+here for what is in time with the waves; what she does more slowly is not touched."""
 
 from dataclasses import replace
 
@@ -17,8 +18,10 @@ from twin.study.estimation.start import steadied, wave_period_s
 from twin.study.track.track import READINGS, Track, running_mean
 
 EARLIER = "_earlier"  # a quarter of a period before
-HELM = {"helm": 0.5, "helm" + EARLIER: 0.5}  # prior width, as a share of what the rudder does in time with the waves
-SWING = {"sway": 0.1, "sway" + EARLIER: 0.1, "surge": 0.1, "surge" + EARLIER: 0.1}  # swing in it over the swing in yaw [L]
+# prior width, as a share of what the rudder does in time with the waves
+HELM = {"helm": 0.5, "helm" + EARLIER: 0.5}
+# swing in it over the swing in yaw [L]
+SWING = {"sway": 0.1, "sway" + EARLIER: 0.1, "surge": 0.1, "surge" + EARLIER: 0.1}
 TERMS = HELM | SWING
 
 
@@ -40,7 +43,11 @@ def readings(track: Track, model: Model, name: str) -> np.ndarray:
     swing = (track.state - steadied(track).state)[:, [2, 5]] * float(model.ship.L_pp)
     by, rate = (_earlier(swing, track, wave_period_s(track)) if name.endswith(EARLIER) else swing).T
     c, s = np.cos(track.state[:, 2]), np.sin(track.state[:, 2])
-    moved = {"x": -s * by, "y": c * by, "v": rate} if name.startswith("sway") else {"x": c * by, "y": s * by, "u": rate}
+    moved = (
+        {"x": -s * by, "y": c * by, "v": rate}
+        if name.startswith("sway")
+        else {"x": c * by, "y": s * by, "u": rate}
+    )
     for reading, value in moved.items():
         out[:, READINGS.index(reading)] = value
     return out

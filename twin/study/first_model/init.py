@@ -1,4 +1,5 @@
-"""`twin init`: a first model of my ship from what its owner knows; every estimated number says where it comes from."""
+"""`twin init`: a first model of my ship from what its owner knows; every estimated number says where it comes
+from."""
 
 import argparse
 import sys
@@ -16,18 +17,30 @@ from twin.study.first_model import regressions as reg
 from twin.study.first_model.modulus import modulus_form, slipstream
 from twin.study.prediction.trial import shaft_speed, straight_line_stability, turning_circle, zigzag
 
-FARTHEST_G = 0.15  # of L: centres of gravity lie within a few per cent of midship, of a slender naval vessel 0.10 astern
+# of L: centres of gravity lie within a few per cent of midship, of a slender naval vessel 0.10 astern
+FARTHEST_G = 0.15
 
 # option, what it is, unit, smallest and largest that is not a slip of the pen
 OPTIONS: tuple[tuple[str, str, float, float], ...] = (
-    ("length-pp-m", "length between perpendiculars; where nobody knows it, 0.96 of the waterline", 0.2, 500.0),
+    (
+        "length-pp-m",
+        "length between perpendiculars; where nobody knows it, 0.96 of the waterline",
+        0.2,
+        500.0,
+    ),
     ("beam-m", "beam at the waterline", 0.05, 90.0),
     ("draught-m", "mean draught", 0.01, 40.0),
     ("mass-kg", "mass (displacement); default: by the block coefficient", 0.05, 1e9),
     ("block-coefficient", "block coefficient C_b", 0.2, 0.99),
     ("service-speed-mps", "service speed", 0.05, 40.0),
     ("shaft-speed-rpm", "propeller rate at service speed in calm water: sets the thrust", 1.0, 10000.0),
-    ("x-g-m", "centre of gravity ahead of midship (half of L_pp; negative: astern of it), by 0.15 L at most; default 0", -60.0, 60.0),
+    (
+        "x-g-m",
+        "centre of gravity ahead of midship (half of L_pp; negative: astern of it), by 0.15 L at most; "
+        "default 0",
+        -60.0,
+        60.0,
+    ),
     ("yaw-inertia-kgm2", "moment of inertia in yaw about midship; default: a radius of 0.25 L", 1e-4, 1e14),
     ("rho-kg-m3", "density of the water", 900.0, 1100.0),
     ("propellers", "how many propellers turn alike; default 1", 1.0, 4.0),
@@ -39,7 +52,8 @@ OPTIONS: tuple[tuple[str, str, float, float], ...] = (
     ("lateral-area-m2", "lateral area above the water, for Wind; default 0.06 L^2", 1e-4, 20000.0),
 )
 REQUIRED = ("length-pp-m", "beam-m", "draught-m")
-INSIDE = ("shaft-speed-rpm", "propellers", "pitch-ratio", "rudder-height-m")  # what is given, and is no particular of the ship file
+# what is given, and is no particular of the ship file
+INSIDE = ("shaft-speed-rpm", "propellers", "pitch-ratio", "rudder-height-m")
 FULL = 0.7  # block coefficient from which ships often do not go straight by themselves
 Given = Mapping[str, float | None]
 Numbers = dict[str, tuple[float, str]]  # name -> value, source
@@ -48,7 +62,13 @@ Numbers = dict[str, tuple[float, str]]  # name -> value, source
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", metavar="NAME", help="the ship's name")
     for option, doc, lo, hi in OPTIONS:
-        parser.add_argument(f"--{option}", type=float, required=option in REQUIRED, metavar="X", help=f"{doc} [{lo:g} to {hi:g}]")
+        parser.add_argument(
+            f"--{option}",
+            type=float,
+            required=option in REQUIRED,
+            metavar="X",
+            help=f"{doc} [{lo:g} to {hi:g}]",
+        )
     parser.add_argument("-o", "--output", required=True, metavar="SHIP.toml", help="the ship file to write")
     parser.add_argument("--json", metavar="FILE", help="the same as JSON; - is standard output")
 
@@ -62,9 +82,22 @@ def run(args: argparse.Namespace) -> int:
     out = sys.stderr if args.json == "-" else sys.stdout
     print(summary(ship, figures, warnings, given), file=out)
     print(f"\nwritten: {args.output}", file=out)
-    print(f"next:    twin import each reference voyage, then twin calibrate REF-*.mcap --ship {args.output} -o {_next(args.output)}", file=out)
+    print(
+        f"next:    twin import each reference voyage, then twin calibrate REF-*.mcap --ship {args.output} "
+        f"-o {_next(args.output)}",
+        file=out,
+    )
     if args.json:
-        write_json({"schema_version": 1, "ship": ship.name, "file": str(args.output), "trial": figures, "warnings": warnings}, args.json)
+        write_json(
+            {
+                "schema_version": 1,
+                "ship": ship.name,
+                "file": str(args.output),
+                "trial": figures,
+                "warnings": warnings,
+            },
+            args.json,
+        )
     return 0
 
 
@@ -110,10 +143,14 @@ def _check(given: Given) -> None:
     for option, doc, lo, hi in OPTIONS:
         value = given[option]
         if value is not None and not lo <= value <= hi:
-            raise SettingsError(f"--{option} {value:g} lies outside {lo:g} to {hi:g} ({doc}). Check its unit.")
+            raise SettingsError(
+                f"--{option} {value:g} lies outside {lo:g} to {hi:g} ({doc}). Check its unit."
+            )
     L, B, T = (float(given[o]) for o in REQUIRED)  # type: ignore[arg-type]
     if B >= L or T >= L:
-        raise SettingsError(f"a ship {L:g} m long, {B:g} m wide and {T:g} m deep is no ship. Check the order of the numbers.")
+        raise SettingsError(
+            f"a ship {L:g} m long, {B:g} m wide and {T:g} m deep is no ship. Check the order of the numbers."
+        )
 
 
 def _particulars(given: Given) -> Numbers:
@@ -124,46 +161,66 @@ def _particulars(given: Given) -> Numbers:
     by_mass = None if mass is None else mass / (rho * box)
     if by_mass is not None and not 0.2 <= by_mass <= 0.99:
         raise SettingsError(
-            f"--mass-kg {mass:g} fills {by_mass:.0%} of length x beam x draught; a ship fills 20 to 99 %. Check the mass (kg) and the draught."
+            f"--mass-kg {mass:g} fills {by_mass:.0%} of length x beam x draught; a ship fills 20 to 99 %. "
+            "Check the mass (kg) and the draught."
         )
     if by_mass is not None and C_b is not None and abs(by_mass / C_b - 1.0) > 0.05:
-        raise SettingsError(f"--mass-kg gives C_b = {by_mass:.3f}, but --block-coefficient is {C_b:g}. Leave one of them out.")
+        raise SettingsError(
+            f"--mass-kg gives C_b = {by_mass:.3f}, but --block-coefficient is {C_b:g}. Leave one of them out."
+        )
     given_fullness = by_mass if by_mass is not None else C_b
-    fullness = (given_fullness, "given") if given_fullness is not None else reg.typical_block_coefficient(L, speed)
+    fullness = (
+        (given_fullness, "given") if given_fullness is not None else reg.typical_block_coefficient(L, speed)
+    )
     C = fullness[0]
     x_G = given["x-g-m"] or 0.0
     if abs(x_G) > FARTHEST_G * L:
-        raise SettingsError(f"--x-g-m {x_G:g} is more than {FARTHEST_G:g} of the length from midship (half of L_pp, ahead positive). Check it.")
+        raise SettingsError(
+            f"--x-g-m {x_G:g} is more than {FARTHEST_G:g} of the length from midship (half "
+            "of L_pp, ahead positive). Check it."
+        )
     I_z = given["yaw-inertia-kgm2"]
     m = mass if mass is not None else rho * C * box
     if I_z is not None and not 0.15 <= (I_z / m) ** 0.5 / L <= 0.4:
-        raise SettingsError(f"--yaw-inertia-kgm2 {I_z:g} is a radius of {(I_z / m) ** 0.5 / L:.2f} L; a ship has 0.2 to 0.3. Check it.")
+        raise SettingsError(
+            f"--yaw-inertia-kgm2 {I_z:g} is a radius of {(I_z / m) ** 0.5 / L:.2f} L; a ship "
+            "has 0.2 to 0.3. Check it."
+        )
 
     def said(option: str, estimate: float, source: str) -> tuple[float, str]:
         value = given[option]
         return (estimate, source) if value is None else (value, "given")
 
     p = {
-        "L_pp": (L, "given"), "B": (B, "given"), "T": (T, "given"),
-        "m": (m, "given" if mass is not None else fullness[1]), "C_b": fullness,
-        "x_G": said("x-g-m", 0.0, "ZERO"), "I_z": said("yaw-inertia-kgm2", m * ((0.25 * L) ** 2 + x_G**2), "GYR"),
+        "L_pp": (L, "given"),
+        "B": (B, "given"),
+        "T": (T, "given"),
+        "m": (m, "given" if mass is not None else fullness[1]),
+        "C_b": fullness,
+        "x_G": said("x-g-m", 0.0, "ZERO"),
+        "I_z": said("yaw-inertia-kgm2", m * ((0.25 * L) ** 2 + x_G**2), "GYR"),
         "rho": said("rho-kg-m3", rho, "SEA"),
         "U_0": said("service-speed-mps", reg.service_speed(L, C), "ALEX"),
         "D_P": said("propeller-diameter-m", T * min(0.85, max(0.35, 1.386 - 1.126 * C)), "RULE"),
         "A_R": said("rudder-area-m2", 0.01 * T * L * (1.0 + 25.0 * (B / L) ** 2), "DNV"),
-        "A_F": said("frontal-area-m2", 0.5 * B * B, "ROUGH"), "A_L": said("lateral-area-m2", 0.06 * L * L, "ROUGH"),
-    }  # fmt: skip
+        "A_F": said("frontal-area-m2", 0.5 * B * B, "ROUGH"),
+        "A_L": said("lateral-area-m2", 0.06 * L * L, "ROUGH"),
+    }
     return {k: (float(f"{v:.6g}"), s) for k, (v, s) in p.items()}
 
 
 def _derivatives(h: reg.Hull, p: Numbers, given: Given) -> Numbers:
-    """Derivatives with their sources; sets the propeller's diameter in p where only her shaft speed is known."""
+    """Derivatives with their sources; sets the propeller's diameter in p where only her shaft speed is
+    known."""
     out: Numbers = {f.name: (0.0, "ZERO") for f in DERIVATIVES}
     out |= reg.added_masses(h)
     m_x, m_y = -out["X_udot"][0], -out["Y_vdot"][0]
     polynomial = reg.hull_polynomial(h, m_y) | {"R0": reg.resistance(h)}
     source = {"X_vr": "HAS80; LSQ"} | dict.fromkeys(("X_vv", "X_rr"), "YM12; LSQ")
-    out |= {k: (v, source.get(k, "CGH83; KIJ90; YM12; LSQ")) for k, v in modulus_form(polynomial, m_x, m_y).items()}
+    out |= {
+        k: (v, source.get(k, "CGH83; KIJ90; YM12; LSQ"))
+        for k, v in modulus_form(polynomial, m_x, m_y).items()
+    }
     out["X_uu"] = (-polynomial["R0"], "ITTC57")
     count = _propellers(given)
     blade = p["A_R"][0] / count  # of one rudder: there is one behind each propeller
@@ -172,7 +229,10 @@ def _derivatives(h: reg.Hull, p: Numbers, given: Given) -> Numbers:
     pitch = _pitch_ratio(h, p, given, out)
     one, eta = reg.propulsion(h, pitch), min(1.0, p["D_P"][0] / height)
     epsilon, kappa = slipstream(one["K_T0"][0], one["K_T1"][0], 1.02, 0.6 / 1.02, eta)
-    out |= _all_screws(h, pitch, count) | {"epsilon": (epsilon, "MAT80; LSQ"), "kappa": (kappa / count, "MAT80; LSQ")}
+    out |= _all_screws(h, pitch, count) | {
+        "epsilon": (epsilon, "MAT80; LSQ"),
+        "kappa": (kappa / count, "MAT80; LSQ"),
+    }
     return {k: (float(f"{v:.5g}") + 0.0, s) for k, (v, s) in out.items()}
 
 
@@ -184,21 +244,24 @@ def _propellers(given: Given) -> float:
 
 
 def _all_screws(h: reg.Hull, pitch: float, count: float) -> Numbers:
-    """One propeller in the place of all: of the same diameter, with the thrust of all of them. What a rudder feels is one slipstream,
-    so kappa is divided by their number."""
+    """One propeller in the place of all: of the same diameter, with the thrust of all of them. What a rudder
+    feels is one slipstream, so kappa is divided by their number."""
     out = reg.propulsion(h, pitch, count)
     return out | {name: (count * out[name][0], out[name][1]) for name in ("K_T0", "K_T1")}
 
 
 def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
-    """Given, or usual for a hull as full as this, or such that the shaft speed given drives her at service speed."""
+    """Given, or usual for a hull as full as this, or such that the shaft speed given drives her at service
+    speed."""
     usual, count = given["pitch-ratio"] or min(1.2, max(0.6, 1.7 - 1.2 * h.C_b)), _propellers(given)
     rpm = given["shaft-speed-rpm"]
     if not rpm:
         return usual
 
     def turns(diameter: float, pitch: float) -> float:
-        return 60.0 * shaft_speed(Model(_ship("", p | {"D_P": (diameter, "")}, d | _all_screws(h, pitch, count))), h.U)
+        return 60.0 * shaft_speed(
+            Model(_ship("", p | {"D_P": (diameter, "")}, d | _all_screws(h, pitch, count))), h.U
+        )
 
     D = p["D_P"][0]
     if given["propeller-diameter-m"] is None and not turns(D, 1.4) < rpm < turns(D, 0.5):
@@ -207,7 +270,8 @@ def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
     pitch = _matching(lambda x: turns(D, x), rpm, 0.3, 2.0)
     if abs(turns(D, pitch) / rpm - 1.0) > 0.02:
         raise SettingsError(
-            f"--shaft-speed-rpm {rpm:g} cannot drive her at {h.U:.3g} m/s with a propeller of {D:.3g} m: no usual pitch does. "
+            f"--shaft-speed-rpm {rpm:g} cannot drive her at {h.U:.3g} m/s with a propeller of {D:.3g} m: no "
+            "usual pitch does. "
             "Check shaft speed, service speed, propeller diameter and --propellers."
         )
     return pitch
@@ -223,13 +287,18 @@ def _matching(falling: Callable[[float], float], target: float, lo: float, hi: f
 
 def _in_ranges(ship: Ship) -> None:
     """Refuse what the ship file would refuse when it is read again."""
-    for where, owner, known in (("particulars", ship, PARTICULARS), ("derivatives", ship.derivatives, DERIVATIVES)):
+    for where, owner, known in (
+        ("particulars", ship, PARTICULARS),
+        ("derivatives", ship.derivatives, DERIVATIVES),
+    ):
         for f in known:
             value = getattr(owner, f.name)
             if not f.metadata["lo"] <= value <= f.metadata["hi"]:
                 raise SettingsError(
-                    f"the regressions give {where}.{f.name} = {value:.3g} {f.metadata['unit']} ({f.metadata['doc']}), outside "
-                    f"[{f.metadata['lo']:g}, {f.metadata['hi']:g}]: this hull is too unlike a ship. Check length, beam and draught."
+                    f"the regressions give {where}.{f.name} = {value:.3g} {f.metadata['unit']} "
+                    f"({f.metadata['doc']}), outside "
+                    f"[{f.metadata['lo']:g}, {f.metadata['hi']:g}]: this hull is too unlike a ship. Check "
+                    "length, beam and draught."
                 )
 
 
@@ -239,10 +308,14 @@ def sea_trial(ship: Ship) -> dict[str, Any]:
     circle = turning_circle(model, radians(35.0))
     over = zigzag(model, radians(20.0), radians(20.0))
     figures = {
-        "shaft_speed_rpm": 60.0 * shaft_speed(model, ship.U_0), "service_speed_mps": ship.U_0, "advance_L": circle.advance,
-        "tactical_diameter_L": circle.tactical_diameter, "speed_left": circle.speed_left,
-        "overshoot_20_20_deg": over[0] if over else None, "straight_line_stability": straight_line_stability(model),
-    }  # fmt: skip
+        "shaft_speed_rpm": 60.0 * shaft_speed(model, ship.U_0),
+        "service_speed_mps": ship.U_0,
+        "advance_L": circle.advance,
+        "tactical_diameter_L": circle.tactical_diameter,
+        "speed_left": circle.speed_left,
+        "overshoot_20_20_deg": over[0] if over else None,
+        "straight_line_stability": straight_line_stability(model),
+    }
     return {k: None if v is None else float(f"{v:.4g}") for k, v in figures.items()}
 
 
@@ -251,15 +324,20 @@ def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
     out = []
     if figures["straight_line_stability"] <= 0 and C_b < FULL:
         out.append(
-            f"that so fine a hull (C_b {C_b:.2f}) does not go straight by herself is rare, and more likely an error of these regressions than of "
+            f"that so fine a hull (C_b {C_b:.2f}) does not go straight by herself is rare, and more likely "
+            "an error of these regressions than of "
             "your numbers: calibrate before you trust how she turns"
         )
     if not 1.8 <= figures["tactical_diameter_L"] <= 6.5:
         out.append(
-            f"tactical diameter {figures['tactical_diameter_L']:.1f} L is unusual (2 to 6 L): check rudder area and speed, and calibrate"
+            f"tactical diameter {figures['tactical_diameter_L']:.1f} L is unusual (2 to 6 L): check rudder "
+            "area and speed, and calibrate"
         )
     if figures["speed_left"] < 0.2:
-        out.append(f"only {figures['speed_left']:.0%} of the speed is left in the turn: check draught and propeller, and calibrate")
+        out.append(
+            f"only {figures['speed_left']:.0%} of the speed is left in the turn: check draught and "
+            "propeller, and calibrate"
+        )
     if figures["overshoot_20_20_deg"] is None or figures["overshoot_20_20_deg"] > 40.0:
         out.append("the 20/20 zigzag does not settle as ships do: check rudder area, and calibrate")
     return out
@@ -272,7 +350,10 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
     for f in PARTICULARS:
         source = notes[f.name]["source"]
         mark = "" if source == "given" else f"estimated: {reg.SOURCES.get(source, source).split(':')[0]}"
-        lines.append(f"  {f.name:5} {getattr(ship, f.name):>12.5g} {f.metadata['unit']:6} {f.metadata['doc']:38} {mark}".rstrip())
+        lines.append(
+            f"  {f.name:5} {getattr(ship, f.name):>12.5g} {f.metadata['unit']:6} "
+            f"{f.metadata['doc']:38} {mark}".rstrip()
+        )
     others = [f"--{option} {given[option]:g}" for option in INSIDE if given[option] is not None]
     lines += ["", f"  also given, and in her derivatives: {', '.join(others)}"] if others else []
     bridge = "as given" if given["shaft-speed-rpm"] else "compare it with the bridge's"
@@ -280,10 +361,13 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
     stable = "goes straight by herself" if figures["straight_line_stability"] > 0 else unstable
     over = figures["overshoot_20_20_deg"]
     lines += [
-        "", "  sea trial of this model (estimates; how she turns is only roughly right until she is calibrated)",
-        f"    {figures['shaft_speed_rpm']:.0f} rpm at {ship.U_0:.3g} m/s ({ship.U_0 / 0.514444:.1f} kn): {bridge}",
-        f"    turning circle 35 deg: advance {figures['advance_L']:.1f} L, tactical diameter {figures['tactical_diameter_L']:.1f} L,"
+        "",
+        "  sea trial of this model (estimates; how she turns is only roughly right until she is calibrated)",
+        f"    {figures['shaft_speed_rpm']:.0f} rpm at {ship.U_0:.3g} m/s ({ship.U_0 / 0.514444:.1f} kn): "
+        f"{bridge}",
+        f"    turning circle 35 deg: advance {figures['advance_L']:.1f} L, tactical diameter "
+        f"{figures['tactical_diameter_L']:.1f} L,"
         f" {100 * figures['speed_left']:.0f} % of the speed left",
         f"    zigzag 20/20: first overshoot {'none' if over is None else f'{over:.0f} deg'};  {stable}",
-    ]  # fmt: skip
+    ]
     return "\n".join(lines + ([""] + [f"  careful: {w}" for w in warnings] if warnings else []))

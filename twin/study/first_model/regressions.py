@@ -1,7 +1,8 @@
-"""A ship's numbers from her main particulars: published regressions, each with its source and the hulls it was made from.
+"""A ship's numbers from her main particulars: published regressions, each with its source and the hulls it
+was made from.
 
-Prime form as in twin/physics/core.py. Names follow MMG where a regression does; `modulus.py` turns them into the core's form.
-"""
+Prime form as in twin/physics/core.py. Names follow MMG where a regression does; `modulus.py` turns them into
+the core's form."""
 
 from math import atan, log10, pi
 from typing import NamedTuple
@@ -10,18 +11,25 @@ Estimates = dict[str, tuple[float, str]]  # name -> value, key in SOURCES
 
 SOURCES = {
     "given": "given by the owner",
-    "KIJ90": "Kijima, Katsuno, Nakiri & Furukawa (1990) J. Soc. Naval Arch. Japan 168: hull beyond its linear part, a_H; by C_b B/L, T/B",
-    "YM12": "Yoshimura & Masumoto (2012) MARSIM: the same, hull in surge, flow at the rudder, t_R; by C_b B/L, L/B",
-    "CGH83": "Clarke, Gedling & Hine (1983) Trans. RINA 125, 45-68: added masses and linear damping by T/L, B/L, C_b B/T",
+    "KIJ90": "Kijima, Katsuno, Nakiri & Furukawa (1990) J. Soc. Naval Arch. Japan 168: hull beyond its "
+    "linear part, a_H; by C_b B/L, T/B",
+    "YM12": "Yoshimura & Masumoto (2012) MARSIM: the same, hull in surge, flow at the rudder, t_R; by C_b "
+    "B/L, L/B",
+    "CGH83": "Clarke, Gedling & Hine (1983) Trans. RINA 125, 45-68: added masses and linear damping by T/L, "
+    "B/L, C_b B/T",
     "SOE82": "Soeding (1982) Schiffstechnik 29, 3-29: added mass in surge, 2.7 rho V^(5/3)/L^2",
     "HAS80": "Hasegawa (1980) J. Kansai Soc. Naval Arch. Japan 178: X_vr = (1.66 C_b - 1.525) m_y",
-    "MAT80": "Matsumoto & Suemitsu (1980) J. Kansai Soc. Naval Arch. Japan 176: slipstream at the rudder, kappa = 0.6/epsilon, epsilon near 1.02",
-    "FUJ61": "Fujii & Tsuda (1961) J. Soc. Naval Arch. Japan 110: slope of the rudder force 6.13 A/(A + 2.25), A the aspect ratio",
+    "MAT80": "Matsumoto & Suemitsu (1980) J. Kansai Soc. Naval Arch. Japan 176: slipstream at the rudder, "
+    "kappa = 0.6/epsilon, epsilon near 1.02",
+    "FUJ61": "Fujii & Tsuda (1961) J. Soc. Naval Arch. Japan 110: slope of the rudder force 6.13 A/(A + "
+    "2.25), A the aspect ratio",
     "DNV": "Det Norske Veritas (1975) Rules for Steel Ships: rudder area T L/100 (1 + 25 (B/L)^2)",
-    "ITTC57": "ITTC (1957) friction line, Watanabe's form factor, Bowden & Davison's allowance, Denny-Mumford's wetted surface, residual part by Froude number",
+    "ITTC57": "ITTC (1957) friction line, Watanabe's form factor, Bowden & Davison's allowance, "
+    "Denny-Mumford's wetted surface, residual part by Froude number",
     "TAY43": "Taylor (1943) The Speed and Power of Ships: w = 0.5 C_b - 0.05, twin screws 0.55 C_b - 0.2",
     "HAR83": "Harvald (1983) Resistance and Propulsion of Ships: t near 0.2 for single screws",
-    "WAG": "Wageningen B-series, 4 blades: K_T = K_T0 (1 - J/(1.1 P/D)), K_T0 = 0.43 P/D - 0.02 (Oosterveld & van Oossanen 1975)",
+    "WAG": "Wageningen B-series, 4 blades: K_T = K_T0 (1 - J/(1.1 P/D)), K_T0 = 0.43 P/D - 0.02 (Oosterveld "
+    "& van Oossanen 1975)",
     "ALEX": "Alexander's formula C_b = 1.08 - 1.68 Fr (Schneekluth & Bertram 1998)",
     "RULE": "rule of thumb from the bundled ships: expect +-30 %",
     "ROUGH": "a guess by size only: expect a factor of 2",
@@ -62,7 +70,12 @@ class Hull(NamedTuple):
 
     @property
     def ratios(self) -> dict[str, float]:
-        return {"C_b": self.C_b, "L/B": self.L / self.B, "B/T": self.B / self.T, "Fr": self.U / (9.80665 * self.L) ** 0.5}
+        return {
+            "C_b": self.C_b,
+            "L/B": self.L / self.B,
+            "B/T": self.B / self.T,
+            "Fr": self.U / (9.80665 * self.L) ** 0.5,
+        }
 
 
 def outside(h: Hull) -> list[str]:
@@ -71,11 +84,15 @@ def outside(h: Hull) -> list[str]:
     for source, name, lo, hi in VALIDITY:
         if not lo <= h.ratios[name] <= hi:
             found.setdefault(name, []).append(f"{SOURCES[source].split(')')[0]}) {lo:g} to {hi:g}")
-    return [f"{name} = {h.ratios[name]:.3g} is unlike the hulls of {', '.join(where)}: rougher until calibrated" for name, where in found.items()]
+    return [
+        f"{name} = {h.ratios[name]:.3g} is unlike the hulls of {', '.join(where)}: rougher until calibrated"
+        for name, where in found.items()
+    ]
 
 
 def nearest(h: Hull) -> Hull:
-    """The hull of usual proportions that is nearest to this one: a regression is never asked far outside its hulls.
+    """The hull of usual proportions that is nearest to this one: a regression is never asked far outside its
+    hulls.
 
     A catamaran or a raft is taken for a ship of her length, draught and mass; calibration must do the rest.
     """
@@ -91,12 +108,14 @@ def typical_block_coefficient(L: float, U: float | None) -> tuple[float, str]:
 
 
 def service_speed(L: float, C_b: float) -> float:
-    """U_0 [m/s] at which a hull of this fullness is usually driven (Alexander), Froude number 0.13 to 0.34."""
+    """U_0 [m/s] at which a hull of this fullness is usually driven (Alexander), Froude number 0.13 to
+    0.34."""
     return min(0.34, max(0.13, (1.08 - C_b) / 1.68)) * (9.80665 * L) ** 0.5
 
 
 def added_masses(h: Hull) -> Estimates:
-    """Added masses in prime form; the two couplings of sway and yaw are made equal (their mean), as potential flow has them."""
+    """Added masses in prime form; the two couplings of sway and yaw are made equal (their mean), as potential
+    flow has them."""
     aspect = pi * h.T / h.L  # pi (T/L)^2 over T/L, since we divide by T instead of L
     B_L, B_T = h.B / h.L, h.B / h.T
     coupled = 0.5 * (0.67 * B_L - 0.0033 * B_T**2 + 1.1 * B_L - 0.041 * B_T)
@@ -112,24 +131,40 @@ def added_masses(h: Hull) -> Estimates:
 def hull_polynomial(h: Hull, m_y: float) -> dict[str, float]:
     """The hull in v' = -beta and r'; vv stands for |v| v.
 
-    Linear part by CGH83. Beyond it the regressions disagree, KIJ90 turning wide and YM12 tight, with the tests of KVLCC2 and S175 between
-    them: we take their mean.
-    """
+    Linear part by CGH83. Beyond it the regressions disagree, KIJ90 turning wide and YM12 tight, with the
+    tests of KVLCC2 and S175 between them: we take their mean."""
     s, T_L, T_B, L_B = h.C_b * h.B / h.L, h.T / h.L, h.T / h.B, h.L / h.B
     full, fine, lift = T_B * h.C_b, T_B * (1.0 - h.C_b), pi * h.T / h.L
     linear = {
         "Y_v": -lift * (1.0 + 0.4 * h.C_b / T_B), "Y_r": lift * (0.5 - 2.2 / L_B + 0.08 / T_B),
         "N_v": -lift * (0.5 + 2.4 * T_L), "N_r": -lift * (0.25 + 0.039 / T_B - 0.56 / L_B),
     }  # fmt: skip
-    surge = {"X_vv": 1.15 * s - 0.18, "X_vr": (1.66 * h.C_b - 1.525) * m_y, "X_rr": 0.01, "X_vvvv": 1.1 - 6.68 * s}
+    surge = {
+        "X_vv": 1.15 * s - 0.18,
+        "X_vr": (1.66 * h.C_b - 1.525) * m_y,
+        "X_rr": 0.01,
+        "X_vvvv": 1.1 - 6.68 * s,
+    }
     kijima = {
-        "Y_vv": -(2.5 * fine + 0.5), "Y_rr": 0.343 * full - 0.07, "Y_vvr": 1.5 * full - 0.65, "Y_vrr": -5.95 * fine,
-        "N_vv": 0.96 * fine - 0.066, "N_rr": 0.5 * s - 0.09, "N_vvr": -(57.5 * s * s - 18.4 * s + 1.6), "N_vrr": 0.5 * full - 0.05,
-    }  # fmt: skip
+        "Y_vv": -(2.5 * fine + 0.5),
+        "Y_rr": 0.343 * full - 0.07,
+        "Y_vvr": 1.5 * full - 0.65,
+        "Y_vrr": -5.95 * fine,
+        "N_vv": 0.96 * fine - 0.066,
+        "N_rr": 0.5 * s - 0.09,
+        "N_vvr": -(57.5 * s * s - 18.4 * s + 1.6),
+        "N_vrr": 0.5 * full - 0.05,
+    }
     yoshimura = {
-        "Y_vvv": -(0.185 * L_B + 0.48), "Y_vvr": -0.75, "Y_vrr": -(0.26 * (1.0 - h.C_b) * L_B + 0.11), "Y_rrr": -0.051,
-        "N_vvv": 0.69 * h.C_b - 0.66, "N_vvr": 1.55 * s - 0.76, "N_vrr": -(0.075 * (1.0 - h.C_b) * L_B + 0.098), "N_rrr": 0.25 * s - 0.056,
-    }  # fmt: skip
+        "Y_vvv": -(0.185 * L_B + 0.48),
+        "Y_vvr": -0.75,
+        "Y_vrr": -(0.26 * (1.0 - h.C_b) * L_B + 0.11),
+        "Y_rrr": -0.051,
+        "N_vvv": 0.69 * h.C_b - 0.66,
+        "N_vvr": 1.55 * s - 0.76,
+        "N_vrr": -(0.075 * (1.0 - h.C_b) * L_B + 0.098),
+        "N_rrr": 0.25 * s - 0.056,
+    }
     mean = {k: 0.5 * (kijima.get(k, 0.0) + yoshimura.get(k, 0.0)) for k in kijima | yoshimura}
     return surge | linear | mean
 
@@ -141,8 +176,10 @@ def resistance(h: Hull) -> float:
     friction = 0.075 / (log10(reynolds) - 2.0) ** 2
     form = max(0.02, -0.095 + 25.6 * h.C_b / ((h.L / h.B) ** 2 * (h.B / h.T) ** 0.5))
     roughness = min(4e-4, (105.0 * (150e-6 / h.L) ** (1.0 / 3.0) - 0.64) * 1e-3)
-    residual = min(0.012, 4e-4 + 1e-3 * 10.0 ** (5.2 * (h.ratios["Fr"] - 0.27)))  # of the order of Guldhammer & Harvald (1974)
-    return 1.05 * (friction * (1.0 + form) + roughness + residual) * surface / (h.L * h.T)  # 5 % for appendages
+    # of the order of Guldhammer & Harvald (1974)
+    residual = min(0.012, 4e-4 + 1e-3 * 10.0 ** (5.2 * (h.ratios["Fr"] - 0.27)))
+    # 5 % for appendages
+    return 1.05 * (friction * (1.0 + form) + roughness + residual) * surface / (h.L * h.T)
 
 
 def propulsion(h: Hull, pitch_ratio: float, screws: float = 1.0) -> Estimates:
@@ -160,6 +197,11 @@ def steering(h: Hull, aspect: float) -> Estimates:
     s = h.C_b * h.B / h.L
     gamma, l_R = 2.06 * s + 0.14, 1.7 * s - 1.0
     return {
-        "C_L": (6.13 * aspect / (aspect + 2.25), "FUJ61"), "t_R": (0.39, "YM12"), "a_H": (max(0.0, 0.627 * h.C_b - 0.153), "KIJ90"),
-        "x_R": (-0.5, "RULE"), "x_H": (-0.45, "YM12"), "gamma_v": (gamma, "YM12"), "gamma_r": (gamma * l_R, "YM12"),
-    }  # fmt: skip
+        "C_L": (6.13 * aspect / (aspect + 2.25), "FUJ61"),
+        "t_R": (0.39, "YM12"),
+        "a_H": (max(0.0, 0.627 * h.C_b - 0.153), "KIJ90"),
+        "x_R": (-0.5, "RULE"),
+        "x_H": (-0.45, "YM12"),
+        "gamma_v": (gamma, "YM12"),
+        "gamma_r": (gamma * l_R, "YM12"),
+    }

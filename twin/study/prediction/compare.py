@@ -26,9 +26,10 @@ EPILOG = """example:
   twin compare monday.mcap tuesday.mcap --ship alma.toml --report compare.html
   twin compare monday.mcap --ship alma.toml --fail-above position_mae_m=50 --json -
 
-Metrics of --fail-above: position_mae_m, lateral_mae_m, heading_mae_deg (at the longest horizon, or at one: position_mae_m@60),
-noise_units (position error over its floor), unexplained_force.surge|sway|yaw, learned_share, channels.COLUMN.mae.
-Exit code 3: a threshold is passed; 4: a voyage cannot be used; 5: the ship file is not valid.
+Metrics of --fail-above: position_mae_m, lateral_mae_m, heading_mae_deg (at the longest horizon, or at one:
+position_mae_m@60), noise_units (position error over its floor), unexplained_force.surge|sway|yaw,
+learned_share, channels.COLUMN.mae. Exit code 3: a threshold is passed; 4: a voyage cannot be used; 5: the
+ship file is not valid.
 """
 
 
@@ -46,11 +47,15 @@ def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] 
     """Predict every voyage open loop and judge the errors together."""
     ship, floor = model.ship, floor_of(model.ship)
     models = [fed(model, s.track)[0] for s in sailed]
-    windows = [predict(s.track, m, horizons_s, floor=floor, seed=i) for i, (s, m) in enumerate(zip(sailed, models, strict=True))]
+    windows = [
+        predict(s.track, m, horizons_s, floor=floor, seed=i)
+        for i, (s, m) in enumerate(zip(sailed, models, strict=True))
+    ]
     rows = score.horizons(windows, horizons_s, floor is not None)
     if not rows:
         raise DataError(
-            f"{', '.join(s.track.name for s in sailed)}: no stretch of {min(horizons_s):g} s with controls and position "
+            f"{', '.join(s.track.name for s in sailed)}: no stretch of {min(horizons_s):g} s with controls "
+            "and position "
             "throughout. Give a longer voyage, or shorter horizons with --horizon."
         )
     longest = rows[-1]["horizon_s"]
@@ -68,7 +73,9 @@ def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] 
     return Compared(plain(result), tuple(sailed), tuple(models), tuple(windows))
 
 
-def _result(ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[str, Any]], judged: Energy) -> dict[str, Any]:
+def _result(
+    ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[str, Any]], judged: Energy
+) -> dict[str, Any]:
     from twin.live.learning.residual import ship_hash
     from twin.recording.checks import run_checks
 
@@ -91,25 +98,35 @@ def _result(ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[
 
 
 def _locating(rows: list[dict[str, Any]]) -> float:
-    """The horizon at which errors are located: one below the longest, since a shorter window says better when it happened."""
+    """The horizon at which errors are located: one below the longest, since a shorter window says better when
+    it happened."""
     return float(rows[max(len(rows) - 2, 0)]["horizon_s"])
 
 
 def verdict(result: dict[str, Any]) -> str:
-    """The sentence that an engineer reads first: of the longest horizon, or, where that one is no worse than it may be, of the one that stands out
-    most."""
+    """The sentence that an engineer reads first: of the longest horizon, or, where that one is no worse than
+    it may be, of the one that stands out most."""
     keys, rows = ("position_mae_m", "heading_mae_deg"), result["horizons"]
     most = [max(score.in_noise(row, k) for k in keys) for row in rows]
     row = rows[-1 if most[-1] >= CLEARLY or max(most) < CLEARLY else most.index(max(most))]
     floor, times = row["noise_floor"], [score.in_noise(row, k) for k in keys]
-    best = "a model as good as its calibration" if row["noise_floor"]["of"] != "sensors" else "a perfect model"
+    best = (
+        ("a model as good as its calibration") if row["noise_floor"]["of"] != "sensors" else "a perfect model"
+    )
     head = f"After {row['horizon_s']:g} s the model is {row[keys[0]]:.3g} m and {row[keys[1]]:.2g} deg off"
     would = f"{best} would look through these instruments ({floor[keys[0]]:.2g} m, {floor[keys[1]]:.2g} deg)"
     if max(times) < CLEARLY:
         return f"{head}: no worse than {would}."
     tail = f", {times[0]:.2g} and {times[1]:.2g} times what {would}"
     where = result["where"][:1]
-    return head + tail + "".join(f"; it is {w['error_ratio']:.2g} times larger with {w['condition']} than elsewhere" for w in where) + "."
+    return (
+        head
+        + tail
+        + "".join(
+            f"; it is {w['error_ratio']:.2g} times larger with {w['condition']} than elsewhere" for w in where
+        )
+        + "."
+    )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -120,7 +137,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         help="voyages: MCAP logs or CSV files with the contract's columns",
     )
-    parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name")
+    parser.add_argument(
+        "--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name"
+    )
     parser.add_argument(
         "--horizon",
         metavar="S",

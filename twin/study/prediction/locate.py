@@ -1,7 +1,9 @@
-"""Where a model fails: conditions under which its error is larger than elsewhere, beyond chance, and its worst windows.
+"""Where a model fails: conditions under which its error is larger than elsewhere, beyond chance, and its
+worst windows.
 
-Chance is judged by sliding the errors along each voyage against what went on in it (a circular shift keeps how both hang
-together in time) and looking at the most striking of *all* conditions each time, so that noise yields no regime.
+Chance is judged by sliding the errors along each voyage against what went on in it (a circular shift keeps
+how both hang together in time) and looking at the most striking of *all* conditions each time, so that noise
+yields no regime.
 
 Source: Westfall & Young (1993) Resampling-based multiple testing, ch. 2 (maximum statistic).
 """
@@ -18,24 +20,29 @@ from twin.study.prediction.score import pooled
 
 CHANCE = 0.05
 SHIFTS = 400
-LEAST = 0.05  # errors are judged by their logarithm, that one wild window does not decide; this much is added to each
+# errors are judged by their logarithm, that one wild window does not decide; this much is added to each
+LEAST = 0.05
 FEWEST = 8  # windows inside and outside a condition
 RATIO = 1.15  # an error less than this above elsewhere is not worth a sentence
 MOST = 8
 
 
-def sizes(windows: Sequence[Windows], horizon_s: float, run: int = MODEL, like: np.ndarray | None = None) -> np.ndarray:
+def sizes(
+    windows: Sequence[Windows], horizon_s: float, run: int = MODEL, like: np.ndarray | None = None
+) -> np.ndarray:
     """(W,) one error for each window: position and heading, each over its mean of the model's errors."""
     errors, model = pooled(windows, horizon_s, run), pooled(windows, horizon_s)
     scaled = [errors[n] / max(float(np.nanmean(model[n])), 1e-12) for n in ("position", "heading")]
     return 0.5 * (scaled[0] + scaled[1])
 
 
-def regimes(windows: Sequence[Windows], horizon_s: float, ship: Ship, structural: bool = False) -> list[dict[str, Any]]:
+def regimes(
+    windows: Sequence[Windows], horizon_s: float, ship: Ship, structural: bool = False
+) -> list[dict[str, Any]]:
     """[{condition, error_ratio, time_share, explains}], what explains most first.
 
-    error_ratio: error inside over error elsewhere; explains: share of all error that stands above the level elsewhere.
-    """
+    error_ratio: error inside over error elsewhere; explains: share of all error that stands above the level
+    elsewhere."""
     error = sizes(windows, horizon_s)
     m = means(windows, horizon_s)
     ok = np.isfinite(error)
@@ -67,22 +74,32 @@ def regimes(windows: Sequence[Windows], horizon_s: float, ship: Ship, structural
 
 
 def _beyond_chance(masks: np.ndarray, error: np.ndarray, voyage: np.ndarray) -> np.ndarray:
-    """(C,) whether a condition strikes more than the most striking one does by chance, each by its own measure of chance."""
+    """(C,) whether a condition strikes more than the most striking one does by chance, each by its own
+    measure of chance."""
     seen, chance = _striking(masks, error[None]), _striking(masks, _shifted(error, voyage))
     middle, spread = chance.mean(1, keepdims=True), chance.std(1, keepdims=True)
     moves = spread > 1e-6  # a condition that is a whole voyage cannot be judged by sliding within it
-    limit = np.quantile(((chance - middle) / (spread + 1e-12))[moves[:, 0]].max(0), 1.0 - CHANCE) if moves.any() else np.inf
-    return np.where(moves, (seen - middle) / (spread + 1e-12) > limit, _whole_voyages(masks, error, voyage)[:, None])[:, 0]
+    limit = (
+        np.quantile(((chance - middle) / (spread + 1e-12))[moves[:, 0]].max(0), 1.0 - CHANCE)
+        if moves.any()
+        else np.inf
+    )
+    return np.where(
+        moves, (seen - middle) / (spread + 1e-12) > limit, _whole_voyages(masks, error, voyage)[:, None]
+    )[:, 0]
 
 
 def _whole_voyages(masks: np.ndarray, error: np.ndarray, voyage: np.ndarray) -> np.ndarray:
-    """(C,) whether the error inside differs from that outside when only every tenth or so window counts as a new one."""
-    runs = max(1, round(error.size / (12.0 * np.unique(voyage).size)))  # windows of a twelfth of a voyage hang together
+    """(C,) whether the error inside differs from that outside when only every tenth or so window counts as a
+    new one."""
+    # windows of a twelfth of a voyage hang together
+    runs = max(1, round(error.size / (12.0 * np.unique(voyage).size)))
     return _striking(masks, error[None])[:, 0] / np.sqrt(runs) > 3.0
 
 
 def _striking(masks: np.ndarray, errors: np.ndarray) -> np.ndarray:
-    """(C, S) how far the mean inside each condition lies above the mean elsewhere, in standard deviations of white errors."""
+    """(C, S) how far the mean inside each condition lies above the mean elsewhere, in standard deviations of
+    white errors."""
     inside = masks.sum(1)[:, None]
     outside = masks.shape[1] - inside
     total = masks @ errors.T
@@ -111,7 +128,8 @@ def _distinct(found: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def worst(windows: Sequence[Windows], horizon_s: float, most: int = 5) -> list[dict[str, Any]]:
-    """Windows that do not overlap, the worst first: [{voyage, start_s, end_s, error_ratio, position_m, heading_deg}]."""
+    """Windows that do not overlap, the worst first: [{voyage, start_s, end_s, error_ratio, position_m,
+    heading_deg}]."""
     error, errors = sizes(windows, horizon_s), pooled(windows, horizon_s)
     owner = np.concatenate([np.full(w.start.size, i) for i, w in enumerate(windows)])
     start = np.concatenate([w.track.t[w.start] for w in windows])
@@ -122,8 +140,14 @@ def worst(windows: Sequence[Windows], horizon_s: float, most: int = 5) -> list[d
             break
         if any(o["voyage"] == name and abs(o["start_s"] - start[k]) < horizon_s for o in out):
             continue
-        out.append({
-            "start_s": float(start[k]), "end_s": float(start[k] + horizon_s), "error_ratio": float(error[k] / np.nanmean(error)),
-            "voyage": name, "position_m": float(errors["position"][k]), "heading_deg": float(errors["heading"][k]),
-        })  # fmt: skip
+        out.append(
+            {
+                "start_s": float(start[k]),
+                "end_s": float(start[k] + horizon_s),
+                "error_ratio": float(error[k] / np.nanmean(error)),
+                "voyage": name,
+                "position_m": float(errors["position"][k]),
+                "heading_deg": float(errors["heading"][k]),
+            }
+        )
     return out

@@ -1,12 +1,13 @@
 """Open-loop prediction: the model alone, from the measured state, over many windows of a voyage side by side.
 
-Each window begins in the smooth motion under the readings (kinematics only), with the faults of the instruments undone, and runs
-on recorded controls and weather; what it promises goes through the instruments before it is compared with what they said.
+Each window begins in the smooth motion under the readings (kinematics only), with the faults of the
+instruments undone, and runs on recorded controls and weather; what it promises goes through the instruments
+before it is compared with what they said.
 
-Beside every prediction runs the noise floor: the same window begun in a state that is off as the readings' scatter leaves it,
-read with that scatter (`SENSORS`); and once more with the slow disturbances a calibrated model of this ship is known to miss
-(`STRUCTURE`). What these two are off by is what a perfect model, and a model as good as its calibration, would still show.
-"""
+Beside every prediction runs the noise floor: the same window begun in a state that is off as the readings'
+scatter leaves it, read with that scatter (`SENSORS`); and once more with the slow disturbances a calibrated
+model of this ship is known to miss (`STRUCTURE`). What these two are off by is what a perfect model, and a
+model as good as its calibration, would still show."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -40,7 +41,8 @@ class Windows:
     track: Track
     start: np.ndarray  # (W,) grid step at which each begins
     lead: np.ndarray  # (K,) grid steps ahead
-    promised: np.ndarray  # (3, K, W, 8) readings; of the floors only the difference to the model's has a meaning
+    # (3, K, W, 8) readings; of the floors only the difference to the model's has a meaning
+    promised: np.ndarray
     valid: np.ndarray  # (K, W) controls known all the way, and the position measured at both ends
     seen: np.ndarray  # (N, 8) what was measured, with short holes bridged (see start.py)
 
@@ -54,14 +56,16 @@ class Windows:
         return int(np.argmin(np.abs(self.lead * self.track.h - horizon_s)))
 
     def off(self, run: int = MODEL) -> np.ndarray:
-        """(K, W, 8) promise minus measurement of the model; of a floor, what noise alone makes of it. NaN where not valid."""
+        """(K, W, 8) promise minus measurement of the model; of a floor, what noise alone makes of it. NaN
+        where not valid."""
         against = self.seen[self.step] if run == MODEL else self.promised[MODEL]
         off = self.promised[run] - against
         off[..., 2] = (off[..., 2] + np.pi) % (2.0 * np.pi) - np.pi
         return np.where(self.valid[..., None], off, np.nan)
 
     def errors(self, run: int = MODEL) -> dict[str, np.ndarray]:
-        """(K, W) sizes: `position` [m], `lateral` (across the heading at the start) [m] and `heading` [rad]."""
+        """(K, W) sizes: `position` [m], `lateral` (across the heading at the start) [m] and `heading`
+        [rad]."""
         off, psi = self.off(run), self.track.state[self.start, 2]
         return {
             "position": np.hypot(off[..., 0], off[..., 1]),
@@ -74,7 +78,8 @@ def predict(
     track: Track, model: Model, horizons_s: Sequence[float] = HORIZONS_S, *, floor: Floor | None = None,
     stride_s: float = STRIDE_S, leads: int = LEADS, seed: int = 0,
 ) -> Windows:  # fmt: skip
-    """Run the model over the track's windows. `floor`: what calibration left unexplained, if the ship knows it.
+    """Run the model over the track's windows. `floor`: what calibration left unexplained, if the ship knows
+    it.
 
     Effects whose inputs the track lacks must have been left out (Model.without_inputs).
     """
@@ -87,7 +92,9 @@ def predict(
     begin = np.concatenate([state[start], state[start] + fuzz, state[start] + fuzz]).T
     run = _Run(track, model, start, wind_to, _slow(track, model, floor, start, rng))
     with np.errstate(all="ignore"):  # a bad model may run away: it is then as wrong as can be written down
-        kept = np.nan_to_num(run.through(tuple(begin), lead), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)
+        kept = np.nan_to_num(
+            run.through(tuple(begin), lead), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY
+        ).clip(-RUNAWAY, RUNAWAY)
     promised = kept.reshape(len(lead), 3, start.size, len(READINGS)).transpose(1, 0, 2, 3)
     promised[1:] += track.sd * rng.standard_normal(promised[1].shape)
     windows = Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
@@ -95,25 +102,41 @@ def predict(
 
 
 def _no_better(w: Windows, ship: Ship) -> Windows:
-    """The same with a structural run that is no nearer than the calibrated ship was on voyages that she was not fitted to: what a core misses in
-    the same way for minutes adds up to more than what wanders."""
+    """The same with a structural run that is no nearer than the calibrated ship was on voyages that she was
+    not fitted to: what a core misses in the same way for minutes adds up to more than what wanders."""
     errors, ahead = w.errors(STRUCTURE), w.lead * w.track.h
-    usual = {"position": once_off(ship, "position_m", ahead), "heading": np.radians(once_off(ship, "heading_deg", ahead))}
-    means = {n: np.nanmean(np.where(np.any(w.valid, axis=1, keepdims=True), errors[n], 1.0), 1) for n in usual}
-    place, turn = (np.maximum(1.0, usual[n] / np.maximum(means[n], 1e-12))[:, None] for n in ("position", "heading"))
+    usual = {
+        "position": once_off(ship, "position_m", ahead),
+        "heading": np.radians(once_off(ship, "heading_deg", ahead)),
+    }
+    means = {
+        n: np.nanmean(np.where(np.any(w.valid, axis=1, keepdims=True), errors[n], 1.0), 1) for n in usual
+    }
+    place, turn = (
+        np.maximum(1.0, usual[n] / np.maximum(means[n], 1e-12))[:, None] for n in ("position", "heading")
+    )
     promised = w.promised.copy()
     for i, name in enumerate(READINGS):
-        promised[STRUCTURE, ..., i] += ((turn if name in ("psi", "r") else place) - 1.0) * (promised[STRUCTURE] - promised[MODEL])[..., i]
+        promised[STRUCTURE, ..., i] += ((turn if name in ("psi", "r") else place) - 1.0) * (
+            promised[STRUCTURE] - promised[MODEL]
+        )[..., i]
     return replace(w, promised=promised)
 
 
 def coarse(
-    track: Track, model: Model, horizon_s: float, leads: int, stride_s: float = STRIDE_S, begins: np.ndarray | None = None
-) -> Windows:  # fmt: skip
-    """Run the model alone: `predict` without its noise floors, and in steps of L/U_0 over COARSE, as a fit asks for thousands. `begins` (N,):
-    the steps of the track at which windows may begin, if not at all."""
+    track: Track,
+    model: Model,
+    horizon_s: float,
+    leads: int,
+    stride_s: float = STRIDE_S,
+    begins: np.ndarray | None = None,
+) -> Windows:
+    """Run the model alone: `predict` without its noise floors, and in steps of L/U_0 over COARSE, as a fit
+    asks for thousands. `begins` (N,): the steps of the track at which windows may begin, if not at all."""
     steps = max(1, int(float(model.ship.scale("time")) / COARSE / track.h))
-    lead = steps * np.unique(np.linspace(0.0, horizon_s / track.h / steps, leads + 1)[1:].round().clip(1).astype(int))
+    lead = steps * np.unique(
+        np.linspace(0.0, horizon_s / track.h / steps, leads + 1)[1:].round().clip(1).astype(int)
+    )
     measured = seen(track)
     start = _starts(track, np.isfinite(measured[:, :3]).all(1), int(lead[-1]), stride_s)
     start = start if begins is None else start[begins[start]]
@@ -131,7 +154,8 @@ def _leads(track: Track, horizons_s: Sequence[float], count: int) -> np.ndarray:
 
 
 def _starts(track: Track, placed: np.ndarray, shortest: int, stride_s: float) -> np.ndarray:
-    """Evenly along the track; where it was logged more slowly than it is stepped, from the next step at which she was placed."""
+    """Evenly along the track; where it was logged more slowly than it is stepped, from the next step at which
+    she was placed."""
     last = max(len(track) - max(shortest, 1), 1)
     stride = max(1, round(stride_s / track.h), int(np.ceil(last / MOST_WINDOWS)))
     start = np.arange(0, last, stride)
@@ -168,7 +192,9 @@ class _Slow:
         return Force(*(np.append(none, f) for f in core.force_for(u, v, r, model.c)))
 
 
-def _slow(track: Track, model: Model, floor: Floor | None, start: np.ndarray, rng: np.random.Generator) -> _Slow | None:
+def _slow(
+    track: Track, model: Model, floor: Floor | None, start: np.ndarray, rng: np.random.Generator
+) -> _Slow | None:
     """The disturbances that a floor describes (see innovations.py), drawn for every window."""
     if floor is None:
         return None
@@ -182,7 +208,9 @@ def _slow(track: Track, model: Model, floor: Floor | None, start: np.ndarray, rn
 class _Run:
     """All windows of a track, once or three times each, stepped together."""
 
-    def __init__(self, track: Track, model: Model, start: np.ndarray, wind_to: np.ndarray | None, slow: _Slow | None):
+    def __init__(
+        self, track: Track, model: Model, start: np.ndarray, wind_to: np.ndarray | None, slow: _Slow | None
+    ):
         self.track, self.start, self.slow = track, start, slow
         self.runs = 1  # of every window, side by side
         self.known = replace(model, residual=None)
@@ -192,7 +220,11 @@ class _Run:
             self.inputs["wind_to"] = wind_to
         if slow is not None:
             self.known = replace(
-                self.known, effects=(*model.effects, Current.absent(model.ship).but(north=slow.water[0], east=slow.water[1]))
+                self.known,
+                effects=(
+                    *model.effects,
+                    Current.absent(model.ship).but(north=slow.water[0], east=slow.water[1]),
+                ),
             )
 
     def through(self, state: tuple, lead: np.ndarray, steps: int = 1) -> np.ndarray:
@@ -213,7 +245,9 @@ class _Run:
         after = np.minimum(step + 1, len(self.track) - 1)
         values = {name: np.tile(w[step], self.runs) for name, w in self.inputs.items()}
         for name in ("delta", "n"):
-            values[name] = values[name] + ahead * (np.tile(self.inputs[name][after], self.runs) - values[name])
+            values[name] = values[name] + ahead * (
+                np.tile(self.inputs[name][after], self.runs) - values[name]
+            )
         return Situation(**values, t=np.tile(self.track.t[step], self.runs) + ahead * self.track.h)
 
     def _model(self, k: int, state: tuple) -> Model:

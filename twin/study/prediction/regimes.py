@@ -1,7 +1,8 @@
-"""Conditions a navigator would name (wind on the port beam, turning to starboard, the first third ...), found in the data.
+"""Conditions a navigator would name (wind on the port beam, turning to starboard, the first third ...), found
+in the data.
 
-A condition is a sentence and a mask over windows. Thresholds are the data's own thirds; what hardly varies yields none.
-"""
+A condition is a sentence and a mask over windows. Thresholds are the data's own thirds; what hardly varies
+yields none."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -34,7 +35,10 @@ def means(windows: Sequence[Windows], horizon_s: float) -> Means:
     parts = [_of_track(w, horizon_s) for w in windows]
     names = sorted(set().union(*parts))
     sizes = [w.start.size for w in windows]
-    values = {n: np.concatenate([p.get(n, np.full(size, np.nan)) for p, size in zip(parts, sizes, strict=True)]) for n in names}
+    values = {
+        n: np.concatenate([p.get(n, np.full(size, np.nan)) for p, size in zip(parts, sizes, strict=True)])
+        for n in names
+    }
     return Means(values, np.repeat(np.arange(len(windows)), sizes), tuple(w.track.name for w in windows))
 
 
@@ -49,12 +53,19 @@ def _of_track(w: Windows, horizon_s: float) -> dict[str, np.ndarray]:
     x, y, psi, u, v, r = t.state.T
     rate = np.abs(np.gradient(t.n, t.h)) * ahead * t.h
     out = {
-        "time": t.t[w.start], "north": mean(x), "east": mean(y),
-        "speed": mean(np.hypot(u, v)), "drift": mean(np.arctan2(v, np.abs(u) + 0.01)) * DEG,
-        "rudder": mean(t.delta) * DEG, "rudder_size": mean(np.abs(t.delta)) * DEG,
-        "turning": mean(r) * DEG, "turning_size": mean(np.abs(r)) * DEG,
-        "heading": np.arctan2(mean(np.sin(psi)), mean(np.cos(psi))) * DEG, "rpm": mean(t.n) * 60.0, "rpm_change": mean(rate) * 60.0,
-    }  # fmt: skip
+        "time": t.t[w.start],
+        "north": mean(x),
+        "east": mean(y),
+        "speed": mean(np.hypot(u, v)),
+        "drift": mean(np.arctan2(v, np.abs(u) + 0.01)) * DEG,
+        "rudder": mean(t.delta) * DEG,
+        "rudder_size": mean(np.abs(t.delta)) * DEG,
+        "turning": mean(r) * DEG,
+        "turning_size": mean(np.abs(r)) * DEG,
+        "heading": np.arctan2(mean(np.sin(psi)), mean(np.cos(psi))) * DEG,
+        "rpm": mean(t.n) * 60.0,
+        "rpm_change": mean(rate) * 60.0,
+    }
     seas = t.weather
     if "wind_speed" in seas:
         ahead_, aside = (

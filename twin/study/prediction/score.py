@@ -1,4 +1,5 @@
-"""Open-loop predictions as numbers: error by horizon and by channel, each beside what noise alone would make of it."""
+"""Open-loop predictions as numbers: error by horizon and by channel, each beside what noise alone would make
+of it."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -14,13 +15,17 @@ ANGLES = ("psi", "r")  # readings in radians
 
 
 def pooled(windows: Sequence[Windows], horizon_s: float, run: int = MODEL) -> dict[str, np.ndarray]:
-    """(W,) errors at a horizon over all voyages (position, lateral [m], heading [deg]); NaN where there is none."""
+    """(W,) errors at a horizon over all voyages (position, lateral [m], heading [deg]); NaN where there is
+    none."""
     parts = [{name: e[w.at(horizon_s)] for name, e in w.errors(run).items()} for w in windows]
     return {name: np.concatenate([p[name] for p in parts]) * DEGREES.get(name, 1.0) for name in NAMES}
 
 
-def horizons(windows: Sequence[Windows], horizons_s: Sequence[float], structural: bool) -> list[dict[str, Any]]:
-    """One row for each horizon that has windows; `noise_floor` is of sensors, and of structure when the ship knows it."""
+def horizons(
+    windows: Sequence[Windows], horizons_s: Sequence[float], structural: bool
+) -> list[dict[str, Any]]:
+    """One row for each horizon that has windows; `noise_floor` is of sensors, and of structure when the ship
+    knows it."""
     rows = []
     for horizon in horizons_s:
         errors = pooled(windows, horizon)
@@ -31,7 +36,10 @@ def horizons(windows: Sequence[Windows], horizons_s: Sequence[float], structural
         rows.append(
             {"horizon_s": horizon, "windows": count}
             | {NAMES[name]: float(np.nanmean(e)) for name, e in errors.items()}
-            | {"noise_floor": {NAMES[n]: float(np.nanmean(e)) for n, e in floor.items()} | {"of": _of(structural)}}
+            | {
+                "noise_floor": {NAMES[n]: float(np.nanmean(e)) for n, e in floor.items()}
+                | {"of": _of(structural)}
+            }
         )
     return rows
 
@@ -43,15 +51,17 @@ def _of(structural: bool) -> str:
 def channels(windows: Sequence[Windows], structural: bool) -> dict[str, dict[str, float]]:
     """By column: mean error over every lead up to the longest horizon, its floor, R2 and `skill`.
 
-    r2 = 1 - SSE/SST about the mean of what was measured; skill = 1 - SSE/(SSE of going on as at the start, dead reckoning).
-    """
+    r2 = 1 - SSE/SST about the mean of what was measured; skill = 1 - SSE/(SSE of going on as at the start,
+    dead reckoning)."""
     out = {}
     for i, (reading, column) in enumerate(MEASURED.items()):
         k = 180.0 / np.pi if reading in ANGLES else 1.0
         error = np.concatenate([w.off()[..., i].ravel() for w in windows]) * k
         if not np.isfinite(error).any():
             continue
-        noise = np.concatenate([w.off(STRUCTURE if structural else SENSORS)[..., i].ravel() for w in windows]) * k
+        noise = (
+            np.concatenate([w.off(STRUCTURE if structural else SENSORS)[..., i].ravel() for w in windows]) * k
+        )
         told = np.concatenate([np.where(w.valid, w.seen[w.step, i], np.nan).ravel() for w in windows]) * k
         naive = np.concatenate([reckoned(w)[..., i].ravel() for w in windows]) * k
         out[column] = {

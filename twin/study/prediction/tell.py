@@ -14,7 +14,8 @@ def told(result: dict[str, Any]) -> list[str]:
         *textwrap.wrap(result["verdict"], 100),
         "",
         f"{result['ship']}, {len(result['voyages'])} voyage{'s' * (len(result['voyages']) > 1)}; model: core"
-        + "".join(f" + {e}" for e in result["model"]["effects"]) + (" + residual" if result["model"].get("residual") else ""),
+        + "".join(f" + {e}" for e in result["model"]["effects"])
+        + (" + residual" if result["model"].get("residual") else ""),
         *_horizons(result["horizons"]),
         *_channels(result["channels"]),
         *_forces(result),
@@ -23,7 +24,7 @@ def told(result: dict[str, Any]) -> list[str]:
         *_off(result["switched_off"]),
         *told_of_waves(result["waves"]),
         *_checks(result["data_checks"]),
-    ]  # fmt: skip
+    ]
 
 
 def _units(error: float, floor: float) -> str:
@@ -52,7 +53,10 @@ def _channels(channels: dict[str, dict[str, Any]]) -> list[str]:
         f"{'channel':<36}{'error':>9}{'noise':>9}{'R2':>8}{'skill':>8}   (skill: against dead reckoning)",
     ]
     for name, c in channels.items():
-        cells = [f"{c[k]:>{w}.3f}" if c[k] is not None else " " * (w - 1) + "-" for k, w in (("r2", 8), ("skill", 8))]
+        cells = [
+            f"{c[k]:>{w}.3f}" if c[k] is not None else " " * (w - 1) + "-"
+            for k, w in (("r2", 8), ("skill", 8))
+        ]
         out.append(f"{name:<36}{c['mae']:>9.3g}{c['noise']:>9.2g}{cells[0]}{cells[1]}")
     return out
 
@@ -60,14 +64,21 @@ def _channels(channels: dict[str, dict[str, Any]]) -> list[str]:
 def _forces(result: dict[str, Any]) -> list[str]:
     share = ", ".join(f"{axis} {100.0 * x:.1f} %" for axis, x in result["unexplained_force"].items())
     out = ["", f"force the model misses, beyond noise: {share}"]
-    return out + ([f"learned share of all force: {100.0 * result['learned_share']:.1f} %"] if result["model"].get("residual") else [])
+    return out + (
+        [f"learned share of all force: {100.0 * result['learned_share']:.1f} %"]
+        if result["model"].get("residual")
+        else []
+    )
 
 
 def _where(result: dict[str, Any]) -> list[str]:
     if not result["where"]:
         return ["", "where: no condition stands out beyond chance"]
     out = ["", "where it fails (error against elsewhere, share of the time)"]
-    return out + [f"  x{w['error_ratio']:<5.2g}{100 * w['time_share']:>4.0f} %  {w['condition']}" for w in result["where"]]
+    return out + [
+        f"  x{w['error_ratio']:<5.2g}{100 * w['time_share']:>4.0f} %  {w['condition']}"
+        for w in result["where"]
+    ]
 
 
 def _worst(windows: list[dict[str, Any]]) -> list[str]:
@@ -80,11 +91,16 @@ def _worst(windows: list[dict[str, Any]]) -> list[str]:
 
 
 def _off(entries: list[dict[str, Any]]) -> list[str]:
-    return [f"switched off on {e['voyage']}: {e['effect']}, {', '.join(e['not_measured'])} was not recorded" for e in entries]
+    return [
+        f"switched off on {e['voyage']}: {e['effect']}, {', '.join(e['not_measured'])} was not recorded"
+        for e in entries
+    ]
 
 
 def _checks(checks: list[dict[str, Any]]) -> list[str]:
     bad = [c for c in checks if not c["ok"]]
     if not bad:
         return ["", f"data checks: all {len(checks)} pass"]
-    return ["", "data checks"] + [f"  look  {c.get('voyage', '')}{': ' * ('voyage' in c)}{c['check']}: {c['text']}" for c in bad]
+    return ["", "data checks"] + [
+        f"  look  {c.get('voyage', '')}{': ' * ('voyage' in c)}{c['check']}: {c['text']}" for c in bad
+    ]

@@ -25,7 +25,9 @@ def threshold(text: str) -> tuple[str, float]:
         if at:
             positive(seconds)
     except (ValueError, argparse.ArgumentTypeError):
-        raise argparse.ArgumentTypeError(f"{text!r}: METRIC=VALUE is needed, such as position_mae_m=50") from None
+        raise argparse.ArgumentTypeError(
+            f"{text!r}: METRIC=VALUE is needed, such as position_mae_m=50"
+        ) from None
     known = AT_HORIZON if at else METRICS
     if bare not in known:
         raise argparse.ArgumentTypeError(f"no metric is called {bare!r}.{did_you_mean(bare, known)}")

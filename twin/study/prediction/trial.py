@@ -1,7 +1,8 @@
-"""Sea trials of a model: self-propulsion, turning circle, zigzag, speed kept; the figures shipyards and IMO speak of.
+"""Sea trials of a model: self-propulsion, turning circle, zigzag, speed kept; the figures shipyards and IMO
+speak of.
 
-IMO MSC.137(76): advance <= 4.5 L, tactical diameter <= 5 L, first overshoots of the 10/10 zigzag <= 10-20 deg and of the 20/20 <= 25 deg.
-"""
+IMO MSC.137(76): advance <= 4.5 L, tactical diameter <= 5 L, first overshoots of the 10/10 zigzag <= 10-20 deg
+and of the 20/20 <= 25 deg."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,7 +17,8 @@ Steer = Callable[[Eta_nu], float]  # state -> ordered rudder [rad]
 
 @dataclass(frozen=True)
 class Circle:
-    """A turning circle: advance, transfer and tactical diameter in lengths from the order, and what is left of the speed."""
+    """A turning circle: advance, transfer and tactical diameter in lengths from the order, and what is left
+    of the speed."""
 
     advance: float
     transfer: float
@@ -25,7 +27,8 @@ class Circle:
 
 
 def shaft_speed(model: Model, speed: float) -> float:
-    """Propeller rate [1/s] at which thrust and resistance balance at this speed [m/s], going straight in still water."""
+    """Propeller rate [1/s] at which thrust and resistance balance at this speed [m/s], going straight in
+    still water."""
     c = model.c
     drag = -core.damping(speed, 0.0, 0.0, c)[0]
     a, b = c.T_nn, c.T_nu * c.wake_share * speed  # (1-t) (a n^2 + b n) = drag
@@ -33,7 +36,9 @@ def shaft_speed(model: Model, speed: float) -> float:
     return (-b + (b * b + 4.0 * a * need) ** 0.5) / (2.0 * a)
 
 
-def sail(model: Model, steer: Steer, n: float, seconds: float, u: float, rate: float | None = None) -> list[tuple[float, Eta_nu]]:
+def sail(
+    model: Model, steer: Steer, n: float, seconds: float, u: float, rate: float | None = None
+) -> list[tuple[float, Eta_nu]]:
     """The voyage [(t, state)] under a helmsman, in steps of 1/100 L/U, from straight ahead at u [m/s].
 
     `rate`: fastest rudder [rad/s]; by default 65 deg in 0.7 L/U_0 (28 s for a large tanker, SOLAS).
@@ -51,7 +56,9 @@ def sail(model: Model, steer: Steer, n: float, seconds: float, u: float, rate: f
     return log
 
 
-def turning_circle(model: Model, delta: float, speed: float | None = None, rate: float | None = None) -> Circle:
+def turning_circle(
+    model: Model, delta: float, speed: float | None = None, rate: float | None = None
+) -> Circle:
     """Hard over from straight ahead; delta [rad], positive to starboard."""
     U, L = speed or model.ship.U_0, model.ship.L_pp
     log = sail(model, lambda _: delta, shaft_speed(model, U), 14.0 * L / U, U, rate)
@@ -63,9 +70,15 @@ def turning_circle(model: Model, delta: float, speed: float | None = None, rate:
 
 
 def zigzag(
-    model: Model, delta: float, psi: float, speed: float | None = None, rate: float | None = None, lengths: float = 30.0
+    model: Model,
+    delta: float,
+    psi: float,
+    speed: float | None = None,
+    rate: float | None = None,
+    lengths: float = 30.0,
 ) -> list[float]:
-    """Overshoot angles [deg], first to last, of a zigzag that puts the rudder to delta [rad] whenever the heading passes psi [rad]."""
+    """Overshoot angles [deg], first to last, of a zigzag that puts the rudder to delta [rad] whenever the
+    heading passes psi [rad]."""
     U, L = speed or model.ship.U_0, model.ship.L_pp
     helm = {"side": 1.0 if delta > 0 else -1.0}
 
@@ -76,7 +89,11 @@ def zigzag(
 
     log = sail(model, steer, shaft_speed(model, U), lengths * L / U, U, rate)
     headings = [state[2] for _, state in log]
-    turns = [b for a, b, c in zip(headings, headings[1:], headings[2:], strict=False) if (b - a) * (c - b) < 0 and abs(b) > abs(psi)]
+    turns = [
+        b
+        for a, b, c in zip(headings, headings[1:], headings[2:], strict=False)
+        if (b - a) * (c - b) < 0 and abs(b) > abs(psi)
+    ]
     return [degrees(abs(peak) - abs(psi)) for peak in turns]
 
 
@@ -86,7 +103,8 @@ def _at_heading(log: list[tuple[float, Eta_nu]], psi: float, side: float) -> Eta
 
 
 def straight_line_stability(model: Model) -> float:
-    """Clarke's criterion C' = Y_v (N_r - m x_G u) - (Y_r - m u) N_v, in prime form: > 0 goes straight by herself."""
+    """Clarke's criterion C' = Y_v (N_r - m x_G u) - (Y_r - m u) N_v, in prime form: > 0 goes straight by
+    herself."""
     c, d, ship = model.c, model.loaded.derivatives, model.loaded
     mass = 0.5 * ship.rho * ship.L_pp**2 * ship.T
     Y_v, N_v = d.Y_uv, d.N_uv + d.Y_vdot - d.X_udot

@@ -1,8 +1,8 @@
 """Which share of the force that moves the ship the model misses, axis by axis, and how much of it is learned.
 
 missing force = M (measured acceleration - the model's), both averaged over half a ship length of sailing
-share = (energy of the missing force - energy that sensor noise gives it) / (that + energy of every known force)
-"""
+share = (energy of the missing force - energy that sensor noise gives it) / (that + energy of every known
+force)"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -56,10 +56,17 @@ def _energy(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray, np.ndar
     if model.residual is not None:
         learned = np.column_stack([np.broadcast_to(f, track.t.shape) for f in model.residual(s)])
     noise = noisy(track, model, np.random.default_rng(0))[:, 3:]
-    missing = _force(_slope(state[:, 3:], track.h, width) - _mean(rates, width), model, grown) - _mean(learned, width)
+    missing = _force(_slope(state[:, 3:], track.h, width) - _mean(rates, width), model, grown) - _mean(
+        learned, width
+    )
     shaken = _force(_slope(noise, track.h, width), model, grown)
     whole = _mean(track.whole[:, None].astype(float), width) > 0.999
-    each = np.array([sum(np.broadcast_to(np.square(f[i]), track.t.shape)[track.whole].sum() for f in known.values()) for i in range(3)])
+    each = np.array(
+        [
+            sum(np.broadcast_to(np.square(f[i]), track.t.shape)[track.whole].sum() for f in known.values())
+            for i in range(3)
+        ]
+    )
     square = np.where(whole, np.square(missing) - np.square(shaken), 0.0)
     return square.sum(0), each, np.square(learned)[track.whole].sum(0)
 

@@ -1,11 +1,11 @@
 """What differs from voyage to voyage: how far the core of one voyage is from the core of the next.
 
-A core whose form is only roughly right is another one in a gentle zigzag than in a hard turn. Within a voyage that error has one
-sign, so that the longer the voyage the more surely it is taken for an effect. It is found as such: every reference voyage has
-numbers of its own; those scatter about the ship's (by a share of their priors' widths) which make each voyage clearly more probable
-given the others. A random-effects model: Pinheiro & Bates (2000) Mixed-effects models, ch. 2; variances one at a time where the
-score is steepest: Rao (1948).
-"""
+A core whose form is only roughly right is another one in a gentle zigzag than in a hard turn. Within a voyage
+that error has one sign, so that the longer the voyage the more surely it is taken for an effect. It is found
+as such: every reference voyage has numbers of its own; those scatter about the ship's (by a share of their
+priors' widths) which make each voyage clearly more probable given the others. A random-effects model:
+Pinheiro & Bates (2000) Mixed-effects models, ch. 2; variances one at a time where the score is steepest: Rao
+(1948)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -21,14 +21,16 @@ CLEAR = 5.0  # log probability by which voyages must differ
 
 @dataclass(frozen=True)
 class Told:
-    """What one voyage says in prior widths, tempered: ee - 2 b'z + z'Az for a misfit, half of it a log probability."""
+    """What one voyage says in prior widths, tempered: ee - 2 b'z + z'Az for a misfit, half of it a log
+    probability."""
 
     A: np.ndarray  # (P, P)
     b: np.ndarray  # (P,)
     ee: float
 
     def of_all(self, scatter: np.ndarray) -> "Told":
-        """The same of the ship's own numbers, when this voyage's are scattered about them (`scatter` (P,): variances)."""
+        """The same of the ship's own numbers, when this voyage's are scattered about them (`scatter` (P,):
+        variances)."""
         blur = np.eye(len(self.b)) + self.A * scatter
         both = np.linalg.solve(blur, np.column_stack([self.A, self.b]))
         return Told(both[:, :-1], both[:, -1], self.ee)
@@ -38,10 +40,13 @@ class Told:
         off = self.b - self.A @ mean
         blur = np.eye(len(off)) + self.A @ covariance
         misfit = self.ee - 2.0 * float(self.b @ mean) + float(mean @ self.A @ mean)
-        return -0.5 * (misfit - float(off @ covariance @ np.linalg.solve(blur, off)) + float(np.linalg.slogdet(blur)[1]))
+        return -0.5 * (
+            misfit - float(off @ covariance @ np.linalg.solve(blur, off)) + float(np.linalg.slogdet(blur)[1])
+        )
 
     def score(self, mean: np.ndarray, covariance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """(2, P) how log probability grows with the variance of each number, and how much of that is chance (Fisher information)."""
+        """(2, P) how log probability grows with the variance of each number, and how much of that is chance
+        (Fisher information)."""
         blur = np.eye(len(self.b)) + self.A @ covariance
         pull, weight = np.linalg.solve(blur, self.b - self.A @ mean), np.diag(np.linalg.solve(blur, self.A))
         return 0.5 * (pull**2 - weight), 0.5 * weight**2
@@ -60,7 +65,8 @@ def voyages(normal: Normal, sd: np.ndarray, temper: float) -> list[Told]:
 
 
 def ship_of(told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and covariance of the ship's own numbers, from voyages that are scattered about them, and of priors (precision one)."""
+    """Mean and covariance of the ship's own numbers, from voyages that are scattered about them, and of
+    priors (precision one)."""
     blurred = [t.of_all(scatter) for t in told]
     covariance = np.linalg.inv(np.eye(pull.size) + sum(t.A for t in blurred))
     covariance = 0.5 * (covariance + covariance.T)
@@ -68,7 +74,8 @@ def ship_of(told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray) -> tupl
 
 
 def scattered(told: Sequence[Told], pull: np.ndarray) -> np.ndarray:
-    """(P,) variance of each number from voyage to voyage, in prior widths squared: zero for all but those that clearly differ."""
+    """(P,) variance of each number from voyage to voyage, in prior widths squared: zero for all but those
+    that clearly differ."""
     scatter = np.zeros_like(pull)
     if len(told) < 2:
         return scatter
@@ -87,7 +94,9 @@ def _with(scatter: np.ndarray, i: int, variance: float) -> np.ndarray:
     return out
 
 
-def _others(told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray) -> list[tuple[Told, np.ndarray, np.ndarray]]:
+def _others(
+    told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray
+) -> list[tuple[Told, np.ndarray, np.ndarray]]:
     """Every voyage with the mean and the covariance that the others foretell for its numbers."""
     out = []
     for i, voyage in enumerate(told):
@@ -98,10 +107,14 @@ def _others(told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray) -> list
 
 def _foretold(told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray) -> float:
     """Log probability of every voyage given the others."""
-    return sum(voyage.log_probability(mean, covariance) for voyage, mean, covariance in _others(told, scatter, pull))
+    return sum(
+        voyage.log_probability(mean, covariance) for voyage, mean, covariance in _others(told, scatter, pull)
+    )
 
 
 def _steepest(told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray) -> np.ndarray:
     """The few numbers whose variance the voyages ask for most."""
-    slope, chance = np.sum([voyage.score(mean, covariance) for voyage, mean, covariance in _others(told, scatter, pull)], axis=0)
+    slope, chance = np.sum(
+        [voyage.score(mean, covariance) for voyage, mean, covariance in _others(told, scatter, pull)], axis=0
+    )
     return np.argsort(-slope / np.sqrt(chance + 1e-12))[:FEW]

@@ -36,7 +36,8 @@ def told_by(found: Fit) -> list[Derivative]:
 
 
 def first_prior(unknown: Unknown, ship: Ship) -> Unknown:
-    """A derivative that was calibrated before keeps the prior that it had then, so that no voyage counts twice."""
+    """A derivative that was calibrated before keeps the prior that it had then, so that no voyage counts
+    twice."""
     entry = ship.notes.get("derivatives", {}).get(unknown.name, {}) if unknown.owner == "core" else {}
     centre = entry.get("prior_value") if isinstance(entry, dict) else None
     return unknown if centre is None else replace(unknown, centre=float(centre))
@@ -44,19 +45,32 @@ def first_prior(unknown: Unknown, ship: Ship) -> Unknown:
 
 def with_derivatives(ship: Ship, found: Sequence[Derivative]) -> Ship:
     """The ship with their values, standard errors and priors."""
-    source = f"calibrated {datetime.date.today().isoformat()}", "prior kept: the reference voyages do not excite it"
+    source = (
+        (f"calibrated {datetime.date.today().isoformat()}"),
+        "prior kept: the reference voyages do not excite it",
+    )
     entries = {
-        d.unknown.name: {"value": d.value, "unit": d.unknown.unit, "sd": d.sd, "prior_value": d.unknown.centre, "prior_sd": d.unknown.sd,
-                         "source": source[not d.excited]}
+        d.unknown.name: {
+            "value": d.value,
+            "unit": d.unknown.unit,
+            "sd": d.sd,
+            "prior_value": d.unknown.centre,
+            "prior_sd": d.unknown.sd,
+            "source": source[not d.excited],
+        }
         for d in found
-    }  # fmt: skip
+    }
     after = ship.with_derivatives(**{d.unknown.name: d.value for d in found})
     return noted(after, "derivatives", entries)
 
 
 def with_core_of(ship: Ship, other: Ship) -> Ship:
     """The ship with the derivatives of another fit to the same voyages; their standard errors stay."""
-    values = {name: float(getattr(other.derivatives, name)) for name in ship.notes["derivatives"] if hasattr(other.derivatives, name)}
+    values = {
+        name: float(getattr(other.derivatives, name))
+        for name in ship.notes["derivatives"]
+        if hasattr(other.derivatives, name)
+    }
     entries = {name: ship.notes["derivatives"][name] | {"value": value} for name, value in values.items()}
     return noted(ship.with_derivatives(**values), "derivatives", entries)
 

@@ -1,13 +1,14 @@
 """Which effects explain what the model cannot: the probability of every hypothesis, all judged jointly.
 
-A hypothesis is a set of effects (none, one, two) and a state of the world (how large the floor, how restless the water). Its
-evidence integrates out everything else: the core's derivatives and the instruments' usual errors as the reference voyages left
-them, and a small amount of every effect (a spike far narrower than its plausible size, or as wide as what any day brings of it),
-so that only what is clearly more than nothing counts. The parameters of its own effects are integrated over their priors
-(half-normal in a box with one side), so that a flexible effect pays for its freedom.
+A hypothesis is a set of effects (none, one, two) and a state of the world (how large the floor, how restless
+the water). Its evidence integrates out everything else: the core's derivatives and the instruments' usual
+errors as the reference voyages left them, and a small amount of every effect (a spike far narrower than its
+plausible size, or as wide as what any day brings of it), so that only what is clearly more than nothing
+counts. The parameters of its own effects are integrated over their priors (half-normal in a box with one
+side), so that a flexible effect pays for its freedom.
 
-Source: MacKay (2003) Information theory, inference, and learning algorithms, ch. 28; George & McCulloch (1993), spike and slab.
-"""
+Source: MacKay (2003) Information theory, inference, and learning algorithms, ch. 28; George & McCulloch
+(1993), spike and slab."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -40,8 +41,9 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class Nuisance:
-    """What the reference voyages (or the ship file) say of core and instruments, in prior widths: information and its pull; and how much of an
-    effect any day brings (`daily`: label -> standard deviation in the number's own unit), which is less than "there"."""
+    """What the reference voyages (or the ship file) say of core and instruments, in prior widths: information
+    and its pull; and how much of an effect any day brings (`daily`: label -> standard deviation in the
+    number's own unit), which is less than "there"."""
 
     unknowns: tuple[Unknown, ...]
     information: np.ndarray  # (C, C)
@@ -53,17 +55,25 @@ class Nuisance:
         size = len(self.unknowns)
         information = np.eye(size + len(others))
         information[:size, :size] = self.information
-        return replace(self, unknowns=(*self.unknowns, *others), information=information, pull=np.pad(self.pull, (0, len(others))))
+        return replace(
+            self,
+            unknowns=(*self.unknowns, *others),
+            information=information,
+            pull=np.pad(self.pull, (0, len(others))),
+        )
 
     @cached_property
     def log_norm(self) -> float:
         """By which the log of its density stays one of probability, in whatever unknowns it is written."""
-        return 0.5 * float(np.linalg.slogdet(self.information)[1]) - 0.5 * float(self.pull @ np.linalg.solve(self.information, self.pull))
+        return 0.5 * float(np.linalg.slogdet(self.information)[1]) - 0.5 * float(
+            self.pull @ np.linalg.solve(self.information, self.pull)
+        )
 
 
 @dataclass(frozen=True)
 class Reduced:
-    """Tempered normal equations in prior widths with the nuisance integrated out: what is left concerns the effects."""
+    """Tempered normal equations in prior widths with the nuisance integrated out: what is left concerns the
+    effects."""
 
     A: np.ndarray  # (Q, Q)
     b: np.ndarray  # (Q,)
@@ -78,15 +88,21 @@ class Reduced:
     @cached_property
     def box(self) -> np.ndarray:
         """(2, Q) the boxes, in prior widths from "not there"."""
-        return np.array([[(u.lo - u.centre) / u.sd, (u.hi - u.centre) / u.sd] for u in self.unknowns]).T.reshape(2, -1)
+        return np.array(
+            [[(u.lo - u.centre) / u.sd, (u.hi - u.centre) / u.sd] for u in self.unknowns]
+        ).T.reshape(2, -1)
 
 
 def reduce(
-    normal: Normal, nuisance: Nuisance, all_unknowns: Sequence[Unknown], effects: Sequence[Unknown], temper: float,
+    normal: Normal,
+    nuisance: Nuisance,
+    all_unknowns: Sequence[Unknown],
+    effects: Sequence[Unknown],
+    temper: float,
     at: np.ndarray | None = None,
-) -> Reduced:  # fmt: skip
-    """Integrate the nuisance out of normal equations whose columns are `all_unknowns` (an instrument's usual error and its
-    fault share a column)."""
+) -> Reduced:
+    """Integrate the nuisance out of normal equations whose columns are `all_unknowns` (an instrument's usual
+    error and its fault share a column)."""
     A, b, ee = normal.total()
     place = {u.label: i for i, u in enumerate(all_unknowns)}
     order = (*nuisance.unknowns, *effects)
@@ -95,9 +111,21 @@ def reduce(
     L = np.linalg.cholesky(A[:C, :C] + nuisance.information)
     half = np.linalg.solve(L, np.column_stack([A[:C, C:], b[:C] + nuisance.pull]))
     cross, mean = half[:, :-1], half[:, -1]
-    base = -0.5 * (ee + float(normal.logdet.sum())) / temper + 0.5 * float(mean @ mean) - float(np.log(np.diag(L)).sum()) + nuisance.log_norm
+    base = (
+        -0.5 * (ee + float(normal.logdet.sum())) / temper
+        + 0.5 * float(mean @ mean)
+        - float(np.log(np.diag(L)).sum())
+        + nuisance.log_norm
+    )
     spike = np.array([np.clip(nuisance.daily.get(u.label, 0.0) / u.sd, SPIKE, 1.0) for u in effects])
-    return Reduced(A[C:, C:] - cross.T @ cross, b[C:] - cross.T @ mean, base, tuple(effects), np.zeros(len(effects)) if at is None else at, spike)
+    return Reduced(
+        A[C:, C:] - cross.T @ cross,
+        b[C:] - cross.T @ mean,
+        base,
+        tuple(effects),
+        np.zeros(len(effects)) if at is None else at,
+        spike,
+    )
 
 
 def given(reduced: Reduced, z: np.ndarray, known: np.ndarray) -> Reduced:
@@ -127,17 +155,29 @@ def posterior(reduced: Reduced, effects: Sequence[str]) -> Posterior:
     L = np.linalg.cholesky(K)
     pull = width * reduced.b - reduced.at / width
     half = np.linalg.solve(L, pull)
-    gain = 0.5 * float(half @ half) - 0.5 * float(np.sum((reduced.at / width) ** 2)) - float(np.log(np.diag(L)).sum())
+    gain = (
+        0.5 * float(half @ half)
+        - 0.5 * float(np.sum((reduced.at / width) ** 2))
+        - float(np.log(np.diag(L)).sum())
+    )
     inverse = np.linalg.inv(K)
-    return Posterior(reduced.at + width * (inverse @ pull), inverse * np.outer(width, width), reduced.base + gain)
+    return Posterior(
+        reduced.at + width * (inverse @ pull), inverse * np.outer(width, width), reduced.base + gain
+    )
 
 
 def likeliest(
-    normal: Normal, nuisance: Nuisance, all_unknowns: Sequence[Unknown], effects: Sequence[Unknown], temper: float, at: np.ndarray,
+    normal: Normal,
+    nuisance: Nuisance,
+    all_unknowns: Sequence[Unknown],
+    effects: Sequence[Unknown],
+    temper: float,
+    at: np.ndarray,
     chosen: Sequence[str],
-) -> np.ndarray:  # fmt: skip
-    """(P,) how far each of `all_unknowns` most probably is from where the equations were linearised [its own unit], when the `chosen` effects are
-    there: what the effects leave to core and instruments, and the effects' own share."""
+) -> np.ndarray:
+    """(P,) how far each of `all_unknowns` most probably is from where the equations were linearised [its own
+    unit], when the `chosen` effects are there: what the effects leave to core and instruments, and the
+    effects' own share."""
     A, b, _ = normal.total()
     place = {u.label: i for i, u in enumerate(all_unknowns)}
     usual, own = ([place[u.label] for u in some] for some in (nuisance.unknowns, effects))
@@ -146,7 +186,9 @@ def likeliest(
     pull = sd * (b[usual] - A[np.ix_(usual, own)] @ moved) / temper + nuisance.pull
     theta = np.zeros(len(all_unknowns))
     theta[own] = moved  # an instrument's fault and its usual error share a column
-    theta[usual] += sd * np.linalg.solve(A[np.ix_(usual, usual)] * np.outer(sd, sd) / temper + nuisance.information, pull)
+    theta[usual] += sd * np.linalg.solve(
+        A[np.ix_(usual, usual)] * np.outer(sd, sd) / temper + nuisance.information, pull
+    )
     return theta
 
 
@@ -156,20 +198,24 @@ def boxed(reduced: Reduced, effects: Sequence[str], found: Posterior) -> Posteri
     z[rows], held = stopped(z[rows], found.covariance[np.ix_(rows, rows)], *reduced.box[:, rows])
     if held.size:
         edge, there = rows[held], z[rows[held]]
-        z = found.z + found.covariance[:, edge] @ np.linalg.solve(found.covariance[np.ix_(edge, edge)], there - found.z[edge])
+        z = found.z + found.covariance[:, edge] @ np.linalg.solve(
+            found.covariance[np.ix_(edge, edge)], there - found.z[edge]
+        )
         z[edge] = there  # to the last digit: what stands at nothing is nothing
     return replace(found, z=z)
 
 
 def log_evidence(reduced: Reduced, effects: Sequence[str], found: Posterior) -> float:
-    """Log evidence of a set of effects: what they explain, less what their freedom costs, inside their boxes."""
+    """Log evidence of a set of effects: what they explain, less what their freedom costs, inside their
+    boxes."""
     rows = reduced.rows(effects)
     return found.log_evidence + _inside(reduced, rows, found.z[rows], found.covariance[np.ix_(rows, rows)])
 
 
 def _inside(reduced: Reduced, rows: np.ndarray, value: np.ndarray, covariance: np.ndarray) -> float:
-    """Log of (posterior mass inside the box) / (prior mass inside it). Of numbers that stand at an edge, what falls off behind it, each by itself
-    (exact for one); of the others what is inside one at a time, given those."""
+    """Log of (posterior mass inside the box) / (prior mass inside it). Of numbers that stand at an edge, what
+    falls off behind it, each by itself (exact for one); of the others what is inside one at a time, given
+    those."""
     lo, hi = reduced.box[:, rows]
     z, held = stopped(value, covariance, lo, hi)
     mass = -float(_log_mass(lo, hi).sum())
@@ -194,8 +240,11 @@ def _log_mass(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
     return upper + np.log1p(-np.exp(np.minimum(lower - upper, -1e-12)))
 
 
-def weigh_all(reduced: Reduced, candidates: Sequence[str], most: int = 2) -> list[tuple[tuple[str, ...], float]]:
-    """Log evidence of every set of up to `most` candidates: from the one in which every effect is a spike, low-rank steps away."""
+def weigh_all(
+    reduced: Reduced, candidates: Sequence[str], most: int = 2
+) -> list[tuple[tuple[str, ...], float]]:
+    """Log evidence of every set of up to `most` candidates: from the one in which every effect is a spike,
+    low-rank steps away."""
     spikes = posterior(reduced, ())
     sets = [chosen for size in range(1, most + 1) for chosen in combinations(candidates, size)]
     return [((), spikes.log_evidence), *_opened(reduced, spikes, (), sets)]
@@ -204,13 +253,17 @@ def weigh_all(reduced: Reduced, candidates: Sequence[str], most: int = 2) -> lis
 def weigh_with(reduced: Reduced, held: Sequence[str], candidates: Sequence[str]) -> list[tuple[str, float]]:
     """Log evidence of the set `held` with each of the candidates beside it."""
     found = posterior(reduced, held)
-    return [(chosen[0], e) for chosen, e in _opened(reduced, found, held, [(n,) for n in candidates if n not in held])]
+    return [
+        (chosen[0], e)
+        for chosen, e in _opened(reduced, found, held, [(n,) for n in candidates if n not in held])
+    ]
 
 
 def _opened(
     reduced: Reduced, start: Posterior, held: Sequence[str], sets: Sequence[tuple[str, ...]]
 ) -> list[tuple[tuple[str, ...], float]]:
-    """Log evidence when the spikes of each of `sets` become slabs beside those of `held` (`start`: the posterior under `held`)."""
+    """Log evidence when the spikes of each of `sets` become slabs beside those of `held` (`start`: the
+    posterior under `held`)."""
     rows = {name: reduced.rows((name,)) for name in {n for chosen in sets for n in chosen}}
     own = reduced.rows(held)
     spike = np.broadcast_to(reduced.spike, len(reduced.unknowns))
@@ -221,7 +274,11 @@ def _opened(
         inner = start.covariance[np.ix_(at, at)]
         K = np.eye(at.size) + inner * open_up
         mean = open_up * np.linalg.solve(K, start.z[at])
-        change = -0.5 * float(start.z[at] @ mean) - 0.5 * float(np.linalg.slogdet(K)[1]) + float(np.log(spike[at]).sum())
+        change = (
+            -0.5 * float(start.z[at] @ mean)
+            - 0.5 * float(np.linalg.slogdet(K)[1])
+            + float(np.log(spike[at]).sum())
+        )
         both = np.concatenate([at, own])
         cross = start.covariance[np.ix_(both, at)]
         wide = start.covariance[np.ix_(both, both)] - cross @ (open_up[:, None] * np.linalg.solve(K, cross.T))

@@ -1,4 +1,5 @@
-"""What is known of core and instruments before a voyage is judged: from reference voyages, from the ship file, or from priors."""
+"""What is known of core and instruments before a voyage is judged: from reference voyages, from the ship
+file, or from priors."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -7,63 +8,102 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-from twin.study.estimation.columns import FORM, Unknown, core_unknowns, effect_unknowns, form_unknowns, lateness_unknowns, sea_unknowns
+from twin.study.estimation.columns import (
+    FORM,
+    Unknown,
+    core_unknowns,
+    effect_unknowns,
+    form_unknowns,
+    lateness_unknowns,
+    sea_unknowns,
+)
 from twin.study.estimation.innovations import Floor, Linear, Normal, innovate
 from twin.study.reference.between import scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
 
 USUAL = 0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
 TEMPER = 3.0  # when no reference voyage tells how far innovations are from white
-OF_THE_DAY = ("Current", "VaryingCurrent", "ExternalForce", "TowForce")  # their numbers belong to a voyage, not to the ship
-WEATHER = ("Wind", "WaveDrift", "ShallowWater", "Bank")  # their causes belong to the voyage, their numbers to the ship
+# their numbers belong to a voyage, not to the ship
+OF_THE_DAY = ("Current", "VaryingCurrent", "ExternalForce", "TowForce")
+# their causes belong to the voyage, their numbers to the ship
+WEATHER = ("Wind", "WaveDrift", "ShallowWater", "Bank")
 SURROUNDINGS = (*WEATHER, *OF_THE_DAY)
-AGAIN = ("SteeringLag.ease",)  # to first order what another number of the same effect does: about none, the two would fit a ship's form between them
+# to first order what another number of the same effect does: about none, the two would fit a ship's form
+# between them
+AGAIN = ("SteeringLag.ease",)
 NOTHING = 1e6  # information of what is none
-DAILY = ("Current.north", "Current.east", "ExternalForce.north", "ExternalForce.east")  # a little on every day, another on the next
+# a little on every day, another on the next
+DAILY = ("Current.north", "Current.east", "ExternalForce.north", "ExternalForce.east")
 
 
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
-    """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of each, beside what her file
-    says of it."""
-    every = (u for name, e in catalogue.items() if name not in SURROUNDINGS for u in effect_unknowns(e, model))
+    """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of
+    each, beside what her file says of it."""
+    every = (
+        u for name, e in catalogue.items() if name not in SURROUNDINGS for u in effect_unknowns(e, model)
+    )
     return [u for u in every if u.label not in AGAIN]
 
 
 def daily(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     """What every day brings a little of: no water and no air stands still."""
-    return [u for name in OF_THE_DAY if name in catalogue for u in effect_unknowns(catalogue[name], model) if u.label in DAILY]
+    return [
+        u
+        for name in OF_THE_DAY
+        if name in catalogue
+        for u in effect_unknowns(catalogue[name], model)
+        if u.label in DAILY
+    ]
 
 
 def of_known_weather(model: Model, catalogue: dict[str, type[Effect]]) -> dict[str, float]:
-    """By how much [its own unit] each number of weather that the ship's file knows is usually otherwise: its form is only roughly right, and another
-    wind or sea shows what is not."""
+    """By how much [its own unit] each number of weather that the ship's file knows is usually otherwise: its
+    form is only roughly right, and another wind or sea shows what is not."""
     present = {type(e).__name__ for e in model.effects}.intersection(WEATHER)
-    return {u.label: USUAL * u.sd for name in present if name in catalogue for u in effect_unknowns(catalogue[name], model)}
+    return {
+        u.label: USUAL * u.sd
+        for name in present
+        if name in catalogue
+        for u in effect_unknowns(catalogue[name], model)
+    }
 
 
 def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
-    """Core derivatives aside, what a calibration fits: the instruments' usual errors, and how late they are."""
-    faults = [replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue) if catalogue[u.owner].kind == "SensorFault"]
+    """Core derivatives aside, what a calibration fits: the instruments' usual errors, and how late they
+    are."""
+    faults = [
+        replace(u, sd=USUAL * u.sd)
+        for u in lasting(model, catalogue)
+        if catalogue[u.owner].kind == "SensorFault"
+    ]
     return [*faults, *lateness_unknowns()]
 
 
 def nuisance_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
-    """Core derivatives and what they leave out, in calm water and in waves, what a healthy ship usually shows of every lasting effect, and how late
-    her instruments are."""
+    """Core derivatives and what they leave out, in calm water and in waves, what a healthy ship usually shows
+    of every lasting effect, and how late her instruments are."""
     usual = (replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue))
     return (*core_unknowns(model), *form_unknowns(), *sea_unknowns(), *usual, *lateness_unknowns())
 
 
 def usual_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
     """The same, and what the days of the reference voyages brought."""
-    return (*nuisance_unknowns(model, catalogue), *(replace(u, sd=USUAL * u.sd) for u in daily(model, catalogue)))
+    return (
+        *nuisance_unknowns(model, catalogue),
+        *(replace(u, sd=USUAL * u.sd) for u in daily(model, catalogue)),
+    )
 
 
 def from_references(
-    lines: Sequence[Linear], unknowns: tuple[Unknown, ...], floor: Floor, temper: float, prior: np.ndarray | None = None
+    lines: Sequence[Linear],
+    unknowns: tuple[Unknown, ...],
+    floor: Floor,
+    temper: float,
+    prior: np.ndarray | None = None,
 ) -> tuple[Nuisance, dict[str, float]]:
-    """Prior and reference voyages together (`lines` linearised with exactly these unknowns, in this order), as they concern the next
-    voyage; and by what share of their priors' widths numbers differ from one voyage to another.
+    """Prior and reference voyages together (`lines` linearised with exactly these unknowns, in this order),
+    as they concern the next voyage; and by what share of their priors' widths numbers differ from one voyage
+    to another.
 
     `prior` (C,): prior means where they are not the unknowns' centres.
     """
@@ -82,20 +122,31 @@ def from_references(
 
 
 def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknown]) -> np.ndarray:
-    """(C,) how much of each number a day brings, when these days had such a mean and spread: alike for the parts of one effect, for no wind
-    blows from the north alone."""
+    """(C,) how much of each number a day brings, when these days had such a mean and spread: alike for the
+    parts of one effect, for no wind blows from the north alone."""
     square, owner = mean**2 + variance, np.array([u.owner for u in unknowns])
-    return np.sqrt([square[(owner == u.owner) & [v.label in DAILY for v in unknowns]].mean() if u.label in DAILY else 0.0 for u in unknowns])
+    return np.sqrt(
+        [
+            square[(owner == u.owner) & [v.label in DAILY for v in unknowns]].mean()
+            if u.label in DAILY
+            else 0.0
+            for u in unknowns
+        ]
+    )
 
 
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     """What the ship file's calibration left open; where it says nothing, the priors."""
     stored = model.ship.notes.get("structural", {})
-    since = {type(e).__name__ for e in model.effects} - set(stored.get("beside_effects", ()))  # added when she was calibrated already
+    # added when she was calibrated already
+    since = {type(e).__name__ for e in model.effects} - set(stored.get("beside_effects", ()))
     place = {label: i for i, label in enumerate(stored.get("labels", [])) if label.split(".")[0] not in since}
     size = len(unknowns)
     information, mean = np.eye(size), np.zeros(size)
-    unlearned = [i for i, u in enumerate(unknowns) if place and u.owner in ("core", FORM) and u.label not in place]  # by an earlier calibration
+    # by an earlier calibration
+    unlearned = [
+        i for i, u in enumerate(unknowns) if place and u.owner in ("core", FORM) and u.label not in place
+    ]
     information[unlearned, unlearned] = NOTHING
     mine = [i for i, u in enumerate(unknowns) if u.label in place]
     if mine:
@@ -108,11 +159,11 @@ def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
 
 
 def temper_of(normal: Normal, unknowns: Sequence[Unknown]) -> float:
-    """How much less the innovations tell than they would if they were white: variance of the segments' scores over their information,
-    where the unknowns together explain the voyages best.
+    """How much less the innovations tell than they would if they were white: variance of the segments' scores
+    over their information, where the unknowns together explain the voyages best.
 
-    Only directions that the voyages inform count; the median is taken, between 1.5 and 8 (White 1982, the sandwich).
-    """
+    Only directions that the voyages inform count; the median is taken, between 1.5 and 8 (White 1982, the
+    sandwich)."""
     sd = np.array([u.sd for u in unknowns])
     A, b = normal.A * np.outer(sd, sd), normal.b * sd
     scores = b - A @ np.linalg.solve(np.eye(sd.size) + A.sum(0), b.sum(0))

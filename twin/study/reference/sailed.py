@@ -1,4 +1,5 @@
-"""The voyages a verb works on: read, put on the ship's grid, and with the effects that their recordings can feed."""
+"""The voyages a verb works on: read, put on the ship's grid, and with the effects that their recordings can
+feed."""
 
 import hashlib
 import sys
@@ -27,7 +28,9 @@ class Sailed:
 
     def provenance(self) -> dict[str, Any]:
         start = self.voyage.meta.get("start_time_utc")
-        return {"name": self.track.name, "sha256": self.sha256} | ({"start_time_utc": str(start)} if start else {})
+        return {"name": self.track.name, "sha256": self.sha256} | (
+            {"start_time_utc": str(start)} if start else {}
+        )
 
 
 def read_all(paths: Sequence[str], ship: Ship) -> list[Sailed]:
@@ -36,7 +39,11 @@ def read_all(paths: Sequence[str], ship: Ship) -> list[Sailed]:
     for path in paths:
         print(f"reading {path} ...", file=sys.stderr)
         voyage = read_voyage(path)
-        made = Sailed(voyage, swung(track(voyage, ship), Model.of(ship)), hashlib.sha256(Path(path).read_bytes()).hexdigest())
+        made = Sailed(
+            voyage,
+            swung(track(voyage, ship), Model.of(ship)),
+            hashlib.sha256(Path(path).read_bytes()).hexdigest(),
+        )
         twin = next((s for s in out if s.sha256 == made.sha256), None)
         if twin is not None:
             raise DataError(f"{path}: is the same voyage as {twin.track.name}. Give each voyage once.")

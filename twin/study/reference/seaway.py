@@ -1,11 +1,11 @@
 """Waves: what swings a ship faster than she manoeuvres is the sea's doing, not hers, and is not noise either.
 
-The motion of first order in a seaway is large and swings about zero. A filter that takes it for noise that forgets itself from one
-reading to the next believes far too much, or trusts nothing. So the filter carries the waves' accelerations in narrow bands of their
-own (`waves.py`), as fast and as strong as this voyage shows them: what the model leaves over along the path that is swifter than
-a ship manoeuvres. Whether that is a sea at all, the readings say; and whatever lies in the bands, no cause is read from.
-Separation of wave-frequency and low-frequency motion: Fossen (2021), sec. 13.2.
-"""
+The motion of first order in a seaway is large and swings about zero. A filter that takes it for noise that
+forgets itself from one reading to the next believes far too much, or trusts nothing. So the filter carries
+the waves' accelerations in narrow bands of their own (`waves.py`), as fast and as strong as this voyage shows
+them: what the model leaves over along the path that is swifter than a ship manoeuvres. Whether that is a sea
+at all, the readings say; and whatever lies in the bands, no cause is read from. Separation of wave-frequency
+and low-frequency motion: Fossen (2021), sec. 13.2."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -33,12 +33,15 @@ MOST_SEGMENTS = 12  # by which a sea is judged
 STRENGTHS = (1.0, 2.0, 4.0, 8.0)  # of the waves, in units of what the smooth path shows of them
 WHITES = (1.0, 8.0, 32.0)  # and of the noise that might be there instead
 CLEAR = 20.0  # log evidence, tempered, that waves must add where no sea was measured
-BEYOND = 3.0  # times as strong as is likeliest: one wave swings all axes and the rudder follows it, so that nothing is believed in their band
+# times as strong as is likeliest: one wave swings all axes and the rudder follows it, so that nothing is
+# believed in their band
+BEYOND = 3.0
 
 
 def swung(track: Track, model: Model) -> Track:
-    """The track with what waves do to her, if that is likelier than any noise or a slow gear would be, whatever else may be wrong with her; else
-    without. A sea that was measured need not be proved, but must be the likelier."""
+    """The track with what waves do to her, if that is likelier than any noise or a slow gear would be,
+    whatever else may be wrong with her; else without. A sea that was measured need not be proved, but must be
+    the likelier."""
     track = track if track.swell is None else replace(track, swell=None)
     usable, known = model.without_inputs(track.missing())[0], catalogue()
     unknowns = nuisance_unknowns(usable, known)
@@ -48,7 +51,8 @@ def swung(track: Track, model: Model) -> Track:
         if rough.swell is None or (sea <= calm + enough and not at_sea(track, model)):
             return track
         part = read_parts([track], float(model.ship.scale("time")), MOST_SEGMENTS)
-        slow = geared(usable, part, unknowns, known, TEMPER)  # a gear that lags leaves swift accelerations, too, and is nothing to first order
+        # a gear that lags leaves swift accelerations, too, and is nothing to first order
+        slow = geared(usable, part, unknowns, known, TEMPER)
         if slow is not usable:
             other, more, less = _likeliest(track, slow, unknowns)
             rough, sea, calm = rough if sea > more else other, max(sea, more), max(calm, less)
@@ -58,12 +62,18 @@ def swung(track: Track, model: Model) -> Track:
 
 
 def _likeliest(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple[Track, float, float]:
-    """The track in waves as strong as the readings ask for, if anything swings her; log evidence of that, and of no waves."""
+    """The track in waves as strong as the readings ask for, if anything swings her; log evidence of that, and
+    of no waves."""
     floor, rough = floor_of(model.ship) or Floor(), _swinging(track, model)
     if rough.swell is None:
         return track, -np.inf, 0.0
-    parts = [read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0] for t in (track, levelled(rough))]
-    lines, sd = [linearise(p, model, unknowns, catalogue()) for p in parts], np.array([u.sd for u in unknowns])
+    parts = [
+        read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0] for t in (track, levelled(rough))
+    ]
+    lines, sd = (
+        [linearise(p, model, unknowns, catalogue()) for p in parts],
+        np.array([u.sd for u in unknowns]),
+    )
 
     def likely(line: Linear) -> float:
         return max(evidence(n, sd) for n in innovate([line], [floor.scaled(white=k) for k in WHITES]))
@@ -79,7 +89,8 @@ def _times(track: Track, strength: float) -> Track:
 
 
 def _swinging(track: Track, model: Model) -> Track:
-    """The track with what waves may do to her, or the same track where nothing swings her or there is too little of it."""
+    """The track with what waves may do to her, or the same track where nothing swings her or there is too
+    little of it."""
     time = float(model.ship.scale("time"))
     if not segments([track], time):
         return track
@@ -89,13 +100,18 @@ def _swinging(track: Track, model: Model) -> Track:
     share = swift[:, 1:].var(0) / np.maximum(left[:, 1:].var(0), 1e-30)
     if not at_sea(track, model) and share.max() < SEEN:
         return track
-    size, change = (_lately(x**2, LATELY * time / track.h) for x in (swift, np.gradient(swift, track.h, axis=0)))
-    omega = np.sqrt(change / np.maximum(size, 1e-30)).clip(2.0 * np.pi / (SWIFT * time), 0.5 * np.pi / track.h)
+    size, change = (
+        _lately(x**2, LATELY * time / track.h) for x in (swift, np.gradient(swift, track.h, axis=0))
+    )
+    omega = np.sqrt(change / np.maximum(size, 1e-30)).clip(
+        2.0 * np.pi / (SWIFT * time), 0.5 * np.pi / track.h
+    )
     return replace(track, swell=np.column_stack([omega, np.sqrt(size)]))
 
 
 def levelled(track: Track) -> Track:
-    """The track with its roll averaged over one period of the waves: how she heels to a wave would be taken for its cause."""
+    """The track with its roll averaged over one period of the waves: how she heels to a wave would be taken
+    for its cause."""
     if track.swell is None:
         return track
     steps = max(1, round(wave_period_s(track) / track.h))
@@ -104,13 +120,16 @@ def levelled(track: Track) -> Track:
 
 
 def stirred(track: Track, model: Model) -> np.ndarray:
-    """(N, 3) acceleration by which waves change the mean of what hull, rudder and propeller do, for drag is not in proportion to speed:
-    halfway between both ends of the swing, less the middle [m/s2, m/s2, rad/s2]."""
+    """(N, 3) acceleration by which waves change the mean of what hull, rudder and propeller do, for drag is
+    not in proportion to speed: halfway between both ends of the swing, less the middle [m/s2, m/s2,
+    rad/s2]."""
     if track.swell is None:
         return np.zeros((len(track), 3))
     swing = track.state[:, 3:] - steadied(track).state[:, 3:]
     swing = np.sqrt(2.0 * _lately(swing**2, LATELY * float(model.ship.scale("time")) / track.h))
-    there, back = (np.column_stack([track.state[:, :3], track.state[:, 3:] + sign * swing]) for sign in (1.0, -1.0))
+    there, back = (
+        np.column_stack([track.state[:, :3], track.state[:, 3:] + sign * swing]) for sign in (1.0, -1.0)
+    )
     at = [respond(replace(track, state=state), model)[0] for state in (there, back, track.state)]
     return 0.5 * (at[0] + at[1]) - at[2]
 

@@ -1,8 +1,9 @@
-"""The structural floor of a ship: how much a calibrated model of this kind still leaves unexplained, found on reference voyages.
+"""The structural floor of a ship: how much a calibrated model of this kind still leaves unexplained, found on
+reference voyages.
 
-Each number of the Floor is the one under which every reference voyage is most probable given the others, the core's own
-uncertainty integrated out (cross-validated likelihood; Rasmussen & Williams 2006, sec. 5.4.2), climbed on a geometric grid.
-"""
+Each number of the Floor is the one under which every reference voyage is most probable given the others, the
+core's own uncertainty integrated out (cross-validated likelihood; Rasmussen & Williams 2006, sec. 5.4.2),
+climbed on a geometric grid."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -18,32 +19,49 @@ from twin.study.estimation.innovations import Floor, Linear, Normal, innovate
 
 MOST_SEGMENTS = 40
 FEWER = 20  # where many columns make each dear
-BOUNDS = {"share": (0.01, 0.5), "calm": (0.1, 4.0), "white": (0.002, 1.0), "flow": (0.002, 0.05), "sensor": (0.7, 4.0), "wander": (5e-4, 0.5)}
+BOUNDS = {
+    "share": (0.01, 0.5),
+    "calm": (0.1, 4.0),
+    "white": (0.002, 1.0),
+    "flow": (0.002, 0.05),
+    "sensor": (0.7, 4.0),
+    "wander": (5e-4, 0.5),
+}
 WANDER = 4e-3  # where the climb begins, m/sqrt(s)
-BESIDE = 0.4  # how far the slow part may fall beside more unknowns, as a share of what a core alone is ever trusted with
+# how far the slow part may fall beside more unknowns, as a share of what a core alone is ever trusted with
+BESIDE = 0.4
 
 
 def floor_of(ship: Ship, name: str = "floor") -> Floor | None:
-    """The floor that calibration left in the ship file, None when she was never calibrated: what the model alone leaves (`floor`), or what
-    is left beside all that is usual on this ship (`beside`)."""
+    """The floor that calibration left in the ship file, None when she was never calibrated: what the model
+    alone leaves (`floor`), or what is left beside all that is usual on this ship (`beside`)."""
     table = ship.notes.get("structural", {}).get(name)
     if not table:
         return None
     try:
-        rest: dict[str, Any] = {key: _by_axis(v) if key == "white" else float(v) for key, v in table.items() if key != "share"}
+        rest: dict[str, Any] = {
+            key: _by_axis(v) if key == "white" else float(v) for key, v in table.items() if key != "share"
+        }
         return Floor(_by_axis(table["share"]), **rest)
     except (TypeError, ValueError, KeyError) as error:
-        raise SettingsError(f"{ship.name}: [structural] {name} in the ship file is damaged ({error}). Calibrate her again.") from None
+        raise SettingsError(
+            f"{ship.name}: [structural] {name} in the ship file is damaged ({error}). Calibrate her again."
+        ) from None
 
 
 def once_off(ship: Ship, key: str, horizon_s: np.ndarray) -> np.ndarray:
-    """How far off the calibrated ship was, so far ahead, on voyages that she was not fitted to (`position_m`, `heading_deg`); 0 where no
-    calibration measured it. Powers of the time between the measured horizons, in proportion to it before the first."""
-    told = [(e["horizon_s"], e[key]) for e in ship.notes.get("structural", {}).get("held_out", ()) if e.get(key)]
+    """How far off the calibrated ship was, so far ahead, on voyages that she was not fitted to (`position_m`,
+    `heading_deg`); 0 where no calibration measured it. Powers of the time between the measured horizons, in
+    proportion to it before the first."""
+    told = [
+        (e["horizon_s"], e[key]) for e in ship.notes.get("structural", {}).get("held_out", ()) if e.get(key)
+    ]
     if not told:
         return np.zeros_like(horizon_s)
     ahead, error = np.array(told).T
-    return np.exp(np.interp(np.log(horizon_s), np.log(ahead), np.log(error))) * np.minimum(1.0, horizon_s / ahead[0])
+    return np.exp(np.interp(np.log(horizon_s), np.log(ahead), np.log(error))) * np.minimum(
+        1.0, horizon_s / ahead[0]
+    )
 
 
 def _by_axis(value: float | Sequence[float]) -> tuple[float, float, float]:
@@ -52,8 +70,11 @@ def _by_axis(value: float | Sequence[float]) -> tuple[float, float, float]:
     return surge, sway, yaw
 
 
-def structural_floor(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor | None = None) -> Floor:
-    """The most probable floor of these reference voyages (linearised about the fitted model): what the core alone leaves."""
+def structural_floor(
+    lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor | None = None
+) -> Floor:
+    """The most probable floor of these reference voyages (linearised about the fitted model): what the core
+    alone leaves."""
     return _climbed(lines, unknowns, start or Floor(), 1.0, MOST_SEGMENTS)
 
 
@@ -62,11 +83,18 @@ def floor_beside(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Fl
     return _climbed(lines, unknowns, start, BESIDE, FEWER)
 
 
-def _climbed(lines: Sequence[Linear], unknowns: Sequence[Unknown], floor: Floor, least: float, most: int) -> Floor:
+def _climbed(
+    lines: Sequence[Linear], unknowns: Sequence[Unknown], floor: Floor, least: float, most: int
+) -> Floor:
     sd, step, floor = np.array([u.sd for u in unknowns]), 2.0, replace(floor, wander=floor.wander or WANDER)
     best = _scores(lines, [floor], sd, most)[0]
     while step > 1.2:
-        trials = [(i, t) for i, change in enumerate(CHANGES) for k in (step, 1.0 / step) if _inside(t := change(floor, k), least)]
+        trials = [
+            (i, t)
+            for i, change in enumerate(CHANGES)
+            for k in (step, 1.0 / step)
+            if _inside(t := change(floor, k), least)
+        ]
         scores = _scores(lines, [t for _, t in trials], sd, most)
         better: dict[int, tuple[float, Floor]] = {}
         for (i, trial), score in zip(trials, scores, strict=True):
@@ -79,7 +107,8 @@ def _climbed(lines: Sequence[Linear], unknowns: Sequence[Unknown], floor: Floor,
             best, floor = max(scores), together[int(np.argmax(scores))]
         else:
             step = step**0.5
-    few = 1.0 + 4.0 / max(len(lines), 1)  # the fewer voyages, the less they say of the next: a predictive, not a fitted scatter
+    # the fewer voyages, the less they say of the next: a predictive, not a fitted scatter
+    few = 1.0 + 4.0 / max(len(lines), 1)
     return floor.scaled(few**0.5)
 
 
@@ -105,10 +134,11 @@ def _scores(lines: Sequence[Linear], floors: Sequence[Floor], sd: np.ndarray, mo
 
 
 def predictive(normal: Normal, sd: np.ndarray) -> float:
-    """Mean over the voyages of the log probability of each, given all the others (of one voyage: of each half, given the other).
+    """Mean over the voyages of the log probability of each, given all the others (of one voyage: of each
+    half, given the other).
 
-    A floor that only has to explain what the core was fitted to comes out too low, and the next manoeuvre then looks strange.
-    """
+    A floor that only has to explain what the core was fitted to comes out too low, and the next manoeuvre
+    then looks strange."""
     of = np.array([track for track, _, _ in normal.where])
     if np.unique(of).size == 1:
         of = (np.arange(of.size) * 2) // of.size

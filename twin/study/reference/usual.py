@@ -1,4 +1,5 @@
-"""What is usual on a ship: what her reference voyages leave known of the core, of every lasting effect and of the instruments."""
+"""What is usual on a ship: what her reference voyages leave known of the core, of every lasting effect and of
+the instruments."""
 
 from collections.abc import Sequence
 from dataclasses import asdict
@@ -22,14 +23,16 @@ CLEAR = 4.0  # standard errors
 
 
 def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
-    """Offsets from the ship file and their covariance, in the unknowns' own units; by how much numbers differ from voyage to voyage; and the
-    floor `beside` all that. A diagnosis starts from here."""
+    """Offsets from the ship file and their covariance, in the unknowns' own units; by how much numbers differ
+    from voyage to voyage; and the floor `beside` all that. A diagnosis starts from here."""
     model, known = Model.of(ship), catalogue()
     unknowns = usual_unknowns(model, known)
     lines = [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
     beside = floor_beside(lines, unknowns, floor)
     temper = temper_of(innovate(lines, [beside])[0], unknowns)
-    nuisance, between = from_references(lines, unknowns, beside, temper, np.array([first_prior(u, ship).centre for u in unknowns]))
+    nuisance, between = from_references(
+        lines, unknowns, beside, temper, np.array([first_prior(u, ship).centre for u in unknowns])
+    )
     sd = np.array([u.sd for u in nuisance.unknowns])
     covariance = np.linalg.inv(nuisance.information)
     return {
@@ -45,12 +48,16 @@ def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
 
 
 def clearly_hers(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
-    """What this ship clearly shows of lasting effects: not wrong, but part of her. What no ship can show (a rudder ahead of its order)
-    stands in for something else, and is kept in mind without being told."""
-    can = {u.label: (u.lo - u.centre, u.hi - u.centre) for u in nuisance_unknowns(Model.of(ship), catalogue())}
+    """What this ship clearly shows of lasting effects: not wrong, but part of her. What no ship can show (a
+    rudder ahead of its order) stands in for something else, and is kept in mind without being told."""
+    can = {
+        u.label: (u.lo - u.centre, u.hi - u.centre) for u in nuisance_unknowns(Model.of(ship), catalogue())
+    }
     sd = np.sqrt(np.diag(np.array(found["covariance"])))
     return [
         {"name": label, "value": float(v), "sd": float(s)}
         for label, v, s in zip(found["labels"], found["offset"], sd, strict=True)
-        if not label.startswith(("core.", "form.")) and abs(v) > CLEAR * s and can[label][0] <= v <= can[label][1]
+        if not label.startswith(("core.", "form."))
+        and abs(v) > CLEAR * s
+        and can[label][0] <= v <= can[label][1]
     ]

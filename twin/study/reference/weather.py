@@ -1,7 +1,8 @@
-"""Weather that was measured and that the model does not know: did it blow harder than on the reference voyages?
+"""Weather that was measured and that the model does not know: did it blow harder than on the reference
+voyages?
 
-What pushed her then as hard as now is no news: it is reckoned with in every hypothesis that gains by it, and is never the answer.
-"""
+What pushed her then as hard as now is no news: it is reckoned with in every hypothesis that gains by it, and
+is never the answer."""
 
 from collections.abc import Mapping, Sequence
 
@@ -17,11 +18,20 @@ FAINT = 0.03  # of the standard acceleration: nobody would feel it
 HARDER = 1.5  # times the push of the reference voyages that are news; a wind 1.2 times as strong
 
 
-def strengths(tracks: Sequence[Track], model: Model, catalogue: Mapping[str, type[Effect]]) -> dict[str, float]:
-    """How hard each kind of measured weather that the model does not hold would push her at a plausible size: over the standard acceleration,
-    on the voyage where it was hardest."""
-    unknown = [name for name in WEATHER if name in catalogue and name not in {type(e).__name__ for e in model.effects}]
-    felt = {name: [s for t in tracks if (s := _strength(t, model, catalogue[name])) is not None] for name in unknown}
+def strengths(
+    tracks: Sequence[Track], model: Model, catalogue: Mapping[str, type[Effect]]
+) -> dict[str, float]:
+    """How hard each kind of measured weather that the model does not hold would push her at a plausible size:
+    over the standard acceleration, on the voyage where it was hardest."""
+    unknown = [
+        name
+        for name in WEATHER
+        if name in catalogue and name not in {type(e).__name__ for e in model.effects}
+    ]
+    felt = {
+        name: [s for t in tracks if (s := _strength(t, model, catalogue[name])) is not None]
+        for name in unknown
+    }
     return {name: max(values) for name, values in felt.items() if values}
 
 
@@ -31,9 +41,14 @@ def as_usual(now: Mapping[str, float], then: Mapping[str, float]) -> tuple[str, 
 
 
 def _strength(track: Track, model: Model, effect: type[Effect]) -> float | None:
-    """Root mean square over the voyage; None where its cause was not measured, or the ship's particulars lack what it needs."""
-    if track.missing().intersection(effect.needs) or any(getattr(model.ship, name, None) is None for name in effect.needs_ship):
+    """Root mean square over the voyage; None where its cause was not measured, or the ship's particulars lack
+    what it needs."""
+    if track.missing().intersection(effect.needs) or any(
+        getattr(model.ship, name, None) is None for name in effect.needs_ship
+    ):
         return None
     here = model.without_inputs(track.missing())[0]
-    push = (respond(track, here.but(effect.plausible(model.ship)))[0] - respond(track, here)[0]) / standard(here)
+    push = (respond(track, here.but(effect.plausible(model.ship)))[0] - respond(track, here)[0]) / standard(
+        here
+    )
     return float(np.sqrt(np.nanmean(np.sum(push**2, axis=1))))

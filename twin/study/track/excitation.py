@@ -1,21 +1,23 @@
-"""Whether a voyage holds a manoeuvre at all: a ship that only holds her course and speed tells one cause from no other.
+"""Whether a voyage holds a manoeuvre at all: a ship that only holds her course and speed tells one cause from
+no other.
 
-Asked of what helm and engine did, never of how much the noise would let one see: a long straight run shows an autopilot's
-corrections to any precision, and what they seem to say is the model's own error.
-"""
+Asked of what helm and engine did, never of how much the noise would let one see: a long straight run shows an
+autopilot's corrections to any precision, and what they seem to say is the model's own error."""
 
 import numpy as np
 
 from twin.physics.ship import Ship
 from twin.study.track.track import Track
 
-TURN = np.radians(10.0)  # a change of heading within STRETCH ship lengths that no autopilot makes to hold its course
+# a change of heading within STRETCH ship lengths that no autopilot makes to hold its course
+TURN = np.radians(10.0)
 STRETCH = 5.0
 SHAFT = 0.1  # a change of the shaft's speed, as a share of its usual one
 
 
 def manoeuvred(track: Track, ship: Ship) -> bool:
-    """Whether the ship turned, or changed her shaft's speed, by more than it takes to hold course and speed."""
+    """Whether the ship turned, or changed her shaft's speed, by more than it takes to hold course and
+    speed."""
     return bool(_turned(track, ship) >= TURN or _throttled(track) >= SHAFT)
 
 

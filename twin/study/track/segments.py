@@ -1,4 +1,5 @@
-"""The stretches of a voyage that are judged each on its own, and as much of the track as it takes to judge them."""
+"""The stretches of a voyage that are judged each on its own, and as much of the track as it takes to judge
+them."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,8 +14,8 @@ BEFORE_LENGTHS, AFTER_LENGTHS = 4, 2  # and so much of what is about it is kept
 
 
 def segments(tracks: Sequence[Track], time_s: float, most: int | None = None) -> list[tuple[int, int, int]]:
-    """(track, first, last) of the stretches that are filtered on their own, or an even choice of `most`; a break in the controls ends
-    one. `time_s`: L/U_0."""
+    """(track, first, last) of the stretches that are filtered on their own, or an even choice of `most`; a
+    break in the controls ends one. `time_s`: L/U_0."""
     out = []
     for i, track in enumerate(tracks):
         length = max(32, int(SEGMENT_LENGTHS * time_s / track.h))
@@ -29,8 +30,8 @@ def segments(tracks: Sequence[Track], time_s: float, most: int | None = None) ->
 
 
 def read_parts(tracks: Sequence[Track], time_s: float, most: int | None) -> list[Track]:
-    """The same tracks without what the filter would not read of them (`most` segments of all together); each segment keeps some of what
-    is about it, for a slow steering gear remembers what came before."""
+    """The same tracks without what the filter would not read of them (`most` segments of all together); each
+    segment keeps some of what is about it, for a slow steering gear remembers what came before."""
     chosen = segments(tracks, time_s, most)
     if len(chosen) == len(segments(tracks, time_s)):
         return list(tracks)
@@ -38,7 +39,8 @@ def read_parts(tracks: Sequence[Track], time_s: float, most: int | None) -> list
 
 
 def _kept(track: Track, stretches: Sequence[tuple[int, int]], length: float) -> Track:
-    """The track at these stretches and what is about them (`length`: steps in a ship length); where there are none, its begin."""
+    """The track at these stretches and what is about them (`length`: steps in a ship length); where there are
+    none, its begin."""
     keep, whole = np.zeros(len(track), bool), np.zeros(len(track), bool)
     before, after = round(BEFORE_LENGTHS * length), round(AFTER_LENGTHS * length)
     keep[:before] = not stretches

@@ -1,8 +1,8 @@
 """A track: a voyage on an even grid in SI units, with the smooth motion underneath its measurements.
 
-The smooth motion is kinematics alone (no ship model): the path of least jerk, in units of the ship's own time L/U_0, that
-agrees with the measured positions, headings and rates. The study linearises along it; it is never shown as a prediction.
-"""
+The smooth motion is kinematics alone (no ship model): the path of least jerk, in units of the ship's own time
+L/U_0, that agrees with the measured positions, headings and rates. The study linearises along it; it is never
+shown as a prediction."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -17,19 +17,31 @@ from twin.physics.state import WEATHER, Situation
 from twin.recording.voyage import Voyage
 
 MEASURED = {  # reading -> channel
-    "x": "north_m", "y": "east_m", "psi": "heading_true_north_deg", "u": "surge_velocity_mps", "v": "sway_velocity_mps",
-    "r": "yaw_rate_degps", "u_r": "surge_velocity_through_water_mps", "v_r": "sway_velocity_through_water_mps",
-}  # fmt: skip
+    "x": "north_m",
+    "y": "east_m",
+    "psi": "heading_true_north_deg",
+    "u": "surge_velocity_mps",
+    "v": "sway_velocity_mps",
+    "r": "yaw_rate_degps",
+    "u_r": "surge_velocity_through_water_mps",
+    "v_r": "sway_velocity_through_water_mps",
+}
 READINGS = tuple(MEASURED)
 PLACE = ("north_m", "east_m")
 WEATHER_CHANNELS = (  # name in Situation, channel, what turns "from" into "to"
-    ("depth", "water_depth_m", 0.0), ("H_s", "wave_height_significant_m", 0.0), ("T_p", "wave_period_peak_s", 0.0),
-    ("wave_to", "wave_direction_deg", np.pi), ("draught", "draught_mean_m", 0.0), ("phi", "roll_deg", 0.0),
-    ("bank_port", "bank_distance_port_m", 0.0), ("bank_starboard", "bank_distance_starboard_m", 0.0),
-)  # fmt: skip
+    ("depth", "water_depth_m", 0.0),
+    ("H_s", "wave_height_significant_m", 0.0),
+    ("T_p", "wave_period_peak_s", 0.0),
+    ("wave_to", "wave_direction_deg", np.pi),
+    ("draught", "draught_mean_m", 0.0),
+    ("phi", "roll_deg", 0.0),
+    ("bank_port", "bank_distance_port_m", 0.0),
+    ("bank_starboard", "bank_distance_starboard_m", 0.0),
+)
 STATE = ("x", "y", "psi", "u", "v", "r")
 STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail her own length
-FEWEST_PER_LENGTH = 8  # and no fewer, however slowly she was logged: with longer steps a ship cannot be stepped at all
+# and no fewer, however slowly she was logged: with longer steps a ship cannot be stepped at all
+FEWEST_PER_LENGTH = 8
 ROLLED = 0.3  # L/U_0 over which the measured heel is averaged before its rate is taken
 JERK = 0.15  # rad in (L/U_0)^3: how suddenly a ship turns; what is faster is the sea's doing
 LONGEST_HOLD_S = 5.0  # a control that is missing for longer breaks the track
@@ -49,9 +61,12 @@ class Track:
     measured: np.ndarray  # (N, 8): READINGS, NaN where there was none
     sd: np.ndarray  # (8,): scatter of each reading about the smooth motion
     whole: np.ndarray  # (N,) bool: controls known, so that the model can be run through
-    swell: np.ndarray | None = None  # (N, 6): in surge, sway, yaw how fast waves swing her [rad/s], and their accelerations (seaway.py)
-    unrest: np.ndarray | None = None  # (N, 8): times its usual scatter that each reading has at that moment (unrest.py)
-    rudder: dict[Any, np.ndarray] = field(init=False, repr=False, compare=False, default_factory=dict)  # behind each steering gear
+    # (N, 6): in surge, sway, yaw how fast waves swing her [rad/s], and their accelerations (seaway.py)
+    swell: np.ndarray | None = None
+    # (N, 8): times its usual scatter that each reading has at that moment (unrest.py)
+    unrest: np.ndarray | None = None
+    # behind each steering gear
+    rudder: dict[Any, np.ndarray] = field(init=False, repr=False, compare=False, default_factory=dict)
 
     def __len__(self) -> int:
         return self.t.size
@@ -59,11 +74,17 @@ class Track:
     def situation(self, **replaced: np.ndarray) -> Situation:
         """The whole track as one Situation of arrays."""
         values = dict(zip(STATE, self.state.T, strict=True))
-        return Situation(**(values | {"delta": self.delta, "n": self.n, "t": self.t} | dict(self.weather) | replaced))
+        return Situation(
+            **(values | {"delta": self.delta, "n": self.n, "t": self.t} | dict(self.weather) | replaced)
+        )
 
     def missing(self) -> set[str]:
         """Fields of Situation that were not measured: effects that need one are switched off."""
-        unread = {name for name, column in zip(READINGS, self.measured.T, strict=True) if not np.isfinite(column).any()}
+        unread = {
+            name
+            for name, column in zip(READINGS, self.measured.T, strict=True)
+            if not np.isfinite(column).any()
+        }
         return {name for name in WEATHER if name not in self.weather} | unread
 
     def part(self, first: int, last: int) -> "Track":
@@ -71,12 +92,21 @@ class Track:
         return self.where(slice(first, last))
 
     def where(self, keep: slice | np.ndarray) -> "Track":
-        """Some of the grid steps; where others are left out between them, `whole` must be False on one side."""
+        """Some of the grid steps; where others are left out between them, `whole` must be False on one
+        side."""
         swell, unrest = (None if x is None else x[keep] for x in (self.swell, self.unrest))
         return replace(
-            self, t=self.t[keep], state=self.state[keep], delta=self.delta[keep], n=self.n[keep], whole=self.whole[keep],
-            weather={k: w[keep] for k, w in self.weather.items()}, measured=self.measured[keep], swell=swell, unrest=unrest,
-        )  # fmt: skip
+            self,
+            t=self.t[keep],
+            state=self.state[keep],
+            delta=self.delta[keep],
+            n=self.n[keep],
+            whole=self.whole[keep],
+            weather={k: w[keep] for k, w in self.weather.items()},
+            measured=self.measured[keep],
+            swell=swell,
+            unrest=unrest,
+        )
 
     def steps(self) -> np.ndarray:
         """(N,) which grid steps of the whole voyage these are."""
@@ -84,32 +114,40 @@ class Track:
 
 
 def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH) -> Track:
-    """Put a voyage on the ship's own grid and find the smooth motion under it; DataError when that cannot be done."""
+    """Put a voyage on the ship's own grid and find the smooth motion under it; DataError when that cannot be
+    done."""
     length_s = float(ship.scale("time"))
     h = _step(max(voyage.step_s, length_s / steps_per_length), length_s / FEWEST_PER_LENGTH)
     if voyage.duration_s < 3.0 * length_s:
         raise DataError(
-            f"{voyage.name}: {voyage.duration_s:.0f} s is less than three ship lengths of sailing ({3 * length_s:.0f} s): "
+            f"{voyage.name}: {voyage.duration_s:.0f} s is less than three ship lengths of sailing "
+            f"({3 * length_s:.0f} s): "
             "nothing can be judged from it. Record at least twenty minutes of manoeuvring."
         )
     grid = voyage.on_grid(h)
     measured = np.column_stack([_samples(voyage, channel, len(grid), h) for channel in MEASURED.values()])
     controls, whole = _controls(voyage, h)
     if not whole.any():
-        raise DataError(f"{voyage.name}: rudder_angle_deg and propeller_rate_rpm are never there together. Check the map.")
+        raise DataError(
+            f"{voyage.name}: rudder_angle_deg and propeller_rate_rpm are never there together. Check the map."
+        )
     state, sd = smooth_motion(measured, h, ship)
     weather = _weather(grid, measured, state, max(1, round(ROLLED * length_s / h)))
-    return Track(voyage.name, grid.time_s - voyage.time_s[0], h, state, *controls, weather, measured, sd, whole)
+    return Track(
+        voyage.name, grid.time_s - voyage.time_s[0], h, state, *controls, weather, measured, sd, whole
+    )
 
 
 def _step(usual: float, longest: float) -> float:
-    """The usual step [s], or the part of it that is short enough: samples of a slow log then fall on steps still."""
+    """The usual step [s], or the part of it that is short enough: samples of a slow log then fall on steps
+    still."""
     return usual / int(np.ceil(usual / longest - 1e-9))
 
 
 def _samples(voyage: Voyage, channel: str, steps: int, h: float) -> np.ndarray:
-    """(steps,) mean of the samples that fall nearest to each grid step, moved from their mean time to the step along the channel's
-    own slope; NaN where none falls: nothing is interpolated. A rate that was derived is no second reading of what it came from."""
+    """(steps,) mean of the samples that fall nearest to each grid step, moved from their mean time to the
+    step along the channel's own slope; NaN where none falls: nothing is interpolated. A rate that was derived
+    is no second reading of what it came from."""
     if channel in voyage.meta.get("derived", {}) and channel not in PLACE:
         return np.full(steps, np.nan)
     values = voyage.si(channel)
@@ -127,7 +165,8 @@ def _samples(voyage: Voyage, channel: str, steps: int, h: float) -> np.ndarray:
 
 
 def _controls(voyage: Voyage, h: float) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """Rudder and propeller, short holes (or the usual wait for the next sample) bridged, and where both are known."""
+    """Rudder and propeller, short holes (or the usual wait for the next sample) bridged, and where both are
+    known."""
     bridged = []
     for name in ("rudder_angle_deg", "propeller_rate_rpm"):
         waits = np.diff(voyage.time_s[np.isfinite(voyage[name])])
@@ -147,8 +186,8 @@ def _bridge(values: np.ndarray, longest_s: float, h: float) -> np.ndarray:
 
 
 def _weather(grid: Voyage, measured: np.ndarray, state: np.ndarray, rolled: int) -> dict[str, np.ndarray]:
-    """What was measured of wind, waves, depth, loading, banks and heel, under the names and directions of Situation; heel's rate over so many
-    steps (`rolled`)."""
+    """What was measured of wind, waves, depth, loading, banks and heel, under the names and directions of
+    Situation; heel's rate over so many steps (`rolled`)."""
     out: dict[str, np.ndarray] = {}
 
     def put(name: str, channel: str, turn: float = 0.0) -> None:
@@ -161,7 +200,10 @@ def _weather(grid: Voyage, measured: np.ndarray, state: np.ndarray, rolled: int)
         put("wind_speed", "true_wind_speed_mps")
         put("wind_to", "true_wind_direction_deg", np.pi)
     elif grid.has("apparent_wind_speed_mps", "apparent_wind_angle_deg"):
-        speed, angle = _fill(grid.si("apparent_wind_speed_mps")), _fill(grid.si("apparent_wind_angle_deg")) + np.pi
+        speed, angle = (
+            _fill(grid.si("apparent_wind_speed_mps")),
+            _fill(grid.si("apparent_wind_angle_deg")) + np.pi,
+        )
         ahead, aside = speed * np.cos(angle) + state[:, 3], speed * np.sin(angle) + state[:, 4]
         out["wind_speed"], out["wind_to"] = np.hypot(ahead, aside), np.arctan2(aside, ahead) + state[:, 2]
     if "phi" in out and len(grid) > 1:
@@ -217,8 +259,11 @@ def _scatter(values: np.ndarray) -> float:
     return 1.4826 * float(np.median(np.abs(d))) / np.sqrt(20.0) if d.size else np.nan
 
 
-def _least_jerk(y: np.ndarray, sd: float, rate: np.ndarray, sd_rate: float, jerk: float, h: float) -> np.ndarray:
-    """argmin sum (z - y)^2/sd^2 + sum (z' - rate)^2/sd_rate^2 + sum (third difference of z)^2/jerk, a banded system.
+def _least_jerk(
+    y: np.ndarray, sd: float, rate: np.ndarray, sd_rate: float, jerk: float, h: float
+) -> np.ndarray:
+    """argmin sum (z - y)^2/sd^2 + sum (z' - rate)^2/sd_rate^2 + sum (third difference of z)^2/jerk, a banded
+    system.
 
     Samples far outside (6 sigma of the first pass) do not count in the second.
     """
@@ -234,7 +279,9 @@ def _least_jerk(y: np.ndarray, sd: float, rate: np.ndarray, sd_rate: float, jerk
     return z
 
 
-def _solve(w: np.ndarray, y: np.ndarray, w_rate: np.ndarray, rate: np.ndarray, jerk: float, h: float) -> np.ndarray:
+def _solve(
+    w: np.ndarray, y: np.ndarray, w_rate: np.ndarray, rate: np.ndarray, jerk: float, h: float
+) -> np.ndarray:
     size = y.size
     band = np.zeros((4, size))  # lower diagonals of the normal matrix
     band[0] += w + 1e-12

@@ -1,9 +1,10 @@
-"""Readings that scatter more at some times than at others: short waves that shake an instrument but do not move the ship.
+"""Readings that scatter more at some times than at others: short waves that shake an instrument but do not
+move the ship.
 
-A gyro shows ripples that swing her by a tenth of a degree and leave no trace in where she goes; on another course they are gone. A filter
-that trusts it alike at all times takes them for forces. So each reading's scatter is also looked for from moment to moment, in what is
-faster than a ship manoeuvres; whether that is likelier than an even one, the voyages say (`case.settle`): a sharp turn looks alike.
-"""
+A gyro shows ripples that swing her by a tenth of a degree and leave no trace in where she goes; on another
+course they are gone. A filter that trusts it alike at all times takes them for forces. So each reading's
+scatter is also looked for from moment to moment, in what is faster than a ship manoeuvres; whether that is
+likelier than an even one, the voyages say (`case.settle`): a sharp turn looks alike."""
 
 from dataclasses import replace
 
@@ -19,8 +20,8 @@ NORMAL = 1.4826  # standard deviations in a median of sizes; one wild reading is
 
 
 def shaken(track: Track, time: float) -> Track:
-    """The track with its readings' scatter as it was at each moment, where that was clearly more than its usual one; else the track as it is
-    (`time`: L/U_0)."""
+    """The track with its readings' scatter as it was at each moment, where that was clearly more than its
+    usual one; else the track as it is (`time`: L/U_0)."""
     beside = track.measured - track.state[:, [0, 1, 2, 3, 4, 5, 3, 4]]
     swift, lately = (max(3, round(k * time / track.h)) for k in (SWIFT, LATELY))
     size = np.column_stack([_lately(np.abs(e - running_mean(e, swift)), lately) for e in beside.T])

@@ -1,13 +1,14 @@
-"""Waves as states of the filter: of surge, sway and yaw each an acceleration in a narrow band, beside what is slow.
+"""Waves as states of the filter: of surge, sway and yaw each an acceleration in a narrow band, beside what is
+slow.
 
     p' = -2 zeta omega_1 p - omega_1 q + noise,   q' = omega_1 p
     w' = -2 zeta omega_2 w - omega_2 o + omega p, o' = omega_2 w      omega_1, omega_2 = omega (1 -+ APART)
 
-Two resonances, one behind the other: the spectrum of w falls off with frequency to the fourth towards omega = 0, as no wave pushes for
-long, and what she does slower than the waves is seen as well as in calm water. (w, o, p, q) are in units in which w has variance one
-and omega, so that frequency and size (`Track.swell`, seen in `seaway.py`) may change from step to step.
-Source: Fossen (2021) Handbook of Marine Craft, sec. 10.2 and 13.2.
-"""
+Two resonances, one behind the other: the spectrum of w falls off with frequency to the fourth towards omega =
+0, as no wave pushes for long, and what she does slower than the waves is seen as well as in calm water. (w,
+o, p, q) are in units in which w has variance one and omega, so that frequency and size (`Track.swell`, seen
+in `seaway.py`) may change from step to step. Source: Fossen (2021) Handbook of Marine Craft, sec. 10.2 and
+13.2."""
 
 from dataclasses import replace
 
@@ -21,7 +22,8 @@ APART = 0.1  # of the resonances from the middle of the band, as a share of its 
 
 
 def _band() -> tuple[np.ndarray, np.ndarray]:
-    """(4, 4) rate of (w, o, p, q) per omega, and (4, 4) its covariance as long as waves last, w having variance one."""
+    """(4, 4) rate of (w, o, p, q) per omega, and (4, 4) its covariance as long as waves last, w having
+    variance one."""
     first, second = 1.0 - APART, 1.0 + APART
     rate = np.zeros((4, 4))
     rate[0], rate[1, 0] = (-2.0 * DAMPING * second, -second, 1.0, 0.0), second
@@ -35,11 +37,16 @@ TONES, SHAPES = np.linalg.eig(RATE)
 
 
 def as_shown(track: Track, shown: np.ndarray) -> Track:
-    """The track with waves as strong as a log must have met them that shows so much more of everything (N, 8, 8): how strong a sea is was
-    only seen, and taken for more (seaway.py); a log that shows less is not likelier because it shows less of that."""
+    """The track with waves as strong as a log must have met them that shows so much more of everything (N, 8,
+    8): how strong a sea is was only seen, and taken for more (seaway.py); a log that shows less is not
+    likelier because it shows less of that."""
     if track.swell is None:
         return track
-    return replace(track, swell=track.swell / np.column_stack([np.ones((len(track), 3)), shown[:, 6, 6], shown[:, 7, 7], np.ones(len(track))]))
+    return replace(
+        track,
+        swell=track.swell
+        / np.column_stack([np.ones((len(track), 3)), shown[:, 6, 6], shown[:, 7, 7], np.ones(len(track))]),
+    )
 
 
 def carried(track: Track) -> np.ndarray:
@@ -54,7 +61,8 @@ def swinging(track: Track) -> np.ndarray:
 
 
 def renewed(track: Track) -> np.ndarray:
-    """(N, 12, 12) what of the waves' covariance is new after a step, so that they stay as strong as they are."""
+    """(N, 12, 12) what of the waves' covariance is new after a step, so that they stay as strong as they
+    are."""
     by = carried(track)
     return _together((LASTING - by @ LASTING @ np.swapaxes(by, -1, -2)) * variance(track)[:, :, None, None])
 

@@ -1,4 +1,5 @@
-"""`twin add`: put a named effect into a ship's model, fit it, and prove that the error falls where it was not fitted."""
+"""`twin add`: put a named effect into a ship's model, fit it, and prove that the error falls where it was not
+fitted."""
 
 import argparse
 import os
@@ -26,10 +27,10 @@ SCHEMA_VERSION = 1
 EPILOG = """example:
   twin add Wind --ship alma2.toml --voyage monday.mcap --held-out tuesday.mcap -o alma3.toml --report add.html
 
-Only the numbers of the named effects are fitted; the core stays as it is. Without --held-out the last third of every
-voyage is held back from the fit and used to judge it.
-Exit code 3: the held-out error does not fall, nothing is written (--force writes all the same); 4: a voyage cannot be
-used, or lacks what the effect needs; 5: no such effect, or the ship file is not valid.
+Only the numbers of the named effects are fitted; the core stays as it is. Without --held-out the last third
+of every voyage is held back from the fit and used to judge it. Exit code 3: the held-out error does not fall,
+nothing is written (--force writes all the same); 4: a voyage cannot be used, or lacks what the effect needs;
+5: no such effect, or the ship file is not valid.
 """
 
 
@@ -51,17 +52,24 @@ def add(
     held_out: Sequence[Sailed] = (),
     force: bool = False,
 ) -> Added:
-    """Fit the effects to the voyages and judge them on the held-out ones (without any: on the last third of each)."""
+    """Fit the effects to the voyages and judge them on the held-out ones (without any: on the last third of
+    each)."""
     for effect in effects:
         effect.plausible(ship).check(ship)
     can_be_judged(effects, [s.track for s in (*sailed, *held_out)])
-    used, held = ([s.track for s in sailed], [s.track for s in held_out]) if held_out else thirds([s.track for s in sailed])
+    used, held = (
+        ([s.track for s in sailed], [s.track for s in held_out])
+        if held_out
+        else thirds([s.track for s in sailed])
+    )
     model, found = fitted(ship, effects, used)
     before, after = ahead(held, Model.of(ship), HORIZONS_S), ahead(held, model, HORIZONS_S)
     structural = floor_of(ship) is not None
     rows = ladder(before, after, HORIZONS_S, structural)
     if not rows:
-        raise DataError(f"{', '.join(t.name for t in held)}: too short to judge by. Give another voyage with --held-out.")
+        raise DataError(
+            f"{', '.join(t.name for t in held)}: too short to judge by. Give another voyage with --held-out."
+        )
     horizon_s = judged_at(before, [row["horizon_s"] for row in rows], ship)
     proof = fall(before, after, horizon_s)
     result = {
@@ -70,7 +78,9 @@ def add(
         "added": [e.__name__ for e in effects],
         "accepted": proof.proved or force,
         "forced": force and not proof.proved,
-        "parameters": {n: {f.name: f.entry() for f in found if f.effect == n} for n in (e.__name__ for e in effects)},
+        "parameters": {
+            n: {f.name: f.entry() for f in found if f.effect == n} for n in (e.__name__ for e in effects)
+        },
         "judged_by": {
             "measure": proof.measure,
             "unit": proof.unit,
@@ -82,7 +92,8 @@ def add(
         "horizons": rows,
         "where": by_regime(before, after, horizon_s, ship, structural),
         "voyages": [s.provenance() for s in sailed],
-        "held_out": [s.provenance() for s in held_out] or [s.provenance() | {"part": "last third"} for s in sailed],
+        "held_out": [s.provenance() for s in held_out]
+        or [s.provenance() | {"part": "last third"} for s in sailed],
         "notes": notes(ship, found, sailed, held_out),
     }
     result["verdict"] = verdict(result, proof)
@@ -94,10 +105,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = EPILOG
     parser.add_argument("effects", metavar="EFFECT", nargs="+", help="names from `twin effects`")
     parser.add_argument("--ship", metavar="SHIP.toml", required=True, help="the model it is added to")
-    parser.add_argument("--voyage", metavar="VOYAGE", nargs="+", action="extend", required=True, help="voyages to fit it on")
-    parser.add_argument("--held-out", metavar="VOYAGE", nargs="+", action="extend", default=[], help="voyages to judge it by")
+    parser.add_argument(
+        "--voyage", metavar="VOYAGE", nargs="+", action="extend", required=True, help="voyages to fit it on"
+    )
+    parser.add_argument(
+        "--held-out", metavar="VOYAGE", nargs="+", action="extend", default=[], help="voyages to judge it by"
+    )
     parser.add_argument("-o", "--output", metavar="SHIP2.toml", required=True, help="the better ship file")
-    parser.add_argument("--force", action="store_true", help="write it although the held-out error does not fall")
+    parser.add_argument(
+        "--force", action="store_true", help="write it although the held-out error does not fall"
+    )
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
     parser.add_argument("--report", metavar="FILE.html", help="one self-contained page with the plots")
 

@@ -32,7 +32,8 @@ FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {
 
 @dataclass(frozen=True)
 class Found:
-    """One number of an added effect, with its 95 % interval (inside its box) and how much of the doubt the voyages removed."""
+    """One number of an added effect, with its 95 % interval (inside its box) and how much of the doubt the
+    voyages removed."""
 
     effect: str
     name: str
@@ -60,7 +61,8 @@ def can_be_judged(effects: Sequence[type[Effect]], tracks: Sequence[Track]) -> N
             lacks = sorted(t.missing().intersection(effect.needs))
             if lacks:
                 raise DataError(
-                    f"{t.name}: {effect.__name__} needs {', '.join(FIELDS.get(f, f) for f in lacks)}, which was not recorded. "
+                    f"{t.name}: {effect.__name__} needs {', '.join(FIELDS.get(f, f) for f in lacks)}, which "
+                    "was not recorded. "
                     "Record it, leave this voyage out, or choose another effect."
                 )
 
@@ -102,9 +104,17 @@ def _temper(ship: Ship) -> float:
     return float(ship.notes.get("structural", {}).get("temper", TEMPER))
 
 
-def _doubt(found: Fit, base: Model, tracks: Sequence[Track], floor: Floor, known: dict[str, type[Effect]], temper: float) -> np.ndarray:
-    """(P,) standard errors, the doubt about core and instruments included: it is wider than that of a fit with the core fixed. How much of the
-    effect is usual on her is among them: the reference voyages cannot tell it from her core, but tell well what both together are."""
+def _doubt(
+    found: Fit,
+    base: Model,
+    tracks: Sequence[Track],
+    floor: Floor,
+    known: dict[str, type[Effect]],
+    temper: float,
+) -> np.ndarray:
+    """(P,) standard errors, the doubt about core and instruments included: it is wider than that of a fit
+    with the core fixed. How much of the effect is usual on her is among them: the reference voyages cannot
+    tell it from her core, but tell well what both together are."""
     beside = nuisance_unknowns(base, known)
     every: list[Unknown] = [*found.unknowns, *beside]
     at = {u.label: float(value) for u, value in zip(found.unknowns, found.value, strict=True)}
@@ -134,7 +144,9 @@ def _found(u: Unknown, value: float, sd: float) -> Found:
 def thirds(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:
     """The first two thirds of every voyage, and the last."""
     cut = [round(2 * len(t) / 3) for t in tracks]
-    return [t.part(0, k) for t, k in zip(tracks, cut, strict=True)], [t.part(k, len(t)) for t, k in zip(tracks, cut, strict=True)]
+    return [t.part(0, k) for t, k in zip(tracks, cut, strict=True)], [
+        t.part(k, len(t)) for t, k in zip(tracks, cut, strict=True)
+    ]
 
 
 def ahead(tracks: Sequence[Track], model: Model, horizons_s: Sequence[float]) -> list[Windows]:

@@ -23,17 +23,31 @@ def told(ship: Ship) -> list[str]:
         return [f"{ship.name}: nothing was added or removed yet; the core stands alone."]
     out = [f"{ship.name}: held-out position error [m], before -> after (noise floor)"]
     for step in steps:
-        done = " and ".join(f"{verb} {', '.join(step[key])}" for verb, key in (("+", "added"), ("-", "removed")) if step.get(key))
-        out.append(f"{step.get('date', ''):<12}{done or step.get('what', '?')}{'   (forced)' * bool(step.get('forced'))}")
+        done = " and ".join(
+            f"{verb} {', '.join(step[key])}"
+            for verb, key in (("+", "added"), ("-", "removed"))
+            if step.get(key)
+        )
+        out.append(
+            f"{step.get('date', ''):<12}{done or step.get('what', '?')}{'   (forced)' * bool(step.get('forced'))}"
+        )
         for e in step.get("errors", []):
-            out.append(f"{'':>12}{e['horizon_s']:>6g} s{e['before_m']:>9.3g} -> {e['after_m']:.3g}  ({e['noise_floor_m']:.2g})")
+            out.append(
+                f"{'':>12}{e['horizon_s']:>6g} s{e['before_m']:>9.3g} -> {e['after_m']:.3g}  "
+                f"({e['noise_floor_m']:.2g})"
+            )
         if step.get("voyages"):
-            out.append(f"{'':>12}fitted on {_names(step['voyages'])}, judged on {_names(step.get('held_out', []))}")
+            out.append(
+                f"{'':>12}fitted on {_names(step['voyages'])}, judged on {_names(step.get('held_out', []))}"
+            )
     return out
 
 
 def _names(voyages: list[dict[str, Any]]) -> str:
-    return ", ".join(f"{v['name']}{' (' + v['part'] + ')' if 'part' in v else ''} {str(v.get('sha256', ''))[:8]}" for v in voyages)
+    return ", ".join(
+        f"{v['name']}{' (' + v['part'] + ')' if 'part' in v else ''} {str(v.get('sha256', ''))[:8]}"
+        for v in voyages
+    )
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -30,7 +30,9 @@ def remove(ship: Ship, names: Sequence[str]) -> Ship:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("effects", metavar="EFFECT", nargs="+", help="effects of the ship file")
     parser.add_argument("--ship", metavar="SHIP.toml", required=True)
-    parser.add_argument("-o", "--output", metavar="SHIP2.toml", required=True, help="the ship file without them")
+    parser.add_argument(
+        "-o", "--output", metavar="SHIP2.toml", required=True, help="the ship file without them"
+    )
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
 
 
@@ -49,7 +51,8 @@ def run(args: argparse.Namespace) -> int:
         write_json(answer, args.json)
     page = sys.stderr if args.json == "-" else sys.stdout
     print(
-        f"removed {', '.join(args.effects)}; left: {', '.join(left) or 'the core alone'}\nwrote {args.output}",
+        f"removed {', '.join(args.effects)}; left: {', '.join(left) or 'the core alone'}\nwrote "
+        f"{args.output}",
         file=page,
     )
     print(f"next: twin history {args.output}", file=page)
