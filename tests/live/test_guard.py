@@ -72,7 +72,7 @@ def test_M7_in_a_state_it_was_not_trained_on_the_residual_has_no_say(make_bridge
 def test_I23_without_the_rudder_it_is_dead_reckoning_and_nothing_is_learned(make_bridge, hybrid):
     bridge = make_bridge(loop={"learned": hybrid})
     bridge.run(20.0)
-    silent = lambda readings, b: [r for r in readings if r.channel != "rudder_angle_deg"]  # noqa: E731
+    silent = lambda readings, b: [r for r in readings if r.channel != "rudder_angle_deg"]
     tick = bridge.run(3.0, silent)[-1]
     assert tick.mode == "dead reckoning" and "no rudder_angle_deg" in tick.reasons[0]
     assert "rudder" in hybrid.adaptation.frozen
@@ -90,7 +90,7 @@ def test_where_the_bound_is_contradicted_the_learned_force_rests_for_three_ship_
     bridge.run(30.0)
     off = lambda readings, b: [
         r._replace(value=r.value + 1.5) if r.channel == "surge_velocity_mps" else r for r in readings
-    ]  # noqa: E731
+    ]
     ticks = bridge.run(20.0, off)
     first = next(
         i for i, t in enumerate(ticks) if any("than its bound allows" in reason for reason in t.reasons)

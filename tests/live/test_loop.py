@@ -82,7 +82,7 @@ def test_sources_whose_clock_steps_too_are_still_heard(make_bridge):
     bridge = make_bridge()
     bridge.run(30.0)
     bridge.wall_less_mono += 3600.0
-    late = lambda readings, _: [r._replace(time_s=r.time_s + 3600.0) for r in readings]  # noqa: E731
+    late = lambda readings, _: [r._replace(time_s=r.time_s + 3600.0) for r in readings]
     assert bridge.run(10.0, late)[-1].rejected == 0
 
 

@@ -130,7 +130,7 @@ def test_measurements_that_contradict_the_bound_take_the_promise_back_and_the_le
     assert bridge.run(60.0)[-1].certificate.inside and not bridge.loop.stabilizer.broken
     off = lambda readings, b: [
         r._replace(value=r.value + 1.5) if r.channel == "surge_velocity_mps" else r for r in readings
-    ]  # noqa: E731
+    ]
     why = set()
     for _ in range(100):
         tick = bridge.run(0.1, off)[-1]
@@ -144,6 +144,6 @@ def test_a_sample_that_pulls_by_less_than_the_certified_gain_is_no_measurement_o
     that K acted."""
     bridge = stabilized(kvlcc2, make_bridge)
     bridge.run(20.0)
-    slow = lambda readings, b: [r for r in readings if "velocity" not in r.channel or b.number % 30 == 0]  # noqa: E731
+    slow = lambda readings, b: [r for r in readings if "velocity" not in r.channel or b.number % 30 == 0]
     before = bridge.ticks[-1].certificate.bound
     assert bridge.run(120.0, slow)[-1].certificate.bound > before

@@ -135,7 +135,7 @@ def test_floats_arrays_tensors_and_symbols_agree(Kind, ship, moment):
     stacked = {k: np.array([m[k] for m in states]) for k in moment}
     arrays = respond(effect, Situation(**stacked), ship)
     tensors = respond(effect, Situation(**{k: torch.tensor(v) for k, v in stacked.items()}), ship)
-    wide = lambda x: np.broadcast_to(np.asarray(x, float), len(shifts))  # noqa: E731
+    wide = lambda x: np.broadcast_to(np.asarray(x, float), len(shifts))
     np.testing.assert_allclose(np.stack([wide(a) for a in arrays], 1), floats, rtol=1e-12, atol=1e-15)
     np.testing.assert_allclose(np.stack([wide(a) for a in tensors], 1), floats, rtol=1e-12, atol=1e-15)
     symbols = {k: sympy.Symbol(k, real=True) for k in ("u", "v", "r", "psi", "delta")}

@@ -86,7 +86,7 @@ def test_a_rudder_that_is_truly_held_is_not_accused(kvlcc2, make_bridge, held_de
     )
     exact = lambda readings, b: [
         r._replace(value=b.sailing.rudder) if r.channel == RUDDER else r for r in readings
-    ]  # noqa: E731
+    ]
     ticks = bridge.run(680.0, exact)
     assert not [t for t in ticks if any(RUDDER in text for text in t.reasons)]
     assert "nothing is learned until it moves" in learned.adaptation.frozen

@@ -44,7 +44,7 @@ def test_I1_I2_I15_I16_I26_I27_a_refused_sample_is_counted_named_and_bridged(bri
     """Test: the decoder refuses every heading for 1 s. Expected: counted, coded, said in words; the
     heading is predicted."""
     bridge.run(20.0)
-    refused = lambda r, b: Rejected(r.channel, quality, "test", r.received_s, r.source)  # noqa: E731
+    refused = lambda r, b: Rejected(r.channel, quality, "test", r.received_s, r.source)
     ticks = bridge.run(0.8, only(HEADING, refused))
     assert ticks[-1].rejected == 8
     assert ticks[0].quality.heading_true_north_deg == quality
@@ -133,7 +133,7 @@ def test_I8_a_lost_sensor_is_predicted_and_its_uncertainty_grows(bridge):
 
 def test_I8_without_speed_over_ground_it_is_derived_from_positions(make_bridge):
     bridge = make_bridge()
-    silent = lambda readings, b: [r for r in readings if "surge" not in r.channel and "sway" not in r.channel]  # noqa: E731
+    silent = lambda readings, b: [r for r in readings if "surge" not in r.channel and "sway" not in r.channel]
     ticks = bridge.run(120.0, silent)
     assert ticks[-1].mode == "physics only"
     assert not ticks[-1].measured.HasField(SURGE)

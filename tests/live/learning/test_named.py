@@ -174,7 +174,7 @@ def test_outliers_and_drop_outs_do_not_lead_them_astray(worn):
 
 
 def test_an_adversarys_square_waves_hardly_act(worn):
-    lie = lambda k, d: [x + (1.0 if (k // p) % 2 else -1.0) for x, p in zip(d, (40, 55, 70), strict=True)]  # noqa: E731
+    lie = lambda k, d: [x + (1.0 if (k // p) % 2 else -1.0) for x, p in zip(d, (40, 55, 70), strict=True)]
     adaptation, acted = made(worn), []
     for part in range(40):
         teach(adaptation, (0.0, 0.0), seconds=100, seed=part, start_s=100.0 * part, lie=lie)

@@ -153,7 +153,7 @@ def test_M5_a_network_that_gives_no_number_is_off_at_once_and_says_so(kvlcc2, pa
     from onnx import numpy_helper
 
     w = numpy_helper.from_array(np.ones((5, 64), np.float32), "w")
-    nodes = lambda h: [h.make_node("MatMul", ["in0", "w"], ["h"]), h.make_node("Div", ["h", "h"], ["out0"])]  # noqa: E731
+    nodes = lambda h: [h.make_node("MatMul", ["in0", "w"], ["h"]), h.make_node("Div", ["h", "h"], ["out0"])]
     golden = {"inputs": [[1.0] * 5, [2.0] * 5], "outputs": [[1.0] * 64] * 2}
     table = json.loads(parts[1])
     inputs = [entry | {"offset": 0.0, "low": -9.0, "high": 9.0} for entry in table["inputs"]]

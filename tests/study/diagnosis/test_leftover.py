@@ -182,7 +182,7 @@ def test_a_known_wind_misleads_where_a_tenth_of_it_matters_to_where_she_went(tan
     since, then = (assemble([voyages["Wind"]], ship) for ship in (windy, hers))
     nothing = lambda floor_m: Found(
         Hypothesis((), "usual", 0.0, 0.0), None, since.model, 0.0, floor_m, floor_m
-    )  # noqa: E731
+    )
     matters = roughly(since)
     assert (
         matters > 0.0

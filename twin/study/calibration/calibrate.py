@@ -54,7 +54,8 @@ PARTS = {  # of the ship and not of the core, found with it
 # by the probability of the voyages; the antenna by predictions
 ASKED_FOR = (SteeringLag.__name__, Wind.__name__)
 SAID = {"gear": SteeringLag, "antenna": AntennaOffset, "wind": Wind}  # their numbers in --json
-EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weather or with the wind recorded: zigzags, circles, speed changes.
+EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weather or with the wind recorded:
+zigzags, circles, speed changes.
 Without --held-out the last third of the voyages (or of a single voyage) is held back to measure the error.
 The standard errors, and the structural error that remains, are stored in the ship file: they keep an
 imperfect model from being called a missing effect. Exit code 4: a voyage cannot be used; 5: the ship file is

@@ -113,7 +113,8 @@ def told(result: dict[str, Any]) -> list[str]:
     out = [
         result["verdict"],
         "",
-        f"{'horizon':>8}{'before [m]':>13}{'after [m]':>12}{'noise [m]':>12}{'before [deg]':>15}{'after [deg]':>13}",
+        f"{'horizon':>8}{'before [m]':>13}{'after [m]':>12}{'noise [m]':>12}"
+        f"{'before [deg]':>15}{'after [deg]':>13}",
     ]
     for r in result["horizons"]:
         b, a = r["before"], r["after"]

@@ -29,7 +29,8 @@ def told(ship: Ship) -> list[str]:
             if step.get(key)
         )
         out.append(
-            f"{step.get('date', ''):<12}{done or step.get('what', '?')}{'   (forced)' * bool(step.get('forced'))}"
+            f"{step.get('date', ''):<12}{done or step.get('what', '?')}"
+            f"{'   (forced)' * bool(step.get('forced'))}"
         )
         for e in step.get("errors", []):
             out.append(
