@@ -44,7 +44,8 @@ SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
 LEAST = 0.05
 EPILOG = """Verdicts: missing (named, with size and interval, and with what cannot be told from it),
-nothing_missing, unknown (something is there that no effect of the catalogue explains; resembles: what it looks like, where that is known by its form),
+nothing_missing, unknown (something is there that no
+effect of the catalogue explains; resembles: what it looks like, where that is known by its form),
 undecided (the voyages cannot tell; one_of: the few of which one is surely there; next_manoeuvre: what to
 sail). Reference voyages are those of the same ship on which nothing was wrong: they set the floor below which
 an imperfect model is not called a missing effect. Exit code 4: a voyage cannot be used; 5: the ship file is
