@@ -148,7 +148,8 @@ def run(args: argparse.Namespace) -> int:
         _report(args.report, made, ship, result, held_out or sailed)
         print(f"wrote {args.report}", file=page)
     if not result["accepted"]:
-        why = "nothing changes" if made.fall.idle else f"{made.fall.sentence()}: it does not fall beyond its noise"
+        fell = f"{made.fall.sentence()}: it does not fall beyond its noise"
+        why = "nothing changes" if made.fall.idle else fell
         raise ThresholdError(f"{why}; {args.output} was not written. --force writes it.")
     print(f"next: twin compare {' '.join(args.held_out or args.voyage)} --ship {args.output}", file=page)
     return 0
