@@ -16,15 +16,52 @@ from bench.cli import BENCHES
 from twin.cli import VERBS
 
 ROOT = Path(__file__).parents[1]
-ROOMS = ("twin.physics", "twin.live", "twin.study", "export", "bench", "deploy")
+ROOMS = (
+    "twin.physics",
+    "twin.live",
+    "twin.recording",
+    "twin.study",
+    "twin.report",
+    "export",
+    "bench",
+    "deploy",
+)
+ASHORE = {"twin.physics", "twin.live", "twin.recording", "twin.study", "twin.report"}
 MAY_IMPORT = {
     "twin.physics": {"twin.physics"},
     "twin.live": {"twin.physics", "twin.live"},
-    "twin.study": {"twin.physics", "twin.live", "twin.study"},
-    "export": {"twin.physics", "twin.live", "twin.study", "export"},
+    "twin.recording": {"twin.physics", "twin.live", "twin.recording"},
+    "twin.study": ASHORE - {"twin.report"},
+    "twin.report": ASHORE,
+    "export": {*ASHORE, "export"},
 }
+ORDER = (
+    "twin.physics",
+    "twin.live.signals",
+    "twin.live.keelson",
+    "twin.live.log",
+    "twin.live.observer",
+    "twin.live.gates",
+    "twin.live.learning",
+    "twin.live.certificate",
+    "twin.live",
+    "twin.recording",
+    "twin.study.track",
+    "twin.study.estimation",
+    "twin.study.reference",
+    "twin.study.prediction",
+    "twin.study.calibration",
+    "twin.study.diagnosis",
+    "twin.study.update",
+    "twin.study.first_model",
+    "twin.study",
+    "twin.report",
+    "twin.commands",
+)
 ONLY_IN_EXPORT = {"torch"}
-NOT_ON_BOARD = {"torch", "scipy", "matplotlib", "pydantic", "filterpy", "sympy", "numpy", "twin.study"}
+NOT_ON_BOARD = {
+    "torch", "scipy", "matplotlib", "pydantic", "pandas", "filterpy", "sympy", "numpy", "twin.study", "twin.recording",
+}  # fmt: skip
 
 
 def sources(room):
@@ -51,6 +88,12 @@ def _for_types_only(node):
     return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
 
 
+def inner_room_of(module):
+    """The innermost room of ORDER that holds a module."""
+    held = [room for room in ORDER if module == room or module.startswith(room + ".")]
+    return max(held, key=len, default=None)
+
+
 def room_of(module):
     return next((room for room in ROOMS if module == room or module.startswith(room + ".")), None)
 
@@ -71,6 +114,30 @@ def test_nothing_in_twin_imports_export_bench_or_deploy():
     outer = {"export", "bench", "deploy"}
     wrong = [(str(p), m) for p in sources("twin") for m in imports(p) if m.split(".")[0] in outer]
     assert not wrong
+
+
+@pytest.mark.parametrize("room", ORDER)
+def test_a_room_imports_only_rooms_that_stand_before_it(room):
+    """Test: every import of a room's own files. Expected: rooms that stand before it in ORDER, or itself."""
+    before = ORDER[: ORDER.index(room) + 1]
+    wrong = [
+        f"{path.relative_to(ROOT)} imports {module}"
+        for path in sources(room)
+        if inner_room_of(".".join(path.relative_to(ROOT).with_suffix("").parts)) == room
+        for module in imports(path)
+        if inner_room_of(module) not in (None, *before)
+    ]
+    assert not wrong
+
+
+def test_every_module_stands_in_a_room():
+    """Test: the files of twin that are not on its own floor. Expected: each has a room in ORDER."""
+    floor = {"twin", "twin.ships", "twin.voyages"}
+    modules = [p.relative_to(ROOT).with_suffix("").parts for p in sources("twin")]
+    lost = [
+        ".".join(m) for m in modules if inner_room_of(".".join(m)) is None and ".".join(m[:-1]) not in floor
+    ]
+    assert not lost
 
 
 def test_physics_loads_no_library():

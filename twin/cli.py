@@ -22,65 +22,69 @@ class Verb(NamedTuple):
 
 VERBS: dict[str, Verb] = {
     "run": Verb(
-        "twin.live.run",
+        "twin.commands.run",
         "the service: Zenoh in, Zenoh out, MCAP log",
         "twin run --config /etc/shiptwin/twin.toml",
     ),
     "replay": Verb(
-        "twin.live.replay",
+        "twin.commands.replay",
         "a recorded voyage through the same loop",
         "twin replay logs/voyage.mcap -o again.mcap",
     ),
     "init": Verb(
-        "twin.study.first_model.init",
+        "twin.commands.init",
         "a first model of my ship from what its owner knows",
         "twin init 'MV Alma' --length-pp-m 180 --beam-m 30 --draught-m 10.5 -o alma.toml",
     ),
     "import": Verb(
-        "twin.recording.import_voyage",
+        "twin.commands.import_",
         "measurements in, checked",
         "twin import log.csv --map log-map.toml -o voyage.mcap",
     ),
     "calibrate": Verb(
-        "twin.study.calibration.calibrate",
+        "twin.commands.calibrate",
         "fits the core to reference voyages",
         "twin calibrate calm.mcap --ship alma.toml -o alma2.toml",
     ),
     "compare": Verb(
-        "twin.study.prediction.compare",
+        "twin.commands.compare",
         "model against measurement: how wrong, and where",
         "twin compare v.mcap --ship alma2.toml",
     ),
     "diagnose": Verb(
-        "twin.study.diagnosis.diagnose",
+        "twin.commands.diagnose",
         "which physical effect is missing",
         "twin diagnose v.mcap --ship alma2.toml --reference calm.mcap",
     ),
     "add": Verb(
-        "twin.study.update.add",
+        "twin.commands.add",
         "adds an effect, fits it, proves the fall on held-out voyages",
         "twin add Wind --ship alma2.toml --voyage v.mcap --held-out w.mcap -o alma3.toml",
     ),
     "remove": Verb(
-        "twin.study.update.remove",
+        "twin.commands.remove",
         "takes an effect out again",
         "twin remove Wind --ship alma3.toml -o alma4.toml",
     ),
     "history": Verb(
-        "twin.study.update.history",
+        "twin.commands.history",
         "the ladder of what was added and how far the error fell",
         "twin history alma3.toml",
     ),
     "effects": Verb(
-        "twin.study.effects", "the catalogue: formula, inputs, parameters, units, source", "twin effects Wind"
+        "twin.commands.effects",
+        "the catalogue: formula, inputs, parameters, units, source",
+        "twin effects Wind",
     ),
     "train": Verb(
         "export.train",
         "trains and exports the residual",
         "twin train v*.mcap --ship alma3.toml -o residual.onnx",
     ),
-    "demo": Verb("twin.study.demo", "the whole story on a bundled voyage, in a minute or two", "twin demo"),
-    "health": Verb("twin.live.health", "is the twin on this machine alive and well?", "twin health"),
+    "demo": Verb(
+        "twin.commands.demo", "the whole story on a bundled voyage, in a minute or two", "twin demo"
+    ),
+    "health": Verb("twin.commands.health", "is the twin on this machine alive and well?", "twin health"),
 }
 
 

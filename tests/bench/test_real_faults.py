@@ -14,10 +14,10 @@ from bench.real.faults import (
     late_receiver,
     turned_compass,
 )
+from twin.commands.story import SHIP
 from twin.physics.effects import find
 from twin.physics.ship import load
 from twin.recording.voyage import Voyage
-from twin.study.story import SHIP
 
 U, R = 7.0, 0.005  # speed [m/s] and yaw rate [rad/s] of a ship that turns
 
@@ -85,8 +85,8 @@ def test_every_fault_has_a_name_in_the_catalogue_and_changes_the_readings(voyage
 
 def test_the_table_says_what_was_put_and_what_was_named():
     ship = load(SHIP)
+    from twin.commands.story import TUESDAY
     from twin.recording.read import read_voyage
-    from twin.study.story import TUESDAY
 
     gyro = next(f for f in FAULTS if f.effects == ("GyroBias",))
     row = asked(gyro, [read_voyage(TUESDAY)], ship)

@@ -12,7 +12,7 @@ import pytest
 from twin.cli import main
 from twin.errors import SettingsError
 from twin.physics.effects import BUILT_IN, UNNAMED, find
-from twin.study.effects import overview, page, sentence
+from twin.report.catalogue import overview, page, sentence
 
 ROOT = Path(__file__).parents[2]
 TUTORIAL = (ROOT / "docs" / "tutorials" / "own-effect.md").read_text(encoding="utf-8")

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from twin.cli import main
+from twin.commands import import_ as verb
 from twin.errors import DataError, SettingsError
-from twin.recording import import_voyage as verb
+from twin.recording.import_voyage import import_voyage
 from twin.recording.read import read_voyage
 
 
@@ -122,6 +123,6 @@ def test_the_example_map_of_the_page_reads_its_example_file(tmp_path):
     rows = [";".join([row[0], f"08:30:{k // 2:02d},{5 * (k % 2)}", *row[2:]]) for k in range(40)]
     (tmp_path / "bridge.csv").write_text("\n".join([*head, *rows]) + "\n")
     (tmp_path / "bridge.toml").write_text(by)
-    found = verb.import_voyage(tmp_path / "bridge.csv", tmp_path / "bridge.toml")
+    found = import_voyage(tmp_path / "bridge.csv", tmp_path / "bridge.toml")
     assert len(found.voyage) == 40 and found.voyage.step_s == pytest.approx(0.5)
     assert found.voyage["surge_velocity_mps"][0] == pytest.approx(6.2, abs=0.2)

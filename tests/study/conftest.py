@@ -10,13 +10,13 @@ import pytest
 from bench.bundled import recorded
 from bench.reference import Case, simulate
 from twin.cli import main
+from twin.commands.story import SHIP
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.physics.state import Situation
 from twin.recording.voyage import Voyage
 from twin.recording.write import write_voyage
 from twin.study.reference.sailed import Sailed
-from twin.study.story import SHIP
 from twin.study.track.track import track
 
 HIDDEN = {

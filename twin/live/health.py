@@ -2,16 +2,12 @@
 
 import argparse
 import json
-import os
-import sys
 import time
-import traceback
 from typing import Any
 
 from google.protobuf.message import DecodeError
 
 from twin import whole
-from twin.cli import guarded
 from twin.errors import UsageError
 from twin.live.guard import HYBRID, PHYSICS
 from twin.live.keelson import messages
@@ -20,29 +16,6 @@ from twin.live.signals import config
 from twin.live.signals.config import Settings
 
 SCHEMA_VERSION = 1
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--config", metavar="TWIN.toml", help="the settings the twin runs with (default: its defaults)"
-    )
-    parser.add_argument(
-        "--timeout", type=float, default=3.0, metavar="S", help="how long to listen at most (default: 3)"
-    )
-    parser.add_argument("--json", metavar="FILE", help="write the answer as JSON, - for standard output")
-
-
-def run(args: argparse.Namespace) -> int:
-    """Ends the process itself (an open Zenoh session may hold up its end)."""
-    code = 1
-    try:
-        code = guarded(lambda: ask(args))
-    except BaseException:
-        traceback.print_exc()
-    finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(code)
 
 
 def ask(args: argparse.Namespace) -> int:

@@ -2,15 +2,13 @@
 same bytes."""
 
 import argparse
-import json
 import sys
 from collections import Counter
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from twin import whole
-from twin.errors import DataError, SettingsError
+from twin.errors import DataError
 from twin.live import build
 from twin.live.clock import ReplayClock
 from twin.live.foresight import Foresight, Sight
@@ -20,44 +18,10 @@ from twin.live.log.record import LogFile
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
-from twin.live.signals import config
 from twin.live.signals.config import Settings
 
 SCHEMA_VERSION = 1
 PROGRESS = 20_000  # ticks between two words on standard error
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "log", metavar="LOG.mcap", help="a log of the twin, an imported voyage, or a log of Keelson scalars"
-    )
-    parser.add_argument(
-        "-o", "--output", metavar="OUT.mcap", help="write what the twin said, and what it heard, to a new log"
-    )
-    parser.add_argument("--config", metavar="TWIN.toml", help="settings (default: as `twin run` without any)")
-    parser.add_argument(
-        "--ship",
-        metavar="SHIP.toml",
-        help="ship file or name of a bundled ship, instead of the settings' own",
-    )
-    parser.add_argument(
-        "--realtime", action="store_true", help="as fast as the voyage was, not as fast as possible"
-    )
-    parser.add_argument("--json", metavar="FILE", help="write the summary as JSON, - for standard output")
-
-
-def run(args: argparse.Namespace) -> int:
-    settings = config.load(args.config)
-    if args.ship:
-        settings = settings.but("ship.file", args.ship)
-    if args.output and Path(args.output).resolve() == Path(args.log).resolve():
-        raise SettingsError(f"-o {args.output}: is the log itself. Give another name.")
-    summary = replay(args.log, settings, args.output, args.realtime)
-    if args.json:
-        _write_json(summary, args.json)
-    if args.json != "-":
-        print("\n".join(told(summary, args, settings["ship.file"])))
-    return 0
 
 
 class Summary(NamedTuple):
@@ -161,16 +125,3 @@ def told(s: Summary, args: argparse.Namespace, ship: str) -> list[str]:
         ]
     lines += [f"note: {note}" for note in s.notes]
     return [*lines, f"next: twin compare {args.output or args.log} --ship {ship}"]
-
-
-def _write_json(summary: Summary, path: str) -> None:
-    table = {
-        "schema_version": SCHEMA_VERSION,
-        **summary._asdict(),
-        "foresight": [f._asdict() for f in summary.foresight],
-    }
-    text = json.dumps(table, indent=2)
-    if path == "-":
-        print(text)
-        return
-    whole.write(path, text + "\n", "--json")

@@ -1,27 +1,18 @@
 """`twin import`: measurements in, checked; a file that a check proves wrong is refused."""
 
-import argparse
 import json
-import os
-import sys
 from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from twin import whole
-from twin.errors import DataError, SettingsError, did_you_mean
 from twin.physics.ship import load
-from twin.recording.checks import CHECKS, Check, run_checks
+from twin.recording.checks import Check, run_checks
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
-from twin.recording.write import write_voyage
 
 SCHEMA_VERSION = 1
-EPILOG = """
-Exit code 4: the data cannot be used, or a check proves a sign, unit or frame wrong. The message says what to
-write in the map; --accept CHECK imports the file as it is. The format of a map: docs/import.md.
-"""
 
 
 class Imported(NamedTuple):
@@ -66,50 +57,6 @@ def import_voyage(
     return Imported(voyage, run_checks(voyage, ship))
 
 
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = (parser.epilog or "") + EPILOG
-    parser.add_argument("file", metavar="FILE", help="measurements: CSV, text columns, or an MCAP log")
-    parser.add_argument("--map", metavar="MAP.toml", help="the file's own columns, units, signs and clock")
-    parser.add_argument("--ship", metavar="SHIP.toml", help="her particulars let the checks say more")
-    parser.add_argument(
-        "--accept", metavar="CHECK", action="append", default=[], help="import although CHECK refuses"
-    )
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
-    parser.add_argument("-o", "--output", metavar="VOYAGE.mcap", required=True, help="the checked voyage")
-
-
-def run(args: argparse.Namespace) -> int:
-    known_checks(args.accept)
-    not_onto_itself(args.file, args.output)
-    print(f"reading {args.file} ...", file=sys.stderr)
-    found = import_voyage(args.file, args.map, args.ship)
-    refused = found.refused(args.accept)
-    page = sys.stderr if refused or args.json == "-" else sys.stdout
-    print("\n".join(summary(found)), file=page)
-    if not refused:
-        write_voyage(found.voyage, args.output)
-    if args.json:
-        write_json(found.as_json() | {"output": None if refused else str(args.output)}, args.json)
-    if refused:
-        raise DataError(refusal(args.file, refused, args.map))
-    print(f"wrote {args.output}\nnext: {_next(args.output, args.ship)}", file=page)
-    return 0
-
-
-def _next(voyage: str, ship: str | None) -> str:
-    """A ship that was never calibrated is, on her reference voyages, before anything is compared with her;
-    whether this is one, nobody knows."""
-    if ship and "structural" not in load(ship).notes:
-        better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
-        return (
-            "her model was not calibrated yet. Import the voyages on which nothing was wrong (three or "
-            "more), then "
-            f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship} -o {better}; after that, twin diagnose "
-            f"LATER.mcap --ship {better}"
-        )
-    return f"twin compare {voyage} --ship {ship or 'SHIP.toml'}"
-
-
 def summary(found: Imported) -> list[str]:
     """What was read and what the checks say, a line each."""
     v = found.voyage
@@ -133,18 +80,6 @@ def refusal(path: str, refused: Sequence[Check], map_path: str | None = None) ->
     accept = " ".join(f"--accept {c.name}" for c in refused)
     said = " ".join(f"{c.name}: {c.text}" for c in refused)
     return f"{path}: not imported. {said} {mend}, or import it as it is with {accept}."
-
-
-def known_checks(names: Sequence[str]) -> None:
-    known = [check.__name__ for check in CHECKS]
-    for name in names:
-        if name not in known:
-            raise SettingsError(f"--accept: no check is called {name!r}.{did_you_mean(name, known)}")
-
-
-def not_onto_itself(source: str, output: str) -> None:
-    if os.path.exists(output) and os.path.exists(source) and os.path.samefile(source, output):
-        raise SettingsError(f"-o {output}: is the file that is read. Choose another name.")
 
 
 def write_json(result: dict[str, Any], path: str) -> None:

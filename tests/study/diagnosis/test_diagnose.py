@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from twin import cli
+from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.physics.effects import catalogue
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.diagnose import diagnose
 from twin.study.diagnosis.tell_diagnosis import sentence, told
-from twin.study.story import MONDAY, SHIP, TUESDAY
 
 
 @pytest.fixture(scope="module")

@@ -1,9 +1,7 @@
 """`twin calibrate`: fits the core to reference voyages, and learns what a model of this kind still leaves
 unexplained."""
 
-import argparse
 import datetime
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -14,11 +12,9 @@ from twin.physics.effects.antenna_offset import AntennaOffset
 from twin.physics.effects.steering_lag import SteeringLag
 from twin.physics.effects.wind import Wind
 from twin.physics.model import Model
-from twin.physics.ship import Ship, load, save
-from twin.recording.import_voyage import write_json
+from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
-from twin.study.calibration.doubts import doubts
-from twin.study.calibration.held_out import LAST, HeldOut, by_regime, errors, size, split
+from twin.study.calibration.held_out import HeldOut, by_regime, errors, size
 from twin.study.calibration.parts import clearly, placed, with_or_without_wind
 from twin.study.calibration.rollout import rolled_out
 from twin.study.estimation.columns import core_unknowns
@@ -35,7 +31,7 @@ from twin.study.reference.derivatives import (
 )
 from twin.study.reference.gear import with_or_without_gear
 from twin.study.reference.nuisance import TEMPER, WEATHER, instruments, temper_of
-from twin.study.reference.sailed import Sailed, read_all
+from twin.study.reference.sailed import Sailed
 from twin.study.reference.seaway import levelled, swung
 from twin.study.reference.structure import structural_floor
 from twin.study.reference.usual import clearly_hers, usual
@@ -54,13 +50,6 @@ PARTS = {  # of the ship and not of the core, found with it
 # by the probability of the voyages; the antenna by predictions
 ASKED_FOR = (SteeringLag.__name__, Wind.__name__)
 SAID = {"gear": SteeringLag, "antenna": AntennaOffset, "wind": Wind}  # their numbers in --json
-EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weather or with the wind recorded:
-zigzags, circles, speed changes.
-Without --held-out the last third of the voyages (or of a single voyage) is held back to measure the error.
-The standard errors, and the structural error that remains, are stored in the ship file: they keep an
-imperfect model from being called a missing effect. Exit code 4: a voyage cannot be used; 5: the ship file is
-not valid.
-"""
 
 
 @dataclass(frozen=True)
@@ -242,56 +231,6 @@ def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
 def _row(d: Derivative, ship: Ship, after: Ship) -> dict[str, Any]:
     before, value = (float(getattr(s.derivatives, d.unknown.name)) for s in (ship, after))
     return {"name": d.unknown.name, "before": before, "value": value, "sd": d.sd, "excited": d.excited}
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = f"{parser.epilog or ''}\n\n{EPILOG}"
-    parser.add_argument(
-        "voyages",
-        metavar="VOYAGE",
-        nargs="+",
-        help="reference voyages: nothing wrong, manoeuvring, calm or with the wind recorded",
-    )
-    parser.add_argument(
-        "--ship",
-        metavar="SHIP.toml",
-        required=True,
-        help="the ship file to start from, or a bundled ship's name",
-    )
-    parser.add_argument(
-        "-o", "--output", metavar="SHIP2.toml", required=True, help="the calibrated ship file"
-    )
-    parser.add_argument(
-        "--held-out", metavar="VOYAGE", nargs="+", default=[], help="voyages on which the error is measured"
-    )
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
-
-
-def run(args: argparse.Namespace) -> int:
-    ship = load(args.ship)
-    every = read_all(args.voyages, ship)
-    fitted, held_out, words = split(every, read_all(args.held_out, ship))
-
-    def tell(text: str) -> None:
-        print(f"{text} ...", file=sys.stderr)
-
-    done = calibrate(fitted, held_out, ship, tell)
-    if words == LAST:
-        tell("once more, with every voyage")
-        done = calibrate(every, held_out, ship, tell, done.result["fitted_by"]).with_errors_of(done)
-    save(done.ship, args.output)
-    r = done.result
-    found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
-    result = r | {"held_out_is": words, "output": str(args.output), "doubts": found}
-    if args.json:
-        write_json(result, args.json)
-    page = sys.stderr if args.json == "-" else sys.stdout
-    print("\n".join(told(result)), file=page)
-    print(
-        f"\nwrote {args.output}\nnext: twin compare VOYAGE.mcap --ship {args.output} --report compare.html",
-        file=page,
-    )
-    return 0
 
 
 def told(result: dict[str, Any]) -> list[str]:

@@ -1,18 +1,14 @@
 """`twin init`: a first model of my ship from what its owner knows; every estimated number says where it comes
 from."""
 
-import argparse
-import sys
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from math import radians
-from pathlib import Path
 from typing import Any
 
 from twin.errors import SettingsError
 from twin.physics.model import Model
-from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship, save
-from twin.recording.import_voyage import write_json
+from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship
 from twin.study.first_model import regressions as reg
 from twin.study.first_model.modulus import modulus_form, slipstream
 from twin.study.prediction.trial import shaft_speed, straight_line_stability, turning_circle, zigzag
@@ -57,52 +53,6 @@ INSIDE = ("shaft-speed-rpm", "propellers", "pitch-ratio", "rudder-height-m")
 FULL = 0.7  # block coefficient from which ships often do not go straight by themselves
 Given = Mapping[str, float | None]
 Numbers = dict[str, tuple[float, str]]  # name -> value, source
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("name", metavar="NAME", help="the ship's name")
-    for option, doc, lo, hi in OPTIONS:
-        parser.add_argument(
-            f"--{option}",
-            type=float,
-            required=option in REQUIRED,
-            metavar="X",
-            help=f"{doc} [{lo:g} to {hi:g}]",
-        )
-    parser.add_argument("-o", "--output", required=True, metavar="SHIP.toml", help="the ship file to write")
-    parser.add_argument("--json", metavar="FILE", help="the same as JSON; - is standard output")
-
-
-def run(args: argparse.Namespace) -> int:
-    given = {option: getattr(args, option.replace("-", "_")) for option, *_ in OPTIONS}
-    ship, warnings = first_model(args.name, given)
-    figures = sea_trial(ship)
-    warnings += doubts(figures, ship.C_b)
-    save(ship, args.output)
-    out = sys.stderr if args.json == "-" else sys.stdout
-    print(summary(ship, figures, warnings, given), file=out)
-    print(f"\nwritten: {args.output}", file=out)
-    print(
-        f"next:    twin import each reference voyage, then twin calibrate REF-*.mcap --ship {args.output} "
-        f"-o {_next(args.output)}",
-        file=out,
-    )
-    if args.json:
-        write_json(
-            {
-                "schema_version": 1,
-                "ship": ship.name,
-                "file": str(args.output),
-                "trial": figures,
-                "warnings": warnings,
-            },
-            args.json,
-        )
-    return 0
-
-
-def _next(path: str) -> str:
-    return str(Path(path).with_name(Path(path).stem + "-calibrated.toml"))
 
 
 def first_model(name: str, given: Given) -> tuple[Ship, list[str]]:

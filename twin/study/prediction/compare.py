@@ -1,36 +1,22 @@
 """`twin compare`: model against measurement, open loop from the measured state: how wrong, and where."""
 
-import argparse
-import sys
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
-from twin.errors import DataError, ThresholdError
+from twin.errors import DataError
 from twin.physics.model import Model
-from twin.physics.ship import Ship, load
-from twin.recording.import_voyage import write_json
+from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.estimation.start import waves_on
 from twin.study.prediction import locate, score
 from twin.study.prediction.openloop import HORIZONS_S, Windows, predict
-from twin.study.prediction.tell import told
-from twin.study.prediction.thresholds import passed, positive, threshold
 from twin.study.prediction.unexplained import Energy, energy
-from twin.study.reference.sailed import Sailed, fed, read_all, switched_off
+from twin.study.reference.sailed import Sailed, fed, switched_off
 from twin.study.reference.structure import floor_of
 
 SCHEMA_VERSION = 1
 CLEARLY = 1.5  # times its floor, from which an error is more than it may be
-EPILOG = """example:
-  twin compare monday.mcap tuesday.mcap --ship alma.toml --report compare.html
-  twin compare monday.mcap --ship alma.toml --fail-above position_mae_m=50 --json -
-
-Metrics of --fail-above: position_mae_m, lateral_mae_m, heading_mae_deg (at the longest horizon, or at one:
-position_mae_m@60), noise_units (position error over its floor), unexplained_force.surge|sway|yaw,
-learned_share, channels.COLUMN.mae. Exit code 3: a threshold is passed; 4: a voyage cannot be used; 5: the
-ship file is not valid.
-"""
 
 
 @dataclass(frozen=True)
@@ -127,86 +113,3 @@ def verdict(result: dict[str, Any]) -> str:
         )
         + "."
     )
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = EPILOG
-    parser.add_argument(
-        "voyages",
-        metavar="VOYAGE",
-        nargs="+",
-        help="voyages: MCAP logs or CSV files with the contract's columns",
-    )
-    parser.add_argument(
-        "--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name"
-    )
-    parser.add_argument(
-        "--horizon",
-        metavar="S",
-        type=positive,
-        action="append",
-        help="seconds ahead (repeat; default 10, 60, 120)",
-    )
-    parser.add_argument("--residual", metavar="FILE.onnx", help="what was learned, added as the loop adds it")
-    parser.add_argument(
-        "--fail-above",
-        metavar="METRIC=VALUE",
-        type=threshold,
-        action="append",
-        default=[],
-        help="exit 3 above VALUE",
-    )
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
-    parser.add_argument("--report", metavar="FILE.html", help="one self-contained page with the plots")
-
-
-def run(args: argparse.Namespace) -> int:
-    ship = load(args.ship)
-    model = Model.of(ship)
-    if args.residual:
-        model = replace(model, residual=_learned(args.residual, ship))
-    sailed = read_all(args.voyages, ship)
-    print("predicting ...", file=sys.stderr)
-    found = compare(sailed, model, sorted(set(args.horizon or HORIZONS_S)))
-    result = found.result | {
-        "command": f"twin compare {' '.join(args.voyages)} --ship {args.ship}",
-        "files": {"ship": args.ship, "voyages": args.voyages},
-    }
-    if args.json:
-        write_json(result, args.json)
-    page = sys.stderr if args.json == "-" else sys.stdout
-    print("\n".join(told(result)), file=page)
-    if args.report:
-        _report(args.report, found, model, result)
-        print(f"\nwrote {args.report}", file=page)
-    print(f"\nnext: {_next(args, result)}", file=page)
-    if unmet := passed(result, args.fail_above):
-        raise ThresholdError(f"{'; '.join(unmet)}.")
-    return 0
-
-
-def _learned(path: str, ship: Ship) -> Callable:
-    from twin.study.estimation.learned import learned_force
-
-    return learned_force(path, ship)
-
-
-def _report(path: str, found: Compared, model: Model, result: dict[str, Any]) -> None:
-    from twin import report
-
-    report.write(
-        path,
-        "compare",
-        result,
-        [s.track for s in found.sailed],
-        model,
-        voyages=[s.voyage for s in found.sailed],
-    )
-
-
-def _next(args: argparse.Namespace, result: dict[str, Any]) -> str:
-    rest = f"{' '.join(args.voyages)} --ship {args.ship}"
-    if result["horizons"][-1]["noise_floor"]["of"] == "sensors":
-        first = f"twin calibrate REFERENCE.mcap --ship {args.ship} -o calibrated.toml, or "
-        return f"{first}twin diagnose {rest} --report diagnose.html"
-    return f"twin diagnose {rest} --report diagnose.html"

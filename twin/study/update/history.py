@@ -1,12 +1,8 @@
 """`twin history`: the ladder of what was added to a ship's model, and how far the error fell each time."""
 
-import argparse
-import sys
 from typing import Any
 
-from twin.physics.ship import Ship, load
-from twin.recording.import_voyage import write_json
-from twin.recording.jsonable import plain
+from twin.physics.ship import Ship
 
 SCHEMA_VERSION = 1
 
@@ -49,29 +45,3 @@ def _names(voyages: list[dict[str, Any]]) -> str:
         f"{v['name']}{' (' + v['part'] + ')' if 'part' in v else ''} {str(v.get('sha256', ''))[:8]}"
         for v in voyages
     )
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("ship", metavar="SHIP.toml")
-    parser.add_argument("--json", metavar="FILE", help="the same as JSON ('-': standard output)")
-
-
-def run(args: argparse.Namespace) -> int:
-    ship = load(args.ship)
-    if args.json:
-        present = [type(e).__name__ for e in ship.effects]
-        write_json(
-            plain(
-                {
-                    "schema_version": SCHEMA_VERSION,
-                    "ship": ship.name,
-                    "effects": present,
-                    "history": ladder(ship),
-                }
-            ),
-            args.json,
-        )
-    page = sys.stderr if args.json == "-" else sys.stdout
-    print("\n".join(told(ship)), file=page)
-    print(f"next: twin compare VOYAGE.mcap --ship {args.ship}", file=page)
-    return 0

@@ -1,19 +1,16 @@
-"""`twin effects`: the catalogue in words, formulas and numbers, for the terminal, for programs and for
+"""The catalogue of effects in words, formulas and numbers, for the terminal, for programs and for
 docs/effects.md."""
 
-import argparse
 import inspect
-import json
 import os
-import shutil
 import sys
 import textwrap
 from typing import Any
 
-from twin import whole
 from twin.physics.effect import FORM, Effect, Param
-from twin.physics.effects import BUILT_IN, UNNAMED, catalogue, find
-from twin.physics.ship import Ship, load
+from twin.physics.effects import UNNAMED
+from twin.physics.ship import Ship
+from twin.recording.inputs import INPUTS
 
 KINDS = {
     "Force": "pushes the ship, or changes her inertia",
@@ -26,63 +23,6 @@ SCALES_SAID = (
     "U_0: service speed, L: length between perpendiculars, F_0 = 0.005 rho L T U_0^2, about half "
     "of a ship's resistance."
 )
-INPUTS = {
-    "wind_speed": "true_wind_speed_mps",
-    "wind_to": "true_wind_direction_deg",
-    "depth": "water_depth_m",
-    "H_s": "wave_height_significant_m",
-    "T_p": "wave_period_peak_s",
-    "wave_to": "wave_direction_deg",
-    "bank_port": "bank_distance_port_m",
-    "bank_starboard": "bank_distance_starboard_m",
-    "phi": "roll_deg",
-    "u_r": "surge_velocity_through_water_mps",
-    "v_r": "sway_velocity_through_water_mps",
-    "t": "time_s",
-    "r": "yaw_rate_degps",
-}
-
-
-def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "name",
-        nargs="?",
-        metavar="NAME",
-        help="one effect, with its formula; without it, the whole catalogue",
-    )
-    parser.add_argument("--ship", metavar="SHIP.toml", help="give boxes and sizes in this ship's own units")
-    parser.add_argument("--json", metavar="FILE", help="the same as JSON; - is standard output")
-    parser.add_argument(
-        "--markdown", metavar="FILE", help="the whole catalogue as a page (docs/effects.md is made by it)"
-    )
-
-
-def run(args: argparse.Namespace) -> int:
-    ship = load(args.ship) if args.ship else None
-    by_form = [e for e in UNNAMED if e.__name__ == args.name]
-    chosen = by_form or ([find(args.name)] if args.name else list(catalogue().values()))
-    if args.json:
-        _write(
-            args.json,
-            json.dumps(
-                {"schema_version": 1, "effects": [as_table(e, ship) for e in chosen]},
-                indent=2,
-                ensure_ascii=False,
-            ),
-        )
-    if args.markdown:
-        _write(args.markdown, page(list(BUILT_IN)))
-    if "-" not in (args.json, args.markdown):
-        width = min(120, shutil.get_terminal_size((100, 24)).columns)
-        print(one(chosen[0], ship, width) if args.name else overview(chosen, width))
-    return 0
-
-
-def _write(path: str, text: str) -> None:
-    if path == "-":
-        print(text)
-        return
-    whole.write(path, text.rstrip("\n") + "\n", "--json or --markdown")
 
 
 def sentence(effect: type[Effect]) -> str:

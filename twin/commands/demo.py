@@ -21,7 +21,7 @@ def run(args: argparse.Namespace) -> int:
     if importlib.util.find_spec("scipy") is None:
         print("\nThe study's part of the story needs the extra `study`: pip install 'shiptwin[study]'.")
         return 0
-    from twin.study.story import story
+    from twin.commands.story import story
 
     story(Path(args.logs))
     return 0

@@ -1,0 +1,35 @@
+"""`twin history`: the ladder of what was added to a ship's model, and how far the error fell each time."""
+
+import argparse
+import sys
+
+from twin.physics.ship import load
+from twin.recording.import_voyage import write_json
+from twin.recording.jsonable import plain
+from twin.study.update.history import SCHEMA_VERSION, ladder, told
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("ship", metavar="SHIP.toml")
+    parser.add_argument("--json", metavar="FILE", help="the same as JSON ('-': standard output)")
+
+
+def run(args: argparse.Namespace) -> int:
+    ship = load(args.ship)
+    if args.json:
+        present = [type(e).__name__ for e in ship.effects]
+        write_json(
+            plain(
+                {
+                    "schema_version": SCHEMA_VERSION,
+                    "ship": ship.name,
+                    "effects": present,
+                    "history": ladder(ship),
+                }
+            ),
+            args.json,
+        )
+    page = sys.stderr if args.json == "-" else sys.stdout
+    print("\n".join(told(ship)), file=page)
+    print(f"next: twin compare VOYAGE.mcap --ship {args.ship}", file=page)
+    return 0

@@ -1,0 +1,74 @@
+"""`twin import`: measurements in, checked; a file that a check proves wrong is refused."""
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from twin.errors import DataError, SettingsError, did_you_mean
+from twin.physics.ship import load
+from twin.recording.checks import CHECKS
+from twin.recording.import_voyage import import_voyage, refusal, summary, write_json
+from twin.recording.write import write_voyage
+
+EPILOG = """
+Exit code 4: the data cannot be used, or a check proves a sign, unit or frame wrong. The message says what to
+write in the map; --accept CHECK imports the file as it is. The format of a map: docs/import.md.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = (parser.epilog or "") + EPILOG
+    parser.add_argument("file", metavar="FILE", help="measurements: CSV, text columns, or an MCAP log")
+    parser.add_argument("--map", metavar="MAP.toml", help="the file's own columns, units, signs and clock")
+    parser.add_argument("--ship", metavar="SHIP.toml", help="her particulars let the checks say more")
+    parser.add_argument(
+        "--accept", metavar="CHECK", action="append", default=[], help="import although CHECK refuses"
+    )
+    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+    parser.add_argument("-o", "--output", metavar="VOYAGE.mcap", required=True, help="the checked voyage")
+
+
+def run(args: argparse.Namespace) -> int:
+    known_checks(args.accept)
+    not_onto_itself(args.file, args.output)
+    print(f"reading {args.file} ...", file=sys.stderr)
+    found = import_voyage(args.file, args.map, args.ship)
+    refused = found.refused(args.accept)
+    page = sys.stderr if refused or args.json == "-" else sys.stdout
+    print("\n".join(summary(found)), file=page)
+    if not refused:
+        write_voyage(found.voyage, args.output)
+    if args.json:
+        write_json(found.as_json() | {"output": None if refused else str(args.output)}, args.json)
+    if refused:
+        raise DataError(refusal(args.file, refused, args.map))
+    print(f"wrote {args.output}\nnext: {_next(args.output, args.ship)}", file=page)
+    return 0
+
+
+def _next(voyage: str, ship: str | None) -> str:
+    """A ship that was never calibrated is, on her reference voyages, before anything is compared with her;
+    whether this is one, nobody knows."""
+    if ship and "structural" not in load(ship).notes:
+        better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
+        return (
+            "her model was not calibrated yet. Import the voyages on which nothing was wrong (three or "
+            "more), then "
+            f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship} -o {better}; after that, twin diagnose "
+            f"LATER.mcap --ship {better}"
+        )
+    return f"twin compare {voyage} --ship {ship or 'SHIP.toml'}"
+
+
+def known_checks(names: Sequence[str]) -> None:
+    known = [check.__name__ for check in CHECKS]
+    for name in names:
+        if name not in known:
+            raise SettingsError(f"--accept: no check is called {name!r}.{did_you_mean(name, known)}")
+
+
+def not_onto_itself(source: str, output: str) -> None:
+    if os.path.exists(output) and os.path.exists(source) and os.path.samefile(source, output):
+        raise SettingsError(f"-o {output}: is the file that is read. Choose another name.")
