@@ -1,8 +1,9 @@
 """The losses, the paper's and those that work better, on the same physics as the loop: Model.forces and
 Model.step with tensors.
 
-acceleration   |S^-1 (M nu_dot - F(nu)) - f|^2, one sample at a time paper          lambda_data |nu(t+h) -
-nu_pred(t+h)|^2 + lambda_phys |S^-1 R|^2,  R = M nu_dot_pred - F(nu) - S f,
+acceleration   |S^-1 (M nu_dot - F(nu)) - f|^2, one sample at a time
+paper          lambda_data |nu(t+h) - nu_pred(t+h)|^2 + lambda_phys |S^-1 R|^2,
+    R = M nu_dot_pred - F(nu) - S f,
                nu_dot_pred = d nu_pred/dh by automatic differentiation through Model.step
 rollout        Huber of heading, place and speeds along a free run of many steps
 orthogonal     what of f lies in the span of the core's own forces: |P f|^2

@@ -1,8 +1,8 @@
 """The residual network of Table 1: four layers of 64, swish, and a last layer W kept apart; believed only
 where it was trained.
 
-    x = (clip(zeta, low, high) - offset)/scale,   phi = trunk(x),   f = weight W phi,  |f| <= bound,   force =
-    S f
+    x = (clip(zeta, low, high) - offset)/scale,   phi = trunk(x),   f = weight W phi,  |f| <= bound,
+        force = S f
 
 `weight` falls to zero outside [low, high], as in twin/live/learning/residual.py, which must say the same of
 the exported file."""

@@ -36,7 +36,8 @@ def _cannot(path: Path, why: str | None, option: str) -> TwinError:
 
 def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
     """Write aside, to the disk, and rename into place; TwinError (exit code 1) when that cannot be done, and
-    nothing is left behind. `option`: what names the file on the command line."""
+    nothing is left behind.
+    `option`: what names the file on the command line."""
     path, aside = Path(path), ""
     try:
         with tempfile.NamedTemporaryFile(

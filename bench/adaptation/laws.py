@@ -1,14 +1,14 @@
 """Laws of adaptation that are compared with the one on board; all share its saturation, gate, boxes and ball
 (twin/live/learning/adapt.py).
 
-    gradient    a' = G q e/(1 + q'q) - sigma a                        sigma-modification [Ioannou & Kokotovic
-    1984]
-    e-mod       a' = G q e/(1 + q'q) - mu |e| a                       e-modification [Narendra & Annaswamy
-    1987]
+    gradient    a' = G q e/(1 + q'q) - sigma a
+        sigma-modification [Ioannou & Kokotovic 1984]
+    e-mod       a' = G q e/(1 + q'q) - mu |e| a
+        e-modification [Narendra & Annaswamy 1987]
     dead zone   the same gradient, not below one usual error
     RLS         P' = P/M - P q q' P/R,  a' = P q e/R                  forgetting over M, P bounded from above
-    Kalman      P' = Q - P q q' P/R - 2 P/T,  a' = P q e/R - a/T      a random walk, leaking to the trained
-    weights
+    Kalman      P' = Q - P q q' P/R - 2 P/T,
+        a' = P q e/R - a/T      a random walk, leaking to the trained weights
 """
 
 from math import sqrt

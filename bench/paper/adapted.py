@@ -1,8 +1,8 @@
 """The hybrid that goes on learning: the law of twin/live/learning/adapt.py beside the filter, one for each
 voyage, every grid step.
 
-    f = w [W phi + g A q],  |f| <= bound           q = [whitened components of phi | known forces of the row |
-    1]
+    f = w [W phi + g A q],
+        |f| <= bound           q = [whitened components of phi | known forces of the row | 1]
 
 What is learned up to the start of a window is held while the window is predicted.
 """

@@ -2,8 +2,9 @@
 current, tuned on validation runs.
 
 State: x, y, psi, u, v, r and the accelerations that no known force explains. The Jacobian is by differences
-through Model.step. Tuned: how fast the disturbance may walk (three sizes), and whether the prediction keeps
-it."""
+    through Model.step.
+Tuned: how fast the disturbance may walk (three sizes), and whether the prediction keeps it.
+"""
 
 from collections.abc import Sequence
 

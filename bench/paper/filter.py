@@ -2,10 +2,11 @@
 the past alone.
 
 State: x, y, psi, u, v, r (through the water), the current north and east, and the accelerations that neither
-physics nor network explains. An extended Kalman filter of all voyages side by side; its Jacobian by
-differences through Model.step. Predictions begin in its state and keep its current; the unexplained
-accelerations serve the filter and are dropped. Tuned on validation runs: how fast current and unexplained
-accelerations may walk, and how long the sea's noise hangs together."""
+    physics nor network
+explains. An extended Kalman filter of all voyages side by side; its Jacobian by differences through
+Model.step. Predictions begin in its state and keep its current; the unexplained accelerations serve the
+filter and are dropped. Tuned on validation runs: how fast current and unexplained accelerations may walk, and
+how long the sea's noise hangs together."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass

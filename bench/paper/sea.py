@@ -67,8 +67,9 @@ class Sailed:
 def lessons(plan: Plan) -> list[Case]:
     """What is learned from, in the order of time. Any 15 in a row hold the same manoeuvres in the same seas,
     so that training, validation and test are alike; speeds take turns with them. She is driven harder than
-    her service speed and slower than half of it: what a network was never shown (a propeller that turns
-    faster than U_0 needs) it must leave to the physics."""
+    her service speed and slower than half of
+    it: what a network was never shown (a propeller that turns faster than U_0 needs) it must leave to the
+        physics."""
     return [
         Case(
             "kvlcc2",

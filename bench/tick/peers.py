@@ -1,9 +1,10 @@
 """What the others cost for one step, measured hot in a process of their own (their memory is not the twin's).
 
 hybrid: the twin's step, correct to adapt. analytic: one Runge-Kutta step of the equations. ekf: filterpy's
-filter on the same equations. lstm: two layers of 128 in ONNX Runtime, one thread, re-run over its window of
-50 each step (the paper's kind) and, beside it, carrying its state. look_ahead: 120 s in 1200 steps of 0.1 s
-and in 120 of 1 s, for one ship and for an ensemble of 64.
+    filter on the same equations. lstm: two
+layers of 128 in ONNX Runtime, one thread, re-run over its window of 50 each step (the paper's kind) and,
+beside it, carrying its state. look_ahead: 120 s in 1200 steps of 0.1 s and in 120 of 1 s, for one ship and
+for an ensemble of 64.
 
     python -m bench.tick.peers [--repeats 1000]      prints JSON
 """

@@ -180,8 +180,9 @@ def test_the_yaw_rate_of_a_constant_heading_cannot_be_told(sail):
 
 def test_a_speed_over_ground_that_scatters_does_not_make_a_log_short():
     """Test: a zigzag with a right log in a stream of 0.1 m/s; the speed over ground is the slope of positions
-    and scatters by 0.5 m/s. Expected: 1.00 and that stream. (With the speed over ground as the cause, k is
-    short and a stream stands in for the rest.)"""
+    and scatters by 0.5 m/s.
+    Expected: 1.00 and that stream. (With the speed over ground as the cause, k is short and a stream stands
+        in for the rest.)"""
     rng, t = np.random.default_rng(5), np.arange(0.0, 2400.0)
     psi, true = 0.8 * np.sin(t / 90.0), 6.0 + 1.2 * np.sin(t / 45.0)
     log = true - 0.1 * np.cos(psi - 1.0) + 0.04 * rng.standard_normal(t.size)

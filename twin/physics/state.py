@@ -30,7 +30,8 @@ class Water(NamedTuple):
     sway and yaw, as shares of the hull's damping, in yaw of the whole moment, Munk's included (a bottom
     squeezes the stream past her; propeller and rudder, in the wake, do not feel it). k_m, k_j: by how much
     more of it sways and turns with her, as shares of the added mass in sway and of the added inertia in yaw.
-    k_t: share of the thrust that drives her by which it takes the ship back (thrust deduction)."""
+    k_t: share of the thrust that drives her by which it takes the ship back (thrust deduction).
+    """
 
     u: Number = 0.0
     v: Number = 0.0
@@ -57,8 +58,10 @@ class Rates(NamedTuple):
 class Situation:
     """A ship at one moment (or at many: every field may be an array over time).
 
-    eta = (x, y, psi) [m, m, rad]; nu = (u, v, r) over ground, body axes [m/s, m/s, rad/s]; (u_r, v_r) through
-    the water. A field that is None was not measured; an effect that needs it is switched off."""
+    eta = (x, y, psi) [m, m, rad]; nu = (u, v, r) over ground, body axes [m/s, m/s, rad/s]; (u_r, v_r)
+        through the water.
+    A field that is None was not measured; an effect that needs it is switched off.
+    """
 
     x: Number = 0.0
     y: Number = 0.0

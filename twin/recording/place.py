@@ -21,7 +21,9 @@ def placed(time_s: np.ndarray, columns: Columns, by: Map) -> tuple[Columns, dict
     """Columns with north/east and body velocities in place of latitude/longitude, earth or course velocities.
 
     Numbers that belong together may stand in rows of their own: the others are brought to the time of the
-    first. Second: what is known of the place (`datum`). Third: sentences."""
+    first.
+    Second: what is known of the place (`datum`). Third: sentences.
+    """
     facts: dict[str, Any] = {}
     notes: list[str] = []
     if set(PLACES) <= set(columns):

@@ -29,7 +29,9 @@ def write(
     """Write the page of a verb (`compare`, `diagnose`, `add`), aside and renamed.
 
     `before`: the model without what was added. `voyages`: the recordings behind the tracks, in the same
-    order; with them the page plots every sample instead of the grid's means."""
+        order; with them the
+    page plots every sample instead of the grid's means.
+    """
     whole.write(path, html(content(kind, result, tracks, model, before, voyages)), "--report")
 
 

@@ -174,8 +174,9 @@ def on_a_mast(v, height):
 
 def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship(tmp_path):
     """Test: three voyages of a container ship that heels by some degrees in her turns, seen by an antenna 30
-    m above the axis of roll, and by a low one. Expected: its height and no place ahead, and predictions as
-    good as with the low one (the heel of her turns had been taken for sway)."""
+    m above the axis of roll, and by a low one.
+    Expected: its height and no place ahead, and predictions as good as with the low one (the heel of her
+        turns had been taken for sway)."""
     sailed = simulate(
         [
             Case("container", m, seed=970 + i, duration_s=900.0)

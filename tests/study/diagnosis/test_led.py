@@ -185,7 +185,8 @@ def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker
 
 def test_what_is_likely_by_now_is_asked_however_unlikely_it_was_where_it_was_found(tanker, voyages):
     """Test: a worn rudder that was found far below the best, and is the best since another set left the rest
-    of it to what any day brings. Expected: she is led by it, too, and not only by nothing."""
+    of it to what any day brings.
+    Expected: she is led by it, too, and not only by nothing."""
     case = assemble([voyages["RudderWear"]], tanker)
     weighed, found, _ = search(case)
     worn = replace(found["RudderWear",].hypothesis, log_evidence=-1e4)

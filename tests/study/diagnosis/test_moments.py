@@ -62,7 +62,8 @@ def test_ships_that_pass_are_seen_when_they_pass_and_nobody_is_acquitted(tanker,
 
 def test_where_waves_toss_her_more_is_asked_of_a_push(monkeypatch, tanker, voyages):
     """Test: a healthy voyage of which one stretch is 20 nats likelier with a push, what swings her slowly,
-    and waves. Expected: a moment, but in waves none."""
+    and waves.
+    Expected: a moment, but in waves none."""
     case = assemble([voyages["nothing"]], tanker)
     monkeypatch.setattr(moment_of, "stretches", lambda *_: [Moment("nothing", 60.0, 90.0, 20.0, np.ones(3))])
     (track,) = case.tracks

@@ -103,8 +103,9 @@ def test_what_is_left_given_some_values_is_the_whole_posterior_conditioned_on_th
 @pytest.mark.parametrize("pull", [(2.0, -2.0), (1.0, -4.0), (3.0, 1.0), (-0.5, -0.5)])
 def test_of_two_numbers_that_do_for_each_other_none_stands_outside_its_box_for_the_other(pull):
     """Test: two numbers from 0 to 5 that work alike, of which the readings would have one far out and the
-    other as far below nothing. Expected: the most probable place, and the evidence, that a fine grid over the
-    box finds (within a tenth of what leaving the box cost)."""
+    other as far below nothing.
+    Expected: the most probable place, and the evidence, that a fine grid over the box finds (within a tenth
+        of what leaving the box cost)."""
     own = (Unknown("A", "a", "-", 0.0, 1.0, 0.0, 5.0), Unknown("A", "b", "-", 0.0, 1.0, 0.0, 5.0))
     A = 40.0 * np.array([[1.0, 0.95], [0.95, 1.0]])
     reduced = Reduced(A, A @ np.array(pull), 0.0, own, np.zeros(2))

@@ -2,7 +2,8 @@
 uses it.
 
 measured' = measured - (read(s) - s), read being what the instruments would say of the ship where she is
-believed to be."""
+    believed to be.
+"""
 
 from dataclasses import fields
 

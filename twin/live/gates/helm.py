@@ -1,8 +1,8 @@
 """Is the rudder where its feedback says? One that stands still says nothing by itself: a helmsman may hold
 his rudder. But then the ship may not turn as if it moved.
 
-    n = N_unexplained / (N of one radian of rudder)          how far the rudder would have to be elsewhere
-    [rad]
+    n = N_unexplained / (N of one radian of rudder)
+        how far the rudder would have to be elsewhere [rad]
 
 While the feedback stands, n may change by what a wrong model explains: SLACK, a share of the moments at work,
 and a greater share of what the feedback's own last movement still does in the filters. More than that, and

@@ -1,9 +1,9 @@
 """Slow learning on board: a few numbers on top of the trained last layer, kept small, unused when they do
 not help; and the numbers of the named effects (`twin add`), inside their boxes.
 
-    learned force_r = W_r phi + g a_r q_r           q_r = [whitened components of phi | known forces of row r
-    | 1] a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x - a_r q_f)^2/(NOISE_S s_r^2) +
-    |a_r/usual|^2
+    learned force_r = W_r phi + g a_r q_r
+        q_r = [whitened components of phi | known forces of row r | 1]
+    a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x - a_r q_f)^2/(NOISE_S s_r^2) + |a_r/usual|^2
 
 each row a ridge regression on fading evidence (evidence.py): what nothing teaches fades back to the trained
 weights. What usually changes are the known forces' sizes; features only fill in, else they would explain the

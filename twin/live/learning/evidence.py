@@ -2,8 +2,8 @@
 regression.
 
     y_f' = lam (y - y_f),  F_f' = lam (nu_dot_known - F_f),  q_f' = lam (q - q_f)
-    d = S^-1 M [lam (y - y_f) - F_f]   the force that the known ones do not explain, low-passed, in units of
-    the force scale S
+    d = S^-1 M [lam (y - y_f) - F_f]
+        the force that the known ones do not explain, low-passed, in units of the force scale S
 
 All pass the same filter, so d = (learned force)_f + noise, whatever the manoeuvre; and all pass it a second
 time. Noise of speeds that are as good as differentiated, and waves, lie above the manoeuvres: behind one

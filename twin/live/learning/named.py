@@ -1,8 +1,8 @@
 """The numbers of the named effects, learned on board from the force that all three rows together miss.
 
     x = (theta - theta_file)/sd,   d_r = c_r x + what the rows' own numbers explain (adapt.py)
-    x = argmin  sum_r sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x)^2/(NOISE_S s_r^2) + |x|^2,      low <=
-    theta <= high
+    x = argmin  sum_r sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x)^2/(NOISE_S s_r^2) + |x|^2,
+        low <= theta <= high
 
 Few numbers and three rows to learn them from, so the memory is half of a row's. theta_file + g (theta -
 theta_file) acts, in the known physics; the gate g asks how much of what x promised a while ago has come true

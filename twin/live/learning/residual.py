@@ -1,8 +1,8 @@
 """The learned residual's trunk: phi(zeta) by ONNX, believed only where it was trained, and only after it
 proved to be whole.
 
-    phi = trunk((zeta - offset)/scale),  zeta clamped to its envelope;  weight = prod_i (1 - d_i/MARGIN)^2
-    over inputs outside,
+    phi = trunk((zeta - offset)/scale),
+        zeta clamped to its envelope;  weight = prod_i (1 - d_i/MARGIN)^2 over inputs outside,
 
 d_i being how far input i is outside its envelope, in widths of the envelope. Loading checks the hash of the
 bytes, the operators, shapes, element types and opset, the ship, and that golden inputs still give golden

@@ -4,8 +4,9 @@
     eta_hat+ = eta_hat + h R(psi_hat) nu_hat + h K (eta - eta_hat)
 
 K = 12 U_0/L unless settings or certificate say otherwise (0.3 1/s for a 320 m ship), less for a sensor too
-slow or too late for that. A sample pulls until the next one is due; what comes late is compared with the
-corrected estimate of its time, so that no pull is answered twice. What is not measured is predicted, and its
+    slow or too
+late for that. A sample pulls until the next one is due; what comes late is compared with the corrected
+estimate of its time, so that no pull is answered twice. What is not measured is predicted, and its
 uncertainty grows."""
 
 from collections import deque

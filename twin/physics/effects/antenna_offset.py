@@ -3,8 +3,10 @@ the ship.
 
 a_x ahead, a_y to starboard, from the point whose position the settings promise (midship; docs/import.md); a_z
 above the axis of roll, from where heel phi carries it aside (a_z = 0 where roll was not recorded; p is its
-rate): x_m = x + a_x cos(psi) - a sin(psi),   y_m = y + a_x sin(psi) + a cos(psi),   a = a_y + a_z sin(phi)
-u_m = u - a r,                         v_m = v + a_x r + a_z cos(phi) p"""
+rate):
+x_m = x + a_x cos(psi) - a sin(psi),   y_m = y + a_x sin(psi) + a cos(psi),   a = a_y + a_z sin(phi)
+u_m = u - a r,                         v_m = v + a_x r + a_z cos(phi) p
+"""
 
 from dataclasses import replace
 

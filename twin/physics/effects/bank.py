@@ -1,10 +1,12 @@
 """Bank suction: the stream between hull and bank runs faster, and pulls the ship to the bank and her bow off
 it.
 
-d: from the ship's side to the bank (where there is none, 10000 m) e = f(d_starboard) - f(d_port),  f(d) = eta
-(1 + steep (3 eta - 1)),  eta = B/(B + 2 d) Y =  1/2 rho L T   u_r^2     suction  e N = -1/2 rho L^2 T
-u_r|u_r|  bow_out  e How fast the suction falls off with the distance depends on hull and bank, and those who
-measured it disagree: with eta, or with its square; one beam off both say the same."""
+d: from the ship's side to the bank (where there is none, 10000 m)
+e = f(d_starboard) - f(d_port),  f(d) = eta (1 + steep (3 eta - 1)),  eta = B/(B + 2 d)
+Y =  1/2 rho L T   u_r^2     suction  e
+N = -1/2 rho L^2 T u_r|u_r|  bow_out  e
+How fast the suction falls off with the distance depends on hull and bank, and those who measured it disagree:
+with eta, or with its square; one beam off both say the same."""
 
 from twin.physics.effect import Force, param
 from twin.physics.particulars import Ship

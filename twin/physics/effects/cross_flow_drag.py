@@ -1,8 +1,10 @@
 """Extra quadratic cross-flow drag, integrated over strips along the hull.
 
-Y = -1/2 rho T  int c(x) |v_r + x r| (v_r + x r) dx N = -1/2 rho T  int c(x) |v_r + x r| (v_r + x r) x dx,
-c(x) = c_d - 2 c_aft x / L + c_mid (1 - 12 x^2/L^2) x from -L/2 to L/2 in ten strips; the mean of c over her
-length is c_d (but for the strips' own coarseness)."""
+Y = -1/2 rho T  int c(x) |v_r + x r| (v_r + x r) dx
+N = -1/2 rho T  int c(x) |v_r + x r| (v_r + x r) x dx,
+    c(x) = c_d - 2 c_aft x / L + c_mid (1 - 12 x^2/L^2)
+x from -L/2 to L/2 in ten strips; the mean of c over her length is c_d (but for the strips' own coarseness).
+"""
 
 from twin.physics.effect import Force, param
 from twin.physics.particulars import Ship

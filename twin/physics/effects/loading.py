@@ -1,7 +1,7 @@
 """Another loading condition: heavier or lighter, deeper or shallower, trimmed.
 
-    m -> (1 + mass) m,  T -> k T with k = 1 + draught,  x_G -> x_G + shift,  I_z -> (1 + mass) I_z + m (x_G^2
-    - x_G0^2)
+    m -> (1 + mass) m,  T -> k T with k = 1 + draught,  x_G -> x_G + shift,
+        I_z -> (1 + mass) I_z + m (x_G^2 - x_G0^2)
 Added masses in sway and yaw and the hull's lift grow with T^2 + a B T, as regressions have them (a slender
 body's with T^2 alone), cross-flow drag with T, the added mass in surge with m, the resistance with the wetted
 surface 1.7 L T + C_b L B. Derivatives are stored over T, so that one power of k is there already.
@@ -9,7 +9,7 @@ surface 1.7 L T + C_b L B. Derivatives are stored over T, so that one power of k
 A load that stands farther aft trims her by the stern, trim / T = -(shift / L) C_b / C_IL, and her lift moves
 aft with her draught:
     Y_uv -> (1 + 0.67 trim / T) Y_uv,  N_uv -> N_uv - 0.27 trim / T Y_uv,  Y_ur -> (1 + 0.8 trim / T) Y_ur,
-    N_ur -> (1 + 0.3 trim / T) N_ur
+        N_ur -> (1 + 0.3 trim / T) N_ur
 """
 
 from dataclasses import replace

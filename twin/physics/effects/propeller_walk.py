@@ -1,7 +1,9 @@
 """Propeller walk: the blades push the stern sideways, with the square of the shaft speed.
 
 Two screws that turn outward or inward alike have none; what is left where one of them gives less turns her,
-too, and is called this. Y = rho D^4   c_y n |n|,   N = rho D^4 L c_n n |n|"""
+too, and is called this.
+Y = rho D^4   c_y n |n|,   N = rho D^4 L c_n n |n|
+"""
 
 from twin.physics.effect import Force, param
 from twin.physics.particulars import Ship

@@ -1,10 +1,14 @@
 """GNSS is late: what it says now was true `delay` seconds ago; the place to second order in the delay, the
 velocity to first.
 
-    (x, y)_m = (x, y) - delay R(psi - r delay/2) (u - du/dt delay/2, v - dv/dt delay/2)      the velocity of
-    half the delay ago u_m = u - delay du/dt + turned r v v_m = v - delay dv/dt - turned r u
+    (x, y)_m = (x, y) - delay R(psi - r delay/2) (u - du/dt delay/2, v - dv/dt delay/2)
+        the velocity of half the delay ago
+    u_m = u - delay du/dt + turned r v
+    v_m = v - delay dv/dt - turned r u
 `turned` = delay where a late velocity over ground is turned into body axes by the present heading (a
-compass), and 0 where the receiver does so itself by an attitude of its own (an inertial unit)."""
+    compass), and 0 where
+the receiver does so itself by an attitude of its own (an inertial unit).
+"""
 
 from dataclasses import replace
 

@@ -3,9 +3,10 @@ eases into it.
 
 Only where the recorded rudder is the order: an angle that is measured behind the gear hides it.
 
-delta(t + h) = delta + clip((order(t - delay) - delta) h/(h + ease), -rate h, rate h),   rate = 65 deg /
-travel_time which for long steps is the order itself: h/(h + ease) is a step of d(delta)/dt = (order -
-delta)/ease that is stable for any h."""
+delta(t + h) = delta + clip((order(t - delay) - delta) h/(h + ease), -rate h, rate h),
+    rate = 65 deg / travel_time
+which for long steps is the order itself: h/(h + ease) is a step of d(delta)/dt = (order - delta)/ease that is
+stable for any h."""
 
 from math import pi
 

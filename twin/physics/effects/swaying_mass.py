@@ -3,8 +3,9 @@ hold.
 
     Y = -m share (dv/dt + u r + place dr/dt),  N = -m (share place (dv/dt + u r) + inertia L^2 dr/dt)
 m: mass of the ship. Liquid far below the period of its tank goes with the ship's side, as a mass would.
-Several tanks have a centre (place) and an inertia about midship of their own. What they do to her heel is
-left out."""
+    Several tanks have a centre (place) and an
+inertia about midship of their own. What they do to her heel is left out.
+"""
 
 from twin.physics.effect import Force, param
 from twin.physics.particulars import Ship

@@ -1,8 +1,9 @@
 """Mean second-order drift: the momentum of the waves that the hull throws back.
 
     beta_wave: direction to which the waves run
-    chi = beta_wave - psi,  q = 1/16 rho g H_s^2 R,  R = 1 - exp(-2 k T),  k = (2 pi / T_p)^2 / g   (R = 1
-    where T_p is unknown) X = q B sqrt(B/L)  c_x cos(chi)
+    chi = beta_wave - psi,  q = 1/16 rho g H_s^2 R,  R = 1 - exp(-2 k T),
+        k = (2 pi / T_p)^2 / g   (R = 1 where T_p is unknown)
+    X = q B sqrt(B/L)  c_x cos(chi)
     Y = q L            c_y |sin(chi)| sin(chi)
     N = q L^2          c_n sin(2 chi)
 A vertical wall that reflects everything has c_y = 1; long waves pass under the keel, which R takes off. Waves

@@ -61,7 +61,8 @@ def fit(
     is not taken but made shorter (trust region; Nocedal & Wright 2006, sec. 4.1), so that a fit of many
     numbers that is begun far off does not end in a corner of their boxes; the last one is not judged.
     `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the
-    filter follows is not found yet, and errs by more than they do."""
+        filter follows is not found yet,
+    and errs by more than they do."""
     problem = _Problem(tracks, model, tuple(unknowns), catalogue, floor, temper, smooth)
     here, far = problem.at(problem.start()), NEAR
     for _ in range(STEPS):

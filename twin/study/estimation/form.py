@@ -7,7 +7,8 @@ voyages tell how much of each term this ship has; what they leave open is kept i
 judged.
 
 Forms: cubic hull and its scale, Yasukawa & Yoshimura (2015); wake that thins with drift, ibid.; heel, Son &
-Nomoto (1981)."""
+    Nomoto (1981).
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass

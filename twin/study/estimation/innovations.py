@@ -4,12 +4,14 @@ its tangents.
 Along the smooth motion the ship is linear: delta = (x, y, psi, u, v, r), a slowly varying acceleration b
 (what any model of this kind leaves over: its structural error) and a slowly varying current c, both
 first-order Gauss-Markov; and, where a sea was seen to work, what waves do (waves.py). The filter's gains do
-not depend on the unknowns theta, so its innovations are affine in them: epsilon = e - G theta. Whitened, they
-give the normal equations A = G'G, b = G'e of every later question. Tracks are cut into segments that are
-filtered side by side.
+not depend on the unknowns theta, so its innovations are affine in them:
+epsilon = e - G theta. Whitened, they give the normal equations A = G'G, b = G'e of every later question.
+    Tracks are cut into
+segments that are filtered side by side.
 
 Source: Ljung (1999) System identification, sec. 7.4 (innovations form); Kennedy & O'Hagan (2001) (model
-discrepancy)."""
+    discrepancy).
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -61,12 +63,15 @@ MEMORY_B, MEMORY_C = 3.0, 12.0  # correlation times of b and c, in ship lengths 
 class Floor:
     """What a correct model of this kind still leaves unexplained on this ship: the structural floor.
 
-    `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller cause
-    at that moment, in surge, sway, yaw; `calm`: the same share of a standard acceleration, there even when
-    nothing happens; `white` (3,): fast part, of a standard acceleration; `flow`: scatter of the water's own
-    motion, as a share of U_0; `sensor`: factor on the readings' scatter; `wander`: how far the position that
-    satellites show strays from itself in one second, and sqrt(t) times as far in t [m/sqrt(s)]; `doubt`:
-    share of the force of the effects under judgement that may be something else (none on a reference voyage).
+    `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller
+        cause at that moment,
+    in surge, sway, yaw; `calm`: the same share of a standard acceleration, there even when nothing happens;
+    `white` (3,): fast part, of a standard acceleration; `flow`: scatter of the water's own motion, as a share
+    of U_0; `sensor`: factor on the readings' scatter;
+    `wander`: how far the position that satellites show strays from itself in one second, and sqrt(t) times
+        as far in t [m/sqrt(s)];
+    `doubt`: share of the force of the effects under judgement that may be something else (none on a
+        reference voyage).
     """
 
     share: tuple[float, float, float] = (0.05, 0.05, 0.05)

@@ -132,7 +132,9 @@ def hull_polynomial(h: Hull, m_y: float) -> dict[str, float]:
     """The hull in v' = -beta and r'; vv stands for |v| v.
 
     Linear part by CGH83. Beyond it the regressions disagree, KIJ90 turning wide and YM12 tight, with the
-    tests of KVLCC2 and S175 between them: we take their mean."""
+    tests of KVLCC2 and S175 between
+    them: we take their mean.
+    """
     s, T_L, T_B, L_B = h.C_b * h.B / h.L, h.T / h.L, h.T / h.B, h.L / h.B
     full, fine, lift = T_B * h.C_b, T_B * (1.0 - h.C_b), pi * h.T / h.L
     linear = {

@@ -42,7 +42,8 @@ def regimes(
     """[{condition, error_ratio, time_share, explains}], what explains most first.
 
     error_ratio: error inside over error elsewhere; explains: share of all error that stands above the level
-    elsewhere."""
+        elsewhere.
+    """
     error = sizes(windows, horizon_s)
     m = means(windows, horizon_s)
     ok = np.isfinite(error)

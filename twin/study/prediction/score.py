@@ -52,7 +52,8 @@ def channels(windows: Sequence[Windows], structural: bool) -> dict[str, dict[str
     """By column: mean error over every lead up to the longest horizon, its floor, R2 and `skill`.
 
     r2 = 1 - SSE/SST about the mean of what was measured; skill = 1 - SSE/(SSE of going on as at the start,
-    dead reckoning)."""
+        dead reckoning).
+    """
     out = {}
     for i, (reading, column) in enumerate(MEASURED.items()):
         k = 180.0 / np.pi if reading in ANGLES else 1.0

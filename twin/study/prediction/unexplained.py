@@ -2,7 +2,8 @@
 
 missing force = M (measured acceleration - the model's), both averaged over half a ship length of sailing
 share = (energy of the missing force - energy that sensor noise gives it) / (that + energy of every known
-force)"""
+    force)
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace

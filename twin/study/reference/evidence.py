@@ -8,7 +8,8 @@ counts. The parameters of its own effects are integrated over their priors (half
 side), so that a flexible effect pays for its freedom.
 
 Source: MacKay (2003) Information theory, inference, and learning algorithms, ch. 28; George & McCulloch
-(1993), spike and slab."""
+    (1993), spike and slab.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -176,8 +177,8 @@ def likeliest(
     chosen: Sequence[str],
 ) -> np.ndarray:
     """(P,) how far each of `all_unknowns` most probably is from where the equations were linearised [its own
-    unit], when the `chosen` effects are there: what the effects leave to core and instruments, and the
-    effects' own share."""
+    unit], when the `chosen` effects are
+    there: what the effects leave to core and instruments, and the effects' own share."""
     A, b, _ = normal.total()
     place = {u.label: i for i, u in enumerate(all_unknowns)}
     usual, own = ([place[u.label] for u in some] for some in (nuisance.unknowns, effects))

@@ -33,8 +33,9 @@ def with_or_without_gear(
 ) -> Fit:
     """The core's fit (and these other unknowns') with the rudder as it was recorded or, if that makes the
     voyages clearly more probable, with a steering gear before it. The gear is looked for beside the core as
-    it is at first and, if it is not found there, as it was fitted without one: a core that was fitted to an
-    order has taken on a part of the gear, and the more so the slower that is."""
+    it is at first and, if it is not found there, as it was fitted without
+    one: a core that was fitted to an order has taken on a part of the gear, and the more so the slower that
+        is."""
 
     def fitted(about: Model) -> Fit:
         return fit(

@@ -21,7 +21,8 @@ NORMAL = 1.4826  # standard deviations in a median of sizes; one wild reading is
 
 def shaken(track: Track, time: float) -> Track:
     """The track with its readings' scatter as it was at each moment, where that was clearly more than its
-    usual one; else the track as it is (`time`: L/U_0)."""
+    usual one; else the track as it is
+    (`time`: L/U_0)."""
     beside = track.measured - track.state[:, [0, 1, 2, 3, 4, 5, 3, 4]]
     swift, lately = (max(3, round(k * time / track.h)) for k in (SWIFT, LATELY))
     size = np.column_stack([_lately(np.abs(e - running_mean(e, swift)), lately) for e in beside.T])

@@ -7,8 +7,9 @@ slow.
 Two resonances, one behind the other: the spectrum of w falls off with frequency to the fourth towards omega =
 0, as no wave pushes for long, and what she does slower than the waves is seen as well as in calm water. (w,
 o, p, q) are in units in which w has variance one and omega, so that frequency and size (`Track.swell`, seen
-in `seaway.py`) may change from step to step. Source: Fossen (2021) Handbook of Marine Craft, sec. 10.2 and
-13.2."""
+in `seaway.py`) may change from step to step.
+Source: Fossen (2021) Handbook of Marine Craft, sec. 10.2 and 13.2.
+"""
 
 from dataclasses import replace
 

@@ -2,7 +2,8 @@
 bootstrapped in blocks.
 
 Source: Kuensch (1989) The jackknife and the bootstrap for general stationary observations, Ann. Statist. 17,
-1217-1241."""
+    1217-1241.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
