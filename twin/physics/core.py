@@ -3,9 +3,8 @@
     M nu_dot_r + C(nu_r) nu_r + D(nu_r) nu_r = tau_propeller + tau_rudder + ...        [Fossen 2021, ch. 6]
 
 Derivatives are stored in prime form, made non-dimensional by 1/2 rho L T U^2 (forces) and 1/2 rho L^2 T U^2
-(moment), with
-v' = v/U and r' = r L/U, so that one set of priors serves every size of ship; `coefficients` gives them back
-    their units.
+(moment), with v' = v/U and r' = r L/U, so that one set of priors serves every size of ship; `coefficients`
+gives them back their units.
 """
 
 from dataclasses import dataclass
@@ -182,9 +181,8 @@ def rudder(u: Number, v: Number, r: Number, delta: Number, thrust: Number, c: Co
 
     q = eps^2 (u_a |u_a| + kappa 8 T/(pi rho D^2)),
         F = 1/2 rho A_R C_L (q sin(delta) + sqrt|q| (w + gamma_a even(w)) cos(delta)),
-    w = gamma_v v + gamma_r L r, even(w) = sqrt(w^2 + e^2) - e, e = EVEN sqrt|q|: behind a single screw more
-        of it arrives from one side
-    than from the other [Yasukawa & Yoshimura 2015: gamma_R of each side].
+    w = gamma_v v + gamma_r L r,  even(w) = sqrt(w^2 + e^2) - e,  e = EVEN sqrt|q|: behind a single screw more
+    of it arrives from one side than from the other [Yasukawa & Yoshimura 2015: gamma_R of each side].
     """
     u_a = c.wake_share * u
     q = c.inflow * (u_a * abs(u_a) + c.slipstream * positive(thrust))
