@@ -2,8 +2,8 @@
 
     psi_m = psi + bias,   wind_to_m = wind_to + bias
     u_m = u cos(turned) + v sin(turned),   v_m = v cos(turned) - u sin(turned)      (over ground)
-`turned` = bias where the velocity over ground is turned into body axes by this compass, and 0 where the receiver
-has an attitude of its own (an inertial unit, two antennas).
+`turned` = bias where the velocity over ground is turned into body axes by this compass, and 0 where the
+receiver has an attitude of its own (an inertial unit, two antennas).
 """
 
 from dataclasses import replace
