@@ -197,3 +197,28 @@ def test_every_verb_is_in_the_documents(name):
 @pytest.mark.parametrize("name", BENCHES)
 def test_every_benchmark_is_typed_as_its_example_says(name):
     assert BENCHES[name].example.startswith("twin-bench")
+
+
+@pytest.mark.parametrize("room", ["twin.physics", "twin.live"])
+def test_nothing_on_the_way_of_a_replay_is_summed_by_the_built_in_sum(room):
+    """Expected: `maths.total` and `maths.dot` instead, whose bits are those of every Python; the built-in
+    one, fsum and sumprod correct."""
+    wrong = [
+        f"{path.relative_to(ROOT)}, line {node.lineno}: {name}"
+        for path in sources(room)
+        for node in ast.walk(ast.parse(path.read_text()))
+        if (name := _called(node)) in ("sum", "fsum", "sumprod")
+    ]
+    assert not wrong
+
+
+def _called(node):
+    """The bare name of a built-in or a function of `math` that is used here (called, or handed on), else
+    ""."""
+    if isinstance(node, ast.Name):
+        return node.id
+    return (
+        node.attr
+        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "math"
+        else ""
+    )

@@ -8,12 +8,14 @@ from math import degrees, pi, radians, sin
 
 import pytest
 
+from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.inbox import Played
 from twin.live.learning.learned import LearnedForce
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
+from twin.live.signals.config import Settings
 from twin.live.signals.readings import Reading
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
@@ -155,3 +157,25 @@ def every_number(message):
 def numbers():
     """Every number in a message, however deep, with its name."""
     return every_number
+
+
+@pytest.fixture(scope="session")
+def on_file(tmp_path_factory):
+    """A folder in which certificates are worked out once for all tests."""
+    return tmp_path_factory.mktemp("certificates")
+
+
+@pytest.fixture
+def make_service(on_file):
+    """The loop that the service builds: certificate, residual where the ship has one, and adaptation."""
+
+    def make(name: str = "kvlcc2", settings=None, **sailing) -> Bridge:
+        chosen = Settings(
+            {"ship.file": name, "observer.certificate": str(on_file / f"{name}.json")} | (settings or {})
+        )
+        bridge = Bridge(load(name), Sailing(load(name), Model.of(load(name)), **sailing))
+        bridge.loop = loop_of(chosen, bridge.ears, Outbox(Publisher(), "twin", "ship"), None)
+        assert bridge.loop.stabilizer.tube and bridge.loop.stabilizer.tube.certificate.ok
+        return bridge
+
+    return make

@@ -1,8 +1,11 @@
 """A hundred thousand messages, true, mutated and made up, through decoder, gates and tick: no crash,
 nothing that is not finite, no bound broken."""
 
+import itertools
 import random
 from math import hypot, isfinite
+
+import pytest
 
 from twin.live.clock import Instant
 from twin.live.inbox import Played
@@ -97,3 +100,43 @@ def test_nor_do_they_on_a_small_boat_with_every_effect_of_the_catalogue(numbers)
     assert len(effects) > 15
     boat = boat.with_effects(*effects)
     sailed(boat, LearnedForce(boat, None, "none in this test"), MESSAGES // 5, numbers)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_pauses_uneven_ticks_and_clock_steps_do_no_harm_to_the_loop_that_the_service_builds(
+    make_service, numbers, seed
+):
+    """Test: certificate, residual and adaptation on; a ship that sails, ticks of 0.1 to 1 s, pauses to 90 s,
+    the wall clock set by up to two hours either way, channels that fall silent, made-up messages between.
+    Expected: no crash, only finite numbers, no bound broken, and the promise given and taken back many
+    times."""
+    dice, bridge, decoder = random.Random(seed), make_service(), Decoder()
+    loop, inside, restarts, now_s = bridge.loop, [], 0, bridge.now_s
+    silent_until, own = {}, (*bridge.sailing.true(), "")
+    for k in range(4000):
+        readings = [r for r in bridge.sailing.readings(now_s) if silent_until.get(r.channel, 0.0) < now_s]
+        wall_s = now_s + bridge.wall_less_mono
+        bridge.ears.next = [r._replace(time_s=wall_s) for r in readings]
+        if dice.random() < 0.01:
+            topic, data = made_up(dice, now_s)
+            bridge.ears.next += [r for r in decoder.decode(topic, data, now_s) if r.channel in own]
+        tick = loop.tick(Instant(k, now_s, wall_s))
+        assert all(isfinite(x) for _, x in numbers(tick)) and tick.certificate.bound >= 0.0
+        assert hypot(tick.learned.X_N, tick.learned.Y_N) <= 2.0 * tick.learned.bound_N + 1e-6
+        assert all(p.horizon_s > 0.0 for p in tick.predictions)
+        if tick.certificate.inside:
+            e = loop.observer.estimate
+            true = bridge.sailing.state[3:]
+            assert hypot(e.u - true[0], e.v - true[1]) < tick.certificate.bound
+        inside.append(tick.certificate.inside)
+        if dice.random() < 0.004:
+            silent_until[dice.choice(list(bridge.sailing.true()))] = now_s + dice.uniform(0.5, 30.0)
+        if dice.random() < 0.004:
+            bridge.wall_less_mono += dice.choice((-7200.0, -30.0, -2.5, -0.4, 0.4, 2.5, 3600.0))
+        steps = dice.choice((1,) * 400 + (2, 3, 5, 10, 15, 29, 31, 40, 100, 900))
+        for _ in range(steps):
+            bridge.sailing.advance()
+        now_s += 0.1 * steps
+        restarts = loop.observer.restarts
+    changes = sum(a != b for a, b in itertools.pairwise(inside))
+    assert restarts > 5 and changes > 4 and sum(inside) > 400, (restarts, changes, sum(inside))

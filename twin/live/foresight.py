@@ -16,6 +16,7 @@ from twin.live.loop import Loop
 from twin.live.observer.dynamics import INPUTS, Known, Steering
 from twin.live.observer.predict import STEP, LearnedAt, Middle, carry
 from twin.live.signals.derive import turn
+from twin.physics.maths import total
 from twin.physics.state import Situation
 
 
@@ -78,7 +79,7 @@ class Foresight:
             for horizon_s, error in self._sail(start).items():
                 errors[horizon_s].append(error)
         return [
-            Sight(h, len(found), sum(p for p, _ in found) / len(found), sum(q for _, q in found) / len(found))
+            Sight(h, len(found), *(total(column) / len(found) for column in zip(*found, strict=True)))
             for h, found in errors.items()
             if found
         ]

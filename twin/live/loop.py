@@ -10,7 +10,7 @@ from typing import Any, Protocol
 from twin.live.clock import Instant
 from twin.live.gates.faults import KnownFaults
 from twin.live.gates.sensors import Sensors
-from twin.live.guard import INVALID, Guard
+from twin.live.guard import CONTROLS, INVALID, Guard
 from twin.live.keelson.decode import Result
 from twin.live.learning.learned import LearnedForce
 from twin.live.observer.dynamics import Dynamics
@@ -19,6 +19,7 @@ from twin.live.observer.predict import LearnedAt, Predictor
 from twin.live.outbox import Outbox
 from twin.live.parts import Parts
 from twin.live.seen import Pace, Seen, Standing
+from twin.live.signals.channels import BY_NAME
 from twin.live.signals.geodesy import Datum
 from twin.live.signals.measured import Measured
 from twin.live.stabilizer import Stabilizer
@@ -152,6 +153,12 @@ class Loop:
 
     def _reasons(self, seen: Seen) -> list[str]:
         said = [*seen.verdict.reasons, *self.watched()]
+        for attribute, value in self.dynamics.held.items():
+            channel = BY_NAME[CONTROLS[attribute]]
+            said.append(
+                f"{channel.name} is lost: its last value, {value / channel.to_si:.4g}, is held and "
+                "may no longer be so"
+            )
         if self.dynamics.off:
             said.append(
                 f"effects without their inputs: {', '.join(type(e).__name__ for e in self.dynamics.off)}"

@@ -13,6 +13,7 @@ from twin.live.observer.estimate import Estimate
 from twin.live.seen import Seen, Standing
 from twin.live.signals.geodesy import Datum, from_chart
 from twin.physics.core import Tau
+from twin.physics.maths import total
 
 
 class Publisher:
@@ -80,8 +81,8 @@ class Publisher:
 
     def _finite(self, values: dict[str, Any]) -> dict[str, Any]:
         """The values without those that are not finite numbers."""
-        total = sum(values.values())
-        if total - total == 0.0:  # NaN or infinity anywhere makes this NaN
+        whole = total(values.values())
+        if whole - whole == 0.0:  # NaN or infinity anywhere makes this NaN
             return values
         kept = {name: x for name, x in values.items() if isfinite(x)}
         self.withheld += len(values) - len(kept)
@@ -140,5 +141,5 @@ def _encode(output: Output, tick: Any, datum: Datum | None, ns: int) -> bytes | 
 def _vector(output: Output, tick: Any, ns: int) -> bytes:
     forces = [tick.learned] if output.source.endswith("learned") else tick.known
     if output.subject == "force_newton":
-        return messages.encode_vector(sum(f.X_N for f in forces), sum(f.Y_N for f in forces), 0.0, ns)
-    return messages.encode_vector(0.0, 0.0, sum(f.N_Nm for f in forces), ns)
+        return messages.encode_vector(total(f.X_N for f in forces), total(f.Y_N for f in forces), 0.0, ns)
+    return messages.encode_vector(0.0, 0.0, total(f.N_Nm for f in forces), ns)

@@ -10,6 +10,8 @@ import gc
 import os
 import re
 import sys
+from collections.abc import Sequence
+from typing import NamedTuple
 
 MCL_CURRENT, MCL_FUTURE, MCL_ONFAULT = 1, 2, 4
 MADV_DONTNEED = 4
@@ -62,29 +64,52 @@ def drop_pages() -> int:
     except OSError:
         return 0
     libc.madvise.argtypes = (ctypes.c_void_p, ctypes.c_size_t, ctypes.c_int)
-    for line in lines:
-        found = _MAPPING.match(line)
-        if found is None or found[4] == "0" or "w" in found[3] or not found[5].startswith("/"):
-            continue
-        if found[3].startswith("r--") and _relocated(found[5], lines, line):
-            continue
-        start, end = int(found[1], 16), int(found[2], 16)
+    for start, end in clean(lines):
         if libc.madvise(start, end - start, MADV_DONTNEED) == 0:
             dropped += end - start
     return dropped
 
 
-def _relocated(path: str, lines: list[str], line: str) -> bool:
-    """Whether a read-only mapping is the part of a library that the loader wrote to (RELRO): it lies right
-    before a writable one."""
-    at = lines.index(line)
-    if at + 1 >= len(lines):
+class Mapping(NamedTuple):
+    """One line of /proc/self/maps: addresses, rights as in `r-xp`, and the file ("" for none)."""
+
+    start: int
+    end: int
+    rights: str
+    inode: str
+    path: str
+
+
+def clean(lines: Sequence[str]) -> list[tuple[int, int]]:
+    """(start, end) of the mappings in /proc/self/maps that hold what their file holds: readable, not
+    writable, never written to."""
+    found = [
+        Mapping(int(m[1], 16), int(m[2], 16), m[3], m[4], m[5])
+        for line in lines
+        if (m := _MAPPING.match(line))
+    ]
+    return [
+        (m.start, m.end) for i, m in enumerate(found) if _of_a_file(m) and not _relocated(m, found[i + 1 :])
+    ]
+
+
+def _of_a_file(m: Mapping) -> bool:
+    return m.inode != "0" and m.path.startswith("/") and "w" not in m.rights and m.rights[:3] != "---"
+
+
+def _relocated(mine: Mapping, behind: Sequence[Mapping]) -> bool:
+    """Whether a read-only mapping is the part of a library that the loader wrote to (RELRO): the next one
+    with any rights is a writable one of the same file. Between them may lie a gap without rights (arm64,
+    pages of 64 KiB)."""
+    if not mine.rights.startswith("r--"):
         return False
-    following = _MAPPING.match(lines[at + 1])
-    mine = _MAPPING.match(line)
-    return bool(
-        following and mine and following[1] == mine[2] and "w" in following[3] and following[5] in (path, "")
-    )
+    end = mine.end
+    for m in behind:
+        if m.rights[:3] == "---" and m.path in (mine.path, ""):
+            end = m.end if m.start == end else end
+            continue
+        return "w" in m.rights and (m.path == mine.path or (m.path == "" and m.start == end))
+    return False
 
 
 def _affinity(cpu: int) -> list[str]:

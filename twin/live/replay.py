@@ -19,6 +19,7 @@ from twin.live.loop import Loop
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
 from twin.live.signals.config import Settings
+from twin.physics.maths import total
 
 SCHEMA_VERSION = 1
 PROGRESS = 20_000  # ticks between two words on standard error
@@ -84,7 +85,7 @@ def _sailed(
         str(played.path),
         played.kind,
         loop.ship.name,
-        sum(modes.values()),
+        total(modes.values()),
         last_s - first_s,
         dict(modes),
         dict(reasons.most_common(12)),

@@ -3,6 +3,8 @@
 from textwrap import wrap
 from typing import Any, TextIO
 
+from twin.physics.maths import total
+
 WIDTH = 78
 PAGE_S, LINE_S = 0.25, 5.0  # between two pages, between two lines
 CLEAR, BOLD, DIM, PLAIN = "\x1b[H\x1b[J", "\x1b[1m", "\x1b[2m", "\x1b[0m"
@@ -122,7 +124,7 @@ def _force(message: Any) -> tuple[float, float, float]:
 
 
 def _sum(forces: Any) -> tuple[float, ...]:
-    return tuple(sum(parts) for parts in zip((0.0, 0.0, 0.0), *map(_force, forces), strict=True))
+    return tuple(total(parts) for parts in zip((0.0, 0.0, 0.0), *map(_force, forces), strict=True))
 
 
 def _three(force: tuple[float, ...]) -> str:

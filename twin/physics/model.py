@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 from . import core
 from .effect import Effect, Flow, Lag, SensorFault
 from .effect import Force as ForceEffect
-from .maths import cos, sin
+from .maths import cos, sin, total
 from .ship import Ship
 from .state import STILL, Force, Number, Rates, Situation, Water
 
@@ -60,7 +60,7 @@ class Model:
     def prompt(self) -> tuple[float, "Model"]:
         """How late place and speed over ground are shown in all [s], and the same model without that."""
         late = [fault.prompt() for fault in self.faults]
-        late_s = float(sum(seconds for seconds, _ in late))
+        late_s = float(total(seconds for seconds, _ in late))
         return late_s, self.but(*(fault for _, fault in late)) if late_s else self
 
     def without_inputs(self, missing: set[str]) -> tuple["Model", tuple[Effect, ...]]:

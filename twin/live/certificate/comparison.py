@@ -7,6 +7,8 @@ G is below one. Source: Berman & Plemmons (1994) Nonnegative Matrices in the Mat
 
 from collections.abc import Callable
 
+from twin.physics.maths import total
+
 Row = tuple[float, float, float]
 Matrix = tuple[Row, Row, Row]
 
@@ -24,7 +26,7 @@ def diagonal(d: Row) -> Matrix:
 
 
 def plus(*parts: Matrix) -> Matrix:
-    return matrix(lambda i, j: sum(p[i][j] for p in parts))
+    return matrix(lambda i, j: total(p[i][j] for p in parts))
 
 
 def scaled(factor: float, a: Matrix) -> Matrix:
@@ -36,7 +38,7 @@ def scaled_row(factor: float, a: Row) -> Row:
 
 
 def product(a: Matrix, b: Matrix) -> Matrix:
-    return matrix(lambda i, j: sum(a[i][k] * b[k][j] for k in AXES))
+    return matrix(lambda i, j: total(a[i][k] * b[k][j] for k in AXES))
 
 
 def apply(a: Matrix, x: Row) -> Row:
@@ -44,13 +46,13 @@ def apply(a: Matrix, x: Row) -> Row:
 
 
 def add(*rows: Row) -> Row:
-    return tuple(sum(r[i] for r in rows) for i in AXES)  # type: ignore[return-value]
+    return tuple(total(r[i] for r in rows) for i in AXES)  # type: ignore[return-value]
 
 
 def inverse(a: Matrix) -> Matrix | None:
     """By cofactors; None when the matrix is singular."""
     c = matrix(lambda i, j: a[j - 2][i - 2] * a[j - 1][i - 1] - a[j - 2][i - 1] * a[j - 1][i - 2])
-    det = sum(a[0][k] * c[k][0] for k in AXES)
+    det = total(a[0][k] * c[k][0] for k in AXES)
     return scaled(1.0 / det, c) if abs(det) > 1e-300 else None
 
 
@@ -88,10 +90,10 @@ def beyond_first(a: tuple[tuple[float, ...], ...]) -> tuple[tuple[float, ...], .
     first order.
     """
     axes = range(len(a))
-    term, total = a, tuple(tuple(0.0 for _ in axes) for _ in axes)
+    term, found = a, tuple(tuple(0.0 for _ in axes) for _ in axes)
     for k in range(2, 40):
-        term = tuple(tuple(sum(row[n] * a[n][j] for n in axes) / k for j in axes) for row in term)
-        total = tuple(
-            tuple(x + y for x, y in zip(*rows, strict=True)) for rows in zip(total, term, strict=True)
+        term = tuple(tuple(total(row[n] * a[n][j] for n in axes) / k for j in axes) for row in term)
+        found = tuple(
+            tuple(x + y for x, y in zip(*rows, strict=True)) for rows in zip(found, term, strict=True)
         )
-    return total
+    return found

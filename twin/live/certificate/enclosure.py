@@ -19,6 +19,7 @@ from twin.physics import core
 from twin.physics.dual import Dual
 from twin.physics.effect import Effect
 from twin.physics.interval import Interval, hull, of
+from twin.physics.maths import total
 from twin.physics.model import CORE, Model
 from twin.physics.state import Situation
 
@@ -71,7 +72,7 @@ class Slopes:
             for i in range(3)
         ]
         far = [max(m.high - m.start, m.start - m.low) for m in numbers]
-        moved = tuple(sum(a * b for a, b in zip(row, far, strict=True)) for row in steep)
+        moved = tuple(total(a * b for a, b in zip(row, far, strict=True)) for row in steep)
         return cls(rows[0], rows[1], tuple((lo[k * i], hi[k * i]) for i in range(3)), boxes, moved)
 
 

@@ -11,6 +11,7 @@ from twin.live.certificate.comparison import AXES, Matrix, Row
 from twin.live.learning.movable import Movable
 from twin.live.observer.operating import OperatingSet
 from twin.physics import core
+from twin.physics.maths import total
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
@@ -52,7 +53,7 @@ class Plant:
         size = self.magnitude()
         rows = (*((*size[i], self.heading[i]) for i in AXES), (0.0, 0.0, 1.0, 0.0))
         whole = [[float(i == j) + self.h * rows[i][j] + self.bend[i][j] for j in range(4)] for i in range(4)]
-        return tuple(tuple(sum(whole[i][k] * rows[k][j] for k in range(4)) for j in range(4)) for i in AXES)
+        return tuple(tuple(total(whole[i][k] * rows[k][j] for k in range(4)) for j in range(4)) for i in AXES)
 
     def growth(self) -> Matrix:
         """A^M: what can make an error grow; on the diagonal only a slope above zero, because clip() may

@@ -16,6 +16,7 @@ from twin.live.certificate import comparison as c3
 from twin.live.certificate.comparison import AXES, Matrix, Row
 from twin.live.certificate.plant import Disturbance, Plant
 from twin.live.observer.operating import NU
+from twin.physics.maths import total
 
 Ages = tuple[int, int, int]
 SURE = 3.0  # times the least K: what the loop's own is at least
@@ -161,7 +162,7 @@ def pushed(plant: Plant, heading_noise: float) -> tuple[Matrix, Row]:
     h, swing = plant.h, plant.swing()
     along = c3.plus(c3.IDENTITY, c3.matrix(lambda i, j: 0.75 * h * swing[i][j]))
     rates = (*plant.most, max(abs(x) for x in plant.operating.ranges["r"]))
-    curve = [0.25 * h * h * sum(a * b for a, b in zip(row, rates, strict=True)) for row in swing]
+    curve = [0.25 * h * h * total(a * b for a, b in zip(row, rates, strict=True)) for row in swing]
     moved = c3.apply(along, plant.moved)
     calm = tuple(
         (h * p + plant.bend[i][3]) * heading_noise + curve[i] + h * moved[i]
@@ -222,7 +223,7 @@ def best_gain(
         if end is None:
             return NEVER
         g = c3.add(c3.apply(step.share(), during), c3.apply(c3.diagonal(step.heard), noise))
-        return sum(b / w for b, w in zip(c3.apply(end, g), width, strict=True))
+        return total(b / w for b, w in zip(c3.apply(end, g), width, strict=True))
 
     uniform: list[Row] = [(k, k, k) for k in _between(*limits)]
     K = min(uniform, key=size)

@@ -63,6 +63,7 @@ class Plausibility:
     def feed(self, measured: Measured, dt: float) -> None:
         """One tick's measurements."""
         if not 0.0 < dt < 1.0 or measured.steps:
+            self._last.clear()  # no way is measured across a hole or a step
             return
         si = measured.si
         if "psi" in measured.fresh and "r" in si and "r" not in measured.derived:

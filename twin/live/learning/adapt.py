@@ -23,9 +23,9 @@ from typing import Any, NamedTuple
 from twin.live.learning.evidence import Three
 from twin.live.learning.named import Named
 from twin.live.learning.proof import Proof
-from twin.live.learning.residual import dot
 from twin.live.learning.ridge import HINDSIGHT, LARGEST, MEMORY, NOISE_S, SPREAD, deviations, factor, solve
 from twin.live.observer.dynamics import Forces
+from twin.physics.maths import dot, total
 from twin.physics.model import CORE
 from twin.physics.ship import Ship
 from twin.physics.state import Force
@@ -145,7 +145,7 @@ class Adaptation:
             if self._slow
             else regressors
         )
-        motion = sum([(x - m) ** 2 for x, m in zip(regressors, self._slow, strict=True)])
+        motion = total([(x - m) ** 2 for x, m in zip(regressors, self._slow, strict=True)])
         self._excited = sqrt(max(self._excited**2 + a * (motion - self._excited**2), 0.0))
 
     def _update(self, r: int, wanted: float, q: list[float], c: list[float]) -> None:
@@ -192,14 +192,14 @@ class Adaptation:
         ]
         row.a = solve(
             row.L,
-            [b - sum([z * line[i] for z, line in zip(x, row.B, strict=True)]) for i, b in enumerate(row.b)],
+            [b - total([z * line[i] for z, line in zip(x, row.B, strict=True)]) for i, b in enumerate(row.b)],
         )
 
     def _project(self, row: Row) -> None:
         """On the boxes, then on the ball of all three rows."""
         inside = [min(max(x, -b), b) if isfinite(x) else 0.0 for x, b in zip(row.a, self._boxes, strict=True)]
         row.a = inside
-        norm = sqrt(sum(dot(other.a, other.a) for other in self._rows))
+        norm = sqrt(total(dot(other.a, other.a) for other in self._rows))
         if norm > A_MAX:
             for other in self._rows:
                 other.a = [x * A_MAX / norm for x in other.a]
@@ -230,7 +230,7 @@ class Adaptation:
         return self._proof.gate > 0.0
 
     def norm(self) -> float:
-        return sqrt(sum(dot(row.a, row.a) for row in self._rows))
+        return sqrt(total(dot(row.a, row.a) for row in self._rows))
 
     def parameters(self) -> list[Parameter]:
         """All numbers with their bounds and status."""

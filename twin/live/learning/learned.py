@@ -124,7 +124,9 @@ class LearnedForce:
         not."""
         self._waited_s += dt
         adaptation = self.adaptation
-        if (self.residual is None and adaptation is None) or (self._waited_s < LEARN_S and nu is not None):
+        if (self.residual is None and adaptation is None) or (
+            0.0 <= self._waited_s < LEARN_S and nu is not None
+        ):
             return
         dt, self._waited_s = self._waited_s, 0.0
         if nu is None or not 0.0 < dt < 1.0:

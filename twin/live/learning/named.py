@@ -14,9 +14,9 @@ from math import isfinite, sqrt
 from twin.live.learning.evidence import Three
 from twin.live.learning.movable import Columns, movable, moved
 from twin.live.learning.proof import Proof
-from twin.live.learning.residual import dot
 from twin.live.learning.ridge import HINDSIGHT, NOISE_S, SPREAD, deviations, factor, solve
 from twin.physics.effect import Effect
+from twin.physics.maths import dot
 from twin.physics.ship import Ship
 from twin.physics.state import Force
 

@@ -9,6 +9,7 @@ and is seen first in the one that is least noisy. Of what was only noise nothing
 from math import sqrt
 
 from twin.live.learning.ridge import GATE, NOISE_S
+from twin.physics.maths import total
 
 SAMPLES = 2.0 * GATE / NOISE_S  # that the means count as
 ENOUGH = 0.5  # share of what was promised that must surely have come true for all of it to act
@@ -31,6 +32,6 @@ class Proof:
         cut = min(max(wanted, -limit), limit)
         for i, x in enumerate((cut * promised, promised * promised, cut * cut)):
             kept[i] += g * (x - kept[i])
-        came, size = (sum(k[i] / s for k, s in zip(self._kept, self._spread, strict=True)) for i in (0, 1))
+        came, size = (total(k[i] / s for k, s in zip(self._kept, self._spread, strict=True)) for i in (0, 1))
         least = (came - sqrt(size / SAMPLES)) / size if size > 0.0 else 0.0  # less one deviation of its noise
         self.gate = min(max(least / ENOUGH, 0.0), 1.0)

@@ -12,7 +12,6 @@ outputs.
 import hashlib
 import json
 from math import inf, isfinite, sqrt
-from operator import mul
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,6 +21,7 @@ from twin.live.learning.manifest import Manifest
 from twin.live.learning.network import Network, NetworkError
 from twin.live.learning.onnx_file import FLOAT, OnnxError, look, with_rows
 from twin.physics import ship as ships
+from twin.physics.maths import dot, total
 from twin.physics.ship import Ship
 from twin.physics.state import Situation
 from twin.physics.zeta import ZETA
@@ -97,7 +97,7 @@ class Residual:
         except NetworkError as error:
             return Features([], [], 0.0, f"the network failed ({error})")
         # the sum is NaN if one is
-        if not (abs(sum(out)) < ABSURD and max(out) < ABSURD and min(out) > -ABSURD):
+        if not (abs(total(out)) < ABSURD and max(out) < ABSURD and min(out) > -ABSURD):
             return Features([], [], 0.0, "the network gives numbers that are not finite or absurd")
         return Features(out[:3], [-3.0 if x < -3.0 else 3.0 if x > 3.0 else x for x in out[3:]], weight, why)
 
@@ -114,11 +114,6 @@ class Residual:
                 zeta = min(max(zeta, low), high)
             values.append((zeta - offset) / scale)
         return values, weight, why
-
-
-def dot(a: "tuple[float, ...] | list[float]", b: "tuple[float, ...] | list[float]") -> float:
-    """The inner product, summed from left to right: the same on every machine (BLAS is not)."""
-    return sum(map(mul, a, b))
 
 
 def load(path: str | Path, ship: Ship) -> Residual:
@@ -139,7 +134,7 @@ def check(model: bytes, text: bytes, ship: Ship, where: str = "residual") -> Res
     except manifests.ManifestError as error:
         raise ResidualError(f"{where}: its manifest is not usable: {error}") from None
     _same_ship(manifest, ship, where)
-    norm = sqrt(sum(w * w for row in manifest.W for w in row))
+    norm = sqrt(total(w * w for row in manifest.W for w in row))
     if norm > manifest.W_max:
         raise ResidualError(
             f"{where}: its last layer has the norm {norm:.3g}, the manifest allows {manifest.W_max:.3g}"

@@ -1,7 +1,8 @@
 """Ridge regression on evidence that fades, in plain floats: the same on every machine."""
 
 from math import sqrt
-from operator import mul
+
+from twin.physics.maths import dot, total
 
 NOISE_S = 0.75  # time over which noise hangs together, in L/U_0
 MEMORY, SPREAD, GATE = 20.0, 1.5, 3.0  # time constants, in L/U_0
@@ -15,8 +16,8 @@ def factor(information: list[list[float]], prior: list[float]) -> list[list[floa
     for i, (line, least) in enumerate(zip(information, prior, strict=True)):
         row: list[float] = []
         for j in range(i):
-            row.append((line[j] - sum(map(mul, row, L[j]))) / L[j][j])
-        row.append(sqrt(line[i] + least - sum(map(mul, row, row))))
+            row.append((line[j] - dot(row, L[j])) / L[j][j])
+        row.append(sqrt(line[i] + least - dot(row, row)))
         L.append(row)
     return L
 
@@ -25,9 +26,9 @@ def solve(L: list[list[float]], b: list[float]) -> list[float]:
     """x of L L' x = b."""
     x: list[float] = []
     for row, y in zip(L, b, strict=True):
-        x.append((y - sum(map(mul, row, x))) / row[-1])
+        x.append((y - dot(row, x)) / row[-1])
     for i in range(len(b) - 1, -1, -1):
-        x[i] = (x[i] - sum([L[k][i] * x[k] for k in range(i + 1, len(b))])) / L[i][i]
+        x[i] = (x[i] - total([L[k][i] * x[k] for k in range(i + 1, len(b))])) / L[i][i]
     return x
 
 
@@ -36,6 +37,6 @@ def deviations(L: list[list[float]]) -> list[float]:
     n, inverse = len(L), [[0.0] * len(L) for _ in L]
     for i, row in enumerate(L):
         for j in range(i):
-            inverse[i][j] = -sum([row[k] * inverse[k][j] for k in range(j, i)]) / row[i]
+            inverse[i][j] = -total([row[k] * inverse[k][j] for k in range(j, i)]) / row[i]
         inverse[i][i] = 1.0 / row[i]
-    return [sqrt(sum([inverse[k][i] ** 2 for k in range(i, n)])) for i in range(n)]
+    return [sqrt(total([inverse[k][i] ** 2 for k in range(i, n)])) for i in range(n)]

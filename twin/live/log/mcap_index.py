@@ -7,6 +7,8 @@ from struct import Struct, pack
 from typing import NamedTuple
 from zlib import crc32
 
+from twin.physics.maths import total
+
 MAGIC = b"\x89MCAP0\r\n"
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = range(1, 9)
 ATTACHMENT, ATTACHMENT_INDEX, STATISTICS, METADATA, METADATA_INDEX, SUMMARY_OFFSET, DATA_END = range(9, 16)
@@ -91,9 +93,11 @@ class Summary:
 
     def _statistics(self) -> bytes:
         sizes = (len(self.schemas), len(self.channels), 0, len(self.metadata), self.chunks)
-        total = sum(self.counts.values())
+        messages = total(self.counts.values())
         return record(
-            STATISTICS, pack("<QHIIIIQQ", total, *sizes, self.first_ns, self.last_ns), number_map(self.counts)
+            STATISTICS,
+            pack("<QHIIIIQQ", messages, *sizes, self.first_ns, self.last_ns),
+            number_map(self.counts),
         )
 
 

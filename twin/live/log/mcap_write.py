@@ -25,6 +25,7 @@ from twin.live.log.mcap_index import (
     text,
     text_map,
 )
+from twin.physics.maths import total
 
 LIBRARY = "shiptwin"
 MESSAGE_HEAD = Struct("<BQHIQQ")  # opcode, length, channel, sequence, log time, publish time
@@ -44,7 +45,7 @@ class OpenChunk:
 
     def append(self, *data: bytes) -> None:
         self.parts += data
-        self.size += sum(map(len, data))
+        self.size += total(map(len, data))
 
     def message(self, channel: int, data: bytes, log_ns: int, publish_ns: int) -> None:
         self.index[channel].append((log_ns, self.size))

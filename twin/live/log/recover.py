@@ -24,6 +24,7 @@ from twin.live.log.mcap_index import (
     message_indexes,
 )
 from twin.live.log.mcap_parse import Broken, ends_well, open_log, records, string, unpacked
+from twin.physics.maths import total
 
 
 class Scan(NamedTuple):
@@ -66,7 +67,7 @@ def _recover(path: Path, stream: IO[bytes]) -> str:
     except DataError:
         return _set_aside(path, size)
     _finish(stream, found)
-    kept, lost = sum(found.summary.counts.values()), size - found.cut
+    kept, lost = total(found.summary.counts.values()), size - found.cut
     return f"{path.name}: unfinished log repaired, {kept} messages kept, {lost} bytes at the end lost"
 
 

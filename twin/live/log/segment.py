@@ -13,6 +13,7 @@ from pathlib import Path
 
 from twin.live.keelson.messages import schema_bytes
 from twin.live.log.mcap_write import Compress, McapWriter
+from twin.physics.maths import total
 
 
 class Segment:
@@ -23,12 +24,11 @@ class Segment:
     ):
         folder.mkdir(parents=True, exist_ok=True)
         self.opened_s = now_s
-        self.size = 0
-        self.broken = False
         self._named = False  # the folder with our name in it is on the disk
         self._sync = sync
-        self._writer = McapWriter(self._put, compress)
-        self.path, self._fd = _create(folder, name)
+        self.path, fd = _create(folder, name)
+        self._file = WholeWrites(fd)
+        self._writer = McapWriter(self._file.put, compress)
         try:
             self._writer.start()
         except OSError:
@@ -36,13 +36,23 @@ class Segment:
             self.close()
             raise
 
+    @property
+    def size(self) -> int:
+        """Bytes that are whole in the file."""
+        return self._file.size
+
+    @property
+    def broken(self) -> bool:
+        """Whether a write failed and could not be cut back."""
+        return self._file.broken
+
     def add(self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int) -> None:
         self._writer.add(self._writer.channel(topic, type_name, schema_bytes), payload, log_ns, publish_ns)
 
     def sync(self) -> None:
         """Puts everything added so far on the disk."""
         self._writer.flush()  # now a kill loses nothing of it
-        self._sync(self._fd)  # now a power cut neither
+        self._sync(self._file.fd)  # now a power cut neither
         if not self._named:
             _sync_folder(self.path.parent)
             self._named = True
@@ -54,25 +64,33 @@ class Segment:
     @property
     def kept(self) -> int:
         """Messages that are whole in the file."""
-        return sum(self._writer.summary.counts.values())
+        return total(self._writer.summary.counts.values())
 
     def finish(self) -> None:
         self._writer.finish()
-        self._sync(self._fd)
+        self._sync(self._file.fd)
 
     def close(self) -> None:
-        os.close(self._fd)
+        os.close(self._file.fd)
 
     def deleted(self) -> bool:
         """Whether somebody removed the file under our hands."""
-        return os.fstat(self._fd).st_nlink == 0
+        return os.fstat(self._file.fd).st_nlink == 0
 
-    def _put(self, data: bytes) -> None:
+
+class WholeWrites:
+    """An open file to which all of a piece is written or nothing. It knows nobody who writes to it, so a
+    finished segment is freed without the garbage collector, which the service switches off."""
+
+    def __init__(self, fd: int):
+        self.fd, self.size, self.broken = fd, 0, False
+
+    def put(self, data: bytes) -> None:
         """All of `data` or nothing: behind a short write nothing could be read."""
         done = 0
         try:
             while done < len(data):
-                done += os.write(self._fd, data[done:])
+                done += os.write(self.fd, data[done:])
         except OSError:
             self._cut_back()
             raise
@@ -80,8 +98,8 @@ class Segment:
 
     def _cut_back(self) -> None:
         try:
-            os.ftruncate(self._fd, self.size)
-            os.lseek(self._fd, self.size, os.SEEK_SET)
+            os.ftruncate(self.fd, self.size)
+            os.lseek(self.fd, self.size, os.SEEK_SET)
         except OSError:
             self.broken = True
 

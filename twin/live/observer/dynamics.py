@@ -12,14 +12,15 @@ from twin.live.observer.estimate import Estimate
 from twin.live.signals.measured import Measured
 from twin.physics import core
 from twin.physics.effect import Effect, Flow, Lag
-from twin.physics.maths import cos, sin
+from twin.physics.maths import cos, sin, total
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import LIGHT, WEATHER, Force, Growth, Number, Rates, Situation, Water
 
 Forces = Sequence[core.Tau]
 NONE = Force(0.0, 0.0, 0.0)
-INPUTS = ("delta", "n", *WEATHER)
+CONTROLS = ("delta", "n")
+INPUTS = (*CONTROLS, *WEATHER)
 
 
 class Known:
@@ -99,11 +100,13 @@ class Dynamics:
     def __init__(self, ship: Ship):
         # the observer's filter follows all of them together
         streams = [e for e in ship.effects if isinstance(e, Flow) and e.stream]
-        north, east = (sum((getattr(e, axis, 0.0) for e in streams), 0.0) for axis in ("north", "east"))
+        north, east = (float(total(getattr(e, axis, 0.0) for e in streams)) for axis in ("north", "east"))
         self.first_current = north, east
         self.ship = ship
         self.full = Model(ship, tuple(e for e in ship.effects if e not in streams))
         self.off: tuple[Effect, ...] = ()  # effects without their inputs
+        self.held: dict[str, float] = {}  # controls whose feedback is lost, at their last value [SI]
+        self._controls: dict[str, float] = {}  # the last that was measured of each
         self.now = Known(self.full, self.first_current)
         self._needed = sorted({need for e in self.full.effects for need in e.needs if need in WEATHER})
         self._models: dict[tuple[str, ...], tuple[Model, tuple[Effect, ...]]] = {}
@@ -131,13 +134,16 @@ class Dynamics:
         return self.now.mean_rates(s, forces, learned, h)
 
     def situation(self, e: Estimate, measured: Measured) -> Situation:
-        """The ship's state as estimated, with controls and weather as measured (rudder and shaft 0 when
-        nobody says)."""
+        """The ship's state as estimated, with controls and weather as measured. Of a rudder or shaft whose
+        feedback is lost the last value holds (see `held`), 0 where there never was one."""
         si = measured.si
+        self._hold(si)
         s = Situation(e.x, e.y, e.psi, e.u, e.v, e.r, t=measured.now_s)
         for name in INPUTS:
             if name in si:
                 setattr(s, name, si[name])
+        for name, value in self.held.items():
+            setattr(s, name, value)
         self._steering.order = s.delta  # type: ignore[assignment]
         s.delta = self._steering.at(measured.now_s)
         missing = tuple([need for need in self._needed if need not in si])
@@ -146,6 +152,15 @@ class Dynamics:
         model, self.off = self._models[missing]
         self.now = Known(model, (e.current_north, e.current_east))
         return s
+
+    def _hold(self, si: dict[str, float]) -> None:
+        """A lost feedback does not stop engine or rudder."""
+        for name in CONTROLS:
+            if name in si:
+                self._controls[name] = si[name]
+                self.held.pop(name, None)
+            elif name in self._controls:
+                self.held[name] = self._controls[name]
 
 
 def _along(s: Situation, start: tuple[Number, ...], r: Number, k: Rates, h: float) -> None:
@@ -183,12 +198,13 @@ class Gear:
     def turn(self, order: float, now_s: float) -> float:
         """Where the rudder is now [rad]."""
         dt, self._t = now_s - self._t, now_s
+        if self.actual is None or not 0.0 <= dt < 5.0:  # after a pause no earlier order counts
+            self._orders.clear()
+            self.actual = order
         self._orders.append((now_s, order))
         due = now_s - self.lag.dead_time()
         while len(self._orders) > 1 and self._orders[1][0] <= due:
             self._orders.popleft()
-        if self.actual is None or not 0.0 <= dt < 5.0:
-            self.actual = order
         self.actual = float(self.lag.step(self.actual, self._orders[0][1], dt))
         return self.actual
 

@@ -105,6 +105,8 @@ class Observer:
         place are."""
         si, e = measured.si, self.estimate
         self.restarts += e.ready
+        self.innovation.clear()
+        self.received, self.pulled = dict.fromkeys(STATES, False), dict.fromkeys(STATES, 0.0)
         if "psi" not in si or not ("u" in si or "u_r" in si or "x" in si):
             e.ready = False
             return
@@ -114,7 +116,6 @@ class Observer:
         for state in STATES:
             setattr(e, state, start[state])
         self.sigma.begin(si)
-        self.innovation.clear()
         self._past.clear()
         self._past.append((measured.now_s, e.state()))
         self.rates = Rates(0.0, 0.0, 0.0)

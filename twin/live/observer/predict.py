@@ -13,7 +13,7 @@ from math import ceil, exp, hypot, log, pi
 from typing import NamedTuple
 
 from twin.live.observer.dynamics import Forces, Known, Steering
-from twin.live.observer.estimate import Estimate
+from twin.live.observer.estimate import MAX_GAP_S, Estimate
 from twin.live.signals.derive import turn
 from twin.physics.maths import cos, sin
 from twin.physics.ship import Ship
@@ -61,6 +61,7 @@ class Predictor:
         self._credit = 0.0
         self.sureness = {h: Sureness(ship, h) for h in self.horizons_s}
         self._round: Round | None = None
+        self._last_s = float("-inf")
         self._due: dict[float, deque[tuple[float, tuple[float, ...]]]] = {
             h: deque(maxlen=1024) for h in self.horizons_s
         }
@@ -71,10 +72,10 @@ class Predictor:
     ) -> list[Prediction]:  # fmt: skip
         """Check what fell due, then carry the present round on by a few steps; `steering` gives the gear as a
         new round finds it."""
+        paused, self._last_s = not 0.0 <= now_s - self._last_s <= MAX_GAP_S, now_s
+        if paused or not (e.ready and good):
+            self._forget()
         if not (e.ready and good):
-            self._round = None
-            for waiting in self._due.values():
-                waiting.clear()
             return []
         self._check(now_s, e)
         if self._round is None:
@@ -100,6 +101,12 @@ class Predictor:
         made = self._round
         self._round = None
         return [self._finished(made, h, state, now_s) for h, state in zip(self.horizons_s, done, strict=True)]
+
+    def _forget(self) -> None:
+        """What was begun or foretold before is of another estimate."""
+        self._round, self._credit = None, 0.0
+        for waiting in self._due.values():
+            waiting.clear()
 
     def _finished(
         self, made: "Round", horizon_s: float, state: tuple[float, ...], now_s: float
