@@ -1,8 +1,10 @@
 """Files that are there whole or not at all."""
 
 import pytest
+from twin.study.story import SHIP
 
 from twin import whole
+from twin.cli import main
 from twin.errors import TwinError
 
 
@@ -20,3 +22,48 @@ def test_where_it_cannot_be_written_nothing_is_left_behind(tmp_path, where):
     with pytest.raises(TwinError, match=r"cannot be written .* --json") as failure:
         whole.write(tmp_path / where, "new\n", "--json")
     assert failure.value.exit_code == 1 and [p.name for p in tmp_path.iterdir()] == ["folder"]
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["init", "Alma", "--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5", "-o", "mine.toml"],
+        ["add", "Wind", "--ship", "mine.toml", "--voyage", "v.mcap", "-o", "mine.toml"],
+        ["remove", "Wind", "--ship", "mine.toml", "-o", "./mine.toml"],
+        ["calibrate", "v.mcap", "--ship", "mine.toml", "-o", "mine.toml"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_a_ship_file_is_not_written_over_without_being_asked_to(words, tmp_path, monkeypatch, capsys):
+    """Test: -o names the calibrated ship file that is there. Expected: exit code 5, one line, before any
+    work; the file as it was."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.toml").write_bytes(SHIP.read_bytes())
+    assert main(words) == 5
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "mine.toml" in said and "--force" in said
+    assert (tmp_path / "mine.toml").read_bytes() == SHIP.read_bytes()
+
+
+def test_force_writes_over_it(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.toml").write_bytes(SHIP.read_bytes())
+    assert (
+        main(
+            [
+                "init",
+                "Alma",
+                "--length-pp-m",
+                "180",
+                "--beam-m",
+                "30",
+                "--draught-m",
+                "10.5",
+                "-o",
+                "mine.toml",
+                "--force",
+            ]
+        )
+        == 0
+    )
+    assert b"Alma" in (tmp_path / "mine.toml").read_bytes()

@@ -3,10 +3,11 @@
 import argparse
 import os
 import tempfile
+from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
 
-from twin.errors import TwinError
+from twin.errors import SettingsError, TwinError
 
 # in what was asked: option
 OUTPUTS = {"output": "-o", "json": "--json", "report": "--report", "markdown": "--markdown", "page": ""}
@@ -28,6 +29,17 @@ def promised(args: argparse.Namespace) -> None:
         )
         if why or not os.access(path.parent, os.W_OK):
             raise _cannot(path, why or "its folder may not be written to", option or args.page_option)
+
+
+def not_over(output: str, kept: Sequence[str], force: bool) -> None:
+    """Before any work is done: SettingsError when `output` is there and is one of the files that are to be
+    kept, unless forced: what a calibration found and what people noted in a ship file would be gone."""
+    for path in kept if not force and os.path.exists(output) else ():
+        if os.path.exists(path) and os.path.samefile(path, output):
+            raise SettingsError(
+                f"-o {output}: is there already and would be lost. Choose another name, or "
+                "write over it with --force."
+            )
 
 
 def _cannot(path: Path, why: str | None, option: str) -> TwinError:

@@ -271,7 +271,7 @@ def test_decimal_commas_between_commas(columns, write_csv, refused):
 def test_a_short_line_in_the_middle_and_one_cut_off_at_the_end(columns, write_csv, tmp_path, refused):
     body = write_csv(columns).read_text()
     v = read_voyage(text(tmp_path, body[:-40]))
-    assert len(v) == 599 and "line 601 is cut off" in v.meta["notes"][0]
+    assert len(v) == 599 and "line 601 is cut off" in v.meta["lost"][0]
     lines = body.splitlines(keepends=True)
     lines[99] = "9.8,1.2\n"
     refused(text(tmp_path, "".join(lines)), "line 100 has 2 cells")
@@ -301,4 +301,4 @@ def test_an_mcap_that_is_none_one_cut_short_and_one_without_measurements(
     data = whole.read_bytes()
     refused(text(tmp_path, data[:300], "cut.mcap"))
     cut = read_voyage(text(tmp_path, data[:-20], "tail.mcap"))
-    assert len(cut) == 600 and any("cut off" in n for n in cut.meta["notes"])
+    assert len(cut) == 600 and any("cut off" in n and "is there" in n for n in cut.meta["lost"])

@@ -7,10 +7,12 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
+from twin import whole
 from twin.errors import SettingsError, ThresholdError
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
+from twin.recording.checks import losses
 from twin.recording.import_voyage import write_json
 from twin.study.reference.sailed import Sailed, read_all
 from twin.study.update.add import Added, add
@@ -38,13 +40,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("-o", "--output", metavar="SHIP2.toml", required=True, help="the better ship file")
     parser.add_argument(
-        "--force", action="store_true", help="write it although the held-out error does not fall"
+        "--force",
+        action="store_true",
+        help="write it although the held-out error does not fall, or over the ship file itself",
     )
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
     parser.add_argument("--report", metavar="FILE.html", help="one self-contained page with the plots")
 
 
 def run(args: argparse.Namespace) -> int:
+    whole.not_over(args.output, [args.ship], args.force)
     effects = [find(name) for name in dict.fromkeys(args.effects)]
     ship = load(args.ship)
     for path in (*args.voyage, *args.held_out):
@@ -63,7 +68,7 @@ def run(args: argparse.Namespace) -> int:
         "output": args.output if made.result["accepted"] else None,
     }
     page = sys.stderr if args.json == "-" or not result["accepted"] else sys.stdout
-    print("\n".join(told(result)), file=page)
+    print("\n".join([*told(result), *losses(result["data_checks"])]), file=page)
     if result["accepted"]:
         save(made.ship, args.output)
         print(f"\nwrote {args.output}", file=page)

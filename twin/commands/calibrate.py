@@ -4,7 +4,9 @@ unexplained."""
 import argparse
 import sys
 
+from twin import whole
 from twin.physics.ship import load, save
+from twin.recording.checks import of_voyages
 from twin.recording.import_voyage import write_json
 from twin.study.calibration.calibrate import calibrate, told
 from twin.study.calibration.doubts import doubts
@@ -40,13 +42,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--held-out", metavar="VOYAGE", nargs="+", default=[], help="voyages on which the error is measured"
     )
+    parser.add_argument("--force", action="store_true", help="write over a file that is there")
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
 
 
 def run(args: argparse.Namespace) -> int:
+    whole.not_over(args.output, [args.ship, *args.voyages, *args.held_out], args.force)
     ship = load(args.ship)
     every = read_all(args.voyages, ship)
-    fitted, held_out, words = split(every, read_all(args.held_out, ship))
+    kept = read_all(args.held_out, ship)
+    fitted, held_out, words = split(every, kept)
 
     def tell(text: str) -> None:
         print(f"{text} ...", file=sys.stderr)
@@ -58,7 +63,8 @@ def run(args: argparse.Namespace) -> int:
     save(done.ship, args.output)
     r = done.result
     found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
-    result = r | {"held_out_is": words, "output": str(args.output), "doubts": found}
+    checks = of_voyages([s.voyage for s in (*every, *kept)], ship)
+    result = r | {"held_out_is": words, "output": str(args.output), "doubts": found, "data_checks": checks}
     if args.json:
         write_json(result, args.json)
     page = sys.stderr if args.json == "-" else sys.stdout

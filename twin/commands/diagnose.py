@@ -6,6 +6,7 @@ import sys
 from typing import Any
 
 from twin.physics.ship import Ship, load
+from twin.recording.checks import losses
 from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
@@ -61,7 +62,7 @@ def run(args: argparse.Namespace) -> int:
         "files": {"ship": args.ship, "voyages": args.voyages},
     }
     page = sys.stderr if args.json == "-" else sys.stdout
-    page_lines = told(result)
+    page_lines = told(result) + losses(result["data_checks"])
     if args.identifiability or learned:
         result["identifiability"] = plain(identifiability.report(voyages[0], done.case.model, *learned))
         page_lines += ["", *identifiability.text(result["identifiability"])]

@@ -3,6 +3,7 @@
 import argparse
 import sys
 
+from twin import whole
 from twin.physics.ship import load, save
 from twin.recording.import_voyage import write_json
 from twin.study.update.remove import SCHEMA_VERSION, remove
@@ -14,10 +15,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "-o", "--output", metavar="SHIP2.toml", required=True, help="the ship file without them"
     )
+    parser.add_argument("--force", action="store_true", help="write over a file that is there")
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
 
 
 def run(args: argparse.Namespace) -> int:
+    whole.not_over(args.output, [args.ship], args.force)
     ship = remove(load(args.ship), args.effects)
     save(ship, args.output)
     left = [type(e).__name__ for e in ship.effects]

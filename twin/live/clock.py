@@ -80,14 +80,19 @@ class MonotonicClock:
         return behind
 
 
+LONGEST_SLEEP_S = 60.0  # between two instants of a log: a longer hole in it is jumped over
+
+
 class ReplayClock:
-    """The instants of a log, one after the other; `pace` 1.0 sleeps as the voyage did, 0.0 not at all."""
+    """The instants of a log, one after the other; `pace` 1.0 sleeps as the voyage did (but through no long
+    hole), 0.0 not at all."""
 
     def __init__(self, times: Iterable[tuple[float, float]], pace: float = 0.0):
         self._times = iter(times)
         self._pace = pace
         self._index = 0
         self._began: tuple[float, float] | None = None
+        self._last_s = 0.0
 
     def wait(self) -> Instant | None:
         try:
@@ -105,8 +110,9 @@ class ReplayClock:
 
     def _keep_pace(self, time_s: float) -> None:
         now_s = time.monotonic()
-        if self._began is None:
+        if self._began is None or time_s - self._last_s > LONGEST_SLEEP_S:
             self._began = (now_s, time_s)
+        self._last_s = time_s
         began_s, first_s = self._began
         time.sleep(max(0.0, began_s + (time_s - first_s) / self._pace - now_s))
 

@@ -18,7 +18,14 @@ from twin.recording.mapping import PLACES, Column, Key, Map, TimeColumn, target
 from twin.recording.place import CHART, FRAMED, derive, placed, present, scaled
 from twin.recording.samples import plausible, spikes
 from twin.recording.table import Table, read_table
-from twin.recording.timebase import Clock, clock_from_numbers, clock_from_text, rebuilt, refuse_backwards
+from twin.recording.timebase import (
+    Clock,
+    clock_from_numbers,
+    clock_from_text,
+    rebuilt,
+    refuse_backwards,
+    refuse_leaps,
+)
 from twin.recording.units import factor, froude
 from twin.recording.voyage import Voyage
 
@@ -37,6 +44,7 @@ class Raw:
     meta: dict[str, Any]
     notes: list[str] = field(default_factory=list)
     rebuild: bool | float = False  # see TimeColumn
+    lost: list[str] = field(default_factory=list)  # what of the file was damaged
 
 
 def read_voyage(path: str | Path, by: Map | None = None) -> Voyage:
@@ -44,7 +52,7 @@ def read_voyage(path: str | Path, by: Map | None = None) -> Voyage:
 
     Positions come as north and east, velocities in the ship's axes, headings in [0, 360). Absent velocities,
     yaw rate or position are derived: `meta["derived"]` says how. `meta["notes"]` lists what was blanked or
-    assumed.
+    assumed, `meta["lost"]` what of the file was damaged.
     """
     path = Path(path)
     if not path.is_file():
@@ -64,12 +72,18 @@ def from_log(path: Path) -> Raw:
     """The samples of an MCAP file: an imported voyage, the twin's own log, or one that Keelson recorded."""
     from twin.live.log.rows import read_rows
 
-    notes: list[str] = []
-    time_s, columns = read_rows(path, notes)
-    clock = clock_from_numbers(time_s, TimeColumn())
+    notes, lost = list[str](), list[str]()
+    time_s, columns = read_rows(path, notes, lost)
+    clock = clock_from_numbers(path, time_s, TimeColumn())
     known = {name: x for name, x in columns.items() if name in BY_NAME}
     return Raw(
-        path, np.arange(1, time_s.size + 1), clock.time_s, known, about(path, clock) | words(path), notes
+        path,
+        np.arange(1, time_s.size + 1),
+        clock.time_s,
+        known,
+        about(path, clock) | words(path),
+        notes + list(clock.notes),
+        lost=lost,
     )
 
 
@@ -98,7 +112,7 @@ def from_text(path: Path, by: Map | None) -> Raw:
         optional,
     )
     clock = read_clock(path, table, stamps, spec)
-    notes = [*table.notes, *unused]
+    notes = [*table.notes, *unused, *clock.notes]
     columns = {
         name: converted(name, table, c, by.name, notes)
         for name, c in by.columns.items()
@@ -109,7 +123,7 @@ def from_text(path: Path, by: Map | None) -> Raw:
     slower = froude("time_s", by.froude_scale)
     step = spec.rebuild if isinstance(spec.rebuild, bool) else spec.rebuild * slower
     meta = about(path, clock) | {"map": by.name} | facts
-    return Raw(path, table.lines, clock.time_s * slower, columns, meta, notes + said, step)
+    return Raw(path, table.lines, clock.time_s * slower, columns, meta, notes + said, step, list(table.lost))
 
 
 def about(path: Path, clock: Clock) -> dict[str, Any]:
@@ -118,7 +132,7 @@ def about(path: Path, clock: Clock) -> dict[str, Any]:
 
 def read_clock(path: Path, table: Table, stamps: tuple[Key, ...], spec: TimeColumn) -> Clock:
     if not spec.is_text:
-        return clock_from_numbers(table.numbers[stamps[0]], spec)
+        return clock_from_numbers(path, table.numbers[stamps[0]], spec)
     joint = " " if spec.format else "T"
     words = [joint.join(parts) for parts in zip(*(table.texts[s] for s in stamps), strict=True)]
     return clock_from_text(path, table.lines, words, spec)
@@ -138,6 +152,7 @@ def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) 
 def finished(raw: Raw) -> Voyage:
     """The voyage: rows without a time left out, implausible samples blanked, what is absent derived."""
     with_time(raw)
+    refuse_leaps(raw.path, raw.lines, raw.time_s)
     refuse_backwards(raw.path, raw.lines, raw.time_s)
     if raw.rebuild is not False:
         raw.time_s, how = rebuilt(raw.path, raw.time_s, raw.rebuild)
@@ -150,6 +165,7 @@ def finished(raw: Raw) -> Voyage:
     meta = {k: v for k, v in raw.meta.items() if v}
     meta["derived"] = meta.get("derived", {}) | derived
     meta["notes"] = (*meta.get("notes", ()), *raw.notes)
+    meta["lost"] = (*meta.get("lost", ()), *raw.lost)
     return Voyage(meta.pop("name", raw.path.stem), raw.time_s, columns, meta)
 
 

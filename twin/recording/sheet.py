@@ -17,7 +17,9 @@ class Sheet:
     """An open file: its column names, then its rows."""
 
     def __init__(self, path: Path, stream: TextIO, layout: Layout) -> None:
-        self.path, self.notes = path, []  # type: Path, list[str]
+        self.path = path
+        self.notes: list[str] = []
+        self.lost: list[str] = []
         lines = enumerate(stream, 1)
         skipped = list(islice(lines, layout.skip_lines))
         first = next(((n, s) for n, s in lines if s.strip() and not s.lower().startswith("sep=")), None)
@@ -71,7 +73,7 @@ class Sheet:
                 f"{self.path}: line {line} has {len(row)} cells, the first line has {self.width}: "
                 f"{text.strip()[:60]!r}. Complete or remove it."
             )
-        self.notes.append(f"line {line} is cut off at the end of the file and was left out")
+        self.lost.append(f"line {line} is cut off at the end of the file and was left out")
 
 
 def cells(line: str, layout: Layout) -> list[str]:

@@ -29,6 +29,7 @@ class Table:
     numbers: dict[Key, np.ndarray]
     texts: dict[Key, list[str]]
     notes: tuple[str, ...] = ()
+    lost: tuple[str, ...] = ()  # what was damaged
 
 
 def read_table(
@@ -65,7 +66,7 @@ def collect(sheet: Sheet, numbers: Sequence[Key], texts: Sequence[Key]) -> Table
     if not lines:
         raise DataError(f"{sheet.path}: has a header but no rows. Export it again, with the measurements.")
     joined = {key: np.concatenate(p) for key, p in parts.items()}
-    return Table(sheet.path, np.concatenate(lines), joined, words, tuple(sheet.notes))
+    return Table(sheet.path, np.concatenate(lines), joined, words, tuple(sheet.notes), tuple(sheet.lost))
 
 
 def check_width(sheet: Sheet, piece: list[Row]) -> None:

@@ -8,34 +8,62 @@ from pathlib import Path
 import numpy as np
 
 from twin.errors import DataError
+from twin.live.keelson.stamps import LATEST_S, YEAR_S
 from twin.recording.mapping import TimeColumn
 from twin.recording.units import UNITS
 
 EPOCH_S = 1e8  # a number of seconds above this counts from 1970, not from the start of the voyage
+FINER = {"ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
 DAY_S = 86400.0
 
 
 @dataclass(frozen=True)
 class Clock:
-    """(N,) seconds, and the UTC time of zero when the file knows it."""
+    """(N,) seconds, the UTC time of zero when the file knows it, and what was assumed."""
 
     time_s: np.ndarray
     start_time_utc: str | None = None
+    notes: tuple[str, ...] = ()
 
 
-def clock_from_numbers(stamps: np.ndarray, spec: TimeColumn) -> Clock:
-    """Numbers in the map's unit; seconds since 1970 become seconds since the first sample."""
+def clock_from_numbers(path: Path, stamps: np.ndarray, spec: TimeColumn) -> Clock:
+    """Numbers in the map's unit; seconds since 1970 become seconds since the first sample.
+
+    A number of seconds that only fits our century as milliseconds, microseconds or nanoseconds since 1970 is
+    read so, and a note says it; DataError when no unit gives a date."""
     time_s = stamps * UNITS["s"][spec.unit]
     finite = time_s[np.isfinite(time_s)]
-    if finite.size and finite[0] > EPOCH_S:
+    if not finite.size or abs(finite[0]) <= EPOCH_S:
+        return Clock(time_s)
+    if EPOCH_S < finite[0] <= LATEST_S:
         return Clock(time_s - finite[0], utc(finite[0]))
-    return Clock(time_s)
+    unit = (
+        next((u for u in FINER if EPOCH_S < finite[0] * UNITS["s"][u] <= LATEST_S), None)
+        if spec.unit == "s"
+        else None
+    )
+    if unit is None:
+        raise DataError(
+            f"{path}: its first time stamp, {finite[0]:.6g} s, is no time since the begin of a voyage and no "
+            "date before 2100. "
+            'Correct the stamps, or give their unit in a map: [time] unit = "ms" (s, ms, us, ns, min, h).'
+        )
+    first = finite[0] * UNITS["s"][unit]
+    said = (
+        f"the time counts {FINER[unit]} since 1970 (its first stamp is {finite[0]:.6g}, which in seconds is "
+        "no date) and was "
+        f'read so, from {utc(first)}; in a map: [time] unit = "{unit}"'
+    )
+    return Clock((time_s - finite[0]) * UNITS["s"][unit], utc(first), (said,))
 
 
 def clock_from_text(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: TimeColumn) -> Clock:
     """ISO-8601 or strptime stamps; without a zone they are taken as UTC."""
     seconds = np.array([moment(path, n, s, spec) for n, s in zip(lines.tolist(), stamps, strict=True)])
     finite = seconds[np.isfinite(seconds)]
+    if finite.size and finite[0] > LATEST_S:
+        first = stamps[int(np.flatnonzero(np.isfinite(seconds))[0])]
+        raise DataError(f"{path}: its first time stamp, {first!r}, lies after 2100. Correct the stamps.")
     return Clock(seconds - finite[0], utc(finite[0])) if finite.size else Clock(seconds)
 
 
@@ -62,6 +90,19 @@ def utc(seconds: float) -> str:
 def moment_of(stamp: str | None) -> float:
     """Seconds since 1970 of an ISO-8601 stamp; 0 when there is none."""
     return datetime.fromisoformat(stamp).timestamp() if stamp else 0.0
+
+
+def refuse_leaps(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
+    """A hole of months is one; a stamp that lies years ahead is wrong, and so is what was judged by it."""
+    ahead = np.flatnonzero(np.diff(time_s) > YEAR_S)
+    if ahead.size:
+        i = int(ahead[0])
+        raise DataError(
+            f"{path}: line {lines[i + 1]}: time leaps ahead from {time_s[i]:g} s to {time_s[i + 1]:g} s, by "
+            f"more than a year ({ahead.size} times "
+            "in all). A clock that was not set yet, or a wrong stamp? Correct or remove these rows, or split "
+            "the file there."
+        )
 
 
 def refuse_backwards(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:

@@ -12,7 +12,9 @@ import numpy as np
 from twin.errors import DataError, did_you_mean
 from twin.live.signals.channels import BY_NAME, CHANNELS, Channel
 from twin.recording.resample import continuous, resampled, wrapped
+from twin.study.track.holes import HOLE_S, sailed_s, steps_on
 
+MOST_STEPS = 3e6  # of a grid
 SLOW_S = 60.0  # a channel that may be this old is a state of the sea or of the loading: its ends are held
 
 
@@ -60,6 +62,11 @@ class Voyage:
         return float(self.time_s[-1] - self.time_s[0]) if len(self) else 0.0
 
     @property
+    def sailed_s(self) -> float:
+        """The same, a hole without any row counted as no more than HOLE_S [s]."""
+        return sailed_s(self.time_s) if len(self) else 0.0
+
+    @property
     def step_s(self) -> float:
         """The usual time between two samples (median) [s]; NaN with fewer than two."""
         return float(np.median(np.diff(self.time_s))) if len(self) > 1 else float("nan")
@@ -69,17 +76,23 @@ class Voyage:
         keep = (self.time_s >= start_s) & (self.time_s < end_s)
         return self.with_rows(self.time_s[keep], {name: x[keep] for name, x in self.columns.items()})
 
-    def on_grid(self, step_s: float, max_gap_s: float | None = None) -> "Voyage":
+    def on_grid(self, step_s: float, max_gap_s: float | None = None, hole_s: float = HOLE_S) -> "Voyage":
         """The same voyage every `step_s` [s]: means where samples are denser, lines where they are sparser.
 
         No line is drawn over a gap longer than `max_gap_s` (default: the channel's `stale_s`, or 1.5 steps if
         that is longer): there it stays NaN. Angles are averaged along the circle. Slow channels (`stale_s` of
-        SLOW_S or more) keep their first and last value at the ends, for as long as they may be old.
+        SLOW_S or more) keep their first and last value at the ends, for as long as they may be old. Of a hole
+        without any row for longer than `hole_s` the grid keeps so much, and jumps over its middle.
         """
         if not step_s > 0 or not len(self):
             raise DataError(f"{self.name}: cannot be put on a grid of {step_s:g} s with {len(self)} samples.")
-        steps = int(np.floor(self.duration_s / step_s + 1e-6))
-        grid = self.time_s[0] + step_s * np.arange(steps + 1)
+        if sailed_s(self.time_s, hole_s) / step_s > MOST_STEPS:
+            raise DataError(
+                f"{self.name}: {self.sailed_s:.4g} s are more than {MOST_STEPS:.0e} steps of {step_s:.3g} s, "
+                "in which this ship "
+                f"must be looked at; there are {len(self)} samples. Cut it into shorter voyages."
+            )
+        grid = self.time_s[0] + step_s * steps_on(self.time_s, step_s, hole_s)
         return self.with_rows(
             grid, {name: self._on(grid, step_s, BY_NAME[name], max_gap_s) for name in self.columns}
         )

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from twin.live.keelson.messages import Row
+from twin.live.log.mcap_damage import EXTENT, extent
 from twin.live.log.record import LogFile
 from twin.recording.timebase import moment_of
 from twin.recording.voyage import Voyage
@@ -13,6 +14,7 @@ from twin.recording.voyage import Voyage
 TOPIC = "shiptwin/voyage/row"
 ABOUT = "shiptwin.voyage"  # the table of words; values are JSON
 NS = 1_000_000_000
+LAST_NS = 2**63 - 1
 
 
 def write_voyage(voyage: Voyage, path: str | Path) -> None:
@@ -24,8 +26,15 @@ def write_voyage(voyage: Voyage, path: str | Path) -> None:
         log.describe(
             ABOUT, {key: json.dumps(value) for key, value in (*voyage.meta.items(), ("name", voyage.name))}
         )
+        if len(voyage):
+            log.describe(EXTENT, extent(*(_log_ns(start_ns, float(t)) for t in voyage.time_s[[0, -1]])))
         for time_s, values, there in zip(
             voyage.time_s.tolist(), table.tolist(), np.isfinite(table).tolist(), strict=True
         ):
             row = Row(time_s=time_s, **{n: x for n, x, ok in zip(names, values, there, strict=True) if ok})
-            log.add(TOPIC, "shiptwin.Row", row.SerializeToString(), max(start_ns + round(time_s * NS), 0))
+            log.add(TOPIC, "shiptwin.Row", row.SerializeToString(), _log_ns(start_ns, time_s))
+
+
+def _log_ns(start_ns: int, time_s: float) -> int:
+    """The log time of a row; the nearest that a log can hold, where the voyage's own stamps are no dates."""
+    return min(max(start_ns + round(time_s * NS), 0), LAST_NS)

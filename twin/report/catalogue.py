@@ -7,6 +7,8 @@ import sys
 import textwrap
 from typing import Any
 
+import numpy  # noqa: F401 (where it is loaded, an installed effect that does not work on arrays is left out)
+
 from twin.physics.effect import FORM, Effect, Param
 from twin.physics.effects import UNNAMED
 from twin.physics.ship import Ship

@@ -11,6 +11,8 @@ from math import isfinite
 
 from twin.live.signals.readings import Quality, Reading
 
+LATEST_S = 4102444800.0  # the year 2100: no recorded stamp is later
+YEAR_S = 366.0 * 86400.0  # no two that follow each other in a record are farther apart
 STEP_S = 0.2  # a wall clock that moves by more against the monotonic one was set
 FORGET_S = 120.0  # how long the offset from before a step is remembered
 

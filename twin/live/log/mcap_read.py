@@ -1,7 +1,7 @@
 """An MCAP log read from end to end: messages in file order, checksums checked, damage named and left out.
 
 A file that a crash cut short gives all its whole chunks; a chunk that rotted is left out.
-`problems` says so in words.
+`problems` says so in words, with the seconds that are lost.
 """
 
 from collections.abc import Iterator
@@ -12,7 +12,8 @@ from struct import Struct, error, unpack_from
 from typing import IO, NamedTuple
 
 from twin.errors import DataError
-from twin.live.log.mcap_index import CHANNEL, CHUNK, DATA_END, HEAD, MESSAGE, METADATA, SCHEMA
+from twin.live.log.mcap_damage import EXTENT, REPAIRED, Damage, last_of, last_of_statistics
+from twin.live.log.mcap_index import CHANNEL, CHUNK, DATA_END, HEAD, MESSAGE, METADATA, SCHEMA, STATISTICS
 from twin.live.log.mcap_parse import Broken, ends_well, open_log, records, string, string_map, unpacked
 
 _MESSAGE = Struct("<HIQQ")  # channel, sequence, log time, publish time
@@ -33,22 +34,51 @@ class McapReader:
 
     def __init__(self, path: str | Path):
         self.path = Path(path)
-        self.problems: list[str] = []
+        self._damage: list[Damage] = []
+        # log time of the first message, of the last one, and of the last one that the index tells of
+        self._first_ns: int | None = None
+        self._last_ns: int | None = None
+        self._end_ns: int | None = None
         self.schemas: dict[str, bytes] = {}
         self.metadata: dict[str, dict[str, str]] = {}
         self._schema_names: dict[int, str] = {}
         self._channels: dict[int, tuple[str, str]] = {}
 
+    @property
+    def problems(self) -> list[str]:
+        """What is damaged and lost, a sentence each."""
+        end_ns = last_of(self.metadata.get(EXTENT, {})) or (
+            None if REPAIRED in self.metadata else self._end_ns
+        )
+        return [d.text(self._first_ns, end_ns) for d in self._damage]
+
     def messages(self) -> Iterator[Message]:
         """All messages that can be read, in file order; a DataError when a damaged file gives none."""
-        found = False
         with open_log(self.path) as stream:
             self._summary(stream)
             for message in self._all(stream):
-                found = True
+                self._met(message.log_ns)
                 yield message
-        if self.problems and not found:
+        if REPAIRED in self.metadata:
+            lost = self.metadata[REPAIRED].get("lost_bytes", "?")
+            self._damaged(
+                f"its recorder was cut off, and the log was repaired without the {lost} bytes at its end"
+            )
+        if self.problems and self._last_ns is None:
             raise DataError(f"{self.path}: nothing in it can be read: {self.problems[0]}.")
+
+    def _met(self, log_ns: int) -> None:
+        """One more message: what was damaged just before it ended here."""
+        if self._first_ns is None:
+            self._first_ns = log_ns
+        for i in range(len(self._damage) - 1, -1, -1):
+            if self._damage[i].before_ns is not None:
+                break
+            self._damage[i] = self._damage[i]._replace(before_ns=log_ns)
+        self._last_ns = log_ns
+
+    def _damaged(self, what: str) -> None:
+        self._damage.append(Damage(what, self._last_ns))
 
     def _all(self, stream: IO[bytes]) -> Iterator[Message]:
         finished = False
@@ -59,11 +89,11 @@ class McapReader:
                     break
                 yield from self._record(opcode, offset, content)
         except Broken as damage:
-            self.problems.append(str(damage))
+            self._damaged(str(damage))
             return
         if not (finished and ends_well(stream)):
-            self.problems.append(
-                "it ends without its index: the recorder was cut off, the last half second may be missing"
+            self._damaged(
+                "it ends without its index, the recorder was cut off, and the last half second may be missing"
             )
 
     def _summary(self, stream: IO[bytes]) -> None:
@@ -77,6 +107,8 @@ class McapReader:
                 for opcode, _, content in records(stream) if start else ():
                     if opcode in (SCHEMA, CHANNEL):
                         self._describe(opcode, content)
+                    elif opcode == STATISTICS:
+                        self._end_ns = last_of_statistics(content)
         stream.seek(here)
 
     def _record(self, opcode: int, offset: int, content: bytes) -> Iterator[Message]:
@@ -89,7 +121,7 @@ class McapReader:
             else:
                 yield from self._chunk(HEAD.pack(opcode, len(content)) + content)
         except (Broken, error, UnicodeDecodeError) as damage:
-            self.problems.append(f"the chunk at byte {offset} is damaged and left out ({damage})")
+            self._damaged(f"the chunk at byte {offset} is damaged and left out ({damage})")
 
     def _chunk(self, data: bytes) -> list[Message]:
         """The messages among a chunk's records; schemas and channels are remembered."""

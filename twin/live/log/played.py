@@ -5,22 +5,25 @@ every batch. An imported voyage (rows) or a foreign log of Keelson scalars has n
 on a grid.
 """
 
+from collections import Counter
 from collections.abc import Iterator
 from itertools import chain
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from google.protobuf.message import DecodeError
 
 from twin.errors import DataError
 from twin.live.keelson import messages
 from twin.live.keelson.decode import Decoder, Result, from_row
+from twin.live.keelson.stamps import LATEST_S, YEAR_S
 from twin.live.keelson.topics import BY_SUBJECT, address, is_own
 from twin.live.log.mcap_read import McapReader, Message
 
 TICK, ROW = "shiptwin.Tick", "shiptwin.Row"
 PEEK = 5000  # messages within which a log of the twin shows its first tick
 MAX_GAP_S = 60.0  # a longer hole in a foreign log is jumped over
+T = TypeVar("T", bound=tuple[Any, ...])
 
 
 class Batch(NamedTuple):
@@ -40,10 +43,12 @@ class PlayedLog:
         self.path, self.period_s = Path(path), 1.0 / rate_hz
         self.decoder = Decoder()
         self.kind = ""
+        self._refused: Counter[str] = Counter()
 
     @property
     def notes(self) -> list[str]:
-        return self._reader.problems
+        unread = [f"{count} {name} left out: they cannot be decoded" for name, count in self._refused.items()]
+        return [*self._reader.problems, *unread]
 
     def batches(self) -> Iterator[Batch]:
         """The ticks in order; DataError when there is nothing the twin can use."""
@@ -53,16 +58,35 @@ class PlayedLog:
         whole = chain(first, source)
         if TICK in types:
             self.kind = "a log of the twin"
-            return self._as_ticked(whole)
+            return self._in_order(self._as_ticked(whole))
         if ROW in types:
             self.kind = "an imported voyage"
-            return self._on_grid(self._rows(whole))
+            return self._on_grid(self._in_order(self._rows(whole)))
         if any(_topic_type(message.topic) for message in first):
             self.kind = "a log of Keelson scalars"
-            return self._on_grid(self._scalars(whole))
+            return self._on_grid(self._in_order(self._scalars(whole)))
         raise DataError(
             f"{self.path}: no measurements in it: no {TICK}, no {ROW}, no Keelson subject the twin knows."
         )
+
+    def _in_order(self, source: Iterator[T]) -> Iterator[T]:
+        """The same; DataError where the first of their numbers, the time [s], is no date, or leaps by years
+        or back by minutes."""
+        last_s: float | None = None
+        for item in source:
+            time_s = item[0]
+            if not abs(time_s) <= LATEST_S:
+                raise DataError(
+                    f"{self.path}: {time_s:.6g} s is no time of a log. Counts it milliseconds or less? twin "
+                    "import reads such a voyage."
+                )
+            if last_s is not None and not last_s - MAX_GAP_S <= time_s <= last_s + YEAR_S:
+                raise DataError(
+                    f"{self.path}: time leaps from {last_s:.6g} s to {time_s:.6g} s. A wrong stamp, or two "
+                    "logs in one? Split it there."
+                )
+            last_s = time_s
+            yield item
 
     def _as_ticked(self, source: Iterator[Message]) -> Iterator[Batch]:
         raw: list[Message] = []
@@ -74,9 +98,11 @@ class PlayedLog:
             try:
                 tick = messages.Tick.FromString(message.data)
             except DecodeError:
+                self._refused[TICK] += 1
                 continue
             results = [r for m in raw for r in self.decoder.decode_stripped(m.topic, m.data, tick.time_s)]
-            yield Batch(tick.time_s, tick.wall_s, results, raw)
+            wall_s = tick.wall_s if 0.0 <= tick.wall_s <= LATEST_S else max(tick.time_s, 0.0)
+            yield Batch(tick.time_s, wall_s, results, raw)
             raw = []
 
     def _on_grid(self, source: Iterator[tuple[float, list[Result], Message]]) -> Iterator[Batch]:
@@ -105,6 +131,7 @@ class PlayedLog:
                 try:
                     row = messages.Row.FromString(message.data)
                 except DecodeError:
+                    self._refused[ROW] += 1
                     continue
                 yield row.time_s, from_row(row, row.time_s, row.time_s, "voyage"), message
 

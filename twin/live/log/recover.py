@@ -11,6 +11,7 @@ from struct import error, unpack_from
 from typing import IO, NamedTuple
 
 from twin.errors import DataError
+from twin.live.log.mcap_damage import REPAIRED, repaired
 from twin.live.log.mcap_index import (
     CHANNEL,
     CHUNK,
@@ -22,6 +23,9 @@ from twin.live.log.mcap_index import (
     ChunkInfo,
     Summary,
     message_indexes,
+    record,
+    text,
+    text_map,
 )
 from twin.live.log.mcap_parse import Broken, ends_well, open_log, records, string, unpacked
 from twin.physics.maths import total
@@ -33,6 +37,7 @@ class Scan(NamedTuple):
     cut: int
     missing: bytes
     summary: Summary
+    ended: bool = False  # whether all data is there, and only the index was cut
 
 
 def recover_folder(folder: str | Path) -> list[str]:
@@ -66,19 +71,20 @@ def _recover(path: Path, stream: IO[bytes]) -> str:
         found = scan(path)
     except DataError:
         return _set_aside(path, size)
-    _finish(stream, found)
     kept, lost = total(found.summary.counts.values()), size - found.cut
+    _finish(stream, found, lost)
     return f"{path.name}: unfinished log repaired, {kept} messages kept, {lost} bytes at the end lost"
 
 
 def scan(path: Path) -> Scan:
     """Walks a file chunk by chunk as far as it is good."""
-    summary = Summary()
+    summary, ended = Summary(), False
     with open_log(path) as stream:
         cut = stream.tell()
         try:
             for opcode, offset, content in records(stream):
                 if opcode == DATA_END:
+                    ended = True
                     break
                 missing = b""
                 if opcode == CHUNK:
@@ -97,7 +103,7 @@ def scan(path: Path) -> Scan:
             pass
     if cut == 8:
         raise DataError(f"{path}: nothing in it can be read.")
-    return Scan(cut, b"", summary)
+    return Scan(cut, b"", summary, ended)
 
 
 def _chunk(summary: Summary, offset: int, content: bytes) -> bytes:
@@ -128,12 +134,17 @@ def _describe(summary: Summary, opcode: int, whole: bytes) -> None:
     group[unpack_from("<H", whole, 9)[0]] = whole
 
 
-def _finish(stream: IO[bytes], found: Scan) -> None:
-    """Cuts and writes the index; when that fails (disk full) the cut stays and the next start tries again."""
+def _finish(stream: IO[bytes], found: Scan, lost: int) -> None:
+    """Cuts, writes down that data was lost, and the index; when that fails (disk full) the cut stays and the
+    next start tries again."""
     stream.truncate(found.cut)
     stream.seek(found.cut)
+    offset = found.cut + len(found.missing)
+    said = b"" if found.ended else record(METADATA, text(REPAIRED), text_map(repaired(lost)))
+    if said:
+        found.summary.metadata.append((offset, len(said), REPAIRED))
     try:
-        stream.write(found.missing + found.summary.tail(found.cut + len(found.missing)))
+        stream.write(found.missing + said + found.summary.tail(offset + len(said)))
         stream.flush()
         os.fdatasync(stream.fileno())
     except OSError:

@@ -20,24 +20,31 @@ from twin.live.log.mcap_read import McapReader
 from twin.live.log.onebase import Columns, on_one_base, without_repeats
 from twin.live.signals.readings import WORDS, Reading
 
+UNREADABLE = "that cannot be decoded"
 ROW, TICK, AGES = "shiptwin.Row", "shiptwin.Tick", "shiptwin.Ages"
 
 
-def read_rows(path: str | Path, notes: list[str] | None = None) -> tuple[np.ndarray, Columns]:
+def read_rows(
+    path: str | Path, notes: list[str] | None = None, lost: list[str] | None = None
+) -> tuple[np.ndarray, Columns]:
     """(time_s (N,) [s], {channel: (N,) in border units}), NaN where nothing was measured.
 
     The time is the records' own: the voyage's clock for rows, UTC since 1970 for ticks (the monotonic clock
     put on the first wall time, so that a step of the wall clock does not show) and for scalars. What was
-    damaged, refused or absent is said in `notes`.
-    """
+    refused or absent is said in `notes`, what was damaged in `lost` (in `notes`, too, when that is not
+    given)."""
     reader = McapReader(path)
     found = Found(reader)
     for topic, type_name, data, _, _ in reader.messages():
         found.take(topic, type_name, data)
     time_s, columns = found.columns()
+    said = [f"{count} left out: {why}" for why, count in found.refused.items()]
+    damaged = [*reader.problems, *(text for text in said if text.endswith(UNREADABLE))]
+    lost = notes if lost is None else lost
+    if lost is not None:
+        lost += damaged
     if notes is not None:
-        notes += reader.problems
-        notes += [f"{count} left out: {why}" for why, count in found.refused.items()]
+        notes += [text for text in said if text not in damaged]
     return time_s, columns
 
 
@@ -92,7 +99,7 @@ class Found:
             try:
                 tick = tick_class.FromString(data)
             except DecodeError:
-                self.refused[f"{TICK} that cannot be decoded"] += 1
+                self.refused[f"{TICK} {UNREADABLE}"] += 1
                 continue
             yield tick.time_s, tick.wall_s, tick.measured.SerializeToString(), tick.age_s.SerializeToString()
 
@@ -107,7 +114,7 @@ class Found:
         """Messages of numbers as columns, named by the log's own schema, and which could be decoded."""
         numbers, odd = double_columns(messages)
         if odd.any():
-            self.refused[f"{wanted} that cannot be decoded"] += int(odd.sum())
+            self.refused[f"{wanted} {UNREADABLE}"] += int(odd.sum())
         names = {field.number: field.name for field in self._class(type_name, wanted).DESCRIPTOR.fields}
         return {names[number]: values for number, values in numbers.items() if number in names}, ~odd
 

@@ -3,6 +3,7 @@
 An installed package adds its own by the entry point group `twin.effects`, name = class.
 """
 
+import sys
 from functools import lru_cache
 
 from twin.errors import SettingsError, did_you_mean
@@ -67,13 +68,34 @@ UNNAMED: tuple[type[Effect], ...] = (RudderPlay, SwayingMass)
 
 @lru_cache(maxsize=1)
 def catalogue() -> dict[str, type[Effect]]:
-    """Name -> effect, built-in first, then those that installed packages bring."""
+    """Name -> effect, built-in first, then those that installed packages bring; a broken one is left out, and
+    standard error says why."""
+    found, broken = _installed()
+    for name, why in broken.items():
+        print(
+            f"the installed effect {name} is left out: {why}. Try: twin effects --check {name}",
+            file=sys.stderr,
+        )
+    return {e.__name__: e for e in BUILT_IN} | found
+
+
+@lru_cache(maxsize=1)
+def _installed() -> tuple[dict[str, type[Effect]], dict[str, str]]:
+    """Effects of installed packages, and by the name of each that cannot be used why."""
     from importlib.metadata import entry_points
 
-    known = {e.__name__: e for e in BUILT_IN}
-    for point in entry_points(group="twin.effects"):
-        known.setdefault(point.name, point.load())
-    return known
+    from twin.physics.plugin import GROUP, Refused, loaded
+
+    taken = {e.__name__ for e in (*BUILT_IN, *UNNAMED)}
+    good, bad = dict[str, type[Effect]](), dict[str, str]()
+    for point in entry_points(group=GROUP):
+        try:
+            if point.name in taken:
+                raise Refused("the twin has an effect of that name")
+            good[point.name] = loaded(point)
+        except Refused as why:
+            bad[point.name] = str(why)
+    return good, bad
 
 
 def find(name: str) -> type[Effect]:
@@ -86,7 +108,12 @@ def find(name: str) -> type[Effect]:
             f"{name} is known by its form alone: what a repair mends is no part of a ship "
             f"file. What it is: twin effects {name}."
         )
+    found, broken = _installed()
+    if name in found:
+        return found[name]
+    if name in broken:
+        raise SettingsError(
+            f"The installed effect {name} cannot be used: {broken[name]}. Try: twin effects --check {name}"
+        )
     known = catalogue()
-    if name not in known:
-        raise SettingsError(f"Unknown effect {name!r}.{did_you_mean(name, known)}")
-    return known[name]
+    raise SettingsError(f"Unknown effect {name!r}.{did_you_mean(name, known)}")

@@ -6,11 +6,12 @@ says which). A check that can *prove* a mistake is `unusable`: `twin import` the
 unless told to accept it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from twin.physics.ship import Ship
 from twin.recording.checks.answer import Check
-from twin.recording.checks.clock import time_gaps, time_stamps
+from twin.recording.checks.clock import control_gaps, time_gaps, time_stamps, whole_file
 from twin.recording.checks.motion import velocity_frame
 from twin.recording.checks.propeller import propeller_rate
 from twin.recording.checks.rudder import rudder_sign, rudder_unit
@@ -25,8 +26,10 @@ from twin.recording.voyage import Voyage
 __all__ = ["CHECKS", "Check", "run_checks"]
 
 CHECKS: tuple[Callable[[View], Check], ...] = (
+    whole_file,
     time_stamps,
     time_gaps,
+    control_gaps,
     missing_samples,
     plausible_values,
     spikes,
@@ -41,6 +44,21 @@ CHECKS: tuple[Callable[[View], Check], ...] = (
     ship_size,
     duration,
 )
+
+
+LOSSES = ("whole_file", "time_gaps", "control_gaps")  # the checks that say what is not there
+
+
+def of_voyages(voyages: Sequence[Voyage], ship: Ship | None = None) -> list[dict[str, Any]]:
+    """The entries `data_checks` of a verb's answer; with more than one voyage each names its own."""
+    many = len({v.name for v in voyages}) > 1
+    return [c.as_json() | ({"voyage": v.name} if many else {}) for v in voyages for c in run_checks(v, ship)]
+
+
+def losses(entries: Sequence[dict[str, Any]]) -> list[str]:
+    """What the voyages lack, a line each, out of such entries."""
+    lost = [c for c in entries if c["check"] in LOSSES and not c["ok"]]
+    return [f"lost  {c.get('voyage', '')}{': ' * ('voyage' in c)}{c['text']}" for c in lost]
 
 
 def run_checks(voyage: Voyage, ship: Ship | None = None) -> list[Check]:

@@ -1,14 +1,26 @@
-"""The clock of a voyage: stamps that repeat, that are rounded, that jump."""
+"""Is the file whole, and its clock sound: stamps that repeat, that are rounded, that jump."""
 
 import numpy as np
 
 from twin.recording.checks.answer import Check, doubtful, good, wrong
 from twin.recording.checks.view import View
 from twin.recording.voyage import Voyage
+from twin.study.track.unknown_controls import CONTROLS, gaps
 
 FEW = 0.01  # share of repeated stamps that a logger's hiccup explains
 UNEVEN = 0.35  # scatter of the steps, in usual steps
 GAP_STEPS, GAP_S = 5.0, 5.0
+
+
+def whole_file(view: View) -> Check:
+    """What of the file was damaged: a log that was cut off or repaired, a part whose checksum does not fit, a
+    last line that is torn."""
+    lost = view.voyage.meta.get("lost", ())
+    if lost:
+        return doubtful(
+            "whole_file", f"{'; '.join(lost)}. Copy the file again if you can; else what is left is judged."
+        )
+    return good("whole_file", "nothing of the file is damaged.")
 
 
 def beats(voyage: Voyage) -> np.ndarray:
@@ -66,6 +78,23 @@ def time_gaps(view: View) -> Check:
     worst = int(gaps[np.argmax(steps[gaps])])
     return doubtful(
         name,
-        f"{gaps.size} gaps, {steps[gaps].sum():.4g} s in all, the longest {steps[worst]:.4g} s after "
+        f"{gaps.size} gaps, {steps[gaps].sum():.6g} s in all, the longest {steps[worst]:.6g} s after "
         f"{t[worst]:g} s. Nothing is made up there; predictions are not run across them.",
     )
+
+
+def control_gaps(view: View) -> Check:
+    """Gaps of rudder and shaft in which these changed."""
+    found = {name: gaps(view.voyage, name) for name in CONTROLS}
+    said = [
+        f"{name} changed in {len(g)} gap{'s' * (len(g) > 1)} of {sum(b - a for a, b in g):.4g} s in all, the "
+        f"longest {b - a:.4g} s after {a:g} s"
+        for name, g in found.items()
+        if g
+        for a, b in [max(g, key=lambda pair: pair[1] - pair[0])]
+    ]
+    if said:
+        return doubtful(
+            "control_gaps", f"{'; '.join(said)}. When it changed is not known: nothing is judged there."
+        )
+    return good("control_gaps", "rudder and shaft changed in no gap of theirs.")

@@ -22,7 +22,7 @@ class View:
     def even(self) -> Voyage:
         """The voyage on an even grid of its own step, or a coarser one when it is long."""
         v = self.voyage
-        step = max(v.duration_s / max(len(v) - 1, 1), v.duration_s / MOST_ROWS, 1e-6)
+        step = max(v.sailed_s / max(len(v) - 1, 1), v.sailed_s / MOST_ROWS, 1e-6)
         return v.on_grid(step)
 
     @cached_property

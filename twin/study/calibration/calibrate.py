@@ -13,6 +13,7 @@ from twin.physics.effects.steering_lag import SteeringLag
 from twin.physics.effects.wind import Wind
 from twin.physics.model import Model
 from twin.physics.ship import Ship
+from twin.recording.checks import losses
 from twin.recording.jsonable import plain
 from twin.study.calibration.held_out import HeldOut, by_regime, errors, size
 from twin.study.calibration.parts import clearly, placed, with_or_without_wind
@@ -285,7 +286,7 @@ def told(result: dict[str, Any]) -> list[str]:
     ]
     if result["unexcited"]:
         lines.append(f"not excited by these voyages, prior kept: {', '.join(result['unexcited'])}")
-    return lines + [f"careful: {text}" for text in result["doubts"]]
+    return lines + [f"careful: {text}" for text in result["doubts"]] + losses(result["data_checks"])
 
 
 def _sizes(numbers: dict[str, dict[str, Any]]) -> str:

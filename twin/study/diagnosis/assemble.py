@@ -155,7 +155,7 @@ def _lines(
     models = [model.without_inputs(t.missing())[0] for t in tracks]
     parts = read_parts([levelled(t) for t in tracks], float(model.ship.scale("time")), most)
     slack = [
-        np.hypot(stirred(t, m)[p.steps()], doubted(p, m))
+        np.hypot(stirred(t, m)[np.searchsorted(t.steps(), p.steps())], doubted(p, m))
         for t, p, m in zip(tracks, parts, models, strict=True)
     ]
     return tuple(

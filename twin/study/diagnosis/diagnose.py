@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from twin.physics.ship import Ship
+from twin.recording.checks import of_voyages
 from twin.recording.inputs import INPUTS
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
@@ -144,6 +145,7 @@ def diagnose(
         "voyages_hold_a_manoeuvre": case.excited,
         "calibrated_too_coarsely": coarse,
         "references": [v.name for v in references],
+        "data_checks": of_voyages([*voyages, *references], ship),
     }
     return Diagnosis(plain(result), case, found)
 

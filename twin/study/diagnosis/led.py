@@ -121,7 +121,7 @@ def led(
     }
     ends = {s: _floor(plain(found[s].hypothesis), floor, off[()], irregular, levered[s]) for s in off}
     asked = {s: replace(found[s], off_m=m, floor_m=ends[s]) for s, m in off.items()}
-    windows = min(MOST, sum(float(t.t[-1]) / horizon_s(t, case.model) for t in case.tracks))
+    windows = min(MOST, sum((len(t) - 1) * t.h / horizon_s(t, case.model) for t in case.tracks))
     return Led(asked, floor, levered, windows, irregular)
 
 
@@ -156,7 +156,9 @@ def _floor(
 
 def horizon_s(track: Track, model: Model) -> float:
     """How far ahead a held-out part of this track is predicted [s]."""
-    return min(HORIZON_S, HORIZON_LENGTHS * float(model.ship.scale("time")), 0.25 * float(track.t[-1]))
+    return min(
+        HORIZON_S, HORIZON_LENGTHS * float(model.ship.scale("time")), 0.25 * track.h * (len(track) - 1)
+    )
 
 
 def held_out_error(case: Case, found: Found) -> float:
@@ -186,7 +188,7 @@ def held_out_error(case: Case, found: Found) -> float:
         values = [case.effects[i].centre + case.effects[i].sd * z[i] for i in mine]
         model = with_values(case.model, [case.effects[i] for i in mine], values, case.catalogue)
         for i, track in enumerate(case.tracks):
-            begins, steps = np.zeros(len(track), bool), lines[i].track.steps()
+            begins, steps = np.zeros(len(track), bool), np.searchsorted(track.steps(), lines[i].track.steps())
             for _, a, b in (w for w, s in zip(normal.where, half, strict=True) if s == side and w[0] == i):
                 begins[steps[a] : steps[b - 1] + 1] = True
             here = model.without_inputs(track.missing())[0]

@@ -63,10 +63,8 @@ def _result(
     ship: Ship, model: Model, sailed: Sequence[Sailed], rows: list[dict[str, Any]], judged: Energy
 ) -> dict[str, Any]:
     from twin.live.learning.residual import ship_hash
-    from twin.recording.checks import run_checks
+    from twin.recording.checks import of_voyages
 
-    checks = [(s.track.name, c) for s in sailed for c in run_checks(s.voyage, ship)]
-    names = {name for name, _ in checks}
     return {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
@@ -79,7 +77,7 @@ def _result(
         "horizons": rows,
         "unexplained_force": judged.unexplained(),
         "learned_share": judged.learned_share(),
-        "data_checks": [c.as_json() | ({"voyage": name} if len(names) > 1 else {}) for name, c in checks],
+        "data_checks": of_voyages([s.voyage for s in sailed], ship),
     }
 
 

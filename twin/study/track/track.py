@@ -15,6 +15,8 @@ from twin.errors import DataError
 from twin.physics.ship import Ship
 from twin.physics.state import WEATHER, Situation
 from twin.recording.voyage import Voyage
+from twin.study.track.holes import HOLE_S, inside, lined, longest, pieces, slopes
+from twin.study.track.unknown_controls import CONTROLS, known
 
 MEASURED = {  # reading -> channel
     "x": "north_m",
@@ -60,7 +62,7 @@ class Track:
     weather: Mapping[str, np.ndarray]  # only what was measured, by its name in Situation
     measured: np.ndarray  # (N, 8): READINGS, NaN where there was none
     sd: np.ndarray  # (8,): scatter of each reading about the smooth motion
-    whole: np.ndarray  # (N,) bool: controls known, so that the model can be run through
+    whole: np.ndarray  # (N,) bool: controls and motion known, so that the model can be run through
     # (N, 6): in surge, sway, yaw how fast waves swing her [rad/s], and their accelerations (seaway.py)
     swell: np.ndarray | None = None
     # (N, 8): times its usual scatter that each reading has at that moment (unrest.py)
@@ -118,23 +120,44 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
     done."""
     length_s = float(ship.scale("time"))
     h = _step(max(voyage.step_s, length_s / steps_per_length), length_s / FEWEST_PER_LENGTH)
-    if voyage.duration_s < 3.0 * length_s:
+    if voyage.sailed_s < 3.0 * length_s:
         raise DataError(
-            f"{voyage.name}: {voyage.duration_s:.0f} s is less than three ship lengths of sailing "
+            f"{voyage.name}: {voyage.sailed_s:.0f} s is less than three ship lengths of sailing "
             f"({3 * length_s:.0f} s): "
             "nothing can be judged from it. Record at least twenty minutes of manoeuvring."
         )
-    grid = voyage.on_grid(h)
-    measured = np.column_stack([_samples(voyage, channel, len(grid), h) for channel in MEASURED.values()])
-    controls, whole = _controls(voyage, h)
+    hold_s = {name: _hold_s(voyage, name) for name in CONTROLS}
+    hole_s = max(HOLE_S, 3.0 * max(hold_s.values()))
+    grid = voyage.on_grid(h, hole_s=hole_s)
+    at = np.rint((grid.time_s - voyage.time_s[0]) / h).astype(np.int64)
+    measured = np.column_stack([_samples(voyage, channel, at, h) for channel in MEASURED.values()])
+    delta, n = (
+        _bridge(voyage.on_grid(h, hold, hole_s).si(name), hold, at * h) for name, hold in hold_s.items()
+    )
+    whole = np.isfinite(delta) & np.isfinite(n)
     if not whole.any():
         raise DataError(
             f"{voyage.name}: rudder_angle_deg and propeller_rate_rpm are never there together. Check the map."
         )
     state, sd = smooth_motion(measured, h, ship)
+    whole &= moved_as_read(measured, h, length_s) & known(voyage, grid.time_s)
+    if not whole.any():
+        raise DataError(
+            f"{voyage.name}: controls, place and heading are never there together. Check the "
+            "map, and the clocks of the instruments."
+        )
     weather = _weather(grid, measured, state, max(1, round(ROLLED * length_s / h)))
     return Track(
-        voyage.name, grid.time_s - voyage.time_s[0], h, state, *controls, weather, measured, sd, whole
+        voyage.name,
+        grid.time_s - voyage.time_s[0],
+        h,
+        state,
+        np.nan_to_num(delta),
+        np.nan_to_num(n),
+        weather,
+        measured,
+        sd,
+        whole,
     )
 
 
@@ -144,45 +167,51 @@ def _step(usual: float, longest: float) -> float:
     return usual / int(np.ceil(usual / longest - 1e-9))
 
 
-def _samples(voyage: Voyage, channel: str, steps: int, h: float) -> np.ndarray:
-    """(steps,) mean of the samples that fall nearest to each grid step, moved from their mean time to the
-    step along the channel's own slope; NaN where none falls: nothing is interpolated. A rate that was derived
-    is no second reading of what it came from."""
+def _samples(voyage: Voyage, channel: str, steps: np.ndarray, h: float) -> np.ndarray:
+    """(N,) at these multiples (N,) of h: mean of the samples that fall nearest to each grid step, moved from
+    their mean time to the step along the channel's own slope; NaN where none falls: nothing is interpolated.
+    A rate that was derived is no second reading of what it came from."""
     if channel in voyage.meta.get("derived", {}) and channel not in PLACE:
-        return np.full(steps, np.nan)
+        return np.full(steps.size, np.nan)
     values = voyage.si(channel)
     at = (voyage.time_s - voyage.time_s[0]) / h
-    k = np.rint(at).astype(int)
-    ok = np.isfinite(values) & (k < steps)
-    k, at, values = k[ok], at[ok], values[ok]
-    count = np.bincount(k, minlength=steps)
+    ok = np.isfinite(values) & (np.rint(at) <= steps[-1])
+    at, values = at[ok], values[ok]
+    k = np.searchsorted(steps, np.rint(at))
+    count = np.bincount(k, minlength=steps.size)
     seen = np.flatnonzero(count)
-    mean, when = (np.bincount(k, x, steps)[seen] / count[seen] for x in (values, at))
-    out = np.full(steps, np.nan)
+    mean, when = (np.bincount(k, x, steps.size)[seen] / count[seen] for x in (values, at))
+    out = np.full(steps.size, np.nan)
     slope = np.gradient(mean, when) if seen.size > 1 else np.zeros(seen.size)
-    out[seen] = mean + slope * (seen - when)
+    out[seen] = mean + slope * (steps[seen] - when)
     return out
 
 
-def _controls(voyage: Voyage, h: float) -> tuple[tuple[np.ndarray, np.ndarray], np.ndarray]:
-    """Rudder and propeller, short holes (or the usual wait for the next sample) bridged, and where both are
-    known."""
-    bridged = []
-    for name in ("rudder_angle_deg", "propeller_rate_rpm"):
-        waits = np.diff(voyage.time_s[np.isfinite(voyage[name])])
-        hold = max(LONGEST_HOLD_S, 1.5 * float(np.median(waits)) if waits.size else 0.0)
-        bridged.append(_bridge(voyage.on_grid(h, hold).si(name), hold, h))
-    whole = np.isfinite(bridged[0]) & np.isfinite(bridged[1])
-    return (np.nan_to_num(bridged[0]), np.nan_to_num(bridged[1])), whole
+def _hold_s(voyage: Voyage, name: str) -> float:
+    """How long a control's last value is held [s]: through short holes, or for the usual wait for the next
+    sample."""
+    waits = np.diff(voyage.time_s[np.isfinite(voyage[name])])
+    return max(LONGEST_HOLD_S, 1.5 * float(np.median(waits)) if waits.size else 0.0)
 
 
-def _bridge(values: np.ndarray, longest_s: float, h: float) -> np.ndarray:
-    """Hold the last value through holes of at most longest_s."""
+def _bridge(values: np.ndarray, longest_s: float, t: np.ndarray) -> np.ndarray:
+    """Hold the last value through holes of at most longest_s; `t` (N,) [s]."""
     ok = np.isfinite(values)
     last = np.maximum.accumulate(np.where(ok, np.arange(values.size), -1))
-    age = np.arange(values.size) - last
-    held = values[np.maximum(last, 0)]
-    return np.where((last >= 0) & (age * h <= longest_s), held, np.nan)
+    held = np.maximum(last, 0)
+    return np.where((last >= 0) & (t - t[held] <= longest_s), values[held], np.nan)
+
+
+def moved_as_read(measured: np.ndarray, h: float, time: float) -> np.ndarray:
+    """(N,) bool: where readings (N, 8) of place and heading are near enough to say how she moved
+    (holes.py)."""
+    x, y, psi, u, v, r = np.isfinite(measured[:, :6]).T
+    return np.logical_and.reduce(
+        [
+            inside(pieces(there, longest(there, h, time)), there.size)
+            for there in (x | u & v, y | u & v, psi | r)
+        ]
+    )
 
 
 def _weather(grid: Voyage, measured: np.ndarray, state: np.ndarray, rolled: int) -> dict[str, np.ndarray]:
@@ -227,13 +256,11 @@ def smooth_motion(measured: np.ndarray, h: float, ship: Ship) -> tuple[np.ndarra
     floor = {"x": 1e-4 * ship.L_pp, "y": 1e-4 * ship.L_pp, "psi": 2e-4, "r": 1e-3 / time}
     floor |= dict.fromkeys(("u", "v", "u_r", "v_r"), 1e-3 * speed)
     sd = {name: max(value if np.isfinite(value) else 0.0, floor[name]) for name, value in sd.items()}
-    psi_s = _least_jerk(psi, sd["psi"], r, sd["r"], turn, h)
-    r_s = np.gradient(psi_s, h)
+    psi_s, r_s = _least_jerk(psi, sd["psi"], r, sd["r"], turn, h, time)
     c, s = np.cos(psi_s), np.sin(psi_s)
     sd_uv = np.hypot(sd["u"], sd["v"]) / np.sqrt(2.0)
-    x_s = _least_jerk(x, sd["x"], u * c - v * s, sd_uv, turn * ship.L_pp**2, h)
-    y_s = _least_jerk(y, sd["y"], u * s + v * c, sd_uv, turn * ship.L_pp**2, h)
-    north, east = np.gradient(x_s, h), np.gradient(y_s, h)
+    x_s, north = _least_jerk(x, sd["x"], u * c - v * s, sd_uv, turn * ship.L_pp**2, h, time)
+    y_s, east = _least_jerk(y, sd["y"], u * s + v * c, sd_uv, turn * ship.L_pp**2, h, time)
     u_s, v_s = north * c + east * s, east * c - north * s
     state = np.column_stack([x_s, y_s, psi_s, u_s, v_s, r_s])
     log = [(u_r - u_s) - running_mean(u_r - u_s, 41), (v_r - v_s) - running_mean(v_r - v_s, 41)]
@@ -260,6 +287,19 @@ def _scatter(values: np.ndarray) -> float:
 
 
 def _least_jerk(
+    y: np.ndarray, sd: float, rate: np.ndarray, sd_rate: float, jerk: float, h: float, time: float
+) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+    """The path through each piece of the readings between long holes, with lines over these, and its
+    slope."""
+    there = np.isfinite(y) | np.isfinite(rate)
+    found = pieces(there, longest(there, h, time))
+    z = np.zeros(y.size)
+    for a, b in found:
+        z[a:b] = _least_jerk_of_piece(y[a:b], sd, rate[a:b], sd_rate, jerk, h)
+    return lined(z, found), slopes(z, found, h)
+
+
+def _least_jerk_of_piece(
     y: np.ndarray, sd: float, rate: np.ndarray, sd_rate: float, jerk: float, h: float
 ) -> np.ndarray:
     """argmin sum (z - y)^2/sd^2 + sum (z' - rate)^2/sd_rate^2 + sum (third difference of z)^2/jerk, a banded

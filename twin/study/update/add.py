@@ -9,6 +9,7 @@ from twin.errors import DataError
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import Ship
+from twin.recording.checks import of_voyages
 from twin.recording.jsonable import plain
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.reference.sailed import Sailed
@@ -82,6 +83,7 @@ def add(
         "held_out": [s.provenance() for s in held_out]
         or [s.provenance() | {"part": "last third"} for s in sailed],
         "notes": notes(ship, found, sailed, held_out),
+        "data_checks": of_voyages([s.voyage for s in (*sailed, *held_out)], ship),
     }
     result["verdict"] = verdict(result, proof)
     result = plain(result)
