@@ -12,7 +12,8 @@ COPY pyproject.toml README.md LICENSE ./
 COPY twin twin
 COPY export export
 COPY bench bench
-RUN python -m venv /opt/shiptwin && /opt/shiptwin/bin/pip install .
+COPY deploy/requirements.lock deploy/
+RUN python -m venv /opt/shiptwin && /opt/shiptwin/bin/pip install --require-hashes -r deploy/requirements.lock && /opt/shiptwin/bin/pip install --no-deps .
 
 # on-board: no extras, no compiler, no root; listens on loopback unless twin.toml says otherwise
 FROM base AS on-board

@@ -1,15 +1,27 @@
 #!/bin/sh
 # Installs a version beside those that are there and switches to it; when it does not stay up, switches back.
-#   sudo deploy/install.sh [WHEEL]      without WHEEL the version of this source folder
+#   sudo deploy/install.sh [WHEEL]              without WHEEL the version of this source folder; what it needs comes from the network,
+#                                               in the versions and with the hashes of requirements.lock
+#   sudo deploy/install.sh --wheels FOLDER      everything from a folder that deploy/wheels.sh made: no network
 # For a trial without systemd: ROOT=/some/folder deploy/install.sh
 set -eu
 here="$(cd "$(dirname "$0")" && pwd)"
-source="${1:-$(dirname "$here")}"
 root="${ROOT:-}"
 base="$root/opt/shiptwin"
 python="${PYTHON:-python3}"
+lock="${LOCK-$here/requirements.lock}"
 . "$here/switch.sh"
 
+wheels=""
+if [ "${1:-}" = --wheels ]; then
+    wheels="$(cd "${2:?usage: install.sh --wheels FOLDER}" && pwd)" || exit 2
+    (cd "$wheels" && sha256sum --check --quiet --strict SHA256SUMS) || { echo "$wheels is not what deploy/wheels.sh made: copy it again" >&2; exit 1; }
+    lock="$wheels/requirements.lock"
+    source="$(find "$wheels" -name 'shiptwin-*.whl' | head -n 1)"
+    [ -n "$source" ] || { echo "$wheels holds no shiptwin-*.whl" >&2; exit 1; }
+else
+    source="${1:-$(dirname "$here")}"
+fi
 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "$python is older than 3.11. Name a newer one: PYTHON=..." >&2; exit 1; }
 [ -n "$root" ] || [ "$(id -u)" = 0 ] || { echo "Only root may install to /opt: sudo $0" >&2; exit 1; }
 
@@ -20,10 +32,15 @@ mkdir -p "$base/versions"
 mkdir -m 755 "$new"
 trap 'rm -rf "$new"' EXIT
 "$python" -m venv "$new"
-"$new/bin/python" -m pip install --quiet --disable-pip-version-check "$source"
+if [ -n "$wheels" ]; then local="--no-index --find-links $wheels"; else local=""; fi
+# shellcheck disable=SC2086 (words)
+pip() { "$new/bin/python" -m pip install --quiet --disable-pip-version-check $local "$@"; }
+[ -z "$lock" ] || pip --require-hashes --requirement "$lock"
+pip --no-deps "$source"
 "$new/bin/python" -m compileall -q "$new/lib" || true
 mkdir -p "$new/share/shiptwin"
 cp "$here"/*.md "$here"/*.sh "$here"/*.json "$here"/*.json5 "$here"/*.toml "$here"/*.service "$new/share/shiptwin/"
+"$new/bin/twin" --help >/dev/null || { echo "version $version does not even start: is $python the one that $source was made for?" >&2; exit 1; }
 trap - EXIT
 
 echo "2/4 settings (those that are there stay)"
@@ -34,12 +51,11 @@ done
 if [ -z "$root" ]; then
     id shiptwin >/dev/null 2>&1 ||
         useradd --system --home-dir /var/lib/shiptwin --shell /usr/sbin/nologin shiptwin
-    [ ! -d /etc/shiptwin/tls ] || { chown -R root:shiptwin /etc/shiptwin/tls; chmod -R u=rwX,g=rX,o= /etc/shiptwin/tls; }
+    [ ! -d /etc/shiptwin/tls ] || "$here/tls-rights.sh" /etc/shiptwin/tls
 fi
 
-echo "3/4 the service"
-mkdir -p "$root/etc/systemd/system"
-cp "$here/shiptwin.service" "$here/shiptwin-alarm@.service" "$root/etc/systemd/system/"
+echo "3/4 the service: its units come from the version that runs"
+link_units
 
 echo "4/4 switch"
 switch_to "$version"

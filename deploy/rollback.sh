@@ -1,5 +1,5 @@
 #!/bin/sh
-# Runs again the version that ran before, or the one that is named.
+# Runs again the version that ran before, or the one that is named, with its own units.
 #   sudo deploy/rollback.sh [VERSION]      rollback.sh --list shows what there is
 set -eu
 root="${ROOT:-}"
@@ -9,7 +9,7 @@ base="$root/opt/shiptwin"
 if [ "${1:-}" = --list ]; then
     for folder in "$base"/versions/*/; do
         version="$(basename "$folder")"
-        release="$("$folder/bin/python" -c 'from importlib.metadata import version; print(version("shiptwin"))')"
+        release="$("$folder/bin/python" -c 'from importlib.metadata import version; print(version("shiptwin"))' 2>/dev/null || echo "not whole: delete it")"
         if [ "$version" = "$(running)" ]; then note=" (running)"; else note=""; fi
         echo "$version shiptwin $release$note"
     done
@@ -17,5 +17,7 @@ if [ "${1:-}" = --list ]; then
 fi
 version="${1:-$(cat "$base/previous" 2>/dev/null || true)}"
 [ -n "$version" ] || { echo "No earlier version is known. See: $0 --list" >&2; exit 1; }
-[ -d "$base/versions/$version" ] || { echo "$version is not installed. See: $0 --list" >&2; exit 1; }
+case "$version" in */* | .*) echo "$version is no version. See: $0 --list" >&2; exit 2 ;; esac
+[ -f "$base/versions/$version/share/shiptwin/shiptwin.service" ] || { echo "$version is not installed. See: $0 --list" >&2; exit 1; }
+link_units
 switch_to "$version"

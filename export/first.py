@@ -22,7 +22,7 @@ import numpy as np
 import torch
 
 from twin.live.learning.learned import scale_of
-from twin.live.learning.manifest import SCHEMA_VERSION
+from twin.live.learning.manifest import SCHEMA_VERSION, hashed
 from twin.live.learning.residual import ship_hash
 from twin.live.log.rows import read_rows
 from twin.live.observer.dynamics import Known
@@ -254,7 +254,7 @@ def main() -> int:
     for path, data in (
         (
             args.output.with_suffix(".json"),
-            json.dumps(manifest(trunk, model, ship, used, about), indent=1).encode(),
+            json.dumps(hashed(manifest(trunk, model, ship, used, about)), indent=1).encode(),
         ),
         (args.output, model),
     ):

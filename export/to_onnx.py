@@ -12,7 +12,7 @@ import torch
 from onnx import TensorProto, checker, helper, numpy_helper
 
 from export.network import WIDTH, Residual
-from twin.live.learning.manifest import SCHEMA_VERSION
+from twin.live.learning.manifest import SCHEMA_VERSION, hashed
 from twin.live.learning.residual import ship_hash
 from twin.physics.zeta import ZETA
 
@@ -112,7 +112,7 @@ def write(path: Path, model: bytes, table: dict[str, Any]) -> None:
     """Both files, aside and renamed, the manifest last: the twin believes neither without the other."""
     for target, content in (
         (path, model),
-        (path.with_suffix(".json"), (json.dumps(table, indent=1) + "\n").encode()),
+        (path.with_suffix(".json"), (json.dumps(hashed(table), indent=1) + "\n").encode()),
     ):
         aside = target.with_name(f".{target.name}.part")
         aside.write_bytes(content)

@@ -17,7 +17,9 @@ settings.load_profile("shiptwin")
 BY_THE_CLOCK = (
     "deploy/test_zenoh.py", "live/keelson/test_bus.py", "live/test_clock.py", "live/test_demo.py",
     "live/test_realtime.py", "live/log/test_record.py", "live/log/test_record_faults.py",
-    "live/log/test_recover.py", "live/test_run.py", "test_house.py", "test_readme.py",
+    "live/log/test_recover.py", "live/test_run.py", "live/test_overload.py",
+    "live/keelson/test_bus_hostile.py", "live/log/test_power_cut.py", "live/test_secrets.py",
+    "live/test_fault.py", "live/log/test_quota.py", "test_house.py", "test_readme.py",
 )  # fmt: skip
 # sailed once for these rooms: half a minute
 SAME_VOYAGES = (

@@ -84,6 +84,11 @@ VERBS: dict[str, Verb] = {
     "demo": Verb(
         "twin.commands.demo", "the whole story on a bundled voyage, in a minute or two", "twin demo"
     ),
+    "fault": Verb(
+        "twin.commands.fault",
+        "makes a fault on purpose, in a log or on a live bus",
+        "twin fault rudder stuck --log voyage.mcap -o faulty.mcap",
+    ),
     "health": Verb("twin.commands.health", "is the twin on this machine alive and well?", "twin health"),
 }
 

@@ -1,6 +1,7 @@
 """Files that are there whole or not at all."""
 
 import argparse
+import errno
 import os
 import tempfile
 from collections.abc import Sequence
@@ -65,3 +66,16 @@ def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
         with suppress(OSError):
             os.unlink(aside)
         raise _cannot(path, error.strerror, option) from None
+
+
+def read(path: str | os.PathLike[str], most: int) -> bytes:
+    """The file's bytes; OSError when it cannot be read or is longer than `most` bytes (a device has no
+    end)."""
+    try:
+        with open(path, "rb") as file:
+            data = file.read(most + 1)
+    except ValueError as error:  # a name with a zero byte in it
+        raise OSError(errno.EINVAL, str(error), str(path)) from None
+    if len(data) > most:
+        raise OSError(errno.EFBIG, f"longer than {most} bytes", str(path))
+    return data

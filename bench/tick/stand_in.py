@@ -13,7 +13,7 @@ from onnx import TensorProto, helper, numpy_helper
 
 from bench.tick.ort import session
 from twin.live.learning.learned import scale_of
-from twin.live.learning.manifest import SCHEMA_VERSION
+from twin.live.learning.manifest import SCHEMA_VERSION, hashed
 from twin.live.learning.residual import ship_hash
 from twin.physics.ship import Ship
 
@@ -48,7 +48,7 @@ def write(path: Path, ship: Ship, seed: int = 1) -> Path:
         "training": {"what": "not trained: drawn weights, to measure time and memory"},
     }
     path.write_bytes(model)
-    path.with_suffix(".json").write_text(json.dumps(table))
+    path.with_suffix(".json").write_text(json.dumps(hashed(table)))
     return path
 
 

@@ -1,12 +1,19 @@
-"""Install, upgrade and roll back in a folder instead of a computer's root; without systemd nothing starts."""
+"""Install, upgrade and roll back in a folder instead of a computer's root; systemd is a script that notes
+what it is told."""
 
+import hashlib
+import json
 import os
+import re
 import shutil
 import subprocess
+import sys
 import time
+import tomllib
 from pathlib import Path
 
 import pytest
+from packaging.requirements import Requirement
 
 ROOT = Path(__file__).parents[2]
 DEPLOY = ROOT / "deploy"
@@ -27,9 +34,14 @@ def wheel(tmp_path_factory):
     return next(folder.glob("shiptwin-*.whl"))
 
 
-def script(name, root, *arguments):
-    env = os.environ | {"ROOT": str(root), "PIP_NO_DEPS": "1"}
-    done = subprocess.run([DEPLOY / name, *arguments], env=env, capture_output=True, text=True, timeout=180)
+def tried(name, root, *arguments, **env):
+    """What a script did; without a lock, so that nothing is fetched."""
+    env = os.environ | {"ROOT": str(root), "LOCK": "", "SETTLE_S": "0"} | env
+    return subprocess.run([DEPLOY / name, *arguments], env=env, capture_output=True, text=True, timeout=180)
+
+
+def script(name, root, *arguments, **env):
+    done = tried(name, root, *arguments, **env)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -66,9 +78,16 @@ def test_settings_that_are_there_stay(two_versions):
     assert "mine.toml" in (two_versions[0] / "etc/shiptwin/twin.toml").read_text()
 
 
+def unit(root, name="shiptwin.service"):
+    """What systemd would read, inside this trial's root."""
+    return root / os.readlink(root / "etc/systemd/system" / name).lstrip("/")
+
+
 def test_units_and_scripts_are_where_the_units_look_for_them(two_versions):
     root = two_versions[0]
-    assert (root / "etc/systemd/system/shiptwin-alarm@.service").exists()
+    assert (
+        unit(root, "shiptwin-alarm@.service").read_text() == (DEPLOY / "shiptwin-alarm@.service").read_text()
+    )
     assert os.access(root / "opt/shiptwin/current/share/shiptwin/alarm.sh", os.X_OK)
 
 
@@ -81,8 +100,158 @@ def test_roll_back_runs_the_version_before_and_again_the_one_after(two_versions)
     assert running(root) == second
 
 
-def test_a_version_that_is_not_there_is_refused(two_versions):
-    env = os.environ | {"ROOT": str(two_versions[0])}
-    command = [DEPLOY / "rollback.sh", "19990101T000000"]
-    done = subprocess.run(command, env=env, capture_output=True, text=True)
-    assert done.returncode == 1 and "not installed" in done.stderr
+def test_rolling_back_brings_the_units_of_that_version_back(two_versions):
+    """Test: the newer version's unit says something else. Expected: after the roll-back systemd reads the
+    older one, and again the newer."""
+    root, first, second = two_versions
+    newer = root / "opt/shiptwin/versions" / second / "share/shiptwin/shiptwin.service"
+    newer.write_text(newer.read_text() + "# the newer one\n")
+    assert running(root) == second and "the newer one" in unit(root).read_text()
+    script("rollback.sh", root, first)
+    assert "the newer one" not in unit(root).read_text()
+    script("rollback.sh", root, second)
+    assert "the newer one" in unit(root).read_text()
+
+
+@pytest.mark.parametrize("version, code", [("19990101T000000", 1), ("../../etc", 2), (".", 2)])
+def test_a_version_that_is_not_there_is_refused(two_versions, version, code):
+    done = tried("rollback.sh", two_versions[0], version)
+    assert done.returncode == code and ("not installed" in done.stderr or "no version" in done.stderr)
+
+
+@pytest.fixture
+def systemd(tmp_path):
+    """A systemctl that notes what it is told, and fails to restart while the file `broken` is there."""
+    program = tmp_path / "systemctl"
+    program.write_text(
+        f'#!/bin/sh\necho "$@" >> {tmp_path}/told\n'
+        f'case "$1" in restart|is-active) [ ! -e {tmp_path}/broken ] ;; show) case "$*" in *NRestarts*) echo '
+        "0 ;; *) echo fine ;; esac ;; esac\n"
+    )
+    program.chmod(0o755)
+    (tmp_path / "told").touch()
+    return program
+
+
+def test_a_first_install_that_fails_leaves_nothing_that_would_start(wheel, tmp_path, systemd):
+    root = tmp_path / "root"
+    (tmp_path / "broken").touch()
+    done = tried("install.sh", root, wheel, SYSTEMCTL=str(systemd))
+    assert done.returncode == 1 and "does not run" in done.stderr
+    assert not (root / "opt/shiptwin/current").is_symlink() and not list(
+        (root / "etc/systemd/system").iterdir()
+    )
+    told = (tmp_path / "told").read_text().splitlines()
+    assert "disable --quiet shiptwin" in told and "enable --quiet shiptwin" not in told
+    (tmp_path / "broken").unlink()
+    kept = next((root / "opt/shiptwin/versions").iterdir()).name
+    script("rollback.sh", root, kept, SYSTEMCTL=str(systemd))
+    assert (
+        running(root) == kept
+        and unit(root).exists()
+        and "enable --quiet shiptwin" in (tmp_path / "told").read_text()
+    )
+
+
+def test_an_upgrade_that_fails_runs_the_old_version_with_its_old_units(
+    two_versions, wheel, tmp_path, systemd
+):
+    root, _, second = two_versions
+    before = unit(root).read_text()
+    (tmp_path / "broken").touch()
+    time.sleep(1.1)
+    done = tried("install.sh", root, wheel, SYSTEMCTL=str(systemd))
+    assert done.returncode == 1 and f"running again: {second}" in done.stderr
+    assert running(root) == second and unit(root).read_text() == before
+
+
+def test_what_is_no_wheel_leaves_nothing_behind(tmp_path):
+    (tmp_path / "shiptwin-9-py3-none-any.whl").write_bytes(b"no wheel")
+    done = tried("install.sh", tmp_path / "root", tmp_path / "shiptwin-9-py3-none-any.whl")
+    assert done.returncode != 0
+    assert (
+        not list((tmp_path / "root/opt/shiptwin/versions").iterdir())
+        and not (tmp_path / "root/opt/shiptwin/current").is_symlink()
+    )
+
+
+@pytest.fixture(scope="module")
+def wheels(wheel, tmp_path_factory):
+    """A folder as deploy/wheels.sh makes it, with a lock of one small package of its own."""
+    folder, package = tmp_path_factory.mktemp("offline"), tmp_path_factory.mktemp("package")
+    (package / "pyproject.toml").write_text(
+        '[build-system]\nrequires = ["setuptools"]\nbuild-backend = '
+        '"setuptools.build_meta"\n[project]\nname = '
+        '"ballast-of-the-test"\nversion = "1.0"\n'
+    )
+    (package / "ballast_of_the_test.py").write_text("WEIGHT = 1\n")
+    command = ["python3", "-m", "pip", "wheel", "--quiet", "--no-deps", "--wheel-dir", folder, package]
+    assert subprocess.run(command, capture_output=True, timeout=180).returncode == 0
+    small = next(folder.glob("ballast*.whl"))
+    shutil.copy(wheel, folder)
+    (folder / "requirements.lock").write_text(
+        f"ballast-of-the-test==1.0 --hash=sha256:{hashlib.sha256(small.read_bytes()).hexdigest()}\n"
+    )
+    return folder
+
+
+def summed(folder):
+    subprocess.run("sha256sum *.whl requirements.lock > SHA256SUMS", shell=True, cwd=folder, check=True)
+
+
+def test_a_folder_of_wheels_installs_without_a_network(wheels, tmp_path):
+    """Test: no index can be reached. Expected: the twin and what its lock names are there."""
+    summed(wheels)
+    nowhere = {
+        "PIP_INDEX_URL": "http://127.0.0.1:9/simple",
+        "PIP_EXTRA_INDEX_URL": "",
+        "PIP_FIND_LINKS": "",
+        "PIP_CONFIG_FILE": "/dev/null",
+    }
+    script("install.sh", tmp_path, "--wheels", wheels, **nowhere)
+    code = "import ballast_of_the_test, twin; print(ballast_of_the_test.WEIGHT)"
+    done = subprocess.run(
+        [tmp_path / "opt/shiptwin/current/bin/python", "-c", code], capture_output=True, text=True, cwd="/"
+    )
+    assert done.stdout.strip() == "1", done.stderr
+
+
+@pytest.mark.parametrize("what", ["a wheel", "the lock", "the lock, and the sums made to fit"])
+def test_Q9_a_wheel_or_a_lock_that_was_tampered_with_is_not_installed(wheels, tmp_path, what):
+    """Test: one byte more in a wheel, another hash in the lock. Expected: refused in words, nothing left,
+    nothing running."""
+    folder = tmp_path / "wheels"
+    shutil.copytree(wheels, folder)
+    summed(folder)
+    if what == "a wheel":
+        with open(next(folder.glob("ballast*.whl")), "ab") as file:
+            file.write(b"x")
+    else:
+        lock = folder / "requirements.lock"
+        lock.write_text(re.sub(r"sha256:\w{6}", "sha256:000000", lock.read_text()))
+    if "sums" in what:
+        summed(folder)
+    done = tried("install.sh", tmp_path / "root", "--wheels", folder)
+    assert done.returncode != 0
+    assert ("HASHES" if "sums" in what else "not what deploy/wheels.sh made") in done.stderr
+    left = tmp_path / "root/opt/shiptwin/versions"
+    assert not left.exists() or not list(left.iterdir())
+
+
+def test_Q9_every_file_of_the_lock_has_a_hash_and_the_bill_of_materials_names_them_all():
+    """Expected: the lock pins what pyproject.toml asks for on board, inside its bounds; sbom.json is what
+    sbom.py makes of it."""
+    lock = (DEPLOY / "requirements.lock").read_text()
+    bill = json.loads((DEPLOY / "sbom.json").read_text())
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    pinned = {c["name"]: c for c in bill["components"]}
+    for wanted in map(Requirement, project["dependencies"]):
+        assert wanted.specifier.contains(pinned[wanted.name]["version"]), wanted
+    assert all(c["hashes"] and f"{c['name']}=={c['version']}" in lock for c in pinned.values())
+    made = subprocess.run(
+        [sys.executable, DEPLOY / "sbom.py", DEPLOY / "requirements.lock", "/dev/stdout"],
+        capture_output=True,
+        text=True,
+    )
+    assert json.loads(made.stdout) == bill
+    assert bill["metadata"]["component"]["version"] == project["version"]

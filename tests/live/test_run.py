@@ -234,3 +234,64 @@ def test_what_cannot_be_meant_or_written_is_one_line(words, code, tmp_path):
         [sys.executable, "-m", "twin.cli", *words], cwd=tmp_path, capture_output=True, text=True, timeout=60
     )
     assert done.returncode == code and done.stderr.count("\n") == 1 and words[-1] in done.stderr
+
+
+def test_N6_the_service_waits_for_a_port_that_is_taken_and_runs_meanwhile(place):
+    """Test: something else listens on the bus's port. Expected: it ticks and says why nobody hears it; heard
+    once the port is free."""
+    port = int((place / "twin.toml").read_text().partition("127.0.0.1:")[2].partition('"')[0])
+    health = [
+        sys.executable,
+        "-m",
+        "twin.cli",
+        "health",
+        "--config",
+        str(place / "twin.toml"),
+        "--timeout",
+        "10",
+    ]
+    with socket.socket() as taken:
+        taken.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        taken.bind(("127.0.0.1", port))
+        taken.listen()
+        process = start(place)
+        assert "in use" in started(process)
+        time.sleep(1.5)
+        assert process.poll() is None
+    done = subprocess.run(health, capture_output=True, text=True, timeout=60)
+    assert "starting" in done.stdout
+    process.terminate()
+    assert process.wait(10.0) == 0
+    assert any("in use" in reason for tick in ticks(place) for reason in tick.reasons)
+
+
+@pytest.mark.parametrize(
+    "text",
+    (
+        '[bus]\nlisten = "nonsense"\n',
+        '[bus]\nlisten = "tcp/127.0.0.1:99999"\n',
+        "[loop]\nrate_hz = 1" + "0" * 400 + "\n",
+    ),
+)
+def test_F1_places_and_numbers_that_can_never_be_end_it_with_exit_code_5_and_one_line(place, text):
+    (place / "twin.toml").write_text(text + '[log]\nfolder = ""\n')
+    process = start(place)
+    assert process.wait(30.0) == 5
+    assert len(process.stderr.read().strip().splitlines()) == 1
+
+
+def test_N5_a_second_twin_on_the_same_state_folder_is_refused(place):
+    first = start(place)
+    started(first)
+    (place / "other.toml").write_text(
+        f'[bus]\nlisten = "tcp/127.0.0.1:0"\n[log]\nfolder = ""\n[state]\nfolder = "{place}/state"\n'
+    )
+    command = [sys.executable, "-m", "twin.cli", "run", "--config", str(place / "other.toml")]
+    second = popen(*command, stderr=subprocess.PIPE)
+    assert second.wait(30.0) == 1
+    said = second.stderr.read()
+    assert "another twin" in said and len(said.strip().splitlines()) == 1
+    first.kill()
+    first.wait()
+    third = popen(*command, stderr=subprocess.PIPE)
+    started(third)

@@ -10,8 +10,8 @@ import os
 import sys
 import traceback
 
-from twin.errors import TwinError, UsageError
-from twin.live.run import serve
+from twin.cli import guarded
+from twin.live.run import _served
 from twin.live.signals import config
 
 
@@ -39,15 +39,7 @@ def run(args: argparse.Namespace) -> int:
         return 0
     code = 1
     try:
-        if args.duration is not None and not args.duration > 0.0:
-            raise UsageError(f"--duration {args.duration:g}: more than 0 s.")
-        settings = config.load(args.config)
-        if args.ship:
-            settings = settings.but("ship.file", args.ship)
-        code = serve(settings, duration_s=args.duration)
-    except TwinError as error:
-        print(f"{type(error).__name__}: {error}", file=sys.stderr)
-        code = error.exit_code
+        code = guarded(lambda: _served(args))
     except BaseException:
         traceback.print_exc()
     finally:

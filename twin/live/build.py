@@ -39,6 +39,8 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
         network.open_library(breathe)
     residual, why_not = residual_of(settings, ship)
     breathe()
+    if residual and residual.note:
+        notes.append(residual.note)
     learned = LearnedForce(ship, residual, why_not, settings["adaptation.on"])
     if learned.adaptation is not None and (path := learned_file(settings)):
         learned.adaptation.restore(path, mark_of(learned))

@@ -58,11 +58,17 @@ def judged(tick: Any) -> tuple[int, str]:
     if tick is None:
         return 1, "not heard: is it running, and does it use these settings? See: systemctl status shiptwin"
     reasons = "; ".join(tick.reasons) or "all well"
+    lost = f", {tick.log_dropped} messages not logged" if tick.log_dropped else ""
     said = (
-        f"{tick.mode}, {tick.rate_hz:g} Hz, {tick.overruns} periods skipped, {tick.rejected} samples "
-        f"refused: {reasons}"
+        f"{tick.mode}, {tick.rate_hz:g} Hz, {skipped(tick)}, {tick.rejected} samples refused{lost}: {reasons}"
     )
     return (0 if tick.mode in (HYBRID, PHYSICS) else 1), said
+
+
+def skipped(tick: Any) -> str:
+    """Periods that the loop had to skip since its start, and their share."""
+    share = tick.overruns / max(tick.index + 1 + tick.overruns, 1)
+    return f"{tick.overruns} periods skipped" + (f" ({100.0 * share:.1f} %)" if tick.overruns else "")
 
 
 def _tell(said: str, tick: Any, code: int, path: str | None) -> None:
@@ -80,6 +86,7 @@ def _tell(said: str, tick: Any, code: int, path: str | None) -> None:
             "reasons": list(tick.reasons),
             "overruns": tick.overruns,
             "rejected": tick.rejected,
+            "log_dropped": tick.log_dropped,
             "rate_hz": tick.rate_hz,
         }
     text = json.dumps(table, indent=2)

@@ -1,20 +1,29 @@
 """Ears: what came in since the last tick, written to the log as it came, and decoded."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from twin.live.clock import Instant
 from twin.live.keelson.bus import Bus
 from twin.live.keelson.decode import Decoder, Result
+from twin.live.keelson.seats import Seats
 from twin.live.signals.geodesy import Datum
+from twin.live.signals.readings import Quality, Rejected
 
 Log = Callable[[str, str, bytes, int], None]  # topic, type name, payload, time [ns since 1970]
 
 
 class Inbox:
-    """The bus, seen by the loop; every sample of a known subject is logged, also one that will be refused."""
+    """The bus, seen by the loop; every sample of a known subject and of a source that has a seat is logged,
+    also one that will be refused. `sources` {channel: source} always have one."""
 
-    def __init__(self, bus: Bus, log: Log | None = None, datum: Datum | None = None):
-        self.bus, self.log = bus, log
+    def __init__(
+        self,
+        bus: Bus,
+        log: Log | None = None,
+        datum: Datum | None = None,
+        sources: Mapping[str, str] | None = None,
+    ):
+        self.bus, self.log, self.seats = bus, log, Seats(sources)
         self.decoder = Decoder(datum)
 
     @property
@@ -27,6 +36,9 @@ class Inbox:
         results: list[Result] = []
         wall_ns = round(instant.wall_s * 1e9)
         for key, envelope, received_s in self.bus.drain(instant.time_s):
+            if not self.seats.taken(key, received_s):
+                results.append(Rejected("", Quality.UNKNOWN_KEY, "too many sources", received_s, ""))
+                continue
             taken = self.decoder.take(key, envelope, received_s)
             results += taken.results
             if self.log is not None and taken.type_name:

@@ -5,6 +5,7 @@ An interpreter that ends with an open Zenoh session may hang for ever; so the ou
 os._exit.
 """
 
+import argparse
 import signal
 import sys
 from collections.abc import Callable, Iterator
@@ -12,21 +13,33 @@ from contextlib import contextmanager
 from time import perf_counter_ns
 from typing import Any
 
+from twin.errors import UsageError
 from twin.live import build, realtime
 from twin.live.clock import Clock, MonotonicClock
 from twin.live.inbox import Inbox
+from twin.live.keelson.alone import alone
 from twin.live.keelson.bus import Bus
 from twin.live.keelson.zenoh_config import BusSettings
 from twin.live.keep import Keeper
+from twin.live.lagging import Lagging
+from twin.live.log.quota import Quota
 from twin.live.log.record import Recorder
 from twin.live.loop import Loop
 from twin.live.notify import Notifier
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher
+from twin.live.signals import config
 from twin.live.signals.config import Settings
 
 WATCHDOG_S = 0.25  # how often the service manager hears that a step was good
 STATUS_S = 1.0
+
+
+def _served(args: argparse.Namespace) -> int:
+    if args.duration is not None and not args.duration > 0.0:
+        raise UsageError(f"--duration {args.duration:g}: more than 0 s.")
+    settings = config.load(args.config)
+    return serve(settings.but("ship.file", args.ship) if args.ship else settings, duration_s=args.duration)
 
 
 class Stop:
@@ -63,12 +76,13 @@ def opened(settings: Settings, clock_of: Callable[[float], Clock] = MonotonicClo
     realtime.save_memory()
     recorder, bus = recorder_of(settings), bus_of(settings)
     log = recorder.write if recorder else None
-    loop = build.loop_of(settings, Inbox(bus, log), _voice(settings, bus, log))
-    with bus:
+    inbox = Inbox(bus, log, sources=settings.sources)
+    loop = build.loop_of(settings, inbox, _voice(settings, bus, log))
+    with alone(settings["state.folder"]), bus:
         if recorder:
             recorder.start()
             loop.notes += recorder.repaired
-        service = Service(loop, bus, recorder, settings, clock_of(loop.rate_hz))
+        service = Service(loop, inbox, recorder, settings, clock_of(loop.rate_hz))
         names = ("priority", "cpu", "lock_memory", "drop_pages")
         loop.notes += realtime.settle(*(settings[f"loop.{name}"] for name in names))
         try:
@@ -81,9 +95,10 @@ def opened(settings: Settings, clock_of: Callable[[float], Clock] = MonotonicClo
 class Service:
     """A loop with its clock, and those who want to hear of it."""
 
-    def __init__(self, loop: Loop, bus: Bus, recorder: Recorder | None, settings: Settings, clock: Clock):
-        self.loop, self.bus, self.recorder, self.clock = loop, bus, recorder, clock
-        self.notifier = Notifier()
+    def __init__(self, loop: Loop, inbox: Inbox, recorder: Recorder | None, settings: Settings, clock: Clock):
+        self.loop, self.inbox, self.bus = loop, inbox, inbox.bus
+        self.recorder, self.clock = recorder, clock
+        self.notifier, self.lagging = Notifier(), Lagging(loop.rate_hz)
         path = build.learned_file(settings)
         self.keeper = Keeper(path) if path and loop.learned.adaptation else None
         self.mark = build.mark_of(loop.learned) if self.keeper else ""
@@ -123,15 +138,19 @@ class Service:
             self.notifier.alive()
             self._next_watchdog = now_s + WATCHDOG_S
         if now_s >= self._next_status:
-            self._look_round(tick)
+            self._look_round(tick, now_s)
             self._next_status = now_s + STATUS_S
         if self.keeper and now_s >= self._next_save:
             self._save()
             self._next_save = now_s + self.save_s
 
-    def _look_round(self, tick: Any) -> None:
-        """Alarms of bus, log and keeper go into the next ticks' reasons."""
-        alarms = [self.bus.state.alarm]
+    def _look_round(self, tick: Any, now_s: float) -> None:
+        """Alarms of clock, bus, log and keeper go into the next ticks' reasons."""
+        alarms = [
+            self.lagging.look(now_s, self.loop.overruns),
+            self.bus.state.alarm,
+            self.inbox.seats.alarm(now_s),
+        ]
         if self.recorder:
             state = self.recorder.state
             self._dropped = state.dropped + state.lost
@@ -148,8 +167,9 @@ class Service:
 
     def _greeting(self) -> str:
         learned = "hybrid" if self.loop.learned.residual else f"physics only ({self.loop.learned.why_not})"
+        notes = [*self.loop.notes, *filter(None, [self.bus.state.alarm])]
         return f"{self.loop.ship.name}: {self.loop.rate_hz:g} Hz, {learned}. " + " ".join(
-            f"[{note}]" for note in self.loop.notes
+            f"[{note}]" for note in notes
         )
 
 
@@ -162,10 +182,13 @@ def bus_of(settings: Settings) -> Bus:
 def recorder_of(settings: Settings) -> Recorder | None:
     if not settings["log.folder"]:
         return None
+    quota = Quota(*(settings[f"log.{name}"] for name in Quota._fields))
+    largest_mb = min(settings["log.segment_mb"], quota.max_mb / 4.0 or float("inf"))
     return Recorder(
         settings["log.folder"],
-        max_bytes=int(settings["log.segment_mb"] * 1e6),
+        max_bytes=int(largest_mb * 1e6),
         max_seconds=settings["log.segment_s"],
+        quota=quota,
     )
 
 

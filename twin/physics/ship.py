@@ -31,6 +31,8 @@ __all__ = [
     "to_table",
 ]
 
+MAX_BYTES = 32_000_000  # of a ship file; what calibration keeps in one takes less than 1 MB
+
 
 def load(path: str | os.PathLike[str]) -> Ship:
     """Read a ship file (or a bundled ship by its bare name, such as `kvlcc2`); SettingsError says what is
@@ -38,13 +40,22 @@ def load(path: str | os.PathLike[str]) -> Ship:
     path = _bundled(path)
     try:
         with open(path, "rb") as file:
-            table = tomllib.load(file)
-    except OSError as error:
+            data = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte in it
+        why = getattr(error, "strerror", None) or error
         raise SettingsError(
-            f"{path}: cannot be read ({error.strerror}). Bundled ships: {', '.join(bundled())}."
+            f"{str(path)[:300]}: cannot be read ({why}). Bundled ships: {', '.join(bundled())}."
         ) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise SettingsError(f"{path}: not a valid TOML file: {error}. Save it as plain UTF-8 text.") from None
+    if len(data) > MAX_BYTES:
+        raise SettingsError(
+            f"{path}: more than {MAX_BYTES // 10**6} MB cannot be a ship file. Check the path."
+        )
+    try:
+        table = tomllib.loads(data.decode())
+    # no TOML, no UTF-8, a number of thousands of digits, a thousand brackets
+    except (ValueError, RecursionError) as error:
+        said = " ".join(str(error).split())[:200]
+        raise SettingsError(f"{path}: not a valid TOML file: {said}. Save it as plain UTF-8 text.") from None
     return from_table(table, f"{path}: ")
 
 
@@ -54,8 +65,12 @@ def bundled() -> list[str]:
 
 
 def _bundled(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
-    inside = Path(__file__).parent.parent / "ships" / f"{path}.toml"
-    return inside if not os.path.exists(path) and inside.exists() else path
+    name = os.fspath(path)
+    return (
+        Path(__file__).parent.parent / "ships" / f"{name}.toml"
+        if not os.path.exists(name) and name in bundled()
+        else path
+    )
 
 
 def from_table(table: Mapping[str, Any], where: str = "") -> Ship:

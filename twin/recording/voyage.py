@@ -11,8 +11,8 @@ import numpy as np
 
 from twin.errors import DataError, did_you_mean
 from twin.live.signals.channels import BY_NAME, CHANNELS, Channel
+from twin.recording.holes import HOLE_S, sailed_s, steps_on
 from twin.recording.resample import continuous, resampled, wrapped
-from twin.study.track.holes import HOLE_S, sailed_s, steps_on
 
 MOST_STEPS = 3e6  # of a grid
 SLOW_S = 60.0  # a channel that may be this old is a state of the sea or of the loading: its ends are held

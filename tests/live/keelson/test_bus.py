@@ -1,6 +1,7 @@
 """Zenoh as the twin uses it: locked down, never waiting, honest about outages (Q5, N1, N2, N6, I27, I28)."""
 
 import json
+import os
 import socket
 import subprocess
 import sys
@@ -212,13 +213,62 @@ def test_two_twins_behind_a_router_hear_each_other() -> None:
         session.close()
 
 
-def test_N6_a_port_in_use_is_an_error_that_names_it() -> None:
+def test_N6_a_port_in_use_is_named_and_taken_once_it_is_free() -> None:
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         port = taken.getsockname()[1]
-        with pytest.raises(SettingsError, match=f"{port}.*in use.*choose another"):
-            ZenohBus(BusSettings(listen=f"tcp/127.0.0.1:{port}")).__enter__()
+        with ZenohBus(BusSettings(listen=f"tcp/127.0.0.1:{port}")) as twin:
+            alarm = twin.state.alarm
+            assert (
+                str(port) in alarm and "in use" in alarm and "choose another" in alarm and "\n" not in alarm
+            )
+            twin.publish(HEADING, sample(1.0))
+            assert twin.drain(1.0) == [] and twin.state.refused == 1
+            taken.close()
+            until(lambda: twin.state.alarm == "")
+            with ZenohBus(BusSettings(listen="", connect=(f"tcp/127.0.0.1:{port}",))) as sensor:
+                until(lambda: sensor.publish(HEADING, sample(2.0)) or 2.0 in received(twin))
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="to give the computer an address needs root")
+def test_N6_an_address_that_is_not_up_yet_is_waited_for() -> None:
+    """Test: listen on an address that no network card has, and give it to the loopback later. Expected: it
+    opens."""
+    address = (
+        "127.200.0.1" if subprocess.run(["ip", "addr"], capture_output=True).returncode else "10.213.47.1"
+    )
+    add, remove = (["ip", "addr", word, f"{address}/32", "dev", "lo"] for word in ("add", "del"))
+    port = free_port()
+    with ZenohBus(BusSettings(listen=f"tcp/{address}:{port}")) as twin:
+        if twin.state.alarm == "":
+            pytest.skip(f"{address} is up already")
+        assert "No network card has that address" in twin.state.alarm
+        if subprocess.run(add, capture_output=True).returncode:
+            pytest.skip("this machine lets nobody change its addresses")
+        try:
+            until(lambda: twin.state.alarm == "")
+        finally:
+            subprocess.run(remove, check=True)
+
+
+def test_what_zenoh_can_never_open_is_an_error_at_once() -> None:
+    with pytest.raises(SettingsError, match="Missing TLS private key"):
+        ZenohBus(BusSettings(listen=f"tls/127.0.0.1:{free_port()}")).__enter__()
+
+
+def test_N5_another_twin_of_the_same_name_is_said(pair: Pair) -> None:
+    """Test: a second session speaks under the twin's own key. Expected: an alarm within 2 s, which ends after
+    it falls silent."""
+    twin, other = pair
+    own = topics.key("twin", "ship", "twin_tick", "twin")
+    assert twin.state.alarm == ""
+    twin.publish(own, b"mine")
+    sleep(0.2)
+    assert twin.state.alarm == ""
+    other.publish(own, b"not mine")
+    until(lambda: "another twin speaks as twin/@v0/ship" in twin.state.alarm, 2.0)
+    until(lambda: twin.state.alarm == "")
 
 
 def test_an_outage_of_the_only_sensor_process_is_said(pair: Pair) -> None:

@@ -8,8 +8,10 @@ import random
 
 import pytest
 
+from twin.live.learning import manifest as manifests
 from twin.live.learning import residual as residuals
 from twin.live.learning.learned import LearnedForce
+from twin.live.learning.manifest import hashed
 from twin.live.learning.onnx_file import look
 from twin.live.learning.residual import MARGIN, ResidualError, WrongShip, check, load, ship_hash
 from twin.physics.effects import find
@@ -26,8 +28,8 @@ def parts():
 
 
 def edited(parts, **changes):
-    """The same model with another manifest."""
-    return parts[0], json.dumps(json.loads(parts[1]) | changes).encode()
+    """The same model with another manifest, which is whole."""
+    return parts[0], json.dumps(hashed(json.loads(parts[1]) | changes)).encode()
 
 
 def with_model(parts, model):
@@ -68,21 +70,51 @@ def test_M2_every_flipped_bit_of_the_model_is_caught(kvlcc2, parts):
             check(bytes(flipped), text, kvlcc2)
 
 
-def test_M2_flipped_bits_of_the_manifest_are_caught_or_harmless(kvlcc2, parts):
-    """Expected: refused in one line, or a number that still passes the golden check; never another
-    exception."""
-    model, text = parts
-    dice = random.Random(2)
-    refused = 0
-    for _ in range(200):
+def content(manifest):
+    """Everything it says, its own hash apart."""
+    return (
+        manifest.W,
+        manifest.inputs,
+        manifest.golden,
+        manifest.whitening,
+        manifest.W_max,
+        manifest.output_bound,
+        manifest.force_scale,
+        manifest.ship_hash,
+    )
+
+
+def test_M2_every_flipped_bit_of_the_manifest_is_caught_or_changes_nothing(kvlcc2, parts):
+    """Test: 4000 flips. Expected: refused in one line, or the same content (a space, the name of the hash);
+    never a changed number."""
+    _, text = parts
+    dice, whole = random.Random(2), content(manifests.parse(text))
+    accepted = 0
+    for _ in range(4000):
         at = dice.randrange(8 * len(text))
         flipped = bytearray(text)
         flipped[at // 8] ^= 1 << at % 8
         try:
-            check(model, bytes(flipped), kvlcc2)
-        except ResidualError:
-            refused += 1
-    assert refused > 20
+            found = manifests.parse(bytes(flipped))
+        except manifests.ManifestError as error:
+            assert "\n" not in str(error)
+            continue
+        accepted += 1
+        assert content(found) == whole
+    assert accepted < 400
+
+
+def test_M2_a_changed_last_layer_inside_its_bound_is_caught(kvlcc2, parts):
+    table = json.loads(parts[1])
+    table["W"][1][7] += 1e-3
+    assert "not what was written" in refusal((parts[0], json.dumps(table).encode()), kvlcc2)
+
+
+def test_a_manifest_of_an_earlier_version_is_used_and_said(kvlcc2, parts):
+    table = json.loads(parts[1])
+    assert check(*parts, kvlcc2).note == ""
+    del table["manifest_sha256"]
+    assert "no hash of its own" in check(parts[0], json.dumps(table).encode(), kvlcc2).note
 
 
 def test_M3_a_golden_output_that_is_not_met_is_caught(kvlcc2, parts):

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from twin.physics.model import Model
+from twin.recording.holes import pieces, slopes, steps_on
 from twin.study.diagnosis.diagnose import diagnose
 from twin.study.prediction.compare import compare
 from twin.study.reference.seaway import swung
-from twin.study.track.holes import pieces, slopes, steps_on
 from twin.study.track.track import moved_as_read, track
 
 MIDDLE = 750.0  # s, of the voyages of 1500 s

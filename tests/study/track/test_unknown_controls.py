@@ -5,11 +5,11 @@ import pytest
 
 from twin.physics.model import Model
 from twin.recording.checks import losses, of_voyages
+from twin.recording.unknown_controls import CONTROLS, gaps, known
 from twin.recording.voyage import Voyage
 from twin.study.prediction.openloop import predict
 from twin.study.track.segments import segments
 from twin.study.track.track import track
-from twin.study.track.unknown_controls import CONTROLS, gaps, known
 
 
 def without_controls(voyage, first_s, last_s, names=CONTROLS):

@@ -12,10 +12,12 @@ from typing import Any
 
 from twin.errors import SettingsError
 from twin.live.keelson.bus import BusState, Incoming
-from twin.live.keelson.topics import liveliness_key, subjects
+from twin.live.keelson.endpoint import may_come
+from twin.live.keelson.topics import OWN_SOURCE, key, liveliness_key, subjects
 from twin.live.keelson.zenoh_config import MAX_BYTES, BusSettings, configuration, endpoints, is_client
 
-RETRY_S = 0.5  # between two tries to reach a router that was not there at the start
+RETRY_S, LONGEST_RETRY_S = 0.5, 2.0  # between two tries to open what is not there yet: first, and at most
+NAMESAKE_S = 3.0  # how long another twin that was heard under our name is said
 CAUSES = (
     "Possible causes: nobody listens there (is the router running?), a firewall, TLS on one side only, "
     "a wrong or expired certificate or a name that does not match it, a wrong user or password"
@@ -23,7 +25,8 @@ CAUSES = (
 
 
 class ZenohBus:
-    """A session that opens at once (peer) or as soon as its router answers (client); the loop never waits."""
+    """A session that opens at once, or as soon as its router answers, its address is up or its port is free;
+    the loop never waits. SettingsError when it can never open."""
 
     def __init__(self, settings: BusSettings, wanted: list[str] | None = None):
         self._settings = settings
@@ -38,7 +41,7 @@ class ZenohBus:
 
     def __enter__(self) -> "ZenohBus":
         self._try_to_open()
-        if self._link is None and not self._client:
+        if self._link is None and not self._client and not may_come(self._why):
             raise SettingsError(self._cannot_open())
         if self._link is None:
             self._thread = Thread(target=self._keep_trying, name="bus", daemon=True)
@@ -82,18 +85,33 @@ class ZenohBus:
         try:
             session = zenoh.open(self._config)
         except zenoh.ZError as failure:
-            self._why = str(failure).split(" at /")[0].strip()
+            self._why = " ".join(str(failure).split(" at /")[0].split())
+            return
+        except BaseException as failure:  # Zenoh is Rust: a panic in it is no Exception here
+            if isinstance(failure, (KeyboardInterrupt, SystemExit)):
+                raise
+            self._why = f"{type(failure).__name__}: {' '.join(str(failure).split())}"
             return
         self._link = Link(session, self._settings, self._subjects)
 
     def _keep_trying(self) -> None:
-        while self._link is None and not self._closing.wait(RETRY_S):
+        wait_s = RETRY_S
+        while self._link is None and not self._closing.wait(wait_s):
             self._try_to_open()
+            wait_s = min(1.5 * wait_s, LONGEST_RETRY_S)
 
     def _cannot_open(self) -> str:
         where, why = endpoints(self._config), self._why.rstrip("[]!. ") or "no answer yet"
         if "in use" in why:
-            return f"cannot open Zenoh ({where}): {why}. Another twin or router has that port: choose another"
+            return (
+                f"cannot open Zenoh ({where}): {why}. Another twin or router has that port: stop it, or "
+                "choose another"
+            )
+        if "assign requested" in why:
+            return (
+                f"cannot open Zenoh ({where}): {why}. No network card has that address (yet): correct "
+                "[bus] listen, or wait"
+            )
         return f"cannot open Zenoh ({where}): {why}. {CAUSES}"
 
 
@@ -119,6 +137,10 @@ class Link:
             )
             for subject in wanted
         ]
+        own = key(settings.base, settings.entity, "twin_tick", OWN_SOURCE)
+        self._namesake = session.declare_subscriber(own, ring(1), allowed_origin=zenoh.Locality.REMOTE)
+        self._namesake_until = 0.0
+        self._own = f"{settings.base}/@v0/{settings.entity}"
         self._events = session.info.declare_transport_events_listener(ring(64), history=True)
         self._token = session.liveliness().declare_token(liveliness_key(settings.base, settings.entity))
 
@@ -154,9 +176,17 @@ class Link:
 
     def alarm(self, client: bool) -> str:
         """What is wrong with the connection, in words."""
+        now_s = time.monotonic()
+        if self._namesake.try_recv() is not None:
+            self._namesake_until = now_s + NAMESAKE_S
+        if now_s < self._namesake_until:
+            return (
+                f"bus: another twin speaks as {self._own}. Stop one of the two, or give it another [bus] "
+                "entity"
+            )
         if self.peers or not (self.outages or client):
             return ""
-        since = f"{time.monotonic() - self._lost_at:.0f} s ago" if self._lost_at else "the start"
+        since = f"{now_s - self._lost_at:.0f} s ago" if self._lost_at else "the start"
         who = "the router" if client else "everybody"
         return f"bus: {who} out of reach since {since}; it comes back by itself, the twin goes on meanwhile"
 

@@ -6,15 +6,17 @@ is a client: two peers behind a router without gossip exchange nothing, and noth
 """
 
 import json
-from pathlib import Path
+import os
 from typing import Any, NamedTuple
 
 from twin.errors import SettingsError
+from twin.live.keelson import endpoint
 from twin.live.keelson.topics import subjects
 from twin.live.signals.config import Settings
 
 MAX_HZ = 200.0  # of each subject
 MAX_BYTES = 4096  # of one sample
+MAX_NAME = 200  # bytes of [bus] base and entity
 RETRY = {"period_init_ms": 200, "period_increase_factor": 1.5, "period_max_ms": 1000}
 
 LOCKED: dict[str, Any] = {
@@ -60,10 +62,16 @@ def configuration(settings: BusSettings) -> Any:
     import zenoh
 
     _check_names(settings)
+    _check_places(settings)
     plain, config = zenoh.Config(), _from_file(settings.file) if settings.file else zenoh.Config()
     for key, value in _wanted(settings, config).items():
         if config.get_json(key) == plain.get_json(key):
-            config.insert_json5(key, json.dumps(value))
+            try:
+                config.insert_json5(key, json.dumps(value))
+            except zenoh.ZError as failure:
+                raise SettingsError(
+                    f"[bus]: Zenoh refuses {key} = {str(value)[:120]}: {_said(failure)}"
+                ) from None
     return config
 
 
@@ -124,19 +132,48 @@ def _wanted(settings: BusSettings, config: Any) -> dict[str, Any]:
 
 def _check_names(settings: BusSettings) -> None:
     for field, name in (("base", settings.base), ("entity", settings.entity)):
-        if not name or name != name.strip("/") or "//" in name or set(name) & set("*$#?@"):
-            raise SettingsError(
-                f"[bus] {field} = {name!r} cannot be part of a key. Use words parted by '/', as in 'a/b'."
-            )
+        if (
+            not name
+            or name != name.strip("/")
+            or "//" in name
+            or set(name) & set("*$#?@")
+            or not name.isprintable()
+        ):
+            said = f"[bus] {field} = {name[:80]!r} cannot be part of a key."
+            raise SettingsError(f"{said} Use words parted by '/', as in 'a/b'.")
+        if len(name.encode()) > MAX_NAME:
+            said = f"[bus] {field} = {name[:40]!r}... has {len(name.encode())} bytes"
+            raise SettingsError(f"{said}, at most {MAX_NAME} can be part of a key.")
+
+
+def _check_places(settings: BusSettings) -> None:
+    for field, places in (
+        ("listen", [settings.listen]),
+        ("router", [settings.router]),
+        ("connect", settings.connect),
+    ):
+        for place in places:
+            if place or field == "connect":
+                endpoint.check(place, field)
 
 
 def _from_file(path: str) -> Any:
     import zenoh
 
-    if not Path(path).is_file():
-        raise SettingsError(f"{path}: there is no such Zenoh file. Correct [bus] file, or leave it out.")
+    if "\0" in path or not os.path.isfile(path):
+        raise SettingsError(
+            f"{path[:200]!r}: there is no such Zenoh file. Correct [bus] file, or leave it out."
+        )
     try:
         return zenoh.Config.from_file(path)
     except zenoh.ZError as failure:
-        said = " ".join(str(failure).split(" at /")[0].split())
-        raise SettingsError(f"{path}: not a Zenoh file: {said}") from None
+        raise SettingsError(f"{path}: not a Zenoh file: {_said(failure)}") from None
+    except BaseException as failure:  # Zenoh is Rust: some files make it panic, which is no Exception here
+        if isinstance(failure, (KeyboardInterrupt, SystemExit)):
+            raise
+        raise SettingsError(f"{path}: not a Zenoh file: {_said(failure)}") from None
+
+
+def _said(failure: BaseException) -> str:
+    """What Zenoh says, in one line and without the places in its sources."""
+    return " ".join(str(failure).split(" at /")[0].split())[:300]

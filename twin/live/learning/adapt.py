@@ -20,6 +20,7 @@ from math import isfinite, sqrt
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from twin import whole
 from twin.live.learning.evidence import Three
 from twin.live.learning.named import Named
 from twin.live.learning.proof import Proof
@@ -267,7 +268,7 @@ class Adaptation:
     def restore(self, path: str | Path, mark: str) -> None:
         """Read the numbers back, clamped; what cannot be used is left out, and `notes` says why."""
         try:
-            table = json.loads(Path(path).read_bytes()[:1_000_000])
+            table = json.loads(whole.read(path, 1_000_000))
             if table["mark"] != mark:
                 self.notes.append(f"{path}: learned for another ship or network, left out")
                 return

@@ -2,9 +2,13 @@
 to prove it is whole.
 
 The format is described in docs/residual.md; `export` writes it, `residual.py` believes nothing that it has
-not checked.
+not checked. Its own hash is of its content and not of its bytes, so that it may be written out in another
+way:
+
+    manifest_sha256 = SHA-256 of the table without that entry, as JSON with sorted keys and no spaces
 """
 
+import hashlib
 import json
 from dataclasses import dataclass
 from math import isfinite
@@ -17,6 +21,7 @@ from twin.physics.zeta import ZETA
 SCHEMA_VERSION = 1
 MAX_BYTES = 2_000_000
 MAX_FEATURES = 256
+OWN_HASH = "manifest_sha256"
 
 
 class ManifestError(SettingsError):
@@ -53,6 +58,32 @@ class Manifest:
     whitening: tuple[tuple[float, ...], tuple[tuple[float, ...], ...]] | None
     spectral_norms: tuple[float, ...]
     training: dict[str, Any]
+    hashed: bool  # its own hash was there and fits; the first manifests had none
+
+
+def own_hash(table: dict[str, Any]) -> str:
+    """What `manifest_sha256` must be for this table."""
+    bare = {name: value for name, value in table.items() if name != OWN_HASH}
+    return hashlib.sha256(json.dumps(bare, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def hashed(table: dict[str, Any]) -> dict[str, Any]:
+    """The table with its own hash in it, ready to be written."""
+    return table | {OWN_HASH: own_hash(table)}
+
+
+def _whole(table: dict[str, Any]) -> bool:
+    """Whether its own hash fits; False where there is none."""
+    said = table.get(OWN_HASH)
+    if said is None:
+        return False
+    try:
+        fits = said == own_hash(table)
+    except RecursionError:
+        fits = False
+    if not fits:
+        raise ManifestError(f"its content is not what was written ({OWN_HASH} does not fit). Copy it again")
+    return True
 
 
 def parse(data: bytes) -> Manifest:
@@ -65,6 +96,7 @@ def parse(data: bytes) -> Manifest:
         raise ManifestError(f"not JSON ({error})") from None
     if not isinstance(table, dict) or table.get("schema_version") != SCHEMA_VERSION:
         raise ManifestError(f"schema_version is not {SCHEMA_VERSION}")
+    whole = _whole(table)
     features = _count(table, "features", MAX_FEATURES)
     inputs = tuple(_input(entry) for entry in _list(table, "inputs"))
     training = table.get("training")
@@ -84,6 +116,7 @@ def parse(data: bytes) -> Manifest:
         whitening=_whitening(table.get("whitening"), features),
         spectral_norms=_vector(table.get("spectral_norms", []), None, "spectral_norms"),
         training=training if isinstance(training, dict) else {},
+        hashed=whole,
     )
 
 

@@ -15,6 +15,7 @@ from math import inf, isfinite, sqrt
 from pathlib import Path
 from typing import NamedTuple
 
+from twin import whole
 from twin.errors import SettingsError
 from twin.live.learning import manifest as manifests
 from twin.live.learning.manifest import Manifest
@@ -115,15 +116,25 @@ class Residual:
             values.append((zeta - offset) / scale)
         return values, weight, why
 
+    @property
+    def note(self) -> str:
+        """What is to be said of it at the start, "" for nothing."""
+        old = (
+            "residual: its manifest has no hash of its own (made by an earlier version): a rotten number "
+            "in it is not noticed"
+        )
+        return "" if self.manifest.hashed else f"{old}. `twin train` writes one"
+
 
 def load(path: str | Path, ship: Ship) -> Residual:
     """The residual at `path` (its manifest beside it, `.json` for `.onnx`); ResidualError when it must not
     be used."""
     path = Path(path)
     try:
-        model, text = path.read_bytes(), path.with_suffix(".json").read_bytes()
-    except OSError as error:
-        raise ResidualError(f"{error.filename}: cannot be read ({error.strerror})") from None
+        model, text = whole.read(path, MAX_BYTES), whole.read(path.with_suffix(".json"), manifests.MAX_BYTES)
+    except (OSError, ValueError) as error:  # ValueError: a name that no other ending can be given
+        where, why = getattr(error, "filename", None) or path, getattr(error, "strerror", None) or error
+        raise ResidualError(f"{str(where)[:300]}: cannot be read ({why})") from None
     return check(model, text, ship, str(path))
 
 

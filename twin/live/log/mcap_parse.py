@@ -1,6 +1,8 @@
 """The MCAP format taken apart, believing nothing a file claims before it is bounded.
 
-A length never exceeds what is left of the file, and a chunk never unpacks to more than MAX_CHUNK.
+A length never exceeds what is left of the file, and neither a record nor an unpacked chunk more than the
+reader
+allows: MAX_BYTES ashore, far less on board (`recover.py`).
 """
 
 from collections.abc import Iterator
@@ -13,11 +15,16 @@ from zlib import crc32
 from twin.errors import DataError
 from twin.live.log.mcap_index import DATA_END, HEAD, MAGIC
 
-MAX_CHUNK = MAX_RECORD = 256 * 1024 * 1024  # bytes, unpacked and packed
+MAX_BYTES = 64 * 1024 * 1024  # of a record, and of a chunk unpacked; recorders write chunks of 1 to 4 MB
+LEAST_WINDOW = 1 << 20  # bytes that a decompressor may always hold
 
 
 class Broken(DataError):
     """A place in a file that cannot be read."""
+
+
+class TooLarge(Broken):
+    """A record or chunk that may be whole and is larger than this reader takes."""
 
 
 def open_log(path: Path) -> IO[bytes]:
@@ -40,8 +47,9 @@ def open_log(path: Path) -> IO[bytes]:
     return stream
 
 
-def records(stream: IO[bytes]) -> Iterator[tuple[int, int, bytes]]:
-    """(opcode, offset, content) of each top-level record from here on; Broken where the file breaks off."""
+def records(stream: IO[bytes], most: int = MAX_BYTES) -> Iterator[tuple[int, int, bytes]]:
+    """(opcode, offset, content) of each top-level record from here on; Broken where the file breaks off,
+    TooLarge at a record of more than `most` bytes."""
     here = stream.tell()
     size = stream.seek(0, SEEK_END)
     stream.seek(here)
@@ -50,38 +58,44 @@ def records(stream: IO[bytes]) -> Iterator[tuple[int, int, bytes]]:
         if len(head) < 9:
             raise Broken(f"it breaks off at byte {here}")
         opcode, length = HEAD.unpack(head)
-        if length > min(size - here - 9, MAX_RECORD):
+        if length > size - here - 9:
             raise Broken(
                 f"it breaks off at byte {here}: a record of {length} bytes, {size - here - 9} are left"
             )
+        if length > most:
+            raise TooLarge(f"the record at byte {here} has {length} bytes, at most {most} are taken")
         if not 1 <= opcode <= DATA_END:
             raise Broken(f"no MCAP record begins at byte {here} (opcode {opcode})")
         yield opcode, here, stream.read(length)
         here += 9 + length
 
 
-def unpacked(content: bytes) -> bytes:
-    """The records inside a chunk; Broken when it does not unpack to what it says."""
+def unpacked(content: bytes, most: int = MAX_BYTES) -> bytes:
+    """The records inside a chunk; Broken when it does not unpack to what it says, TooLarge when that is more
+    than `most` bytes."""
     size, checksum = unpack_from("<QI", content, 16)
     compression, at = string(content, 28)
     length = unpack_from("<Q", content, at)[0]
     data = content[at + 8 :]
-    if length != len(data) or size > MAX_CHUNK:
+    if length != len(data):
         raise Broken(f"it claims {length} bytes packed and {size} unpacked")
-    raw = _decompress(compression, data, size)
+    if size > most:
+        raise TooLarge(f"it unpacks to {size} bytes, at most {most} are taken")
+    raw = _decompress(compression, data, size, most)
     if len(raw) != size or (checksum and crc32(raw) != checksum):
         raise Broken("its checksum does not fit")
     return raw
 
 
-def _decompress(compression: str, data: bytes, size: int) -> bytes:
+def _decompress(compression: str, data: bytes, size: int, most: int) -> bytes:
     if not compression:
         return data
     try:
         if compression == "zstd":
             import zstandard
 
-            with zstandard.ZstdDecompressor().stream_reader(data) as reader:
+            window = max(1 << (most - 1).bit_length(), LEAST_WINDOW)
+            with zstandard.ZstdDecompressor(max_window_size=window).stream_reader(data) as reader:
                 return reader.read(size + 1) if size else b""
         if compression == "lz4":
             import lz4.frame

@@ -123,26 +123,21 @@ class McapReader:
         except (Broken, error, UnicodeDecodeError) as damage:
             self._damaged(f"the chunk at byte {offset} is damaged and left out ({damage})")
 
-    def _chunk(self, data: bytes) -> list[Message]:
-        """The messages among a chunk's records; schemas and channels are remembered."""
-        messages: list[Message] = []
-        at, size = 0, len(data)
-        while at < size:
-            opcode, length = HEAD.unpack_from(data, at)
-            at += 9
-            end = at + length
-            if end > size:
-                raise Broken(f"a record of {length} bytes, {size - at} are left")
+    def _chunk(self, data: bytes) -> Iterator[Message]:
+        """The messages among a chunk's records, once all of them have proved whole; one at a time, for a
+        chunk of a few kB may hold millions."""
+        for opcode, at, end in _parts(data):
             if opcode == MESSAGE:
-                channel, _, log_ns, publish_ns = _MESSAGE.unpack_from(data, at)
-                if channel not in self._channels:
+                channel = _MESSAGE.unpack_from(data, at)[0]
+                if end - at < _MESSAGE.size or channel not in self._channels:
                     raise Broken(f"a message of channel {channel}, which nothing describes")
-                topic, name = self._channels[channel]
-                messages.append(Message(topic, name, data[at + 22 : end], log_ns, publish_ns))
             elif opcode in (SCHEMA, CHANNEL):
                 self._describe(opcode, data[at:end])
-            at = end
-        return messages
+        for opcode, at, end in _parts(data):
+            if opcode == MESSAGE:
+                channel, _, log_ns, publish_ns = _MESSAGE.unpack_from(data, at)
+                topic, name = self._channels[channel]
+                yield Message(topic, name, data[at + _MESSAGE.size : end], log_ns, publish_ns)
 
     def _describe(self, opcode: int, content: bytes) -> None:
         if opcode == SCHEMA:
@@ -153,3 +148,15 @@ class McapReader:
         else:
             channel, schema = unpack_from("<HH", content)
             self._channels[channel] = (string(content, 4)[0], self._schema_names.get(schema, ""))
+
+
+def _parts(data: bytes) -> Iterator[tuple[int, int, int]]:
+    """(opcode, begin, end) of each record inside a chunk; Broken when they do not fill it."""
+    at, size = 0, len(data)
+    while at < size:
+        opcode, length = HEAD.unpack_from(data, at)
+        at += HEAD.size
+        if at + length > size:
+            raise Broken(f"a record of {length} bytes, {size - at} are left")
+        yield opcode, at, at + length
+        at += length

@@ -73,6 +73,11 @@ class McapWriter:
         """Messages of the chunk in progress."""
         return self._chunk.messages
 
+    @property
+    def channels(self) -> int:
+        """Topics met so far."""
+        return len(self._channel_ids)
+
     def start(self) -> None:
         """Writes what every MCAP file begins with."""
         self._emit(MAGIC + record(HEADER, text(""), text(LIBRARY)))

@@ -16,6 +16,7 @@ from typing import NamedTuple
 
 from twin.live.log.logfile import LogFile, read, read_rows
 from twin.live.log.mcap_write import zstd
+from twin.live.log.quota import Quota, trim
 from twin.live.log.recover import recover_folder
 from twin.live.log.segment import Segment
 
@@ -24,8 +25,12 @@ __all__ = ["LogFile", "LogState", "Recorder", "read", "read_rows"]
 PERIOD_S = 0.25  # between two writes: half of what may be lost
 RETRY_S = 1.0  # between two tries on a disk that fails
 NOTICE_S = 10.0  # how long a loss that is over is still said
+TRIM_S = 10.0  # between two looks at what the folder takes
+TRIMMED_S = 60.0  # how long it is said that old files were deleted
+NO_LIMITS = Quota()
 FULL = 256  # messages that wait no longer: a flood must not pile up in memory
 QUEUE = 4096  # messages the loop may be ahead of the disk (4 s at 50 Hz with 20 sensors); the oldest go first
+MAX_CHANNELS = 4096  # topics in one file: the format ends at 65 535, and each waits in memory for the index
 Item = tuple[str, str, bytes, int, int]  # topic, type name, payload, log and publish time [ns since 1970]
 
 
@@ -50,9 +55,11 @@ class Recorder:
         max_bytes: int = 256 * 1024 * 1024,
         max_seconds: float = 900.0,
         sync: Callable[[int], None] = os.fdatasync,
+        quota: Quota = NO_LIMITS,
     ):
         self.folder, self.name = Path(folder), name
         self.max_bytes, self.max_seconds = max_bytes, max_seconds
+        self.quota, self._trim_at = quota, 0.0
         self.repaired: list[str] = []
         self._sync = sync
         self._compress = zstd()
@@ -104,9 +111,9 @@ class Recorder:
             self._thread.join(timeout_s)
         return self.state
 
-    def _say(self, notice: str) -> None:
+    def _say(self, notice: str, seconds: float = NOTICE_S) -> None:
         """Something went wrong and the log goes on: said for a while."""
-        self._notice, self._notice_until = notice, time.monotonic() + NOTICE_S
+        self._notice, self._notice_until = notice, time.monotonic() + seconds
 
     def _run(self) -> None:
         while not self._closing:
@@ -134,10 +141,23 @@ class Recorder:
         self._lost = self._taken - self._written
 
     def _write(self, batch: list[Item], now_s: float) -> None:
+        self._make_room(now_s)
         segment = self._current(now_s)
         for item in batch:
+            if segment.channels >= MAX_CHANNELS:
+                segment.sync()
+                segment = self._current(now_s)
             segment.add(*item)
         segment.sync()
+
+    def _make_room(self, now_s: float) -> None:
+        """Deletes the oldest files when the folder takes more than it may; OSError when the disk is too full
+        even then."""
+        if self.quota == NO_LIMITS or now_s < self._trim_at or not self.folder.is_dir():
+            return
+        if said := trim(self.folder, self.name, self.quota, self._segment.path if self._segment else None):
+            self._say(said, TRIMMED_S)
+        self._trim_at = now_s + TRIM_S
 
     def _current(self, now_s: float) -> Segment:
         """The file to write to: the one in use, or the next when that is old, full or deleted."""
@@ -145,7 +165,11 @@ class Recorder:
         if segment and segment.deleted():
             self._close_segment(finish=False)
             self._say(f"log: a file in {self.folder} was deleted while being written, a new one is begun")
-        elif segment and (segment.size >= self.max_bytes or now_s - segment.opened_s >= self.max_seconds):
+        elif segment and (
+            segment.size >= self.max_bytes
+            or segment.channels >= MAX_CHANNELS
+            or now_s - segment.opened_s >= self.max_seconds
+        ):
             self._close_segment(finish=True)
         if self._segment is None:
             self._segment = Segment(self.folder, self.name, now_s, self._sync, self._compress)

@@ -1,8 +1,9 @@
 """A log that a crash left unfinished is finished: cut behind its last whole chunk, its index rebuilt.
 
 Runs on the log folder when the recorder starts. The good part is never touched, so a repair that is itself
-cut off is simply done again. A file that another process is writing is left alone (it holds a lock).
-"""
+cut off is simply done again. A file that another process is writing is left alone (it holds a lock), and so
+is one that no twin wrote: our chunks hold 64 kB, and what claims far more would fill the memory of the
+service that starts."""
 
 import fcntl
 import os
@@ -27,8 +28,11 @@ from twin.live.log.mcap_index import (
     text,
     text_map,
 )
-from twin.live.log.mcap_parse import Broken, ends_well, open_log, records, string, unpacked
+from twin.live.log.mcap_parse import Broken, TooLarge, ends_well, open_log, records, string, unpacked
 from twin.physics.maths import total
+
+MAX_BYTES = 1 << 20  # of a record, and of a chunk unpacked: sixteen times what the recorder writes
+MAX_CHUNKS = 500_000  # in one file: more than a day's
 
 
 class Scan(NamedTuple):
@@ -69,6 +73,8 @@ def _recover(path: Path, stream: IO[bytes]) -> str:
     size = stream.seek(0, os.SEEK_END)
     try:
         found = scan(path)
+    except TooLarge as failure:
+        return f"{path.name}: unfinished and left as it is, no log of the twin's: {failure}"
     except DataError:
         return _set_aside(path, size)
     kept, lost = total(found.summary.counts.values()), size - found.cut
@@ -77,12 +83,12 @@ def _recover(path: Path, stream: IO[bytes]) -> str:
 
 
 def scan(path: Path) -> Scan:
-    """Walks a file chunk by chunk as far as it is good."""
+    """Walks a file chunk by chunk as far as it is good; TooLarge when it was not written by a twin."""
     summary, ended = Summary(), False
     with open_log(path) as stream:
         cut = stream.tell()
         try:
-            for opcode, offset, content in records(stream):
+            for opcode, offset, content in records(stream, MAX_BYTES):
                 if opcode == DATA_END:
                     ended = True
                     break
@@ -99,6 +105,10 @@ def scan(path: Path) -> Scan:
                     if stream.read(len(missing)) != missing:
                         return Scan(cut, missing, summary)
                     stream.seek(here)
+                if summary.chunks > MAX_CHUNKS:
+                    raise TooLarge(f"more than {MAX_CHUNKS} chunks")
+        except TooLarge:
+            raise
         except (Broken, error, UnicodeDecodeError):
             pass
     if cut == 8:
@@ -108,7 +118,7 @@ def scan(path: Path) -> Scan:
 
 def _chunk(summary: Summary, offset: int, content: bytes) -> bytes:
     """Adds a verified chunk to the summary; returns the index records that belong behind it."""
-    raw = unpacked(content)
+    raw = unpacked(content, MAX_BYTES)
     rows: dict[int, list[tuple[int, int]]] = {}
     at = 0
     while at < len(raw):

@@ -66,6 +66,11 @@ class Segment:
         """Messages that are whole in the file."""
         return total(self._writer.summary.counts.values())
 
+    @property
+    def channels(self) -> int:
+        """Topics met so far."""
+        return self._writer.channels
+
     def finish(self) -> None:
         self._writer.finish()
         self._sync(self._file.fd)

@@ -49,6 +49,25 @@ KEYS: tuple[Key, ...] = (
     Key("log.segment_mb", float, 256.0, "a new file after this size", "MB", 1.0, 4096.0),
     Key("log.segment_s", float, 900.0, "a new file after this time", "s", 10.0, 86400.0),
     Key(
+        "log.keep_days",
+        float,
+        0.0,
+        "finished files older than this are deleted, 0 for never",
+        "days",
+        0.0,
+        36500.0,
+    ),
+    Key(
+        "log.max_mb",
+        float,
+        20000.0,
+        "all files together, the oldest are deleted first, 0 for no limit",
+        "MB",
+        0.0,
+        1e8,
+    ),
+    Key("log.free_mb", float, 200.0, "what the log leaves free on the disk, 0 for nothing", "MB", 0.0, 1e7),
+    Key(
         "sensors.max_delay_s", float, 2.0, "a sample stamped longer ago than this is refused", "s", 0.1, 60.0
     ),
     Key("observer.gain", float, 0.0, "K, 0 for 12 U_0/L or what her certificate asks for", "1/s", 0.0, 20.0),
@@ -83,6 +102,9 @@ KEYS: tuple[Key, ...] = (
     ),
     Key("state.folder", str, "", 'where learned numbers are kept between starts, "" for nowhere'),
 )
+MAX_BYTES = 1_000_000  # of a settings file
+MAX_TEXT = 4096  # characters of a text
+MAX_LIST = 64  # entries of a list
 BY_KEY = {key.name: key for key in KEYS}
 SOURCES = "sources"  # [sources] channel = "source id": who may speak for a channel
 
@@ -116,8 +138,9 @@ def load(path: str | Path | None) -> Settings:
     text = _text(Path(path))
     try:
         table = tomllib.loads(text)
-    except tomllib.TOMLDecodeError as error:
-        raise SettingsError(f"{path}: not valid TOML: {error}. Correct that line.") from None
+    # also a number of thousands of digits, or a thousand brackets
+    except (ValueError, RecursionError) as error:
+        raise SettingsError(f"{path}: not valid TOML: {_line(error)}. Correct that line.") from None
     return _settings(table, Lines(str(path), text))
 
 
@@ -163,11 +186,15 @@ class Lines:
 
 def _text(path: Path) -> str:
     try:
-        data = path.read_bytes()
-    except OSError as error:
+        with open(path, "rb") as file:
+            data = file.read(MAX_BYTES + 1)
+    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte in it
+        why = getattr(error, "strerror", None) or error
         raise SettingsError(
-            f"{path}: cannot be read ({error.strerror}). Check the path and its permissions."
+            f"{str(path)!r}: cannot be read ({why}). Check the path and its permissions."
         ) from None
+    if len(data) > MAX_BYTES:
+        raise SettingsError(f"{path}: more than {MAX_BYTES} bytes cannot be settings. Check the path.")
     if data.startswith((b"\xef\xbb\xbf", b"\xff\xfe", b"\xfe\xff")):
         raise SettingsError(f"{path}: begins with a byte-order mark. Save it as plain UTF-8 without BOM.")
     try:
@@ -189,7 +216,8 @@ def _settings(table: dict[str, Any], lines: Lines) -> Settings:
     for section, entries in table.items():
         if section not in sections or not isinstance(entries, dict):
             raise SettingsError(
-                f"{lines.say(section)}: no section is called [{section}].{did_you_mean(section, sections)}"
+                f"{lines.say(section)}: no section is called "
+                f"[{_short(section)}].{did_you_mean(section[:60], sections)}"
             )
         if section == SOURCES:
             continue
@@ -199,7 +227,7 @@ def _settings(table: dict[str, Any], lines: Lines) -> Settings:
                 known = [k.partition(".")[2] for k in BY_KEY if k.startswith(f"{section}.")]
                 raise SettingsError(
                     f"{lines.say(f'{section}.{name}')}: [{section}] has no key "
-                    f"{name!r}.{did_you_mean(name, known)}"
+                    f"{_short(name)}.{did_you_mean(name[:60], known)}"
                 )
             values[key.name] = _value(key, value, lines)
     return Settings(values, _sources(table.get(SOURCES, {}), lines), lines.path)
@@ -209,9 +237,10 @@ def _value(key: Key, value: Any, lines: Lines) -> Any:
     """The value in its kind and range."""
     where = f"{lines.say(key.name)}: {key.name}"
     if key.kind is list:
-        if not isinstance(value, list):
+        if not isinstance(value, list) or len(value) > MAX_LIST:
+            like = _toml(key.default or ["tcp/10.0.0.2:7447"])
             raise SettingsError(
-                f"{where} = {value!r}: a list is needed, as in {_toml(key.default or ['tcp/10.0.0.2:7447'])}."
+                f"{where} = {_short(value)}: a list of at most {MAX_LIST} is needed, as in {like}."
             )
         number = bool(key.default) and isinstance(key.default[0], float)
         values = [_number(key, v, where) if number else _word(v, where) for v in value]
@@ -220,7 +249,7 @@ def _value(key: Key, value: Any, lines: Lines) -> Any:
         return values
     if key.kind is bool:
         if not isinstance(value, bool):
-            raise SettingsError(f"{where} = {value!r}: true or false is needed.")
+            raise SettingsError(f"{where} = {_short(value)}: true or false is needed.")
         return value
     return _word(value, where) if key.kind is str else _number(key, value, where)
 
@@ -229,13 +258,13 @@ def _number(key: Key, value: Any, where: str) -> Any:
     unit = f" in {key.unit}" if key.unit else ""
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise SettingsError(
-            f"{where} = {value!r}: a plain number{unit} is needed, as in {_toml(key.default)}."
+            f"{where} = {_short(value)}: a plain number{unit} is needed, as in {_toml(key.default)}."
         )
     if key.kind is int and not isinstance(value, int):
-        raise SettingsError(f"{where} = {value!r}: a whole number is needed.")
+        raise SettingsError(f"{where} = {_short(value)}: a whole number is needed.")
     if not key.low <= value <= key.high:
         raise SettingsError(
-            f"{where} = {value:g}{f' {key.unit}' if key.unit else ''} lies outside "
+            f"{where} = {_short(value)}{f' {key.unit}' if key.unit else ''} lies outside "
             f"{key.low:g} to {key.high:g} ({key.doc})."
         )
     return value if key.kind is int else float(value)
@@ -243,15 +272,35 @@ def _number(key: Key, value: Any, where: str) -> Any:
 
 def _word(value: Any, where: str) -> str:
     if not isinstance(value, str):
-        raise SettingsError(f'{where} = {value!r}: a text in quotes is needed, as in "...".')
+        raise SettingsError(f'{where} = {_short(value)}: a text in quotes is needed, as in "...".')
+    if len(value) > MAX_TEXT or not value.isprintable():
+        raise SettingsError(
+            f"{where} = {_short(value)}: a text of one line, with at most {MAX_TEXT} characters, is needed."
+        )
     return value
 
 
+def _short(value: Any) -> str:
+    """A value as it can stand in a message: one line, not longer than a few words."""
+    if isinstance(value, int) and not isinstance(value, bool) and abs(value) >= 10**18:
+        return f"a whole number of about {round(value.bit_length() * 0.30103)} digits"
+    said = f"{value:g}" if isinstance(value, float) else repr(value)
+    return said if len(said) <= 60 else f"{said[:56]} ..."
+
+
+def _line(error: BaseException) -> str:
+    return " ".join(str(error).split())[:200]
+
+
 def _sources(table: dict[str, Any], lines: Lines) -> dict[str, str]:
+    if not isinstance(table, dict):
+        raise SettingsError(f"{lines.path}: [{SOURCES}] must be a table of channels.")
     for channel, source in table.items():
         where = lines.say(f"{SOURCES}.{channel}")
         if channel not in BY_NAME:
-            raise SettingsError(f"{where}: no channel is called {channel!r}.{did_you_mean(channel, BY_NAME)}")
+            raise SettingsError(
+                f"{where}: no channel is called {_short(channel)}.{did_you_mean(channel[:60], BY_NAME)}"
+            )
         _word(source, f"{where}: {channel}")
     return dict(table)
 

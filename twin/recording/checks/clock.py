@@ -4,8 +4,8 @@ import numpy as np
 
 from twin.recording.checks.answer import Check, doubtful, good, wrong
 from twin.recording.checks.view import View
+from twin.recording.unknown_controls import CONTROLS, gaps
 from twin.recording.voyage import Voyage
-from twin.study.track.unknown_controls import CONTROLS, gaps
 
 FEW = 0.01  # share of repeated stamps that a logger's hiccup explains
 UNEVEN = 0.35  # scatter of the steps, in usual steps

@@ -14,9 +14,9 @@ from scipy.linalg import solveh_banded
 from twin.errors import DataError
 from twin.physics.ship import Ship
 from twin.physics.state import WEATHER, Situation
+from twin.recording.holes import HOLE_S, inside, lined, longest, pieces, slopes
+from twin.recording.unknown_controls import CONTROLS, known
 from twin.recording.voyage import Voyage
-from twin.study.track.holes import HOLE_S, inside, lined, longest, pieces, slopes
-from twin.study.track.unknown_controls import CONTROLS, known
 
 MEASURED = {  # reading -> channel
     "x": "north_m",

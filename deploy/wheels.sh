@@ -1,0 +1,18 @@
+#!/bin/sh
+# A folder with everything install.sh needs, for a ship without a network:
+#   deploy/wheels.sh FOLDER             with a network, on a machine of the same kind as the ship's (or PLATFORM=manylinux_2_28_aarch64)
+#   sudo deploy/install.sh --wheels FOLDER          on the ship
+set -eu
+here="$(cd "$(dirname "$0")" && pwd)"
+folder="${1:?usage: wheels.sh FOLDER}"
+python="${PYTHON:-python3}"
+lock="${LOCK:-$here/requirements.lock}"
+mkdir -p "$folder"
+[ -z "$(ls -A "$folder")" ] || { echo "$folder is not empty" >&2; exit 1; }
+if [ -n "${PLATFORM:-}" ]; then other="--platform $PLATFORM --only-binary=:all:"; else other=""; fi
+# shellcheck disable=SC2086 (words)
+"$python" -m pip download --quiet --disable-pip-version-check --require-hashes $other --dest "$folder" --requirement "$lock"
+"$python" -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$folder" "${SOURCE:-$(dirname "$here")}"
+cp "$lock" "$folder/requirements.lock"
+(cd "$folder" && find . -type f ! -name SHA256SUMS | sort | xargs -d '\n' sha256sum > SHA256SUMS)
+echo "$(find "$folder" -name '*.whl' | wc -l) wheels in $folder. On the ship: sudo deploy/install.sh --wheels FOLDER"
