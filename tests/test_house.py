@@ -56,6 +56,7 @@ ORDER = (
     "twin.study.first_model",
     "twin.study",
     "twin.report",
+    "twin.api",
     "twin.commands",
 )
 ONLY_IN_EXPORT = {"torch"}

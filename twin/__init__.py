@@ -1,1 +1,49 @@
-"""A digital twin of a ship's motion that runs on board in real time and that its owner can correct."""
+"""A digital twin of a ship's motion that runs on board in real time and that its owner can correct.
+
+    ship = twin.Ship.load("alma.toml")
+    calm = twin.read_voyages("calm/*.mcap")
+    fit = twin.calibrate(ship, calm)
+    june = twin.read_voyage("june.csv", map="map.toml")
+    found = twin.diagnose(fit.ship, june)
+
+One order of arguments everywhere: ship, voyages, then keywords. Names load when they are first used, so that
+`import twin` costs nothing and the loop on board stays light.
+"""
+
+import importlib
+from typing import Any
+
+__version__ = "0.2.0"
+
+PUBLIC = {  # name -> the module that holds it
+    "Calibration": "twin.api.calibration",
+    "Comparison": "twin.api.comparison",
+    "Diagnosis": "twin.api.diagnosis",
+    "Ship": "twin.physics.particulars",
+    "Simulation": "twin.api.simulation",
+    "Update": "twin.api.update",
+    "Voyage": "twin.recording.voyage",
+    "add": "twin.api.update",
+    "calibrate": "twin.api.calibration",
+    "catalogue": "twin.physics.effects",
+    "compare": "twin.api.comparison",
+    "diagnose": "twin.api.diagnosis",
+    "read_voyage": "twin.api.voyages",
+    "read_voyages": "twin.api.voyages",
+    "remove": "twin.api.update",
+    "simulate": "twin.api.simulation",
+}
+__all__ = ["__version__", *PUBLIC]
+
+
+def __getattr__(name: str) -> Any:
+    """A public name, from its module, once."""
+    if name not in PUBLIC:
+        raise AttributeError(f"module 'twin' has no attribute {name!r}. It has: {', '.join(sorted(PUBLIC))}.")
+    value = getattr(importlib.import_module(PUBLIC[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *PUBLIC])

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
-from twin import whole
+from twin import __version__, whole
 from twin.errors import DataError, TwinError
 
 
@@ -108,6 +108,7 @@ def _verb(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(
         prog="twin", description="A digital twin of a ship's motion that its owner can correct."
     )
+    parser.add_argument("--version", action="version", version=f"shiptwin {__version__}")
     verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
     for name, verb in VERBS.items():
         sub = verbs.add_parser(

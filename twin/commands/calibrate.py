@@ -5,12 +5,10 @@ import argparse
 import sys
 
 from twin import whole
+from twin.api.calibration import of_sailed
 from twin.physics.ship import load, save
-from twin.recording.checks import of_voyages
 from twin.recording.import_voyage import write_json
-from twin.study.calibration.calibrate import calibrate, told
-from twin.study.calibration.doubts import doubts
-from twin.study.calibration.held_out import LAST, split
+from twin.study.calibration.calibrate import told
 from twin.study.reference.sailed import read_all
 
 EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weather or with the wind recorded:
@@ -51,20 +49,9 @@ def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
     every = read_all(args.voyages, ship)
     kept = read_all(args.held_out, ship)
-    fitted, held_out, words = split(every, kept)
-
-    def tell(text: str) -> None:
-        print(f"{text} ...", file=sys.stderr)
-
-    done = calibrate(fitted, held_out, ship, tell)
-    if words == LAST:
-        tell("once more, with every voyage")
-        done = calibrate(every, held_out, ship, tell, done.result["fitted_by"]).with_errors_of(done)
+    done = of_sailed(ship, every, kept, lambda text: print(f"{text} ...", file=sys.stderr))
     save(done.ship, args.output)
-    r = done.result
-    found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
-    checks = of_voyages([s.voyage for s in (*every, *kept)], ship)
-    result = r | {"held_out_is": words, "output": str(args.output), "doubts": found, "data_checks": checks}
+    result = done.to_dict() | {"output": str(args.output)}
     if args.json:
         write_json(result, args.json)
     page = sys.stderr if args.json == "-" else sys.stdout

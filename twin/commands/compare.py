@@ -2,15 +2,12 @@
 
 import argparse
 import sys
-from collections.abc import Callable
-from dataclasses import replace
 from typing import Any
 
+from twin.api.comparison import Comparison, of_sailed
 from twin.errors import ThresholdError
-from twin.physics.model import Model
-from twin.physics.ship import Ship, load
+from twin.physics.ship import load
 from twin.recording.import_voyage import write_json
-from twin.study.prediction.compare import Compared, compare
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.prediction.tell import told
 from twin.study.prediction.thresholds import passed, positive, threshold
@@ -60,13 +57,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
-    model = Model.of(ship)
-    if args.residual:
-        model = replace(model, residual=_learned(args.residual, ship))
     sailed = read_all(args.voyages, ship)
     print("predicting ...", file=sys.stderr)
-    found = compare(sailed, model, sorted(set(args.horizon or HORIZONS_S)))
-    result = found.result | {
+    found = of_sailed(ship, sailed, args.horizon or HORIZONS_S, args.residual)
+    result = found.to_dict() | {
         "command": f"twin compare {' '.join(args.voyages)} --ship {args.ship}",
         "files": {"ship": args.ship, "voyages": args.voyages},
     }
@@ -75,7 +69,7 @@ def run(args: argparse.Namespace) -> int:
     page = sys.stderr if args.json == "-" else sys.stdout
     print("\n".join(told(result)), file=page)
     if args.report:
-        _report(args.report, found, model, result)
+        _report(args.report, found, result)
         print(f"\nwrote {args.report}", file=page)
     print(f"\nnext: {_next(args, result)}", file=page)
     if unmet := passed(result, args.fail_above):
@@ -83,23 +77,12 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _learned(path: str, ship: Ship) -> Callable:
-    from twin.study.estimation.learned import learned_force
-
-    return learned_force(path, ship)
-
-
-def _report(path: str, found: Compared, model: Model, result: dict[str, Any]) -> None:
+def _report(path: str, found: Comparison, result: dict[str, Any]) -> None:
     from twin import report
 
-    report.write(
-        path,
-        "compare",
-        result,
-        [s.track for s in found.sailed],
-        model,
-        voyages=[s.voyage for s in found.sailed],
-    )
+    compared = found.found.sailed
+    tracks, voyages = [s.track for s in compared], [s.voyage for s in compared]
+    report.write(path, "compare", result, tracks, found.model, voyages=voyages)
 
 
 def _next(args: argparse.Namespace, result: dict[str, Any]) -> str:

@@ -4,6 +4,7 @@
 Each number is declared once: unit, the range outside which it is a mistake, meaning, and the width of its
 prior."""
 
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
@@ -110,6 +111,23 @@ class Ship:
     effects: tuple[Effect, ...] = field(default=(), kw_only=True)
     # sources, sd, structural, history ...
     notes: Mapping[str, Any] = field(default_factory=dict, kw_only=True, compare=False)
+
+    @staticmethod
+    def load(path: str | os.PathLike[str]) -> "Ship":
+        """The ship of a file, or a bundled one by its bare name; SettingsError says what is wrong."""
+        from .ship import load
+
+        return load(path)
+
+    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+        """Write the ship file, whole or not at all; SettingsError when it would write over a file and `force`
+        is not set."""
+        from twin import whole
+
+        from .ship import save
+
+        whole.not_over(str(path), [str(path)], force)
+        save(self, path)
 
     @cached_property
     def c(self) -> Coefficients:

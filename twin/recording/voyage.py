@@ -5,7 +5,7 @@ A missing sample is NaN and stays NaN: nothing here invents a measurement.
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -15,10 +15,13 @@ from twin.recording.holes import HOLE_S, sailed_s, steps_on
 from twin.recording.resample import continuous, resampled, wrapped
 
 MOST_STEPS = 3e6  # of a grid
+if TYPE_CHECKING:
+    import pandas
+
 SLOW_S = 60.0  # a channel that may be this old is a state of the sea or of the loading: its ends are held
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Voyage:
     """Samples at `time_s` (N,) [s, increasing]; `columns`: (N,) float64 in the unit of the channel's name.
 
@@ -39,6 +42,39 @@ class Voyage:
                 raise DataError(
                     f"{self.name}: {name} has {values.size} samples, time_s has {self.time_s.size}."
                 )
+
+    @classmethod
+    def from_dataframe(cls, df: "pandas.DataFrame", name: str = "dataframe") -> "Voyage":
+        """A voyage of a table whose columns are channels by name (`time_s` among them, or as its index).
+
+        The same reading as of a file: what is absent is derived or said to be absent, what cannot be is
+        blanked. DataError names a column that is no channel, and the nearest.
+        """
+        import tempfile
+        from pathlib import Path
+
+        from twin.recording.read import read_voyage
+
+        table = df if "time_s" in df.columns else df.rename_axis("time_s").reset_index()
+        for column in table.columns:
+            if column not in ("time_s", "time_utc"):
+                channel(str(column))
+        with tempfile.TemporaryDirectory() as folder:
+            path = Path(folder) / f"{name}.csv"
+            table.to_csv(path, index=False, float_format="%.17g")
+            made = read_voyage(path)
+        return replace(made, meta={**made.meta, "source": name})
+
+    def to_dataframe(self) -> "pandas.DataFrame":
+        """Its samples as a table: the index is `time_s` [s], a column a channel in the unit of its name."""
+        import pandas
+
+        index = pandas.Index(self.time_s, name="time_s")
+        return pandas.DataFrame({name: self.columns[name] for name in self.columns}, index=index)
+
+    def __repr__(self) -> str:
+        there = sum(self.has(name) for name in self.columns)
+        return f"<Voyage {self.name!r}: {self.duration_s:.0f} s, {len(self)} samples of {there} channels>"
 
     def __len__(self) -> int:
         return int(self.time_s.size)

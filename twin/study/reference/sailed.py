@@ -33,17 +33,25 @@ class Sailed:
         )
 
 
+def sailed(voyage: Voyage, ship: Ship, sha256: str = "") -> Sailed:
+    """A voyage on the ship's grid; `sha256`: of its file, else of its samples."""
+    return Sailed(voyage, swung(track(voyage, ship), Model.of(ship)), sha256 or _of_samples(voyage))
+
+
+def _of_samples(voyage: Voyage) -> str:
+    known = hashlib.sha256(voyage.time_s.tobytes())
+    for name in sorted(voyage.columns):
+        known.update(name.encode())
+        known.update(voyage.columns[name].tobytes())
+    return known.hexdigest()
+
+
 def read_all(paths: Sequence[str], ship: Ship) -> list[Sailed]:
     """Every voyage, ready; DataError names the file that cannot be used, or that was given twice."""
     out: list[Sailed] = []
     for path in paths:
         print(f"reading {path} ...", file=sys.stderr)
-        voyage = read_voyage(path)
-        made = Sailed(
-            voyage,
-            swung(track(voyage, ship), Model.of(ship)),
-            hashlib.sha256(Path(path).read_bytes()).hexdigest(),
-        )
+        made = sailed(read_voyage(path), ship, hashlib.sha256(Path(path).read_bytes()).hexdigest())
         twin = next((s for s in out if s.sha256 == made.sha256), None)
         if twin is not None:
             raise DataError(f"{path}: is the same voyage as {twin.track.name}. Give each voyage once.")

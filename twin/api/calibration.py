@@ -1,0 +1,82 @@
+"""`twin.calibrate`: the core of a ship's model fitted to voyages on which nothing was wrong."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from twin.api.result import Progress, Result, frame, metres, quietly
+from twin.api.voyages import several
+from twin.physics.particulars import Ship
+from twin.recording.checks import of_voyages
+from twin.recording.voyage import Voyage
+from twin.study.calibration.calibrate import calibrate as fit_core
+from twin.study.calibration.doubts import doubts
+from twin.study.calibration.held_out import LAST, split
+from twin.study.reference.sailed import Sailed, sailed
+
+if TYPE_CHECKING:
+    import pandas
+
+
+@dataclass(frozen=True, repr=False)
+class Calibration(Result):
+    """`ship`: calibrated. Its rows are the derivatives: before, after, standard error, whether excited."""
+
+    ship: Ship
+
+    @property
+    def errors(self) -> "pandas.DataFrame":
+        """Open-loop error on what was not used for the fit, one row a horizon: `position_m`, `heading_deg`,
+        and before the fit `before_m`, `before_deg`."""
+        return frame(self.data["held_out"])
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is doubtful about this calibration, in words an owner can act on."""
+        return list(self.data["doubts"])
+
+    def _rows(self) -> Any:
+        return self.data["derivatives"]
+
+    def __repr__(self) -> str:
+        last = self.data["held_out"][-1]
+        error = f"{metres(last['before_m'])} -> {metres(last['position_m'])} at {last['horizon_s']:g} s"
+        return f"<Calibration of {self.ship.name!r}: {error}, {len(self.warnings)} warnings>"
+
+    def page(self) -> str:
+        """The lines of the terminal as a page."""
+        from html import escape
+
+        from twin.study.calibration.calibrate import told
+
+        return f"<!doctype html><meta charset=utf-8><pre>{escape(chr(10).join(told(dict(self.data))))}</pre>"
+
+
+def calibrate(
+    ship: Ship,
+    voyages: Voyage | Iterable[Voyage],
+    *,
+    held_out: Voyage | Iterable[Voyage] = (),
+    progress: Progress | None = None,
+) -> Calibration:
+    """Fit the core to reference voyages (nothing wrong on them; calm, or with the wind recorded).
+
+    `held_out`: voyages on which the error is measured; without any the last third is held back for that, and
+    the ship that is returned is then fitted to all. `progress(text)` is told every step. DataError when a
+    voyage cannot be used. Seconds to minutes.
+    """
+    every = [sailed(v, ship) for v in several(voyages)]
+    return of_sailed(ship, every, [sailed(v, ship) for v in several(held_out)], quietly(progress))
+
+
+def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progress) -> Calibration:
+    """The same of voyages that are read already."""
+    fitted, held, words = split(every, kept)
+    done = fit_core(fitted, held, ship, tell)
+    if words == LAST:
+        tell("once more, with every voyage")
+        done = fit_core(every, held, ship, tell, done.result["fitted_by"]).with_errors_of(done)
+    r = done.result
+    found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
+    checks = of_voyages([s.voyage for s in (*every, *kept)], ship)
+    return Calibration(done.ship, data=r | {"held_out_is": words, "doubts": found, "data_checks": checks})

@@ -1,0 +1,89 @@
+"""`twin.diagnose`: which physical effect is missing, with size, interval and probability, or an honest answer
+that is none."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from twin.api.result import Progress, Result, quietly
+from twin.api.voyages import several
+from twin.physics.particulars import Ship
+from twin.recording.voyage import Voyage
+from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.diagnose import diagnose as judged
+from twin.study.diagnosis.tell_diagnosis import sentence
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+
+@dataclass(frozen=True, repr=False)
+class Diagnosis(Result):
+    """What is missing from the model. Its rows are the candidates, likeliest first."""
+
+    case: Case = field(repr=False)
+    voyages: tuple[Voyage, ...] = field(repr=False)
+
+    @property
+    def verdict(self) -> str:
+        """One of missing, nothing_missing, unknown, undecided."""
+        return str(self.data["verdict"])
+
+    @property
+    def reason(self) -> str:
+        """The sentence that goes with the verdict."""
+        return sentence(dict(self.data))
+
+    @property
+    def effects(self) -> list[str]:
+        """Names to add, lasting causes first; empty unless the verdict is `missing`."""
+        return list(self.data["missing"])
+
+    @property
+    def probabilities(self) -> dict[str, float]:
+        """Of every candidate that is shown, of nothing missing, and of something unknown."""
+        return {c["effect"]: c["probability"] for c in self.data["candidates"]} | dict(
+            self.data["probabilities"]
+        )
+
+    def _rows(self) -> Any:
+        return self.data["candidates"]
+
+    def __repr__(self) -> str:
+        named = f" {', '.join(self.effects)}" if self.effects else ""
+        return f"<Diagnosis of {self.data['ship']!r}: {self.verdict}{named}. {self.reason}>"
+
+    def plot(self) -> "matplotlib.axes.Axes":
+        """The candidates' probabilities, likeliest on top."""
+        from matplotlib import pyplot
+
+        _, axes = pyplot.subplots()
+        rows = list(self.data["candidates"])[::-1]
+        axes.barh([c["effect"] for c in rows], [c["probability"] for c in rows])
+        axes.set(xlabel="probability", xlim=(0.0, 1.0), title=f"{self.data['ship']}: {self.verdict}")
+        return axes
+
+    def page(self) -> str:
+        """The page of `twin diagnose --report`."""
+        from twin.report.page import content, html
+
+        result = self.to_dict() | {"verdict_text": self.reason}
+        tracks = list(self.case.tracks)
+        return html(content("diagnose", result, tracks, self.case.model, voyages=list(self.voyages)))
+
+
+def diagnose(
+    ship: Ship,
+    voyages: Voyage | Iterable[Voyage],
+    *,
+    reference: Voyage | Iterable[Voyage] = (),
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Judge all effects of the catalogue jointly on these voyages.
+
+    `reference`: voyages of the same ship on which nothing was wrong; they say how much an imperfect model
+    leaves unexplained, beside what the ship's calibration stored. DataError when a voyage cannot be used.
+    """
+    asked = several(voyages)
+    done = judged(asked, ship, several(reference), quietly(progress))
+    return Diagnosis(done.case, tuple(asked), data=done.result)

@@ -1,0 +1,40 @@
+"""Voyages from files."""
+
+import glob
+import os
+from collections.abc import Iterable
+from pathlib import Path
+
+from twin.errors import DataError
+from twin.recording.map_file import read_map
+from twin.recording.read import read_voyage as read
+from twin.recording.voyage import Voyage
+
+PathLike = str | os.PathLike[str]
+
+
+def read_voyage(path: PathLike, map: PathLike | None = None) -> Voyage:
+    """One voyage: an MCAP log, or a text file by the channels' names or by a `map` of its own columns.
+
+    DataError (a line that says what, where and what to do) when the file cannot be used; SettingsError when
+    the map is not valid. The format of a map: docs/import.md.
+    """
+    return read(Path(path), read_map(Path(map)) if map is not None else None)
+
+
+def read_voyages(paths: PathLike | Iterable[PathLike], map: PathLike | None = None) -> list[Voyage]:
+    """Several voyages: paths, or one pattern such as "calm/*.mcap", in the order of their names.
+
+    DataError when a pattern matches nothing or a file cannot be used.
+    """
+    if isinstance(paths, str | os.PathLike):
+        found = sorted(glob.glob(os.fspath(paths)))
+        if not found:
+            raise DataError(f"{os.fspath(paths)}: no file has such a name. Check the folder and the pattern.")
+        paths = found
+    return [read_voyage(path, map) for path in paths]
+
+
+def several(voyages: Voyage | Iterable[Voyage]) -> list[Voyage]:
+    """One voyage or many, as a list."""
+    return [voyages] if isinstance(voyages, Voyage) else list(voyages)
