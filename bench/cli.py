@@ -46,6 +46,11 @@ BENCHES: dict[str, Bench] = {
         "ten thousand runs against the certificate",
         "twin-bench stability --runs 1000",
     ),
+    "assumptions": Bench(
+        "bench.assumptions",
+        "is the promise kept where its assumptions are not?",
+        "twin-bench assumptions --seconds 300",
+    ),
     "hidden-effects": Bench(
         "bench.league.hidden_effects",
         "the hidden-effect league: is what is missing named?",

@@ -21,6 +21,7 @@ from twin.errors import ThresholdError
 from twin.live.certificate import certificate as cert
 from twin.live.certificate import comparison as c3
 from twin.live.certificate.certificate import Certificate, Confined
+from twin.live.certificate.tube import look_back
 from twin.live.learning.movable import Movable, movable, moved
 from twin.physics import core
 from twin.physics.effects import find
@@ -136,7 +137,7 @@ class Fleet:
         self.estimate = nu + self.noise * rng.uniform(-1, 1, (3, n))
         self.past = deque(maxlen=self.c.delay_samples + 1)
         self.tube = np.repeat(np.array(self.c.noise)[:, None], n, axis=1)
-        window = 2 * self.c.delay_samples + 1
+        window = look_back(self.c.delay_samples)
         self.before, self.after = deque([self.tube], maxlen=window), deque([self.tube], maxlen=window)
         self.alive = np.ones(n, bool)
         self.policy = rng.integers(0, 4, n)

@@ -31,6 +31,7 @@ CHANNELS = (
     "yaw_rate_degps",
     "rudder_angle_deg",
     "propeller_rate_rpm",
+    "wave_height_significant_m",
 )
 SPEEDS = [CHANNELS.index(name) for name in ("surge_velocity_mps", "sway_velocity_mps", "yaw_rate_degps")]
 
@@ -109,13 +110,13 @@ class Loops(Fleet):
             )
 
     def _instruments(self, k: int) -> np.ndarray:
-        """(8, runs) by channel, off by as much as the certificate allows; NaN where nothing comes."""
+        """(9, runs) by channel, off by as much as the certificate allows; NaN where nothing comes."""
         side = self._against(k)
         x, y, psi, *nu = np.where(self.late, self.halfway, self.truth)
         u, v, r = np.array(nu) + self.noise * side
         heading = np.degrees(psi + HEADING_NOISE * side[2]) % 360.0
         said = np.array(
-            [x, y, heading, u, v, np.degrees(r), np.degrees(self.rudder), 60.0 * self.inputs["n"]]
+            [x, y, heading, u, v, np.degrees(r), np.degrees(self.rudder), 60.0 * self.inputs["n"], 0.0 * u]
         )
         said[SPEEDS] = np.where(self.received, said[SPEEDS], np.nan)
         return said

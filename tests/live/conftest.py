@@ -47,6 +47,7 @@ class Sailing:
     seed: int = 1
     t: float = 0.0
     source: str = "ship"
+    H_s: float | None = None  # wave height that she reports [m], None: she has no wave sensor
     shaft: float = 0.0
     state: tuple[float, ...] = field(default=(), init=False)
 
@@ -85,6 +86,8 @@ class Sailing:
                     name, value % 360.0 if "north_deg" in name else value, WALL + now_s, now_s, self.source
                 )
             )
+        if self.H_s is not None:
+            said.append(Reading("wave_height_significant_m", self.H_s, WALL + now_s, now_s, self.source))
         return said
 
 
@@ -173,7 +176,7 @@ def make_service(on_file):
         chosen = Settings(
             {"ship.file": name, "observer.certificate": str(on_file / f"{name}.json")} | (settings or {})
         )
-        bridge = Bridge(load(name), Sailing(load(name), Model.of(load(name)), **sailing))
+        bridge = Bridge(load(name), Sailing(load(name), Model.of(load(name)), **{"H_s": 0.0} | sailing))
         bridge.loop = loop_of(chosen, bridge.ears, Outbox(Publisher(), "twin", "ship"), None)
         assert bridge.loop.stabilizer.tube and bridge.loop.stabilizer.tube.certificate.ok
         return bridge

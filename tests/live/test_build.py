@@ -1,10 +1,13 @@
 """From settings to a loop: where her certificate comes from, and what is said when there is none."""
 
+import hashlib
+import json
 from importlib import resources
 
 import pytest
 
 from twin.live.build import certificate_file, stabilizer_of
+from twin.live.certificate.certificate import Certificate
 from twin.live.signals.config import Settings
 from twin.physics.ship import load
 
@@ -59,4 +62,39 @@ def test_settings_name_the_certificates_file_before_the_cache_does(at_home):
     )
     assert (
         certificate_file(Settings({"ship.file": "x/alma.toml"}), "mark").name == "alma-mark.certificate.json"
+    )
+
+
+def test_a_certificate_whose_file_was_changed_is_worked_out_again(at_home):
+    """Test: K, the bound and a slope changed by hand, NaN put in, every change with and without a fresh
+    checksum. Expected: none is believed, and the file is written anew."""
+    settings, ship = (
+        Settings({"ship.file": "kvlcc2", "observer.certificate": str(at_home / "c.json")}),
+        load("kvlcc2"),
+    )
+    good = stabilizer_of(settings, ship, None).tube.certificate
+    text = (at_home / "c.json").read_text()
+    for change in (
+        {"K": [5.0] * 3},
+        {"bound": [0.0] * 3},
+        {"noise": [float("nan")] * 3},
+        {"ok": False},
+        {"margin": 1.0},
+        {"calm": [0.0] * 3},
+        {"delays": [0, 0, 0]},
+    ):
+        for signed in (False, True):
+            table = json.loads(text) | change
+            body = {k: x for k, x in table.items() if k not in ("version", "sha256")}
+            table["sha256"] = (
+                hashlib.sha256(json.dumps(body, sort_keys=True).encode()).hexdigest()
+                if signed
+                else table["sha256"]
+            )
+            with pytest.raises(ValueError):
+                Certificate.from_json(json.dumps(table))
+    (at_home / "c.json").write_text(text.replace('"margin": 0.7', '"margin": 0.9'))
+    assert (
+        stabilizer_of(settings, ship, None).tube.certificate == good
+        and (at_home / "c.json").read_text() == text
     )

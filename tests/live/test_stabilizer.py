@@ -13,7 +13,7 @@ def stabilized(ship, make_bridge, **sailing):
     K = 12.0 * ship.U_0 / ship.L_pp
     tube = Tube(certify(Model.of(ship), (K, K, K), 0.1, delay_samples=5))
     return make_bridge(
-        loop={"stabilizer": Stabilizer(tube), "learned": LearnedForce(ship, None, "none")}, **sailing
+        loop={"stabilizer": Stabilizer(tube), "learned": LearnedForce(ship, None, "none")}, H_s=0.0, **sailing
     )
 
 

@@ -1,6 +1,7 @@
 """From settings to a loop: the ship, her residual, her certificate, and what had to be left out, in words."""
 
 import sys
+from math import ceil
 from pathlib import Path
 
 from twin.live import realtime
@@ -20,7 +21,8 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.ship import load as load_ship
 
-CERTIFY = "from twin.live.build import certify_aside; certify_aside({!r}, {!r}, {!r}, {!r}, {!r}, {!r})"
+CERTIFY = "from twin.live.build import certify_aside; certify_aside({!r}, {!r}, {!r}, {!r}, {!r}, {!r}, {!r})"
+LATENESS = 1.05  # periods within which a tick still counts as one
 CERTIFY_S = 20.0  # the longest the service's start waits for a certificate
 
 
@@ -45,7 +47,10 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
     if learned.adaptation is not None and (path := learned_file(settings)):
         learned.adaptation.restore(path, mark_of(learned))
         notes += learned.adaptation.notes
-    rate, stabilizer = settings["loop.rate_hz"], stabilizer_of(settings, ship, patience_s)
+    rate, stabilizer = (
+        settings["loop.rate_hz"],
+        stabilizer_of(settings, ship, patience_s, saturation_of(residual)),
+    )
     loop = Loop(
         ship,
         ears,
@@ -94,18 +99,34 @@ def learned_file(settings: Settings) -> Path | None:
     return Path(folder) / "adaptation.json" if folder else None
 
 
-def stabilizer_of(settings: Settings, ship: Ship, patience_s: float | None = CERTIFY_S) -> Stabilizer:
+def saturation_of(residual: Residual | None) -> tuple[float, float, float]:
+    """What the learned force can reach on each axis, whatever its weights become [N, N, N m]."""
+    if residual is None:
+        return 0.0, 0.0, 0.0
+    X, Y, N = residual.manifest.force_scale
+    bound = residual.manifest.output_bound
+    return bound * X, bound * Y, bound * N
+
+
+def stabilizer_of(
+    settings: Settings,
+    ship: Ship,
+    patience_s: float | None = CERTIFY_S,
+    saturation: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> Stabilizer:
     """The certificate from its file; when there is none it is worked out by another process (it needs
-    numpy, the loop does not)."""
-    h, K = 1.0 / settings["loop.rate_hz"], settings["observer.gain"] or None
+    numpy, the loop does not). Its period is a little longer than the loop's: a tick may wake late."""
+    h, K = LATENESS / settings["loop.rate_hz"], settings["observer.gain"] or None
     oldest_s = settings["observer.oldest_s"] or min(max(0.0125 * ship.L_pp / ship.U_0, h), 1.2)
-    delay = max(round(oldest_s / h), 1)
+    delay = max(ceil(oldest_s / h - 1e-6), 1)
     adapted, said = settings["adaptation.on"], ""
-    wanted = mark(Model.of(ship), K, h, on_board(ship, delay, adapted))
+    wanted = mark(Model.of(ship), K, h, on_board(ship, delay, adapted, saturation))
     path = certificate_file(settings, wanted)
     certificate = on_file(path, wanted)
     if certificate is None:
-        certificate, said = _worked_out(patience_s, settings["ship.file"], str(path), K, h, delay, adapted)
+        certificate, said = _worked_out(
+            patience_s, settings["ship.file"], str(path), K, h, delay, adapted, saturation
+        )
     if certificate is None:
         return Stabilizer(None, f"not worked out ({said})")
     return Stabilizer(Tube(certificate), "" if certificate.ok else certificate.reason)
@@ -140,7 +161,15 @@ def certificate_file(settings: Settings, wanted: str) -> Path:
     )
 
 
-def certify_aside(ship_file: str, path: str, K: float | None, h: float, delay: int, adapted: bool) -> None:
+def certify_aside(
+    ship_file: str,
+    path: str,
+    K: float | None,
+    h: float,
+    delay: int,
+    adapted: bool,
+    saturation: tuple[float, float, float],
+) -> None:
     """Work the certificate out, put it on file and say it: what the other process does."""
     ship = load_ship(ship_file)
-    print(kept(path, Model.of(ship), K, h, **on_board(ship, delay, adapted)).to_json())
+    print(kept(path, Model.of(ship), K, h, **on_board(ship, delay, adapted, saturation)).to_json())

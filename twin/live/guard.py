@@ -25,13 +25,14 @@ CLIPPED_SHARE = 0.5
 
 
 class Verdict(NamedTuple):
-    """The mode, why it is not better, whether the learned force acts, and why learning stands still (""
-    when it does not)."""
+    """The mode, why it is not better, whether the learned force acts, why learning stands still, and what the
+    instruments contradict each other in ("" when they do not)."""
 
     mode: str
     reasons: list[str]
     use_learned: bool
     frozen: str
+    odd: str = ""
 
 
 class Held:
@@ -77,10 +78,12 @@ class Guard:
         odd += [self.learned.helm.stuck] * bool(self.learned.helm.stuck)
         said = [text for _, text in self._announced] + sensors + odd
         if not estimate.ready:
-            return Verdict(STARTING, [_waiting(measured), *said], False, "no estimate yet")
+            return Verdict(
+                STARTING, [_waiting(measured), *said], False, "no estimate yet", next(iter(odd), "")
+            )
         lost = _lost(measured)
         if lost:
-            return self._reckon(measured.now_s, lost, said)
+            return self._reckon(measured.now_s, lost, said)._replace(odd=next(iter(odd), ""))
         self._reckoning_since = None
         off = self._off(measured.now_s, dt)
         frozen = odd[0] if odd else next((text for text in sensors if _matters(text)), "")
@@ -89,6 +92,7 @@ class Guard:
             [*off, *([self._outside] if self._outside else []), *said],
             not off,
             frozen,
+            next(iter(odd), ""),
         )
 
     def note(self, learned: Learned, dt: float, unproved: str = "") -> None:

@@ -95,7 +95,14 @@ class Loop:
             verdict.mode != INVALID,
             self.dynamics.steering,
         )
-        certified = self.stabilizer.step(self.observer, measured, situation, self.learned.helm.stuck)
+        certified = self.stabilizer.step(
+            self.observer,
+            measured,
+            situation,
+            dt,
+            verdict.odd or self.learned.helm.stuck,
+            learned.weight > 0.0,
+        )
         self.last = Seen(
             instant, measured, estimate, situation, physics, forces, verdict, learned, ahead, certified
         )
@@ -159,6 +166,8 @@ class Loop:
                 f"{channel.name} is lost: its last value, {value / channel.to_si:.4g}, is held and "
                 "may no longer be so"
             )
+        if self.stabilizer.outside and self.stabilizer.promises:
+            said.append(f"certificate: {self.stabilizer.outside}")
         if self.dynamics.off:
             said.append(
                 f"effects without their inputs: {', '.join(type(e).__name__ for e in self.dynamics.off)}"

@@ -17,11 +17,14 @@ from twin.physics.state import Situation
 
 class Certified(NamedTuple):
     """The certificate's margin, the live bound of the observer's error in speed [m/s], and whether it holds
-    now."""
+    now; the bound in rate of turn, and the share of an error that one sample surely takes away: 0 when none
+    does."""
 
     margin: float = 0.0
     bound: float = 0.0
     inside: bool = False
+    yaw_bound_degps: float = 0.0
+    step_margin: float = 0.0
 
 
 class Seen(NamedTuple):

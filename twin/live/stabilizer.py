@@ -1,17 +1,23 @@
 """The certificate beside the loop: the live bound on the observer's error, and whether its assumptions
 hold now."""
 
-from math import hypot
+from math import degrees, hypot, pi
 
+from twin.live.certificate import comparison as c3
 from twin.live.certificate.tube import STILL, Three, Tube
 from twin.live.guard import CONTROLS
 from twin.live.observer.estimate import Observer
+from twin.live.parity import Parity
+from twin.live.periods import TOO_LONG
 from twin.live.seen import Certified
+from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
 from twin.physics.state import Situation
 
 NU = ("u", "v", "r")
 NEEDED = {**CONTROLS, "psi": "heading"}  # inputs of the physics that nothing stands in for
+# the bound goes on as for calm water, to be held against the measurements; it is not promised
+NO_WAVES = "no wave height"
 MEMORY = 100.0  # ticks with a measurement over which it is counted how often they contradict the bound
 SURPRISED = 0.1  # share of them from which it does not hold
 
@@ -25,8 +31,12 @@ class Stabilizer:
 
     def __init__(self, tube: Tube | None = None, why_not: str = "no certificate"):
         self.tube, self.why_not = tube, why_not
+        self.promises = tube is not None and tube.certificate.ok
+        self._step_margin = max(1.0 - c3.radius(tube.certificate.G), 0.0) if tube and self.promises else 0.0
+        self._parity = Parity(tube.certificate.heading_noise) if tube else None
         self._restarts = -1
         self._inside = 0  # ticks that she has surely been in the set
+        self._since_late_s = float("inf")  # seconds for which every tick came in time
         self._surprised = dict.fromkeys(NU, 0.0)
         self.outside: str | None = why_not
 
@@ -35,30 +45,72 @@ class Stabilizer:
         """The K of the certificate [1/s], 0 without one."""
         return self.tube.certificate.K[0] if self.tube else 0.0
 
-    def step(self, observer: Observer, measured: Measured, s: Situation, doubt: str = "") -> Certified:
-        """The bound of this tick; `doubt`: an input of the physics that is known to be wrong, in words."""
+    def step(
+        self,
+        observer: Observer,
+        measured: Measured,
+        s: Situation,
+        dt: float | None = None,
+        doubt: str = "",
+        acts: bool = True,
+    ) -> Certified:
+        """The bound of this tick, dt seconds after the last (None: a period); `doubt`: what is known to be
+        wrong with the instruments or with an input of the physics, in words; `acts`: whether a learned force
+        does."""
         tube = self.tube
         if tube is None or not observer.estimate.ready:
             return Certified(margin=tube.certificate.margin if tube else 0.0)
+        dt = tube.certificate.h if dt is None else dt
         if observer.restarts != self._restarts:
-            tube.reset(self._first(observer, measured, tube))
-            self._restarts, self._inside = observer.restarts, tube.window
-        got = tuple([observer.received[a] and self._in_time(a, measured, tube) for a in NU])
-        self._watch(observer, got, tube)
-        pulled = tuple([0.0 if g else observer.pulled[a] for a, g in zip(NU, got, strict=True)])
-        beta = tube.step(got, measured.si.get("H_s", 0.0), pulled if any(pulled) else STILL)  # type: ignore[arg-type]
+            self._begin(observer, measured, tube)
+        late = self._clocked(dt, tube)
+        self._steps(observer, measured, tube, dt, acts)
         certificate, first = tube.certificate, self._first(observer, measured, tube)
-        within = min(beta[0], first[0]), min(beta[1], first[1]), min(beta[2], first[2])
-        self.outside = doubt or _unsure(measured) or tube.outside(s, within)
+        within = min(tube.beta[0], first[0]), min(tube.beta[1], first[1]), min(tube.beta[2], first[2])
+        apart = self._parity.feed(measured, observer.estimate, tube.beta, dt) if self._parity else ""
+        self.outside = late or doubt or apart or _unsure(measured) or tube.outside(s, within, dt)
         self._inside = self._inside + 1 if self.outside is None else 0
         if proven := self._inside >= tube.window:
-            self.outside = tube.says_nothing()
+            self.outside = (
+                tube.says_nothing() or self.broken or ("" if "H_s" in measured.si else NO_WAVES) or None
+            )
         else:
-            tube.reset(first)
+            tube.reset(first, self._heading(observer, measured, tube))
         if tube.says_nothing():  # with measurements it comes back by itself
-            return Certified(certificate.margin, USELESS, False)
-        inside = certificate.ok and proven and self.outside is None and not self.broken
-        return Certified(certificate.margin, hypot(tube.beta[0], tube.beta[1]), inside)
+            return Certified(certificate.margin, USELESS, False, degrees(pi), self._step_margin)
+        inside = self.promises and proven and self.outside is None
+        return Certified(
+            certificate.margin,
+            hypot(tube.beta[0], tube.beta[1]),
+            inside,
+            degrees(tube.beta[2]),
+            self._step_margin,
+        )
+
+    def _begin(self, observer: Observer, measured: Measured, tube: Tube) -> None:
+        """The observer was set to what is measured."""
+        tube.reset(self._first(observer, measured, tube), self._heading(observer, measured, tube))
+        self._restarts, self._inside = observer.restarts, tube.window
+        if self._parity:
+            self._parity.begin()
+
+    def _clocked(self, dt: float, tube: Tube) -> str:
+        """Remembers when a tick last came late; in words, when it came so late that nothing can be said of
+        it."""
+        count = tube.periods.count(dt)
+        self._since_late_s = self._since_late_s + dt if count == 1 else 0.0
+        if count != TOO_LONG:
+            return ""
+        return f"the tick came late, after = {dt:.2g} s where {tube.certificate.h:.2g} s are certified"
+
+    def _steps(self, observer: Observer, measured: Measured, tube: Tube, dt: float, acts: bool) -> None:
+        got = tuple([observer.received[a] and self._in_time(a, measured, tube) for a in NU])
+        self._watch(observer, got, tube)
+        heading = observer.received["psi"] and self._in_time("psi", measured, tube)
+        in_time = self._since_late_s > 0.0
+        pulled = tuple([0.0 if g and in_time else observer.pulled[a] for a, g in zip(NU, got, strict=True)])
+        sea = measured.si.get("H_s", 0.0)
+        tube.step(got, sea, pulled if any(pulled) else STILL, dt, acts, heading, observer.pulled["psi"])  # type: ignore[arg-type]
 
     @property
     def broken(self) -> str:
@@ -91,11 +143,19 @@ class Stabilizer:
         )
         return u, v, r
 
+    def _heading(self, observer: Observer, measured: Measured, tube: Tube) -> float:
+        """The same of the heading [rad]."""
+        if not self._in_time("psi", measured, tube):
+            return pi
+        off = abs(turn(measured.si["psi"] - observer.estimate.psi))
+        return off + tube.certificate.heading_noise + measured.age_s("psi") * observer.most[2]
+
     def _in_time(self, attribute: str, measured: Measured, tube: Tube) -> bool:
-        """Measured by its own instrument, and not older than the certificate allows."""
+        """Measured by its own instrument, not older than the certificate allows, and not from before a late
+        tick."""
         if attribute in measured.derived or attribute not in measured.si:
             return False
-        return measured.age_s(attribute) <= (tube.certificate.delay_samples + 0.5) * tube.certificate.h
+        return measured.age_s(attribute) <= min(tube.oldest_s, self._since_late_s)
 
 
 def _unsure(measured: Measured) -> str:

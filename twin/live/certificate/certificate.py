@@ -12,6 +12,7 @@ import os
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
@@ -41,6 +42,7 @@ from twin.live.certificate.theorem import (
     usual_gain,
 )
 from twin.live.certificate.tube import Tube
+from twin.live.heading_bound import with_heading
 from twin.live.learning.movable import movable
 from twin.live.observer.estimate import fastest_gain, gain_for
 from twin.live.observer.operating import Confined, OperatingSet, of_ship
@@ -72,7 +74,7 @@ __all__ = [
     "usual_noise",
 ]
 
-VERSION = 5
+VERSION = 6
 
 
 @dataclass(frozen=True)
@@ -86,6 +88,12 @@ class Certificate(Promise):
     noise: Row
     disturbance: Disturbance
     plant: Plant
+    heading_noise: float = 0.0  # of the compass [rad]
+    # part of the disturbance that is there only while a learned force acts [N, N, N m]
+    saturation: Row = (0.0, 0.0, 0.0)
+    extra_growth: Matrix | None = None
+    # the physics is asked at the observer's heading: the bound of its error is a fourth state
+    estimated_heading: bool = False
     ship: str = ""
     fingerprint: str = ""
 
@@ -108,22 +116,49 @@ class Certificate(Promise):
         return c3.add(self.bound, c3.apply(self.gains_disturbance, more))
 
     def to_json(self) -> str:
-        return json.dumps({"version": VERSION, **asdict(self)}, indent=1)
+        table = json.loads(json.dumps(asdict(self)))
+        return json.dumps({"version": VERSION, "sha256": _digest(table), **table}, indent=1)
 
     @classmethod
     def from_json(cls, text: str) -> "Certificate":
         """The certificate that to_json wrote; ValueError, KeyError or TypeError when it is none of this
-        version.
-        """
-        table = _tuples(json.loads(text))
-        if not isinstance(table, dict) or table.pop("version") != VERSION:
+        version, when a number in it was changed since, or when what it promises does not follow from the
+        slopes in it."""
+        told = json.loads(text)
+        if not isinstance(told, dict) or told.pop("version") != VERSION:
             raise ValueError("certificate of another version")
+        if told.pop("sha256") != _digest(told):
+            raise ValueError("certificate changed since it was written")
+        table = _tuples(told)
         plant = table.pop("plant")
         ranges = plant.pop("operating")["ranges"]
         table["plant"] = Plant(**plant, operating=OperatingSet(ranges))
         table["disturbance"] = Disturbance(**table["disturbance"])
         table["step"] = Recursion(**table["step"])
-        return cls(**table)
+        found = cls(**table)
+        if not found.follows():
+            raise ValueError("certificate promises what does not follow from its slopes")
+        return found
+
+    def follows(self) -> bool:
+        """Whether all that is promised is what the theorem makes of the plant, K, delay, noise and
+        disturbance that stand beside it."""
+        promised = with_heading if self.estimated_heading else assess
+        again = promised(
+            self.plant,
+            self.K,
+            self.delays,
+            self.noise,
+            self.disturbance,
+            self.heading_noise,
+            self.extra_growth,
+        )
+        usable = all(isfinite(x) and x > 0.0 for x in (*self.K, self.h)) and all(
+            isfinite(x) and x >= 0.0 for x in (*self.noise, self.heading_noise)
+        )
+        return usable and all(
+            getattr(self, name) == getattr(again, name) for name in Promise.__dataclass_fields__
+        )
 
 
 def certify(
@@ -137,6 +172,8 @@ def certify(
     heading_noise: float = 0.0,
     extra_growth: Matrix | None = None,
     adapted: bool = False,
+    saturation: Row = (0.0, 0.0, 0.0),
+    estimated_heading: bool = False,
 ) -> Certificate:
     """Work out the certificate of an observer with gain K [1/s] and period h [s] (its longest).
 
@@ -147,16 +184,33 @@ def certify(
     one included; one number, or one for each of u, v, r.
     extra_growth: `self_regressor(...)` when the network is fed with the estimate instead of measurements.
     adapted: the numbers of the effects move on board; everything then holds wherever in their boxes they are.
+    saturation: what a learned force can reach [N, N, N m]; it is added to the disturbance, so that any
+        weights are covered.
+    estimated_heading: the physics is evaluated at the observer's heading, so its error is a fourth state.
     """
     m: Ages = (delay_samples,) * 3 if isinstance(delay_samples, int) else tuple(delay_samples)  # type: ignore[assignment]
     _check((1.0, 1.0, 1.0) if K is None else _row(K), h, m, noise)
     d = _bound_of(disturbance) or usual_disturbance(model)
+    d = replace(d, calm=c3.add(d.calm, saturation))
     numbers = movable(model.effects, model.ship) if adapted else ()
     plant, noise = plant_of(model, operating_set or of_ship(model), h, numbers), tuple(noise)
     K = suited_gain(plant, m, gain_for(model.ship), fastest_gain(h, max(m))) if K is None else _row(K)
-    promise = assess(plant, K, m, noise, d, heading_noise, extra_growth)  # type: ignore[arg-type]
+    promised = with_heading if estimated_heading else assess
+    promise = promised(plant, K, m, noise, d, heading_noise, extra_growth)  # type: ignore[arg-type]
     parts = {name: getattr(promise, name) for name in Promise.__dataclass_fields__}
-    return Certificate(**parts, K=K, delays=m, noise=noise, disturbance=d, plant=plant, ship=model.ship.name)  # type: ignore[arg-type]
+    return Certificate(
+        **parts,
+        K=K,
+        delays=m,
+        noise=noise,
+        disturbance=d,
+        plant=plant,
+        heading_noise=heading_noise,
+        saturation=saturation,  # type: ignore[arg-type]
+        extra_growth=extra_growth,
+        estimated_heading=estimated_heading,
+        ship=model.ship.name,
+    )
 
 
 def kept(
@@ -184,13 +238,15 @@ def on_file(path: str | os.PathLike[str], wanted: str) -> Certificate | None:
     return found if found.fingerprint == wanted else None
 
 
-def on_board(ship: Ship, delay_samples: int, adapted: bool) -> dict[str, Any]:
+def on_board(ship: Ship, delay_samples: int, adapted: bool, saturation: Row) -> dict[str, Any]:
     """What the loop's own certificate is asked for."""
     return {
         "delay_samples": delay_samples,
         "adapted": adapted,
         "noise": usual_noise(ship),
         "heading_noise": HEADING_NOISE,
+        "saturation": saturation,
+        "estimated_heading": True,
     }
 
 
@@ -225,6 +281,10 @@ def _check(K: Sequence[float], h: float, m: Sequence[int], noise: Sequence[float
             f"stabilizer: K = {tuple(K)}, period {h} s, delay {tuple(m)} samples, noise {tuple(noise)}: "
             "three positive gains, a positive period, no negative number are needed. Correct the settings."
         )
+
+
+def _digest(table: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(table, sort_keys=True).encode()).hexdigest()
 
 
 def _tuples(x: Any) -> Any:

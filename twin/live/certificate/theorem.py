@@ -19,6 +19,9 @@ from twin.live.observer.operating import NU
 from twin.physics.maths import total
 
 Ages = tuple[int, int, int]
+# of (h^2 times the slope's change) that one step misses: 1/4, and the rest for ticks up to a fifth longer
+# than was stepped for
+CURVE = 0.26
 SURE = 3.0  # times the least K: what the loop's own is at least
 NEVER = float("inf")
 NOWHERE: Row = (NEVER, NEVER, NEVER)
@@ -156,13 +159,13 @@ def assess(
     )
 
 
-def pushed(plant: Plant, heading_noise: float) -> tuple[Matrix, Row]:
-    """d = push force + calm: a bounded force, an error of heading, what one step misses of her path, what
-    adaptation moves."""
+def pushed(plant: Plant, heading_noise: float, part: float = CURVE) -> tuple[Matrix, Row]:
+    """d = push force + calm: a bounded force, an error of heading, what one step misses of her path (`part`,
+    see CURVE), what adaptation moves."""
     h, swing = plant.h, plant.swing()
-    along = c3.plus(c3.IDENTITY, c3.matrix(lambda i, j: 0.75 * h * swing[i][j]))
+    along = c3.plus(c3.IDENTITY, c3.matrix(lambda i, j: (0.5 + part) * h * swing[i][j]))
     rates = (*plant.most, max(abs(x) for x in plant.operating.ranges["r"]))
-    curve = [0.25 * h * h * total(a * b for a, b in zip(row, rates, strict=True)) for row in swing]
+    curve = [part * h * h * total(a * b for a, b in zip(row, rates, strict=True)) for row in swing]
     moved = c3.apply(along, plant.moved)
     calm = tuple(
         (h * p + plant.bend[i][3]) * heading_noise + curve[i] + h * moved[i]

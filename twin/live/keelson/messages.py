@@ -57,7 +57,13 @@ TABLE: dict[str, list[Field]] = {
         ("age_s", "double"),  # of the estimate it started from
         ("status", "string"),  # of sigma: prior | learned
     ],
-    "Certificate": [("margin", "double"), ("bound", "double"), ("inside", "bool")],
+    "Certificate": [
+        ("margin", "double"),
+        ("bound", "double"),
+        ("inside", "bool"),
+        ("yaw_bound_degps", "double"),
+        ("step_margin", "double"),  # share of an error that one sample surely takes away, 0 when none does
+    ],
     "Tick": [
         ("index", "int64"),
         ("time_s", "double"),  # monotonic

@@ -70,7 +70,7 @@ class OperatingSet:
 
 def _said(name: str, value: float, bound: float, lo: float, hi: float) -> str:
     how = f" (+-{bound:.3g})" if bound else ""
-    return f"{WORDS[name]} {value:.3g}{how} outside [{lo:.3g}, {hi:.3g}]"
+    return f"{WORDS[name]} = {value:.3g}{how} outside [{lo:.3g}, {hi:.3g}]"
 
 
 @dataclass(frozen=True)
