@@ -4,6 +4,7 @@ What cannot be used is a DataError; what was blanked, assumed or derived stands 
 """
 
 import json
+from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -113,11 +114,13 @@ def from_text(path: Path, by: Map | None) -> Raw:
     )
     clock = read_clock(path, table, stamps, spec)
     notes = [*table.notes, *unused, *clock.notes]
-    columns = {
-        name: converted(name, table, c, by.name, notes)
-        for name, c in by.columns.items()
-        if c.column in table.numbers
-    }
+    columns, uses = dict[str, np.ndarray](), Counter(c.column for c in by.columns.values())
+    for name, c in by.columns.items():
+        if c.column in table.numbers:
+            columns[name] = converted(name, table, c, by.name, notes)
+        uses[c.column] -= 1
+        if not uses[c.column]:  # no column is kept twice: a long voyage fills the memory
+            table.numbers.pop(c.column, None)
     columns |= {name: np.full(table.lines.shape, x) for name, x in by.constant.items()}
     columns, facts, said = placed(clock.time_s, scaled(columns, by), by)
     slower = froude("time_s", by.froude_scale)

@@ -4,6 +4,7 @@ Whatever is wrong is said with file, line, column and value.
 """
 
 import re
+from array import array
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
@@ -50,23 +51,28 @@ def read_table(
 
 def collect(sheet: Sheet, numbers: Sequence[Key], texts: Sequence[Key]) -> Table:
     at = {key: sheet.index(key) for key in (*numbers, *texts)}
-    parts: dict[Key, list[np.ndarray]] = {key: [] for key in numbers}
+    # each grows in its place: pieces that are joined at the end would lie there twice
+    parts = {key: array("d") for key in numbers}
     words: dict[Key, list[str]] = {key: [] for key in texts}
-    lines: list[np.ndarray] = []
+    lines = array("q")
     rows = sheet.rows()
     layout = sheet.layout
     while piece := list(islice(rows, ROWS_AT_ONCE)):
         check_width(sheet, piece)
         layout = with_decimal(layout, piece, sheet.notes)
         for key in numbers:
-            parts[key].append(floats(sheet.path, key, [(n, r[at[key]]) for n, r in piece], layout))
+            parts[key].frombytes(
+                floats(sheet.path, key, [(n, r[at[key]]) for n, r in piece], layout).tobytes()
+            )
         for key in texts:
             words[key] += [r[at[key]].strip() for _, r in piece]
-        lines.append(np.array([n for n, _ in piece]))
+        lines.extend(n for n, _ in piece)
     if not lines:
         raise DataError(f"{sheet.path}: has a header but no rows. Export it again, with the measurements.")
-    joined = {key: np.concatenate(p) for key, p in parts.items()}
-    return Table(sheet.path, np.concatenate(lines), joined, words, tuple(sheet.notes), tuple(sheet.lost))
+    columns = {key: np.frombuffer(part) for key, part in parts.items()}
+    return Table(
+        sheet.path, np.frombuffer(lines, np.int64), columns, words, tuple(sheet.notes), tuple(sheet.lost)
+    )
 
 
 def check_width(sheet: Sheet, piece: list[Row]) -> None:

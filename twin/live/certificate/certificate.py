@@ -202,7 +202,7 @@ def certify(
         **parts,
         K=K,
         delays=m,
-        noise=noise,
+        noise=noise,  # type: ignore[arg-type]
         disturbance=d,
         plant=plant,
         heading_noise=heading_noise,

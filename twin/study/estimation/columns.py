@@ -106,12 +106,13 @@ def columns(
     unknowns: Sequence[Unknown],
     catalogue: dict[str, type[Effect]],
     at: dict[str, float] | None = None,
+    dtype: type = np.float64,
 ) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3, P) accelerations and (N, 8, P) readings for one unit of each unknown, about the model (or `at`
     label -> value)."""
     acceleration, reading = respond(track, model)
-    A = np.zeros((len(track), 3, len(unknowns)))
-    R = np.zeros((len(track), 8, len(unknowns)))
+    A: np.ndarray = np.zeros((len(track), 3, len(unknowns)), dtype)
+    R: np.ndarray = np.zeros((len(track), 8, len(unknowns)), dtype)
     missing, missed = (
         track.missing(),
         rough.accelerations(track, model) if any(u.owner == ROUGH for u in unknowns) else {},

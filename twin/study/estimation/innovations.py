@@ -21,6 +21,7 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
+from twin.study.estimation.abreast import Where, abreast, beside_each
 from twin.study.estimation.columns import LATE, Unknown, beside, columns, turns
 from twin.study.estimation.filters import (
     FLOW,
@@ -54,7 +55,6 @@ from twin.study.track import waves
 from twin.study.track.segments import segments
 from twin.study.track.track import Track
 
-Where = Sequence[tuple[int, int, int]]  # segments: track, first step, last step
 EVERY = 4  # grid steps, an eighth of a ship length, over which slopes change little
 MEMORY_B, MEMORY_C = 3.0, 12.0  # correlation times of b and c, in ship lengths sailed
 
@@ -138,7 +138,9 @@ def linearise(
     # what is late shows another moment: no slope of this one says a wave two seconds ago
     late_s, prompt = model.prompt()
     reading = later(track, respond(track, prompt)[1], late_s)
-    A, R = columns(track, model, unknowns, catalogue, at)
+    # whose column is taken off the readings in full digits
+    late = any(u.owner == LATE and u.label in (at or {}) for u in unknowns)
+    A, R = columns(track, model, unknowns, catalogue, at, np.float64 if late else np.float32)
     bent = _bends(track, model, unknowns, catalogue, at) if exact else None
     turned = {} if smooth else turns(track, model, unknowns, catalogue, at)
     e = when_true(track, track.measured - reading, late_s)
@@ -156,20 +158,8 @@ def linearise(
     if late_s:  # what was true between two steps is read at the nearer one, on her way to the other
         off = round(late_s / track.h) - late_s / track.h
         reader[:, SATELLITES] = reader[:, SATELLITES] @ (np.eye(STATES) + off * (system - np.eye(STATES)))
-    return Linear(
-        track,
-        shown,
-        system,
-        defect,
-        reader,
-        e,
-        A.astype(np.float32),
-        R.astype(np.float32),
-        turned,
-        bent,
-        busy(track, model),
-        model,
-    )
+    A, R = (x.astype(np.float32, copy=False) for x in (A, R))
+    return Linear(track, shown, system, defect, reader, e, A, R, turned, bent, busy(track, model), model)
 
 
 def _system(track: Track, model: Model) -> np.ndarray:
@@ -276,16 +266,16 @@ def innovate(lines: Sequence[Linear], floors: Sequence[Floor], most: int | None 
 
 
 def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
-    e, defect = _abreast([x.e for x in lines], where, np.nan), _abreast([x.defect for x in lines], where)
-    A, R, spread = (
-        _abreast(M, where) for M in ([x.A for x in lines], [x.R for x in lines], [_spread(x) for x in lines])
-    )
-    here = np.isfinite(e)
-    shown = np.concatenate([np.where(here, e, 0.0)[..., None], -R * here[..., None]], axis=3, dtype=LIGHT)
-    pushed = np.concatenate([defect[..., None], spread @ A], axis=3, dtype=LIGHT)
+    e, defect = abreast([x.e for x in lines], where, np.nan), abreast([x.defect for x in lines], where)
+    spread, here = abreast([_spread(x) for x in lines], where), np.isfinite(e)
+    shown = beside_each(np.where(here, e, 0.0), [x.R for x in lines], where)
+    np.multiply(shown[..., 1:], np.where(here, -1.0, 0.0).astype(LIGHT)[..., None], out=shown[..., 1:])
+    pushed = np.empty((*defect.shape, shown.shape[-1]), LIGHT)
+    pushed[..., 0] = defect
+    np.matmul(spread, abreast([x.A for x in lines], where), out=pushed[..., 1:])
     return Stretches(
-        F=_abreast([x.F for x in lines], where),
-        H=_abreast([x.H for x in lines], where) * here[..., None],
+        F=abreast([x.F for x in lines], where),
+        H=abreast([x.H for x in lines], where) * here[..., None],
         here=here,
         shown=shown,
         pushed=pushed,
@@ -293,8 +283,8 @@ def _stretches(lines: Sequence[Linear], where: Where) -> Stretches:
         turns={j: turn * here[..., None] for j, turn in _turns(lines, where).items()},
         bends=None
         if lines[0].bends is None
-        else _abreast([x.bends for x in lines if x.bends is not None], where),
-        swing=_abreast([waves.swinging(x.track) for x in lines], where) if _in_waves(lines) else None,
+        else abreast([x.bends for x in lines if x.bends is not None], where),
+        swing=abreast([waves.swinging(x.track) for x in lines], where) if _in_waves(lines) else None,
     )
 
 
@@ -302,21 +292,13 @@ def _turns(lines: Sequence[Linear], where: Where) -> dict[int, np.ndarray]:
     """Of every column that any of the tracks has; nothing on one whose instruments lack what is at fault."""
     some = {j for x in lines for j in x.turns}
     return {
-        j: _abreast([x.turns.get(j, np.zeros((len(x.track), 8, 8), np.float32)) for x in lines], where)
+        j: abreast([x.turns.get(j, np.zeros((len(x.track), 8, 8), np.float32)) for x in lines], where)
         for j in some
     }
 
 
 def _in_waves(lines: Sequence[Linear]) -> bool:
     return any(line.track.swell is not None for line in lines)
-
-
-def _abreast(arrays: Sequence[np.ndarray], where: Where, fill: float = 0.0) -> np.ndarray:
-    """(T, S, ...) the segments of the tracks' arrays (N, ...), begun together; shorter ones are filled up."""
-    out = np.full((max(b - a for _, a, b in where), len(where), *arrays[0].shape[1:]), fill, arrays[0].dtype)
-    for k, (i, a, b) in enumerate(where):
-        out[: b - a, k] = arrays[i][a:b]
-    return out
 
 
 def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> Noise:
@@ -326,14 +308,14 @@ def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> No
     new_b, new_c = 1.0 - np.exp(-2.0 * h / (MEMORY_B * time)), 1.0 - np.exp(-2.0 * h / (MEMORY_C * time))
     new = []
     for floor in floors:
-        slow = new_b[:, None] * _abreast([_slow(x, floor) for x in lines], where)
+        slow = new_b[:, None] * abreast([_slow(x, floor) for x in lines], where)
         out = np.zeros((*slow.shape[:2], STATES))
         out[..., PLACE] = (floor.wander**2 * h)[:, None]
         out[..., SPEEDS] = (np.array(floor.white) * standard(lines[0].model)) ** 2 * (h * time)[:, None]
         out[..., SLOW], out[..., FLOW] = slow, (new_c * (floor.flow * speed) ** 2)[:, None]
         new.append(out)
-    reading = [_abreast([_reading(x.track, f) for x in lines], where) for f in floors]
-    swell = _abreast([waves.renewed(x.track) for x in lines], where) if _in_waves(lines) else None
+    reading = [abreast([_reading(x.track, f) for x in lines], where) for f in floors]
+    swell = abreast([waves.renewed(x.track) for x in lines], where) if _in_waves(lines) else None
     return Noise(np.stack(reading, axis=1), np.stack(new, axis=1), swell)
 
 
@@ -379,7 +361,7 @@ def _start(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> np
     diagonal[..., MOTION] = np.array([0.05 * L, 0.05 * L, 0.1, 0.1 * U, 0.1 * U, 0.1 / time]) ** 2
     for usual, floor in zip(diagonal, floors, strict=True):
         usual[:, SLOW], usual[:, FLOW] = (
-            _abreast([_slow(x, floor) for x in lines], first)[0],
+            abreast([_slow(x, floor) for x in lines], first)[0],
             (floor.flow * U) ** 2,
         )
     C = np.eye(STATES) * diagonal[..., None, :]
@@ -388,6 +370,6 @@ def _start(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> np
     out = np.zeros((*C.shape[:2], WAVES.stop, WAVES.stop))
     out[..., SHIP, SHIP], out[..., WAVES, WAVES] = (
         C,
-        _abreast([waves.lasting(x.track) for x in lines], first)[0],
+        abreast([waves.lasting(x.track) for x in lines], first)[0],
     )
     return out

@@ -5,7 +5,6 @@ import hashlib
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 from twin.errors import DataError
@@ -51,12 +50,17 @@ def read_all(paths: Sequence[str], ship: Ship) -> list[Sailed]:
     out: list[Sailed] = []
     for path in paths:
         print(f"reading {path} ...", file=sys.stderr)
-        made = sailed(read_voyage(path), ship, hashlib.sha256(Path(path).read_bytes()).hexdigest())
+        made = sailed(read_voyage(path), ship, _sha256(path))
         twin = next((s for s in out if s.sha256 == made.sha256), None)
         if twin is not None:
             raise DataError(f"{path}: is the same voyage as {twin.track.name}. Give each voyage once.")
         out.append(made)
     return out
+
+
+def _sha256(path: str) -> str:
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def fed(model: Model, t: Track) -> tuple[Model, tuple[Effect, ...]]:

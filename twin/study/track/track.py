@@ -40,6 +40,13 @@ WEATHER_CHANNELS = (  # name in Situation, channel, what turns "from" into "to"
     ("bank_port", "bank_distance_port_m", 0.0),
     ("bank_starboard", "bank_distance_starboard_m", 0.0),
 )
+GRIDDED = (  # what is put on the grid whole: weather
+    *(channel for _, channel, _ in WEATHER_CHANNELS),
+    "true_wind_speed_mps",
+    "true_wind_direction_deg",
+    "apparent_wind_speed_mps",
+    "apparent_wind_angle_deg",
+)
 STATE = ("x", "y", "psi", "u", "v", "r")
 STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail her own length
 # and no fewer, however slowly she was logged: with longer steps a ship cannot be stepped at all
@@ -128,11 +135,12 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
         )
     hold_s = {name: _hold_s(voyage, name) for name in CONTROLS}
     hole_s = max(HOLE_S, 3.0 * max(hold_s.values()))
-    grid = voyage.on_grid(h, hole_s=hole_s)
+    grid = _alone(voyage, *GRIDDED).on_grid(h, hole_s=hole_s)
     at = np.rint((grid.time_s - voyage.time_s[0]) / h).astype(np.int64)
     measured = np.column_stack([_samples(voyage, channel, at, h) for channel in MEASURED.values()])
     delta, n = (
-        _bridge(voyage.on_grid(h, hold, hole_s).si(name), hold, at * h) for name, hold in hold_s.items()
+        _bridge(_alone(voyage, name).on_grid(h, hold, hole_s).si(name), hold, at * h)
+        for name, hold in hold_s.items()
     )
     whole = np.isfinite(delta) & np.isfinite(n)
     if not whole.any():
@@ -185,6 +193,11 @@ def _samples(voyage: Voyage, channel: str, steps: np.ndarray, h: float) -> np.nd
     slope = np.gradient(mean, when) if seen.size > 1 else np.zeros(seen.size)
     out[seen] = mean + slope * (steps[seen] - when)
     return out
+
+
+def _alone(voyage: Voyage, *names: str) -> Voyage:
+    """The voyage with these channels only."""
+    return voyage.with_rows(voyage.time_s, {n: voyage.columns[n] for n in names if n in voyage.columns})
 
 
 def _hold_s(voyage: Voyage, name: str) -> float:
