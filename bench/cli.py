@@ -56,6 +56,11 @@ BENCHES: dict[str, Bench] = {
         "the hidden-effect league: is what is missing named?",
         "twin-bench hidden-effects --quick --json -",
     ),
+    "lies": Bench(
+        "bench.instrument_lies",
+        "instruments that lie: how soon it is said, and how often in vain",
+        "twin-bench lies --hull usv",
+    ),
     "real": Bench(
         "bench.real.kvlcc2", "measured KVLCC2 manoeuvres (SIMMAN 2008)", "twin-bench real --data DIR"
     ),

@@ -144,6 +144,30 @@ def make_bridge(kvlcc2):
     return make
 
 
+@pytest.fixture(scope="session")
+def certificate_file(tmp_path_factory):
+    """Worked out once, by whoever asks first."""
+    return tmp_path_factory.mktemp("state") / "certificate.json"
+
+
+@pytest.fixture
+def served(kvlcc2, certificate_file):
+    """A bridge with the loop that `twin run` builds: certificate, residual and adaptation."""
+
+    def made(**sailing) -> Bridge:
+        bridge = Bridge(kvlcc2, Sailing(kvlcc2, Model.of(kvlcc2), **sailing))
+        bridge.loop = loop_of(
+            Settings({"observer.certificate": str(certificate_file)}),
+            bridge.ears,
+            Outbox(Publisher(), "twin", "ship"),
+            None,
+        )
+        assert bridge.loop.stabilizer.tube and bridge.loop.learned.residual and bridge.loop.learned.adaptation
+        return bridge
+
+    return made
+
+
 def every_number(message):
     for about, value in message.ListFields():
         many = (

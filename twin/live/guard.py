@@ -4,6 +4,7 @@ counts again as soon as it is heard; the learned force, after a fault of its own
     hybrid -> physics only -> dead reckoning -> invalid          ("starting" before the first estimate)
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from twin.live.gates.plausible import Plausibility
@@ -22,6 +23,7 @@ STARTING, HYBRID, PHYSICS, RECKONING, INVALID = (
 CONTROLS = {"delta": "rudder_angle_deg", "n": "propeller_rate_rpm"}
 WORSE, BETTER = 1.1, 0.9  # error with the learned force over the error without: off above, on again below
 CLIPPED_SHARE = 0.5
+NO_HEADING = "no heading"
 
 
 class Verdict(NamedTuple):
@@ -65,27 +67,42 @@ class Guard:
         self._broken = Held(hold_s)
         self._bound = Held(hold_s)
         self._clipped = Held(hold_s)
+        self._doubted = Held(hold_s)
         self._clipped_share = 0.0
         self._bad = self._outside = self._unproved = ""
         self._reckoning_since: float | None = None
         self._announced: list[tuple[float, str]] = []
 
-    def judge(self, measured: Measured, estimate: Estimate, sensors: list[str], dt: float) -> Verdict:
-        """The verdict of this tick; `sensors`: what is wrong with the channels, in words."""
+    def judge(
+        self,
+        measured: Measured,
+        estimate: Estimate,
+        sensors: list[str],
+        dt: float,
+        doubts: Sequence[str] = (),
+    ) -> Verdict:
+        """The verdict of this tick; `sensors`: what is wrong with the channels, `doubts`: which of them
+        contradict each other, in words."""
         self.plausible.feed(measured, dt)
         self._announce(measured)
         odd = self.plausible.reasons()
         odd += [self.learned.helm.stuck] * bool(self.learned.helm.stuck)
+        odd += doubts
         said = [text for _, text in self._announced] + sensors + odd
         if not estimate.ready:
             return Verdict(
                 STARTING, [_waiting(measured), *said], False, "no estimate yet", next(iter(odd), "")
             )
         lost = _lost(measured)
+        if lost == NO_HEADING and "psi" in measured.derived:
+            self._reckoning_since = None
+            return Verdict(
+                RECKONING, [f"{lost} from the compass: gyro and course carry it", *said], True, lost
+            )
         if lost:
             return self._reckon(measured.now_s, lost, said)._replace(odd=next(iter(odd), ""))
         self._reckoning_since = None
-        off = self._off(measured.now_s, dt)
+        off = self._off(measured.now_s, next(iter(doubts), ""))
         frozen = odd[0] if odd else next((text for text in sensors if _matters(text)), "")
         return Verdict(
             PHYSICS if off else HYBRID,
@@ -104,8 +121,8 @@ class Guard:
         self._bad = learned.why if learned.weight == 0.0 and learned.why and not any(learned.shadow) else ""
         self._outside = f"learned force shrunk: {learned.why}" if learned.why and any(learned.shadow) else ""
 
-    def _off(self, now_s: float, dt: float) -> list[str]:
-        """Why the learned force may not act."""
+    def _off(self, now_s: float, doubt: str) -> list[str]:
+        """Why the learned force may not act; `doubt`: which instruments contradict each other."""
         evidence = self.learned.evidence
         if self.learned.residual is None:
             return [f"no learned force: {self.learned.why_not}"]
@@ -122,6 +139,7 @@ class Guard:
             ),
             self._bad if not broken else "",
             self._bound.feed(self._unproved, now_s),
+            self._doubted.feed(doubt, now_s),
         ]
         return [f"learned force off: {why}" for why in reasons if why]
 
@@ -158,7 +176,7 @@ def _lost(measured: Measured) -> str:
     """What is missing that only the model can stand in for; "" when nothing essential is."""
     si = measured.si
     missing = [name for a, name in CONTROLS.items() if a not in si]
-    if "psi" not in si:
+    if "psi" not in si or "psi" in measured.derived:
         missing.append("heading")
     if not any(a in si for a in ("x", "u", "u_r")):
         missing.append("position and speed")

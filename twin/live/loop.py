@@ -8,9 +8,10 @@ from collections.abc import Callable
 from typing import Any, Protocol
 
 from twin.live.clock import Instant
+from twin.live.gates.crosscheck import CrossChecks
 from twin.live.gates.faults import KnownFaults
 from twin.live.gates.sensors import Sensors
-from twin.live.guard import CONTROLS, INVALID, Guard
+from twin.live.guard import CONTROLS, INVALID, NO_HEADING, Guard
 from twin.live.keelson.decode import Result
 from twin.live.learning.learned import LearnedForce
 from twin.live.observer.dynamics import Dynamics
@@ -60,6 +61,7 @@ class Loop:
         self.dynamics, self.faults = Dynamics(ship), KnownFaults(ship)
         self.observer = Observer(ship, gain, self.dynamics.first_current)
         self.guard = guard or Guard(ship, learned)
+        self.checks = CrossChecks(ship)
         self.predictor = predictor or Predictor(ship, rate_hz=rate_hz)
         self.stabilizer = stabilizer or Stabilizer()
         self.publisher = voice.publisher
@@ -80,7 +82,8 @@ class Loop:
             self.faults.undo(measured, self.observer.estimate, self.observer.rates)
         )
         situation, physics, forces = self.dynamics.known(estimate, measured)
-        verdict = self.guard.judge(measured, estimate, self.sensors.reasons(), dt)
+        self.checks.feed(measured, self.observer, situation, physics, forces, dt)
+        verdict = self.guard.judge(measured, estimate, self.sensors.reasons(), dt, self._doubts())
         learned = self.learned.at(situation, forces, verdict.use_learned)
         self.guard.note(learned, dt, self.stabilizer.broken)
         self.learned.learn(measured_nu(measured), situation, forces, learned, physics, dt, verdict.frozen)
@@ -100,7 +103,7 @@ class Loop:
             measured,
             situation,
             dt,
-            verdict.odd or self.learned.helm.stuck,
+            verdict.odd or self._doubt(measured),
             learned.weight > 0.0,
         )
         self.last = Seen(
@@ -110,6 +113,20 @@ class Loop:
         self.voice.send(tick, self.ears.datum)
         return tick
 
+    def _doubts(self) -> list[str]:
+        """Which instruments contradict each other, in words: nothing is learned from them."""
+        return [*self.checks.reasons, *self.sensors.rivals.reasons]
+
+    def _doubt(self, measured: Measured) -> str:
+        """Why the certificate may not believe what is measured; "" when it may."""
+        if "psi" in measured.derived:
+            return NO_HEADING
+        return (
+            self.learned.helm.stuck
+            or next(iter(self._doubts()), "")
+            or self.sensors.stamps.unsure(measured.now_s)
+        )
+
     def measure_parts(self) -> Parts:
         """Stop-watches around every part from now on (the bench asks)."""
         parts = Parts()
@@ -118,6 +135,7 @@ class Loop:
             ("sensors", self.sensors, "read"),
             ("correct", self.observer, "correct"),
             ("known", self.dynamics, "known"),
+            ("checks", self.checks, "feed"),
             ("guard", self.guard, "judge"),
             ("learned", self.learned, "at"),
             ("step", self.dynamics, "ahead"),
@@ -181,6 +199,6 @@ def measured_nu(measured: Measured) -> tuple[float, float, float] | None:
     """What the adaptation learns from: speed over ground and rate of turn, measured, with controls; else
     None."""
     si = measured.si
-    if "u" in measured.derived or not measured.has("u", "v", "r", "delta", "n", "psi"):
+    if measured.derived & {"u", "psi"} or not measured.has("u", "v", "r", "delta", "n", "psi"):
         return None
     return si["u"], si["v"], si["r"]

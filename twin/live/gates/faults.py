@@ -16,7 +16,7 @@ from twin.physics.ship import Ship
 from twin.physics.state import Rates, Situation
 
 FIELDS = tuple(f.name for f in fields(Situation) if f.name not in ("t", "p", "u_dot", "v_dot"))
-OWN = ("r", "wind_speed", "wind_to")  # derived, these come from what the faults were taken off already
+OWN = ("psi", "r", "wind_speed", "wind_to")  # derived, these come from what the faults were taken off already
 
 
 class KnownFaults:

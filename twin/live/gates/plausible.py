@@ -3,12 +3,12 @@
     yaw rate against the turning of the heading, speed over ground against the positions, yaw rate against the
     rudder
 
-Each pair is two slow sums, k = sum(a b)/sum(b b) over a few ship lengths; a factor near -1, 57.3 or 1.94 has
-a name.
-"""
+Each pair is slow sums over a few ship lengths, k = sign(sum(a b)) sqrt(sum(a a)/sum(b b)); a factor near -1,
+57.3 or 1.94 has a name. Where the two do not go together (noise, waves) nothing is said here: crosscheck.py
+asks whether they agree."""
 
 from collections.abc import Sequence
-from math import sqrt
+from math import copysign, sqrt
 
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
@@ -21,6 +21,9 @@ TURNS = (
     (0.0174533, "is in radians where degrees were meant"),
 )
 SPEEDS = ((1.943844, "is in knots"), (0.514444, "was converted from knots twice"))
+
+TOGETHER = 0.8  # correlation from which a factor means anything
+LEAST_S = 2.0  # the shortest time over which a turning is measured
 
 
 class Pair:
@@ -42,7 +45,8 @@ class Pair:
         return self.heard_s > 1.5 * self.time_s and self.bb > self.enough**2
 
     def factor(self) -> float:
-        return self.ab / self.bb
+        """Noise in either moves it less than it would a regression of one on the other."""
+        return copysign(sqrt(self.aa / self.bb), self.ab)
 
     def correlation(self) -> float:
         return self.ab / sqrt(self.aa * self.bb) if self.aa > 0.0 else 0.0
@@ -54,8 +58,9 @@ class Plausibility:
     def __init__(self, ship: Ship):
         T = ship.L_pp / ship.U_0
         self.time_s = T
-        self._turn = Pair(2.0 * T, 0.02 / T)
-        self._speed = Pair(2.0 * T, 0.15 * ship.U_0)
+        self.over_s = max(0.2 * T, LEAST_S)
+        self._turn = Pair(max(2.0 * T, 10.0 * LEAST_S), 0.02 / T)
+        self._speed = Pair(max(2.0 * T, 10.0 * LEAST_S), 0.15 * ship.U_0)
         self._helm = Pair(3.0 * T, 0.04)  # a: yaw rate [U_0/L], b: rudder, low-passed [rad]
         self._rudder = 0.0
         self._last: dict[str, tuple[float, ...]] = {}
@@ -79,7 +84,7 @@ class Plausibility:
     def _compare_turn(self, psi: float, r: float, t: float) -> None:
         """Over half a ship length at a time, so that the heading's noise does not matter."""
         psi0, sum_r, count, t0 = self._last.get("psi", (psi, 0.0, 0.0, t))
-        if t - t0 >= 0.2 * self.time_s:
+        if t - t0 >= self.over_s:
             self._turn.feed((sum_r + r) / (count + 1.0), turn(psi - psi0) / (t - t0), t - t0)
             self._last["psi"] = (psi, 0.0, 0.0, t)
         else:
@@ -87,7 +92,7 @@ class Plausibility:
 
     def _compare_speed(self, x: float, y: float, speed: float, t: float) -> None:
         x0, y0, total, count, t0 = self._last.get("x", (x, y, 0.0, 0.0, t))
-        if t - t0 >= 0.2 * self.time_s:
+        if t - t0 >= self.over_s:
             way = sqrt((x - x0) ** 2 + (y - y0) ** 2) / (t - t0)
             self._speed.feed((total + speed) / (count + 1.0), way, t - t0)
             self._last["x"] = (x, y, 0.0, 0.0, t)
@@ -100,9 +105,13 @@ class Plausibility:
             (self._turn, "yaw_rate_degps against the turning heading", TURNS),
             (self._speed, "speed over ground against the positions", SPEEDS),
         ):
-            if pair.judged and (word := _word(pair.factor(), mistakes)):
-                said.append(f"{what}: it {word} (factor {pair.factor():.3g})")
-        if self._helm.judged and self._helm.correlation() < -0.3:
+            if (
+                pair.judged
+                and abs(pair.correlation()) > TOGETHER
+                and (word := _word(pair.factor(), mistakes))
+            ):
+                said.append(f"{what}: it {word}")
+        if self._helm.judged and self._helm.correlation() < -0.5:
             said.append(
                 "yaw_rate_degps against rudder_angle_deg: she turns against her rudder; one of the "
                 "two has the wrong sign"

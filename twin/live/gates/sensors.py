@@ -10,10 +10,11 @@ from math import degrees, inf, pi
 
 from twin.live.gates.frozen import Frozen
 from twin.live.gates.gate import Gate
+from twin.live.gates.rivals import Rivals
 from twin.live.keelson.stamps import Stamps
 from twin.live.observer.estimate import HELD, Estimate
 from twin.live.signals.channels import CHANNELS
-from twin.live.signals.derive import RateFromHeading, SpeedFromPosition, true_wind
+from twin.live.signals.derive import CarriedHeading, RateFromHeading, SpeedFromPosition, true_wind
 from twin.live.signals.measured import Measured
 from twin.live.signals.readings import WORDS, Quality, Reading, Rejected
 from twin.physics.ship import Ship
@@ -52,10 +53,11 @@ class Sensors:
             FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
         )
         self.stamps = Stamps(max_delay_s)
+        self.rivals = Rivals()
         self.rejected = 0
         self.codes: dict[str, int] = {name: int(Quality.NEVER_SEEN) for name in self.gates}
         self._began_s: float | None = None
-        self._waited_s = 0.0
+        self._waited_s = self._now_s = 0.0
         self._live: dict[str, Gate] = {}  # channels whose value may be used
         self._odd: set[str] = set()  # channels that were not well when last looked at
         self._losing: set[str] = set()
@@ -65,6 +67,7 @@ class Sensors:
         slow = ship.U_0 / ship.L_pp
         self._speed = SpeedFromPosition(min(max(12.0 * slow, 0.05), 2.0))
         self._turn = RateFromHeading(min(max(36.0 * slow, 0.2), 5.0))
+        self._carried = CarriedHeading(0.2 * ship.U_0)
         self._motion: dict[str, float] = {}
         self._derived: dict[str, tuple[float, str]] = {}  # attribute: value, what it was derived from
 
@@ -74,7 +77,7 @@ class Sensors:
         """Takes what arrived since the last tick; `own` is where the twin believes the ship to be."""
         step_s = self.stamps.observe(now_s, wall_s)
         self._began_s = now_s if self._began_s is None else self._began_s
-        self._waited_s = now_s - self._began_s
+        self._waited_s, self._now_s = now_s - self._began_s, now_s
         self._motion = motion_of(own)
         fresh: dict[str, float] = {}
         steps: dict[str, float] = {}
@@ -108,6 +111,8 @@ class Sensors:
         else:
             quality = gate.accept(result, t, self._motion.get(name, 0.0))
         if quality is not Quality.OK:
+            if quality is Quality.CONFLICT:
+                self.rivals.compare(gate, result, t, self._motion.get(name, 0.0))
             self.rejected += 1
             return
         self._put(name, gate)
@@ -144,6 +149,7 @@ class Sensors:
         if "psi" in fresh:
             ready = self._turn.feed(si["psi"], measured.time["psi"])
             self._keep(ready, "psi", {"r": self._turn.r})
+        self._carry_heading(measured, own)
         if "x" in fresh and "y" in fresh and "psi" in si:
             if measured.steps:
                 self._speed = SpeedFromPosition(self._speed.omega)
@@ -156,6 +162,17 @@ class Sensors:
             felt = si["apparent_wind_speed"], si["apparent_wind_from"]
             si["wind_speed"], si["wind_to"] = true_wind(*felt, own.psi, own.u, own.v)
             measured.derived.update(("wind_speed", "wind_to"))
+
+    def _carry_heading(self, measured: Measured, own: Estimate) -> None:
+        """The heading by gyro and course while the compass is lost; the gyro alone, the course alone where
+        one is all there is."""
+        si, of = measured.si, next((a for a in ("r", "x") if a in measured.si), "")
+        if "psi" in si or not own.ready or not of:
+            self._carried.stop()
+            return
+        place = (si["x"], si["y"]) if "x" in measured.fresh and "y" in si else None
+        nu = si.get("u", own.u), si.get("v", own.v), si.get("r", own.r)
+        measured.derive("psi", self._carried.feed(measured.now_s, own.psi, nu, place), of)
 
     def _keep(self, ready: bool, of: str, values: dict[str, float]) -> None:
         for attribute, value in values.items():
@@ -194,7 +211,7 @@ class Sensors:
                 said.append(f"{name}: {WORDS[Quality(quality)]}")
             elif name in self._losing:
                 said.append(f"{name}: samples are lost, less than 60 % of the usual rate arrives")
-        return said
+        return said + self.stamps.reasons(self._now_s)
 
 
 def motion_of(own: Estimate) -> dict[str, float]:

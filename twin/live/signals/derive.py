@@ -8,6 +8,7 @@ turn leaves no lag.
 
 from math import atan2, cos, exp, hypot, pi, sin
 
+COURSE_S, OF_COURSE = 15.0, 0.5  # over which a course is made good, and how much of what it says is believed
 READY = 4.0  # time constants until a derived value may be used
 
 
@@ -65,6 +66,48 @@ class RateFromHeading:
         self._psi += self.r * dt + (1.0 - theta * theta) * error
         self.r += (1.0 - theta) ** 2 / dt * error
         return t - self._since > READY / self.omega
+
+
+class CarriedHeading:
+    """psi [rad] without a compass: the gyro's rate of turn (the model's, where there is none) carries it, and
+    the course that the positions make good puts it right, COURSE_S at a time."""
+
+    def __init__(self, slowest: float):
+        self.slowest = slowest  # [m/s] below which a course says nothing
+        self.psi = 0.0
+        self._t: float | None = None
+        self._start: tuple[float, float, float] | None = None  # x, y, time
+        self._way = [0.0, 0.0]
+
+    def stop(self) -> None:
+        """The compass is back."""
+        self._t = None
+
+    def feed(
+        self, t: float, psi: float, nu: tuple[float, float, float], place: tuple[float, float] | None
+    ) -> float:
+        """One tick; `psi` is where it starts from, nu = (u, v, r) over ground, `place` a new position."""
+        if self._t is None:
+            self.psi, self._t, self._start = psi, t, None
+        dt, self._t = t - self._t, t
+        u, v, r = nu
+        self.psi += r * dt
+        c, s = cos(self.psi), sin(self.psi)
+        self._way[0] += (u * c - v * s) * dt
+        self._way[1] += (u * s + v * c) * dt
+        if place is not None:
+            self._course(*place, t)
+        return self.psi % (2.0 * pi)
+
+    def _course(self, x: float, y: float, t: float) -> None:
+        if self._start is not None:
+            x0, y0, t0 = self._start
+            if t - t0 < COURSE_S:
+                return
+            made, meant = hypot(x - x0, y - y0), hypot(*self._way)
+            if min(made, meant) > self.slowest * (t - t0):
+                self.psi += OF_COURSE * turn(atan2(y - y0, x - x0) - atan2(self._way[1], self._way[0]))
+        self._start, self._way = (x, y, t), [0.0, 0.0]
 
 
 def turn(angle: float) -> float:

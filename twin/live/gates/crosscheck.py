@@ -1,0 +1,219 @@
+"""Instruments that check each other over minutes: none of them need be right for two of them to disagree.
+
+    positions   against  speed over ground      (p - p0)/t - mean of R(psi)(u, v)
+    ground      against  water                   R(psi)((u, v) - (u_r, v_r)): a current, which changes slowly
+    heading     against  rate of turn            (psi - psi0)/t - mean of r
+    shaft       against  speed                   the force ahead that the ship's equations lack
+    rudder      against  turning                 the moment they lack while its feedback stands
+
+Each is a mean over blocks of time, tested by a cumulative sum (cusum.py) whose mean and scale are the ship's
+own. A text never holds a number, so that it can be counted.
+"""
+
+from collections.abc import Iterator
+from math import cos, hypot, sin
+
+from twin.live.gates.cusum import Cusum
+from twin.live.gates.lacking import FAST, SLOW, Lacking
+from twin.live.observer.dynamics import Forces, Known
+from twin.live.observer.estimate import Observer
+from twin.live.signals.derive import turn
+from twin.live.signals.measured import Measured
+from twin.physics.ship import Ship
+from twin.physics.state import Situation
+
+POSITIONS = "positions against speed over ground and heading: they walk apart"
+CURRENT = "speed over ground against speed through water: they part faster than a current changes"
+COMPASS = "heading_true_north_deg against yaw_rate_degps: the heading does not turn as the gyro says"
+WAY_S, STREAM_S, TURN_S = 10.0, 10.0, 4.0  # blocks
+GAP_S = 1.0  # a longer hole ends a block
+
+
+class CrossChecks:
+    """Fed with every tick; `reasons` are the disagreements of now, in words that stay the same, `doubt` the
+    first of them."""
+
+    def __init__(self, ship: Ship):
+        U, T = ship.U_0, ship.L_pp / ship.U_0
+        self._way = Way(U)
+        self._stream = Stream(U)
+        self._heading = Heading(T)
+        self._lacking = Lacking(ship, FAST), Lacking(ship, SLOW)
+        self.reasons: list[str] = []
+
+    @property
+    def doubt(self) -> str:
+        """What is known to be wrong with what the physics is asked about; "" when nothing is."""
+        return self.reasons[0] if self.reasons else ""
+
+    def feed(
+        self, measured: Measured, observer: Observer, s: Situation, physics: Known, forces: Forces, dt: float
+    ) -> None:
+        """One tick: what is measured, the corrected estimate, and the known forces in it."""
+        if not 0.0 < dt <= GAP_S:
+            for check in (self._way, self._stream, self._heading, *self._lacking):
+                check.pause()
+            return
+        self._way.feed(measured, dt)
+        self._stream.feed(measured, dt)
+        self._heading.feed(measured, dt)
+        for lacking in self._lacking:
+            lacking.feed(measured, observer, s, physics, forces, dt)
+        self.reasons = list(self._said())
+
+    def _said(self) -> Iterator[str]:
+        if self._heading.alarm:
+            yield COMPASS
+        if self._way.alarm:
+            yield POSITIONS
+        if self._stream.alarm:
+            yield CURRENT
+        yield from dict.fromkeys(text for lacking in self._lacking for text in lacking.reasons)
+
+
+class Way:
+    """Positions against the way that speed and heading make; along and across the ship, as a share of her
+    speed."""
+
+    def __init__(self, U_0: float):
+        self.U_0 = U_0
+        least = 0.01 * U_0 + 0.02
+        self._tests = Cusum(least, 0.03 * U_0), Cusum(least, 0.06 * U_0)  # a compass may be 3 deg off
+        self._start: tuple[float, float, float] | None = None  # x, y, time
+        self._sums = [0.0, 0.0, 0.0]  # way north and east, way ahead
+
+    @property
+    def alarm(self) -> bool:
+        return any(test.alarm for test in self._tests)
+
+    def pause(self) -> None:
+        self._start = None
+
+    def feed(self, measured: Measured, dt: float) -> None:
+        si = measured.si
+        if (
+            not measured.has("x", "y", "psi", "u", "v")
+            or "u" in measured.derived
+            or "psi" in measured.derived
+        ):
+            self._start = None
+            return
+        c, s = cos(si["psi"]), sin(si["psi"])
+        north, east = si["u"] * c - si["v"] * s, si["u"] * s + si["v"] * c
+        self._sums[0] += north * dt
+        self._sums[1] += east * dt
+        self._sums[2] += hypot(north, east) * dt
+        if "x" not in measured.fresh or "y" not in measured.fresh:
+            return
+        age_s, t = measured.age_s("x"), measured.time["x"]
+        if self._start is not None:
+            if t - self._start[2] < WAY_S:
+                return
+            self._judge(
+                si["x"] - self._start[0],
+                si["y"] - self._start[1],
+                north * age_s,
+                east * age_s,
+                t - self._start[2],
+            )
+        self._start, self._sums = (si["x"], si["y"], t), [north * age_s, east * age_s, 0.0]
+
+    def _judge(self, x: float, y: float, over_north: float, over_east: float, span_s: float) -> None:
+        """Position's way less the speed's, [m/s] along and across that way, at the ship's service speed."""
+        north, east = self._sums[0] - over_north, self._sums[1] - over_east
+        way, mean = hypot(north, east), self._sums[2] / span_s
+        if way < 0.1 * self.U_0 * span_s:
+            c, s = 1.0, 0.0
+        else:
+            c, s = north / way, east / way
+        off_n, off_e = (x - north) / span_s, (y - east) / span_s
+        share = self.U_0 / max(mean, 0.5 * self.U_0)
+        self._tests[0].feed((off_n * c + off_e * s) * share)
+        self._tests[1].feed((off_e * c - off_n * s) * share)
+
+
+class Stream:
+    """Speed over ground less speed through water: a current, which stays where it is over minutes, whichever
+    way she heads."""
+
+    REMEMBERS = 60.0  # blocks
+
+    def __init__(self, U_0: float):
+        self._tests = Cusum(0.015 * U_0 + 0.02, 0.0), Cusum(0.015 * U_0 + 0.02, 0.0)
+        self._current: list[float] | None = None  # north, east
+        self._blocks = 0
+        self._sums = [0.0] * 4
+        self._since_s = 0.0
+
+    @property
+    def alarm(self) -> bool:
+        return any(test.alarm for test in self._tests)
+
+    def pause(self) -> None:
+        self._sums, self._since_s = [0.0] * 4, 0.0
+
+    def feed(self, measured: Measured, dt: float) -> None:
+        si = measured.si
+        if not measured.has("u", "u_r", "psi") or "u" in measured.derived or "psi" in measured.derived:
+            self.pause()
+            return
+        sums = self._sums
+        sums[0] += (si["u"] - si["u_r"]) * dt
+        sums[1] += (si["v"] - si["v_r"]) * dt if measured.has("v", "v_r") else 0.0
+        sums[2] += cos(si["psi"]) * dt
+        sums[3] += sin(si["psi"]) * dt
+        self._since_s += dt
+        if self._since_s >= STREAM_S:
+            self._judge(measured.has("v", "v_r"))
+            self.pause()
+
+    def _judge(self, both: bool) -> None:
+        ahead, aside, c, s = (total / self._since_s for total in self._sums)
+        size = hypot(c, s)
+        if size < 0.9:  # she turned through too much of the compass
+            return
+        c, s = c / size, s / size
+        if self._current is None:
+            self._current = [ahead * c - aside * s, ahead * s + aside * c]
+        now = self._current
+        off = ahead - (now[0] * c + now[1] * s), (aside - (now[1] * c - now[0] * s)) if both else 0.0
+        alarms = [test.feed(x) for test, x in zip(self._tests, off, strict=True)]
+        self._blocks += 1
+        a = (0.1 if any(alarms) else 1.0) / min(self._blocks, self.REMEMBERS)
+        now[0] += a * (off[0] * c - off[1] * s)
+        now[1] += a * (off[0] * s + off[1] * c)
+
+
+class Heading:
+    """The turning of the heading against the gyro, whose constant error is learned."""
+
+    def __init__(self, T: float):
+        self._test = Cusum(3e-4, 6e-4)  # rad/s
+        self._start: tuple[float, float] | None = None
+        self._turned = 0.0
+        self._r: float | None = None
+
+    @property
+    def alarm(self) -> bool:
+        return self._test.alarm
+
+    def pause(self) -> None:
+        self._start = self._r = None
+
+    def feed(self, measured: Measured, dt: float) -> None:
+        si = measured.si
+        if not measured.has("psi", "r") or "r" in measured.derived or "psi" in measured.derived:
+            self.pause()
+            return
+        r = si["r"]
+        self._turned += 0.5 * (r + (r if self._r is None else self._r)) * dt
+        self._r = r
+        if "psi" not in measured.fresh:
+            return
+        over, t = r * measured.age_s("psi"), measured.time["psi"]
+        if self._start is not None:
+            span_s = t - self._start[1]
+            if span_s < TURN_S:
+                return
+            self._test.feed(turn(si["psi"] - self._start[0] - self._turned + over) / span_s)
+        self._start, self._turned = (si["psi"], t), over
