@@ -92,7 +92,7 @@ def errors(
 
 def added(ship: Ship, names: Sequence[str], used: Track) -> Model:
     """What `twin add` makes of these effects on this voyage."""
-    return fitted(ship, [find(n) for n in names], [used])[0]
+    return fitted(ship, [find(n) for n in names], [used]).model
 
 
 def error_of(model: Model, other: Track) -> float:

@@ -66,7 +66,7 @@ def calibrated(fleet: Fleet, folder: Path) -> dict[str, Any]:
     out: dict[str, Any] = {"": done.ship, "calibration": done.result}
     for effect in fleet.known():
         tracks = [_sailed(c, folder, done.ship).track for c in fleet.rough(effect)]
-        out[effect] = done.ship.with_effects(*fitted(done.ship, [find(effect)], tracks)[0].effects)
+        out[effect] = done.ship.with_effects(*fitted(done.ship, [find(effect)], tracks).model.effects)
     return out
 
 

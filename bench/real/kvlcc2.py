@@ -150,11 +150,11 @@ def asked(name: str, fitted: Sequence[Sailed], others: Sequence[Sailed], ship: S
     """The effect as if it had been named: fitted on the calibration's runs, judged on the others at the
     longest horizon."""
     answer.tell(f"adding {name}")
-    model, found = adding.fitted(ship, [find(name)], [s.track for s in fitted])
-    before, after = (ladder(others, s)[-1] for s in (ship, ship.with_effects(*model.effects)))
+    made = adding.fitted(ship, [find(name)], [s.track for s in fitted])
+    before, after = (ladder(others, s)[-1] for s in (ship, ship.with_effects(*made.model.effects)))
     return {
         "effect": name,
-        "numbers": [{"name": f.name, **f.entry()} for f in found],
+        "numbers": [{"name": n.name, **n.entry()} for n in made.numbers],
         "before": before,
         "after": after,
     }

@@ -1,5 +1,5 @@
-"""`twin add`: put a named effect into a ship's model, fit it, and prove that the error falls where it was not
-fitted."""
+"""`twin add`: put a named effect into a ship's model, fit it, and prove that what was not fitted is likelier
+with it."""
 
 import argparse
 import os
@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from twin import whole
-from twin.errors import SettingsError, ThresholdError
+from twin.errors import SettingsError, ThresholdError, UsageError
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load, save
@@ -16,15 +16,16 @@ from twin.recording.checks import losses
 from twin.recording.import_voyage import write_json
 from twin.study.reference.sailed import Sailed, read_all
 from twin.study.update.add import Added, add
-from twin.study.update.added import told
+from twin.study.update.added import refused, told
 
 EPILOG = """example:
   twin add Wind --ship alma2.toml --voyage monday.mcap --held-out tuesday.mcap -o alma3.toml --report add.html
 
-Only the numbers of the named effects are fitted; the core stays as it is. Without --held-out the last third
-of every voyage is held back from the fit and used to judge it. Exit code 3: the held-out error does not fall,
-nothing is written (--force writes all the same); 4: a voyage cannot be used, or lacks what the effect needs;
-5: no such effect, or the ship file is not valid.
+Only the numbers of the named effects are written; the core stays as it is. Without --held-out the last third
+of every voyage is held back from the fit and used to judge it; with --cross-validated all of every voyage is
+fitted, and each third of it judged with numbers fitted to the others. Exit code 3: what was held out is not
+clearly likelier, nothing is written (--force writes all the same), and how much more would tell is said;
+4: a voyage cannot be used, or lacks what the effect needs; 5: no such effect, or the ship file is not valid.
 """
 
 
@@ -38,11 +39,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--held-out", metavar="VOYAGE", nargs="+", action="extend", default=[], help="voyages to judge it by"
     )
+    parser.add_argument(
+        "--cross-validated",
+        action="store_true",
+        help="judge every third of the voyages by a fit to the others",
+    )
     parser.add_argument("-o", "--output", metavar="SHIP2.toml", required=True, help="the better ship file")
     parser.add_argument(
         "--force",
         action="store_true",
-        help="write it although the held-out error does not fall, or over the ship file itself",
+        help="write it although it is not proved, or over the ship file itself",
     )
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
     parser.add_argument("--report", metavar="FILE.html", help="one self-contained page with the plots")
@@ -50,6 +56,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     whole.not_over(args.output, [args.ship], args.force)
+    if args.held_out and args.cross_validated:
+        raise UsageError("--held-out and --cross-validated: a proof rests on one of them. Leave one out.")
     effects = [find(name) for name in dict.fromkeys(args.effects)]
     ship = load(args.ship)
     for path in (*args.voyage, *args.held_out):
@@ -57,14 +65,18 @@ def run(args: argparse.Namespace) -> int:
             raise SettingsError(f"-o {args.output}: is one of the voyages. Choose another name.")
     every = read_all([*args.voyage, *args.held_out], ship)
     sailed, held_out = every[: len(args.voyage)], every[len(args.voyage) :]
-    print(f"fitting {', '.join(e.__name__ for e in effects)} ...", file=sys.stderr)
-    made = add(ship, effects, sailed, held_out, args.force)
-    command = f"twin add {' '.join(args.effects)} --ship {args.ship} --voyage {' '.join(args.voyage)}"
-    command += f" --held-out {' '.join(args.held_out)}" * bool(args.held_out) + f" -o {args.output}"
-    files = {"ship": args.ship, "voyages": args.voyage, "judged": args.held_out or args.voyage}
+    made = add(
+        ship,
+        effects,
+        sailed,
+        held_out,
+        args.force,
+        args.cross_validated,
+        lambda text: print(f"{text} ...", file=sys.stderr),
+    )
     result = made.result | {
-        "command": command,
-        "files": files,
+        "command": _command(args),
+        "files": {"ship": args.ship, "voyages": args.voyage, "judged": args.held_out or args.voyage},
         "output": args.output if made.result["accepted"] else None,
     }
     page = sys.stderr if args.json == "-" or not result["accepted"] else sys.stdout
@@ -78,9 +90,9 @@ def run(args: argparse.Namespace) -> int:
         _report(args.report, made, ship, result, held_out or sailed)
         print(f"wrote {args.report}", file=page)
     if not result["accepted"]:
-        fell = f"{made.fall.sentence()}: it does not fall beyond its noise"
-        why = "nothing changes" if made.fall.idle else fell
-        raise ThresholdError(f"{why}; {args.output} was not written. --force writes it.")
+        raise ThresholdError(
+            f"{refused(made.proof, made.fall)} {args.output} was not written. --force writes it."
+        )
     print(f"next: twin compare {' '.join(args.held_out or args.voyage)} --ship {args.output}", file=page)
     return 0
 
@@ -98,3 +110,11 @@ def _report(path: str, made: Added, ship: Ship, result: dict[str, Any], shown: S
         before=Model.of(ship),
         voyages=[s.voyage for s in shown],
     )
+
+
+def _command(args: argparse.Namespace) -> str:
+    command = f"twin add {' '.join(args.effects)} --ship {args.ship} --voyage {' '.join(args.voyage)}"
+    command += (f" --held-out {' '.join(args.held_out)}") * bool(
+        args.held_out
+    ) + " --cross-validated" * args.cross_validated
+    return f"{command} -o {args.output}"

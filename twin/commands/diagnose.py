@@ -13,6 +13,7 @@ from twin.recording.read import read_voyage
 from twin.study.diagnosis.diagnose import diagnose
 from twin.study.diagnosis.tell_diagnosis import sentence, told
 from twin.study.estimation import identifiability
+from twin.study.update.adding import lasting
 
 EPILOG = """Verdicts: missing (named, with size and interval, and with what cannot be told from it),
 nothing_missing, unknown (something is there that no
@@ -93,7 +94,7 @@ def _next_command(args: argparse.Namespace, result: dict[str, Any]) -> str:
     voyages, sail = " ".join(args.voyages), ""
     if result["next_manoeuvre"]:
         sail = f"sail {result['next_manoeuvre']['manoeuvre']}, then twin diagnose with that voyage too"
-    if result["missing"]:
-        add = f"twin add {' '.join(result['missing'])} --ship {args.ship} --voyage {voyages} -o better.toml"
+    if named := lasting(result["missing"]):  # what belongs to the voyage is no part of a ship file
+        add = f"twin add {' '.join(named)} --ship {args.ship} --voyage {voyages} -o better.toml"
         return f"{sail}; or now: {add}" if sail else add
     return sail or f"twin compare {voyages} --ship {args.ship} --report compare.html"

@@ -4,11 +4,11 @@ hold now."""
 from math import degrees, hypot, pi
 
 from twin.live.certificate import comparison as c3
+from twin.live.certificate.periods import TOO_LONG
 from twin.live.certificate.tube import STILL, Three, Tube
 from twin.live.guard import CONTROLS
 from twin.live.observer.estimate import Observer
 from twin.live.parity import Parity
-from twin.live.periods import TOO_LONG
 from twin.live.seen import Certified
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured

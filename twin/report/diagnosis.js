@@ -63,7 +63,9 @@ function fittedSection() {
   const out = [];
   for (const [effect, numbers] of Object.entries(RESULT.parameters || {})) out.push(el(".candidate", null, el("h3", null, effect), el("div", null, Object.entries(numbers).map(([name, p]) => parameter({ name, ...p })))));
   const j = RESULT.judged_by || {};
-  if (j.measure) out.push(el("p.note", null, `Judged by the ${j.measure}: ${num(j.before)} → ${num(j.after)} ${j.unit}; 95 % of the change ${num(j.low95, 2)} to ${num(j.high95, 2)} (windows resampled in blocks).`));
+  const p = RESULT.proof || {};
+  if (p.kind) out.push(el("p.note", null, `Proof (${p.kind}): log likelihood ratio ${num(p.log_likelihood_ratio)}, 95 % ${num(p.low95)} to ${num(p.high95)}; needed ${num(p.needed)} and an interval above zero.`));
+  if (j.measure) out.push(el("p.note", null, `That is ${j.measure}: ${num(j.before)} → ${num(j.after)} ${j.unit}; 95 % of the change ${num(j.low95, 2)} to ${num(j.high95, 2)} (windows resampled in blocks).`));
   return section("What was fitted", "95 % intervals, doubt about the core included", ...out);
 }
 

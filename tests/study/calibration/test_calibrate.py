@@ -14,7 +14,7 @@ from twin import cli
 from twin.physics.ship import load
 from twin.recording.write import write_voyage
 from twin.study.calibration.doubts import doubts
-from twin.study.reference.usual import clearly_hers
+from twin.study.calibration.usual import clearly_hers
 
 
 @pytest.fixture(scope="module")

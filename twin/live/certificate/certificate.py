@@ -20,6 +20,7 @@ from twin import whole
 from twin.errors import SettingsError, TwinError
 from twin.live.certificate import comparison as c3
 from twin.live.certificate.comparison import Matrix, Row
+from twin.live.certificate.heading_bound import with_heading
 from twin.live.certificate.plant import (
     HEADING_NOISE,
     Disturbance,
@@ -42,7 +43,6 @@ from twin.live.certificate.theorem import (
     usual_gain,
 )
 from twin.live.certificate.tube import Tube
-from twin.live.heading_bound import with_heading
 from twin.live.learning.movable import movable
 from twin.live.observer.estimate import fastest_gain, gain_for
 from twin.live.observer.operating import Confined, OperatingSet, of_ship

@@ -14,8 +14,8 @@ from collections import deque
 from typing import TYPE_CHECKING
 
 from twin.live.certificate.comparison import add, scaled_row
+from twin.live.certificate.periods import SURE, TABLE, Periods, of_certificate
 from twin.live.observer.operating import NU, WORDS
-from twin.live.periods import SURE, TABLE, Periods, of_certificate
 from twin.physics.state import Situation
 
 if TYPE_CHECKING:

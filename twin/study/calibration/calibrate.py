@@ -18,6 +18,7 @@ from twin.recording.jsonable import plain
 from twin.study.calibration.held_out import HeldOut, by_regime, errors, size
 from twin.study.calibration.parts import clearly, placed, with_or_without_wind
 from twin.study.calibration.rollout import rolled_out
+from twin.study.calibration.usual import clearly_hers, usual
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import Floor
@@ -35,7 +36,6 @@ from twin.study.reference.nuisance import TEMPER, WEATHER, instruments, temper_o
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.seaway import levelled, swung
 from twin.study.reference.structure import structural_floor
-from twin.study.reference.usual import clearly_hers, usual
 from twin.study.reference.weather import FAINT, HARDER
 from twin.study.track.track import Track
 

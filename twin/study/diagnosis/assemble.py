@@ -54,9 +54,19 @@ def assemble(
     """Everything `search` needs; DataError when the voyages cannot be used at all."""
     if not voyages:
         raise DataError("no voyage given. Name at least one file with measurements.")
-    model, catalogue = Model.of(ship), known_effects()
     progress("smoothing tracks")
-    tracks = tuple(swung(track(v, ship), model) for v in voyages)
+    return of_tracks([swung(track(v, ship), Model.of(ship)) for v in voyages], ship, references, progress)
+
+
+def of_tracks(
+    sailed: Sequence[Track],
+    ship: Ship,
+    references: Sequence[Voyage] = (),
+    progress: Progress = lambda text: None,
+) -> Case:
+    """The same of tracks, with what waves do to them already found (`twin add` has some of a voyage for the
+    fit and some for the proof)."""
+    model, catalogue, tracks = Model.of(ship), known_effects(), tuple(sailed)
     unnamed = {e.__name__: e for e in UNNAMED}
     judged = catalogue | unnamed
     candidates = judgeable(tracks, model, judged)

@@ -10,13 +10,16 @@ from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.estimation.start import waves_on
 from twin.study.prediction import locate, score
+from twin.study.prediction.expected import told_by_references
 from twin.study.prediction.openloop import HORIZONS_S, Windows, predict
 from twin.study.prediction.unexplained import Energy, energy
 from twin.study.reference.sailed import Sailed, fed, switched_off
 from twin.study.reference.structure import floor_of
 
 SCHEMA_VERSION = 1
-CLEARLY = 1.5  # times its floor, from which an error is more than it may be
+# times its floor, from which an error is more than it may be, where no reference voyages told how they
+# scatter
+CLEARLY = 1.5
 
 
 @dataclass(frozen=True)
@@ -37,7 +40,7 @@ def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] 
         predict(s.track, m, horizons_s, floor=floor, seed=i)
         for i, (s, m) in enumerate(zip(sailed, models, strict=True))
     ]
-    rows = score.horizons(windows, horizons_s, floor is not None)
+    rows = told_by_references(score.horizons(windows, horizons_s, floor is not None), windows, ship)
     if not rows:
         raise DataError(
             f"{', '.join(s.track.name for s in sailed)}: no stretch of {min(horizons_s):g} s with controls "
@@ -92,14 +95,15 @@ def verdict(result: dict[str, Any]) -> str:
     it may be, of the one that stands out most."""
     keys, rows = ("position_mae_m", "heading_mae_deg"), result["horizons"]
     most = [max(score.in_noise(row, k) for k in keys) for row in rows]
-    row = rows[-1 if most[-1] >= CLEARLY or max(most) < CLEARLY else most.index(max(most))]
+    clearly = float(rows[-1]["noise_floor"].get("limit95", CLEARLY))
+    row = rows[-1 if most[-1] >= clearly or max(most) < clearly else most.index(max(most))]
     floor, times = row["noise_floor"], [score.in_noise(row, k) for k in keys]
     best = (
         ("a model as good as its calibration") if row["noise_floor"]["of"] != "sensors" else "a perfect model"
     )
     head = f"After {row['horizon_s']:g} s the model is {row[keys[0]]:.3g} m and {row[keys[1]]:.2g} deg off"
     would = f"{best} would look through these instruments ({floor[keys[0]]:.2g} m, {floor[keys[1]]:.2g} deg)"
-    if max(times) < CLEARLY:
+    if max(times) < clearly:
         return f"{head}: no worse than {would}."
     tail = f", {times[0]:.2g} and {times[1]:.2g} times what {would}"
     where = result["where"][:1]

@@ -147,6 +147,17 @@ def coarse(
     return Windows(track, start, lead, promised[None], _valid(track, measured, start, lead), measured)
 
 
+def again(windows: Windows, model: Model) -> np.ndarray:
+    """(K, W, 8) what another model promises over the same windows, without any noise floor."""
+    track = windows.track
+    state, wind_to = true_motion(steadied(track), model)
+    with np.errstate(all="ignore"):
+        kept = _Run(track, model, windows.start, wind_to, None).through(
+            tuple(state[windows.start].T), windows.lead
+        )
+    return np.nan_to_num(kept, nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)
+
+
 def _leads(track: Track, horizons_s: Sequence[float], count: int) -> np.ndarray:
     """Grid steps ahead: every horizon, and an even spread of `count` up to the longest."""
     steps = [max(1, round(h / track.h)) for h in horizons_s]

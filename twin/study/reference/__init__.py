@@ -1,1 +1,1 @@
-"""What healthy voyages establish: noise model, priors, and how much voyages of one ship differ."""
+"""What healthy voyages establish, for every verb that judges another one."""

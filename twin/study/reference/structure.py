@@ -16,6 +16,7 @@ from twin.physics.ship import Ship
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.fit import evidence
 from twin.study.estimation.innovations import Floor, Linear, Normal, innovate
+from twin.study.reference.path_error import of_ship
 
 MOST_SEGMENTS = 40
 FEWER = 20  # where many columns make each dear
@@ -50,9 +51,16 @@ def floor_of(ship: Ship, name: str = "floor") -> Floor | None:
 
 
 def once_off(ship: Ship, key: str, horizon_s: np.ndarray) -> np.ndarray:
-    """How far off the calibrated ship was, so far ahead, on voyages that she was not fitted to (`position_m`,
-    `heading_deg`); 0 where no calibration measured it. Powers of the time between the measured horizons, in
-    proportion to it before the first."""
+    """How far off the calibrated ship was, so far ahead, on voyages that it was not fitted to (`position_m`,
+    `heading_deg`); 0 where no calibration measured it: as the reference voyages have it, each left out in
+    turn (reference/path_error.py), or, in an older file, the voyages that were held out. Powers of the time
+    between the measured horizons, in proportion to it before the first."""
+    if (known := of_ship(ship)) is not None:
+        return (
+            np.degrees(known.expected("heading_rad", horizon_s))
+            if key == "heading_deg"
+            else known.expected(key, horizon_s)
+        )
     told = [
         (e["horizon_s"], e[key]) for e in ship.notes.get("structural", {}).get("held_out", ()) if e.get(key)
     ]

@@ -1,11 +1,10 @@
-"""`twin add`: put a named effect into a ship's model, fit it, and prove that the error falls where it was not
-fitted."""
+"""`twin add`: put a named effect into a ship's model, fit it, and prove that what was not fitted is likelier
+with it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from twin.errors import DataError
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import Ship
@@ -16,18 +15,24 @@ from twin.study.reference.sailed import Sailed
 from twin.study.reference.structure import floor_of
 from twin.study.track.track import Track
 from twin.study.update.added import notes, verdict, written
-from twin.study.update.adding import ahead, can_be_judged, fitted, thirds
-from twin.study.update.proof import Fall, by_regime, fall, judged_at, ladder
+from twin.study.update.adding import can_be_judged, fitted, thirds
+from twin.study.update.fall import Fall, by_regime, fall, ladder
+from twin.study.update.held_parts import predicted
+from twin.study.update.proof import Proof, prove
 
 SCHEMA_VERSION = 1
+# what a proof rests on
+HELD_OUT, LAST_THIRD, CROSS_VALIDATED = "held-out voyages", "last third", "cross-validated"
 
 
 @dataclass(frozen=True)
 class Added:
-    """What was found: the new ship (with its history), the proof, and the JSON."""
+    """What was found: the new ship (with its history), the proof and its illustration in metres, and the
+    JSON."""
 
     ship: Ship
     model: Model
+    proof: Proof
     fall: Fall
     result: dict[str, Any]
     held: list[Track]
@@ -39,52 +44,64 @@ def add(
     sailed: Sequence[Sailed],
     held_out: Sequence[Sailed] = (),
     force: bool = False,
+    cross_validated: bool = False,
+    progress: Callable[[str], None] = lambda text: None,
 ) -> Added:
-    """Fit the effects to the voyages and judge them on the held-out ones (without any: on the last third of
-    each)."""
+    """Fit the effects to the voyages and judge them on the held-out ones; without any on the last third of
+    each, or (`cross_validated`) on every third in turn."""
     for effect in effects:
         effect.plausible(ship).check(ship)
     can_be_judged(effects, [s.track for s in (*sailed, *held_out)])
-    used, held = (
-        ([s.track for s in sailed], [s.track for s in held_out])
-        if held_out
-        else thirds([s.track for s in sailed])
+    used, held, kind = _divided([s.track for s in sailed], [s.track for s in held_out], cross_validated)
+    made = fitted(ship, effects, used, progress)
+    progress("predicting what was held out")
+    windows = predicted(made, held, HORIZONS_S, cross_validated)
+    proof = prove(
+        windows.judged_before,
+        windows.judged_after,
+        windows.errors,
+        windows.horizons_s,
+        float(ship.scale("time")),
     )
-    model, found = fitted(ship, effects, used)
-    before, after = ahead(held, Model.of(ship), HORIZONS_S), ahead(held, model, HORIZONS_S)
     structural = floor_of(ship) is not None
-    rows = ladder(before, after, HORIZONS_S, structural)
-    if not rows:
-        raise DataError(
-            f"{', '.join(t.name for t in held)}: too short to judge by. Give another voyage with --held-out."
-        )
-    horizon_s = judged_at(before, [row["horizon_s"] for row in rows], ship)
-    proof = fall(before, after, horizon_s)
+    rows = ladder(windows.before, windows.after, HORIZONS_S, ship, structural)
+    shown = fall(windows.before, windows.after, [row["horizon_s"] for row in rows])
+    parts = (
+        {} if kind == HELD_OUT else {"part": "last third" if kind == LAST_THIRD else "every third in turn"}
+    )
     result = {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
         "added": [e.__name__ for e in effects],
         "accepted": proof.proved or force,
         "forced": force and not proof.proved,
-        "parameters": {
-            n: {f.name: f.entry() for f in found if f.effect == n} for n in (e.__name__ for e in effects)
-        },
-        "judged_by": {
-            "measure": proof.measure,
-            "unit": proof.unit,
-            "before": proof.before,
-            "after": proof.after,
-            "low95": proof.low95,
-            "high95": proof.high95,
-        },
+        "parameters": _by_effect(made.numbers),
+        "beside": _by_effect(made.beside),
+        "proof": {"kind": kind} | proof.entry(),
+        "judged_by": shown.entry(),
         "horizons": rows,
-        "where": by_regime(before, after, horizon_s, ship, structural),
+        "where": by_regime(windows.before, windows.after, shown.horizon_s, ship, structural),
         "voyages": [s.provenance() for s in sailed],
-        "held_out": [s.provenance() for s in held_out]
-        or [s.provenance() | {"part": "last third"} for s in sailed],
-        "notes": notes(ship, found, sailed, held_out),
+        "held_out": [s.provenance() | parts for s in held_out or sailed],
+        "notes": notes(ship, made, sailed, held_out, kind == LAST_THIRD),
         "data_checks": of_voyages([s.voyage for s in (*sailed, *held_out)], ship),
     }
-    result["verdict"] = verdict(result, proof)
+    result["verdict"] = verdict(result, proof, shown)
     result = plain(result)
-    return Added(written(ship, model, result), model, proof, result, held)
+    return Added(written(ship, made.model, result), made.model, proof, shown, result, held)
+
+
+def _divided(
+    tracks: list[Track], held_out: list[Track], cross_validated: bool
+) -> tuple[list[Track], list[Track], str]:
+    """What is fitted, what is judged, and how to say so."""
+    if held_out:
+        return tracks, held_out, HELD_OUT
+    return (tracks, tracks, CROSS_VALIDATED) if cross_validated else (*thirds(tracks), LAST_THIRD)
+
+
+def _by_effect(numbers: Sequence[Any]) -> dict[str, dict[str, Any]]:
+    return {
+        name: {n.name: n.entry() for n in numbers if n.effect == name}
+        for name in dict.fromkeys(n.effect for n in numbers)
+    }

@@ -11,85 +11,141 @@ from twin.physics.ship import Ship
 from twin.recording.jsonable import short
 from twin.study.reference.nuisance import OF_THE_DAY
 from twin.study.reference.sailed import Sailed
-from twin.study.update.adding import UNTOUCHED, Found
-from twin.study.update.proof import Fall
+from twin.study.reference.structure import floor_of
+from twin.study.update.adding import UNTOUCHED, Fitted
+from twin.study.update.fall import Fall
+from twin.study.update.proof import Proof
+
+FEW = 4  # numbers of an effect that are shown beside what was asked for
+FOREVER_S = 100.0 * 3600.0  # of sailing, beyond which no more of it is worth asking for
 
 
-def verdict(result: dict[str, Any], proof: Fall) -> str:
-    """The first sentence: did it fall, from what to what."""
+def verdict(result: dict[str, Any], proof: Proof, shown: Fall) -> str:
+    """The first sentence: is what was held out likelier, and what that is in metres."""
     names = " and ".join(result["added"])
-    floor = next(
-        row["noise_floor"]["position_mae_m"]
-        for row in result["horizons"]
-        if row["horizon_s"] == proof.horizon_s
-    )
-    noise = f" (noise: {floor:.2g} m)" if proof.unit == "m" else ""
-    sizes = f"{proof.before:.3g} to {proof.after:.3g} {proof.unit}{noise}"
     if proof.idle:
         return (
-            f"{names}: fitted to nothing on these voyages; with it this ship file leads her as it did "
+            f"{names}: fitted to nothing on these voyages; with it this ship file predicts what it did "
             "without."
         )
+    how = f"{_ratio(proof)}; {_metres(result, shown)}"
     if proof.proved:
-        by = 100.0 * (1.0 - proof.after / proof.before)
-        return (
-            f"With {names} the {proof.measure} falls by {by:.0f} %, from {sizes}, on measurements not "
-            "used to fit it."
-        )
-    change = f"95 % of the change: {proof.low95:+.2g} to {proof.high95:+.2g}"
-    head = f"With {names} the {proof.measure} does not fall beyond its noise"
-    return f"{head}: {sizes} on measurements not used to fit it ({change})."
+        return f"With {names} measurements not used to fit it are likelier: {how}."
+    return f"With {names} measurements not used to fit it are not clearly likelier: {how}."
+
+
+def refused(proof: Proof, shown: Fall) -> str:
+    """The reason, and what would tell."""
+    if proof.idle:
+        return "nothing changes: the effect was fitted to nothing;"
+    reason = f"not proved: {_ratio(proof)}; {shown.sentence()}."
+    if proof.more_s is None:
+        return f"{reason} More of such voyages would not prove it."
+    if proof.more_s > FOREVER_S:
+        return f"{reason} Too little of it shows to be proved in a hundred hours."
+    return (
+        f"{reason} If it goes on so, about {_duration(proof.more_s)} more of held-out sailing would prove it."
+    )
+
+
+def _ratio(proof: Proof) -> str:
+    sizes = f"{proof.log_ratio:+.3g} (95 %: {proof.low95:.3g} to {proof.high95:.3g})"
+    return f"log likelihood ratio {sizes}, from {proof.needed:.2g} and with its interval above zero a proof"
+
+
+def _metres(result: dict[str, Any], shown: Fall) -> str:
+    row = next((r for r in result["horizons"] if r["horizon_s"] == shown.horizon_s), None)
+    if row is None or shown.unit != "m":
+        return shown.sentence()
+    b, a, healthy = row["before"], row["after"], row["noise_floor"]
+    turned = f"{b['heading_mae_deg']:.2g} to {a['heading_mae_deg']:.2g} deg"
+    usual = f"usual for this ship: {healthy['position_mae_m']:.2g} m, {healthy['heading_mae_deg']:.2g} deg"
+    return (
+        f"{shown.horizon_s:g} s open-loop error from {b['position_mae_m']:.3g} to "
+        f"{a['position_mae_m']:.3g} m and {turned} ({usual})"
+    )
+
+
+def _duration(seconds: float) -> str:
+    return f"{max(1.0, seconds / 60.0):.0f} minutes" if seconds < 7200.0 else f"{seconds / 3600.0:.0f} hours"
 
 
 def notes(
-    ship: Ship, found: Sequence[Found], sailed: Sequence[Sailed], held_out: Sequence[Sailed]
+    ship: Ship, made: Fitted, sailed: Sequence[Sailed], held_out: Sequence[Sailed], last_third: bool
 ) -> list[str]:
     """What the owner must know to read the numbers."""
     notes = [
         "Only the added effect's numbers were fitted; the core and the effects already there stay as "
         "they were."
     ]
-    if not held_out:
+    if floor_of(ship) is None:
+        notes.append(
+            "careful: this ship was never calibrated, so its core is only roughly known and takes a share of "
+            "what the effect does: the numbers are "
+            "smaller than after twin calibrate on reference voyages."
+        )
+    if last_third:
         notes.append(
             "No voyage was held out: the last third of each was kept from the fit and used to judge it."
         )
     present = {type(e).__name__ for e in ship.effects}
     notes += [
-        f"{n} was in the model already: it was fitted anew."
-        for n in sorted({f.effect for f in found} & present)
+        f"{n} was in the model already: it was fitted anew." for n in sorted(present.intersection(made.names))
     ]
-    calm = [f"{f.effect}.{f.name}" for f in found if f.gained < UNTOUCHED]
+    calm = [f"{n.effect}.{n.name}" for n in made.numbers if n.gained < UNTOUCHED]
     if calm:
         notes.append(f"The voyages say little about {', '.join(calm)}: kept near what was believed before.")
-    notes += _of_the_day({f.effect for f in found}, sailed, held_out)
-    return notes
+    ends = [f"{n.effect}.{n.name} = {n.value:.3g} {n.unit}" for n in made.numbers if n.at_box_end]
+    if ends:
+        notes.append(
+            f"careful: {', '.join(ends)} ended where its box ends: something else may be at work beside it "
+            "or in its place. Ask twin diagnose, "
+            "and check the particulars of the ship."
+        )
+    if made.beside:
+        notes.append(
+            f"These voyages had {', '.join(dict.fromkeys(n.effect for n in made.beside))} of their own, "
+            "fitted beside it and not written to the "
+            "ship file."
+        )
+    return notes + _of_the_day(set(made.names), sailed, held_out)
 
 
 def _of_the_day(names: set[str], sailed: Sequence[Sailed], held_out: Sequence[Sailed]) -> list[str]:
-    """A warning when numbers that belong to a voyage are judged by a voyage of another day."""
+    """A warning that numbers belong to a voyage, and where they are judged by one of another day."""
     bound = sorted(names.intersection(OF_THE_DAY))
+    if not bound:
+        return []
+    told = [
+        f"careful: {', '.join(bound)} belongs to this voyage and not to the ship: remove it (twin remove) "
+        "before the ship file is used for another."
+    ]
     days = [
         {str(s.voyage.meta.get("start_time_utc", "?"))[:10] for s in group} for group in (sailed, held_out)
     ]
-    if not bound or len(sailed) + len(held_out) == 1 or (len(days[0] | days[1]) == 1 and "?" not in days[0]):
-        return []
+    if len(sailed) + len(held_out) == 1 or (len(days[0] | days[1]) == 1 and "?" not in days[0]):
+        return told
     when = "on another day, as far as the files tell" if "?" in days[0] | days[1] else "on another day"
     return [
-        f"The numbers of {', '.join(bound)} belong to a voyage; some of these were sailed {when}, where "
-        "they need not hold."
+        *told,
+        f"The numbers of {', '.join(bound)} belong to a voyage; some of these were sailed {when}, "
+        "where they need not hold.",
     ]
 
 
 def written(ship: Ship, model: Model, result: dict[str, Any]) -> Ship:
-    """The new ship: effects in, every number with its interval, and one more step of her history."""
+    """The new ship: effects in, every number with its interval, and one more step of its history."""
     notes = dict(ship.notes)
     notes["effects"] = dict(notes.get("effects", {})) | result["parameters"]
+    proof = {k: result["proof"][k] for k in ("log_likelihood_ratio", "low95", "high95", "needed")}
     entry = {
         "date": datetime.datetime.now(datetime.UTC).date().isoformat(),
         "added": result["added"],
         "interval": "95 %",
         "voyages": result["voyages"],
         "held_out": result["held_out"],
+        "proof": result["proof"]["kind"],
+        "evidence": proof,
         "judged_by": result["judged_by"],
         "errors": [
             {
@@ -104,7 +160,11 @@ def written(ship: Ship, model: Model, result: dict[str, Any]) -> Ship:
         ],
         "forced": result["forced"],
     }
-    notes["history"] = [*notes.get("history", []), short(entry, 4)]
+    bound = [n for n in result["added"] if n in OF_THE_DAY]
+    notes["history"] = [
+        *notes.get("history", []),
+        short(entry | ({"of_this_voyage": bound} if bound else {}), 4),
+    ]
     return replace(ship, effects=model.effects, notes=notes)
 
 
@@ -113,22 +173,42 @@ def told(result: dict[str, Any]) -> list[str]:
     out = [
         result["verdict"],
         "",
-        f"{'horizon':>8}{'before [m]':>13}{'after [m]':>12}{'noise [m]':>12}"
-        f"{'before [deg]':>15}{'after [deg]':>13}",
+        f"{'horizon':>8}{'before [m]':>13}{'after [m]':>12}{'usual [m]':>12}"
+        f"{'before [deg]':>15}{'after [deg]':>13}{'usual [deg]':>13}",
     ]
     for r in result["horizons"]:
-        b, a = r["before"], r["after"]
+        b, a, n = r["before"], r["after"], r["noise_floor"]
         out.append(
-            f"{r['horizon_s']:>6g} s{b['position_mae_m']:>13.3g}{a['position_mae_m']:>12.3g}"
-            f"{r['noise_floor']['position_mae_m']:>12.2g}{b['heading_mae_deg']:>15.2g}{a['heading_mae_deg']:>13.2g}"
+            f"{r['horizon_s']:>6g} "
+            f"s{b['position_mae_m']:>13.3g}{a['position_mae_m']:>12.3g}{n['position_mae_m']:>12.2g}"
+            f"{b['heading_mae_deg']:>15.2g}{a['heading_mae_deg']:>13.2g}{n['heading_mae_deg']:>13.2g}"
         )
-    out += ["", "what was fitted (95 %)"]
-    for effect, numbers in result["parameters"].items():
-        out += [
-            f"  {effect}.{n} = {p['value']:.4g} {p['unit']}   {p['low95']:.3g} to {p['high95']:.3g}"
-            for n, p in numbers.items()
-        ]
+    at = [f"{r['horizon_s']:.0f} s {r['log_likelihood_ratio']:+.3g}" for r in result["proof"]["by_horizon"]]
+    out += [f"log likelihood ratio by horizon ({result['proof']['kind']}): {', '.join(at)}"]
+    out += ["", "what was fitted (95 %)", *_told_numbers(result["parameters"])]
+    if result["beside"]:
+        out += ["water and weather of these voyages, not written", *_told_beside(result["beside"])]
     out += ["", "by regime: before, after [m]"] + [
         f"  {w['before_m']:>8.3g}{w['after_m']:>9.3g}  {w['condition']}" for w in result["where"]
     ]
     return [*out, "", *result["notes"]]
+
+
+def _told_beside(parameters: dict[str, dict[str, Any]]) -> list[str]:
+    """An effect of few numbers in full; of a stream that varies how strong it was."""
+    few = {effect: numbers for effect, numbers in parameters.items() if len(numbers) <= FEW}
+    many = (effect for effect in parameters if effect not in few)
+    sizes = {effect: sum(p["value"] ** 2 for p in parameters[effect].values()) ** 0.5 for effect in many}
+    return _told_numbers(few) + [
+        f"  {effect}: {size:.2g} together, of {len(parameters[effect])} numbers"
+        for effect, size in sizes.items()
+    ]
+
+
+def _told_numbers(parameters: dict[str, dict[str, Any]]) -> list[str]:
+    return [
+        f"  {effect}.{n} = {p['value']:.4g} {p['unit']}   {p['low95']:.3g} to "
+        f"{p['high95']:.3g}" + "   (the end of its box)" * p["at_box_end"]
+        for effect, numbers in parameters.items()
+        for n, p in numbers.items()
+    ]

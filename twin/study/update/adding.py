@@ -1,39 +1,51 @@
-"""Fit named effects to voyages, the core kept as it is, and judge them on windows that were not used."""
+"""Fit named effects to voyages as a diagnosis would: the same likelihood, the same nuisances, the same number
+with the same interval.
 
-from collections.abc import Sequence
+The named effects are a hypothesis like any other (refine.py): core, instruments, and a little of every other
+effect are integrated out as the reference voyages left them. The water and the weather of the voyage are no
+part of the ship: a stream, constant or slowly varying, and wind and sea that were recorded and that the model
+does not know, stand beside the named effects where they make the voyages likelier."""
+
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
-from twin.errors import DataError
+from twin.errors import DataError, SettingsError
 from twin.live.signals.channels import BY_NAME
 from twin.physics.effect import Effect
-from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import short
-from twin.study.estimation.columns import Unknown, effect_unknowns
-from twin.study.estimation.fit import Fit, fit
-from twin.study.estimation.innovations import Floor, innovate, linearise
+from twin.study.diagnosis.altered import sized
+from twin.study.diagnosis.assemble import of_tracks
+from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.refine import Found, Sets, refine, standing
+from twin.study.diagnosis.verdict import parameters
+from twin.study.estimation.columns import Unknown
+from twin.study.estimation.innovations import innovate
 from twin.study.prediction.openloop import Windows, predict
-from twin.study.reference.nuisance import TEMPER, from_ship, nuisance_unknowns
+from twin.study.reference.evidence import Posterior, boxed, given, posterior, reduce, weigh_with
+from twin.study.reference.nuisance import OF_THE_DAY
 from twin.study.reference.sailed import fed
-from twin.study.reference.seaway import levelled
 from twin.study.reference.structure import floor_of
 from twin.study.track.track import Track
 
 UNTOUCHED = 0.1  # a number whose doubt shrank by less was not excited
+OF_THE_VOYAGE = ("Current", "VaryingCurrent", "Wind", "WaveDrift")  # that may stand beside what is named
+CLOSE = 3.0  # log odds behind, to first order, within which one of these is judged where it would stand
 FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {
     "wind_to": "true_wind_direction_deg",
     "wave_to": "wave_direction_deg",
 }
+Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True)
-class Found:
-    """One number of an added effect, with its 95 % interval (inside its box) and how much of the doubt the
-    voyages removed."""
+class Number:
+    """One number of an effect, with its 95 % interval (inside its box) and how much of its prior's variance
+    the voyages removed."""
 
     effect: str
     name: str
@@ -43,15 +55,43 @@ class Found:
     low95: float
     high95: float
     gained: float
+    at_box_end: bool
 
     def entry(self) -> dict[str, Any]:
         return {
-            "value": self.value,
-            "unit": self.unit,
-            "sd": self.sd,
-            "low95": self.low95,
-            "high95": self.high95,
-        }
+            "value": self.value, "unit": self.unit, "sd": self.sd, "low95": self.low95, "high95": self.high95,
+            "at_box_end": self.at_box_end,
+        }  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Fitted:
+    """The named effects on these voyages: the model with them (and nothing of the voyage), their numbers,
+    those of the voyage's own water and weather, and what another part of the voyages would make of them."""
+
+    model: Model
+    numbers: list[Number]
+    beside: list[Number]
+    names: Sets
+    case: Case
+    found: Found
+
+    def of_parts(self, parts: int) -> list[Model]:
+        """For each of so many parts of every voyage the model with numbers fitted to the other parts. What
+        changes with the clock is taken as the whole voyages have it: no other hour tells of it."""
+        case, chosen = self.case, self.found.hypothesis.effects
+        lines, at = standing(case, self.found)
+        normal = innovate(lines, case.worlds([self.found.hypothesis.world], self.found.doubt), None)[0]
+        middle = [(i, float(lines[i].track.steps()[[a, b - 1]].mean())) for i, a, b in normal.where]
+        of = np.array([min(parts - 1, int(parts * step / len(case.tracks[i]))) for i, step in middle])
+        lasts = np.array(["t" not in case.catalogue[u.owner].needs for u in case.effects])
+        models = []
+        for k in range(parts):
+            part = reduce(normal.only(of != k), case.nuisance, case.unknowns, case.effects, case.temper, at)
+            z, left = self.found.posterior.z.copy(), given(part, self.found.posterior.z, ~lasts)
+            z[lasts] = boxed(left, chosen, posterior(left, chosen)).z
+            models.append(_with(self.case, self.names, z))
+        return models
 
 
 def can_be_judged(effects: Sequence[type[Effect]], tracks: Sequence[Track]) -> None:
@@ -74,71 +114,154 @@ def in_one(model: Model, tracks: Sequence[Track]) -> Model:
     return model
 
 
-def fitted(ship: Ship, effects: Sequence[type[Effect]], tracks: Sequence[Track]) -> tuple[Model, list[Found]]:
-    """The ship's model with these effects at their most probable size."""
-    base, known = Model.of(ship), catalogue()
-    known = known | {e.__name__: e for e in effects}
-    unknowns = [u for e in effects for u in effect_unknowns(e, Model(ship))]
-    floor = floor_of(ship) or Floor()
-    usable = in_one(base, tracks)
-    tracks = [levelled(t) for t in tracks]
-    found = fit(tracks, usable, unknowns, known, floor, temper=_temper(ship))
-    sd = _doubt(found, base, tracks, floor, known, _temper(ship))
-    names = {e.__name__ for e in effects}
-    made = [_written(e, ship) for e in found.model.effects if type(e).__name__ in names]
-    value = [float(getattr(e, u.name)) for u in unknowns for e in made if type(e).__name__ == u.owner]
-    return base.but(*made), [_found(u, v, s) for u, v, s in zip(unknowns, value, sd, strict=True)]
-
-
-def _written(effect: Effect, ship: Ship) -> Effect:
-    """The effect with as many digits as a file should hold, still inside its boxes."""
-    values = {}
-    for p in effect.params():
-        low, high = p.box(ship)
-        values[p.name] = min(max(short(float(getattr(effect, p.name))), low), high)
-    return effect.but(**values)
-
-
-def _temper(ship: Ship) -> float:
-    """How much less the innovations tell than white ones would, as calibration found it."""
-    return float(ship.notes.get("structural", {}).get("temper", TEMPER))
-
-
-def _doubt(
-    found: Fit,
-    base: Model,
+def fitted(
+    ship: Ship,
+    effects: Sequence[type[Effect]],
     tracks: Sequence[Track],
-    floor: Floor,
-    known: dict[str, type[Effect]],
-    temper: float,
-) -> np.ndarray:
-    """(P,) standard errors, the doubt about core and instruments included: it is wider than that of a fit
-    with the core fixed. How much of the effect is usual on her is among them: the reference voyages cannot
-    tell it from her core, but tell well what both together are."""
-    beside = nuisance_unknowns(base, known)
-    every: list[Unknown] = [*found.unknowns, *beside]
-    at = {u.label: float(value) for u, value in zip(found.unknowns, found.value, strict=True)}
-    lines = [linearise(t, found.model, every, known, at) for t in tracks]
-    A, _, _ = innovate(lines, [floor])[0].total()
-    sd, P = np.array([u.sd for u in every]), len(found.unknowns)
-    A = A * np.outer(sd, sd) / temper
-    A[:P, :P] += np.eye(P)
-    A[P:, P:] += from_ship(base, beside).information
-    return np.sqrt(np.diag(np.linalg.inv(A))[:P]) * sd[:P]
+    progress: Progress = lambda text: None,
+) -> Fitted:
+    """These effects where the voyages have them, beside the voyages' own water and weather."""
+    case = of_tracks(tracks, ship, progress=progress)
+    unknown = [e.__name__ for e in effects if e.__name__ not in case.candidates]
+    if unknown:
+        raise SettingsError(
+            f"{', '.join(unknown)}: not in the catalogue of effects that these voyages can "
+            "judge. See twin effects."
+        )
+    names = _set(case, [e.__name__ for e in effects])
+    progress(f"fitting {', '.join(names)}")
+    return of_hypothesis(case, names, _beside_the_voyage(case, names, progress))
 
 
-def _found(u: Unknown, value: float, sd: float) -> Found:
-    low, high = max(u.lo, value - 1.96 * sd), min(u.hi, value + 1.96 * sd)
-    return Found(
-        u.owner,
-        u.name,
-        u.unit,
-        float(value),
-        float(sd),
-        float(low),
-        float(high),
-        1.0 - min(sd / u.sd, 1.0) ** 2,
+def of_hypothesis(case: Case, names: Sets, found: Found) -> Fitted:
+    """What was found of the named effects, and of what stands beside them."""
+    numbers = _numbers(case, found)
+    return Fitted(
+        _with(case, names, found.posterior.z),
+        [n for n in numbers if n.effect in names],
+        [n for n in numbers if n.effect not in names],
+        names,
+        case,
+        found,
     )
+
+
+def _beside_the_voyage(case: Case, names: Sets, progress: Progress) -> Found:
+    """The named effects, and of the voyage's own water and weather what makes the voyages likelier."""
+    best = _judged(case, names, None)
+    while True:
+        more = [
+            n
+            for n in OF_THE_VOYAGE
+            if n in case.candidates and _may_stand_beside(case, n, best.hypothesis.effects)
+        ]
+        if not more or best.reduced is None:
+            return best
+        chosen = best.hypothesis.effects
+        likely = {
+            n: e + case.log_prior(_set(case, (*chosen, n)), best.hypothesis.world)
+            for n, e in weigh_with(best.reduced, chosen, more)
+        }
+        likely = {n: w for n, w in likely.items() if w > best.hypothesis.log_weight - CLOSE}
+        tried = []
+        for name in sorted(likely, key=lambda n: -likely[n])[:2]:
+            progress(f"asking whether {name} was at work, too")
+            tried.append(_judged(case, _set(case, (*chosen, name)), best))
+        better = max(tried, key=lambda f: f.hypothesis.log_weight, default=best)
+        if better.hypothesis.log_weight <= best.hypothesis.log_weight:
+            return best
+        best = better
+
+
+def _set(case: Case, names: Sequence[str]) -> Sets:
+    return tuple(n for n in case.candidates if n in names)
+
+
+def _may_stand_beside(case: Case, name: str, chosen: Sets) -> bool:
+    """Whether an effect of the voyage is new beside these, and neither a part of one of them nor the whole of
+    it."""
+    held = case.catalogue[name].holds
+    return (
+        name not in chosen
+        and name not in case.present
+        and not any(name in case.catalogue[n].holds or n in held for n in chosen)
+    )
+
+
+def _judged(case: Case, chosen: Sets, start: Found | None) -> Found:
+    """A set of effects about its own size, begun where a part of it was found to stand, or at its first-order
+    guess in the likeliest world."""
+    if start is not None and start.reduced is not None:
+        world, about, part = start.hypothesis.world, start.reduced, start.hypothesis.effects
+    else:
+        worlds = dict(zip(WORLDS, case.reduced(case.lines, case.worlds(list(WORLDS))), strict=True))
+        guess = {w: posterior(r, chosen).log_evidence + case.log_prior(chosen, w) for w, r in worlds.items()}
+        world = max(guess, key=lambda w: guess[w])
+        about, part = worlds[world], ()
+    z = boxed(about, chosen, posterior(about, chosen)).z
+    return refine(case, chosen, world, z, (), known=part)[0]
+
+
+def _with(case: Case, names: Sets, z: np.ndarray) -> Model:
+    """The ship's model with the named effects at these numbers (prior widths of `case.effects`), as a file
+    would hold them."""
+    model = case.model
+    for name in names:
+        own = {
+            u.name: _in_file(u.centre + u.sd * float(x), u.lo, u.hi)
+            for u, x in zip(case.effects, z, strict=True)
+            if u.owner == name
+        }
+        present = next((e for e in model.effects if type(e).__name__ == name), None) or case.catalogue[
+            name
+        ].absent(model.ship)
+        model = model.but(present.but(**own))
+    return model
+
+
+def _in_file(value: float, low: float, high: float) -> float:
+    """A number with as many digits as a file should hold, still inside its box."""
+    return min(max(float(short(value)), low), high)
+
+
+def _numbers(case: Case, found: Found) -> list[Number]:
+    """Every number of the hypothesis, as the diagnosis tells it."""
+    told: Posterior = sized(case, found)
+    out = []
+    for name in found.hypothesis.effects:
+        said = {str(p["name"]): p for p in parameters(case, told, name)}
+        for i, u in enumerate(case.effects):
+            if u.owner == name:
+                sd, p = u.sd * float(np.sqrt(told.covariance[i, i])), said.get(u.name)
+                value = _in_file(u.centre + u.sd * float(found.posterior.z[i]), u.lo, u.hi)
+                low, high = max(u.lo, value - 1.96 * sd), min(u.hi, value + 1.96 * sd)
+                if p:
+                    low, high = float(p["low95"]), float(p["high95"])  # type: ignore[arg-type]
+                gained = 1.0 - min(sd / u.sd, 1.0) ** 2
+                out.append(
+                    Number(
+                        name,
+                        u.name,
+                        u.unit,
+                        value,
+                        sd,
+                        min(low, value),
+                        max(high, value),
+                        gained,
+                        _at_an_end(u, value),
+                    )
+                )
+    return out
+
+
+def _at_an_end(u: Unknown, value: float) -> bool:
+    """Whether a box stopped this number; where it is none of its effect it is only not there."""
+    return value != u.centre and min(value - u.lo, u.hi - value) <= 1e-6 * (u.hi - u.lo)
+
+
+def lasting(names: Sequence[str]) -> list[str]:
+    """Those effects that belong to ship or instruments and not to one voyage."""
+    return [n for n in names if n not in OF_THE_DAY]
 
 
 def thirds(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:

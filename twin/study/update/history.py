@@ -37,6 +37,10 @@ def told(ship: Ship) -> list[str]:
             out.append(
                 f"{'':>12}fitted on {_names(step['voyages'])}, judged on {_names(step.get('held_out', []))}"
             )
+        if "evidence" in step:
+            e = step["evidence"]
+            sizes = f"{e['log_likelihood_ratio']:+.3g} ({e['low95']:.3g} to {e['high95']:.3g})"
+            out.append(f"{'':>12}proof: {step['proof']}, log likelihood ratio {sizes}")
     return out
 
 

@@ -1,8 +1,21 @@
-"""Does a change of the model lower its error on measurements it was not fitted to? Paired windows,
-bootstrapped in blocks.
+"""Does a change of the model make measurements likelier that it was not fitted to?
 
-Source: Kuensch (1989) The jackknife and the bootstrap for general stationary observations, Ann. Statist. 17,
-    1217-1241.
+Both models predict every window of the held-out part open loop, from the same measured state, with the stream
+that the voyage had shown by then (reference/own_water.py). What they promise is judged by the density of a
+healthy ship's errors (reference/path_error.py), in all readings together, at every horizon:
+
+    log LR = mean over horizons of  sum over voyages of  n_eff  mean over windows of  log p(e_after) - log
+    p(e_before)
+
+n_eff is the number of independent windows that a voyage's windows count as. Under the model without the
+change exp(log LR) is expected to be at most one (the geometric mean of likelihood ratios, each of which is
+expected to be one), so that it exceeds 20 by chance on one voyage in twenty at most (Markov's inequality): a
+change is proved when log LR >= log 20 and its 95 % interval, by resampling blocks, lies above zero. Metres
+and degrees beside it illustrate; no horizon decides alone.
+
+Source: Vovk & Wang (2021) E-values: calibration, combination and applications, Ann. Statist. 49, 1736-1754;
+    blocks: Kuensch (1989) The
+jackknife and the bootstrap for general stationary observations, Ann. Statist. 17, 1217-1241.
 """
 
 from collections.abc import Sequence
@@ -13,200 +26,173 @@ import numpy as np
 from scipy.special import stdtrit
 
 from twin.errors import DataError
-from twin.physics.ship import Ship
-from twin.study.prediction import locate, score
-from twin.study.prediction.openloop import MODEL, SENSORS, Windows
-from twin.study.track.track import MEASURED
+from twin.study.prediction.envelope import widening
+from twin.study.prediction.errors import vectors
+from twin.study.prediction.openloop import HORIZONS_S, MODEL, Windows
+from twin.study.reference.path_error import PathError
 
-FEWEST = 2.0  # windows that do not overlap, below which nothing can be proved
-# windows from which a horizon can prove something; and it sails so many ship lengths
-ENOUGH, LENGTHS = 10.0, 3.0
+FEWEST = 2.0  # windows that do not overlap, below which nothing can be said
+LENGTHS = 3.0  # that a ship must be predicted ahead, at least: nearer than that it hardly moves
+LEVEL = 0.05  # of all changes that are none, the share that may be taken for one
+BLOCKS = 6.0  # into how many blocks the voyages are cut for the interval, at least
 RESAMPLES = 2000
-NOTHING = "no reading"  # what an effect changes that was fitted to nothing
-UNCHANGED = 1e-6  # [m, rad] predictions of the position nearer than this are the same
+UNCHANGED = 1e-9  # log probability
 
 
 @dataclass(frozen=True)
-class Fall:
-    """`measure`: what was judged, in `unit`; mean error at the horizon; low95, high95: interval of after -
-    before."""
+class Proof:
+    """The log likelihood ratio of held-out measurements, after over before, with its 95 % interval, and how
+    it is made up."""
 
-    measure: str
-    unit: str
-    before: float
-    after: float
+    log_ratio: float
     low95: float
     high95: float
-    windows: int
-    horizon_s: float
+    by_horizon: tuple[dict[str, float], ...]
+    held_out_s: float  # how long a voyage it rests on
+    idle: bool  # whether nothing at all is predicted otherwise
+
+    @property
+    def needed(self) -> float:
+        return -float(np.log(LEVEL))
 
     @property
     def proved(self) -> bool:
-        return self.high95 < 0.0
+        return not self.idle and self.log_ratio >= self.needed and self.low95 > 0.0
 
     @property
-    def idle(self) -> bool:
-        """Whether nothing is predicted otherwise: the effect was fitted to nothing."""
-        return self.measure.startswith(f"error of {NOTHING}")
+    def more_s(self) -> float | None:
+        """How much more of such voyages would prove it, if it goes on as it does [s]; None where it does not
+        go the right way. The ratio grows with their length, its interval with the root of it."""
+        if self.proved or self.idle or self.log_ratio <= 0.0:
+            return None
+        times = max(self.needed / self.log_ratio, ((self.log_ratio - self.low95) / self.log_ratio) ** 2)
+        return (times - 1.0) * self.held_out_s
 
-    def sentence(self) -> str:
-        change = f"{self.after - self.before:+.3g} ({self.low95:+.2g} to {self.high95:+.2g})"
-        sizes = f"{self.before:.4g} -> {self.after:.4g} {self.unit}"
-        return f"{self.measure} {sizes}, change {change} on {self.windows} held-out windows"
+    def entry(self) -> dict[str, Any]:
+        """The numbers, for JSON and the ship file."""
+        return {
+            "log_likelihood_ratio": self.log_ratio,
+            "low95": self.low95,
+            "high95": self.high95,
+            "needed": self.needed,
+            "proved": self.proved,
+            "by_horizon": list(self.by_horizon),
+            "held_out_s": self.held_out_s,
+            "more_needed_s": self.more_s,
+        }
 
 
-def judged_at(before: Sequence[Windows], horizons_s: Sequence[float], ship: Ship) -> float:
-    """The longest horizon of which the voyages hold enough windows that do not overlap, but none so short
-    that she hardly moves; the longest of all where none has. Two minutes are three lengths of a tanker and 20
-    lengths of a boat, whose voyage may hold five of them."""
-    least = LENGTHS * float(ship.scale("time"))
-    enough = [
-        h
-        for h in horizons_s
-        if h >= least and sum(w.valid[w.at(h)].sum() / _block(w, h) for w in before) >= ENOUGH
-    ]
-    return max(enough, default=max(horizons_s))
+def prove(
+    before: Sequence[Windows],
+    after: Sequence[Windows],
+    errors: PathError,
+    horizons_s: Sequence[float],
+    time_s: float,
+) -> Proof:
+    """Judge the change from one set of predictions to the other, of the same windows. DataError when they are
+    too few to say anything.
 
-
-def fall(before: Sequence[Windows], after: Sequence[Windows], horizon_s: float) -> Fall:
-    """Judge by the position error at the horizon; by the instruments that changed, when position predictions
-    are the same."""
-    measure, unit, pairs = _judged(before, after, horizon_s)
-    errors = [(b, a, w) for (b, a), w in zip(pairs, before, strict=True)]
-    kept = [np.isfinite(b) & np.isfinite(a) for b, a, _ in errors]
-    b = np.concatenate([e[0][k] for e, k in zip(errors, kept, strict=True)])
-    a = np.concatenate([e[1][k] for e, k in zip(errors, kept, strict=True)])
-    changes, blocks = (
-        [e[1][k] - e[0][k] for e, k in zip(errors, kept, strict=True)],
-        [_block(w, horizon_s) for w in before],
-    )
-    independent = sum(c.size / block for c, block in zip(changes, blocks, strict=True))
-    if independent < FEWEST:
-        names = ", ".join(w.track.name for w in before)
+    `time_s`: L/U_0, in which the ship sails its length."""
+    asked = [h for h in horizons_s if sum(independent(w, h) for w in before) >= FEWEST]
+    least = min(max(HORIZONS_S), LENGTHS * time_s)
+    if max(asked, default=0.0) < 0.99 * least:
         raise DataError(
-            f"{names}: what is left to judge by holds {independent:.1f} windows of {horizon_s:g} s that do "
-            "not overlap; "
-            f"at least {FEWEST:g} are needed. Give a longer voyage, or another one with --held-out."
+            f"{', '.join(w.track.name for w in before)}: what is left to judge by does not hold {FEWEST:g} "
+            f"windows of {least:.0f} s that do "
+            "not overlap. Give a longer voyage, or another one with --held-out."
         )
-    low, high = _interval(_bootstrap(changes, blocks), float((a - b).mean()), independent)
-    return Fall(measure, unit, float(b.mean()), float(a.mean()), float(low), float(high), b.size, horizon_s)
-
-
-def _interval(means: np.ndarray, middle: float, independent: float) -> tuple[float, float]:
-    """95 % about the change, widened as Student's t is for so few independent windows."""
-    wider = float(stdtrit(independent - 1.0, 0.975)) / 1.96
-    low, high = np.quantile(means, [0.025, 0.975])
-    return middle + wider * (float(low) - middle), middle + wider * (float(high) - middle)
-
-
-def _judged(
-    before: Sequence[Windows], after: Sequence[Windows], horizon_s: float
-) -> tuple[str, str, list[tuple[np.ndarray, np.ndarray]]]:
-    """The name and unit of the measure, and for each voyage the errors (W,) before and after."""
-    moved = max(
-        float(np.nanmax(np.abs(a.promised[MODEL, ..., :3] - b.promised[MODEL, ..., :3])))
-        for b, a in zip(before, after, strict=True)
-    )
-    rows = [w.at(horizon_s) for w in before]
-    if moved > UNCHANGED:
-        name = f"position error at {horizon_s:g} s"
-        return (
-            name,
-            "m",
-            [
-                (b.errors()["position"][k], a.errors()["position"][k])
-                for b, a, k in zip(before, after, rows, strict=True)
-            ],
-        )
-    touched = [
-        i
-        for i in range(3, len(MEASURED))
-        if any(
-            _read(b, i) and not np.allclose(a.promised[MODEL, ..., i], b.promised[MODEL, ..., i])
-            for b, a in zip(before, after, strict=True)
-        )
+    pairs = list(zip(before, after, strict=True))
+    gains = [[_gain(b, a, errors, h) for h in asked] for b, a in pairs]
+    weights = [[_weight(b, errors, h) for h in asked] for b, _ in pairs]
+    each = [
+        np.sum([g * w for g, w in zip(mine, by, strict=True)], axis=0) / len(asked)
+        for mine, by in zip(gains, weights, strict=True)
     ]
-    names = [list(MEASURED.values())[i] for i in touched] or [NOTHING]
-    noise = {
-        i: float(np.mean([np.nanmean(np.abs(w.off(SENSORS)[..., i])) for w in before if _read(w, i)]))
-        for i in touched
-    }
-
-    def size(w: Windows, k: int) -> np.ndarray:
-        mine = [np.abs(w.off()[k, :, i]) / n for i, n in noise.items() if _read(w, i)]
-        return np.mean(mine, axis=0) if mine else np.full(w.start.size, np.nan if touched else 0.0)
-
-    return (
-        f"error of {', '.join(names)} at {horizon_s:g} s",
-        "times its noise",
-        [(size(b, k), size(a, k)) for b, a, k in zip(before, after, rows, strict=True)],
+    rows = tuple(
+        {
+            "horizon_s": h,
+            "log_likelihood_ratio": float(
+                sum((g[i] * w[i]).sum() for g, w in zip(gains, weights, strict=True))
+            ),
+            "windows": float(sum(independent(b, h) for b in before)),
+        }
+        for i, h in enumerate(asked)
     )
+    total, length = float(sum(e.sum() for e in each)), sum(_length(w) for w in before)
+    low, high = block_interval(each, before, max(asked))
+    idle = all(np.abs(g).max(initial=0.0) < UNCHANGED for mine in gains for g in mine)
+    return Proof(total, low, high, rows, length, idle)
 
 
-def _read(w: Windows, reading: int) -> bool:
-    """Whether this instrument was on board: a log of one axis shows no drift."""
-    return bool(np.isfinite(w.track.sd[reading]))
+def _gain(before: Windows, after: Windows, errors: PathError, horizon_s: float) -> np.ndarray:
+    """(W,) log p(after) - log p(before) of every window; nothing where one cannot be judged."""
+    k, width = before.at(horizon_s), widening(before, horizon_s, errors.sailed)
+    b, a = (
+        errors.log_density(_bounded(vectors(w, MODEL)[k], errors.at(horizon_s)), horizon_s, width)
+        for w in (before, after)
+    )
+    return np.where(before.valid[k], np.nan_to_num(a - b), 0.0)
 
 
-def _block(w: Windows, horizon_s: float) -> int:
-    """Windows that overlap one another: they are one observation."""
-    stride = (w.start[1] - w.start[0]) * w.track.h if w.start.size > 1 else horizon_s
-    return max(1, int(np.ceil(horizon_s / stride)))
+def _bounded(error: np.ndarray, covariance: np.ndarray) -> np.ndarray:
+    """The same, of a model that ran away as wrong as can be written down."""
+    most = 1e3 * np.sqrt(np.diag(covariance))
+    return np.clip(error, -most, most)
 
 
-def _bootstrap(changes: Sequence[np.ndarray], blocks: Sequence[int]) -> np.ndarray:
-    """(RESAMPLES,) means of the changes, resampled in blocks within each voyage (joined end to beginning)."""
+def _weight(windows: Windows, errors: PathError, horizon_s: float) -> float:
+    """What every window of a voyage counts for, so that all together count as the voyage's effective
+    number."""
+    count = windows.valid[windows.at(horizon_s)].sum()
+    return errors.effective(independent(windows, horizon_s), horizon_s) / float(count) if count else 0.0
+
+
+def independent(windows: Windows, horizon_s: float) -> float:
+    """How many windows of a track do not overlap; none at a horizon that was not asked."""
+    k = windows.at(horizon_s)
+    if abs(windows.lead[k] * windows.track.h - horizon_s) > windows.track.h:
+        return 0.0
+    return float(windows.valid[k].sum()) * min(1.0, _stride(windows) / horizon_s)
+
+
+def _stride(windows: Windows) -> float:
+    begins = windows.track.t[windows.start]
+    return float(np.median(np.diff(begins))) if begins.size > 1 else float(begins.size)
+
+
+def _length(windows: Windows) -> float:
+    """How long the voyage is that the windows were taken from [s]."""
+    valid = windows.valid.any(0)
+    return float(valid.sum()) * _stride(windows)
+
+
+def block_interval(
+    each: Sequence[np.ndarray], before: Sequence[Windows], longest_s: float
+) -> tuple[float, float]:
+    """95 % about the sum of what the windows of each track say (W,), by resampling blocks as long as the
+    longest horizon, or shorter ones where there would be too few; widened as Student's t is for so few."""
+    total = float(sum(e.sum() for e in each))
+    length = sum(_length(w) for w in before)
+    block_s = min(longest_s, length / BLOCKS)
+    sums, blocks = np.zeros(RESAMPLES), 0.0
     rng = np.random.default_rng(0)
-    total, count = np.zeros(RESAMPLES), 0
-    for change, block in zip(changes, blocks, strict=True):
-        if not change.size:
+    for gain, windows in zip(each, before, strict=True):
+        there = gain[windows.valid.any(0)] if gain.size == windows.start.size else gain
+        if not there.size:
             continue
-        sums = np.cumsum(
-            np.concatenate(
-                [[0.0], change, change[: block - 1] if change.size >= block else np.resize(change, block - 1)]
-            )
-        )
-        runs = sums[block:] - sums[:-block]
-        needed = int(np.ceil(change.size / block))
-        total += runs[rng.integers(0, runs.size, (RESAMPLES, needed))].sum(1) / (needed * block) * change.size
-        count += change.size
-    return total / count if count else np.array([])
+        block = max(1, round(block_s / max(_stride(windows), 1e-9)))
+        sums += _resampled(there, block, rng)
+        blocks += there.size / block
+    wider = float(stdtrit(max(blocks - 1.0, 1.0), 0.975)) / 1.96
+    low, high = np.quantile(sums, [0.025, 0.975])
+    return total + wider * (float(low) - total), total + wider * (float(high) - total)
 
 
-def ladder(
-    before: Sequence[Windows], after: Sequence[Windows], horizons_s: Sequence[float], structural: bool
-) -> list[dict[str, Any]]:
-    """One row for each horizon: errors before and after, and the floor."""
-    rows = zip(
-        score.horizons(before, horizons_s, structural),
-        score.horizons(after, horizons_s, structural),
-        strict=True,
-    )
-    keys = score.NAMES.values()
-    return [
-        {
-            "horizon_s": b["horizon_s"],
-            "windows": b["windows"],
-            "before": {k: b[k] for k in keys},
-            "after": {k: a[k] for k in keys},
-            "noise_floor": a["noise_floor"],
-        }
-        for b, a in rows
-    ]
-
-
-def by_regime(
-    before: Sequence[Windows], after: Sequence[Windows], horizon_s: float, ship: Ship, structural: bool
-) -> list[dict[str, Any]]:
-    """Where the model failed before, and what became of it: mean position error [m] before and after."""
-    b, a = score.pooled(before, horizon_s)["position"], score.pooled(after, horizon_s)["position"]
-    everywhere = [{"condition": "everywhere", "time_share": 1.0, "mask": np.isfinite(b)}]
-    return [
-        {
-            "condition": r["condition"],
-            "time_share": r["time_share"],
-            "before_m": float(np.nanmean(b[r["mask"]])),
-            "after_m": float(np.nanmean(a[r["mask"]])),
-        }
-        for r in everywhere + locate.regimes(before, horizon_s, ship, structural)
-    ]
+def _resampled(gain: np.ndarray, block: int, rng: np.random.Generator) -> np.ndarray:
+    """(RESAMPLES,) totals of a voyage's gains, drawn in blocks (its end joined to its beginning)."""
+    block = min(block, gain.size)
+    sums = np.cumsum(np.concatenate([[0.0], gain, gain[: block - 1]]))
+    runs = sums[block:] - sums[:-block]
+    needed = int(np.ceil(gain.size / block))
+    drawn = runs[rng.integers(0, runs.size, (RESAMPLES, needed))].sum(1)
+    return np.asarray(drawn * gain.size / (needed * block))

@@ -1,7 +1,7 @@
 """What is usual on a ship: what her reference voyages leave known of the core, of every lasting effect and of
 the instruments."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
@@ -11,7 +11,9 @@ from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
-from twin.study.estimation.innovations import Floor, innovate, linearise
+from twin.study.estimation.columns import Unknown
+from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
+from twin.study.prediction.left_out import models_without, path_error
 from twin.study.reference.derivatives import first_prior
 from twin.study.reference.nuisance import from_references, nuisance_unknowns, temper_of, usual_unknowns
 from twin.study.reference.sailed import fed
@@ -30,9 +32,9 @@ def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
     lines = [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
     beside = floor_beside(lines, unknowns, floor)
     temper = temper_of(innovate(lines, [beside])[0], unknowns)
-    nuisance, between = from_references(
-        lines, unknowns, beside, temper, np.array([first_prior(u, ship).centre for u in unknowns])
-    )
+    centres = np.array([first_prior(u, ship).centre for u in unknowns])
+    nuisance, between = from_references(lines, unknowns, beside, temper, centres)
+    path = path_errors(ship, tracks, lines, unknowns, beside, temper, centres, between)
     sd = np.array([u.sd for u in nuisance.unknowns])
     covariance = np.linalg.inv(nuisance.information)
     return {
@@ -44,7 +46,28 @@ def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
         "beside": plain(asdict(beside)),
         "temper_beside": temper,
         "weather": strengths(tracks, model, known),
-    }
+    } | ({"path_error": path} if path else {})
+
+
+def path_errors(
+    ship: Ship,
+    tracks: Sequence[Track],
+    lines: Sequence[Linear],
+    unknowns: Sequence[Unknown],
+    floor: Floor,
+    temper: float,
+    centres: np.ndarray,
+    between: Mapping[str, float],
+) -> dict[str, Any]:
+    """What the ship file keeps of the open-loop error on these voyages, each left out in turn
+    (reference/path_error.py). `centres` (P,): means of the unknowns' priors; `between`: by how many prior
+    widths numbers differ from voyage to voyage."""
+    model, sd = Model.of(ship), np.array([u.sd for u in unknowns])
+    pull = (centres - np.array([u.centre for u in unknowns])) / sd
+    scatter = np.array([between.get(u.label, 0.0) ** 2 for u in unknowns])
+    without = models_without(model, unknowns, innovate(lines, [floor])[0], scatter, pull, temper, catalogue())
+    found = path_error(model, tracks, without)
+    return found.entry() if found else {}
 
 
 def clearly_hers(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:

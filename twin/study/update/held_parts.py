@@ -1,0 +1,96 @@
+"""Predictions of what a fit did not see, before and after a change: of other voyages, or of every part of the
+same ones in turn."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from twin.physics.model import Model
+from twin.study.prediction.left_out import horizons
+from twin.study.prediction.openloop import Windows
+from twin.study.prediction.own_water import LENGTHS, settled
+from twin.study.prediction.path_prior import errors_of
+from twin.study.reference.path_error import PathError
+from twin.study.reference.sailed import fed
+from twin.study.track.track import Track
+from twin.study.update.adding import Fitted, ahead, lasting
+
+LEAST = 2.0  # times that a voyage must hold a horizon to be judged at it
+FOLDS = 3  # parts of every voyage, each predicted with numbers fitted to the others
+Judging = tuple[np.ndarray, float]  # covariance of the error so far ahead, by which a stream is known
+
+
+@dataclass(frozen=True)
+class Held:
+    """Predictions of the held-out tracks: as they are shown, and as they are judged, with the stream that
+    each voyage had shown by then."""
+
+    before: list[Windows]
+    after: list[Windows]
+    judged_before: list[Windows]
+    judged_after: list[Windows]
+    errors: PathError
+    horizons_s: list[float]  # that are judged
+
+
+def predicted(
+    made: Fitted, tracks: Sequence[Track], shown_s: Sequence[float], cross_validated: bool = False
+) -> Held:
+    """Of every track (`shown_s`: horizons of the table, beside those that are judged); `cross_validated`: the
+    tracks are those of the fit.
+
+    Effects of the voyage are judged for what they are where nothing else was named, without any other stream.
+    Beside lasting effects they are not judged: the stream that the held-out voyage shows stands in their
+    place."""
+    base = made.case.model
+    models = made.of_parts(FOLDS) if cross_validated else [made.model]
+    judged_s = horizons(base, tracks, 1.0 / LEAST)
+    asked = sorted({*judged_s, *shown_s})
+    errors = errors_of(base.ship, tracks, asked)
+    before, after = (_each(tracks, some, asked) for some in ([base] * len(models), models))
+    if not lasting(made.names):
+        return Held(before, after, before, after, errors, judged_s)
+    middle = min(judged_s, key=lambda h: abs(np.log(h / (LENGTHS * float(base.ship.scale("time"))))))
+    own = [_lasting(base, m, made.names) for m in models]
+    known_before, known_after = (
+        _each(tracks, some, asked, (errors.at(middle), middle)) for some in ([base] * len(models), own)
+    )
+    return Held(before, after, known_before, known_after, errors, judged_s)
+
+
+def part_of(step: float, steps: int) -> int:
+    """The part of a voyage in which a step lies."""
+    return min(FOLDS - 1, int(FOLDS * step / steps))
+
+
+def _lasting(base: Model, model: Model, names: Sequence[str]) -> Model:
+    """The model with those of the named effects that do not belong to the voyage."""
+    return base.but(*(e for e in model.effects if type(e).__name__ in lasting(names)))
+
+
+def _each(
+    tracks: Sequence[Track], models: Sequence[Model], asked: Sequence[float], judging: Judging | None = None
+) -> list[Windows]:
+    """One set of windows for each track; with several models each part of a track is predicted by its own."""
+    by_model = [ahead(tracks, m, asked) for m in models]
+    if judging is not None:
+        by_model = [
+            [settled(w, fed(m, w.track)[0], *judging) for w in ws]
+            for m, ws in zip(models, by_model, strict=True)
+        ]
+    return [_joined(list(of_track)) for of_track in zip(*by_model, strict=True)]
+
+
+def _joined(windows: Sequence[Windows]) -> Windows:
+    """The windows of each part by its own model; those that end in another part are not judged."""
+    first, *others = windows
+    if not others:
+        return first
+    steps = len(first.track)
+    begins, ends = (
+        np.array([[part_of(s, steps) for s in row] for row in np.atleast_2d(at)])
+        for at in (first.start, first.step)
+    )
+    promised = np.select([(begins[0] == k)[:, None] for k in range(FOLDS)], [w.promised for w in windows])
+    return replace(first, promised=promised, valid=first.valid & (begins == ends))
