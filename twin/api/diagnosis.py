@@ -11,7 +11,6 @@ from twin.physics.particulars import Ship
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.diagnose import diagnose as judged
-from twin.study.diagnosis.tell_diagnosis import sentence
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -32,7 +31,7 @@ class Diagnosis(Result):
     @property
     def reason(self) -> str:
         """The sentence that goes with the verdict."""
-        return sentence(dict(self.data))
+        return str(self.data["sentence"])
 
     @property
     def effects(self) -> list[str]:

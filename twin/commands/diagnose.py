@@ -11,17 +11,16 @@ from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
 from twin.study.diagnosis.diagnose import diagnose
-from twin.study.diagnosis.tell_diagnosis import sentence, told
+from twin.study.diagnosis.tell_diagnosis import told
 from twin.study.estimation import identifiability
-from twin.study.update.adding import lasting
 
-EPILOG = """Verdicts: missing (named, with size and interval, and with what cannot be told from it),
-nothing_missing, unknown (something is there that no
-effect of the catalogue explains; resembles: what it looks like, where that is known by its form),
-undecided (the voyages cannot tell; one_of: the few of which one is surely there; next_manoeuvre: what to
-sail). Reference voyages are those of the same ship on which nothing was wrong: they set the floor below which
-an imperfect model is not called a missing effect. Exit code 4: a voyage cannot be used; 5: the ship file is
-not valid.
+EPILOG = """Verdicts: missing (named, lasting causes first, with size and interval, and with what cannot be
+told from it), nothing_missing, unknown (something is there that no effect of the catalogue explains;
+resembles: what it looks like, where that is known by its form), undecided (the voyages cannot tell; one_of:
+the few of which one is surely there; next_manoeuvre: what to sail). JSON has the reason, the facts that
+decided and the rivals (docs/diagnosis.md). Water and wind of the voyages stand beside every cause, in a part
+of their own (weather). Reference voyages are those of the same ship on which nothing was wrong: they say what
+an imperfect model leaves over anyway. Exit code 4: a voyage cannot be used; 5: the ship file is not valid.
 """
 
 
@@ -59,7 +58,7 @@ def run(args: argparse.Namespace) -> int:
     done = diagnose(voyages, ship, references, lambda text: print(f"{text} ...", file=sys.stderr))
     result = done.result | {
         "command": f"twin diagnose {' '.join(args.voyages)} --ship {args.ship}",
-        "verdict_text": sentence(done.result),
+        "verdict_text": done.result["sentence"],
         "files": {"ship": args.ship, "voyages": args.voyages},
     }
     page = sys.stderr if args.json == "-" else sys.stdout
@@ -94,7 +93,7 @@ def _next_command(args: argparse.Namespace, result: dict[str, Any]) -> str:
     voyages, sail = " ".join(args.voyages), ""
     if result["next_manoeuvre"]:
         sail = f"sail {result['next_manoeuvre']['manoeuvre']}, then twin diagnose with that voyage too"
-    if named := lasting(result["missing"]):  # what belongs to the voyage is no part of a ship file
-        add = f"twin add {' '.join(named)} --ship {args.ship} --voyage {voyages} -o better.toml"
+    if lasting := result["answer"]["lasting"]:
+        add = f"twin add {' '.join(lasting)} --ship {args.ship} --voyage {voyages} -o better.toml"
         return f"{sail}; or now: {add}" if sail else add
     return sail or f"twin compare {voyages} --ship {args.ship} --report compare.html"

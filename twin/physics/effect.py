@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 # by how much of its size a number may be off because nature writes the effect otherwise, unless more is known
 FORM = 0.1
 SCALES = ("force", "moment", "speed", "time", "length")
+OWNERS = ("ship", "instrument", "voyage")
 
 
 class Param(NamedTuple):
@@ -89,8 +90,14 @@ class Effect:
     report."""
 
     kind: ClassVar[str]
+    # one of OWNERS: what keeps it, also tomorrow; weather and water of a day belong to the voyage
+    belongs_to: ClassVar[str] = "ship"
     needs: ClassVar[tuple[str, ...]] = ()  # fields of Situation without which the effect is switched off
     needs_ship: ClassVar[tuple[str, ...]] = ()  # particulars without which it cannot be sized
+    # numbers of which each day brings a little: no water and no air stands still
+    every_day: ClassVar[tuple[str, ...]] = ()
+    # numbers that do, to first order about none, what another of its numbers does
+    copies: ClassVar[tuple[str, ...]] = ()
     # effects that are a part of this one, so that beside it they say nothing
     holds: ClassVar[tuple[str, ...]] = ()
     irregular: ClassVar[bool] = False  # whether it comes and goes with what no input shows
@@ -102,6 +109,8 @@ class Effect:
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
+        if cls.belongs_to not in OWNERS:
+            raise ValueError(f"{cls.__name__}.belongs_to = {cls.belongs_to!r}: one of {OWNERS}")
         dataclass(frozen=True)(cls)
 
     @classmethod
@@ -117,6 +126,24 @@ class Effect:
     def absent(cls, ship: "Ship") -> "Effect":
         """The effect at the size at which it does nothing."""
         return cls(**{p.name: p.null * p.scale(ship) for p in cls.params()})
+
+    @classmethod
+    def of_recorded_weather(cls) -> bool:
+        """Whether its cause is weather or water that was recorded: the cause is the voyage's, and its numbers
+        are the ship's answer to it."""
+        return cls.belongs_to == "voyage" and bool(set(cls.needs) - {"t"})
+
+    @classmethod
+    def is_weather(cls) -> bool:
+        """Whether it is water or weather of a voyage: a moving or shallow water, or what a recorded sea, wind
+        or bank does."""
+        return cls.belongs_to == "voyage" and (issubclass(cls, Flow) or cls.of_recorded_weather())
+
+    @classmethod
+    def lasts(cls) -> bool:
+        """Whether its numbers hold on another day: those of ship and instruments, and how the ship answers to
+        weather that is recorded."""
+        return cls.belongs_to != "voyage" or cls.of_recorded_weather()
 
     def values(self) -> dict[str, Number]:
         return {p.name: getattr(self, p.name) for p in self.params()}
@@ -188,6 +215,7 @@ class SensorFault(Effect):
     """The ship is right, the instrument is wrong."""
 
     kind = "SensorFault"
+    belongs_to = "instrument"
     # whether it is compass or gyro that is wrong: an antenna stands where the true heading puts it
     attitude: ClassVar[bool] = False
 

@@ -9,7 +9,9 @@ function rankingSection() {
   for (const c of RESULT.resembles || []) out.push(el("p.note", null, `It looks like this, which is no effect of the catalogue. ${c.says}`), candidate(c));
   for (const c of list) out.push(candidate(c));
   if (!out.length) out.push(el("p.note", null, "No candidate is worth a line."));
-  const missing = RESULT.missing || [];
+  if ((RESULT.weather || []).length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Today's water and wind, reckoned with whatever is missing: " + RESULT.weather.map((w) => `${w.effect} (${w.parameters.map((p) => `${p.name} ${num(p.value)} ${p.unit === "-" ? "" : p.unit}`.trim()).join(", ")})`).join("; ")));
+  if ((RESULT.rivals || []).length > 1) out.push(el("p.note", { style: { marginTop: "10px" } }, "Rivals (log Bayes factor behind the first; error on held-out parts): " + RESULT.rivals.map((r) => `${r.effects.join(" + ") || "nothing"} (${num(r.log_bayes_factor)}${r.error_m === null ? "" : `; ${num(r.error_m)} m`})`).join(", ")));
+  const missing = (RESULT.answer || {}).lasting || RESULT.missing || [];
   if (missing.length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Add what is missing, and see whether the error falls on measurements that were not used:"), command(addCommand(missing)));
   const words = (x) => (typeof x === "string" ? x : [x.effect, x.why || (x.lacks || x.not_measured || []).map((n) => `no ${n}`).join(", ")].filter(Boolean).join(": "));
   for (const [key, said] of [["not_judged", "Could not be judged: "], ["as_on_references", "No stronger than on the reference voyages, reckoned with and not called missing: "], ["not_visible", "Too small to be seen in these voyages, even at a plausible size: "]]) {

@@ -7,13 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bench.bundled import recorded
+from bench.reference import Case, simulate
 from twin import cli
 from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.physics.effects import catalogue
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.diagnose import diagnose
-from twin.study.diagnosis.tell_diagnosis import sentence, told
+from twin.study.diagnosis.tell_diagnosis import told
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +92,7 @@ def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_res
     assert like["effect"] == "RudderPlay" and "RudderPlay" not in catalogue()
     (gap,) = like["parameters"]
     assert gap["low95"] <= np.radians(2.5) <= gap["high95"] and gap["unit"] == "rad"
-    assert ("looks like RudderPlay: The rudder hangs loose") in sentence(result) and any(
+    assert ("looks like RudderPlay: The rudder hangs loose") in result["sentence"] and any(
         "gap" in line for line in told(result)
     )
 
@@ -105,16 +107,15 @@ def test_liquid_that_swings_in_a_slack_tank_is_no_load(tanker, voyages):
     assert like["effect"] == "SwayingMass" and share["name"] == "share" and 0.06 < share["value"] < 0.2
 
 
-def test_a_ship_whose_own_reference_voyages_are_half_unexplained_is_no_witness(tanker, voyages):
-    """Test: a stream that is named else, asked of a ship file that leaves half of what turns her unexplained.
-    Expected: undecided, and why."""
+def test_what_stands_clear_of_what_calibration_left_unexplained_is_named_all_the_same(tanker, voyages):
+    """Test: a strong stream, asked of a ship file that leaves half of what turns the ship unexplained.
+    Expected: it is the answer, for a log shows the water without any model of turning."""
     notes = tanker.notes["structural"]
-    coarse = notes | {"floor": notes["floor"] | {"share": [0.02, 0.05, 0.52]}}
+    coarse = notes | {name: notes[name] | {"share": [0.02, 0.05, 0.52]} for name in ("floor", "beside")}
     result = diagnose(
         [voyages["Current"]], replace(tanker, notes={**tanker.notes, "structural": coarse})
     ).result
-    assert result["verdict"] == "undecided" and result["missing"] == result["one_of"] == []
-    assert "left 52 % in yaw of the forces at work unexplained" in told(result)[0]
+    assert result["missing"] == ["Current"], "\n".join(told(result))
 
 
 def test_a_straight_voyage_is_not_enough_to_acquit_a_ship(tanker, voyages):
@@ -157,3 +158,18 @@ def test_references_given_on_the_command_count_like_a_calibration(tanker, voyage
     result = diagnose([voyages["HeadingBias"]], tanker, [voyages["calm"], voyages["calm too"]]).result
     assert result["missing"][:1] == ["HeadingBias"], "\n".join(told(result))
     assert np.isfinite(result["floor"]["temper"])
+
+
+def test_a_cause_is_named_beside_the_weather_of_an_ordinary_day(tanker):
+    """Test: wind and stream that the model does not know, and a fouled hull. Expected: the hull first, the
+    weather in a part of its own; only what lasts is offered for the ship file."""
+    hidden = (("Wind", 0.5), ("Current", 0.5), ("HullFouling", 1.0))
+    (sailed,) = simulate([Case("kvlcc2", "mixed", hidden=hidden, seed=909, duration_s=1200.0)])
+    result = diagnose([recorded("june", sailed.columns, every=10)], tanker).result
+    assert result["missing"][0] == "HullFouling" and result["answer"]["lasting"] == ["HullFouling"], (
+        "\n".join(told(result))
+    )
+    assert "Current" in {w["effect"] for w in result["weather"]}
+    assert "today's water and wind:" in told(result) and result["sentence"].startswith("Missing: HullFouling")
+    assert all(0.0 < c["probability"] <= 0.99 for c in result["candidates"]) and result["reason"] == "named"
+    assert result["rivals"][0]["log_bayes_factor"] == 0.0 and len(result["rivals"]) > 1

@@ -36,7 +36,12 @@ def asked(levered=None, **off_m):
         s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off, FLOOR_M) for s, off in sets.items()
     }
     return Led(
-        found, {"usual": 8.0, "rough": 16.0}, {(): 0.0} | (levered or {}), TEN, frozenset(["WaveDrift"])
+        found,
+        {"usual": 8.0, "rough": 16.0},
+        {(): 0.0} | (levered or {}),
+        TEN,
+        frozenset(["WaveDrift"]),
+        frozenset(),
     )
 
 
@@ -222,3 +227,17 @@ def test_two_that_lead_her_farther_astray_than_one_of_them_are_no_hypothesis():
     ):
         path = asked(nothing=20.0, SteeringLag=alone, SteeringLag_Loading=together)
         assert (both.effects in [h.effects for h in path.weigh([both, says("SteeringLag"), says()])]) is kept
+
+
+def test_weather_is_no_luxury_beside_a_cause():
+    """Test: a cause that leads the ship there alone, in a wind and with a second cause. Expected: the wind
+    costs nothing, the second cause does."""
+    path = replace(
+        asked(nothing=20.0, Wind=15.0, RudderWear=7.0, Wind_RudderWear=7.0, Loading_RudderWear=7.0),
+        weather=frozenset(["Wind"]),
+    )
+    windy, two = says("Wind", "RudderWear"), says("Loading", "RudderWear")
+    weighed = {h.effects: h.log_evidence for h in path.weigh([windy, two])}
+    assert weighed[windy.effects] == pytest.approx(windy.log_evidence) and weighed[
+        two.effects
+    ] == pytest.approx(two.log_evidence - LUXURY)

@@ -1,4 +1,4 @@
-"""Moments at which something pushed her."""
+"""Moments at which something pushed the ship."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -13,7 +13,7 @@ from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.diagnose import diagnose
 from twin.study.diagnosis.moments import CLEAR, Moment, moments, stretches
 from twin.study.diagnosis.refine import Found, refine
-from twin.study.diagnosis.tell_diagnosis import sentence, told
+from twin.study.diagnosis.tell_diagnosis import told
 from twin.study.estimation.columns import Unknown
 from twin.study.reference.evidence import Hypothesis, Nuisance, likeliest, posterior
 
@@ -57,7 +57,7 @@ def test_ships_that_pass_are_seen_when_they_pass_and_nobody_is_acquitted(tanker,
     passes = np.array(seen) / (11.0 * float(tanker.scale("time")))
     assert abs(np.exp(2j * np.pi * passes).mean()) > 0.8 and np.unique(np.rint(passes - passes[0])).size >= 2
     assert result["probabilities"]["nothing_missing"] < 0.5
-    assert "something pushed her" in "\n".join(told(result)) and "missing" in sentence(result)
+    assert "something pushed the ship" in "\n".join(told(result)) and "missing" in result["sentence"]
 
 
 def test_where_waves_toss_her_more_is_asked_of_a_push(monkeypatch, tanker, voyages):

@@ -109,7 +109,10 @@ def test_what_any_day_brings_is_as_much_as_the_days_had_whatever_its_direction()
         ("ExternalForce", "north"),
         ("ExternalForce", "turn_north"),
     ]
-    unknowns = [Unknown(owner, name, "", 0.0, 1.0, -9.0, 9.0) for owner, name in named]
+    unknowns = [
+        Unknown(owner, name, "", 0.0, 1.0, -9.0, 9.0, every_day=name in ("north", "east"))
+        for owner, name in named
+    ]
     much = of_any_day(np.array([1.0, 2.0, -3.0, 0.5, 7.0]), np.array([0.1, 0.6, 0.8, 0.75, 9.0]), unknowns)
     stream = np.sqrt(0.5 * ((0.6 + 2.0**2) + (0.8 + 3.0**2)))
     np.testing.assert_allclose(much, [0.0, stream, stream, 1.0, 0.0])

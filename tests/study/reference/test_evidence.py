@@ -13,9 +13,11 @@ from twin.study.reference.evidence import (
     given,
     log_evidence,
     posterior,
-    weigh_all,
+    weigh_sets,
     weigh_with,
 )
+
+SETS = [("A",), ("B",), ("C",), ("A", "B"), ("A", "C"), ("B", "C")]
 
 
 def unknowns():
@@ -35,7 +37,7 @@ def reduced():
 
 
 def test_low_rank_steps_give_the_evidence_of_the_whole_posterior(reduced):
-    for chosen, value in weigh_all(reduced, ["A", "B", "C"]):
+    for chosen, value in weigh_sets(reduced, SETS):
         direct = log_evidence(reduced, chosen, posterior(reduced, chosen))
         assert value == pytest.approx(direct, abs=1e-8), chosen
 
@@ -44,14 +46,14 @@ def test_the_same_where_any_day_brings_some_of_an_effect(reduced):
     """B is no spike but half as wide as when it is there: then it takes some of the credit also when it is
     not."""
     usual = replace(reduced, spike=np.array([SPIKE, 0.5, 0.5, SPIKE]))
-    for chosen, value in weigh_all(usual, ["A", "B", "C"]):
+    for chosen, value in weigh_sets(usual, SETS):
         assert value == pytest.approx(log_evidence(usual, chosen, posterior(usual, chosen)), abs=1e-8), chosen
-    odds = [dict(weigh_all(r, ["A", "B", "C"])) for r in (reduced, usual)]
+    odds = [dict(weigh_sets(r, SETS)) for r in (reduced, usual)]
     assert odds[1][("B",)] - odds[1][()] < 0.2 * (odds[0][("B",)] - odds[0][()])
 
 
 def test_the_set_that_made_the_data_has_the_most_evidence(reduced):
-    best = max(weigh_all(reduced, ["A", "B", "C"]), key=lambda item: item[1])
+    best = max(weigh_sets(reduced, SETS), key=lambda item: item[1])
     assert best[0] == ("B",)
 
 
@@ -72,7 +74,7 @@ def test_evidence_does_not_depend_on_where_the_equations_were_linearised(reduced
 
 def test_an_effect_of_the_wrong_sign_is_not_believed(reduced):
     wrong = Reduced(reduced.A, np.array([0.0, 0.0, 0.0, -60.0]), reduced.base, unknowns(), np.zeros(4))
-    found = dict(weigh_all(wrong, ["A", "B", "C"]))
+    found = dict(weigh_sets(wrong, SETS))
     assert found[("C",)] < found[()] + 1.0
 
 

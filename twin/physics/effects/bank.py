@@ -17,6 +17,7 @@ from twin.physics.state import Number, Situation
 class Bank(Force):
     """A bank close by sucks the ship toward it and pushes her bow away, with the square of her speed."""
 
+    belongs_to = "voyage"
     needs = ("bank_port", "bank_starboard")
     source = (
         "Norrbin (1974) Bank effects on a ship moving through a short dredged channel, 10th Symp. Naval "

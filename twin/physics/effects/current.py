@@ -13,6 +13,8 @@ class Current(Flow):
     """A steady current carries the ship over ground; hull, propeller and rudder feel only the motion through
     the water."""
 
+    belongs_to = "voyage"
+    every_day = ("north", "east")
     stream = True
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.3"
 

@@ -15,6 +15,8 @@ class ExternalForce(Force):
     """Something pulls at her from a fixed bearing: a mooring or tug line from shore, a swell that was not
     measured."""
 
+    belongs_to = "voyage"
+    every_day = ("north", "east")
     source = (
         "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 2 (rotation from NED to body)"
     )

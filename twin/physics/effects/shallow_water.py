@@ -20,6 +20,7 @@ class ShallowWater(Flow):
     """Little water under the keel: she slows, turns wider and answers later, the more the closer the
     bottom."""
 
+    belongs_to = "voyage"
     needs = ("depth",)
     source = (
         "Kijima, Katsuno, Nakiri & Furukawa (1990) J. Soc. Naval Arch. Japan 168 (shallow-water correction); "

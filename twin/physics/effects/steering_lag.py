@@ -22,6 +22,7 @@ class SteeringLag(Lag):
     """The rudder answers late and slowly: the gear's dead time, its greatest rate and how it eases into an
     angle stand between order and angle."""
 
+    copies = ("ease",)
     source = "SOLAS II-1/29 (65 deg in 28 s); Van Amerongen (1982) Adaptive steering of ships, ch. 2"
 
     delay: float = param(

@@ -32,6 +32,7 @@ class VaryingCurrent(Flow):
     """A current that changes in the course of the voyage, as a tide does or a stream the ship sails into and
     out of."""
 
+    belongs_to = "voyage"
     stream = True
     needs = ("t",)
     holds = ("Current",)

@@ -24,6 +24,7 @@ class WaveDrift(Force):
     """The sea pushes the ship slowly along with the waves, slows her in head seas and turns her across
     them."""
 
+    belongs_to = "voyage"
     needs = ("H_s", "wave_to")  # T_p is used where it is known
     irregular = True
     lever = 0.05

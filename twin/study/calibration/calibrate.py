@@ -32,7 +32,7 @@ from twin.study.reference.derivatives import (
     with_derivatives,
 )
 from twin.study.reference.gear import with_or_without_gear
-from twin.study.reference.nuisance import TEMPER, WEATHER, instruments, temper_of
+from twin.study.reference.nuisance import TEMPER, instruments, temper_of
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.seaway import levelled, swung
 from twin.study.reference.structure import structural_floor
@@ -174,7 +174,7 @@ def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
     """The ship with what remains of these voyages, in place of what an earlier calibration left."""
     today, voyages = datetime.date.today().isoformat(), [s.provenance() for s in fitted]
     # tomorrow's wind is another one
-    names = [name for e in ship.effects if (name := type(e).__name__) not in WEATHER]
+    names = [type(e).__name__ for e in ship.effects if not e.of_recorded_weather()]
     structural = {
         "floor": plain(asdict(core.floor)),
         "temper": core.temper,

@@ -86,20 +86,15 @@ def _no_better(held_out: Sequence[Mapping[str, Any]]) -> list[str]:
     ]
 
 
-def coarse_axes(share: Sequence[float]) -> list[str]:
-    """In which the calibration leaves so much of the forces at work unexplained that the model is no witness,
-    in words."""
-    return [f"{100 * s:.0f} % in {axis}" for s, axis in zip(share, AXES, strict=True) if s > LARGE]
-
-
 def _coarse(share: Sequence[float]) -> list[str]:
-    large = coarse_axes(share)
+    """In which axes the calibration leaves much of the forces at work unexplained."""
+    large = [f"{100 * s:.0f} % in {axis}" for s, axis in zip(share, AXES, strict=True) if s > LARGE]
     if not large:
         return []
     return [
-        f"{', '.join(large)} of the forces at work stays unexplained, so twin diagnose will name nothing: "
-        "give more, or calmer, reference voyages, "
-        "and leave out one that stands apart (twin compare)"
+        f"{', '.join(large)} of the forces at work stays unexplained, so that twin diagnose sees only what "
+        "stands clear of that: give more, or "
+        "calmer, reference voyages, and leave out one that stands apart (twin compare)"
     ]
 
 

@@ -12,7 +12,7 @@ from twin.physics.effects import catalogue as known_effects
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
-from twin.study.diagnosis.case import CERTAIN, MOST_SEGMENTS, ODDS, ODDS_MEASURED, ODDS_UNNAMED, Case, settle
+from twin.study.diagnosis.case import MOST_SEGMENTS, ODDS, ODDS_UNNAMED, ODDS_WEATHER, Case, settle
 from twin.study.estimation.columns import (
     FORM,
     ROUGH,
@@ -70,7 +70,7 @@ def of_tracks(
     unnamed = {e.__name__: e for e in UNNAMED}
     judged = catalogue | unnamed
     candidates = judgeable(tracks, model, judged)
-    no_news = as_usual(strengths(tracks, model, catalogue), _felt_before(references, model, catalogue))
+    as_before = as_usual(strengths(tracks, model, catalogue), _felt_before(references, model, catalogue))
     effects = tuple(u for name in candidates for u in effect_unknowns(judged[name], model))
     nuisance, rough = nuisance_unknowns(model, catalogue), rough_unknowns(model)
     core = [u for u in (*nuisance, *rough) if u.owner in ("core", FORM, SEA, ROUGH)]
@@ -103,13 +103,15 @@ def of_tracks(
         floor,
         path,
         temper,
-        _odds(tracks, candidates, ship)
-        | dict.fromkeys(no_news, CERTAIN)
-        | dict.fromkeys(unnamed, ODDS_UNNAMED),
+        {
+            n: ODDS_WEATHER if e.is_weather() else ODDS_UNNAMED if n in unnamed else ODDS
+            for n, e in judged.items()
+        },
         _lines(tracks, model, unknowns, judged, MOST_SEGMENTS),
         any(manoeuvred(t, ship) for t in tracks),
         floor.white,
-        no_news,
+        floor.sensor,
+        as_before,
         tuple(unnamed),
     )
     return settle(case)
@@ -172,21 +174,3 @@ def _lines(
         replace(linearise(p, m, unknowns, catalogue), slack=s)
         for p, m, s in zip(parts, models, slack, strict=True)
     )
-
-
-def _odds(tracks: Sequence[Track], candidates: Sequence[str], ship: Ship) -> dict[str, float]:
-    """Prior odds of each candidate: higher where its cause was measured to be strong."""
-    strong = {
-        "Wind": _typical(tracks, "wind_speed") > max(8.0 * min(1.0, float(ship.U_0) / 8.0), 0.5),
-        "WaveDrift": _typical(tracks, "H_s") > 0.008 * float(ship.L_pp),
-        "ShallowWater": _typical(tracks, "depth", np.nanmin) < 3.0 * float(ship.T),
-        "Bank": min(_typical(tracks, "bank_port", np.nanmin), _typical(tracks, "bank_starboard", np.nanmin))
-        < 6.0 * float(ship.B),
-    }
-    present = {type(e).__name__ for e in ship.effects}
-    return {name: ODDS_MEASURED if strong.get(name) and name not in present else ODDS for name in candidates}
-
-
-def _typical(tracks: Sequence[Track], name: str, of: Callable[[np.ndarray], float] = np.nanmedian) -> float:
-    values = [of(t.weather[name]) for t in tracks if name in t.weather]
-    return float(max(values)) if values and of is np.nanmedian else float(min(values)) if values else np.nan

@@ -52,8 +52,7 @@ WAVES = 1.0  # fast part of the floor, of a standard acceleration, in the worst 
 ODDS = 0.03  # of an effect about which nothing is known
 ODDS_UNNAMED = 0.01  # of what is no member of the catalogue
 ODDS_WEAK = 0.002  # when it needs a cause that was measured to be too weak to show
-CERTAIN = 1.0  # when it was as strong on the reference voyages
-ODDS_MEASURED = 0.25  # when its cause was measured to be strong
+ODDS_WEATHER = 1.0  # of each kind of water and weather on a voyage: as likely there as not
 
 
 @dataclass(frozen=True)
@@ -74,8 +73,9 @@ class Case:
     lines: tuple[Linear, ...]  # of what is read of each track
     excited: bool  # whether one of the voyages holds a manoeuvre
     white: tuple[float, float, float]  # fast part of the floor on the reference voyages, before `settle`
-    # weather that the reference voyages felt as much: part of a hypothesis, never of the answer
-    no_news: tuple[str, ...] = ()
+    scatter: float = 1.0  # of the readings on the reference voyages, before `settle`
+    # weather that the reference voyages felt as much, so that it is never the answer
+    as_before: tuple[str, ...] = ()
     # what is known by its form alone: part of a hypothesis that is then something unknown
     unnamed: tuple[str, ...] = ()
 
@@ -84,13 +84,27 @@ class Case:
         """The effects that the model has: of these a change is asked."""
         return frozenset(type(e).__name__ for e in self.model.effects)
 
-    def news(self, chosen: Sequence[str]) -> tuple[str, ...]:
-        """Those of a set of effects that were not there on the reference voyages."""
-        return tuple(name for name in chosen if name not in self.no_news)
+    @cached_property
+    def weather(self) -> tuple[str, ...]:
+        """The candidates that are water or weather of these voyages: a nuisance of every hypothesis, which
+        takes no cause's place."""
+        return tuple(name for name in self.candidates if self.catalogue[name].is_weather())
+
+    def causes(self, chosen: Sequence[str]) -> tuple[str, ...]:
+        """Those of a set of effects that are no weather."""
+        return tuple(name for name in chosen if name not in self.weather)
+
+    def day(self, chosen: Sequence[str]) -> tuple[str, ...]:
+        """And those that are."""
+        return tuple(name for name in chosen if name in self.weather)
 
     def names(self, chosen: Sequence[str]) -> tuple[str, ...]:
-        """And those of them that may be the answer."""
-        return tuple(name for name in self.news(chosen) if name not in self.unnamed)
+        """The causes that may be the answer."""
+        return tuple(name for name in self.causes(chosen) if name not in self.unnamed)
+
+    def ordered(self, chosen: Sequence[str]) -> tuple[str, ...]:
+        """A set of effects in the order in which all are kept."""
+        return tuple(name for name in self.candidates if name in chosen)
 
     def reduced(
         self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None
@@ -133,7 +147,8 @@ class Case:
         ), kept
 
     def log_prior(self, chosen: Sequence[str], world: str) -> float:
-        if (world == "flooding" and "VaryingCurrent" not in chosen) or self._twice(chosen):
+        changing = any(self.catalogue[name].is_weather() and self.catalogue[name].holds for name in chosen)
+        if (world == "flooding" and not changing) or self._twice(chosen):
             return -np.inf
         return float(np.log(WORLDS[world].probability) + sum(np.log(self.odds[name]) for name in chosen))
 

@@ -12,32 +12,31 @@ from twin.recording.checks import of_voyages
 from twin.recording.inputs import INPUTS
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
-from twin.study.calibration.doubts import coarse_axes
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.assemble import assemble, unjudged_because
-from twin.study.diagnosis.case import Case
+from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.consider import Considered, consider
+from twin.study.diagnosis.decision import decide
 from twin.study.diagnosis.led import held_out_error, horizon_s
-from twin.study.diagnosis.leftover import (
-    asked_for,
-    changed,
-    explaining,
-    helpful,
-    missed,
-    too_small,
-    undone,
-    weathered,
-)
 from twin.study.diagnosis.manoeuvres import next_manoeuvre
-from twin.study.diagnosis.moments import moments
 from twin.study.diagnosis.overtime import over_time
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.search import search
-from twin.study.diagnosis.verdict import SURE, alike, group, judge, parameters, shows, typical_force, weights
+from twin.study.diagnosis.verdict import (
+    alike,
+    capped,
+    parameters,
+    restless_water,
+    rivals,
+    typical_force,
+    weights,
+)
 from twin.study.estimation.start import waves_on
 
 SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
 LEAST = 0.05
+SOME = 0.5  # probability from which a kind of weather is told
 
 
 @dataclass(frozen=True)
@@ -59,80 +58,61 @@ def diagnose(
     case = assemble(voyages, ship, references, progress)
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed)
-    best = found[w.best.effects]
-    explain = explaining(case, weighed, found)
-    no_pair, rough = undone(case, best), weathered(case, found[()])
-    leads = asked_for(case, found, w.effects, case.names(helpful(case, found, explain)), rough)
-    explained = not case.news(w.best.effects) or (bool(explain) and not no_pair)
-    if too_small(case, found, explain, rough):
-        leads += [n for n in case.names(explain) if w.effects[n] >= SURE and changed(case, found[explain], n)]
-    like = {name: alike(case, weighed, name) for name in case.names(w.best.effects)}
-    sharp = shows(seen) and not missed(found[()] if case.news(w.best.effects) else best)
-    blurred = no_pair or rough or (not explained and not missed(found[()]))
-    coarse, happened = coarse_axes(case.path.share), moments(case, best)
-    able = case.excited and not coarse
-    verdict, missing = judge(
-        weighed,
-        w,
-        like,
-        leads,
-        able=able,
-        sharp=sharp,
-        explained=explained,
-        blurred=blurred,
-        pushed=bool(happened),
-    )
-    nothing = 0.0 if happened and verdict == "unknown" else w.nothing
-    likely = [n for n in sorted(w.effects, key=lambda n: -w.effects[n]) if w.effects[n] >= LEAST][:SHOWN]
-    likely = sorted(dict.fromkeys([*missing, *likely]), key=lambda n: -w.effects[n])
+    progress("gathering the facts")
+    considered = consider(case, weighed, found, seen, w)
+    facts, decision = considered.facts, decide(considered.facts)
+    nothing = 0.0 if decision.reason == "pushed" else facts.nothing
+    unknown = 1.0 - nothing if decision.verdict == "unknown" else facts.unknown
+    p = w.effects | {name: w.weather[name] for name in decision.missing if name in w.weather}
+    likely = [n for n in sorted(p, key=lambda n: -p[n]) if p[n] >= LEAST][:SHOWN]
+    likely = [*decision.missing, *(n for n in likely if n not in decision.missing)]
     progress("predicting held-out parts")
-    candidates = [_candidate(case, weighed, found, missing, name, w.effects[name]) for name in likely]
-    resembles = [
-        _candidate(case, weighed, found, missing, name, p) for name, p in w.unnamed.items() if p >= SURE
+    candidates = [
+        _candidate(case, weighed, found, considered, decision.missing, name, p[name]) for name in likely
     ]
+    listed = [c for c in candidates if c]
     if w.best.effects:
         progress("asking each part of the voyages")
-        parts = over_time(case, best, w.best.effects)
-        for c in candidates:
-            if c.get("effect") in parts:
+        parts = over_time(case, found[w.best.effects], w.best.effects)
+        for c in listed:
+            if c["effect"] in parts:
                 c["over_time"] = parts[c["effect"]]
+    visible = {n: share for n, share in w.effects.items() if seen[n]}
+    base = found[considered.base]
     result = {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
-        "verdict": verdict,
-        "missing": missing,
-        "one_of": group(weighed, w) if verdict == "undecided" and able and explained else [],
-        "probabilities": {
-            "nothing_missing": nothing,
-            "unknown": w.unknown + w.nothing - nothing if explained else 1.0 - nothing,
-        },
-        "candidates": [c for c in candidates if c],
-        "resembles": resembles if verdict in ("unknown", "missing") else [],
-        "undo_each_other": list(w.best.effects) if no_pair else [],
-        "unclear": [
-            n
-            for n in explain
-            if n not in leads and (case.catalogue[n].kind == "SensorFault" or n in case.present)
+        "verdict": decision.verdict,
+        "reason": decision.reason,
+        "missing": list(decision.missing),
+        "more": decision.more,
+        "one_of": list(facts.one_of) if decision.reason == "one_of" else [],
+        "probabilities": {"nothing_missing": capped(nothing), "unknown": capped(unknown)},
+        "candidates": listed,
+        "rivals": rivals(weighed, found),
+        "resembles": [
+            _candidate(case, weighed, found, considered, (), n, w.unnamed[n]) for n in facts.resembles
         ],
-        "moments": [m.told(case.model) for m in happened],
+        "answer": {
+            "not_named": decision.not_named,
+            "lasting": [n for n in decision.missing if case.catalogue[n].lasts()],
+        },
+        "moments": [m.told(case.model) for m in considered.pushes],
         "path": {
             "horizon_s": horizon_s(case.tracks[0], case.model),
-            "error_without": found[()].off_m,
-            "error_floor": found[()].floor_m,
+            "error_without": base.off_m,
+            "error_floor": base.floor_m,
         },
-        "next_manoeuvre": _next(
-            case,
-            found,
-            verdict,
-            missing,
-            candidates,
-            {n: p for n, p in w.effects.items() if seen[n]},
-            progress,
-        ),
+        "next_manoeuvre": _next(case, found, decision.verdict, decision.missing, listed, visible, progress),
         "not_judged": _not_judged(case),
-        "as_on_references": list(case.no_news),
+        "weather": [
+            _weather(case, weighed, found, name, share) for name, share in w.weather.items() if share >= SOME
+        ],
+        "as_on_references": list(case.as_before),
         "not_visible": [
-            n for n, can in seen.items() if not can and n not in [*missing, *case.no_news, *case.present]
+            n
+            for n, can in seen.items()
+            if not can and n not in [*decision.missing, *case.as_before, *case.present]
         ],
         "floor": {
             "share_surge_sway_yaw": case.floor.share,
@@ -141,12 +121,11 @@ def diagnose(
         },
         "voyages": [v.name for v in voyages],
         "waves": waves_on(case.tracks),
-        "weather_may_mislead": rough,
-        "voyages_hold_a_manoeuvre": case.excited,
-        "calibrated_too_coarsely": coarse,
         "references": [v.name for v in references],
         "data_checks": of_voyages([*voyages, *references], ship),
+        "facts": facts.told(),
     }
+    result["sentence"] = decision.sentence(result)
     return Diagnosis(plain(result), case, found)
 
 
@@ -154,6 +133,7 @@ def _candidate(
     case: Case,
     weighed: Sequence[Any],
     found: dict[tuple[str, ...], Found],
+    considered: Considered,
     missing: Sequence[str],
     name: str,
     probability: float,
@@ -167,16 +147,47 @@ def _candidate(
     best = found[sets[0]]
     return {
         "effect": name,
-        "probability": probability,
+        "belongs_to": case.catalogue[name].belongs_to,
+        "probability": capped(probability),
         "parameters": parameters(case, sized(case, best), name),
         "typical_force": typical_force(case, best.model, name),
         "error_horizon_s": horizon_s(case.tracks[0], case.model),
-        "error_without": found[()].off_m,
+        "error_without": _without(case, found, considered, name),
         "error_with": held_out_error(case, best) if np.isnan(best.off_m) else best.off_m,
         "error_floor": best.floor_m,
         "together_with": [n for n in best.hypothesis.effects if n != name],
-        "cannot_be_told_from": alike(case, weighed, name),
+        "cannot_be_told_from": list(considered.like.get(name) or alike(case, weighed, name)),
         "says": (case.catalogue[name].__doc__ or "").strip().splitlines()[0],
+    }
+
+
+def _without(case: Case, found: dict[tuple[str, ...], Found], considered: Considered, name: str) -> float:
+    """Open-loop error without a cause: with the day's weather alone; without a kind of weather: of the model
+    as it is [m]."""
+    return found[() if name in case.weather else considered.base].off_m
+
+
+def _weather(
+    case: Case, weighed: Sequence[Any], found: dict[tuple[str, ...], Found], name: str, probability: float
+) -> dict[str, Any]:
+    """One kind of today's water and weather, with its numbers, as it stands in the likeliest set that holds
+    it; or how restless the water is."""
+    sets = [h.effects for h in weighed if name in h.effects and h.effects in found]
+    best = (
+        found[sets[0]]
+        if sets and (name in weighed[0].effects or not restless_water(case, weighed[0]))
+        else None
+    )
+    out = {"effect": name, "belongs_to": case.catalogue[name].belongs_to, "probability": capped(probability)}
+    if best is None:
+        flow = WORLDS[weighed[0].world].flow * case.floor.flow * float(case.model.ship.U_0)
+        return out | {
+            "parameters": [{"name": "scatter", "value": flow, "unit": "m/s"}],
+            "typical_force": None,
+        }
+    return out | {
+        "parameters": parameters(case, sized(case, best), name),
+        "typical_force": typical_force(case, best.model, name),
     }
 
 
@@ -192,11 +203,10 @@ def _next(
     """What to sail next, when two effects stand in each other's way or the voyages could not tell."""
     if verdict == "nothing_missing":
         return None
-    listed = [c for c in candidates if c]
     rivals = next(
         (
             (c["effect"], o)
-            for c in listed
+            for c in candidates
             for o in c["cannot_be_told_from"]
             if c["effect"] in missing or verdict != "missing"
         ),

@@ -19,7 +19,6 @@ from twin.study.estimation.innovations import Floor, innovate
 from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
 from twin.study.prediction.openloop import MODEL, STRUCTURE, Windows, coarse, predict
 from twin.study.reference.evidence import Hypothesis, given, posterior, reduce
-from twin.study.reference.nuisance import DAILY
 from twin.study.reference.structure import once_off
 from twin.study.track.track import Track
 
@@ -45,6 +44,7 @@ class Led:
     levered: Mapping[Sets, float]  # [m] and what each may leave whose side force attacks elsewhere along her
     windows: float  # that do not overlap, and no more than MOST
     irregular: frozenset[str]  # effects that come and go
+    weather: frozenset[str]  # effects that are no cause, and no luxury
 
     def log_probability(self, h: Hypothesis) -> float:
         """Of the path under a hypothesis; one that was not asked leads no worse than the best part of it that
@@ -60,27 +60,24 @@ class Led:
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The same hypotheses with this evidence too, best first, but for those that spoil what a part of
         them does. As far as one effect leads her there alone, two are a luxury."""
-        luxury = max(
-            0.0,
-            LUXURY
-            + max(
-                (self._path(f.off_m, f.floor_m) for s, f in self.found.items() if len(s) == 1),
-                default=-LUXURY,
-            ),
-        )
+        single = (self._path(f.off_m, f.floor_m) for s, f in self.found.items() if len(self._causes(s)) == 1)
+        luxury = max(0.0, LUXURY + max(single, default=-LUXURY))
         kept = [h for h in weighed if not self._spoils(h.effects)]
-        extra = (self.log_probability(h) - luxury * (len(h.effects) > 1) for h in kept)
+        extra = (self.log_probability(h) - luxury * max(0, len(self._causes(h.effects)) - 1) for h in kept)
         return sorted(
             (replace(h, log_evidence=h.log_evidence + e) for h, e in zip(kept, extra, strict=True)),
             key=lambda h: -h.log_weight,
         )
+
+    def _causes(self, effects: Sets) -> Sets:
+        return tuple(name for name in effects if name not in self.weather)
 
     def _spoils(self, effects: Sets) -> bool:
         """Whether a set leads her farther off than is usual, and than a part of it does: of two that are
         there neither does that, but one that mends the steps of another's form."""
         own, parts = (
             self.found.get(effects),
-            (f.off_m for s, f in self.found.items() if s and set(s) < set(effects)),
+            (f.off_m for s, f in self.found.items() if self._causes(s) and set(s) < set(effects)),
         )
         return (
             own is not None
@@ -106,7 +103,7 @@ def led(
     off = {
         s: known[s] if s in known else held_out_error(case, f)
         for s, f in found.items()
-        if not s or likely[s] > best - REACH
+        if not case.causes(s) or likely[s] > best - REACH
     }
     floor = before.floor if before else _floors(case)
     # the floor has the others
@@ -122,7 +119,7 @@ def led(
     ends = {s: _floor(plain(found[s].hypothesis), floor, off[()], irregular, levered[s]) for s in off}
     asked = {s: replace(found[s], off_m=m, floor_m=ends[s]) for s, m in off.items()}
     windows = min(MOST, sum((len(t) - 1) * t.h / horizon_s(t, case.model) for t in case.tracks))
-    return Led(asked, floor, levered, windows, irregular)
+    return Led(asked, floor, levered, windows, irregular, frozenset(case.weather))
 
 
 def _floors(case: Case) -> dict[str, float]:
@@ -168,7 +165,8 @@ def held_out_error(case: Case, found: Found) -> float:
     no other hour tells of it."""
     chosen = found.hypothesis.effects
     lines, at = standing(case, found)
-    day = {label: width for label, width in case.nuisance.daily.items() if label in DAILY}
+    every_day = {u.label for u in case.effects if u.every_day}
+    day = {label: width for label, width in case.nuisance.daily.items() if label in every_day}
     mine = [i for i, u in enumerate(case.effects) if u.owner in chosen or u.label in day]
     most = np.array(
         [np.inf if u.owner in chosen else ANY_DAY * day.get(u.label, 0.0) / u.sd for u in case.effects]

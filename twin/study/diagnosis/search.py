@@ -1,27 +1,32 @@
-"""The search for what is missing: every effect and every pair in a linear pass, then the best again where
-they stand.
+"""The search for what is missing: every cause and every pair, beside the day's weather, in a linear pass;
+then the best where they stand.
 
 The linear pass costs milliseconds a hypothesis, and is right for small effects. Then the best hypothesis that
 was not yet judged about its own size is, and with it all that have one effect more, until none is left that
-could still win."""
+could still win. Water and weather of the voyages are a nuisance of every hypothesis: any of them may stand
+beside any cause, and takes no cause's place."""
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 
 from twin.physics.effect import SensorFault
 from twin.study.diagnosis.altered import floats
 from twin.study.diagnosis.case import ODDS_WEAK, WORLDS, Case
-from twin.study.diagnosis.led import REACH, Led, led
-from twin.study.diagnosis.leftover import NEARLY, answer
+from twin.study.diagnosis.consider import left_over
+from twin.study.diagnosis.decision import NEARLY, explained
+from twin.study.diagnosis.led import Led, led
 from twin.study.diagnosis.refine import Found, Sets, refine
 from twin.study.diagnosis.steady import steady
 from twin.study.estimation.columns import Unknown
-from twin.study.reference.evidence import Hypothesis, Reduced, boxed, posterior, weigh_all
-from twin.study.reference.nuisance import DAILY
+from twin.study.reference.evidence import Hypothesis, Reduced, boxed, posterior, weigh_sets
 
-MOST = 2  # effects at once that would be news
+MOST = 3  # causes at once
+AT_FIRST = 2  # of which so many in the linear pass; one more only beside what was judged about its own size
+KINDS = 3  # of weather at once in the linear pass
+DAYS = 2  # sets of weather beside which every pair of causes is asked
 ROUNDS = 20  # hypotheses judged about their own size, at most
 SINGLES = 3  # of which so many single effects first, unless nothing at all explains the voyages
 # and so many more single effects, when nothing plain was found, or what was found (nothing, too) leaves too
@@ -43,7 +48,7 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
     whether each candidate, had it its plausible size, would have shown."""
     progress("every effect and every pair")
     worlds = dict(zip(WORLDS, case.reduced(case.lines, case.worlds(list(WORLDS))), strict=True))
-    seen = {name: visible(worlds["usual"], name) for name in case.names(case.candidates)}
+    seen = {name: visible(worlds["usual"], name) for name in case.candidates if name not in case.unnamed}
     weak = [name for name in seen if not seen[name] and case.catalogue[name].needs]
     case = replace(case, odds=dict(case.odds) | dict.fromkeys(weak, ODDS_WEAK))
     book = _Book(case, worlds)
@@ -68,12 +73,10 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
 
 
 def _explained(case: Case, weighed: list[Hypothesis], found: dict[Sets, Found]) -> bool:
-    best, nothing = weighed[0].effects, found[()]
-    return (
-        bool(answer(case, weighed, found, best, strict=True))
-        if best
-        else nothing.off_m <= NEARLY * nothing.floor_m
-    )
+    best = weighed[0].effects
+    if not case.causes(best):
+        return found[best].off_m <= NEARLY * found[best].floor_m
+    return explained(left_over(case, weighed, found, best))
 
 
 def visible(reduced: Reduced, name: str) -> bool:
@@ -83,6 +86,29 @@ def visible(reduced: Reduced, name: str) -> bool:
     return (
         0.5 * float(np.max(np.diag(A))) - 0.5 * float(np.linalg.slogdet(A + np.eye(rows.size))[1]) > VISIBLE
     )
+
+
+def _linear(case: Case, reduced: Reduced, world: str) -> list[tuple[Sets, float]]:
+    """Log evidence of weather alone and with each cause, and of every pair of causes beside the likeliest
+    sets of weather."""
+    some = [name for name in case.weather if case.odds[name] > ODDS_WEAK]
+    days = [
+        day
+        for size in range(KINDS + 1)
+        for day in combinations(some, size)
+        if np.isfinite(case.log_prior(day, "usual"))
+    ]
+    causes = case.causes(case.candidates)
+    told = weigh_sets(
+        reduced, [case.ordered((*day, *few)) for day in days for few in ((), *combinations(causes, 1))]
+    )
+    likely: dict[Sets, float] = {}
+    for chosen, evidence in told:
+        day, weight = case.day(chosen), evidence + case.log_prior(chosen, world)
+        likely[day] = max(weight, likely.get(day, -np.inf))
+    best = sorted(likely, key=lambda day: -likely[day])[:DAYS]
+    more = [few for size in range(2, AT_FIRST + 1) for few in combinations(causes, size)]
+    return [*told, *weigh_sets(reduced, [case.ordered((*day, *few)) for day in best for few in more])]
 
 
 class _Book:
@@ -96,15 +122,19 @@ class _Book:
         # with a stream that may change and did not: no set that holds one of these is asked again
         self.steady: list[Sets] = []
         for world, reduced in worlds.items():
-            for chosen, evidence in weigh_all(reduced, case.candidates, MOST):
+            for chosen, evidence in _linear(case, reduced, world):
                 self._enter(Hypothesis(chosen, world, evidence, case.log_prior(chosen, world)))
         nothing = max((h for h in self.entries.values() if not h.effects), key=lambda h: h.log_weight)
+        day = max(
+            (h for h in self.entries.values() if not case.causes(h.effects)), key=lambda h: h.log_weight
+        ).effects
         self.found: dict[Sets, Found] = {(): Found(nothing, posterior(worlds[nothing.world], ()), case.model)}
         ranked = self.weighed()
-        # none when the plain answer is that nothing is there
-        first = 0 if not ranked[0].effects and WORLDS[ranked[0].world].plain else SINGLES
+        quiet = not case.causes(ranked[0].effects) and WORLDS[ranked[0].world].plain
+        first = 0 if quiet else SINGLES  # none when the plain answer is that nothing is there
         singles = self._promising()
         self.first = [
+            day,
             *singles[:first],
             *((*self._of_the_day(), *filter(self._of_another_moment, singles)) if first else ()),
         ]
@@ -125,14 +155,18 @@ class _Book:
 
     def _promising(self) -> list[Sets]:
         """The single effects that explain something, best first."""
-        ranked = self.weighed()
-        nothing = {h.world: h.log_evidence for h in ranked if not h.effects}
-        singles: list[Sets] = [
+        ranked, case = self.weighed(), self.case
+        none = {(h.effects, h.world): h.log_evidence for h in ranked if not case.causes(h.effects)}
+        ones = [h for h in ranked if len(case.causes(h.effects)) == 1]
+        earned = (
             h.effects
-            for h in ranked
-            if len(h.effects) == 1 and h.log_evidence > nothing.get(h.world, -np.inf) + EARNED
-        ]
-        return list(dict.fromkeys(singles))
+            for h in ones
+            if h.log_evidence > none.get((case.day(h.effects), h.world), -np.inf) + EARNED
+        )
+        best: dict[Sets, Sets] = {}
+        for chosen in earned:
+            best.setdefault(case.causes(chosen), chosen)
+        return list(best.values())
 
     def _of_the_day(self) -> list[Sets]:
         """What every day brings much of on this ship: to first order what is usual takes the credit, and only
@@ -140,14 +174,14 @@ class _Book:
         usual = {
             u.owner: self.case.nuisance.daily.get(u.label, 0.0) / u.sd
             for u in self.case.effects
-            if u.label in DAILY
+            if u.every_day
         }
         return [(name,) for name, width in usual.items() if width > MUCH]
 
     def _of_another_moment(self, chosen: Sets) -> bool:
         """Whether an instrument shows what was true before: about none, slopes of this moment tell little of
         it."""
-        kinds = [self.case.catalogue[name] for name in chosen]
+        kinds = [self.case.catalogue[name] for name in self.case.causes(chosen)]
         return any(issubclass(kind, SensorFault) and kind.prompt is not SensorFault.prompt for kind in kinds)
 
     def next(self) -> Sets | None:
@@ -171,20 +205,11 @@ class _Book:
         return None
 
     def _parts(self, effects: Sets) -> list[Sets]:
-        """Each effect of a set by itself, and what would be left of the set without it if that is enough to
-        be asked for; of what is beside weather that is no news only what is not hopeless: that weather does
-        in proportion what it does, and would be seen to do it."""
-        without = [tuple(n for n in effects if n != name) for name in effects]
-        parts: list[Sets] = [*((name,) for name in effects), *(rest for rest in without if len(rest) >= MOST)]
-        return [part for part in parts if len(self.case.news(part)) == len(part) == 1 or self._reaches(part)]
-
-    def _reaches(self, part: Sets) -> bool:
-        """Whether a set that holds weather that is no news may be as likely as the best."""
-        mine = [h.log_weight for h in self.entries.values() if h.effects == part]
-        return (
-            len(self.case.news(part)) < len(part)
-            and max(mine, default=-np.inf) > self.weighed()[0].log_weight - REACH
-        )
+        """The weather of a set by itself, each cause beside it, and what would be left of three without
+        each."""
+        case, day, causes = self.case, self.case.day(effects), self.case.causes(effects)
+        fewer = (some for size in range(1, len(causes)) for some in combinations(causes, size))
+        return [case.ordered((*day, *some)) for some in ((), *fewer)]
 
     def _simpler(self, effects: Sets) -> list[Sets]:
         """The same set with a part in the place of an effect that holds it: a current that does not change is
@@ -214,7 +239,7 @@ class _Book:
         # where a part of the set was found to stand
         about = start.reduced if part and start.reduced else self.worlds[world]
         z = boxed(about, chosen, posterior(about, chosen)).z
-        wider = self.case.candidates if len(self.case.news(chosen)) < MOST else self.case.no_news
+        wider = self.case.candidates if len(self.case.causes(chosen)) < MOST else self.case.weather
         self.found[chosen], judged = refine(self.case, chosen, world, z, wider, hoped, part)
         if self._hollow(chosen):
             self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}

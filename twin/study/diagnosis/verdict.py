@@ -3,53 +3,89 @@ engineer can check."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from twin.physics import core
 from twin.physics.model import Model
 from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.decision import CERTAIN, CLEAR, LOST, SURE
 from twin.study.diagnosis.led import LUXURY
-from twin.study.diagnosis.own_force import without
+from twin.study.diagnosis.refine import Found
+from twin.study.diagnosis.without import without
+from twin.study.estimation.columns import Unknown
 from twin.study.estimation.respond import respond
 from twin.study.reference.evidence import Hypothesis, Posterior, probabilities
-from twin.study.reference.nuisance import SURROUNDINGS
 
-SURE = 0.8  # probability from which an effect is named
-# and from which one is named with those that these voyages cannot tell it from: one of them is there
-SURE_GROUP = 0.95
 LARGEST_GROUP = 4  # effects that may stand for each other and still be an answer
-LOST = 0.5  # probability of something unknown from which no name is given
-# another beside it when that is nearly certain: of two forms that are only roughly right, one may mend the
-# other
-SURE_TOO = 0.9
-ACQUITTED = 0.8  # probability from which nothing is said to be missing
-ALIKE = 3.0  # log odds below which two effects cannot be told apart (20 to 1)
+EDGE = 1e-6  # of the box
+
+
+MOST_SAID = 0.99  # probability beyond which nothing is told: no more ships than that were ever asked
+RIVALS = 5  # hypotheses that are told beside the likeliest
+
+
+def capped(probability: float) -> float:
+    """A probability as it may be told."""
+    return min(max(probability, 1.0 - MOST_SAID), MOST_SAID)
+
+
+def rivals(weighed: Sequence[Hypothesis], found: Mapping[tuple[str, ...], Found]) -> list[dict[str, Any]]:
+    """The likeliest hypotheses, each in its likeliest scenario: how far behind the first, and how far off
+    they lead the ship on held-out parts."""
+    sets = dict.fromkeys(h.effects for h in weighed)
+    first = [next(h for h in weighed if h.effects == s) for s in list(sets)[: RIVALS + 1]]
+    return [
+        {
+            "effects": list(h.effects),
+            "scenario": h.world,
+            "log_bayes_factor": h.log_weight - weighed[0].log_weight,
+            "error_m": found[h.effects].off_m if h.effects in found else None,
+        }
+        for h in first
+    ]
 
 
 @dataclass(frozen=True)
 class Weights:
-    """Probability of every answer, and of every effect that would be news."""
+    """Probability of every answer: that no cause is missing, that one without a name is, of each cause, and
+    of each kind of weather."""
 
     nothing: float
     unknown: float
     effects: dict[str, float]
     best: Hypothesis
     unnamed: Mapping[str, float] = field(default_factory=dict)  # of what is known by its form alone
+    weather: Mapping[str, float] = field(default_factory=dict)
 
 
 def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
     p = probabilities(weighed)
-    effects, unnamed = (dict.fromkeys(names, 0.0) for names in (case.names(case.candidates), case.unnamed))
-    alone = {h.effects[0]: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
+    each = dict.fromkeys(case.candidates, 0.0)
+    alone: dict[str, float] = {}
+    for h in weighed:
+        if len(case.causes(h.effects)) == 1:
+            alone.setdefault(case.causes(h.effects)[0], h.log_weight)
     nothing = unknown = 0.0
     for h, share in zip(weighed, p, strict=True):
         nameless = _nameless(case, h, alone)
-        for name in case.news(h.effects):
-            (unnamed if name in unnamed else effects)[name] += float(share)
+        for name in {*h.effects, *restless_water(case, h)}:
+            each[name] += float(share)
         unknown += float(share) * nameless
-        nothing += float(share) * (not case.news(h.effects) and not nameless)
-    return Weights(nothing, unknown, effects, weighed[0], unnamed)
+        nothing += float(share) * (not case.causes(h.effects) and not nameless)
+    of = lambda names: {name: each[name] for name in names}  # noqa: E731
+    return Weights(
+        nothing, unknown, of(case.names(case.candidates)), weighed[0], of(case.unnamed), of(case.weather)
+    )
+
+
+def restless_water(case: Case, h: Hypothesis) -> list[str]:
+    """The effect that water is which moves more than on the reference voyages: a stream that changes, whether
+    its course has a name or not."""
+    if WORLDS[h.world].flow <= 1.0 or WORLDS[h.world].unknown:
+        return []
+    return [name for name in case.weather if case.catalogue[name].holds]
 
 
 def _nameless(case: Case, h: Hypothesis, alone: Mapping[str, float]) -> bool:
@@ -72,11 +108,11 @@ def alike(case: Case, weighed: Sequence[Hypothesis], name: str) -> list[str]:
     best = next(h for h in weighed if name in h.effects)
     rest = set(best.effects) - {name}
     out = []
-    for other in case.names(case.candidates):
-        if other in best.effects:
+    for other in case.candidates:
+        if other in best.effects or other in case.unnamed:
             continue
         swapped = next((h for h in weighed if set(h.effects) == rest | {other}), None)
-        if swapped is not None and best.log_weight - swapped.log_weight < ALIKE:
+        if swapped is not None and best.log_weight - swapped.log_weight < CLEAR:
             out.append(other)
     return out
 
@@ -95,56 +131,14 @@ def group(weighed: Sequence[Hypothesis], w: Weights) -> list[str]:
     if w.unknown >= LOST or w.effects[likeliest[0]] >= SURE:
         return []
     groups = (likeliest[:k] for k in range(2, LARGEST_GROUP + 1))
-    return next((names for names in groups if one_of(weighed, names) >= SURE_GROUP), [])
+    return next((names for names in groups if one_of(weighed, names) >= CERTAIN), [])
 
 
-def judge(
-    weighed: Sequence[Hypothesis],
-    w: Weights,
-    like: Mapping[str, Sequence[str]],
-    leads: Sequence[str],
-    *,
-    able: bool = True,
-    sharp: bool = True,
-    explained: bool = True,
-    blurred: bool = False,
-    pushed: bool = False,
-) -> tuple[str, list[str]]:
-    """The verdict, and the effects to add, first the one that explains most. One that others could stand in
-    for (`like`) is named when one of them is surely there, and only if it leads her better (`leads`). Voyages
-    without a manoeuvre decide nothing, nor does a model that is no witness (`able`); those that would not
-    have shown most effects, or on which the model alone leads her astray, acquit nobody (`sharp`); what the
-    best hypothesis leaves over, or has otherwise than its form, is unknown (`explained`), but decides nothing
-    where weather may mislead, or faults that undo each other, or where the model alone leads her as near as
-    it ever did (`blurred`). Who was `pushed` for a moment by something that no effect gives is not acquitted
-    either: that is unknown."""
-    alone = {h.effects: h.log_weight for h in reversed(weighed) if len(h.effects) == 1}
-    named = [
-        n
-        for n in w.best.effects
-        if n in w.effects
-        and n in leads
-        and (w.effects[n] >= SURE or one_of(weighed, [n, *like[n]]) >= SURE_GROUP)
-    ]
-    named.sort(key=lambda n: -alone.get((n,), -np.inf))
-    named = [n for i, n in enumerate(named) if i == 0 or w.effects[n] >= SURE_TOO]
-    strange = w.unknown >= LOST or not explained
-    if not able or (blurred and strange):
-        return "undecided", []
-    if strange:
-        return "unknown", []
-    if pushed and not named:
-        return "undecided" if blurred else "unknown", []
-    if w.nothing >= ACQUITTED and sharp:
-        return "nothing_missing", []
-    return ("missing", named) if named else ("undecided", [])
-
-
-def shows(seen: dict[str, bool]) -> bool:
-    """Whether the voyages would have shown three in four of the effects that do not depend on the day's
-    weather and water."""
-    lasting = [can for name, can in seen.items() if name not in SURROUNDINGS]
-    return sum(lasting) >= 0.75 * len(lasting)
+def power(case: Case, seen: Mapping[str, bool]) -> float:
+    """Share of the effects of ship and instruments that the voyages would have shown, had they a plausible
+    size."""
+    lasting = [can for name, can in seen.items() if case.catalogue[name].belongs_to != "voyage"]
+    return sum(lasting) / max(len(lasting), 1)
 
 
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:
@@ -166,10 +160,19 @@ def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object
                     "low95": float(np.clip(low, u.lo, u.hi)),
                     "high95": float(np.clip(high, u.lo, u.hi)),
                     "unit": u.unit,
+                    "at_box_end": _at_end(u, value),
                 }
                 | ({"in_ship_file": u.centre} if name in case.present else {})
             )
     return out
+
+
+def _at_end(u: Unknown, value: float) -> bool:
+    """Whether a box stopped this number; at none an effect is only not there."""
+    return any(
+        (end != u.centre and abs(value - end) <= EDGE * (u.hi - u.lo)) or not u.lo <= value <= u.hi
+        for end in (u.lo, u.hi)
+    )
 
 
 def typical_force(case: Case, model: Model, name: str) -> dict[str, float]:

@@ -29,6 +29,7 @@ class Unknown:
     sd: float
     lo: float
     hi: float
+    every_day: bool = False  # whether each day brings a little of it
 
     @property
     def label(self) -> str:
@@ -95,7 +96,16 @@ def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:
     for p in effect.params():
         k, (lo, hi) = p.scale(model.ship), p.box(model.ship)
         out.append(
-            Unknown(effect.__name__, p.name, p.unit, float(getattr(present, p.name)), p.sd * k, lo, hi)
+            Unknown(
+                effect.__name__,
+                p.name,
+                p.unit,
+                float(getattr(present, p.name)),
+                p.sd * k,
+                lo,
+                hi,
+                p.name in effect.every_day,
+            )
         )
     return out
 

@@ -14,7 +14,6 @@ Source: MacKay (2003) Information theory, inference, and learning algorithms, ch
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from itertools import combinations
 
 import numpy as np
 from scipy.special import log_ndtr
@@ -241,14 +240,11 @@ def _log_mass(lo: np.ndarray, hi: np.ndarray) -> np.ndarray:
     return upper + np.log1p(-np.exp(np.minimum(lower - upper, -1e-12)))
 
 
-def weigh_all(
-    reduced: Reduced, candidates: Sequence[str], most: int = 2
-) -> list[tuple[tuple[str, ...], float]]:
-    """Log evidence of every set of up to `most` candidates: from the one in which every effect is a spike,
-    low-rank steps away."""
+def weigh_sets(reduced: Reduced, sets: Sequence[tuple[str, ...]]) -> list[tuple[tuple[str, ...], float]]:
+    """Log evidence of each of these sets: from the one in which every effect is a spike, low-rank steps
+    away."""
     spikes = posterior(reduced, ())
-    sets = [chosen for size in range(1, most + 1) for chosen in combinations(candidates, size)]
-    return [((), spikes.log_evidence), *_opened(reduced, spikes, (), sets)]
+    return [((), spikes.log_evidence), *_opened(reduced, spikes, (), [chosen for chosen in sets if chosen])]
 
 
 def weigh_with(reduced: Reduced, held: Sequence[str], candidates: Sequence[str]) -> list[tuple[str, float]]:

@@ -23,43 +23,25 @@ from twin.study.reference.evidence import Nuisance
 
 USUAL = 0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
 TEMPER = 3.0  # when no reference voyage tells how far innovations are from white
-# their numbers belong to a voyage, not to the ship
-OF_THE_DAY = ("Current", "VaryingCurrent", "ExternalForce", "TowForce")
-# their causes belong to the voyage, their numbers to the ship
-WEATHER = ("Wind", "WaveDrift", "ShallowWater", "Bank")
-SURROUNDINGS = (*WEATHER, *OF_THE_DAY)
-# to first order what another number of the same effect does: about none, the two would fit a ship's form
-# between them
-AGAIN = ("SteeringLag.ease",)
 NOTHING = 1e6  # information of what is none
-# a little on every day, another on the next
-DAILY = ("Current.north", "Current.east", "ExternalForce.north", "ExternalForce.east")
 
 
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of
     each, beside what her file says of it."""
-    every = (
-        u for name, e in catalogue.items() if name not in SURROUNDINGS for u in effect_unknowns(e, model)
-    )
-    return [u for u in every if u.label not in AGAIN]
+    hers = (e for e in catalogue.values() if e.belongs_to != "voyage")
+    return [u for e in hers for u in effect_unknowns(e, model) if u.name not in e.copies]
 
 
 def daily(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     """What every day brings a little of: no water and no air stands still."""
-    return [
-        u
-        for name in OF_THE_DAY
-        if name in catalogue
-        for u in effect_unknowns(catalogue[name], model)
-        if u.label in DAILY
-    ]
+    return [u for e in catalogue.values() if e.every_day for u in effect_unknowns(e, model) if u.every_day]
 
 
 def of_known_weather(model: Model, catalogue: dict[str, type[Effect]]) -> dict[str, float]:
     """By how much [its own unit] each number of weather that the ship's file knows is usually otherwise: its
     form is only roughly right, and another wind or sea shows what is not."""
-    present = {type(e).__name__ for e in model.effects}.intersection(WEATHER)
+    present = {type(e).__name__ for e in model.effects if e.of_recorded_weather()}
     return {
         u.label: USUAL * u.sd
         for name in present
@@ -114,10 +96,10 @@ def from_references(
     mean, covariance = ship_of(told, scatter, pull)
     between = {u.label: float(np.sqrt(s)) for u, s in zip(unknowns, scatter, strict=True) if s}
     covariance = covariance + np.diag(scatter)
-    hers = [i for i, u in enumerate(unknowns) if u.label not in DAILY]
+    hers = [i for i, u in enumerate(unknowns) if not u.every_day]
     information = np.linalg.inv(covariance[np.ix_(hers, hers)])
     sizes = of_any_day(mean, np.diag(covariance), unknowns)
-    usual = {u.label: float(u.sd * size) for u, size in zip(unknowns, sizes, strict=True) if u.label in DAILY}
+    usual = {u.label: float(u.sd * size) for u, size in zip(unknowns, sizes, strict=True) if u.every_day}
     return Nuisance(tuple(unknowns[i] for i in hers), information, information @ mean[hers], usual), between
 
 
@@ -125,14 +107,8 @@ def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknow
     """(C,) how much of each number a day brings, when these days had such a mean and spread: alike for the
     parts of one effect, for no wind blows from the north alone."""
     square, owner = mean**2 + variance, np.array([u.owner for u in unknowns])
-    return np.sqrt(
-        [
-            square[(owner == u.owner) & [v.label in DAILY for v in unknowns]].mean()
-            if u.label in DAILY
-            else 0.0
-            for u in unknowns
-        ]
-    )
+    shared = np.array([u.every_day for u in unknowns])
+    return np.sqrt([square[(owner == u.owner) & shared].mean() if u.every_day else 0.0 for u in unknowns])
 
 
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:

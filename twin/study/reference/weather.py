@@ -11,7 +11,6 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.study.estimation.respond import respond, standard
-from twin.study.reference.nuisance import WEATHER
 from twin.study.track.track import Track
 
 FAINT = 0.03  # of the standard acceleration: nobody would feel it
@@ -23,10 +22,9 @@ def strengths(
 ) -> dict[str, float]:
     """How hard each kind of measured weather that the model does not hold would push her at a plausible size:
     over the standard acceleration, on the voyage where it was hardest."""
+    present = {type(e).__name__ for e in model.effects}
     unknown = [
-        name
-        for name in WEATHER
-        if name in catalogue and name not in {type(e).__name__ for e in model.effects}
+        name for name, effect in catalogue.items() if effect.of_recorded_weather() and name not in present
     ]
     felt = {
         name: [s for t in tracks if (s := _strength(t, model, catalogue[name])) is not None]

@@ -6,10 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import short
-from twin.study.reference.nuisance import OF_THE_DAY
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.structure import floor_of
 from twin.study.update.adding import UNTOUCHED, Fitted
@@ -113,7 +113,7 @@ def notes(
 
 def _of_the_day(names: set[str], sailed: Sequence[Sailed], held_out: Sequence[Sailed]) -> list[str]:
     """A warning that numbers belong to a voyage, and where they are judged by one of another day."""
-    bound = sorted(names.intersection(OF_THE_DAY))
+    bound = sorted(name for name in names if not find(name).lasts())
     if not bound:
         return []
     told = [
@@ -160,7 +160,7 @@ def written(ship: Ship, model: Model, result: dict[str, Any]) -> Ship:
         ],
         "forced": result["forced"],
     }
-    bound = [n for n in result["added"] if n in OF_THE_DAY]
+    bound = [n for n in result["added"] if not find(n).lasts()]
     notes["history"] = [
         *notes.get("history", []),
         short(entry | ({"of_this_voyage": bound} if bound else {}), 4),

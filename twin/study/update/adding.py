@@ -27,7 +27,6 @@ from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import innovate
 from twin.study.prediction.openloop import Windows, predict
 from twin.study.reference.evidence import Posterior, boxed, given, posterior, reduce, weigh_with
-from twin.study.reference.nuisance import OF_THE_DAY
 from twin.study.reference.sailed import fed
 from twin.study.reference.structure import floor_of
 from twin.study.track.track import Track
@@ -257,11 +256,6 @@ def _numbers(case: Case, found: Found) -> list[Number]:
 def _at_an_end(u: Unknown, value: float) -> bool:
     """Whether a box stopped this number; where it is none of its effect it is only not there."""
     return value != u.centre and min(value - u.lo, u.hi - value) <= 1e-6 * (u.hi - u.lo)
-
-
-def lasting(names: Sequence[str]) -> list[str]:
-    """Those effects that belong to ship or instruments and not to one voyage."""
-    return [n for n in names if n not in OF_THE_DAY]
 
 
 def thirds(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:

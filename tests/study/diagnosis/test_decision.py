@@ -1,0 +1,172 @@
+"""The decision: a table over facts. What it answers on recorded voyages, and which fact turns each
+verdict."""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from twin.study.diagnosis.decision import CAUSE_RULES, RULES, SURE, decide, why_not
+from twin.study.diagnosis.facts import Cause, Facts, Left
+
+RECORDED = json.loads(Path(__file__).with_name("recorded_facts.json").read_text())
+LEFT = Left(error=0.9, share=0.4, restless=0.0)
+
+
+def cause(effect="HullFouling", **facts):
+    """One that is clearly there."""
+    usual = {
+        "belongs_to": "ship",
+        "in_explanation": True,
+        "in_ship_file": False,
+        "sea_force": False,
+        "probability": 0.97,
+        "with_rivals": 0.98,
+        "log_bayes_factor": 40.0,
+        "alone": 80.0,
+        "error_gain": 0.5,
+        "significance": 8.0,
+        "change": 0.0,
+    }
+    return Cause(effect, **usual | facts)
+
+
+def facts(*causes, **other):
+    """Of a voyage on which these causes explain everything; of none, one on which nothing is missing."""
+    names = tuple(c.effect for c in causes if c.in_explanation)
+    usual = Facts(
+        nothing=0.0 if causes else 0.97,
+        unknown=0.0,
+        likeliest=names,
+        explanation=names,
+        left=LEFT,
+        error_nothing=2.2 if causes else 0.9,
+        error_best=0.9,
+        manoeuvre=True,
+        power=0.9,
+        structural=(0.1, 0.1, 0.1),
+        noise=(1.0, 1.0, 1.0),
+        scatter=1.0,
+        sea=False,
+        rough=0.0,
+        transient=0.0,
+        in_waves=False,
+        resembles=(),
+        one_of=(),
+        causes=causes,
+        weather=(),
+        as_before=(),
+    )
+    return replace(usual, **other)
+
+
+@pytest.mark.parametrize("name", RECORDED)
+def test_the_facts_of_a_recorded_voyage_give_the_verdict_that_was_recorded(name):
+    row = RECORDED[name]
+    answer = decide(Facts.read(row["facts"]))
+    assert (answer.verdict, answer.reason, list(answer.missing)) == (
+        row["verdict"],
+        row["reason"],
+        row["missing"],
+    )
+
+
+def test_facts_are_the_same_after_they_were_written():
+    f = facts(cause(), weather=(cause("Wind", belongs_to="voyage"),))
+    assert Facts.read(json.loads(json.dumps(f.told()))) == f
+
+
+def test_the_last_rule_always_holds_and_each_reason_has_one_sentence():
+    assert RULES[-1].condition(facts(nothing=0.5))
+    said = {}
+    for rule in RULES:
+        assert said.setdefault(rule.reason, rule.sentence) is rule.sentence
+
+
+@pytest.mark.parametrize("changes, verdict, reason", [
+    ({}, "nothing_missing", "nothing"),
+    ({"nothing": 0.7}, "undecided", "cannot_tell"),
+    ({"power": 0.5}, "undecided", "no_power"),
+    ({"error_nothing": 1.6}, "undecided", "astray"),
+    ({"manoeuvre": False}, "undecided", "no_manoeuvre"),
+    ({"unknown": 0.6, "nothing": 0.3, "error_nothing": 2.0}, "unknown", "unexplained"),
+    ({"unknown": 0.6, "nothing": 0.3}, "undecided", "as_near_as_usual"),  # restless, but led where it went
+    ({"unknown": 0.6, "nothing": 0.3, "resembles": ("RudderPlay",)}, "unknown", "resembles"),
+    ({"unknown": 0.6, "nothing": 0.3, "sea": True}, "undecided", "weather_may_mislead"),
+    ({"transient": 40.0}, "unknown", "pushed"),
+    ({"transient": 40.0, "sea": True}, "undecided", "pushed_in_weather"),
+    ({"weather": (cause("Current", belongs_to="voyage"),)}, "missing", "weather_only"),
+    ({"weather": (cause("Current", belongs_to="voyage"),), "nothing": 0.7}, "missing", "weather"),
+    ({"weather": (cause("Current", belongs_to="voyage", error_gain=0.01),)}, "nothing_missing", "nothing"),
+    ({"weather": (cause("Wind", belongs_to="voyage"),), "as_before": ("Wind",)}, "nothing_missing", "nothing"),
+    ({"nothing": 0.1, "one_of": ("RudderWear", "PropellerWear")}, "undecided", "one_of"),
+])  # fmt: skip
+def test_which_fact_turns_nothing_missing_into_what(changes, verdict, reason):
+    answer = decide(facts(**changes))
+    assert (answer.verdict, answer.reason) == (verdict, reason)
+
+
+@pytest.mark.parametrize("changes, reason", [
+    ({}, None),
+    ({"probability": 0.7, "with_rivals": 0.85}, "unlikely"),
+    ({"probability": 0.6, "with_rivals": 0.97}, None),
+    ({"error_gain": 0.02}, "no_nearer"),
+    ({"in_explanation": False}, "not_in_explanation"),
+    ({"belongs_to": "instrument", "error_gain": 0.0}, None),
+    ({"belongs_to": "instrument", "significance": 2.0}, "not_significant"),
+    ({"in_ship_file": True, "change": 1.0}, "change_within_form"),
+    ({"in_ship_file": True, "change": 3.0}, None),
+])  # fmt: skip
+def test_why_an_effect_is_not_named(changes, reason):
+    one = cause(**changes)
+    f = facts(one, explanation=("HullFouling",), likeliest=("HullFouling",))
+    assert why_not(f, one) == reason
+    assert ("HullFouling" in decide(f).missing) is (reason is None)
+
+
+def test_a_second_cause_is_named_only_when_it_is_nearly_certain_and_the_one_that_explains_more_comes_first():
+    first, second = cause(alone=30.0), cause("RudderWear", alone=90.0, probability=0.95)
+    assert decide(facts(first, second)).missing == ("RudderWear", "HullFouling")
+    unsure = replace(first, probability=SURE + 0.02)
+    answer = decide(facts(unsure, second))
+    assert answer.missing == ("RudderWear",) and answer.not_named == {"HullFouling": "second_not_sure"}
+
+
+def test_lasting_causes_stand_before_the_weather_that_the_model_lacks():
+    f = facts(cause("PropellerWear"), weather=(cause("Wind", belongs_to="voyage", probability=0.99),))
+    assert decide(f).missing == ("PropellerWear", "Wind")
+
+
+@pytest.mark.parametrize("left, verdict, more", [
+    (LEFT, "missing", False),
+    (replace(LEFT, error=1.4, share=0.9), "missing", False),
+    (replace(LEFT, error=2.5, share=0.9), "unknown", False),  # leads the ship elsewhere
+    # takes away most of the error, and something more is missing
+    (replace(LEFT, error=2.5, share=0.3), "missing", True),
+    (replace(LEFT, error=None, share=None), "unknown", False),  # nobody asked where it leads
+])  # fmt: skip
+def test_what_an_explanation_may_leave_over(left, verdict, more):
+    answer = decide(facts(cause(), left=left))
+    assert (answer.verdict, answer.more) == (verdict, more)
+
+
+def test_what_calibration_left_unexplained_forbids_no_answer_that_stands_clear_of_it():
+    assert decide(facts(cause(), structural=(0.61, 0.2, 0.2))).missing == ("HullFouling",)
+
+
+def test_in_a_sea_a_force_is_named_only_where_the_model_alone_leads_astray():
+    assert decide(facts(cause(), sea=True, error_nothing=2.2)).missing == ("HullFouling",)
+    assert decide(facts(cause(), sea=True, error_nothing=1.2)).missing == ()
+
+
+def test_every_reason_for_not_naming_has_its_words():
+    from twin.study.diagnosis.sentences import why_not as words
+
+    c = {"parameters": [], "error_with": 1.0, "error_without": 2.0}
+    default = words(c, "not_in_explanation")
+    assert all(
+        words(c, reason) != default
+        for reason, _ in CAUSE_RULES
+        if reason not in ("not_in_explanation", "unlikely")
+    )

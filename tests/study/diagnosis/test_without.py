@@ -1,0 +1,33 @@
+"""What an effect does by itself, and a drag that depends on the place, which is no tow."""
+
+import numpy as np
+import pytest
+
+from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.consider import consider
+from twin.study.diagnosis.decision import decide
+from twin.study.diagnosis.refine import refine
+from twin.study.diagnosis.search import search
+from twin.study.diagnosis.verdict import weights
+from twin.study.diagnosis.without import without
+
+
+@pytest.fixture(scope="module")
+def worn(tanker, voyages):
+    case = assemble([voyages["RudderWear"]], tanker)
+    return case, refine(case, ("RudderWear",), "usual", np.ones(len(case.effects)), ())[0]
+
+
+def test_an_effect_that_the_ship_had_is_put_back_to_what_it_was(worn):
+    case, found = worn
+    (effect,) = found.model.effects
+    before = case.model.but(effect.but(loss=0.05))
+    assert without(found.model, before, "RudderWear").effects == before.effects
+    assert without(found.model, case.model, "RudderWear").effects == ()
+
+
+def test_where_the_best_that_is_known_is_no_tow_the_answer_is_that_nobody_knows(tanker, voyages):
+    case = assemble([voyages["IceLike"]], tanker)
+    weighed, found, seen = search(case)
+    facts = consider(case, weighed, found, seen, weights(case, weighed)).facts
+    assert decide(facts).verdict == "unknown"

@@ -1,0 +1,180 @@
+"""From what the search found to the facts that decide: each is computed here, once, and nothing is
+decided."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.clear import change, significance
+from twin.study.diagnosis.decision import CLEAR, SURE, explained
+from twin.study.diagnosis.facts import Cause, Facts, Left
+from twin.study.diagnosis.led import roughly
+from twin.study.diagnosis.moments import Moment, moments
+from twin.study.diagnosis.refine import Found, Sets
+from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
+from twin.study.estimation.start import wave_period_s
+from twin.study.reference.evidence import Hypothesis
+from twin.study.reference.seaway import at_sea
+
+NO_GAP = 1e3  # log Bayes factor written where there is nothing to compare with
+
+
+@dataclass(frozen=True)
+class Considered:
+    """The facts, and what they were found about."""
+
+    facts: Facts
+    base: Sets  # the likeliest weather with no cause beside it
+    pushes: Sequence[Moment]
+    like: Mapping[
+        str, Sequence[str]
+    ]  # effects that these voyages cannot tell from one of the likeliest hypothesis
+
+
+def consider(
+    case: Case,
+    weighed: Sequence[Hypothesis],
+    found: Mapping[Sets, Found],
+    seen: Mapping[str, bool],
+    w: Weights,
+) -> Considered:
+    best, base = found[w.best.effects], without_causes(case, weighed, found)
+    nothing = found[base]
+    explanation, left = _explanation(case, weighed, found)
+    pushes = moments(case, best)
+    named = dict.fromkeys(
+        [
+            *case.names(explanation),
+            *case.names(w.best.effects),
+            *(n for n, p in w.effects.items() if p >= SURE),
+        ]
+    )
+    like = {name: alike(case, weighed, name) for name in named}
+    causes = [_cause(case, weighed, found, explanation, name, w, like[name]) for name in named]
+    weather = [
+        _cause(case, weighed, found, explanation, name, w, ()) for name, p in w.weather.items() if p >= SURE
+    ]
+    strongest = max(pushes, key=lambda m: m.log_evidence, default=None)
+    facts = Facts(
+        nothing=w.nothing,
+        unknown=w.unknown,
+        likeliest=w.best.effects,
+        explanation=explanation,
+        left=left,
+        error_nothing=nothing.off_m / nothing.floor_m,
+        error_best=_ratio(best.off_m, best.floor_m),
+        manoeuvre=case.excited,
+        power=power(case, seen),
+        structural=case.path.share,
+        noise=_by_axis(np.array(case.floor.white) / case.white),
+        scatter=case.floor.sensor / case.scatter,
+        sea=any(at_sea(t, case.model) for t in case.tracks),
+        rough=roughly(case) / nothing.floor_m,
+        transient=strongest.log_evidence if strongest else 0.0,
+        in_waves=any(m.voyage == t.name and wave_period_s(t) > 0.0 for m in pushes for t in case.tracks),
+        resembles=tuple(name for name, p in w.unnamed.items() if p >= SURE),
+        one_of=tuple(group(weighed, w)),
+        causes=tuple(sorted(causes, key=lambda c: -c.probability)),
+        weather=tuple(sorted(weather, key=lambda c: -c.probability)),
+        as_before=case.as_before,
+    )
+    return Considered(facts, base, pushes, like)
+
+
+def without_causes(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found]) -> Sets:
+    """The likeliest weather that was judged, with no cause beside it: what "nothing is missing" stands for
+    on these voyages."""
+    asked = (
+        h.effects
+        for h in weighed
+        if not case.causes(h.effects) and h.effects in found and np.isfinite(found[h.effects].off_m)
+    )
+    return next(asked, ())
+
+
+def _least_error(found: Mapping[Sets, Found], rest: Sets) -> float:
+    """The open-loop error that the rest of a set leads to [m]; where nobody asked, the least of its parts
+    (one of which is nothing)."""
+    if rest in found and np.isfinite(found[rest].off_m):
+        return found[rest].off_m
+    return min(f.off_m for s, f in found.items() if set(s) <= set(rest) and np.isfinite(f.off_m))
+
+
+def _ratio(error: float, expected: float) -> float | None:
+    return float(error / expected) if np.isfinite(error) and np.isfinite(expected) else None
+
+
+def _by_axis(values: np.ndarray) -> tuple[float, float, float]:
+    surge, sway, yaw = (float(v) for v in values)
+    return surge, sway, yaw
+
+
+def _explanation(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found]) -> tuple[Sets, Left]:
+    """The likeliest hypothesis, or, where this leaves more than a true one would, a part of it that cannot
+    be told from it and does not."""
+    best = weighed[0]
+    close = [
+        h.effects
+        for h in weighed
+        if best.log_weight - h.log_weight < CLEAR
+        and set(h.effects) <= set(best.effects)
+        and h.effects in found
+    ]
+    for part in dict.fromkeys(close):
+        if part and explained(left := left_over(case, weighed, found, part)):
+            return part, left
+    return (), left_over(case, weighed, found, best.effects)
+
+
+def left_over(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found], chosen: Sets) -> Left:
+    """What a set of effects leaves over."""
+    own, nothing = found[chosen], found[without_causes(case, weighed, found)]
+    worlds = [h for h in weighed if h.effects == chosen]
+    plain = next((h for h in worlds if WORLDS[h.world].plain), None)
+    return Left(
+        error=_ratio(own.off_m, own.floor_m), share=_ratio(own.off_m, nothing.off_m),
+        restless=worlds[0].log_weight - plain.log_weight if plain else NO_GAP,
+    )  # fmt: skip
+
+
+def _cause(
+    case: Case,
+    weighed: Sequence[Hypothesis],
+    found: Mapping[Sets, Found],
+    explanation: Sets,
+    name: str,
+    w: Weights,
+    like: Sequence[str],
+) -> Cause:
+    there = [h for h in weighed if name in h.effects]
+    chosen = (
+        explanation
+        if name in explanation
+        else next((h.effects for h in there if h.effects in found), (name,))
+    )
+    best_with = max((h.log_weight for h in there), default=-np.inf)
+    best_without = max((h.log_weight for h in weighed if name not in h.effects), default=-np.inf)
+    own, least = found.get(chosen), _least_error(found, tuple(n for n in chosen if n != name))
+    only = max(
+        (f.hypothesis.log_weight for s, f in found.items() if case.causes(s) == (name,)), default=-np.inf
+    )
+    none = max(f.hypothesis.log_weight for s, f in found.items() if not case.causes(s))
+    alone = max(only - none, -NO_GAP)
+    gain = 1.0 - own.off_m / least if own and np.isfinite(own.off_m) else None
+    probability = w.effects[name] if name in w.effects else w.weather[name]
+    return Cause(
+        effect=name,
+        belongs_to=case.catalogue[name].belongs_to,
+        in_explanation=name in explanation,
+        in_ship_file=name in case.present,
+        sea_force=of_the_sea(case, name),
+        probability=probability,
+        with_rivals=one_of(weighed, [name, *like]),
+        log_bayes_factor=float(np.clip(best_with - best_without, -NO_GAP, NO_GAP)),
+        alone=float(alone),
+        error_gain=gain,
+        significance=significance(case, own, name) if own else 0.0,
+        change=change(case, own, name) if own else 0.0,
+    )

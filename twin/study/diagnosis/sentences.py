@@ -1,0 +1,220 @@
+"""The sentence of each rule of the decision, from the result as JSON has it: what one would say on the
+bridge."""
+
+from typing import Any
+
+Result = dict[str, Any]
+SMALL = "It is too small to show in where these voyages led the ship: `twin add` may ask for others."
+
+
+def named(result: Result) -> str:
+    names = [n for n in result["missing"] if not _is_weather(result, n)]
+    first, beside = by_name(result)[names[0]], result["resembles"]
+    size = f" Typically {force(first['typical_force'])}." if force(first["typical_force"]) else ""
+    rivals = [likely(result, n) for n in first["cannot_be_told_from"]]
+    doubt = f" These voyages cannot tell it from {' or '.join(rivals)}." if rivals else ""
+    small = f" {SMALL}" if size and len(names) == 1 and not nearer(first) else ""
+    more = "".join(
+        f" Beside it is something like {c['effect']}, or its form is another than nature's." for c in beside
+    )
+    return (
+        f"Missing: {' and '.join(likely(result, n) for n in names)}. "
+        f"{first['says']}{size}{doubt}{small}{more}{_more(result)}"
+    )
+
+
+def weather_only(result: Result) -> str:
+    names = " and ".join(likely(result, n) for n in result["missing"])
+    return (
+        f"Missing: {names}: water and weather of these voyages. Of ship and instruments nothing is "
+        f"missing.{_more(result)}"
+    )
+
+
+def weather_at_least(result: Result) -> str:
+    names = " and ".join(likely(result, n) for n in result["missing"])
+    return (
+        f"Missing: {names}: water and weather of these voyages. Whether something of ship or instruments is "
+        f"missing besides, these voyages cannot tell.{_more(result)}"
+    )
+
+
+def nothing(result: Result) -> str:
+    return (
+        "Nothing is missing: what the model cannot explain is no more than it left unexplained on good "
+        "voyages."
+    )
+
+
+def resembles(result: Result) -> str:
+    like, near = result["resembles"][0], _near(result)
+    beside = f" Beside it: {' with '.join(near)}." if near else ""
+    return (
+        "Something is missing that is none of the effects of the catalogue. It looks like "
+        f"{like['effect']}: {like['says']}{beside}"
+    )
+
+
+def pushed(result: Result) -> str:
+    return (
+        "Something is missing that no effect I know would do: it pushed the ship "
+        f"{when(result['moments'][0])} as it did not before."
+    )
+
+
+def unexplained(result: Result) -> str:
+    near = _near(result)
+    nearest = f" Nearest, but not enough: {' with '.join(near)}." if near else ""
+    return f"Something is missing, but none of the effects I know explains it.{nearest}"
+
+
+def one_of(result: Result) -> str:
+    *others, last = [likely(result, n) for n in result["one_of"]]
+    return (
+        f"Undecided: something is missing, {', '.join(others)} or {last}; these voyages cannot tell them "
+        "apart."
+    )
+
+
+def no_manoeuvre(result: Result) -> str:
+    return (
+        "Undecided: no manoeuvre was sailed, and a ship that holds course and speed tells one cause from "
+        "no other."
+    )
+
+
+def weather(result: Result) -> str:
+    says = next((likely(result, c["effect"]) for c in result["candidates"]), "something")
+    return (
+        f"Undecided: the readings say {says}, but in weather like this, whose force the model knows only "
+        "roughly, that may be the weather's "
+        "doing. A calmer voyage would tell."
+    )
+
+
+def as_near(result: Result) -> str:
+    return (
+        "Undecided: the readings are not what they usually are, as no effect explains, but "
+        f"{_error(result)}, which is no clear difference."
+    )
+
+
+def astray(result: Result) -> str:
+    return f"Undecided: no effect that I know is likely, but {_error(result)}."
+
+
+def pushed_in_weather(result: Result) -> str:
+    return (
+        f"Undecided: {when(result['moments'][0])} something pushed the ship as it did not before and after. "
+        "Where waves toss a ship that may be "
+        "a group of them."
+    )
+
+
+def not_named(result: Result) -> str:
+    c = next(c for c in result["candidates"] if c["effect"] in result["answer"]["not_named"])
+    return (
+        f"Undecided: the readings ask for {likely(result, c['effect'])}, but "
+        f"{why_not(c, result['answer']['not_named'][c['effect']])}."
+    )
+
+
+def no_power(result: Result) -> str:
+    return (
+        "Undecided: nothing shows, but these voyages would not have shown most of what may be missing. "
+        "Sail a zigzag, and change speed."
+    )
+
+
+def cannot_tell(result: Result) -> str:
+    return "Undecided: these voyages cannot tell what, if anything, is missing."
+
+
+def why_not(c: Result, reason: str) -> str:
+    """Why what is likely is not named."""
+    none = "the ship file has it" if any("in_ship_file" in p for p in c["parameters"]) else "none"
+    with_it = (
+        f"{c['error_with']:.3g} m with it, {c['error_without']:.3g} m without"
+        if c["error_with"] is not None
+        else "nobody asked"
+    )
+    return {
+        "not_significant": f"not one of its numbers is clearly other than {none}",
+        "change_within_form": f"not one of its numbers is clearly other than {none}",
+        "no_nearer": f"adding it does not reduce the open-loop error ({with_it})",
+        "weather_may_mislead": "in weather like this, whose force the model knows only roughly, that may be "
+        "the weather's doing",
+        "second_not_sure": "of two forms that are only roughly right, one may mend the other",
+    }.get(reason, "the explanation that leaves least does without it")
+
+
+def by_name(result: Result) -> Result:
+    return {c["effect"]: c for c in result["candidates"]}
+
+
+def likely(result: Result, name: str) -> str:
+    """A name with its probability, where that is known."""
+    c = by_name(result).get(name)
+    if c is None:
+        return name
+    return (
+        f"{'a change of ' * any('in_ship_file' in p for p in c['parameters'])}{name} ({c['probability']:.0%})"
+    )
+
+
+def nearer(candidate: Result) -> bool:
+    """Whether the ship is led nearer with this effect than without any."""
+    return candidate["error_with"] is not None and bool(candidate["error_with"] < candidate["error_without"])
+
+
+def force(forces: Result) -> str:
+    """The components that are there, in words."""
+    there = {key: forces[key] for key in ("X_N", "Y_N", "N_Nm")}
+    return ", ".join(
+        f"{key[0]} {_si(value, 'N m' if key == 'N_Nm' else 'N')}"
+        for key, value in there.items()
+        if abs(value) > 1e-9
+    )
+
+
+def when(m: Result) -> str:
+    return f"from {clock(m['start_s']).strip()} to {clock(m['end_s']).strip()} on {m['voyage']}"
+
+
+def clock(seconds: float) -> str:
+    return f"{int(seconds) // 60:>4d}:{int(seconds) % 60:02d}"
+
+
+def _is_weather(result: Result, name: str) -> bool:
+    return name in {w["effect"] for w in result["weather"]}
+
+
+def _more(result: Result) -> str:
+    error = result["facts"]["left"]["error"]
+    return (
+        f" Something more is missing: with all that the open-loop error is still {error:.2g} times the "
+        "expected one."
+        if result["more"]
+        else ""
+    )
+
+
+def _near(result: Result) -> list[str]:
+    return [c["effect"] for c in result["candidates"] if c["probability"] >= 0.5]
+
+
+def _error(result: Result) -> str:
+    path = result["path"]
+    return (
+        f"after {path['horizon_s']:.0f} s the model ends {path['error_without']:.3g} m from where the ship "
+        f"went ({path['error_floor']:.3g} m "
+        "is expected of this calibrated ship)"
+    )
+
+
+def _si(value: float, unit: str) -> str:
+    """A size with the prefix that engineers use."""
+    for prefix, factor in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
+        if abs(value) >= factor:
+            return f"{value / factor:.3g} {prefix}{unit}"
+    return f"{value:.3g} {unit}"
