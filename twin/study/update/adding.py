@@ -258,6 +258,12 @@ def _at_an_end(u: Unknown, value: float) -> bool:
     return value != u.centre and min(value - u.lo, u.hi - value) <= 1e-6 * (u.hi - u.lo)
 
 
+def lasting(names: Sequence[str]) -> list[str]:
+    """Those effects that belong to ship or instruments and not to one voyage."""
+    known = catalogue()
+    return [n for n in names if known[n].lasts()]
+
+
 def thirds(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:
     """The first two thirds of every voyage, and the last."""
     cut = [round(2 * len(t) / 3) for t in tracks]
