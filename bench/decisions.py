@@ -18,11 +18,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from twin.study.story import MONDAY, SHIP, TUESDAY
 
 from bench.bundled import recorded
 from bench.reference import Case, simulate
 from twin.cli import main as main_of_twin
+from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.physics.effects import find
 from twin.physics.ship import Ship, load
 from twin.recording.import_voyage import write_json

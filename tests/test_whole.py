@@ -1,10 +1,10 @@
 """Files that are there whole or not at all."""
 
 import pytest
-from twin.study.story import SHIP
 
 from twin import whole
 from twin.cli import main
+from twin.commands.story import SHIP
 from twin.errors import TwinError
 
 

@@ -17,7 +17,7 @@ def test_memory_is_read_from_the_kernel():
 def test_dropped_pages_come_back_by_themselves():
     """Test: drop all clean library pages, then use them. Expected: the process gets smaller and works on."""
     code = (
-        "from twin.live import realtime, decode, residual\n"
+        "from twin.live import realtime\nfrom twin.live.keelson import decode\nfrom twin.live.learning import residual\n"
         "from twin.physics.ship import load\n"
         "r = residual.load(residual.bundled(load('kvlcc2')), load('kvlcc2'))\n"
         "before = realtime.memory_mb()['rss']; dropped = realtime.drop_pages(); after = "

@@ -7,9 +7,9 @@ import struct
 from pathlib import Path
 
 import pytest
-from twin.study.story import MONDAY, SHIP
 
 from twin.cli import main
+from twin.commands.story import MONDAY, SHIP
 from twin.live.log.played import PlayedLog
 from twin.live.log.recover import recover
 from twin.recording.checks import losses, of_voyages

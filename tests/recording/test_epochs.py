@@ -6,9 +6,9 @@ import sys
 
 import numpy as np
 import pytest
-from twin.study.story import SHIP
 
 from twin.cli import main
+from twin.commands.story import SHIP
 from twin.errors import DataError
 from twin.live.clock import ReplayClock
 from twin.live.log.played import PlayedLog

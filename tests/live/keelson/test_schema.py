@@ -81,7 +81,7 @@ def test_another_build_of_protobuf_serves_as_well():
     """Test: a protobuf without its C core. Expected: the same bytes by the front door."""
     program = (
         "import sys; sys.modules['google._upb._message'] = None\n"
-        "from twin.live import messages as m\n"
+        "from twin.live.keelson import messages as m\n"
         "t = m.Tick(index=3, mode='hybrid', known=[{'name': 'hull', 'X_N': 2.0}], measured={'roll_deg': "
         "1.5})\n"
         "print(m.wrap(t.SerializeToString(), 5).hex(), len(m.schema_bytes('shiptwin.Tick')))"

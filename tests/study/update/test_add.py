@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from twin.cli import main
+from twin.commands import story
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load, to_table
 from twin.recording.read import read_voyage
 from twin.recording.write import write_voyage
-from twin.study import story
 from twin.study.diagnosis.diagnose import diagnose
 from twin.study.prediction.openloop import HORIZONS_S, predict
 from twin.study.prediction.path_prior import prior

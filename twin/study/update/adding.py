@@ -15,6 +15,7 @@ import numpy as np
 from twin.errors import DataError, SettingsError
 from twin.live.signals.channels import BY_NAME
 from twin.physics.effect import Effect
+from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import short
