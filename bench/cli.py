@@ -61,6 +61,16 @@ BENCHES: dict[str, Bench] = {
         "instruments that lie: how soon it is said, and how often in vain",
         "twin-bench lies --hull usv",
     ),
+    "import-mistakes": Bench(
+        "bench.import_mistakes",
+        "mistakes of a recording: named, and never proved where there are none",
+        "twin-bench import-mistakes --seeds 2",
+    ),
+    "import-speed": Bench(
+        "bench.import_speed",
+        "how fast logs and tables are read, in how much memory",
+        "twin-bench import-speed",
+    ),
     "real": Bench(
         "bench.real.kvlcc2", "measured KVLCC2 manoeuvres (SIMMAN 2008)", "twin-bench real --data DIR"
     ),

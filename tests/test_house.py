@@ -1,6 +1,7 @@
 """The house: imports go one way, the loop's process stays light, and every verb is documented.
 
-physics <- live <- study; export -> all three; nothing in twin imports export, bench or deploy
+physics <- live <- recording <- study; export -> all three; nothing in twin imports export, bench or
+deploy
 """
 
 import ast

@@ -1,5 +1,8 @@
 """A ship that exists only in kinematics: her columns agree, until a test plants a mistake."""
 
+import os
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -109,3 +112,57 @@ def refused(path, *words, by=None):
     for word in words:
         assert word in message, message
     return message
+
+
+KNOT = 1852.0 / 3600.0
+
+
+def motion(seconds=120, hz=1.0):
+    """A ship at 6 m/s that swings about 45 deg, the truth of every log here."""
+    t = np.arange(0.0, seconds, 1.0 / hz)
+    psi = 45.0 + 20.0 * np.sin(t / 15.0)
+    rate = 20.0 / 15.0 * np.cos(t / 15.0)
+    way = 6.0 * np.exp(1j * np.radians(psi))
+    place = np.r_[0.0, np.cumsum((way[1:] + way[:-1]) / 2.0 / hz)]
+    latitude = 57.0 + place.real / 111_360.0
+    longitude = 11.0 + place.imag / (111_360.0 * np.cos(np.radians(57.0)))
+    return {"t": t, "psi": psi, "rate": rate, "place": place, "latitude": latitude, "longitude": longitude, "rudder": 5.0 * np.cos(t / 15.0 + 0.5),
+            "rpm": np.full(t.size, 84.0), "sog": np.full(t.size, 6.0)}  # fmt: skip
+
+
+@pytest.fixture
+def sailed():
+    return motion()
+
+
+@pytest.fixture
+def data():
+    """The folder of real logs; without it the test is skipped and says so."""
+    place = os.environ.get("SHIPTWIN_DATA")
+    if not place or not (Path(place) / "logs").is_dir():
+        pytest.skip("set SHIPTWIN_DATA to the folder of real logs to run this")
+    return Path(place)
+
+
+def sentence(body):
+    total = 0
+    for c in body.encode():
+        total ^= c
+    return f"${body}*{total:02X}"
+
+
+def ddmm(degrees, digits):
+    whole = int(degrees)
+    return f"{whole:0{digits}d}{(degrees - whole) * 60:07.4f}"
+
+
+def nmea_lines(m, i):
+    """The sentences of one second."""
+    k = int(m["t"][i])
+    clock = f"{12 + k // 3600:02d}{k // 60 % 60:02d}{k % 60:02d}.00"
+    psi = m["psi"][i]
+    return [
+        sentence(f"GPRMC,{clock},A,{ddmm(m['latitude'][i], 2)},N,{ddmm(m['longitude'][i], 3)},E,{6 / KNOT:.3f},{psi:.2f},251126,,,A"),
+        sentence(f"HEHDT,{psi:.2f},T"), sentence(f"TIROT,{m['rate'][i] * 60:.2f},A"), sentence(f"IIRSA,{m['rudder'][i]:.2f},A,,V"),
+        sentence("ERRPM,S,1,84.0,,A"), sentence("WIMWV,30.0,R,12.0,N,A"), "!AIVDM,1,1,,A,13aI8e?P00PGpU:NR6s00?vT2000,0*1C",
+    ]  # fmt: skip

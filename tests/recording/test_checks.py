@@ -226,7 +226,7 @@ def test_a_derived_velocity_is_not_evidence(sail):
 def test_every_check_answers_under_its_own_name_with_a_sentence(sail):
     for check, answer in zip(CHECKS, run_checks(voyage(sail(60.0))), strict=True):
         assert answer.name == check.__name__ and len(answer.text) > 10
-        assert set(answer.as_json()) == {"check", "ok", "text"}
+        assert set(answer.as_json()) == {"check", "ok", "text", "proved", "told"}
 
 
 def test_a_gap_is_no_sensor_that_hangs(sail):

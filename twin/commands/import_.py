@@ -6,10 +6,10 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from twin.errors import DataError, SettingsError, did_you_mean
+from twin.errors import DataError, SettingsError, UsageError, did_you_mean
 from twin.physics.ship import load
 from twin.recording.checks import CHECKS
-from twin.recording.import_voyage import import_voyage, refusal, summary, write_json
+from twin.recording.import_voyage import import_voyage, refusal, suggest, summary, write_json
 from twin.recording.write import write_voyage
 
 EPILOG = """
@@ -20,30 +20,58 @@ write in the map; --accept CHECK imports the file as it is. The format of a map:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (parser.epilog or "") + EPILOG
-    parser.add_argument("file", metavar="FILE", help="measurements: CSV, text columns, or an MCAP log")
+    parser.add_argument(
+        "file",
+        metavar="FILE",
+        nargs="+",
+        help="a log or a table of any known format; several tables are joined",
+    )
     parser.add_argument("--map", metavar="MAP.toml", help="the file's own columns, units, signs and clock")
     parser.add_argument("--ship", metavar="SHIP.toml", help="her particulars let the checks say more")
     parser.add_argument(
+        "--source",
+        metavar="[CHANNEL=]NAME",
+        action="append",
+        default=[],
+        help="the instrument to take of several",
+    )
+    parser.add_argument(
+        "--without-controls", action="store_true", help="import although rudder or shaft were not recorded"
+    )
+    parser.add_argument(
+        "--suggest-map", action="store_true", help="write the map of an unknown table, to be confirmed"
+    )
+    parser.add_argument(
         "--accept", metavar="CHECK", action="append", default=[], help="import although CHECK refuses"
     )
+    parser.add_argument(
+        "--every-check", action="store_true", help="what each check saw, those that are quiet too"
+    )
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
-    parser.add_argument("-o", "--output", metavar="VOYAGE.mcap", required=True, help="the checked voyage")
+    parser.add_argument(
+        "-o", "--output", metavar="VOYAGE.mcap", help="the checked voyage (with --suggest-map: the map)"
+    )
 
 
 def run(args: argparse.Namespace) -> int:
     known_checks(args.accept)
-    not_onto_itself(args.file, args.output)
-    print(f"reading {args.file} ...", file=sys.stderr)
-    found = import_voyage(args.file, args.map, args.ship)
+    for path in args.file:
+        not_onto_itself(path, args.output or "")
+    print(f"reading {' '.join(args.file)} ...", file=sys.stderr)
+    if args.suggest_map:
+        return suggest(args)
+    if not args.output:
+        raise UsageError("-o VOYAGE.mcap is needed: where the checked voyage goes.")
+    found = import_voyage(args.file, args.map, args.ship, args.source, not args.without_controls)
     refused = found.refused(args.accept)
     page = sys.stderr if refused or args.json == "-" else sys.stdout
-    print("\n".join(summary(found)), file=page)
+    print("\n".join(summary(found, args.every_check)), file=page)
     if not refused:
         write_voyage(found.voyage, args.output)
     if args.json:
         write_json(found.as_json() | {"output": None if refused else str(args.output)}, args.json)
     if refused:
-        raise DataError(refusal(args.file, refused, args.map))
+        raise DataError(refusal(args.file[0], refused, args.map))
     print(f"wrote {args.output}\nnext: {_next(args.output, args.ship)}", file=page)
     return 0
 

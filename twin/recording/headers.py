@@ -1,7 +1,7 @@
 """A header without a map: contract names are taken, near misses refused, other columns named as unused."""
 
 import difflib
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from twin.errors import DataError
@@ -18,9 +18,8 @@ OVER_GROUND = ("sog", "cog", "course", "over_ground", "velocity_north", "velocit
 MISSPELT = 0.85  # a name this much alike is a slip of the pen, not another quantity
 
 
-def own_names(path: Path) -> tuple[Map, tuple[str, ...]]:
+def own_names(path: Path, names: Sequence[str]) -> tuple[Map, tuple[str, ...]]:
     """(the map of the contract's own names, one sentence for each column that is not used)."""
-    names = column_names(path)
     columns = {n: Column(n) for n in names if n in NAMES} | over_ground(names)
     used = {*TIMES, *(c.column for c in columns.values())}
     unused = tuple(unknown(path, name) for name in names if name and name not in used)

@@ -1,5 +1,6 @@
 """`twin import`: measurements in, checked; a file that a check proves wrong is refused."""
 
+import argparse
 import json
 from collections.abc import Collection, Sequence
 from pathlib import Path
@@ -8,6 +9,7 @@ from typing import Any, NamedTuple
 from twin import whole
 from twin.physics.ship import load
 from twin.recording.checks import Check, run_checks
+from twin.recording.formats.choose import sources_of
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
@@ -47,23 +49,66 @@ class Imported(NamedTuple):
 
 
 def import_voyage(
-    path: str | Path, map_path: str | Path | None = None, ship_path: str | Path | None = None
+    path: str | Path | Sequence[str | Path],
+    map_path: str | Path | None = None,
+    ship_path: str | Path | None = None,
+    sources: Sequence[str] = (),
+    controls: bool = True,
 ) -> Imported:
-    """Reads a file, through a map if it has its own columns, and checks it, with a ship if one is given."""
+    """Reads a file or several, through a map if they have their own columns, and checks them, with a ship if
+    one is given."""
     ship = load(ship_path) if ship_path else None
-    voyage = read_voyage(path, read_map(Path(map_path)) if map_path else None)
+    voyage = read_voyage(path, read_map(Path(map_path)) if map_path else None, sources_of(sources), controls)
     if ship:
         voyage = voyage.with_meta(ship=ship.name)
     return Imported(voyage, run_checks(voyage, ship))
 
 
-def summary(found: Imported) -> list[str]:
-    """What was read and what the checks say, a line each."""
+def suggest(args: argparse.Namespace) -> int:
+    """Writes the proposed map to a file, or shows it."""
+    from twin.recording.suggest_map import suggestion
+
+    text = suggestion([Path(p) for p in args.file], sources_of(args.source))
+    if not args.output:
+        print(text, end="")
+        return 0
+    whole.write(args.output, text, "-o")
+    files = " ".join(args.file)
+    print(
+        f"wrote {args.output}\nnext: read it, correct what is marked, then twin import {files} --map "
+        f"{args.output} -o VOYAGE.mcap"
+    )
+    return 0
+
+
+def summary(found: Imported, every: bool = False) -> list[str]:
+    """What is wrong first, then what asks for a look; what is quiet is one line, unless every check is asked
+    for."""
     v = found.voyage
-    lines = [f"{v.name}: {len(v)} rows, {v.duration_s:.6g} s, a sample every {v.step_s:.6g} s"]
+    lines = [f"{v.name}: {len(v)} rows, {v.duration_s:.6g} s, a sample every {v.step_s:.6g} s{read_as(v)}"]
+    wrong = [c for c in found.checks if c.unusable]
+    looks = [c for c in found.checks if not c.ok and not c.unusable]
+    quiet = [c for c in found.checks if c.ok]
+    lines += [f"  {mark(c):8s} {c.name}: {c.text}" for c in (*wrong, *looks, *(quiet if every else ()))]
+    if not every:
+        lines.append(f"  {quietly(quiet)}")
     lines += [f"  derived  {name}: {how}" for name, how in v.meta.get("derived", {}).items()]
-    lines += [f"  note     {note}" for note in v.meta.get("notes", ())]
-    return lines + [f"  {mark(c):8s} {c.name}: {c.text}" for c in found.checks]
+    return lines + [f"  note     {note}" for note in v.meta.get("notes", ())]
+
+
+def read_as(v: Voyage) -> str:
+    return f", read as {v.meta['format']}" if "format" in v.meta else ""
+
+
+def quietly(quiet: Sequence[Check]) -> str:
+    """One line for the checks that have nothing against the voyage, and the names of those that cannot
+    tell."""
+    blind = [c.name for c in quiet if not c.told]
+    cannot = f"; cannot tell: {', '.join(blind)}" if blind else ""
+    return (
+        f"ok       {len(quiet) - len(blind)} checks have nothing against it{cannot} (--every-check: what "
+        "each saw)"
+    )
 
 
 def mark(check: Check) -> str:

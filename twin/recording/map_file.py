@@ -10,6 +10,7 @@ from twin.errors import SettingsError, did_you_mean
 from twin.recording.mapping import (
     FRAMED,
     FRAMES,
+    HEADING,
     NAMES,
     PLACES,
     SEPARATORS,
@@ -34,8 +35,10 @@ KINDS: dict[str, tuple[type, ...]] = {
     "decimal": (str,), "encoding": (str,), "missing": (list,), 
     "column": (str, int, list), "unit": (str,), "format": (str,),
     "rebuild": (bool, int, float), "sign": (int,), "offset": (int, float), "frame": (str,),
-    "direction": (str,), "despike": (bool,), "optional": (bool,),
+    "direction": (str,), "despike": (bool,), "optional": (bool,), "factor": (int, float), "factors": (list,),
+    "hemisphere": (str, int), "file": (str,), "late_s": (int, float), "deviation": (list,),
 }  # fmt: skip
+NUMBERS = ("factors", "deviation")  # lists of numbers; the others are lists of names
 
 
 def read_map(path: Path) -> Map:
@@ -58,6 +61,7 @@ def parse_map(data: Mapping[str, Any], where: str) -> Map:
     for name in constant:
         channel_name(name, where)
     frames_agree(columns, where)
+    places_agree(columns, constant, where)
     layout: Layout = build(Layout, data.get("file", {}), f"{where}: [file]")
     one_of(layout.separator, (None, *SEPARATORS), f"{where}: [file] separator")
     one_of(layout.decimal, (None, ".", ","), f"{where}: [file] decimal")
@@ -90,9 +94,29 @@ def column(name: str, entry: Any, where: str) -> Column:
         raise SettingsError(
             f"{where}: {name}: a velocity has two parts and cannot be optional. Write a map without it."
         )
-    if out.unit is not None and not (name in PLACES and out.unit == "ddmm"):
+    if out.unit is not None and out.unit not in special_units(name):
         factor(target(name, out), out.unit, where)
+    several_agree(out, f"{where}: [columns] {name}")
     return out
+
+
+def special_units(name: str) -> tuple[str, ...]:
+    """Ways of writing a channel that are no factor."""
+    return ("ddmm", "dms") if name in PLACES else ("quaternion", "quaternion_enu") if name == HEADING else ()
+
+
+def several_agree(out: Column, where: str) -> None:
+    """How many columns there are must fit what is made of them."""
+    n = len(out.parts)
+    if out.unit in ("quaternion", "quaternion_enu"):
+        if n != 4:
+            raise SettingsError(f"{where}: a quaternion needs column = [X, Y, Z, W], four of them.")
+    elif n > 1 and len(out.factors) not in (0, n):
+        raise SettingsError(f"{where}: factors needs {n} numbers, one for each column.")
+    if n > 1 and out.is_text:
+        raise SettingsError(f"{where}: degrees and minutes as text stand in one column.")
+    if len(out.deviation) > 5:
+        raise SettingsError(f"{where}: deviation has at most five coefficients, A to E in deg.")
 
 
 def frames_agree(columns: Mapping[str, Column], where: str) -> None:
@@ -100,6 +124,20 @@ def frames_agree(columns: Mapping[str, Column], where: str) -> None:
     frames = [columns[name].frame for name in FRAMED if name in columns]
     if len(set(frames)) > 1 or (len(frames) == 1 and frames[0] != "body"):
         raise SettingsError(f"{where}: {' and '.join(FRAMED)} need the same frame, both of them: {frames}.")
+
+
+def places_agree(columns: Mapping[str, Column], constant: Mapping[str, float], where: str) -> None:
+    """A position is one pair: one half of it beside the other pair is a sign or an offset in the wrong
+    place."""
+    pairs = (PLACES, ("north_m", "east_m"))
+    for pair, other in (pairs, pairs[::-1]):
+        half = [name for name in pair if name in columns or name in constant]
+        if len(half) == 1 and any(name in columns for name in other):
+            twin = other[pair.index(half[0])]
+            raise SettingsError(
+                f"{where}: {half[0]} stands beside {' and '.join(other)}; a position is one pair. "
+                f"A sign or an offset belongs to {twin}: write it there and remove {half[0]}."
+            )
 
 
 def time_column(entry: Any, where: str) -> TimeColumn:
@@ -120,7 +158,16 @@ def build(kind: Any, table: Any, where: str) -> Any:
         raise SettingsError(f"{where}: needs column = NAME or NUMBER (from 1).")
     for key, value in table.items():
         right_kind(value, KINDS[key], f"{where} {key}")
-    return kind(**{k: tuple(map(str, v)) if isinstance(v, list) else v for k, v in table.items()})
+    return kind(**{k: as_tuple(k, v, where) if isinstance(v, list) else v for k, v in table.items()})
+
+
+def as_tuple(key: str, values: list[Any], where: str) -> tuple[Any, ...]:
+    """A list of numbers, of column names and numbers, or of words."""
+    if key in NUMBERS:
+        return tuple(number(v, f"{where} {key}") for v in values)
+    return tuple(
+        v if key == "column" and isinstance(v, int) and not isinstance(v, bool) else str(v) for v in values
+    )
 
 
 def known(table: Any, names: Any, where: str) -> Mapping[str, Any]:

@@ -8,6 +8,7 @@ from twin.live.signals.channels import BY_NAME
 
 FRAMED = ("surge_velocity_mps", "sway_velocity_mps")
 PLACES = ("latitude_deg", "longitude_deg")
+HEADING = "heading_true_north_deg"
 NAMES = (*BY_NAME, *PLACES)
 FRAMES = ("body", "earth", "course")
 SEPARATORS = {"tab": "\t", "whitespace": " ", ",": ",", ";": ";", "\t": "\t", " ": " ", "|": "|"}
@@ -37,6 +38,8 @@ class TimeColumn:
     unit: str = "s"
     format: str = ""
     rebuild: bool | float = False  # true: the even step that fits the stamps best; a number: this step [s]
+    # a number in several columns (seconds, nanoseconds): what each is multiplied by
+    factors: tuple[float, ...] = ()
 
     @property
     def is_text(self) -> bool:
@@ -45,17 +48,33 @@ class TimeColumn:
 
 @dataclass(frozen=True)
 class Column:
-    """One entry of `[columns]`: cell * sign * unit factor + offset (offset in the channel's unit)."""
+    """One entry of `[columns]`: cell * factor * sign * unit + offset (offset in the channel's unit)."""
 
-    column: Key
+    column: Key | tuple[Key, ...]  # several: their sum by `factors`, or the x, y, z, w of unit = "quaternion"
     unit: str | None = None
     sign: int = 1
+    factor: float = 1.0
+    factors: tuple[float, ...] = ()
+    hemisphere: Key | None = None  # a column of letters: S and W make the value negative
+    file: str = ""  # of several files the one that the column stands in: the end of its path, * for any part
+    late_s: float = 0.0  # the samples stand in rows this much later [s] than when they were true
+    # compass: A to E [deg] of A + B sin + C cos + D sin 2 + E cos 2 of the true heading
+    deviation: tuple[float, ...] = ()
     offset: float = 0.0
     # velocities: body; earth (north, east); course (speed over ground, course over ground)
     frame: str = "body"
     direction: str = "from"  # wind and waves: where they come from, or go "to"
     despike: bool = False
     optional: bool = False  # a file without this column is read without it
+
+    @property
+    def parts(self) -> tuple[Key, ...]:
+        """Every column that holds its value."""
+        return self.column if isinstance(self.column, tuple) else (self.column,)
+
+    @property
+    def is_text(self) -> bool:
+        return self.unit == "dms"
 
 
 @dataclass(frozen=True)

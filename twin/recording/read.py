@@ -4,21 +4,28 @@ What cannot be used is a DataError; what was blanked, assumed or derived stands 
 """
 
 import json
-from collections import Counter
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
-from twin.errors import DataError
+from twin.errors import DataError, did_you_mean
 from twin.live.signals.channels import BY_NAME
-from twin.recording.frames import from_ddmm
-from twin.recording.headers import own_names
-from twin.recording.mapping import PLACES, Column, Key, Map, TimeColumn, target
+from twin.recording.cells import converted, earlier, number_keys, optional_keys, sum_of, text_keys, there
+from twin.recording.formats import Format, recognised
+from twin.recording.formats.choose import Sources, chosen
+from twin.recording.formats.rows import as_columns
+from twin.recording.formats.tables import Packed
+from twin.recording.formats.zipped import is_zip, unpacked
+from twin.recording.headers import column_names, own_names
+from twin.recording.map_file import parse_map
+from twin.recording.mapping import PLACES, Column, Key, Map, TimeColumn
 from twin.recording.place import CHART, FRAMED, derive, placed, present, scaled
-from twin.recording.samples import plausible, spikes
-from twin.recording.table import Table, read_table
+from twin.recording.samples import plausible
+from twin.recording.table import Table, read_packed, read_table
 from twin.recording.timebase import (
     Clock,
     clock_from_numbers,
@@ -27,11 +34,12 @@ from twin.recording.timebase import (
     refuse_backwards,
     refuse_leaps,
 )
-from twin.recording.units import factor, froude
+from twin.recording.units import froude
 from twin.recording.voyage import Voyage
 
 FEWEST_ROWS = 10
 CONTROLS = ("rudder_angle_deg", "propeller_rate_rpm")
+NO_SOURCES: Sources = {}
 
 
 @dataclass
@@ -48,44 +56,102 @@ class Raw:
     lost: list[str] = field(default_factory=list)  # what of the file was damaged
 
 
-def read_voyage(path: str | Path, by: Map | None = None) -> Voyage:
-    """The voyage in an `.mcap` log or in a text file; `by` names a text file's own columns, units and signs.
+def read_voyage(
+    path: str | Path | Sequence[str | Path],
+    by: Map | None = None,
+    sources: Sources = NO_SOURCES,
+    controls: bool = True,
+) -> Voyage:
+    """The voyage in a file of any known format (`formats`); `by` names a file's own columns, units and signs,
+    `sources` which instrument is taken where several say the same. `controls` False: rudder and shaft need
+    not be there.
 
     Positions come as north and east, velocities in the ship's axes, headings in [0, 360). Absent velocities,
     yaw rate or position are derived: `meta["derived"]` says how. `meta["notes"]` lists what was blanked or
     assumed, `meta["lost"]` what of the file was damaged.
     """
+    if not isinstance(path, str | Path):
+        if len(path) > 1:
+            return read_several([Path(p) for p in path], by, controls)
+        path = path[0]
     path = Path(path)
-    if not path.is_file():
-        raise DataError(
-            f"{path}: {'is a folder' if path.is_dir() else 'there is no such file'}. Give a CSV or MCAP file."
-        )
-    if path.stat().st_size == 0:
+    if not path.exists():
+        raise DataError(f"{path}: there is no such file. Give a table or a log.")
+    if path.is_file() and path.stat().st_size == 0:
         raise DataError(f"{path}: is empty (0 bytes). Export it again.")
     try:
-        raw = from_log(path) if path.suffix.lower() == ".mcap" else from_text(path, by)
-        return finished(raw)
+        return finished(raw_of(path, by, sources), controls)
     except MemoryError:
         raise DataError(f"{path}: does not fit into the memory. Cut it into shorter voyages.") from None
 
 
-def from_log(path: Path) -> Raw:
-    """The samples of an MCAP file: an imported voyage, the twin's own log, or one that Keelson recorded."""
+def read_several(paths: Sequence[Path], by: Map | None, controls: bool = True) -> Voyage:
+    """The voyage in several tables, joined on their clocks."""
+    from twin.recording.several import joined
+
+    try:
+        return finished(joined(paths, by), controls)
+    except MemoryError:
+        raise DataError(f"{paths[0]}: does not fit into the memory. Cut it into shorter voyages.") from None
+
+
+def raw_of(path: Path, by: Map | None, sources: Sources) -> Raw:
+    """The samples of a file in border units, by the reader of its format."""
+    if is_zip(path):
+        return of_zip(path, by, sources)
+    kind = recognised(path)
+    if kind is None and path.is_dir():
+        from twin.recording.several import joined
+
+        return joined([path], by)
+    if kind is None:
+        return from_log(path, by) if path.suffix.lower() == ".mcap" else from_text(path, by)
+    return (
+        from_series(path, kind, by, sources) if kind.series else from_text(path, by, opened_table(kind, path))
+    )
+
+
+def of_zip(path: Path, by: Map | None, sources: Sources) -> Raw:
+    """What is packed in a .zip: one log or table, or several tables that are joined."""
+    with TemporaryDirectory() as folder:
+        files = unpacked(path, Path(folder))
+        try:
+            if len(files) == 1:
+                return replace(raw_of(files[0], by, sources), path=path)
+            from twin.recording.several import joined
+
+            return replace(joined(files, by), path=path)
+        except DataError as error:
+            raise DataError(str(error).replace(folder, str(path))) from None
+
+
+def opened_table(kind: Format, path: Path) -> Packed:
+    assert kind.table is not None
+    return kind.table(path, kind.says)
+
+
+def from_log(path: Path, by: Map | None = None) -> Raw:
+    """The samples of the twin's own MCAP: an imported voyage, or the log of a run; a map may replace channels
+    of it."""
     from twin.live.log.rows import read_rows
 
     notes, lost = list[str](), list[str]()
     time_s, columns = read_rows(path, notes, lost)
     clock = clock_from_numbers(path, time_s, TimeColumn())
     known = {name: x for name, x in columns.items() if name in BY_NAME}
-    return Raw(
-        path,
-        np.arange(1, time_s.size + 1),
-        clock.time_s,
-        known,
-        about(path, clock) | words(path),
-        notes + list(clock.notes),
-        lost=lost,
-    )
+    lines, facts = np.arange(1, time_s.size + 1), words(path)
+    if by is None:
+        return Raw(
+            path, lines, clock.time_s, known, about(path, clock) | facts, notes + list(clock.notes), lost=lost
+        )
+    own = {name: Column(name) for name in known if name not in by.columns and name not in by.constant}
+    missing = [str(k) for k in number_keys(by.columns.values()) if k not in columns]
+    if missing:
+        raise DataError(
+            f"{path}: this log of the twin holds no {missing[0]!r}.{did_you_mean(missing[0], columns)}"
+        )
+    table = Table(path, lines, dict(columns.items()), {}, lost=tuple(lost))
+    return through(path, table, clock, replace(by, columns=own | dict(by.columns)), notes, facts)
 
 
 def words(path: Path) -> dict[str, Any]:
@@ -98,34 +164,107 @@ def words(path: Path) -> dict[str, Any]:
     return {key: json.loads(value) for key, value in reader.metadata.get(ABOUT, {}).items()}
 
 
-def from_text(path: Path, by: Map | None) -> Raw:
-    """The samples of a text file, through a map."""
-    by, unused = (by, ()) if by else own_names(path)
-    spec = by.time or TimeColumn()
-    stamps: tuple[Key, ...] = spec.column if isinstance(spec.column, tuple) else (spec.column,)
-    wanted = [c.column for c in by.columns.values()]
-    optional = [c.column for c in by.columns.values() if c.optional]
-    table = read_table(
+def from_text(path: Path, by: Map | None, packed: Packed | None = None) -> Raw:
+    """The samples of a table, text or packed, through a map."""
+    by, unused = (by, ()) if by else own_names(path, packed.names if packed else column_names(path))
+    table = table_of(path, by, packed)
+    return through(
         path,
-        by.layout,
-        [*({} if spec.is_text else stamps), *wanted],
-        stamps if spec.is_text else (),
-        optional,
+        table,
+        read_clock(path, table, stamps_of(by), by.time or TimeColumn()),
+        by,
+        [*table.notes, *unused],
+        {},
     )
-    clock = read_clock(path, table, stamps, spec)
-    notes = [*table.notes, *unused, *clock.notes]
-    columns, uses = dict[str, np.ndarray](), Counter(c.column for c in by.columns.values())
+
+
+def stamps_of(by: Map) -> tuple[Key, ...]:
+    """The columns of a map's time."""
+    column = (by.time or TimeColumn()).column
+    return column if isinstance(column, tuple) else (column,)
+
+
+def table_of(path: Path, by: Map, packed: Packed | None) -> Table:
+    """The columns of a table that a map needs."""
+    is_text, entries = (by.time or TimeColumn()).is_text, list(by.columns.values())
+    words = list(dict.fromkeys([*(stamps_of(by) if is_text else ()), *text_keys(entries)]))
+    numbers = list(dict.fromkeys([*(() if is_text else stamps_of(by)), *number_keys(entries)]))
+    if packed:
+        return read_packed(packed, numbers, words, optional_keys(entries))
+    return read_table(path, by.layout, numbers, words, optional_keys(entries))
+
+
+def from_series(path: Path, kind: Format, by: Map | None, sources: Sources) -> Raw:
+    """The samples of a log of messages: by its own map, in which a person's map replaces what it names."""
+    assert kind.series is not None
+    signals = kind.series(path)
+    choice = chosen(signals, sources)
+    if not choice.columns and by is None:
+        held = ", ".join(list(signals.series)[:12])
+        raise DataError(
+            f"{path}: this is {signals.says}, and nothing in it says what it is: {held} ... "
+            "--suggest-map writes a map to begin with."
+        )
+    given = by or Map(name=f"what {path.name} says itself")
+    by = replace(
+        given,
+        columns={
+            **parse_map({"columns": beside_map(choice.columns, given)}, str(path)).columns,
+            **given.columns,
+        },
+    )
+    wanted = list(dict.fromkeys(number_keys(by.columns.values())))
+    for name in wanted:
+        if name not in signals.series:
+            known = list(signals.series)
+            raise DataError(
+                f"{path}: this is {signals.says}, and it holds no "
+                f"{name!r}.{did_you_mean(str(name), known)} It holds "
+                f"{', '.join(known[:20])}."
+            )
+    time_s, columns = as_columns(signals, map(str, wanted))
+    notes = [*signals.notes, *choice.notes]
+    notes += [f"left out: {', '.join(f'{n} {what}' for what, n in signals.skipped.most_common(6))}"] * bool(
+        signals.skipped
+    )
+    table = Table(path, np.arange(1, time_s.size + 1), dict(columns.items()), {})
+    clock = clock_from_numbers(path, time_s, TimeColumn())
+    return through(path, table, clock, by, notes, {"format": signals.says})
+
+
+def beside_map(own: dict[str, Any], given: Map) -> dict[str, Any]:
+    """The log's own columns, without those that a map gives: position and velocity go by whole pairs."""
+    taken = set(given.columns) | set(given.constant)
+    for pair in (FRAMED, PLACES, CHART):
+        if taken & set(pair):
+            taken |= {*pair, *((*PLACES, *CHART) if pair != FRAMED else ())}
+    return {name: c for name, c in own.items() if name not in taken}
+
+
+def through(path: Path, table: Table, clock: Clock, by: Map, notes: list[str], facts: dict[str, Any]) -> Raw:
+    """A table through a map: every channel in its unit, then places and velocities in their frames."""
+    columns = {
+        name: converted(name, table, c, by.name, notes) for name, c in by.columns.items() if there(table, c)
+    }
     for name, c in by.columns.items():
-        if c.column in table.numbers:
-            columns[name] = converted(name, table, c, by.name, notes)
-        uses[c.column] -= 1
-        if not uses[c.column]:  # no column is kept twice: a long voyage fills the memory
-            table.numbers.pop(c.column, None)
+        if c.late_s and name in columns:
+            ch = BY_NAME.get(name, BY_NAME["north_m"])
+            columns[name] = earlier(clock.time_s, columns[name], c.late_s, ch.wraps, ch.stale_s)
+    notes = [*notes, *clock.notes]
     columns |= {name: np.full(table.lines.shape, x) for name, x in by.constant.items()}
-    columns, facts, said = placed(clock.time_s, scaled(columns, by), by)
+    given = sorted(columns)
+    columns, known, said = placed(clock.time_s, scaled(columns, by), by)
     slower = froude("time_s", by.froude_scale)
-    step = spec.rebuild if isinstance(spec.rebuild, bool) else spec.rebuild * slower
-    meta = about(path, clock) | {"map": by.name} | facts
+    step = by.time.rebuild if by.time else False
+    step = step if isinstance(step, bool) else step * slower
+    frame = by.columns[FRAMED[0]].frame if FRAMED[0] in by.columns else ""
+    meta = about(path, clock) | {
+        "map": by.name,
+        "given": given,
+        "constant": sorted(by.constant),
+        "velocity_frame": frame,
+    }
+    meta |= {"units": {name: c.unit for name, c in by.columns.items() if c.unit}} | facts | known
     return Raw(path, table.lines, clock.time_s * slower, columns, meta, notes + said, step, list(table.lost))
 
 
@@ -134,25 +273,18 @@ def about(path: Path, clock: Clock) -> dict[str, Any]:
 
 
 def read_clock(path: Path, table: Table, stamps: tuple[Key, ...], spec: TimeColumn) -> Clock:
-    if not spec.is_text:
-        return clock_from_numbers(path, table.numbers[stamps[0]], spec)
+    """The clock of a table: numbers (several are added up by `factors`), moments that a packed table keeps,
+    or text."""
+    if all(s in table.numbers for s in stamps):
+        if spec.is_text:
+            spec = TimeColumn(spec.column)
+        return clock_from_numbers(path, sum_of([table.numbers[s] for s in stamps], spec.factors), spec)
     joint = " " if spec.format else "T"
     words = [joint.join(parts) for parts in zip(*(table.texts[s] for s in stamps), strict=True)]
     return clock_from_text(path, table.lines, words, spec)
 
 
-def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) -> np.ndarray:
-    """One column with its sign, unit, offset and direction as the contract has them (not yet its frame)."""
-    values = from_ddmm(table.numbers[c.column]) if c.unit == "ddmm" else table.numbers[c.column]
-    scale = 1.0 if c.unit in (None, "ddmm") else factor(target(name, c), c.unit, where)
-    values = values * (c.sign * scale) + c.offset + (180.0 if c.direction == "to" else 0.0)
-    if c.despike and (at := spikes(values, BY_NAME[name].wraps)).size:
-        notes.append(f"{name}: {at.size} spikes blanked (first in line {table.lines[at[0]]})")
-        values[at] = np.nan
-    return values
-
-
-def finished(raw: Raw) -> Voyage:
+def finished(raw: Raw, controls: bool = True) -> Voyage:
     """The voyage: rows without a time left out, implausible samples blanked, what is absent derived."""
     with_time(raw)
     refuse_leaps(raw.path, raw.lines, raw.time_s)
@@ -163,7 +295,7 @@ def finished(raw: Raw) -> Voyage:
     for name, values in raw.columns.items():
         raw.columns[name], blanked = plausible(name, values, raw.lines)
         raw.notes += blanked
-    require(raw)
+    require(raw, controls)
     columns, derived = derive(raw.time_s, raw.columns)
     meta = {k: v for k, v in raw.meta.items() if v}
     meta["derived"] = meta.get("derived", {}) | derived
@@ -177,9 +309,10 @@ def with_time(raw: Raw) -> None:
     keep = np.isfinite(raw.time_s)
     rows = int(np.count_nonzero(keep))
     if rows < FEWEST_ROWS:
+        kind = f"this is {raw.meta['format']}; it " if "format" in raw.meta else ""
         raise DataError(
-            f"{raw.path}: has {rows} rows with a time; at least {FEWEST_ROWS} are needed. Is it "
-            "the right time column?"
+            f"{raw.path}: {kind}has {rows} rows with a time; at least {FEWEST_ROWS} are needed. "
+            "Is it the right time column?"
         )
     if rows < keep.size:
         raw.notes.append(
@@ -189,17 +322,20 @@ def with_time(raw: Raw) -> None:
         raw.columns = {name: x[keep] for name, x in raw.columns.items()}
 
 
-def require(raw: Raw) -> None:
+def require(raw: Raw, controls: bool = True) -> None:
     """Heading, controls, and position or velocity must hold samples; DataError names all that do not."""
-    needed = ("heading_true_north_deg", *CONTROLS)
+    needed = ("heading_true_north_deg", *(CONTROLS if controls else ()))
     missing = [name for name in needed if not present(raw.columns, name)]
     if not present(raw.columns, *CHART) and not present(raw.columns, *FRAMED):
         missing.append(f"{' and '.join(CHART)} (or {' and '.join(PLACES)}, or {' and '.join(FRAMED)})")
     if missing:
         empty = [n for n in raw.columns if not present(raw.columns, n)]
-        said = [f"{', '.join(empty)}: no usable sample"] * bool(empty) + raw.notes
+        said = [f"{', '.join(empty)}: no usable sample"] * bool(empty) + [n[:200] for n in raw.notes[:8]]
         steady = " A shaft that kept one speed may stand under [constant]." * (CONTROLS[1] in missing)
+        kind = f"this is {raw.meta['format']}; a voyage " if "format" in raw.meta else ""
         raise DataError(
-            f"{raw.path}: needs {', '.join(missing)}. {'; '.join(said)}{'. ' if said else ''}Add the "
+            f"{raw.path}: {kind}needs {', '.join(missing)}. {'; '.join(said)}{'. ' if said else ''}Add the "
             f"column, or say in a map which one it is (--map).{steady}"
+            + " What is judged without the controls is imported with "
+            "--without-controls." * (set(missing) <= set(CONTROLS))
         )

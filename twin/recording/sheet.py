@@ -1,6 +1,7 @@
 """An open text file: its encoding and separator found, its column names, and its rows as cells."""
 
 import csv
+import gzip
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import chain, islice
@@ -8,6 +9,7 @@ from pathlib import Path
 from typing import TextIO
 
 from twin.errors import DataError, SettingsError
+from twin.recording.formats.lines import opened
 from twin.recording.mapping import SEPARATORS, Key, Layout
 
 Row = tuple[int, list[str]]  # line in the file, cells
@@ -26,6 +28,7 @@ class Sheet:
         if first is None:
             said = f"ends within the {len(skipped)} lines that the map skips" if skipped else "is empty"
             raise DataError(f"{path}: {said}. Export it again, with a header line and rows.")
+        self.head_lines = first[0]  # lines up to the one with the names
         self.layout = replace(layout, separator=SEPARATORS.get(layout.separator or find_separator(first[1])))
         head = cells(first[1], self.layout)
         self.names = [c.strip() for c in head] if layout.header else []
@@ -91,17 +94,25 @@ def find_separator(line: str) -> str:
     return best if counts[best] else " "
 
 
-def open_text(path: Path, encoding: str | None) -> TextIO:
-    """The file as text: UTF-8, UTF-16 with its mark, or Latin-1 when it is neither; never binary."""
+def head_of(path: Path) -> bytes:
+    """The first bytes of a file, unpacked when it ends in .gz."""
     try:
-        with open(path, "rb") as f:
-            head = f.read(1 << 16)
-    except OSError as error:
-        raise DataError(f"{path}: cannot be read: {error.strerror}.") from None
+        with opened(path) as f:
+            return f.read(1 << 16)
+    except (OSError, EOFError) as error:
+        raise DataError(f"{path}: cannot be read: {getattr(error, 'strerror', None) or error}.") from None
+
+
+def open_text(path: Path, encoding: str | None) -> TextIO:
+    """The file as text: UTF-8, UTF-16 with its mark, or Latin-1 when it is neither; never binary. What ends
+    in .gz is unpacked."""
+    head = head_of(path)
     encoding = encoding or find_encoding(head)
     if b"\0" in head and not encoding.startswith("utf-16"):
         raise DataError(f"{path}: is not text (byte 0 at {head.index(0)}). Give a CSV or an MCAP file.")
     try:
+        if path.suffix.lower() == ".gz":
+            return gzip.open(path, "rt", encoding=encoding, errors="replace", newline="")  # type: ignore[return-value]
         return open(path, encoding=encoding, errors="replace", newline="")
     except LookupError:
         raise SettingsError(

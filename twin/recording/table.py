@@ -9,12 +9,15 @@ from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from twin.errors import DataError
+from twin.recording.formats.fast_csv import LEAST_BYTES, collected
+from twin.recording.formats.tables import Packed
 from twin.recording.mapping import Key, Layout
-from twin.recording.sheet import Row, Sheet, open_text
+from twin.recording.sheet import Row, Sheet, find_encoding, head_of, open_text
 
 ROWS_AT_ONCE = 20_000
 EMPTY = frozenset(("", "nan", "na", "n/a", "#n/a", "null", "none", "-", "--", "---"))
@@ -46,7 +49,87 @@ def read_table(
         sheet = Sheet(path, stream, layout)
         absent = [key for key in optional if not sheet.has(key)]
         sheet.notes += [f"the optional column {key!r} is not there" for key in absent]
+        quick = quickly(
+            sheet, [key for key in numbers if key not in absent], texts, find_encoding(head_of(path))
+        )
+        if quick is not None:
+            return quick
         return collect(sheet, [key for key in numbers if key not in absent], texts)
+
+
+def quickly(sheet: Sheet, numbers: Sequence[Key], texts: Sequence[Key], encoding: str) -> Table | None:
+    """A large plain table by the quick reader; None when it is not for it, or stumbles."""
+    layout = sheet.layout
+    plain = (
+        layout.header
+        and layout.decimal in (None, ".")
+        and not layout.missing
+        and layout.encoding is None
+        and not layout.skip_after_header
+    )
+    if (
+        not plain
+        or texts
+        or not numbers
+        or sheet.path.suffix.lower() == ".gz"
+        or sheet.path.stat().st_size < LEAST_BYTES
+    ):
+        return None
+    names = {key: sheet.names[sheet.index(key)] for key in numbers}
+    found = collected(
+        sheet.path,
+        sheet.names,
+        list(dict.fromkeys(names.values())),
+        layout.separator or ",",
+        sheet.head_lines,
+        encoding,
+        sheet.notes,
+    )
+    if found is None:
+        return None
+    rows = len(next(iter(found.values())))
+    lines = np.arange(sheet.head_lines + 1, sheet.head_lines + 1 + rows)
+    return Table(sheet.path, lines, {key: found[n] for key, n in names.items()}, {}, tuple(sheet.notes))
+
+
+def read_packed(
+    packed: Packed, numbers: Sequence[Key], texts: Sequence[Key] = (), optional: Collection[Key] = ()
+) -> Table:
+    """The same of a packed table (Parquet, Feather, Excel); a moment among `texts` comes as a number, as it
+    is kept."""
+    wanted = dict.fromkeys((*numbers, *texts))
+    found = {key: packed_name(packed, key) for key in wanted if key not in optional or has(packed, key)}
+    held: dict[Key, list[Any]] = {key: [] for key in found}
+    for piece in packed.pieces(list(dict.fromkeys(found.values()))):
+        for key, name in found.items():
+            held[key].append(piece[name])
+    table = Table(packed.path, np.zeros(0, int), {}, {}, (f"read as {packed.says}",))
+    for key, parts in held.items():
+        if any(isinstance(p, np.ndarray) for p in parts):
+            table.numbers[key] = np.concatenate(parts)
+        else:
+            words = [str(w) for p in parts for w in p]
+            if key in texts:
+                table.texts[key] = words
+            else:
+                table.numbers[key] = floats(packed.path, key, list(enumerate(words, 2)), Layout(decimal="."))
+    rows = max((*map(len, table.numbers.values()), *map(len, table.texts.values())), default=0)
+    if not rows:
+        raise DataError(f"{packed.path}: has a header but no rows. Export it again, with the measurements.")
+    return replace(table, lines=np.arange(2, rows + 2))
+
+
+def has(packed: Packed, key: Key) -> bool:
+    return 1 <= key <= len(packed.names) if isinstance(key, int) else key in packed.names
+
+
+def packed_name(packed: Packed, key: Key) -> str:
+    """A column's name, by name or by number from 1."""
+    if not has(packed, key):
+        raise DataError(
+            f"{packed.path}: has no column {key!r}. Columns: {', '.join(packed.names) or 'unnamed'}."
+        )
+    return packed.names[key - 1] if isinstance(key, int) else key
 
 
 def collect(sheet: Sheet, numbers: Sequence[Key], texts: Sequence[Key]) -> Table:

@@ -1,7 +1,8 @@
 """The clock of a file: stamps as numbers or as text, to seconds; rounded stamps made even again."""
 
+import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from twin.recording.units import UNITS
 EPOCH_S = 1e8  # a number of seconds above this counts from 1970, not from the start of the voyage
 FINER = {"ms": "milliseconds", "us": "microseconds", "ns": "nanoseconds"}
 DAY_S = 86400.0
+FRACTION = re.compile(r"^(.*:\d\d)[.,](\d{1,9})(\D.*)?$")  # up to the seconds, their fraction, a zone
 
 
 @dataclass(frozen=True)
@@ -59,7 +61,7 @@ def clock_from_numbers(path: Path, stamps: np.ndarray, spec: TimeColumn) -> Cloc
 
 def clock_from_text(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: TimeColumn) -> Clock:
     """ISO-8601 or strptime stamps; without a zone they are taken as UTC."""
-    seconds = np.array([moment(path, n, s, spec) for n, s in zip(lines.tolist(), stamps, strict=True)])
+    seconds = moments(path, lines, stamps, spec)
     finite = seconds[np.isfinite(seconds)]
     if finite.size and finite[0] > LATEST_S:
         first = stamps[int(np.flatnonzero(np.isfinite(seconds))[0])]
@@ -67,8 +69,39 @@ def clock_from_text(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: 
     return Clock(seconds - finite[0], utc(finite[0])) if finite.size else Clock(seconds)
 
 
-def moment(path: Path, line: int, stamp: str, spec: TimeColumn) -> float:
-    """Seconds since 1970 of one stamp; NaN for an empty cell."""
+def moments(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: TimeColumn) -> np.ndarray:
+    """Seconds since 1970 of all stamps. The whole second is worked out once for all stamps in it; a fraction
+    may have nine digits, or be a count of nanoseconds without its leading zeros, which is believed when only
+    so the clock runs forward."""
+    known: dict[str, float] = {}
+    whole, parts, digits = np.empty(len(stamps)), np.zeros(len(stamps)), np.zeros(len(stamps), int)
+    form = replace(spec, format=spec.format.replace(".%f", "").replace(",%f", "")) if spec.format else spec
+    for i, stamp in enumerate(stamps):
+        found = FRACTION.match(stamp)
+        text, part = (
+            (found[1] + (found[3] or ""), found[2])
+            if found and (not spec.format or form is not spec)
+            else (stamp, "")
+        )
+        if text not in known:
+            known[text] = moment(path, int(lines[i]), text, form if part else spec, stamp)
+        whole[i], digits[i] = known[text], len(part)
+        parts[i] = int(part or 0)
+    plain = whole + parts / 10.0**digits
+    most = int(digits.max(initial=0))
+    if most in (3, 6, 9) and (digits[digits > 0] < most).any() and backwards(plain):
+        counted = whole + parts / 10.0**most
+        return counted if backwards(counted) < backwards(plain) else plain
+    return plain
+
+
+def backwards(seconds: np.ndarray) -> int:
+    """How often a clock goes back."""
+    return int(np.count_nonzero(np.diff(seconds[np.isfinite(seconds)]) < 0.0))
+
+
+def moment(path: Path, line: int, stamp: str, spec: TimeColumn, shown: str = "") -> float:
+    """Seconds since 1970 of one stamp; NaN for an empty cell. `shown`: as the file has it."""
     if not stamp:
         return np.nan
     try:
@@ -76,7 +109,8 @@ def moment(path: Path, line: int, stamp: str, spec: TimeColumn) -> float:
     except ValueError:
         form = spec.format or "ISO 8601, such as 2024-05-17T08:30:00.25Z"
         raise DataError(
-            f"{path}: line {line}: the time {stamp!r} is not {form}. Correct it, or give its format in a "
+            f"{path}: line {line}: the time {shown or stamp!r} is not {form}. Correct it, or give its format "
+            "in a "
             "map: "
             '[time] format = "%d.%m.%Y %H:%M:%S".'
         ) from None

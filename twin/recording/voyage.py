@@ -11,7 +11,7 @@ import numpy as np
 
 from twin.errors import DataError, did_you_mean
 from twin.live.signals.channels import BY_NAME, CHANNELS, Channel
-from twin.recording.holes import HOLE_S, sailed_s, steps_on
+from twin.recording.holes import HOLE_S, WAITS, sailed_s, steps_on
 from twin.recording.resample import continuous, resampled, wrapped
 
 MOST_STEPS = 3e6  # of a grid
@@ -99,8 +99,13 @@ class Voyage:
 
     @property
     def sailed_s(self) -> float:
-        """The same, a hole without any row counted as no more than HOLE_S [s]."""
-        return sailed_s(self.time_s) if len(self) else 0.0
+        """The same, a hole without any row counted as no more than `hole_s` [s]."""
+        return sailed_s(self.time_s, self.hole_s) if len(self) else 0.0
+
+    @property
+    def hole_s(self) -> float:
+        """From how long without any row there is a hole [s]: never what is usual between two rows."""
+        return max(HOLE_S, WAITS * self.step_s) if len(self) > 1 else HOLE_S
 
     @property
     def step_s(self) -> float:
@@ -112,16 +117,18 @@ class Voyage:
         keep = (self.time_s >= start_s) & (self.time_s < end_s)
         return self.with_rows(self.time_s[keep], {name: x[keep] for name, x in self.columns.items()})
 
-    def on_grid(self, step_s: float, max_gap_s: float | None = None, hole_s: float = HOLE_S) -> "Voyage":
+    def on_grid(self, step_s: float, max_gap_s: float | None = None, hole_s: float | None = None) -> "Voyage":
         """The same voyage every `step_s` [s]: means where samples are denser, lines where they are sparser.
 
         No line is drawn over a gap longer than `max_gap_s` (default: the channel's `stale_s`, or 1.5 steps if
         that is longer): there it stays NaN. Angles are averaged along the circle. Slow channels (`stale_s` of
         SLOW_S or more) keep their first and last value at the ends, for as long as they may be old. Of a hole
-        without any row for longer than `hole_s` the grid keeps so much, and jumps over its middle.
+        without any row for longer than `hole_s` (default: its own) the grid keeps so much, and jumps over its
+        middle.
         """
         if not step_s > 0 or not len(self):
             raise DataError(f"{self.name}: cannot be put on a grid of {step_s:g} s with {len(self)} samples.")
+        hole_s = self.hole_s if hole_s is None else hole_s
         if sailed_s(self.time_s, hole_s) / step_s > MOST_STEPS:
             raise DataError(
                 f"{self.name}: {self.sailed_s:.4g} s are more than {MOST_STEPS:.0e} steps of {step_s:.3g} s, "

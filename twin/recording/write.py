@@ -15,24 +15,28 @@ TOPIC = "shiptwin/voyage/row"
 ABOUT = "shiptwin.voyage"  # the table of words; values are JSON
 NS = 1_000_000_000
 LAST_NS = 2**63 - 1
+ROWS_AT_ONCE = 50_000
 
 
 def write_voyage(voyage: Voyage, path: str | Path) -> None:
     """Writes aside and renames: the file is whole or not there. Missing samples are left out of a row."""
     start_ns = round(moment_of(voyage.meta.get("start_time_utc")) * NS)
     names = sorted(voyage.columns)
-    table = np.stack([voyage.columns[name] for name in names], axis=1)
     with LogFile(path) as log:
         log.describe(
             ABOUT, {key: json.dumps(value) for key, value in (*voyage.meta.items(), ("name", voyage.name))}
         )
         if len(voyage):
             log.describe(EXTENT, extent(*(_log_ns(start_ns, float(t)) for t in voyage.time_s[[0, -1]])))
-        for time_s, values, there in zip(
-            voyage.time_s.tolist(), table.tolist(), np.isfinite(table).tolist(), strict=True
-        ):
-            row = Row(time_s=time_s, **{n: x for n, x, ok in zip(names, values, there, strict=True) if ok})
-            log.add(TOPIC, "shiptwin.Row", row.SerializeToString(), _log_ns(start_ns, time_s))
+        for at in range(0, len(voyage), ROWS_AT_ONCE):
+            rows = slice(at, at + ROWS_AT_ONCE)
+            table = np.stack([voyage.columns[name][rows] for name in names], axis=1)
+            for time_s, values, there in zip(
+                voyage.time_s[rows].tolist(), table.tolist(), np.isfinite(table).tolist(), strict=True
+            ):
+                held = {n: x for n, x, ok in zip(names, values, there, strict=True) if ok}
+                row = Row(time_s=time_s, **held)
+                log.add(TOPIC, "shiptwin.Row", row.SerializeToString(), _log_ns(start_ns, time_s))
 
 
 def _log_ns(start_ns: int, time_s: float) -> int:

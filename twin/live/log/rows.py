@@ -58,6 +58,8 @@ class Found:
         self._rows: list[bytes] = []
         self._ticks: list[bytes] = []
         self._samples: dict[str, tuple[list[float], list[float]]] = {}
+        # the source first heard for each channel: no other is merged with it
+        self._speaker: dict[str, str] = {}
 
     def take(self, topic: str, type_name: str, data: bytes) -> None:
         if type_name == ROW:
@@ -120,6 +122,10 @@ class Found:
 
     def _sample(self, result: Result) -> None:
         if isinstance(result, Reading):
+            first = self._speaker.setdefault(result.channel, result.source)
+            if result.source != first:
+                self.refused[f"{result.channel} of {result.source} ({first} is used)"] += 1
+                return
             stamps, values = self._samples.setdefault(result.channel, ([], []))
             stamps.append(result.time_s)
             values.append(result.value)

@@ -11,12 +11,16 @@ from typing import Any
 
 from twin.physics.ship import Ship
 from twin.recording.checks.answer import Check
-from twin.recording.checks.clock import control_gaps, time_gaps, time_stamps, whole_file
+from twin.recording.checks.clock import clock_steps, control_gaps, time_gaps, time_stamps, whole_file
+from twin.recording.checks.compass import compass
+from twin.recording.checks.copies import copies
+from twin.recording.checks.judged import judged
 from twin.recording.checks.motion import velocity_frame
 from twin.recording.checks.propeller import propeller_rate
 from twin.recording.checks.rudder import rudder_sign, rudder_unit
 from twin.recording.checks.samples import frozen, missing_samples, plausible_values, spikes
 from twin.recording.checks.size import duration, ship_size
+from twin.recording.checks.steps import heading_steps
 from twin.recording.checks.turning import yaw_rate
 from twin.recording.checks.view import View
 from twin.recording.checks.water import speed_log
@@ -30,12 +34,16 @@ CHECKS: tuple[Callable[[View], Check], ...] = (
     time_stamps,
     time_gaps,
     control_gaps,
+    clock_steps,
     missing_samples,
     plausible_values,
     spikes,
     frozen,
+    copies,
+    heading_steps,
     velocity_frame,
     yaw_rate,
+    compass,
     rudder_sign,
     rudder_unit,
     propeller_rate,
@@ -62,6 +70,8 @@ def losses(entries: Sequence[dict[str, Any]]) -> list[str]:
 
 
 def run_checks(voyage: Voyage, ship: Ship | None = None) -> list[Check]:
-    """Every check's answer, in the table's order; `ship` lets propeller, size and duration say more."""
-    view = View(voyage, ship)
-    return [check(view) for check in CHECKS]
+    """Every check's answer, in the table's order; `ship` lets propeller, size and duration say more.
+
+    When what disagrees has one explanation, it is the answer of the check that it belongs to, and the others
+    are asked again on the voyage without that mistake."""
+    return judged(View(voyage, ship), CHECKS)

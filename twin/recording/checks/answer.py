@@ -16,7 +16,13 @@ class Check:
 
     def as_json(self) -> dict[str, Any]:
         """The entry of `data_checks`."""
-        return {"check": self.name, "ok": self.ok, "text": self.text}
+        return {
+            "check": self.name,
+            "ok": self.ok,
+            "text": self.text,
+            "proved": self.unusable,
+            "told": self.told,
+        }
 
 
 def good(name: str, text: str) -> Check:

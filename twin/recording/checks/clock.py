@@ -26,11 +26,8 @@ def whole_file(view: View) -> Check:
 def beats(voyage: Voyage) -> np.ndarray:
     """When the instrument that speaks most often spoke [s]: every row of a table, and of a log with a row for
     each message those of one instrument, for what two instruments say at one moment is no stamp twice."""
-    heard = [
-        np.isfinite(values)
-        for name, values in voyage.columns.items()
-        if name not in voyage.meta.get("derived", {})
-    ]
+    made = {*voyage.meta.get("derived", {}), *voyage.meta.get("constant", ())}
+    heard = [np.isfinite(values) for name, values in voyage.columns.items() if name not in made]
     often = max(heard, key=np.count_nonzero, default=np.ones(len(voyage), bool))
     return voyage.time_s[often] if np.count_nonzero(often) > 1 else voyage.time_s
 
@@ -98,3 +95,48 @@ def control_gaps(view: View) -> Check:
             "control_gaps", f"{'; '.join(said)}. When it changed is not known: nothing is judged there."
         )
     return good("control_gaps", "rudder and shaft changed in no gap of theirs.")
+
+
+STEPS_S = (
+    (3600.0, "an hour"),
+    (7200.0, "two hours"),
+    (86400.0, "a day"),
+    (604800.0, "a week"),
+    (1024 * 604800.0, "1024 weeks of the GPS"),
+)
+NEAR_S = 5.0  # of such a step
+WENT_ON = 10.0  # usual ways between two rows: a ship that went no farther did not wait so long
+
+
+def clock_steps(view: View) -> Check:
+    """A gap of an hour, a day or a week over which the ship went no farther than in a step: the clock was
+    set."""
+    name, t = "clock_steps", view.voyage.time_s
+    steps = np.diff(t)
+    usual = float(np.median(steps[steps > 0.0])) if (steps > 0.0).any() else 1.0
+    for i in np.flatnonzero(steps > 0.9 * STEPS_S[0][0]):
+        said = next((text for size, text in STEPS_S if abs(steps[i] - usual - size) <= NEAR_S + usual), None)
+        if said and went_on(view.voyage, int(i), usual):
+            return wrong(
+                name,
+                f"the clock steps by {steps[i] - usual:.6g} s, {said}, at {t[i]:g} s, while the ship sails "
+                "on as if nothing had been: it was set. "
+                f"Take {said} off the stamps after that row, or cut the file there.",
+            )
+    return good(name, "the clock makes no step of an hour, a day or a week.")
+
+
+def went_on(voyage: Voyage, i: int, usual: float) -> bool:
+    """Whether the ship was way on and yet moved over a gap no more than she does in a few rows."""
+    if any(
+        name in voyage.meta.get("derived", {}) for name in ("north_m", "surge_velocity_mps")
+    ) and not voyage.has("north_m"):
+        return False
+    place = voyage["north_m"] + 1j * voyage["east_m"]
+    before = place[max(i - 20, 0) : i + 1]
+    after = place[i + 1 : i + 21]
+    before, after = before[np.isfinite(before)], after[np.isfinite(after)]
+    if before.size < 3 or after.size < 3:
+        return False
+    way = float(np.median(np.abs(np.diff(np.r_[before])))) + float(np.median(np.abs(np.diff(after))))
+    return way > 0.0 and abs(after[0] - before[-1]) < WENT_ON * way and way > 0.02 * usual

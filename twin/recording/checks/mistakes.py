@@ -102,6 +102,7 @@ GEOMETRY = (
 SCALES = (
     (1.0, "", ""),
     (KNOT_MPS, "the speeds are in knots", 'unit = "kn" for surge and sway'),
+    (1.0 / KNOT_MPS, "the speeds are in m/s, read as knots", 'unit = "m/s" for surge and sway'),
     (1.0 / 3.6, "the speeds are in km/h", 'unit = "km/h" for surge and sway'),
     (0.3048, "the speeds are in ft/s", 'unit = "ft/s" for surge and sway'),
     (1.0 / 0.3048, "the positions are in feet", 'unit = "ft" for them'),

@@ -54,7 +54,7 @@ def velocity_frame(view: View) -> Check:
     if view.derived("north_m", "surge_velocity_mps"):
         return course_against_heading(NAME, view)
     legs = cut(view)
-    if not np.isfinite(legs.moved).any() or rms(legs.moved) < 5.0 * legs.noise + 1e-9:
+    if not enough_way(legs):
         far = (
             f"the ship moves {rms(legs.moved):.2g} m in a window, the position's noise is {legs.noise:.2g} m."
         )
@@ -64,6 +64,11 @@ def velocity_frame(view: View) -> Check:
         return nearly_straight(legs) or sway_sign(legs, off)
     saw = f"position and velocities differ by {100 * off:.0f} % of the distance"
     return named(legs, saw, off) or turned_or_drifting(legs, saw, off) or nothing_known(saw)
+
+
+def enough_way(legs: Legs) -> bool:
+    """Whether the ship moves by more in a window than her position is uncertain."""
+    return bool(np.isfinite(legs.moved).any()) and rms(legs.moved) >= 5.0 * legs.noise + 1e-9
 
 
 def cut(view: View) -> Legs:

@@ -19,8 +19,11 @@ def propeller_rate(view: View) -> Check:
     """Turns against speed: by the advance ratio of a known ship, else by what any propeller does."""
     name = "propeller_rate"
     n, speed = np.abs(view.si("propeller_rate_rpm")), np.abs(view.velocity)
-    under_way = (n > 0.5 / 60.0) & (speed > 0.5 * view.speed) & (view.velocity.real > 0.0)
-    if np.count_nonzero(under_way) < 10 or view.speed < 0.05:
+    if not np.isfinite(n).any():
+        return cannot_tell(name, "no shaft was recorded.")
+    on = thrust_on(view, n)
+    under_way = on & (speed > 0.5 * view.speed) & (view.velocity.real > 0.0)
+    if np.count_nonzero(under_way) < 10 or view.speed < 0.05 or not view.way_on:
         return cannot_tell(name, "the ship is hardly ever under way with her propeller turning.")
     rate, way = float(np.median(n[under_way])), float(np.median(speed[under_way]))
     if view.ship is not None:
@@ -38,6 +41,22 @@ def propeller_rate(view: View) -> Check:
         f"{60 * rate:.3g} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked "
         "closer.",
     )
+
+
+def thrust_on(view: View, n: np.ndarray) -> np.ndarray:
+    """Where the shaft turns and the ship keeps her speed: one that runs out with her shaft stopped says
+    nothing of its unit."""
+    usual = float(np.nanquantile(n, 0.9))
+    signed = view.si("propeller_rate_rpm")
+    signed = signed[np.isfinite(signed)]
+    scatter = float(np.median(np.abs(np.diff(signed)))) if signed.size > 2 else 0.0
+    turns = (n > max(0.5 / 60.0, 0.3 * usual)) & (usual > 4.0 * scatter)
+    span = max(round(30.0 / view.step_s), 1)
+    speed = np.abs(view.velocity)
+    ahead = np.r_[speed[span:], np.full(min(span, speed.size), np.nan)][: speed.size]
+    with np.errstate(invalid="ignore"):
+        kept = ~(ahead < 0.9 * speed)
+    return turns & kept
 
 
 def advance(name: str, way: float, rate: float, diameter: float) -> Check:

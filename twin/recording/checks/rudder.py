@@ -19,6 +19,12 @@ LEAST_RUDDER_DEG = 0.7  # a ship that manoeuvres with less than this has it in r
 def rudder_sign(view: View) -> Check:
     """Which way the rudder turns the ship: where it is held over, or by its share in changes of yaw rate."""
     name = "rudder_sign"
+    if not view.voyage.has("rudder_angle_deg"):
+        return cannot_tell(name, "no rudder was recorded.")
+    if not view.way_on:
+        return cannot_tell(
+            name, "she has no way on, and a rudder turns only a ship that moves through the water."
+        )
     same, against = held_turns(view)
     if same + against and min(same, against) == 0:
         return sign_seen(
@@ -31,6 +37,17 @@ def rudder_sign(view: View) -> Check:
             name, f"{saw}; held over until she has turned by {HELD_TURN_DEG:.0f} deg it would show."
         )
     return sign_seen(name, saw, b > 0.0, share > PROOF_SHARE)
+
+
+def seen_gain(view: View) -> tuple[float, bool] | None:
+    """(share that the rudder explains, whether it turns her to its own side); None where it cannot show."""
+    if not view.voyage.has("rudder_angle_deg") or not view.way_on:
+        return None
+    same, against = held_turns(view)
+    if same + against and min(same, against) == 0:
+        return 1.0, same > 0
+    share, b = best_gain(view)
+    return share, b > 0.0
 
 
 def sign_seen(name: str, saw: str, to_own_side: bool, proved: bool) -> Check:
@@ -88,6 +105,8 @@ def rudder_gain(view: View, rudder: np.ndarray, r: np.ndarray, seconds: float) -
 def rudder_unit(view: View) -> Check:
     """A ship that turns far with a rudder of less than a degree has it in radians."""
     name = "rudder_unit"
+    if not view.voyage.has("rudder_angle_deg"):
+        return cannot_tell(name, "no rudder was recorded.")
     most = float(np.nanmax(np.abs(view.voyage["rudder_angle_deg"])))
     swung = float(np.degrees(np.nanmax(view.psi) - np.nanmin(view.psi)))
     if most == 0.0:

@@ -20,20 +20,41 @@ RATES = (
 )
 
 
+def window_s(view: View) -> float:
+    return float(np.clip(view.voyage.duration_s / 50.0, 5.0 * view.step_s, 30.0))
+
+
+def turned(view: View) -> tuple[np.ndarray, np.ndarray]:
+    """(change of the heading, summed rate) [rad] in each window."""
+    first, last = view.windows(window_s(view))
+    return view.psi[last] - view.psi[first], view.summed(view.si("yaw_rate_degps"), first, last)
+
+
+def turning_ratio(view: View) -> tuple[float, float] | None:
+    """(how much the heading turns for one radian of summed rate, share of its turning left over); None: too
+    little turning."""
+    swung, summed = turned(view)
+    (k, _), (error, _), left = fit([summed, np.ones(summed.size)], swung)
+    turn = np.degrees(rms(swung))
+    if not np.isfinite(k) or (turn < 0.5 and np.degrees(rms(summed)) < 5.0):
+        return None
+    if (left > 0.5 or error > 0.3 * abs(k)) and turn < 2.0 and rms(summed) < 3.0 * rms(swung):
+        return None
+    return float(k), float(left)
+
+
 def yaw_rate(view: View) -> Check:
     """The heading's change against the summed yaw rate."""
     name = "yaw_rate"
     if view.derived("yaw_rate_degps"):
         return cannot_tell(name, "no yaw rate was recorded; it is derived from the heading.")
-    window_s = float(np.clip(view.voyage.duration_s / 50.0, 5.0 * view.step_s, 30.0))
-    first, last = view.windows(window_s)
-    swung = view.psi[last] - view.psi[first]
-    summed = view.summed(view.si("yaw_rate_degps"), first, last)
+    seconds = window_s(view)
+    swung, summed = turned(view)
     (k, _), (error, _), left = fit([summed, np.ones(summed.size)], swung)
     turn = np.degrees(rms(swung))
     if not np.isfinite(k) or (turn < 0.5 and np.degrees(rms(summed)) < 5.0):
         return cannot_tell(
-            name, f"the heading changes by {turn:.2g} deg in {window_s:.3g} s; a turn would show it."
+            name, f"the heading changes by {turn:.2g} deg in {seconds:.3g} s; a turn would show it."
         )
     ratio, said, fix = min(RATES, key=lambda c: abs(np.log(abs(k / c[0]))) if k * c[0] > 0 else np.inf)
     saw = f"the heading turns by {k:.3g} x the summed yaw rate"
@@ -41,7 +62,7 @@ def yaw_rate(view: View) -> Check:
         if rms(summed) < 3.0 * rms(swung) and turn < 2.0:
             return cannot_tell(
                 name,
-                f"the heading changes by {turn:.2g} deg in {window_s:.3g} s, too little beside the noise.",
+                f"the heading changes by {turn:.2g} deg in {seconds:.3g} s, too little beside the noise.",
             )
         return doubtful(
             name, f"heading and yaw rate do not tell of the same turning ({100 * left:.0f} % of it is left)."

@@ -9,6 +9,7 @@ from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 
 MOST_ROWS = 20_000
+LEAST_WAY_MPS = 0.1  # less is a mooring's swing
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,21 @@ class View:
         """Usual speed [m/s]: the 75 % quantile, so that a voyage that starts at rest still has one."""
         speed = np.abs(self.velocity)
         return float(np.nanquantile(speed, 0.75)) if np.isfinite(speed).any() else 0.0
+
+    @cached_property
+    def way_on(self) -> bool:
+        """Whether the ship makes way: in a minute farther than her position and her speed are uncertain."""
+        w = self.velocity * np.exp(1j * self.psi)
+        first, last = self.windows(min(60.0, self.voyage.duration_s / 4.0))
+        made = np.abs(self.summed(w, first, last)) / max(float(np.median(last - first)) * self.step_s, 1e-9)
+        made = made[np.isfinite(made)]
+        scatter = rms(np.diff(w)) / np.sqrt(2.0)
+        way = float(np.quantile(made, 0.75)) if made.size else 0.0
+        if not self.derived("north_m", "surge_velocity_mps"):
+            placed = np.abs(self.place[last] - self.place[first]) / (np.median(last - first) * self.step_s)
+            placed = placed[np.isfinite(placed)]
+            way = min(way, 3.0 * float(np.quantile(placed, 0.75))) if placed.size else way
+        return way > max(LEAST_WAY_MPS, 0.3 * scatter)
 
     def windows(self, seconds: float) -> tuple[np.ndarray, np.ndarray]:
         """(first, last) rows of windows this long, each starting half a window after the one before."""

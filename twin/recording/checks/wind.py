@@ -15,6 +15,7 @@ from twin.recording.units import DEG_PER_RAD, KNOT_MPS
 # share of the wind by which the triangle may stay open (gusts, mast height, flow around the ship)
 AGREES = 0.35
 EXPLAINS = 0.5
+LIGHT_MPS = 2.0
 Pair = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 
@@ -119,8 +120,10 @@ def alone(name: str, view: View, true: bool) -> Check:
         )
     if np.degrees(np.nanstd(view.psi)) < 15.0:
         return cannot_tell(name, "only the true wind was recorded, and the ship hardly turns.")
-    followed = follows_heading(view.si(column), view.psi)
-    if followed < -0.7:
+    if np.nanmedian(view.si("true_wind_speed_mps")) < LIGHT_MPS:
+        return cannot_tell(name, "only a true wind was recorded, so light that it comes from anywhere.")
+    followed, sure = follows_heading(view.si(column), view.psi, view.even.time_s)
+    if followed < -0.7 and sure:
         return wrong(
             name,
             f"the wind direction turns {followed:.2f} times as the heading does: it is counted from the "
@@ -134,9 +137,33 @@ def alone(name: str, view: View, true: bool) -> Check:
     )
 
 
-def follows_heading(direction: np.ndarray, psi: np.ndarray) -> float:
-    """d(direction)/d(psi); 0 for a true direction, -1 for one counted from the bow."""
-    (k, _), (error, _), left = fit(
-        [psi - np.nanmean(psi), np.ones(psi.size)], direction - np.nanmean(direction)
+def follows_heading(direction: np.ndarray, psi: np.ndarray, time_s: np.ndarray) -> tuple[float, bool]:
+    """(d(direction)/d(psi): 0 for a true direction, -1 for one counted from the bow; whether no veering wind
+    explains it).
+
+    A wind may veer while the ship circles one way: only where the heading also comes back does it tell, so
+    the steady veering is fitted beside it, and both halves of the voyage must say the same."""
+    whole = slope_on(direction, psi, time_s)
+    half = psi.size // 2
+    halves = [
+        slope_on(direction[rows], psi[rows], time_s[rows]) for rows in (slice(0, half), slice(half, None))
+    ]
+    sure = whole[1] and sum(ok and abs(k + 1.0) < 0.3 for k, ok in halves) == 2
+    return whole[0], sure
+
+
+def slope_on(direction: np.ndarray, psi: np.ndarray, time_s: np.ndarray) -> tuple[float, bool]:
+    """(slope on the heading beside a steady veering, whether it stands by itself)."""
+    t = time_s - time_s.mean()
+    x, error, left = fit([psi - np.nanmean(psi), t, np.ones(psi.size)], direction - np.nanmean(direction))
+    k, own = float(x[0]), float(error[0])
+    alone = (
+        np.nanstd(psi - np.polyval(np.polyfit(t[np.isfinite(psi)], psi[np.isfinite(psi)], 1), t))
+        > np.radians(10.0)
+        if np.isfinite(psi).sum() > 10
+        else False
     )
-    return float(k) if left < 0.5 and error < 0.3 else 0.0
+    own *= np.sqrt(max(60.0 / max(float(np.median(np.diff(time_s))), 1e-9), 1.0))
+    if not np.isfinite(k) or left > 0.5 or own > 0.3:
+        return 0.0 if not np.isfinite(k) or left > 0.5 else k, False
+    return k, bool(alone and own < 0.1)

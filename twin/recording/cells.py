@@ -1,0 +1,130 @@
+"""Cells of a table as the numbers of a channel: one column or several, letters of a hemisphere, degrees as
+text."""
+
+import re
+from collections.abc import Iterable
+
+import numpy as np
+
+from twin.errors import DataError
+from twin.live.signals.channels import BY_NAME
+from twin.recording.frames import from_ddmm
+from twin.recording.mapping import Column, Key, target
+from twin.recording.resample import continuous, wrapped
+from twin.recording.samples import spikes
+from twin.recording.table import Table
+from twin.recording.units import factor
+
+PARTS = re.compile(r"\d+(?:[.,]\d+)?")
+NEGATIVE = frozenset("SWsw-")
+PLAIN_UNITS = (None, "ddmm", "dms", "quaternion", "quaternion_enu")
+
+
+def number_keys(columns: Iterable[Column]) -> list[Key]:
+    """The columns of a file that are read as numbers."""
+    return [key for c in columns if not c.is_text for key in c.parts]
+
+
+def text_keys(columns: Iterable[Column]) -> list[Key]:
+    """The columns of a file that are read as text: degrees as text, letters of a hemisphere."""
+    return [
+        k
+        for c in columns
+        for k in (*(c.parts if c.is_text else ()), *((c.hemisphere,) if c.hemisphere else ()))
+    ]
+
+
+def optional_keys(columns: Iterable[Column]) -> list[Key]:
+    return [k for c in columns if c.optional for k in (*c.parts, *((c.hemisphere,) if c.hemisphere else ()))]
+
+
+def there(table: Table, c: Column) -> bool:
+    """Whether every column that an entry needs was read."""
+    return all(key in table.numbers or key in table.texts for key in c.parts)
+
+
+def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) -> np.ndarray:
+    """One channel with its sign, unit, offset and direction as the contract has them (not yet its frame)."""
+    values = raw(table, c)
+    scale = 1.0 if c.unit in PLAIN_UNITS else factor(target(name, c), c.unit or "", where)
+    values = values * (c.sign * scale * c.factor) + c.offset + (180.0 if c.direction == "to" else 0.0)
+    if c.deviation:
+        values = without_deviation(values, c.deviation)
+    if c.despike and (at := spikes(values, BY_NAME[name].wraps if name in BY_NAME else 0.0)).size:
+        notes.append(f"{name}: {at.size} spikes blanked (first in line {table.lines[at[0]]})")
+        values[at] = np.nan
+    return values
+
+
+def raw(table: Table, c: Column) -> np.ndarray:
+    """The cells as one number a row, before unit, sign and offset."""
+    if c.is_text:
+        values = degrees_of_text(table, c.parts[0])
+    elif c.unit in ("quaternion", "quaternion_enu"):
+        x, y, z, w = (table.numbers[key] for key in c.parts)
+        yaw = np.degrees(np.arctan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z)))
+        values = np.mod(90.0 - yaw if c.unit == "quaternion_enu" else yaw, 360.0)
+    elif len(c.parts) > 1:
+        values = sum_of([table.numbers[key] for key in c.parts], c.factors)
+    else:
+        values = table.numbers[c.parts[0]]
+    values = from_ddmm(values) if c.unit == "ddmm" else values
+    if c.hemisphere and c.hemisphere in table.texts:
+        south = np.array([text[:1] in NEGATIVE for text in table.texts[c.hemisphere]])
+        values = np.where(south, -np.abs(values), np.abs(values))
+    return values
+
+
+def sum_of(columns: list[np.ndarray], factors: tuple[float, ...]) -> np.ndarray:
+    """The columns added up, each times its factor (1 where none is given)."""
+    out = np.zeros(columns[0].shape)
+    for values, by in zip(columns, factors or (1.0,) * len(columns), strict=True):
+        out = out + values * by
+    return out
+
+
+def degrees_of_text(table: Table, key: Key) -> np.ndarray:
+    """Degrees, minutes and seconds as people write them: 57°30.123'N, 11 05 30 W, -57 30.5; NaN for empty
+    cells."""
+    return np.array([one_angle(table, key, i, text) for i, text in enumerate(table.texts[key])])
+
+
+def one_angle(table: Table, key: Key, row: int, text: str) -> float:
+    parts = [float(p.replace(",", ".")) for p in PARTS.findall(text)]
+    if not text.strip() or not parts:
+        return np.nan
+    if len(parts) > 3 or any(p >= 60.0 for p in parts[1:]):
+        raise DataError(
+            f"{table.path}: line {table.lines[row]}, column {key!r}: {text[:40]!r} is not degrees and "
+            "minutes (57 30.123 N)."
+        )
+    size = sum(p / 60.0**k for k, p in enumerate(parts))
+    return -size if set(text) & NEGATIVE else size
+
+
+def without_deviation(shown: np.ndarray, deviation: tuple[float, ...]) -> np.ndarray:
+    """The true heading [deg] from what the compass shows: shown = true + A + B sin + C cos + D sin 2 + E cos
+    2 (true)."""
+    a, b, c, d, e = (*deviation, *(0.0,) * (5 - len(deviation)))
+    true = shown - a
+    for _ in range(20):  # a contraction while the coefficients are below a radian
+        x = np.radians(true)
+        true = shown - (a + b * np.sin(x) + c * np.cos(x) + d * np.sin(2 * x) + e * np.cos(2 * x))
+    return true
+
+
+def earlier(
+    time_s: np.ndarray, values: np.ndarray, late_s: float, period: float, longest_s: float
+) -> np.ndarray:
+    """The same channel had its samples stood where they were true, `late_s` before their rows: lines between
+    its neighbours no more than `longest_s` apart, NaN outside."""
+    known = np.flatnonzero(np.isfinite(values) & np.isfinite(time_s))
+    out = np.full(values.shape, np.nan)
+    if known.size < 2:
+        return out
+    t, x = time_s[known] - late_s, continuous(values[known], period)
+    here = time_s[known]
+    after = np.clip(np.searchsorted(t, here), 1, t.size - 1)
+    good = (here >= t[0]) & (here <= t[-1]) & (t[after] - t[after - 1] <= longest_s)
+    out[known] = np.where(good, np.interp(here, t, x), np.nan)
+    return wrapped(out, period)

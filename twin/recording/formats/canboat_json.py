@@ -1,0 +1,111 @@
+"""canboat's JSON of NMEA 2000: one decoded message a line, fields by name; angles in degrees or in
+radians."""
+
+import json
+from collections.abc import Iterator
+from math import pi
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from twin.recording.formats.lines import numbered
+from twin.recording.formats.nmea2000_pgns import DEG
+from twin.recording.formats.signals import Signals
+from twin.recording.formats.stamps import Stamp
+
+SAYS = "an NMEA 2000 log as canboat's JSON"
+FULL = 2.0 * pi + 0.01  # directions never above this are in radians
+# {group: {field: (quantity, whether it is an angle, factor to the quantity's unit if not)}}
+FIELDS: dict[int, dict[str, tuple[str, bool, float]]] = {
+    127245: {"Position": ("rudder_angle_deg", True, 1.0)},
+    127250: {"Heading": ("heading", True, 1.0), "Variation": ("magnetic_variation_deg", True, 1.0)},
+    127251: {"Rate": ("yaw_rate_degps", True, 1.0)},
+    127257: {"Roll": ("roll_deg", True, 1.0)},
+    127258: {"Variation": ("magnetic_variation_deg", True, 1.0)},
+    127488: {"Speed": ("engine_rate_rpm", False, 1.0), "Engine Speed": ("engine_rate_rpm", False, 1.0)},
+    128259: {"Speed Water Referenced": ("surge_velocity_through_water_mps", False, 1.0)},
+    128267: {"Depth": ("water_depth_m", False, 1.0)},
+    129025: {"Latitude": ("latitude_deg", False, 1.0), "Longitude": ("longitude_deg", False, 1.0)},
+    129029: {"Latitude": ("latitude_deg", False, 1.0), "Longitude": ("longitude_deg", False, 1.0)},
+    129026: {"COG": ("course_over_ground_deg", True, 1.0), "SOG": ("speed_over_ground_mps", False, 1.0)},
+    130306: {"Wind Speed": ("wind_speed", False, 1.0), "Wind Angle": ("wind_angle", True, 1.0)},
+}
+KEYS = {name.replace(" ", "").lower(): name for group in FIELDS.values() for name in group}
+WIND = {"apparent": "apparent_wind", "true (ground referenced to north)": "true_wind"}
+OF_WIND = {"apparent_wind": ("apparent_wind_speed_mps", "apparent_wind_angle_deg"),
+           "true_wind": ("true_wind_speed_mps", "true_wind_direction_deg")}  # fmt: skip
+
+
+def looks(lines: list[str], start: bytes) -> bool:
+    return any(s.startswith("{") and '"pgn"' in s and '"fields"' in s for s in lines[:10])
+
+
+def read(path: Path) -> Signals:
+    out, stamp, units = Signals(path, SAYS), Stamp(), ""
+    angles: set[str] = set()
+    for number, line in numbered(path):
+        try:
+            message = json.loads(line)
+            if isinstance(message, dict) and "units" in message and "pgn" not in message:
+                units = str(message["units"])
+                continue
+            pgn, fields = int(message["pgn"]), message["fields"]
+            t = stamp(str(message.get("timestamp", "")))
+            found = list(parts(pgn, fields)) if t is not None else []
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            out.skipped["lines that are no such message"] += 1
+            continue
+        if t is None:
+            out.skipped["messages without a time stamp"] += 1
+            continue
+        out.clock(t, number)
+        for quantity, angle, value in found:
+            name = f"{pgn}.{message.get('src', '')}.{quantity.rpartition('_')[0]}"
+            out.put(name, str(message.get("src", "")), quantity, t, value, int(pgn in (129029, 127258)))
+            if angle:
+                angles.add(name)
+    in_degrees(out, angles, units)
+    return out.finish()
+
+
+def parts(pgn: int, fields: dict[str, Any]) -> Iterator[tuple[str, bool, float]]:
+    """(quantity, whether it is an angle, value) of one message."""
+    known = FIELDS.get(pgn, {})
+    reference = str(fields.get("Reference", fields.get("reference", "")))
+    for given, raw in fields.items():
+        name = KEYS.get(given.replace(" ", "").lower(), given)
+        if name not in known or isinstance(raw, bool) or not isinstance(raw, int | float):
+            continue
+        quantity, angle, scale = known[name]
+        if quantity == "heading":
+            quantity = (
+                "heading_magnetic_deg"
+                if reference.lower().startswith("magnetic")
+                else "heading_true_north_deg"
+            )
+        if quantity.startswith("wind_"):
+            kind = WIND.get(reference.lower())
+            if kind is None:
+                continue
+            quantity = OF_WIND[kind][quantity == "wind_angle"]
+        yield quantity, angle, raw * scale
+
+
+def in_degrees(out: Signals, angles: set[str], units: str) -> None:
+    """Angles of a log in radians become degrees: as its first line says, else when no direction exceeds 2
+    pi."""
+    full = [
+        np.frombuffer(out.series[n].values).max()
+        for n in angles
+        if "heading" in n or "course" in n or "angle" in n
+    ]
+    if units != "si" and (units == "std" or not full or max(full) > FULL):
+        return
+    for name in angles:
+        s = out.series[name]
+        for i, x in enumerate(s.values):
+            s.values[i] = x * DEG
+    out.notes.append(
+        "angles are in radians (no direction exceeds 2 pi)" if units != "si" else "angles are in radians"
+    )
