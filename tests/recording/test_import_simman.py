@@ -66,8 +66,6 @@ EARTH_MARIN = {"surge_velocity_mps": Column(6), "sway_velocity_mps": Column(7)}
 TRAPS = {
     "hsva: earth-fixed velocities called u and v": (
         "hsva", with_columns(HSVA, **EARTH), "velocity_frame", "earth-fixed"),
-    "hsva: rudder positive to port": (
-        "hsva", with_columns(HSVA, rudder_angle_deg=Column(9)), "rudder_sign", "to port"),
     "hsva: 1/s for rpm": ("hsva", with_columns(HSVA, propeller_rate_rpm=Column(10)), "propeller_rate", "1/s"),
     "marin: earth-fixed velocities, without position": (
         "marin", with_columns(MARIN, **EARTH_MARIN), "velocity_frame", "earth-fixed"),
@@ -87,6 +85,17 @@ def test_the_trap_left_in_the_map_is_named_in_every_file(trap):
     for path in files(who):
         answers = {c.name: c for c in run_checks(read_voyage(path, by))}
         assert answers[check].unusable and words in answers[check].text, (path.name, answers[check].text)
+
+
+def test_where_a_mirrored_heading_explains_the_same_as_a_mirrored_rudder_both_are_named():
+    """Test: HSVA's rudder positive to port; these files hold no position of their own by which to tell.
+    Expected: both explanations with their remedies, neither called proved."""
+    for path in files("hsva"):
+        answers = {
+            c.name: c for c in run_checks(read_voyage(path, with_columns(HSVA, rudder_angle_deg=Column(9))))
+        }
+        said = answers["rudder_sign"]
+        assert not said.ok and "sign = -1 for rudder_angle_deg" in said.text, (path.name, said.text)
 
 
 def test_marins_turns_taken_for_1_per_s_are_named_with_the_ship():
