@@ -140,6 +140,7 @@ NUMBER = (
     JsonKey("sd", "of the number", "standard error"),
     JsonKey("low95", "of the number", "lower end of its 95 % interval"),
     JsonKey("high95", "of the number", "upper end"),
+    JsonKey("at_box_end", "", "whether the end of its box stopped the number", PROOF),
 )
 JUDGED = (
     JsonKey("measure", "", "what was judged"),
