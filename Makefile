@@ -10,7 +10,7 @@ PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; 
 help:  ## these words
 	@sed -n 's/^\([a-z]*\):.*## /  make \1\t/p' Makefile
 
-demo: $(VENV)/.on-board  ## makes .venv, installs, and tells the whole story: a twin alive, then what her owner finds
+demo: $(VENV)/.on-board  ## makes .venv, installs, and tells the whole story: a twin alive, then what its owner finds
 	$(BIN)/twin demo
 
 test: lint types tests paper  ## the same with the tools of development: ruff, mypy, all tests and the paper's tables in small

@@ -3,6 +3,7 @@
 import os
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,13 +14,16 @@ ROOT = Path(__file__).parents[1]
 TEXT = (ROOT / "README.md").read_text()
 SET_UP, *AFTER = re.findall(r"```sh\n(.*?)```", TEXT, re.S)
 COMMANDS = [line for block in AFTER for line in block.splitlines()]
+PYTHON = re.findall(r"```python\n(.*?)```", TEXT, re.S)
 MAY_MISS_THE_BUDGET = {3}  # twin-bench says so by its exit code; tests/bench asks for the numbers
 
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """An empty folder that all commands share, as a newcomer would have it."""
-    return tmp_path_factory.mktemp("newcomer")
+    """A folder that all commands share, as a newcomer would have it: nothing but the bundled voyages."""
+    made = tmp_path_factory.mktemp("newcomer")
+    shutil.copytree(ROOT / "twin" / "voyages", made / "twin" / "voyages")
+    return made
 
 
 def words(target):
@@ -63,7 +67,17 @@ def test_every_command_shown_runs(command, folder):
     program, *arguments = shlex.split(command)
     module = {"twin": "twin.cli", "twin-bench": "bench.cli"}[program]
     env = os.environ | {"HOME": str(folder)}
-    line = [sys.executable, "-m", module, *arguments]
+    line = [sys.executable, "-P", "-m", module, *arguments]  # -P: the folder's twin/ is no package
     done = subprocess.run(line, cwd=folder, env=env, capture_output=True, text=True, timeout=300)
     allowed = {0} | (MAY_MISS_THE_BUDGET if program == "twin-bench" else set())
     assert done.returncode in allowed, done.stdout[-2000:] + done.stderr[-2000:]
+
+
+def test_the_first_lines_of_python_give_the_result_that_stands_beside_them(folder):
+    (lines,) = PYTHON
+    line = [sys.executable, "-P", "-c", lines]
+    done = subprocess.run(line, cwd=folder, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stderr[-2000:]
+    compared, diagnosed = done.stdout.splitlines()
+    assert "11.4 m" in compared and "5.7 m" in compared
+    assert "HullFouling" in diagnosed

@@ -106,8 +106,7 @@ def add(
     """Fit named effects to the voyages and prove on held-out ones that the error falls.
 
     `held_out`: voyages to judge by; without any the last third of every voyage. SettingsError when there is
-        no
-    such effect, DataError when a voyage lacks what it needs, UsageError when no effect is named.
+    no such effect, DataError when a voyage lacks what it needs, UsageError when no effect is named.
     """
     names = [effects] if isinstance(effects, str) else list(effects)
     if not names:

@@ -131,11 +131,11 @@ class Ship:
 
     @cached_property
     def c(self) -> Coefficients:
-        """Her derivatives with their units."""
+        """The ship's derivatives with their units."""
         return coefficients(self)
 
     def scale(self, of: str) -> Number:
-        """The ship's own size of a quantity: 'force' is 1 % of 1/2 rho L T U_0^2, about half of her
+        """The ship's own size of a quantity: 'force' is 1 % of 1/2 rho L T U_0^2, about half of its
         resistance.
 
         'moment' = force L, 'speed' = U_0, 'length' = L, 'time' = L/U_0.

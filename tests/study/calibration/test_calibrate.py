@@ -11,6 +11,8 @@ from bench.bundled import recorded
 from bench.real.faults import Readings, antenna_elsewhere
 from bench.reference import Case, simulate
 from twin import cli
+from twin.api.json_key import absent_keys, unknown_paths
+from twin.api.json_keys import KEYS
 from twin.physics.ship import load
 from twin.recording.write import write_voyage
 from twin.study.calibration.doubts import doubts
@@ -29,6 +31,12 @@ def calibrated(voyages, tmp_path_factory):
     words = ["calibrate", str(paths["calm"]), str(paths["calm too"]), "--held-out", str(paths["nothing"])]
     assert cli.main([*words, "--ship", "kvlcc2", "-o", str(out), "--json", str(said)]) == 0
     return load(out), json.loads(said.read_text())
+
+
+def test_its_json_has_the_keys_of_the_table(calibrated):
+    _, said = calibrated
+    assert unknown_paths(KEYS["calibrate"], said) == []
+    assert absent_keys(KEYS["calibrate"], said) == []
 
 
 def test_the_error_falls_on_a_voyage_that_was_not_used(calibrated):
