@@ -13,10 +13,12 @@ from twin.live import build
 from twin.live.clock import ReplayClock
 from twin.live.foresight import Foresight, Sight
 from twin.live.inbox import Played
+from twin.live.log.mcap_index import PROVENANCE
 from twin.live.log.played import Batch, PlayedLog
 from twin.live.log.record import LogFile
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
+from twin.live.provenance import REPLAY, identity, provenance
 from twin.live.publish import Publisher
 from twin.live.signals.config import Settings
 from twin.physics.maths import total
@@ -54,6 +56,9 @@ def replay(
             Publisher(), settings["bus.base"], settings["bus.entity"], None, file.add if file else None
         )
         loop = build.loop_of(settings, ears, voice, patience_s=None)
+        loop.publisher.identity = identity(loop.ship, REPLAY)
+        if file:
+            file.describe(PROVENANCE, provenance(settings, loop.ship))
         return _sailed(loop, ears, played, batches, file, realtime)
 
 
