@@ -56,7 +56,7 @@ OUTPUTS: tuple[Output, ...] = (
     Output("force_newton", VECTOR, "twin/learned", 1.0, "learned force, body axes (X, Y, 0)"),
     Output("moment_newton_meter", VECTOR, "twin/learned", 1.0, "learned moment (0, 0, N)"),
     Output("twin_status", STRING, "twin", 1.0, "mode and reasons in words"),
-    Output("configuration_json", STRING, "twin", 1.0, "who speaks: ship, hash, length, beam, version, origin"),
+    Output("configuration_json", STRING, "twin", 1.0, "who speaks: ship, hash, size, version, origin"),
 )
 
 

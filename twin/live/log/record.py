@@ -173,9 +173,7 @@ class Recorder:
         ):
             self._close_segment(finish=True)
         if self._segment is None:
-            self._segment = Segment(
-                self.folder, self.name, now_s, self._sync, self._compress, self.about
-            )
+            self._segment = Segment(self.folder, self.name, now_s, self._sync, self._compress, self.about)
         return self._segment
 
     def _close_segment(self, finish: bool) -> None:

@@ -20,7 +20,8 @@ NOTHING: Mapping[str, str] = {}
 
 
 class Segment:
-    """The file being written, with what is told `about` it at its head; raises OSError from the constructor, `add`, `sync` and `finish`."""
+    """The file being written, with what is told `about` it at its head; raises OSError from the constructor,
+    `add`, `sync` and `finish`."""
 
     def __init__(
         self,
