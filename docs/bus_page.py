@@ -175,8 +175,8 @@ def _outputs() -> str:
             "",
             "Predictions stand in `twin_tick` (`predictions`). `configuration_json` holds `software`, "
             "`version`, `ship`, `ship_hash`, `length_m`, `beam_m` and `origin`",
-            "(`live`, or `replay` for `twin replay --to-bus`). Nothing that is not a finite number is ever said: such a field is "
-            "absent.",
+            "(`live`, or `replay` for `twin replay --to-bus`). Nothing that is not a finite number is ever "
+            "said: such a field is absent.",
             "A liveliness token stands at `{base}/@v0/{entity}/pubsub/*/twin` as long as the twin is there.",
             "",
         ]

@@ -274,7 +274,7 @@ def test_file_names_count_up_even_when_the_clock_runs_back(tmp_path: Path) -> No
 def test_the_bus_and_the_log_load_nothing_heavy() -> None:
     """Memory on board: numpy 16 MB, keelson 4, mcap's writer 8: none is needed to speak or to log."""
     script = (
-        "import sys\nfrom twin.live import bus, clock, decode, record, zenoh_bus\n"
+        "import sys\nfrom twin.live import clock\nfrom twin.live.keelson import bus, decode, zenoh_bus\nfrom twin.live.log import record\n"
         "heavy = ('numpy', 'keelson', 'mcap', 'yaml', 'lz4', 'importlib.metadata')\n"
         "print([name for name in heavy if name in sys.modules])"
     )
