@@ -74,7 +74,7 @@ function fitted(frame, place) {
     const ten = 10 ** Math.floor(Math.log10(m));
     return [1, 1.5, 2, 3, 5, 7, 10].map((k) => k * ten).find((r) => r >= m);
   };
-  return range >= wanted && range <= 2.2 * wanted ? range : step(wanted);
+  return range >= wanted && range <= 1.7 * wanted ? range : step(wanted);
 }
 
 function grid(place, at, perM, width, height) {
@@ -122,9 +122,12 @@ function ahead(frame, at, perM, turn) {
     const here = `translate(${x.toFixed(1)} ${y.toFixed(1)})`;
     set(spread, { rx: ((p.se ?? 0) * perM).toFixed(1), ry: ((p.sn ?? 0) * perM).toFixed(1), transform: `${here} rotate(${(-turn / RAD).toFixed(2)})` });
     set(outline, { d: hull(frame.ship, perM), transform: `${here} rotate(${(p.psi - turn / RAD).toFixed(2)})` });
-    const right = x < parts.svg.clientWidth - 96;
-    const aside = 14 + Math.max((p.se ?? 0) * perM, (frame.ship.beam_m * perM) / 2);
-    set(label, { x: (x + (right ? aside : -aside)).toFixed(1), y: (y + 5).toFixed(1), "text-anchor": right ? "start" : "end" });
+    // beside the hull, on the side that lies to the right, or below where neither does
+    const abeam = p.psi * RAD - turn;
+    const side = Math.cos(abeam) < -0.05 ? -1 : 1;
+    const aside = 12 + Math.max(Math.max(p.se ?? 0, p.sn ?? 0) * perM, (frame.ship.beam_m * perM) / 2, 9);
+    const [dx, dy] = [side * Math.cos(abeam) * aside, side * Math.sin(abeam) * aside];
+    set(label, { x: (x + dx).toFixed(1), y: (y + dy + 5).toFixed(1), "text-anchor": dx > 0.4 * aside ? "start" : "middle" });
     say(label, `${p.horizon.toFixed(0)} s`);
   });
 }

@@ -56,7 +56,7 @@ function tiles(states) {
     const lost = state.lost || state.measured === null;
     set(tile, { class: lost ? "tile lost" : "tile" });
     const measured = name === "heading" ? heading(state.measured) : fixed(state.measured, 1);
-    say(tile.querySelector(".from"), lost ? "not measured now" : `measured ${measured} ${state.unit}`);
+    say(tile.querySelector(".from"), lost ? "not measured now" : `measured ${measured}${state.unit.startsWith("°") ? "" : " "}${state.unit}`);
   });
 }
 
@@ -65,10 +65,10 @@ const heading = (value) => (value === null ? "–" : (value % 360).toFixed(1).pa
 function motion(states) {
   const rows = states.map((s) => {
     const age = s.lost ? "lost" : s.age === null ? "–" : `${s.age.toFixed(1)} s`;
-    const sigma = s.sigma === null ? "–" : `± ${fixed(s.sigma, s.decimals)}`;
-    return ["", `${s.name} [${s.unit}]`, [fixed(s.measured, s.decimals), s.lost ? "lost" : "measured"], [fixed(s.estimate, s.decimals)], [sigma], [age, s.lost ? "lost" : ""]];
+    const sigma = s.sigma === null ? "" : ` ± ${fixed(s.sigma, s.decimals)}`;
+    return ["", `${s.name} [${s.unit}]`, [fixed(s.measured, s.decimals), s.lost ? "lost" : "measured"], [fixed(s.estimate, s.decimals) + sigma], [age, s.lost ? "lost" : ""]];
   });
-  table(by("motion"), "Motion, measured and estimated", ["", "measured", "estimated", "1 sigma", "age"], rows);
+  table(by("motion"), "Motion, measured and estimated", ["", "measured", "estimated ± 1 sigma", "age"], rows);
 }
 
 function ahead(next) {
@@ -84,8 +84,8 @@ function ahead(next) {
 }
 
 function forces({ unit, moment_unit, rows, parts, share }) {
-  const heads = ["", `ahead [${unit}]`, `to starboard [${unit}]`, `turning [${moment_unit}]`];
-  const cells = (row) => ["", row.name, [fixed(row.X, 2)], [fixed(row.Y, 2)], [fixed(row.N, 2)]];
+  const heads = ["", `ahead [${unit}]`, `starboard [${unit}]`, `turning [${moment_unit}]`];
+  const cells = (row) => ["", row.name, [fixed(row.X, 1)], [fixed(row.Y, 1)], [fixed(row.N, 1)]];
   table(by("forces"), "Known and learned force", heads, rows.map(cells));
   table(by("parts"), "Known force by effect", heads, parts.map(cells));
   say(by("share"), `The learned force is ${share} % of all force.`);
@@ -102,19 +102,30 @@ function water(frame) {
   }
   const { wind, stream } = frame;
   filled(box.childNodes[0], wind && [wind.from + 180, `${fixed(wind.speed, 1)} m/s`, `from ${bearing(wind.from)}, ${fixed(wind.age, 0)} s old`], "not measured");
-  filled(box.childNodes[1], stream && [stream.to, `${fixed(stream.speed, 2)} kn`, `towards ${bearing(stream.to)}, estimated`], "not known");
+  filled(box.childNodes[1], stream && [stream.speed < 0.05 ? null : stream.to, `${fixed(stream.speed, 2)} kn`, stream.speed < 0.05 ? "estimated: hardly any" : `towards ${bearing(stream.to)}, estimated`], "not known");
 }
 
 function filled(one, said, otherwise) {
   const [svg, words] = one.childNodes;
-  set(svg.lastChild, { visibility: said ? "visible" : "hidden", transform: `rotate(${said ? said[0] : 0})` });
+  const turned = said ? said[0] : null;
+  set(svg.lastChild, { visibility: turned === null ? "hidden" : "visible", transform: `rotate(${turned ?? 0})` });
   say(words.childNodes[1], said ? said[1] : "–");
   say(words.childNodes[2], said ? said[2] : otherwise);
 }
 
 function ages(instruments) {
-  const rows = instruments.map((i) => ["", i.name.replaceAll("_", " "), [i.age === null ? "–" : `${i.age.toFixed(1)} s`, i.level], [i.words, `words ${i.level}`]]);
-  table(by("ages"), "Age of each instrument's newest good sample", ["", "age", "state"], rows);
+  const box = by("ages");
+  while (box.children.length > instruments.length) box.lastChild.remove();
+  while (box.children.length < instruments.length) box.append(made("li", {}, made("span"), made("span"), made("span")));
+  instruments.forEach((i, k) => {
+    const [name, age, why] = box.children[k].children;
+    say(name, i.name);
+    say(age, i.age === null ? "–" : `${i.age.toFixed(1)} s`);
+    set(age, { class: `age ${i.level}` });
+    why.hidden = i.level === "good";
+    set(why, { class: `why ${i.level}` });
+    say(why, i.words);
+  });
 }
 
 function pace(p) {

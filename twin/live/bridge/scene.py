@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from twin.live.bridge.feed import About
 from twin.live.guard import HYBRID, INVALID, PHYSICS, RECKONING, STARTING
+from twin.live.keelson.meanings import UNITS
 from twin.live.signals.channels import CHANNELS
 from twin.live.signals.readings import WORDS, Quality
 from twin.physics.maths import total
@@ -155,7 +156,7 @@ def _forces(tick: Any, largest: tuple[float, float]) -> dict[str, Any]:
 
     def row(name: str, parts: list[Any]) -> dict[str, Any]:
         sums = (total(p.X_N for p in parts), total(p.Y_N for p in parts), total(p.N_Nm for p in parts))
-        X, Y, N = (round(x / per, 2) for x, per in zip(sums, (per_N, per_N, per_Nm), strict=True))
+        X, Y, N = (round(x / per, 1) for x, per in zip(sums, (per_N, per_N, per_Nm), strict=True))
         return {"name": name, "X": X, "Y": Y, "N": N}
 
     return {
@@ -168,8 +169,8 @@ def _forces(tick: Any, largest: tuple[float, float]) -> dict[str, Any]:
 
 
 def _unit(largest: float, column: int) -> tuple[str, float]:
-    """The unit in which the largest number has at least one digit, and how much it is."""
-    found = next((row for row in FORCE_UNITS if largest >= row[0]), FORCE_UNITS[-1])
+    """The unit in which the largest number has at least three digits, and how much it is."""
+    found = next((row for row in FORCE_UNITS if largest >= 100.0 * row[0]), FORCE_UNITS[-1])
     return str(found[column]), float(found[0])
 
 
@@ -204,7 +205,13 @@ def _instrument(tick: Any, name: str) -> dict[str, Any] | None:
         return None
     words = WORDS[Quality(code)] if code in Quality._value2member_map_ else "unknown"
     level = "good" if code == Quality.OK else "bad" if code == Quality.STALE else "fair"
-    return {"name": name, "age": number(tick.age_s, name, 1.0, 1), "level": level, "words": words}
+    return {"name": _plain(name), "age": number(tick.age_s, name, 1.0, 1), "level": level, "words": words}
+
+
+def _plain(channel: str) -> str:
+    """A channel's name without its unit."""
+    words = channel.split("_")
+    return " ".join(words[:-1] if words[-1] in UNITS and len(words) > 1 else words)
 
 
 def _pace(tick: Any) -> dict[str, Any]:

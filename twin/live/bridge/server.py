@@ -21,8 +21,8 @@ HOST = "127.0.0.1"
 MOST_VIEWERS = 16  # event streams at a time
 MAX_BODY = 2000  # bytes
 TIMEOUT_S = 10.0  # for a request, and for a viewer that takes nothing
-KINDS = {"html": "text/html", "css": "text/css", "js": "text/javascript"}
-NAMES = ("page.html", "page.css", "main.js", "chart.js", "panels.js", "dom.js", "look.js")
+KINDS = {"html": "text/html", "css": "text/css", "js": "text/javascript", "svg": "image/svg+xml"}
+NAMES = ("page.html", "page.css", "main.js", "chart.js", "panels.js", "dom.js", "look.js", "icon.svg")
 POLICY = (
     "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self'; "
     "base-uri 'none'; form-action 'none'; frame-ancestors 'none'"

@@ -110,7 +110,7 @@ def _forces(forces: dict[str, Any]) -> list[str]:
     rows = [f"{DIM}{'force':<26}" + "".join(f"{h:>16}" for h in heads) + PLAIN]
     for row in forces["rows"]:
         share = f"  {forces['share']} %" if row["name"] == "learned" else ""
-        rows.append(f"{row['name']:<26}{row['X']:>+16.2f}{row['Y']:>+16.2f}{row['N']:>+16.2f}{share}")
+        rows.append(f"{row['name']:<26}{row['X']:>+16.1f}{row['Y']:>+16.1f}{row['N']:>+16.1f}{share}")
     return rows
 
 
