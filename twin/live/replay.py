@@ -54,7 +54,7 @@ def replay(
     player: Player | None = None,
 ) -> Summary:
     """The voyage through a new loop; `output` is written whole or not at all. On a `bus` the twin speaks as
-    if it were live, at the `player`'s pace; a voyage that is stopped there has a summary of what was sailed."""
+    if it were live, at the `player`'s pace; of a voyage that is ended there, what was sailed is summed up."""
     played = PlayedLog(log, settings["loop.rate_hz"])
     batches = played.batches()
     with ExitStack() as stack:

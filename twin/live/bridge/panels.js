@@ -74,7 +74,7 @@ function motion(states) {
 function ahead(next) {
   const shown = next?.shown ?? [];
   const rows = shown.map((p) => [
-    next.old ? "old-row" : "", `in ${p.horizon.toFixed(0)} s`,
+    next.old ? "old-row" : "", `${p.horizon.toFixed(0)} s`,
     [`${p.distance.toFixed(0)} m, ${bearing(p.bearing)}`], [bearing(p.psi)], [`± ${fixed(p.sn, 0)} / ${fixed(p.se, 0)} m`], [p.status],
   ]);
   table(by("ahead"), "Where the ship will be", ["", "from here", "heading", "± north / east", "spread"], rows);
