@@ -99,7 +99,9 @@ def test_a_page_shows_known_and_learned_apart_and_why():
 
 
 def test_the_known_forces_are_summed():
-    row = next(line for line in terminal.page(tick(), "t", 0.0, 1.0, "", []).splitlines() if "known, all" in line)
+    row = next(
+        line for line in terminal.page(tick(), "t", 0.0, 1.0, "", []).splitlines() if "known, all" in line
+    )
     assert row.split()[-3:] == ["-2", "+3", "-3"]
 
 

@@ -7,6 +7,7 @@ from typing import Any, TextIO
 from twin.live.terminal import BOLD, CLEAR, DIM, LINE_S, PAGE_S, PLAIN, WIDTH
 
 OLD = "\x1b[7m"  # reversed
+ORIGINS = {"live": "", "replay": "RECORDED, replayed", "log": "RECORDED"}
 
 
 class Text:
@@ -54,7 +55,8 @@ def line(frame: dict[str, Any]) -> str:
         f"known {known['X']:g}/{known['Y']:g} {unit}",
     ]
     said += [f"learned {learned['X']:g}/{learned['Y']:g} {unit}", f"alarms {len(frame['alarms'])}"]
-    return " | ".join([*([old] if old else []), *said])
+    recorded = ORIGINS.get(frame["ship"]["origin"], "").partition(",")[0]
+    return " | ".join([*filter(None, [recorded, old]), *said])
 
 
 def clock(wall_s: float) -> str:
@@ -76,9 +78,9 @@ def _old(feed: dict[str, Any]) -> str:
 
 def _title(frame: dict[str, Any]) -> str:
     ship = frame["ship"]
-    origin = {"live": "", "replay": "RECORDED, replayed  ", "log": "RECORDED  "}.get(ship["origin"], "")
+    origin = ORIGINS.get(ship["origin"], ship["origin"])
     name = ship["ship"] or "unnamed ship"
-    right = f"{origin}{clock(frame['wall_s'])} UTC" if "wall_s" in frame else ""
+    right = f"{origin}  {clock(frame['wall_s'])} UTC" if "wall_s" in frame else ""
     return f"{name}{right:>{max(WIDTH - len(name), 1)}}"
 
 
