@@ -65,6 +65,8 @@ def test_after_a_second_without_a_tick_the_picture_is_old(watch, feed, ticks):
     frame = watch.step(13.0)
     assert frame["feed"]["silent"] and frame["feed"]["silent_s"] == 3.0
     assert "NOTHING HEARD FOR 3 s" in page(frame) and line(frame).startswith("NOTHING HEARD FOR 3 s")
+    ages = {i["name"]: i["age"] for i in frame["instruments"]}
+    assert ages["yaw rate"] == pytest.approx(ticks[0].age_s.yaw_rate_degps + 3.0, abs=0.06)
     feed.give(ticks[1])
     frame = watch.step(13.1)
     assert not frame["feed"]["silent"] and "NOTHING HEARD" not in page(frame)

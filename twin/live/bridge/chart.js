@@ -62,7 +62,8 @@ export function draw(frame, old) {
   set(parts.trail, { d: line([...trail, [place.n, place.e]].map(([n, e]) => at(n, e))) });
   ship(frame.ship, place, at, perM, turn);
   ahead(frame, at, perM, turn);
-  set(parts.north, { transform: `translate(${width - 30} 52) rotate(${-turn / RAD})` });
+  set(parts.north, { transform: `translate(${width - 40} 54) rotate(${-turn / RAD})` });
+  set(parts.north.lastChild, { transform: `rotate(${turn / RAD} 0 -30)` });
   say(parts.title, told(frame));
 }
 
@@ -150,7 +151,7 @@ const line = (points) => points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(
 
 function stamped(frame, old, width, height) {
   set(parts.veil, { visibility: old ? "visible" : "hidden" });
-  set(parts.stamp, { x: width / 2, y: height * 0.28 });
+  set(parts.stamp, { x: width / 2, y: height * 0.16 });
   say(parts.stamp, old ? (frame.feed.heard ? "OLD" : "NOTHING YET") : "");
 }
 

@@ -85,7 +85,7 @@ class BusFeed:
         from twin.live.keelson.zenoh_config import BusSettings, beside, endpoints
 
         config = beside(BusSettings.of(settings))
-        self.name, self.about, self.over = endpoints(config), About(), False
+        self.name, self.about, self.over = endpoints(config).removeprefix("connect "), About(), False
         try:
             self._session = zenoh.open(config)
         except zenoh.ZError as failure:

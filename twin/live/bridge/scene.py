@@ -44,20 +44,23 @@ class Ahead(NamedTuple):
     said_s: float
 
 
-def scene(tick: Any, about: About, ahead: Ahead | None, largest: tuple[float, float]) -> dict[str, Any]:
-    """The picture of one tick; `largest` are the largest force [N] and moment [N m] seen so far."""
+def scene(
+    tick: Any, about: About, ahead: Ahead | None, largest: tuple[float, float], since_s: float = 0.0
+) -> dict[str, Any]:
+    """The picture of one tick; `largest` are the largest force [N] and moment [N m] seen so far, `since_s` is
+    how long ago a twin that is silent said it: every age grows by it."""
     level, words = MODES.get(tick.mode, ("bad", "a mode that this viewer does not know"))
     return {
         "ship": about._asdict(),
         "wall_s": round(tick.wall_s, 1),
         "mode": {"name": tick.mode, "level": level, "words": words},
         "place": _place(tick.estimate),
-        "states": [_state(tick, *row) for row in STATES],
-        "ahead": _ahead(tick, ahead),
+        "states": [_state(tick, since_s, *row) for row in STATES],
+        "ahead": _ahead(tick, ahead, since_s),
         "forces": _forces(tick, largest),
-        "wind": _wind(tick),
+        "wind": _wind(tick, since_s),
         "stream": _stream(tick.estimate),
-        "instruments": [row for channel in CHANNELS if (row := _instrument(tick, channel.name))],
+        "instruments": [row for channel in CHANNELS if (row := _instrument(tick, channel.name, since_s))],
         "pace": _pace(tick),
     }
 
@@ -83,18 +86,20 @@ def _place(state: Any) -> dict[str, float] | None:
     return {name: round(getattr(state, f), 2) for name, f in zip(("n", "e", "psi"), fields, strict=True)}
 
 
-def _state(tick: Any, name: str, field: str, unit: str, factor: float, decimals: int) -> dict[str, Any]:
+def _state(
+    tick: Any, since_s: float, name: str, field: str, unit: str, factor: float, decimals: int
+) -> dict[str, Any]:
     parts = {"measured": tick.measured, "estimate": tick.estimate, "sigma": tick.sigma}
     said = {what: number(part, field, factor, decimals) for what, part in parts.items()}
     lost = getattr(tick.quality, field) == Quality.STALE if tick.quality.HasField(field) else False
-    age = number(tick.age_s, field, 1.0, 1)
+    age = _age(tick, field, since_s)
     return {"name": name, "unit": unit, "decimals": decimals, "age": age, "lost": lost, **said}
 
 
-def _ahead(tick: Any, ahead: Ahead | None) -> dict[str, Any] | None:
+def _ahead(tick: Any, ahead: Ahead | None, since_s: float) -> dict[str, Any] | None:
     if ahead is None:
         return None
-    age_s = max(tick.time_s - ahead.said_s, 0.0)
+    age_s = max(tick.time_s - ahead.said_s, 0.0) + since_s
     rounds = [p for p in ahead.tick.predictions if _place(p.state) and p.horizon_s <= max(SHOWN_S)]
     shown = [_prediction(p, ahead.tick) for p in rounds if p.horizon_s in SHOWN_S]
     stops = [(0.0, ahead.tick.estimate, ahead.tick.sigma)]
@@ -174,7 +179,7 @@ def _unit(largest: float, column: int) -> tuple[str, float]:
     return str(found[column]), float(found[0])
 
 
-def _wind(tick: Any) -> dict[str, float] | None:
+def _wind(tick: Any, since_s: float) -> dict[str, float] | None:
     speed = number(tick.measured, "true_wind_speed_mps", 1.0, 1)
     comes_from = number(tick.measured, "true_wind_direction_deg", 1.0, 0)
     if speed is None or comes_from is None:
@@ -182,7 +187,7 @@ def _wind(tick: Any) -> dict[str, float] | None:
     return {
         "speed": speed,
         "from": comes_from % 360.0,
-        "age": number(tick.age_s, "true_wind_speed_mps") or 0.0,
+        "age": _age(tick, "true_wind_speed_mps", since_s) or 0.0,
     }
 
 
@@ -196,7 +201,7 @@ def _stream(state: Any) -> dict[str, float] | None:
     }
 
 
-def _instrument(tick: Any, name: str) -> dict[str, Any] | None:
+def _instrument(tick: Any, name: str, since_s: float) -> dict[str, Any] | None:
     """One channel: how old its newest sample is, and how it fares in words; None where it was never heard."""
     if not tick.quality.HasField(name) and not tick.age_s.HasField(name):
         return None
@@ -205,7 +210,13 @@ def _instrument(tick: Any, name: str) -> dict[str, Any] | None:
         return None
     words = WORDS[Quality(code)] if code in Quality._value2member_map_ else "unknown"
     level = "good" if code == Quality.OK else "bad" if code == Quality.STALE else "fair"
-    return {"name": _plain(name), "age": number(tick.age_s, name, 1.0, 1), "level": level, "words": words}
+    return {"name": _plain(name), "age": _age(tick, name, since_s), "level": level, "words": words}
+
+
+def _age(tick: Any, channel: str, since_s: float) -> float | None:
+    """How old a channel's newest good sample is now [s]."""
+    age = number(tick.age_s, channel, 1.0, 1)
+    return None if age is None else round(age + since_s, 1)
 
 
 def _plain(channel: str) -> str:

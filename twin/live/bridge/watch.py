@@ -91,7 +91,8 @@ class Watch:
         }
         if self._tick is None:
             return {"feed": feed, "ship": self.about._asdict(), "alarms": []}
-        picture = scene(self._tick, self.about, self._ahead, self._largest)
+        since_s = silent_s if feed["silent"] else 0.0
+        picture = scene(self._tick, self.about, self._ahead, self._largest, since_s)
         return {"feed": feed, **picture, "alarms": self.alarms.listed()}
 
     @property
