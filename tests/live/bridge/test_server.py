@@ -3,6 +3,8 @@
 import http.client
 import json
 import socket
+import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -33,6 +35,12 @@ def let_in(server, links):
     assert status == 303 and headers["Location"] == "/"
     assert {"HttpOnly", "SameSite=Strict", "Path=/"} <= set(headers["Set-Cookie"].split("; "))
     return headers["Set-Cookie"].partition(";")[0]
+
+
+def test_an_installation_gets_every_file_of_the_page():
+    pyproject = Path(__file__).parents[3] / "pyproject.toml"
+    kept = tomllib.loads(pyproject.read_text())["tool"]["setuptools"]["package-data"]["twin.live.bridge"]
+    assert {f"*.{name.rpartition('.')[2]}" for name in NAMES} <= set(kept)
 
 
 def test_it_listens_on_loopback_only(server):
