@@ -31,6 +31,11 @@ VERBS: dict[str, Verb] = {
         "a recorded voyage through the same loop",
         "twin replay logs/voyage.mcap -o again.mcap",
     ),
+    "view": Verb(
+        "twin.commands.view",
+        "the twin for the bridge, in a browser or in the terminal",
+        "twin view --connect tcp/127.0.0.1:7447",
+    ),
     "init": Verb(
         "twin.commands.init",
         "a first model of my ship from what its owner knows",

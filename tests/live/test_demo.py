@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from twin.live import demo, view
+from twin.live import demo, terminal
 from twin.live.keelson.messages import Tick
 
 DEMO = [sys.executable, "-m", "twin.cli", "demo"]
@@ -93,25 +93,27 @@ def tick(time_s=0.0):
 
 
 def test_a_page_shows_known_and_learned_apart_and_why():
-    page = view.page(tick(), "title", 1.0, 40.0, "logs", [])
+    page = terminal.page(tick(), "title", 1.0, 40.0, "logs", [])
     assert "known: hull" in page and "learned" in page and "25 % of all" in page
     assert "359.9" in page and "0.1" in page and "- a reason" in page
 
 
 def test_the_known_forces_are_summed():
-    row = next(line for line in view.page(tick(), "t", 0.0, 1.0, "", []).splitlines() if "known, all" in line)
+    row = next(
+        line for line in terminal.page(tick(), "t", 0.0, 1.0, "", []).splitlines() if "known, all" in line
+    )
     assert row.split()[-3:] == ["-2", "+3", "-3"]
 
 
 def test_what_was_not_measured_is_a_dash_and_not_a_number():
-    assert "speed ahead -/- m/s" in view.line(tick(), 0.0)
+    assert "speed ahead -/- m/s" in terminal.line(tick(), 0.0)
 
 
 def test_pages_are_drawn_four_times_a_second_and_lines_every_five():
     for pages, expected in ((True, 40), (False, 2)):
         stream = StringIO()
-        show = view.View(stream, "t", 10.0, "logs", pages).show
+        show = terminal.View(stream, "t", 10.0, "logs", pages).show
         for i in range(100):
             show(tick(i * 0.1))
-        drawn = stream.getvalue().count(view.CLEAR) if pages else stream.getvalue().count("\n")
+        drawn = stream.getvalue().count(terminal.CLEAR) if pages else stream.getvalue().count("\n")
         assert drawn == pytest.approx(expected, abs=7 if pages else 0)

@@ -6,9 +6,12 @@ import json
 from pathlib import Path
 
 from twin import whole
-from twin.errors import SettingsError
+from twin.cli import guarded
+from twin.errors import SettingsError, UsageError
+from twin.live import ending
 from twin.live.replay import SCHEMA_VERSION, Summary, replay, told
 from twin.live.signals import config
+from twin.live.signals.config import Settings
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -27,6 +30,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--realtime", action="store_true", help="as fast as the voyage was, not as fast as possible"
     )
+    parser.add_argument(
+        "--to-bus",
+        action="store_true",
+        help="say it on the bus of the settings, as fast as the voyage was, so that `twin view` and others "
+        "can watch; space or Ctrl-Z pauses, + and - change the speed, q ends",
+    )
+    parser.add_argument("--speed", type=float, metavar="X", help="with --to-bus: so many times as fast")
+    parser.add_argument(
+        "--listen", metavar="PLACE", help="with --to-bus: where, instead of the settings' tcp/127.0.0.1:7447"
+    )
     parser.add_argument("--json", metavar="FILE", help="write the summary as JSON, - for standard output")
 
 
@@ -36,7 +49,28 @@ def run(args: argparse.Namespace) -> int:
         settings = settings.but("ship.file", args.ship)
     if args.output and Path(args.output).resolve() == Path(args.log).resolve():
         raise SettingsError(f"-o {args.output}: is the log itself. Give another name.")
-    summary = replay(args.log, settings, args.output, args.realtime)
+    if args.to_bus:
+        return run_on_the_bus(args, settings)
+    if args.speed is not None or args.listen:
+        raise UsageError("--speed and --listen are for --to-bus; as fast as the voyage was: --realtime.")
+    return _told(replay(args.log, settings, args.output, args.realtime), args, settings)
+
+
+def run_on_the_bus(args: argparse.Namespace, settings: Settings) -> int:
+    """Never returns: an interpreter that ends with an open Zenoh session may hang for ever."""
+    from twin.live.onto_bus import replay_onto_bus
+
+    if args.listen:
+        settings = settings.but("bus.listen", args.listen)
+    speed = 1.0 if args.speed is None else args.speed
+
+    def on_the_bus() -> int:
+        return _told(replay_onto_bus(args.log, settings, args.output, speed), args, settings)
+
+    ending.ends_the_process(lambda: guarded(on_the_bus))
+
+
+def _told(summary: Summary, args: argparse.Namespace, settings: Settings) -> int:
     if args.json:
         _write_json(summary, args.json)
     if args.json != "-":

@@ -6,11 +6,9 @@ os._exit.
 """
 
 import argparse
-import os
-import sys
-import traceback
 
 from twin.cli import guarded
+from twin.live import ending
 from twin.live.run import _served
 from twin.live.signals import config
 
@@ -37,12 +35,4 @@ def run(args: argparse.Namespace) -> int:
     if args.example_config:
         print(config.example())
         return 0
-    code = 1
-    try:
-        code = guarded(lambda: _served(args))
-    except BaseException:
-        traceback.print_exc()
-    finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(code)
+    ending.ends_the_process(lambda: guarded(lambda: _served(args)))

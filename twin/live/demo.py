@@ -25,7 +25,7 @@ from twin.live import run as service
 from twin.live.keelson import messages
 from twin.live.log.logfile import read
 from twin.live.signals.config import Settings
-from twin.live.view import View
+from twin.live.terminal import View
 from twin.physics.ship import load
 
 SEA = "bench.sea_process"  # the reference sea: a program beside the twin, not a part of it

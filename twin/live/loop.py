@@ -19,6 +19,7 @@ from twin.live.observer.estimate import Observer
 from twin.live.observer.predict import LearnedAt, Predictor
 from twin.live.outbox import Outbox
 from twin.live.parts import Parts
+from twin.live.provenance import identity
 from twin.live.seen import Pace, Seen, Standing
 from twin.live.signals.channels import BY_NAME
 from twin.live.signals.geodesy import Datum
@@ -65,6 +66,7 @@ class Loop:
         self.predictor = predictor or Predictor(ship, rate_hz=rate_hz)
         self.stabilizer = stabilizer or Stabilizer()
         self.publisher = voice.publisher
+        self.publisher.identity = identity(ship)
         self.pace = Pace(rate_hz)
         self.overruns = 0
         self.notes: list[str] = []  # said once, at the start: files left out, rights not granted

@@ -15,12 +15,15 @@ from twin.live.signals.geodesy import Datum, from_chart
 from twin.physics.core import Tau
 from twin.physics.maths import total
 
+IDENTITY = next(output for output in OUTPUTS if output.subject == "configuration_json")
+
 
 class Publisher:
-    """Builds messages; `withheld` counts the numbers that were not finite."""
+    """Builds messages; `withheld` counts the numbers that were not finite, `identity` says who speaks (JSON,
+    see `provenance.identity`)."""
 
     def __init__(self) -> None:
-        self.withheld = 0
+        self.withheld, self.identity = 0, ""
         self._next: dict[Output, float] = {}
 
     def tick(self, seen: Seen, standing: Standing) -> Any:
@@ -73,11 +76,14 @@ class Publisher:
         for output in OUTPUTS:
             if tick.time_s < self._next.get(output, 0.0):
                 continue
-            data = _encode(output, tick, datum, ns)
+            data = self._identity(ns) if output is IDENTITY else _encode(output, tick, datum, ns)
             if data is not None:
                 said.append((output, data))
                 self._next[output] = tick.time_s + output.every_s - 1e-6
         return said
+
+    def _identity(self, ns: int) -> bytes | None:
+        return messages.encode_string(self.identity, ns) if self.identity else None
 
     def _finite(self, values: dict[str, Any]) -> dict[str, Any]:
         """The values without those that are not finite numbers."""

@@ -10,13 +10,17 @@ from typing import Any, NamedTuple
 
 from twin.errors import DataError
 from twin.live import build
-from twin.live.clock import ReplayClock
+from twin.live.clock import Clock, ReplayClock
 from twin.live.foresight import Foresight, Sight
 from twin.live.inbox import Played
+from twin.live.keelson.bus import Bus
+from twin.live.log.mcap_index import PROVENANCE
 from twin.live.log.played import Batch, PlayedLog
 from twin.live.log.record import LogFile
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
+from twin.live.paced import PacedClock, Player
+from twin.live.provenance import REPLAY, identity, provenance
 from twin.live.publish import Publisher
 from twin.live.signals.config import Settings
 from twin.physics.maths import total
@@ -42,29 +46,39 @@ class Summary(NamedTuple):
 
 
 def replay(
-    log: str | Path, settings: Settings, output: str | Path | None = None, realtime: bool = False
+    log: str | Path,
+    settings: Settings,
+    output: str | Path | None = None,
+    realtime: bool = False,
+    bus: Bus | None = None,
+    player: Player | None = None,
 ) -> Summary:
-    """The voyage through a new loop; `output` is written whole or not at all."""
+    """The voyage through a new loop; `output` is written whole or not at all. On a `bus` the twin speaks as
+    if it were live, at the `player`'s pace; of a voyage that is ended there, what was sailed is summed up."""
     played = PlayedLog(log, settings["loop.rate_hz"])
     batches = played.batches()
     with ExitStack() as stack:
         file = stack.enter_context(LogFile(output)) if output else None
         ears = Played([])
         voice = Outbox(
-            Publisher(), settings["bus.base"], settings["bus.entity"], None, file.add if file else None
+            Publisher(), settings["bus.base"], settings["bus.entity"], bus, file.add if file else None
         )
         loop = build.loop_of(settings, ears, voice, patience_s=None)
-        return _sailed(loop, ears, played, batches, file, realtime)
+        loop.publisher.identity = identity(loop.ship, REPLAY)
+        if file:
+            file.describe(PROVENANCE, provenance(settings, loop.ship))
+        waiting: list[Batch] = []
+        times = _instants(batches, waiting)
+        clock = PacedClock(times, player) if player else ReplayClock(times, 1.0 if realtime else 0.0)
+        return _sailed(loop, ears, played, clock, waiting, file)
 
 
 def _sailed(
-    loop: Loop, ears: Played, played: PlayedLog, batches: Any, file: LogFile | None, realtime: bool
+    loop: Loop, ears: Played, played: PlayedLog, clock: Clock, waiting: list[Batch], file: LogFile | None
 ) -> Summary:
     modes: Counter[str] = Counter()
     reasons: Counter[str] = Counter()
     foresight = Foresight(loop)
-    waiting: list[Batch] = []
-    clock = ReplayClock(_instants(batches, waiting), 1.0 if realtime else 0.0)
     first_s = last_s = None
     while (instant := clock.wait()) is not None:
         batch = waiting.pop()

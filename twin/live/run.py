@@ -27,6 +27,7 @@ from twin.live.log.record import Recorder
 from twin.live.loop import Loop
 from twin.live.notify import Notifier
 from twin.live.outbox import Outbox
+from twin.live.provenance import provenance
 from twin.live.publish import Publisher
 from twin.live.signals import config
 from twin.live.signals.config import Settings
@@ -80,6 +81,7 @@ def opened(settings: Settings, clock_of: Callable[[float], Clock] = MonotonicClo
     loop = build.loop_of(settings, inbox, _voice(settings, bus, log))
     with alone(settings["state.folder"]), bus:
         if recorder:
+            recorder.about = provenance(settings, loop.ship)
             recorder.start()
             loop.notes += recorder.repaired
         service = Service(loop, inbox, recorder, settings, clock_of(loop.rate_hz))

@@ -5,8 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
+from twin import __version__
 from twin.live.keelson.messages import Row
 from twin.live.log.mcap_damage import EXTENT, extent
+from twin.live.log.mcap_index import PROVENANCE
 from twin.live.log.record import LogFile
 from twin.recording.timebase import moment_of
 from twin.recording.voyage import Voyage
@@ -26,6 +28,7 @@ def write_voyage(voyage: Voyage, path: str | Path) -> None:
         log.describe(
             ABOUT, {key: json.dumps(value) for key, value in (*voyage.meta.items(), ("name", voyage.name))}
         )
+        log.describe(PROVENANCE, {"software": "shiptwin", "version": __version__})
         if len(voyage):
             log.describe(EXTENT, extent(*(_log_ns(start_ns, float(t)) for t in voyage.time_s[[0, -1]])))
         for at in range(0, len(voyage), ROWS_AT_ONCE):

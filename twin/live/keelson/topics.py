@@ -33,6 +33,7 @@ class Output(NamedTuple):
 
 
 FLOAT, FIX, VECTOR = "keelson.TimestampedFloat", "foxglove.LocationFix", "keelson.Decomposed3DVector"
+STRING = "keelson.TimestampedString"
 SUBJECT_OF = {"wave_direction_deg": "wave_true_direction_deg"}  # Keelson's name, not the column's
 POSITION = ("north_m", "east_m")
 
@@ -54,7 +55,8 @@ OUTPUTS: tuple[Output, ...] = (
     Output("moment_newton_meter", VECTOR, "twin/known", 1.0, "sum of the known moments (0, 0, N)"),
     Output("force_newton", VECTOR, "twin/learned", 1.0, "learned force, body axes (X, Y, 0)"),
     Output("moment_newton_meter", VECTOR, "twin/learned", 1.0, "learned moment (0, 0, N)"),
-    Output("twin_status", "keelson.TimestampedString", "twin", 1.0, "mode and reasons in words"),
+    Output("twin_status", STRING, "twin", 1.0, "mode and reasons in words"),
+    Output("configuration_json", STRING, "twin", 1.0, "who speaks: ship, hash, size, version, origin"),
 )
 
 

@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 class LogFile:
     """A log written in one go: aside first, renamed when whole, gone when something fails.
 
-    The same messages give the same bytes: no clock, no random number and no version is in it.
+    The same messages and the same words about them give the same bytes: no clock and no random number is in
+    it.
     """
 
     def __init__(self, path: str | Path):

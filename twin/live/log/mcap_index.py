@@ -13,6 +13,7 @@ MAGIC = b"\x89MCAP0\r\n"
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, MESSAGE_INDEX, CHUNK_INDEX = range(1, 9)
 ATTACHMENT, ATTACHMENT_INDEX, STATISTICS, METADATA, METADATA_INDEX, SUMMARY_OFFSET, DATA_END = range(9, 16)
 HEAD = Struct("<BQ")  # opcode, length
+PROVENANCE = "shiptwin.provenance"  # the table of words that says who wrote a file, and with what
 
 
 def record(opcode: int, *parts: bytes) -> bytes:

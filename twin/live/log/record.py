@@ -61,6 +61,7 @@ class Recorder:
         self.max_bytes, self.max_seconds = max_bytes, max_seconds
         self.quota, self._trim_at = quota, 0.0
         self.repaired: list[str] = []
+        self.about: dict[str, str] = {}  # stands at the head of every file
         self._sync = sync
         self._compress = zstd()
         self._queue: deque[Item] = deque(maxlen=QUEUE)
@@ -172,7 +173,7 @@ class Recorder:
         ):
             self._close_segment(finish=True)
         if self._segment is None:
-            self._segment = Segment(self.folder, self.name, now_s, self._sync, self._compress)
+            self._segment = Segment(self.folder, self.name, now_s, self._sync, self._compress, self.about)
         return self._segment
 
     def _close_segment(self, finish: bool) -> None:

@@ -8,19 +8,29 @@ import fcntl
 import os
 import re
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from twin.live.keelson.messages import schema_bytes
+from twin.live.log.mcap_index import PROVENANCE
 from twin.live.log.mcap_write import Compress, McapWriter
 from twin.physics.maths import total
 
+NOTHING: Mapping[str, str] = {}
+
 
 class Segment:
-    """The file being written; raises OSError from the constructor, `add`, `sync` and `finish`."""
+    """The file being written, with what is told `about` it at its head; raises OSError from the constructor,
+    `add`, `sync` and `finish`."""
 
     def __init__(
-        self, folder: Path, name: str, now_s: float, sync: Callable[[int], None], compress: Compress
+        self,
+        folder: Path,
+        name: str,
+        now_s: float,
+        sync: Callable[[int], None],
+        compress: Compress,
+        about: Mapping[str, str] = NOTHING,
     ):
         folder.mkdir(parents=True, exist_ok=True)
         self.opened_s = now_s
@@ -31,6 +41,8 @@ class Segment:
         self._writer = McapWriter(self._file.put, compress)
         try:
             self._writer.start()
+            if about:
+                self._writer.metadata(PROVENANCE, dict(about))
         except OSError:
             os.unlink(self.path)
             self.close()
