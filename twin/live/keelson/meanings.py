@@ -48,6 +48,8 @@ MEANINGS = {
     "Certificate.margin": "of the observer's certificate; see docs/stability.md",
     "Certificate.bound": "live bound of the observer's error in speed [m/s]",
     "Certificate.inside": "whether the certificate holds now",
+    "yaw_bound_degps": "live bound of the observer's error in the rate of turn",
+    "step_margin": "share of an error that one sample surely takes away, 0 when none does",
     "Tick.index": "number of the tick since start",
     "Tick.time_s": "monotonic clock of the twin's computer",
     "Tick.wall_s": "UTC since 1970",
