@@ -144,7 +144,7 @@ def test_I24_without_a_compass_gyro_and_course_carry_the_heading(served):
     assert not any(t.certificate.inside for t in ticks[20:])
     bridge.run(120.0, lambda readings, b: [r for r in silent(readings, b) if r.channel != "yaw_rate_degps"])
     assert abs(bridge.error(HEADING)) < 8.0 and bridge.ticks[-1].mode == "dead reckoning"
-    bridge.run(20.0)
+    bridge.run(120.0)
     assert bridge.ticks[-1].mode == "hybrid" and abs(bridge.error(HEADING)) < 0.3
 
 
