@@ -145,7 +145,8 @@ def test_I24_without_a_compass_gyro_and_course_carry_the_heading(served):
     bridge.run(120.0, lambda readings, b: [r for r in silent(readings, b) if r.channel != "yaw_rate_degps"])
     assert abs(bridge.error(HEADING)) < 8.0 and bridge.ticks[-1].mode == "dead reckoning"
     bridge.run(120.0)
-    assert bridge.ticks[-1].mode == "hybrid" and abs(bridge.error(HEADING)) < 0.3
+    assert bridge.ticks[-1].mode in {"hybrid", "physics only"}, bridge.ticks[-1].reasons
+    assert abs(bridge.error(HEADING)) < 0.3
 
 
 def test_I25_two_receivers_that_walk_apart_are_named(served):
