@@ -87,15 +87,22 @@ def test_the_trap_left_in_the_map_is_named_in_every_file(trap):
         assert answers[check].unusable and words in answers[check].text, (path.name, answers[check].text)
 
 
-def test_where_a_mirrored_heading_explains_the_same_as_a_mirrored_rudder_both_are_named():
-    """Test: HSVA's rudder positive to port; these files hold no position of their own by which to tell.
-    Expected: both explanations with their remedies, neither called proved."""
+def test_a_mirrored_rudder_is_proved_where_the_heading_swings_far_enough_to_tell_it_from_a_mirrored_heading():
+    """Test: HSVA's rudder positive to port. Expected: proved where the heading swings by more than 15 deg to
+    each side; in zigzags of less than 10 deg, where a mirrored heading with its rate of turn explains the same
+    within the margin, both explanations are named with their remedies and neither is proved."""
+    by = with_columns(HSVA, rudder_angle_deg=Column(9))
+    told = {True: 0, False: 0}
     for path in files("hsva"):
-        answers = {
-            c.name: c for c in run_checks(read_voyage(path, with_columns(HSVA, rudder_angle_deg=Column(9))))
-        }
-        said = answers["rudder_sign"]
-        assert not said.ok and "sign = -1 for rudder_angle_deg" in said.text, (path.name, said.text)
+        voyage = read_voyage(path, by)
+        heading = (voyage["heading_true_north_deg"] + 180.0) % 360.0 - 180.0
+        wide = min(-np.nanmin(heading), np.nanmax(heading)) > 15.0
+        said = {c.name: c for c in run_checks(voyage)}["rudder_sign"]
+        assert said.unusable == wide and not said.ok, (path.name, said.text)
+        assert "sign = -1 for rudder_angle_deg" in said.text, (path.name, said.text)
+        assert wide or "sign = -1 for heading_true_north_deg" in said.text, (path.name, said.text)
+        told[wide] += 1
+    assert told == {True: 6, False: 3}
 
 
 def test_marins_turns_taken_for_1_per_s_are_named_with_the_ship():
