@@ -81,8 +81,8 @@ def test_weather_stands_beside_any_two_causes_and_takes_no_place(case):
 
 def test_every_promising_effect_is_judged_when_what_was_found_leaves_too_much(tanker, voyages):
     held = book(assemble([voyages["nothing"]], tanker))
-    while held.next():
-        pass
+    while chosen := held.next():
+        held.judge(chosen)
     held.last = [("RudderWear",)]
     assert held.next() is None
     held.wide = True
