@@ -8,6 +8,7 @@ DOC = {
     "sensors": "gates, ages, quality",
     "correct": "observer with gain K",
     "known": "known force: core and effects",
+    "checks": "instruments against each other",
     "guard": "may the learned force act?",
     "learned": "learned force: network and last layer",
     "step": "the model to the next tick",
