@@ -104,7 +104,7 @@ def certified(case: Case) -> tuple[Model, Certificate]:
 
 
 class Fleet:
-    """Many ships of one kind at once, each with an observer and an adversary of her own."""
+    """Many ships of one kind at once, each with an observer and an adversary of its own."""
 
     def __init__(
         self,
@@ -171,7 +171,7 @@ class Fleet:
         return np.choose(self.policy, [error, self.corner, square, white])
 
     def _twin(self, k: int, before: tuple[Any, ...], side: np.ndarray) -> Confined:
-        """What the observer integrates: the ship's equations, with every number of her effects where the
+        """What the observer integrates: the ship's equations, with every number of its effects where the
         adversary wants it."""
         if not self.numbers:
             return self.twin

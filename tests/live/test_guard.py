@@ -43,7 +43,7 @@ def test_with_a_good_residual_the_twin_is_hybrid(make_bridge, hybrid):
 
 
 def test_M10_a_residual_that_makes_it_worse_is_switched_off_and_says_so(kvlcc2, make_bridge):
-    """Test: the bundled last layer negated and tripled, on a ship that is exactly her model. Expected:
+    """Test: the bundled last layer negated and tripled, on a ship that is exactly its model. Expected:
     physics only within the window."""
     learned = spoilt(kvlcc2, -6.0)
     ticks = make_bridge(loop={"learned": learned}, noise=0.3).run(260.0)

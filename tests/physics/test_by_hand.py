@@ -37,8 +37,8 @@ def test_waves_on_the_starboard_bow_by_hand(ship):
     s = Situation(psi=0.0, H_s=2.0, T_p=8.0, wave_to=radians(225))
     X, Y, N = force("WaveDrift", ship, s, c_x=1.0, c_y=0.8, c_n=0.05)
     q = 1000 * 9.80665 * 4.0 / 16 * 0.466875  # 1144.6 N/m
-    assert pytest.approx(-q * 20 * sqrt(0.2) * sqrt(0.5), rel=3e-5) == X  # slows her
-    assert pytest.approx(-q * 100 * 0.8 * 0.5, rel=3e-5) == Y  # pushes her to port
+    assert pytest.approx(-q * 20 * sqrt(0.2) * sqrt(0.5), rel=3e-5) == X  # slows it
+    assert pytest.approx(-q * 100 * 0.8 * 0.5, rel=3e-5) == Y  # pushes it to port
     assert pytest.approx(q * 100**2 * 0.05 * 1.0, rel=3e-5) == N
 
 
@@ -138,7 +138,7 @@ def test_deeper_and_heavier_by_hand(ship):
     assert loaded.c.Y_vv == pytest.approx(1.2 * ship.c.Y_vv)
     assert loaded.c.X_uu == pytest.approx((1.7 * 6 + 0.7 * 20) / (1.7 * 5 + 0.7 * 20) * ship.c.X_uu)
     assert (pytest.approx(200 - 20 * 1.0), pytest.approx(1000 - 100 * 1.0)) == (loaded.A_F, loaded.A_L)
-    # C_wp = 0.8, C_IL = 0.224 - 0.324 + 0.146 = 0.046: 2 m ahead trim her by -2 x 0.7/(0.046 x 100) =
+    # C_wp = 0.8, C_IL = 0.224 - 0.324 + 0.146 = 0.046: 2 m ahead trim it by -2 x 0.7/(0.046 x 100) =
     # -0.304348 draughts, by the head
     assert loaded.c.Y_uv == pytest.approx(
         (lift := 1.2 * (1.2 + 1.12) / 2.12) * (1 - 0.67 * 0.304348) * ship.c.Y_uv, rel=1e-5
@@ -149,7 +149,7 @@ def test_deeper_and_heavier_by_hand(ship):
     turn = 1.2 * (1.2 + 0.64) / 1.64
     assert loaded.c.Y_ur == pytest.approx(turn * (1 - 0.8 * 0.304348) * ship.c.Y_ur, rel=1e-5)
     assert loaded.c.N_ur == pytest.approx(turn * (1 - 0.3 * 0.304348) * ship.c.N_ur, rel=1e-5)
-    assert loaded.c.N_uv < 1.44 * ship.c.N_uv  # and she turns across more
+    assert loaded.c.N_uv < 1.44 * ship.c.N_uv  # and it turns across more
 
 
 def test_a_bank_to_starboard_by_hand(ship):
@@ -259,7 +259,7 @@ def test_a_rudder_that_hangs_loose_by_hand():
 
 
 def test_what_swings_aside_with_her_by_hand(ship):
-    """Test: a tenth of her mass, swinging about a fifth of her length ahead. Expected: Y and N of that mass,
+    """Test: a tenth of its mass, swinging about a fifth of its length ahead. Expected: Y and N of that mass,
     carried along aside; nothing ahead."""
     s, c, L = Situation(u=5.0, v=0.6, r=0.02, n=1.5, delta=0.2), ship.c, ship.L_pp
     tau = [sum(force) for force in zip(*Model(ship).known(s).values(), strict=True)]

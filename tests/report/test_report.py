@@ -141,7 +141,7 @@ def test_the_page_of_an_unknown_cause_says_when_it_pushed_her_and_what_it_resemb
     dom, complaints = opened(tmp_path / "d.html")
     assert complaints == []
     for words in (
-        "Moments at which something pushed her",
+        "Moments at which something pushed it",
         "1:00 to 1:35",
         "724 kN",
         "-11.7 MN m",

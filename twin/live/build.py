@@ -1,4 +1,4 @@
-"""From settings to a loop: the ship, her residual, her certificate, and what had to be left out, in words."""
+"""From settings to a loop: the ship, its residual, its certificate, and what had to be left out, in words."""
 
 import sys
 from math import ceil
@@ -27,7 +27,7 @@ CERTIFY_S = 20.0  # the longest the service's start waits for a certificate
 
 
 def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | None = CERTIFY_S) -> Loop:
-    """The loop these settings describe; SettingsError when they cannot be used. `patience_s`: how long her
+    """The loop these settings describe; SettingsError when they cannot be used. `patience_s`: how long its
     certificate may take, None for as long as it takes.
 
     What loading a library leaves in memory is given back before the next one is loaded: their sum would be

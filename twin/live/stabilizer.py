@@ -26,7 +26,7 @@ USELESS = 1e3  # m/s: a bound above every speed at sea
 
 class Stabilizer:
     """Steps the tube once a tick; without a certificate it promises nothing, and says so by `inside` being
-    false. Where she may have left the operating set the tube begins anew from what is measured, and promises
+    false. Where it may have left the operating set the tube begins anew from what is measured, and promises
     again once all that a late measurement looks back on is inside."""
 
     def __init__(self, tube: Tube | None = None, why_not: str = "no certificate"):
@@ -35,7 +35,7 @@ class Stabilizer:
         self._step_margin = max(1.0 - c3.radius(tube.certificate.G), 0.0) if tube and self.promises else 0.0
         self._parity = Parity(tube.certificate.heading_noise) if tube else None
         self._restarts = -1
-        self._inside = 0  # ticks that she has surely been in the set
+        self._inside = 0  # ticks that it has surely been in the set
         self._since_late_s = float("inf")  # seconds for which every tick came in time
         self._surprised = dict.fromkeys(NU, 0.0)
         self.outside: str | None = why_not
@@ -131,7 +131,7 @@ class Stabilizer:
 
     def _first(self, observer: Observer, measured: Measured, tube: Tube) -> Three:
         """What the estimate is off by at most, asking the instruments alone: how far it lies from what was
-        measured, its noise and her way since; where nothing was, all that a ship can."""
+        measured, its noise and its way since; where nothing was, all that a ship can."""
         c, e = tube.certificate, observer.estimate
         u, v, r = (
             abs(measured.si[a] - now) + noise + measured.age_s(a) * way

@@ -101,7 +101,7 @@ class Effect:
     # effects that are a part of this one, so that beside it they say nothing
     holds: ClassVar[tuple[str, ...]] = ()
     irregular: ClassVar[bool] = False  # whether it comes and goes with what no input shows
-    # share of her length by which its side force may attack elsewhere than its form has it (one sd)
+    # share of its length by which its side force may attack elsewhere than its form has it (one sd)
     lever: ClassVar[float] = 0.0
     # the number without which the others are a form of nothing; of most effects any of them is enough
     size: ClassVar[str] = ""

@@ -1,4 +1,4 @@
-"""A ship and the TOML file that holds her.
+"""A ship and the TOML file that holds it.
 
 Every number in a ship file is a table { value, unit, source } (a fitted one has its standard error `sd` too),
 so that an owner can see where each came from. Effects stand under [effects.NAME]; what calibration found

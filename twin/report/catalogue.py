@@ -15,10 +15,10 @@ from twin.physics.ship import Ship
 from twin.recording.inputs import INPUTS
 
 KINDS = {
-    "Force": "pushes the ship, or changes her inertia",
+    "Force": "pushes the ship, or changes its inertia",
     "Flow": "changes the water that hull, propeller and rudder feel",
     "Lag": "gives an actuator a state of its own",
-    "SensorFault": "leaves the ship alone and changes what an instrument says of her",
+    "SensorFault": "leaves the ship alone and changes what an instrument says of it",
 }
 SCALES = {"force": "F_0", "moment": "F_0 L", "speed": "U_0", "time": "L/U_0", "length": "L"}
 SCALES_SAID = (
@@ -48,8 +48,8 @@ def _instead(effect: type[Effect]) -> str:
 
 
 def _attacks(effect: type[Effect]) -> str:
-    """How well it is known where along her it attacks, in words."""
-    return f"within {effect.lever:.0%} of her length of where the form has it (one standard deviation)"
+    """How well it is known where along the hull it attacks, in words."""
+    return f"within {effect.lever:.0%} of its length of where the form has it (one standard deviation)"
 
 
 def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:
@@ -150,8 +150,8 @@ def page(effects: list[type[Effect]]) -> str:
         "number take). Prior sd: how far a "
         "parameter may lie from none before it counts as unlikely; the prior is normal about none, and "
         "one-sided where the box ends there. None "
-        "is the ship as `twin calibrate` found her: what acted on the reference voyages alike is hers, and "
-        "not missing.",
+        "is the ship as `twin calibrate` found it: what acted on the reference voyages alike is part of it, "
+        "and not missing.",
         "",
     ]
     for kind, means in KINDS.items():

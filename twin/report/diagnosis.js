@@ -38,12 +38,12 @@ function worthTrying(effect) {
   return RESULT.verdict === "undecided" || named.some((c) => (c.cannot_be_told_from || []).includes(effect));
 }
 
-/** Stretches on which something pushed her that was not there before and after. */
+/** Stretches on which something pushed it that was not there before and after. */
 function momentsSection() {
   const list = RESULT.moments || [];
   if (!list.length) return null;
   const rows = list.map((m) => stretchRow(m, el("td.n", null, si(m.X_N, "N")), el("td.n", null, si(m.Y_N, "N")), el("td.n", null, si(m.N_Nm, "N m"))));
-  return section("Moments at which something pushed her", "and not before or after; click one to see it in the plots", table([...(DATA.voyages.length > 1 ? ["voyage"] : []), "when", ">ahead", ">to starboard", ">turning to starboard"], rows));
+  return section("Moments at which something pushed it", "and not before or after; click one to see it in the plots", table([...(DATA.voyages.length > 1 ? ["voyage"] : []), "when", ">ahead", ">to starboard", ">turning to starboard"], rows));
 }
 
 /** A number with its 95 % interval; the dashed mark is zero. */

@@ -15,7 +15,7 @@ from twin.study.track.track import track
 
 
 class SwellSurge(Force):
-    """A swell that somebody else's package knows of pushes her along."""
+    """A swell that somebody else's package knows of pushes it along."""
 
     belongs_to = "voyage"
     needs = ("H_s", "wave_to")

@@ -1,4 +1,4 @@
-"""Where a hypothesis leads the ship, beside where she went."""
+"""Where a hypothesis leads the ship, beside where it went."""
 
 from dataclasses import replace
 
@@ -50,9 +50,9 @@ def says(*effects, world="usual"):
 
 
 def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_too(tanker, voyages):
-    """Test: a model that holds the wind since she was calibrated, on a windy voyage; the same calibrated with
-    it. Expected: a tenth of where she would end without it belongs to the floor, with what a wind that pushes
-    a twentieth of her length farther ahead or aft would do; and nothing."""
+    """Test: a model that holds the wind since it was calibrated, on a windy voyage; the same calibrated with
+    it. Expected: a tenth of where it would end without it belongs to the floor, with what a wind that pushes
+    a twentieth of its length farther ahead or aft would do; and nothing."""
     windy = tanker.with_effects(find("Wind").plausible(tanker))
     hers = replace(
         windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}}
@@ -154,7 +154,7 @@ def test_a_stream_is_not_asked_for_in_hours_that_were_left_out(tanker, voyages):
 
 def test_a_stream_as_strong_as_any_day_brings_leads_her_without_being_named(tanker, voyages):
     """Test: a hidden stream, on a ship whose reference voyages met streams of 0 (nobody told), half and twice
-    its size. Expected: nothing missing leads her astray by all of it, by what two such days do not bring, and
+    its size. Expected: nothing missing leads it astray by all of it, by what two such days do not bring, and
     not at all."""
     case = assemble([voyages["Current"]], tanker)
     named, _ = refine(case, ("Current",), "usual", np.zeros(len(case.effects)), ())
@@ -191,7 +191,7 @@ def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker
 def test_what_is_likely_by_now_is_asked_however_unlikely_it_was_where_it_was_found(tanker, voyages):
     """Test: a worn rudder that was found far below the best, and is the best since another set left the rest
     of it to what any day brings.
-    Expected: she is led by it, too, and not only by nothing."""
+    Expected: it is led by it, too, and not only by nothing."""
     case = assemble([voyages["RudderWear"]], tanker)
     weighed, found, _ = search(case)
     worn = replace(found["RudderWear",].hypothesis, log_evidence=-1e4)

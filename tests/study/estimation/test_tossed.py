@@ -25,7 +25,7 @@ def model(tanker):
 
 @pytest.fixture(scope="module")
 def tossing(tanker, voyages):
-    """A straight voyage on which each wave yaws her by a degree, and the helmsman answers with two."""
+    """A straight voyage on which each wave yaws it by a degree, and the helmsman answers with two."""
     t = track(voyages["straight"], tanker)
     omega = 2.0 * np.pi / PERIOD_S
     state = t.state.copy()
@@ -78,7 +78,7 @@ def test_a_gear_that_is_a_little_late_in_waves_alone_is_the_helm_a_quarter_of_a_
 
 
 def test_a_swing_in_sway_in_time_with_the_yaw_is_seen_as_an_antenna_ahead_is_in_those_waves(tossing, model):
-    """Test: an antenna a tenth of her length ahead; what it shows of the waves, and the term. Expected: the
+    """Test: an antenna a tenth of its length ahead; what it shows of the waves, and the term. Expected: the
     same."""
     ahead = find("AntennaOffset")(ahead=0.1 * float(model.ship.L_pp), starboard=0.0)
     still = tossed.steadied(tossing)

@@ -24,7 +24,7 @@ def calm(tanker, voyages):
 
 
 def in_waves(t, yaw=YAW, sway=SWAY, period_s=PERIOD_S):
-    """The same track in a sea that yaws and sways her, seen by all instruments alike, and her roll and rudder
+    """The same track in a sea that yaws and sways it, seen by all instruments alike, and its roll and rudder
     swinging with it."""
     omega = 2.0 * np.pi / period_s
     swing, rate = np.sin(omega * t.t), omega * np.cos(omega * t.t)

@@ -11,7 +11,7 @@ from twin.study.track.track import READINGS, track
 from twin.study.track.unrest import shaken
 
 GYRO = READINGS.index("r")
-# shorter than what the smooth motion of a tanker holds; forty times her gyro's usual scatter
+# shorter than what the smooth motion of a tanker holds; forty times its gyro's usual scatter
 PERIOD_S, SWING_DEGPS = 4.0, 0.15
 
 

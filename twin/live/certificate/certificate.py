@@ -1,5 +1,5 @@
 """The stabilizer's certificate: how far the observer's error can go, worked out from the ship's own numbers
-before she sails.
+before it sails.
 
 `certify` at start (or `kept`, which looks it up in a file), `Tube.step` once a tick.
 Assumptions, proof and what is not promised: docs/stability.md. Plain floats; only the sure bounds of the
@@ -251,7 +251,7 @@ def on_board(ship: Ship, delay_samples: int, adapted: bool, saturation: Row) -> 
 
 
 def mark(model: Model, *settings: Any) -> str:
-    """What the certificate depends on, as a hash: the ship's numbers, her effects, the settings and the
+    """What the certificate depends on, as a hash: the ship's numbers, its effects, the settings and the
     theorem's version."""
     ship = replace(model.ship, notes={})
     return hashlib.sha256(repr((VERSION, ship, model.effects, *settings)).encode()).hexdigest()[:16]

@@ -1,5 +1,5 @@
-"""What the stabilizer's theorem needs to know of a ship: how steep her equations are over the operating set,
-and how she is disturbed.
+"""What the stabilizer's theorem needs to know of a ship: how steep its equations are over the operating set,
+and how it is disturbed.
 """
 
 from collections.abc import Sequence

@@ -58,7 +58,7 @@ class Recursion:
     @property
     def pushed(self) -> Row:
         """How much of the push of one sample reaches p with a measurement: by itself, by way of older
-        samples, and by what her path between two samples leaves the line."""
+        samples, and by what its path between two samples leaves the line."""
         return tuple(
             1.0 + (b + 0.5) * pull if m else keep
             for m, b, pull, keep in zip(self.m, self.before, self.pull, self.keep, strict=True)
@@ -160,7 +160,7 @@ def assess(
 
 
 def pushed(plant: Plant, heading_noise: float, part: float = CURVE) -> tuple[Matrix, Row]:
-    """d = push force + calm: a bounded force, an error of heading, what one step misses of her path (`part`,
+    """d = push force + calm: a bounded force, an error of heading, what one step misses of its path (`part`,
     see CURVE), what adaptation moves."""
     h, swing = plant.h, plant.swing()
     along = c3.plus(c3.IDENTITY, c3.matrix(lambda i, j: (0.5 + part) * h * swing[i][j]))

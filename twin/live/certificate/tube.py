@@ -186,7 +186,7 @@ class Tube:
         self._disturbance = (
             c.disturbance.at(H_s) if acts else add(c.disturbance.at(H_s), scaled_row(-1.0, c.saturation))
         )
-        # how fast she can change her motion
+        # how fast it can change its motion
         self.way: Three = add(c.plant.most, scaled_row(1.0 / c.h, one.pushed(self._disturbance)))
         d = add(one.pushed(self._disturbance), one.calm)
         told = step.told(d, c.noise)
@@ -211,7 +211,7 @@ class Tube:
 
     def outside(self, s: Situation, within: Three | None = None, dt: float = 0.0) -> str | None:
         """What leaves the operating set, or may within a sample, in words; None when the ship is surely in
-        it. `within`: how far she may be from the estimate, where that is known better than by the tube; dt:
+        it. `within`: how far it may be from the estimate, where that is known better than by the tube; dt:
         how long the last tick was, if longer than a sample."""
         return self.certificate.operating.outside(
             s, add(within or self.beta, scaled_row(max(self.certificate.h, dt), self.way))

@@ -1,4 +1,4 @@
-"""What is known of the ship, kept true to the moment: her model with the current as it is now, the rudder
+"""What is known of the ship, kept true to the moment: its model with the current as it is now, the rudder
 where it is now, and without those effects whose inputs nobody measures.
 
     nu_dot = M^-1 (sum of the known forces + the learned one) + r x nu_c
@@ -90,7 +90,7 @@ class Known:
         )
 
     def force_for(self, u_dot: Number, v_dot: Number, r_dot: Number, grown: Growth = LIGHT) -> Force:
-        """The force that an acceleration takes, where her added mass has `grown`."""
+        """The force that an acceleration takes, where its added mass has `grown`."""
         return Force(*core.force_for(u_dot, v_dot, r_dot, self.model.c, grown))
 
 

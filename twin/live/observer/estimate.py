@@ -30,7 +30,7 @@ HISTORY = 256  # ticks remembered, to compare a late sample with its own time
 
 @dataclass(slots=True)
 class Estimate:
-    """Where the ship is and how she moves [SI], `sigma` of each, and the current towards north and east
+    """Where the ship is and how it moves [SI], `sigma` of each, and the current towards north and east
     [m/s]."""
 
     x: float = 0.0
@@ -73,7 +73,7 @@ class Observer:
         self.rates = Rates(0.0, 0.0, 0.0)
         self._now_s: float | None = None
         speed, turning = 4.0 * ship.U_0 + 5.0, 8.0 * ship.U_0 / ship.L_pp
-        self.most = speed, speed, turning  # no ship moves faster, whatever her instruments and her model say
+        self.most = speed, speed, turning  # no ship moves faster, whatever its instruments and its model say
         self._past: deque[tuple[float, tuple[float, ...]]] = deque(maxlen=HISTORY)
         self._current = CurrentFilter(ship, *current)
 

@@ -1,7 +1,7 @@
 """The operating set: the motions and the inputs for which something is promised.
 
 In the ship's own scales, so that one rule serves a 2 m boat and a 320 m tanker: speed through the water in
-U_0, turning in U_0/L, depth in draughts, propeller in the rate that drives her at U_0. Outside it the
+U_0, turning in U_0/L, depth in draughts, propeller in the rate that drives it at U_0. Outside it the
 certificate says nothing, and the twin says that.
 """
 

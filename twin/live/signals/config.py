@@ -70,7 +70,7 @@ KEYS: tuple[Key, ...] = (
     Key(
         "sensors.max_delay_s", float, 2.0, "a sample stamped longer ago than this is refused", "s", 0.1, 60.0
     ),
-    Key("observer.gain", float, 0.0, "K, 0 for 12 U_0/L or what her certificate asks for", "1/s", 0.0, 20.0),
+    Key("observer.gain", float, 0.0, "K, 0 for 12 U_0/L or what its certificate asks for", "1/s", 0.0, 20.0),
     Key(
         "observer.oldest_s",
         float,

@@ -15,7 +15,7 @@ from twin.physics.state import Situation
 
 
 class HeadingBias(SensorFault):
-    """The compass shows a heading that is off by a constant, so she seems to drift sideways wherever she
+    """The compass shows a heading that is off by a constant, so the ship seems to drift sideways wherever it
     goes."""
 
     attitude = True

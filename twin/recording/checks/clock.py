@@ -127,7 +127,7 @@ def clock_steps(view: View) -> Check:
 
 
 def went_on(voyage: Voyage, i: int, usual: float) -> bool:
-    """Whether the ship was way on and yet moved over a gap no more than she does in a few rows."""
+    """Whether the ship was way on and yet moved over a gap no more than it does in a few rows."""
     if any(
         name in voyage.meta.get("derived", {}) for name in ("north_m", "surge_velocity_mps")
     ) and not voyage.has("north_m"):

@@ -1,4 +1,4 @@
-"""Without an independent position: a ship goes nearly where she points."""
+"""Without an independent position: a ship goes nearly where it points."""
 
 import numpy as np
 
@@ -35,6 +35,6 @@ def course_against_heading(name: str, view: View) -> Check:
     if abs(mean) > 45.0:
         return doubtful(
             name,
-            f"the ship moves {mean:.0f} deg off her heading on average: are heading, north and east right?",
+            f"the ship moves {mean:.0f} deg off its heading on average: are heading, north and east right?",
         )
     return cannot_tell(name, f"position and velocities are not independent ({saw}).")

@@ -67,7 +67,7 @@ def velocity_frame(view: View) -> Check:
 
 
 def enough_way(legs: Legs) -> bool:
-    """Whether the ship moves by more in a window than her position is uncertain."""
+    """Whether the ship moves by more in a window than its position is uncertain."""
     return bool(np.isfinite(legs.moved).any()) and rms(legs.moved) >= 5.0 * legs.noise + 1e-9
 
 

@@ -24,7 +24,7 @@ def propeller_rate(view: View) -> Check:
     on = thrust_on(view, n)
     under_way = on & (speed > 0.5 * view.speed) & (view.velocity.real > 0.0)
     if np.count_nonzero(under_way) < 10 or view.speed < 0.05 or not view.way_on:
-        return cannot_tell(name, "the ship is hardly ever under way with her propeller turning.")
+        return cannot_tell(name, "the ship is hardly ever under way with its propeller turning.")
     rate, way = float(np.median(n[under_way])), float(np.median(speed[under_way]))
     if view.ship is not None:
         return advance(name, way, rate, float(view.ship.D_P))
@@ -44,7 +44,7 @@ def propeller_rate(view: View) -> Check:
 
 
 def thrust_on(view: View, n: np.ndarray) -> np.ndarray:
-    """Where the shaft turns and the ship keeps her speed: one that runs out with her shaft stopped says
+    """Where the shaft turns and the ship keeps its speed: one that runs out with its shaft stopped says
     nothing of its unit."""
     usual = float(np.nanquantile(n, 0.9))
     signed = view.si("propeller_rate_rpm")

@@ -23,7 +23,7 @@ def rudder_sign(view: View) -> Check:
         return cannot_tell(name, "no rudder was recorded.")
     if not view.way_on:
         return cannot_tell(
-            name, "she has no way on, and a rudder turns only a ship that moves through the water."
+            name, "it has no way on, and a rudder turns only a ship that moves through the water."
         )
     same, against = held_turns(view)
     if same + against and min(same, against) == 0:
@@ -34,13 +34,13 @@ def rudder_sign(view: View) -> Check:
     saw = f"the rudder explains {100 * share:.0f} % of the changes of yaw rate"
     if share < RUDDER_SHARE:
         return cannot_tell(
-            name, f"{saw}; held over until she has turned by {HELD_TURN_DEG:.0f} deg it would show."
+            name, f"{saw}; held over until it has turned by {HELD_TURN_DEG:.0f} deg it would show."
         )
     return sign_seen(name, saw, b > 0.0, share > PROOF_SHARE)
 
 
 def seen_gain(view: View) -> tuple[float, bool] | None:
-    """(share that the rudder explains, whether it turns her to its own side); None where it cannot show."""
+    """(share that the rudder explains, whether it turns it to its own side); None where it cannot show."""
     if not view.voyage.has("rudder_angle_deg") or not view.way_on:
         return None
     same, against = held_turns(view)

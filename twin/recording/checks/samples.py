@@ -30,7 +30,7 @@ def missing_samples(view: View) -> Check:
 
 
 def _follows(v: Voyage, name: str) -> bool:
-    """Whether an absent channel is found from others: the true wind from the apparent one and her own
+    """Whether an absent channel is found from others: the true wind from the apparent one and its own
     motion."""
     return (
         name.startswith("true_wind_")

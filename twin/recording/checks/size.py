@@ -1,4 +1,4 @@
-"""Is this voyage of this ship, and long enough to say something about her?"""
+"""Is this voyage of this ship, and long enough to say something about it?"""
 
 import numpy as np
 
@@ -15,10 +15,10 @@ STEADY_RUDDER_DEG = 1.0
 
 
 def ship_size(view: View) -> Check:
-    """Speed and turning against the length of the ship, and her draught."""
+    """Speed and turning against the length of the ship, and its draught."""
     name = "ship_size"
     if view.ship is None:
-        return cannot_tell(name, "give --ship to compare speed, turning and draught with her size.")
+        return cannot_tell(name, "give --ship to compare speed, turning and draught with its size.")
     length, speed = float(view.ship.L_pp), view.speed
     froude = speed / np.sqrt(G * length)
     turning = tightest(view, length)
@@ -28,7 +28,7 @@ def ship_size(view: View) -> Check:
         f"Another ship's file, or a model's ([scale] froude = ...)? {view.ship.name} is {length:.4g} m long."
     )
     if froude > FASTEST_FROUDE:
-        return doubtful(name, f"{saw}: {speed:.3g} m/s is too fast for her. {other}")
+        return doubtful(name, f"{saw}: {speed:.3g} m/s is too fast for it. {other}")
     if turning > TIGHTEST_TURN:
         return doubtful(name, f"{saw}: no ship turns within {1 / turning:.2f} lengths. {other}")
     if draught and not 0.4 < draught / float(view.ship.T) < 2.0:

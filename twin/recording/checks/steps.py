@@ -57,7 +57,7 @@ def samples_of(view: View) -> Samples | None:
 
 
 def expected_steps(view: View, t: np.ndarray) -> np.ndarray:
-    """How far she turns from one sample to the next [deg]: by the rate of turn, else by the course over
+    """How far it turns from one sample to the next [deg]: by the rate of turn, else by the course over
     ground, else not."""
     v = view.voyage
     if not view.derived("yaw_rate_degps") and v.has("yaw_rate_degps"):

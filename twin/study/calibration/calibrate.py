@@ -71,7 +71,7 @@ class Calibrated:
 class Core:
     """What a filter one step ahead makes of the voyages: the derivatives, and what they leave over."""
 
-    tracks: list[Track]  # with what waves do to her taken for that
+    tracks: list[Track]  # with what waves do to it taken for that
     model: Model
     derivatives: list[Derivative]
     # of the ship file; a steering gear and wind among them if the voyages asked for these
@@ -101,7 +101,7 @@ def calibrate(
     held_out = [(swung(t, core.model), first) for t, first in held_out]
     ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
     if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
-        progress("fitting to where she went")
+        progress("fitting to where it went")
         led = rolled_out(tracks, Model.of(ships["steps"]), excited, catalogue()).ship
         ships["paths"] = with_core_of(ships["steps"], led)
     off = {way: errors(Model.of(s), held_out) for way, s in ships.items()}
@@ -137,12 +137,12 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     progress("fitting the core, and asking whether the rudder that was recorded is its order")
     tracks = [levelled(t) for t in sailed]
     rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
-    progress("asking again whether waves swing her")
+    progress("asking again whether waves swing it")
     again = [swung(t, rough.model) for t in sailed]
     if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
         tracks = [levelled(t) for t in again]
         rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
-    progress("asking whether wind pushed her")
+    progress("asking whether wind pushed it")
     rough = with_or_without_wind(tracks, rough, known, TEMPER)
     unknowns = rough.unknowns
     progress("finding the structural floor")
@@ -156,7 +156,7 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
 
 
 def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
-    """What the ship file keeps of the numbers of a part of her that was found with the core."""
+    """What the ship file keeps of the numbers of a part of it that was found with the core."""
     source = f"calibrated {datetime.date.today().isoformat()}: {why}"
     return {
         u.name: {"value": float(value), "unit": u.unit, "sd": float(sd), "source": source}
@@ -195,7 +195,7 @@ def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
 
 
 def _found_here(name: str, ship: Ship, core: Core) -> bool:
-    """Whether a part of her is in the ship file as this calibration found it."""
+    """Whether a part of it is in the ship file as this calibration found it."""
     return name in ASKED_FOR or (core.antenna is not None and core.antenna in ship.effects)
 
 
@@ -224,7 +224,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
 
 
 def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
-    """The numbers of a part of her that this calibration put into the ship file."""
+    """The numbers of a part of it that this calibration put into the ship file."""
     numbers = core.numbers[owner] if _found_here(owner, after, core) else {}
     return {name: {k: v for k, v in number.items() if k != "source"} for name, number in numbers.items()}
 
@@ -250,7 +250,7 @@ def told(result: dict[str, Any]) -> list[str]:
     ]
     lines.append(
         "  fitted to "
-        + ("where she went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading")
+        + ("where it went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading")
     )
     if gear := result["gear"]:
         lines.append(
@@ -264,7 +264,7 @@ def told(result: dict[str, Any]) -> list[str]:
         )
     if wind := result["wind"]:
         lines.append(
-            f"  wind pushed her on these voyages: how is now part of the model (Wind: {_sizes(wind)})"
+            f"  wind pushed it on these voyages: how is now part of the model (Wind: {_sizes(wind)})"
         )
     lines += [
         f"  {name} was measured and too faint to be told: up to {HARDER:g} times as hard a push is reckoned "

@@ -19,7 +19,7 @@ def doubts(
     derivatives: Sequence[Mapping[str, Any]], held_out: Sequence[Mapping[str, Any]], share: Sequence[float],
     usual: Sequence[Mapping[str, Any]] = (), between: Mapping[str, float] = MappingProxyType({}),
 ) -> list[str]:  # fmt: skip
-    """Sentences; none when the calibration is as it should be. `usual`: lasting effects that she shows;
+    """Sentences; none when the calibration is as it should be. `usual`: lasting effects that it shows;
     `between`: by how many widths of their priors numbers differ from voyage to voyage."""
     return [
         *_stopped(derivatives),
@@ -55,7 +55,7 @@ def _backwards(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
     if not wrong:
         return []
     return [
-        f"{', '.join(wrong)}: the stern's own drift would help her rudder, as on no ship. Is rudder, yaw "
+        f"{', '.join(wrong)}: the stern's own drift would help its rudder, as on no ship. Is rudder, yaw "
         "rate or sway of the other sign, or late? "
         "twin compare, and the checks of twin import"
     ]

@@ -1,4 +1,4 @@
-"""What is usual on a ship: what her reference voyages leave known of the core, of every lasting effect and of
+"""What is usual on a ship: what its reference voyages leave known of the core, of every lasting effect and of
 the instruments."""
 
 from collections.abc import Mapping, Sequence
@@ -71,7 +71,7 @@ def path_errors(
 
 
 def clearly_hers(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
-    """What this ship clearly shows of lasting effects: not wrong, but part of her. What no ship can show (a
+    """What this ship clearly shows of lasting effects: not wrong, but part of it. What no ship can show (a
     rudder ahead of its order) stands in for something else, and is kept in mind without being told."""
     can = {
         u.label: (u.lo - u.centre, u.hi - u.centre) for u in nuisance_unknowns(Model.of(ship), catalogue())

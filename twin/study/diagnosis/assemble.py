@@ -120,7 +120,7 @@ def of_tracks(
 def _felt_before(
     references: Sequence[Voyage], model: Model, catalogue: dict[str, type[Effect]]
 ) -> dict[str, float]:
-    """How hard measured weather pushed her on the reference voyages, or on those of her calibration."""
+    """How hard measured weather pushed it on the reference voyages, or on those of its calibration."""
     if references:
         return strengths([track(v, model.ship) for v in references], model, catalogue)
     return dict(model.ship.notes.get("structural", {}).get("weather", {}))

@@ -116,7 +116,7 @@ def _nearer(c: Cause) -> bool:
 
 
 def _too_small(f: Facts, c: Cause) -> bool:
-    """Whether a single effect cannot show in where she went, for she is led there with it and without: then
+    """Whether a single effect cannot show in where it went, for it is led there with it and without: then
     the readings decide."""
     alone = f.explanation == f.likeliest and [x.effect for x in f.causes if x.in_explanation] == [c.effect]
     return (

@@ -1,4 +1,4 @@
-"""Whether a hypothesis would also have led the ship where she went: a second witness beside the readings one
+"""Whether a hypothesis would also have led the ship where it went: a second witness beside the readings one
 step ahead.
 
 One step ahead, a hypothesis is judged by what is fast; a little misfit of the core, repeated at every step,
@@ -30,7 +30,7 @@ LUXURY = 10.0
 MOST = 40.0
 FORM = 0.1  # share of what an effect does to the path that its form may miss
 ANY_DAY = 2.0  # standard deviations of what any day brings, that nobody need name
-SPOILT = 0.05  # share by which two effects lead her farther off than one of them, so that the other is none
+SPOILT = 0.05  # share by which two effects lead it farther off than one of them, so that the other is none
 REACH = 60.0  # log odds behind the best up to which a hypothesis is asked
 
 
@@ -41,7 +41,7 @@ class Led:
 
     found: Mapping[Sets, Found]  # with `off_m`; "nothing" is among them
     floor: Mapping[str, float]  # [m], by world
-    levered: Mapping[Sets, float]  # [m] and what each may leave whose side force attacks elsewhere along her
+    levered: Mapping[Sets, float]  # [m] and what each may leave whose side force attacks elsewhere along it
     windows: float  # that do not overlap, and no more than MOST
     irregular: frozenset[str]  # effects that come and go
     weather: frozenset[str]  # effects that are no cause, and no luxury
@@ -59,7 +59,7 @@ class Led:
 
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The same hypotheses with this evidence too, best first, but for those that spoil what a part of
-        them does. As far as one effect leads her there alone, two are a luxury."""
+        them does. As far as one effect leads it there alone, two are a luxury."""
         single = (self._path(f.off_m, f.floor_m) for s, f in self.found.items() if len(self._causes(s)) == 1)
         luxury = max(0.0, LUXURY + max(single, default=-LUXURY))
         kept = [h for h in weighed if not self._spoils(h.effects)]
@@ -73,7 +73,7 @@ class Led:
         return tuple(name for name in effects if name not in self.weather)
 
     def _spoils(self, effects: Sets) -> bool:
-        """Whether a set leads her farther off than is usual, and than a part of it does: of two that are
+        """Whether a set leads it farther off than is usual, and than a part of it does: of two that are
         there neither does that, but one that mends the steps of another's form."""
         own, parts = (
             self.found.get(effects),
@@ -207,14 +207,14 @@ def _usual(case: Case, floor: Floor) -> float:
 
 
 def roughly(case: Case) -> float:
-    """How far off [m] the forms of effects may leave her that are in the model since she was calibrated: a
-    share of where she would be without, and where she would be if their side force attacked elsewhere."""
+    """How far off [m] the forms of effects may leave it that are in the model since it was calibrated: a
+    share of where it would be without, and where it would be if their side force attacked elsewhere."""
     left = [share * _astray(case, without) for without, share in added(case.model)]
     return float(np.hypot.reduce([_levered(case, case.model), *left]))
 
 
 def _levered(case: Case, model: Model, names: Collection[str] | None = None) -> float:
-    """How far off [m] the side forces of a model's effects may leave her that attack elsewhere along her than
+    """How far off [m] the side forces of a model's effects may leave it that attack elsewhere along it than
     their forms have it."""
     left = 0.0
     for both in elsewhere(model, names):
@@ -232,7 +232,7 @@ def _astray(case: Case, model: Model) -> float:
 
 
 def _measured(case: Case) -> float:
-    """Mean position error [m] of the calibrated ship on voyages that she was not fitted to; nothing where no
+    """Mean position error [m] of the calibrated ship on voyages that it was not fitted to; nothing where no
     calibration measured it."""
     return float(
         once_off(

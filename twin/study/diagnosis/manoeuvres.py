@@ -15,7 +15,7 @@ from twin.study.diagnosis.case import Case
 from twin.study.estimation.innovations import linearise
 from twin.study.track.track import READINGS, Track
 
-LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of her lengths
+LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of its lengths
 STEPS_PER_LENGTH = 12
 DEG = pi / 180.0
 

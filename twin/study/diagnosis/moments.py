@@ -1,4 +1,4 @@
-"""Moments at which something pushed her that was not there before and after: a ship that passed, a gust, a
+"""Moments at which something pushed it that was not there before and after: a ship that passed, a gust, a
 net that was caught and lost.
 
 What lasts all voyage is an effect. What lasts a few ship lengths is lost in the whole of it, and a ship with
@@ -25,8 +25,8 @@ from twin.study.track.segments import segments
 
 LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before
 CLEAR = 15.0  # log evidence, tempered, that a push of its own must add
-TOSSED = 30.0  # and where waves toss her: a group of them pushes, too
-SWELL_S = 25.0  # the longest waves; what swings her more slowly may be what is asked for
+TOSSED = 30.0  # and where waves toss it: a group of them pushes, too
+SWELL_S = 25.0  # the longest waves; what swings it more slowly may be what is asked for
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@ counts in full.
 
 An effect is granted that its form is only roughly right: a share of its own force may be something else, the
 one of DOUBTS under which the voyages are most probable (no share of what the ship meets because a stream
-carries her: that is the hull's own force)."""
+carries it: that is the hull's own force)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -184,7 +184,7 @@ def _climb(
 
 
 def _told(case: Case, lines: Sequence[Linear], world: str, at: np.ndarray) -> Reduced | None:
-    """What the voyages say there; nothing where no filter can follow such a ship (without her mass, she
+    """What the voyages say there; nothing where no filter can follow such a ship (without its mass, it
     answers within a step)."""
     try:
         return case.reduced(lines, case.worlds([world], DOUBTS[0]), at)[0]

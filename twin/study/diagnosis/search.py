@@ -67,7 +67,7 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
             break
         progress("judging " + " + ".join(chosen) + " about its own size")
         book.judge(chosen)
-    progress("asking where each would have led her")
+    progress("asking where each would have led it")
     book.asked = asked = led(book.case, book.found, book.weighed(), book.asked)
     return book.proved(asked), book.found | dict(asked.found), seen
 
@@ -117,7 +117,7 @@ class _Book:
     def __init__(self, case: Case, worlds: dict[str, Reduced]) -> None:
         self.case, self.worlds = case, worlds
         self.wide = False  # whether every promising effect is judged, because the best so far leaves too much
-        self.asked: Led | None = None  # where those that could be the answer lead her
+        self.asked: Led | None = None  # where those that could be the answer lead it
         self.entries: dict[tuple[Sets, str], Hypothesis] = {}
         # with a stream that may change and did not: no set that holds one of these is asked again
         self.steady: list[Sets] = []

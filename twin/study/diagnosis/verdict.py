@@ -90,7 +90,7 @@ def restless_water(case: Case, h: Hypothesis) -> list[str]:
 
 def _nameless(case: Case, h: Hypothesis, alone: Mapping[str, float]) -> bool:
     """Whether what is at work under a hypothesis has no name: the world is so restless without a sea that
-    pushes her, or what is known by its form alone is there and does not merely mend the form of an effect
+    pushes it, or what is known by its form alone is there and does not merely mend the form of an effect
     that does clearly more `alone` (log weight of each effect by itself)."""
     known = [alone.get(name, -np.inf) for name in case.names(h.effects)]
     formed = [alone.get(name, -np.inf) for name in h.effects if name in case.unnamed]
@@ -143,7 +143,7 @@ def power(case: Case, seen: Mapping[str, bool]) -> float:
 
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:
     """Each parameter of one effect that what was recorded tells of, with its 95 % interval, inside its box;
-    that the form is only roughly right is part of it. Of an effect that the ship has already, also what her
+    that the form is only roughly right is part of it. Of an effect that the ship has already, also what its
     file says."""
     params = {p.name: p for p in case.catalogue[name].params()}
     recorded = {key for track in case.tracks for key in track.weather}

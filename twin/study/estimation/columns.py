@@ -59,7 +59,7 @@ def form_unknowns() -> list[Unknown]:
 
 
 def sea_unknowns() -> list[Unknown]:
-    """How much of what swings her in time with the waves is the helm's, and goes with the yaw."""
+    """How much of what swings it in time with the waves is the helm's, and goes with the yaw."""
     return _beside_the_model(SEA, tossed.TERMS)
 
 

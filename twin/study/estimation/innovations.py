@@ -133,7 +133,7 @@ def linearise(
     """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model
     already holds), about the motion as it was if the model's sensor faults are there. `smooth`: these are
     judged along that motion alone. `exact`: what unknowns push is known beside that motion, too, where the
-    filter believes her to be."""
+    filter believes it to be."""
     shown, track = track, undone(track, model)
     # what is late shows another moment: no slope of this one says a wave two seconds ago
     late_s, prompt = model.prompt()
@@ -155,7 +155,7 @@ def linearise(
     if model.faults:
         slopes = faulty(track, prompt)
         track, reader = waves.as_shown(track, slopes), slopes @ reader
-    if late_s:  # what was true between two steps is read at the nearer one, on her way to the other
+    if late_s:  # what was true between two steps is read at the nearer one, on its way to the other
         off = round(late_s / track.h) - late_s / track.h
         reader[:, SATELLITES] = reader[:, SATELLITES] @ (np.eye(STATES) + off * (system - np.eye(STATES)))
     A, R = (x.astype(np.float32, copy=False) for x in (A, R))

@@ -56,7 +56,7 @@ Numbers = dict[str, tuple[float, str]]  # name -> value, source
 
 
 def first_model(name: str, given: Given) -> tuple[Ship, list[str]]:
-    """The ship, and in words what to doubt about her; SettingsError where a number cannot be right."""
+    """The ship, and in words what to doubt about it; SettingsError where a number cannot be right."""
     if not name.strip():
         raise SettingsError("NAME is empty. Give the ship a name.")
     _check(given)
@@ -160,7 +160,7 @@ def _particulars(given: Given) -> Numbers:
 
 
 def _derivatives(h: reg.Hull, p: Numbers, given: Given) -> Numbers:
-    """Derivatives with their sources; sets the propeller's diameter in p where only her shaft speed is
+    """Derivatives with their sources; sets the propeller's diameter in p where only its shaft speed is
     known."""
     out: Numbers = {f.name: (0.0, "ZERO") for f in DERIVATIVES}
     out |= reg.added_masses(h)
@@ -201,7 +201,7 @@ def _all_screws(h: reg.Hull, pitch: float, count: float) -> Numbers:
 
 
 def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
-    """Given, or usual for a hull as full as this, or such that the shaft speed given drives her at service
+    """Given, or usual for a hull as full as this, or such that the shaft speed given drives it at service
     speed."""
     usual, count = given["pitch-ratio"] or min(1.2, max(0.6, 1.7 - 1.2 * h.C_b)), _propellers(given)
     rpm = given["shaft-speed-rpm"]
@@ -220,7 +220,7 @@ def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
     pitch = _matching(lambda x: turns(D, x), rpm, 0.3, 2.0)
     if abs(turns(D, pitch) / rpm - 1.0) > 0.02:
         raise SettingsError(
-            f"--shaft-speed-rpm {rpm:g} cannot drive her at {h.U:.3g} m/s with a propeller of {D:.3g} m: no "
+            f"--shaft-speed-rpm {rpm:g} cannot drive it at {h.U:.3g} m/s with a propeller of {D:.3g} m: no "
             "usual pitch does. "
             "Check shaft speed, service speed, propeller diameter and --propellers."
         )
@@ -274,9 +274,9 @@ def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
     out = []
     if figures["straight_line_stability"] <= 0 and C_b < FULL:
         out.append(
-            f"that so fine a hull (C_b {C_b:.2f}) does not go straight by herself is rare, and more likely "
+            f"that so fine a hull (C_b {C_b:.2f}) does not go straight by itself is rare, and more likely "
             "an error of these regressions than of "
-            "your numbers: calibrate before you trust how she turns"
+            "your numbers: calibrate before you trust how it turns"
         )
     if not 1.8 <= figures["tactical_diameter_L"] <= 6.5:
         out.append(
@@ -296,7 +296,7 @@ def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
 def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: Given) -> str:
     """What was given, what was estimated and from where, and the sea trial."""
     notes = ship.notes["particulars"]
-    lines = [f"{ship.name}: a first model from her main particulars", ""]
+    lines = [f"{ship.name}: a first model from its main particulars", ""]
     for f in PARTICULARS:
         source = notes[f.name]["source"]
         mark = "" if source == "given" else f"estimated: {reg.SOURCES.get(source, source).split(':')[0]}"
@@ -305,14 +305,14 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
             f"{f.metadata['doc']:38} {mark}".rstrip()
         )
     others = [f"--{option} {given[option]:g}" for option in INSIDE if given[option] is not None]
-    lines += ["", f"  also given, and in her derivatives: {', '.join(others)}"] if others else []
+    lines += ["", f"  also given, and in its derivatives: {', '.join(others)}"] if others else []
     bridge = "as given" if given["shaft-speed-rpm"] else "compare it with the bridge's"
-    unstable = "does not go straight by herself" + ", as many full ships" * (ship.C_b >= FULL)
-    stable = "goes straight by herself" if figures["straight_line_stability"] > 0 else unstable
+    unstable = "does not go straight by itself" + ", as many full ships" * (ship.C_b >= FULL)
+    stable = "goes straight by itself" if figures["straight_line_stability"] > 0 else unstable
     over = figures["overshoot_20_20_deg"]
     lines += [
         "",
-        "  sea trial of this model (estimates; how she turns is only roughly right until she is calibrated)",
+        "  sea trial of this model (estimates; how it turns is only roughly right until it is calibrated)",
         f"    {figures['shaft_speed_rpm']:.0f} rpm at {ship.U_0:.3g} m/s ({ship.U_0 / 0.514444:.1f} kn): "
         f"{bridge}",
         f"    turning circle 35 deg: advance {figures['advance_L']:.1f} L, tactical diameter "

@@ -28,7 +28,7 @@ NOTHING = 1e6  # information of what is none
 
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of
-    each, beside what her file says of it."""
+    each, beside what its file says of it."""
     hers = (e for e in catalogue.values() if e.belongs_to != "voyage")
     return [u for e in hers for u in effect_unknowns(e, model) if u.name not in e.copies]
 
@@ -63,7 +63,7 @@ def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknow
 
 def nuisance_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
     """Core derivatives and what they leave out, in calm water and in waves, what a healthy ship usually shows
-    of every lasting effect, and how late her instruments are."""
+    of every lasting effect, and how late its instruments are."""
     usual = (replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue))
     return (*core_unknowns(model), *form_unknowns(), *sea_unknowns(), *usual, *lateness_unknowns())
 
@@ -114,7 +114,7 @@ def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknow
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     """What the ship file's calibration left open; where it says nothing, the priors."""
     stored = model.ship.notes.get("structural", {})
-    # added when she was calibrated already
+    # added when it was calibrated already
     since = {type(e).__name__ for e in model.effects} - set(stored.get("beside_effects", ()))
     place = {label: i for i, label in enumerate(stored.get("labels", [])) if label.split(".")[0] not in since}
     size = len(unknowns)

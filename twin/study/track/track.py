@@ -48,8 +48,8 @@ GRIDDED = (  # what is put on the grid whole: weather
     "apparent_wind_angle_deg",
 )
 STATE = ("x", "y", "psi", "u", "v", "r")
-STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail her own length
-# and no fewer, however slowly she was logged: with longer steps a ship cannot be stepped at all
+STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail its own length
+# and no fewer, however slowly it was logged: with longer steps a ship cannot be stepped at all
 FEWEST_PER_LENGTH = 8
 ROLLED = 0.3  # L/U_0 over which the measured heel is averaged before its rate is taken
 JERK = 0.15  # rad in (L/U_0)^3: how suddenly a ship turns; what is faster is the sea's doing
@@ -70,7 +70,7 @@ class Track:
     measured: np.ndarray  # (N, 8): READINGS, NaN where there was none
     sd: np.ndarray  # (8,): scatter of each reading about the smooth motion
     whole: np.ndarray  # (N,) bool: controls and motion known, so that the model can be run through
-    # (N, 6): in surge, sway, yaw how fast waves swing her [rad/s], and their accelerations (seaway.py)
+    # (N, 6): in surge, sway, yaw how fast waves swing it [rad/s], and their accelerations (seaway.py)
     swell: np.ndarray | None = None
     # (N, 8): times its usual scatter that each reading has at that moment (unrest.py)
     unrest: np.ndarray | None = None
@@ -216,7 +216,7 @@ def _bridge(values: np.ndarray, longest_s: float, t: np.ndarray) -> np.ndarray:
 
 
 def moved_as_read(measured: np.ndarray, h: float, time: float) -> np.ndarray:
-    """(N,) bool: where readings (N, 8) of place and heading are near enough to say how she moved
+    """(N,) bool: where readings (N, 8) of place and heading are near enough to say how it moved
     (holes.py)."""
     x, y, psi, u, v, r = np.isfinite(measured[:, :6]).T
     return np.logical_and.reduce(

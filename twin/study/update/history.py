@@ -8,7 +8,7 @@ SCHEMA_VERSION = 1
 
 
 def ladder(ship: Ship) -> list[dict[str, Any]]:
-    """Her steps, the oldest first."""
+    """Its steps, the oldest first."""
     return [dict(step) for step in ship.notes.get("history", []) if isinstance(step, dict)]
 
 
