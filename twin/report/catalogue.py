@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy  # noqa: F401 (where it is loaded, an installed effect that does not work on arrays is left out)
 
+from twin.num import num
 from twin.physics.effect import FORM, Effect, Param
 from twin.physics.effects import UNNAMED
 from twin.physics.ship import Ship
@@ -126,7 +127,7 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
 def row(p: Param, ship: Ship | None) -> tuple[str, str, str, str, str, str]:
     """A parameter in a table: name, unit, plausible size, box, prior width, meaning."""
     k, times = (p.scale(ship), "") if ship else (1.0, f" {SCALES[p.of]}" if p.of else "")
-    says = lambda x: f"{x * k:.4g}" + (times if x else "")  # noqa: E731
+    says = lambda x: f"{num(x * k, 4)}" + (times if x else "")  # noqa: E731
     form = "" if p.form == FORM else f" (its form may be off by {p.form:.0%})"
     return p.name, p.unit, says(p.default), f"{says(p.lo)} .. {says(p.hi)}", says(p.sd), p.doc + form
 

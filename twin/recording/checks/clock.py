@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.checks.answer import Check, doubtful, good, wrong
 from twin.recording.checks.view import View
 from twin.recording.unknown_controls import CONTROLS, gaps
@@ -57,7 +58,8 @@ def time_stamps(view: View) -> Check:
     if scatter > UNEVEN:
         return doubtful(
             name,
-            f"the steps are uneven: {inside.min():.3g} to {inside.max():.3g} s, usually {usual:.3g} s. "
+            f"the steps are uneven: {num(inside.min(), 3)} to {num(inside.max(), 3)} s, usually "
+            f"{num(usual, 3)} s. "
             "Were the stamps taken at arrival? Log the sensor's own time.",
         )
     return good(name, f"a sample every {usual:.6g} s, scatter {100 * scatter:.1f} % of a step.")
@@ -71,7 +73,7 @@ def time_gaps(view: View) -> Check:
     limit = max(GAP_STEPS * usual, min(GAP_S, 20.0 * usual))
     gaps = np.flatnonzero(steps > limit)
     if not gaps.size:
-        return good(name, f"no step is longer than {limit:.3g} s.")
+        return good(name, f"no step is longer than {num(limit, 3)} s.")
     worst = int(gaps[np.argmax(steps[gaps])])
     return doubtful(
         name,
@@ -84,8 +86,9 @@ def control_gaps(view: View) -> Check:
     """Gaps of rudder and shaft in which these changed."""
     found = {name: gaps(view.voyage, name) for name in CONTROLS}
     said = [
-        f"{name} changed in {len(g)} gap{'s' * (len(g) > 1)} of {sum(b - a for a, b in g):.4g} s in all, the "
-        f"longest {b - a:.4g} s after {a:g} s"
+        f"{name} changed in {len(g)} gap{'s' * (len(g) > 1)} of {num(sum(b - a for a, b in g), 4)} s in all, "
+        "the "
+        f"longest {num(b - a, 4)} s after {a:g} s"
         for name, g in found.items()
         if g
         for a, b in [max(g, key=lambda pair: pair[1] - pair[0])]

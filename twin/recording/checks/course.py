@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, wrong
 from twin.recording.checks.view import View, rms
 
@@ -22,7 +23,8 @@ def course_against_heading(name: str, view: View) -> Check:
     if view.speed > FASTEST_MPS:
         return wrong(
             name,
-            f"the ship makes {view.speed:.3g} m/s: is the time in minutes or hours, the position in feet?",
+            f"the ship makes {num(view.speed, 3)} m/s: is the time in minutes or hours, the position in "
+            "feet?",
         )
     if drift > np.radians(LARGE_DRIFT_DEG) and earth < 0.5 * drift and not view.derived("surge_velocity_mps"):
         return wrong(

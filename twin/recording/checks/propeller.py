@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.view import View
 
@@ -31,14 +32,15 @@ def propeller_rate(view: View) -> Check:
     if 60.0 * rate < SLOWEST_RPM:
         return wrong(
             name,
-            f"the ship makes {way:.2f} m/s with {60 * rate:.3g} turns a minute, {way / rate:.1f} m a turn: "
+            f"the ship makes {way:.2f} m/s with {num(60 * rate, 3)} turns a minute, {way / rate:.1f} m a "
+            "turn: "
             "no propeller does; "
             'the column is believed to be in 1/s. In the map: unit = "1/s" for it (with --ship this is '
             "computed).",
         )
     return good(
         name,
-        f"{60 * rate:.3g} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked "
+        f"{num(60 * rate, 3)} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked "
         "closer.",
     )
 
@@ -62,14 +64,15 @@ def thrust_on(view: View, n: np.ndarray) -> np.ndarray:
 def advance(name: str, way: float, rate: float, diameter: float) -> Check:
     low, high = ADVANCE
     j = way / (rate * diameter)
-    saw = f"advance ratio J = U/(nD) = {way:.3g}/({rate:.3g} x {diameter:.3g}) = {j:.3g}"
+    saw = f"advance ratio J = U/(nD) = {num(way, 3)}/({num(rate, 3)} x {num(diameter, 3)}) = {num(j, 3)}"
     if low <= j <= high:
         return good(name, f"{saw}, as a ship under way has it.")
     for factor, said, other in ADVANCE_MISTAKES:
         if 0.25 <= j * factor <= 1.4:
             return wrong(
                 name,
-                f"{saw}; {j * factor:.2g} if {said}: that is believed, unless the file is of {other} ship.",
+                f"{saw}; {num(j * factor, 2)} if {said}: that is believed, unless the file is of {other} "
+                "ship.",
             )
     return doubtful(
         name, f"{saw}, expected {low:g} to {high:g}: another ship's file, a wrong unit, or a wrong diameter?"

@@ -7,6 +7,7 @@ Nomoto's first order, its gains as they grow with speed, and Norrbin's cubic dam
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.view import View, fit
 
@@ -115,11 +116,12 @@ def rudder_unit(view: View) -> Check:
         return good(name, f"the rudder reaches {most:.1f} deg.")
     if swung < 20.0:
         return cannot_tell(
-            name, f"the rudder stays within {most:.2g} deg, and the heading within {swung:.0f} deg."
+            name, f"the rudder stays within {num(most, 2)} deg, and the heading within {swung:.0f} deg."
         )
     return wrong(
         name,
-        f"the rudder stays within {most:.2g} 'deg' while the heading swings {swung:.0f} deg: it is believed "
+        f"the rudder stays within {num(most, 2)} 'deg' while the heading swings {swung:.0f} deg: it is "
+        "believed "
         "to be in "
         'radians. In the map: unit = "rad" for it.',
     )

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from twin.num import num
 from twin.physics.effect import Effect
 from twin.physics.effects import catalogue
 from twin.physics.effects.antenna_offset import AntennaOffset
@@ -240,11 +241,13 @@ def told(result: dict[str, Any]) -> list[str]:
     for e in result["held_out"]:
         if e["position_m"] is not None:
             lines.append(
-                f"  {e['horizon_s']:>4.0f} s   {e['before_m']:>8.3g} m -> {e['position_m']:<8.3g} m    "
-                f"{e['before_deg']:>7.3g} deg -> {e['heading_deg']:<7.3g} deg   ({e['windows']} windows)"
+                f"  {e['horizon_s']:>4.0f} s   {num(e['before_m'], 3):>8} m -> {num(e['position_m'], 3):<8} "
+                "m    "
+                f"{num(e['before_deg'], 3):>7} deg -> {num(e['heading_deg'], 3):<7} deg   ({e['windows']} "
+                "windows)"
             )
     lines += [
-        f"  after {r['horizon_s']:.0f} s while {r['regime']}: {r['position_m']:.3g} m ({r['windows']} "
+        f"  after {r['horizon_s']:.0f} s while {r['regime']}: {num(r['position_m'], 3)} m ({r['windows']} "
         "windows)"
         for r in result["by_regime"]
     ]
@@ -272,15 +275,15 @@ def told(result: dict[str, Any]) -> list[str]:
         for name in result["too_faint"]
     ]
     lines += [f"  {text}" for text in told_of_waves(result["waves"])]
-    share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
+    share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [
-        f"usual on this ship: {i['name']} {i['value']:.3g} +- {i['sd']:.1g} (kept in mind by diagnose)"
+        f"usual on this ship: {i['name']} {num(i['value'], 3)} +- {i['sd']:.1g} (kept in mind by diagnose)"
         for i in result["usual"]
     ]
     lines += ["", f"{'derivative':<10}{'before':>11}{'now':>11}{'+-':>9}"]
     lines += [
-        f"{d['name']:<10}{d['before']:>11.4g}{d['value']:>11.4g}{d['sd']:>9.2g}"
+        f"{d['name']:<10}{num(d['before'], 4):>11}{num(d['value'], 4):>11}{num(d['sd'], 2):>9}"
         for d in result["derivatives"]
         if d["excited"]
     ]
@@ -290,4 +293,6 @@ def told(result: dict[str, Any]) -> list[str]:
 
 
 def _sizes(numbers: dict[str, dict[str, Any]]) -> str:
-    return ", ".join(f"{name} {n['value']:.3g} +- {n['sd']:.1g} {n['unit']}" for name, n in numbers.items())
+    return ", ".join(
+        f"{name} {num(n['value'], 3)} +- {n['sd']:.1g} {n['unit']}" for name, n in numbers.items()
+    )

@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
+from twin.num import num
 from twin.physics.ship import DERIVATIVES
 
 EDGE = 1e-6  # of the box: a value nearer than this to its end was stopped by it
@@ -48,7 +49,7 @@ def _backwards(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
     none there is no hull."""
     flow = [d for d in derivatives if d["name"] in STRAIGHTENS]
     wrong = [
-        f"{d['name']} {d['value']:.2g}"
+        f"{d['name']} {num(d['value'], 2)}"
         for d in flow
         if STRAIGHTENS[d["name"]] * d["value"] < -CLEARLY * d["sd"]
     ]
@@ -73,7 +74,7 @@ def _no_better(held_out: Sequence[Mapping[str, Any]]) -> list[str]:
         return ["no voyage was left to judge by: give one with --held-out"]
     last = judged[-1]
     rose = [
-        f"{last[before]:.3g} -> {last[after]:.3g} {unit}"
+        f"{num(last[before], 3)} -> {num(last[after], 3)} {unit}"
         for before, after, unit in (("before_m", "position_m", "m"), ("before_deg", "heading_deg", "deg"))
         if last[after] >= last[before]
     ]

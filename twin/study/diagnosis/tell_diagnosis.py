@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from twin.num import num
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.overtime import changes
 from twin.study.estimation.start import told_of_waves
@@ -54,7 +55,7 @@ def _today(weather: list[dict[str, Any]]) -> list[str]:
     lines = ["", "today's water and wind:"]
     for w in weather:
         numbers = ", ".join(
-            f"{p['name']} {p['value']:.3g} {p['unit']}" for p in w["parameters"] if abs(p["value"]) > 0.0
+            f"{p['name']} {num(p['value'], 3)} {p['unit']}" for p in w["parameters"] if abs(p["value"]) > 0.0
         )
         pushed = (
             (f"; typically {say.force(w['typical_force'])}")
@@ -75,19 +76,19 @@ def _candidate(c: dict[str, Any]) -> list[str]:
         head += f" (together with {', '.join(c['together_with'])})"
     lines = [head]
     for p in c["parameters"]:
-        file = f"   (ship file: {p['in_ship_file']:.4g})" if "in_ship_file" in p else ""
+        file = f"   (ship file: {num(p['in_ship_file'], 4)})" if "in_ship_file" in p else ""
         end = "   (at the end of its box)" if p["at_box_end"] else ""
         lines.append(
-            f"          {p['name']:<12} {p['value']:>11.4g} {p['unit']:<5} 95 %: {p['low95']:.4g} "
-            f"to {p['high95']:.4g}{file}{end}"
+            f"          {p['name']:<12} {num(p['value'], 4):>11} {p['unit']:<5} 95 %: {num(p['low95'], 4)} "
+            f"to {num(p['high95'], 4)}{file}{end}"
         )
     force = c["typical_force"]
     if say.force(force):
         lines.append(f"          typically    {say.force(force)}")
-    floor = f" (a true cause may leave {c['error_floor']:.3g} m)" if c["error_floor"] is not None else ""
+    floor = f" (a true cause may leave {num(c['error_floor'], 3)} m)" if c["error_floor"] is not None else ""
     lines.append(
-        f"          {c['error_horizon_s']:.0f} s error  {c['error_without']:.3g} m without, "
-        f"{c['error_with']:.3g} m with it{floor}, "
+        f"          {c['error_horizon_s']:.0f} s error  {num(c['error_without'], 3)} m without, "
+        f"{num(c['error_with'], 3)} m with it{floor}, "
         "on parts not used for the fit"
     )
     if changes(c.get("over_time", ())):

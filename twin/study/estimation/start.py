@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.signal import savgol_filter
 
+from twin.num import num
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.estimation.respond import later, stretches
@@ -68,7 +69,7 @@ def waves_on(tracks: Sequence[Track]) -> list[dict[str, Any]]:
 def told_of_waves(waves: Sequence[dict[str, Any]]) -> list[str]:
     """The same in words."""
     said = "predictions begin in the motion without them, and they are no effect's doing"
-    return [f"On {w['voyage']} waves swing it about every {w['period_s']:.2g} s: {said}." for w in waves]
+    return [f"On {w['voyage']} waves swing it about every {num(w['period_s'], 2)} s: {said}." for w in waves]
 
 
 def undone(track: Track, model: Model) -> Track:

@@ -7,6 +7,7 @@ from math import radians
 from typing import Any
 
 from twin.errors import SettingsError
+from twin.num import num
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship
 from twin.study.first_model import regressions as reg
@@ -81,7 +82,7 @@ def _two_fullnesses(given: Given, ship: Ship) -> list[str]:
     C_b = given["block-coefficient"]
     if given["mass-kg"] is None or C_b is None or abs(ship.C_b - C_b) < 5e-4:
         return []
-    return [f"--mass-kg gives C_b = {ship.C_b:.4g}, which is used; --block-coefficient {C_b:g} is not"]
+    return [f"--mass-kg gives C_b = {num(ship.C_b, 4)}, which is used; --block-coefficient {C_b:g} is not"]
 
 
 def _ship(name: str, particulars: Numbers, derivatives: Numbers) -> Ship:
@@ -220,7 +221,8 @@ def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
     pitch = _matching(lambda x: turns(D, x), rpm, 0.3, 2.0)
     if abs(turns(D, pitch) / rpm - 1.0) > 0.02:
         raise SettingsError(
-            f"--shaft-speed-rpm {rpm:g} cannot drive it at {h.U:.3g} m/s with a propeller of {D:.3g} m: no "
+            f"--shaft-speed-rpm {rpm:g} cannot drive it at {num(h.U, 3)} m/s with a propeller of {num(D, 3)} "
+            "m: no "
             "usual pitch does. "
             "Check shaft speed, service speed, propeller diameter and --propellers."
         )
@@ -245,7 +247,7 @@ def _in_ranges(ship: Ship) -> None:
             value = getattr(owner, f.name)
             if not f.metadata["lo"] <= value <= f.metadata["hi"]:
                 raise SettingsError(
-                    f"the regressions give {where}.{f.name} = {value:.3g} {f.metadata['unit']} "
+                    f"the regressions give {where}.{f.name} = {num(value, 3)} {f.metadata['unit']} "
                     f"({f.metadata['doc']}), outside "
                     f"[{f.metadata['lo']:g}, {f.metadata['hi']:g}]: this hull is too unlike a ship. Check "
                     "length, beam and draught."
@@ -313,7 +315,7 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
     lines += [
         "",
         "  sea trial of this model (estimates; how it turns is only roughly right until it is calibrated)",
-        f"    {figures['shaft_speed_rpm']:.0f} rpm at {ship.U_0:.3g} m/s ({ship.U_0 / 0.514444:.1f} kn): "
+        f"    {figures['shaft_speed_rpm']:.0f} rpm at {num(ship.U_0, 3)} m/s ({ship.U_0 / 0.514444:.1f} kn): "
         f"{bridge}",
         f"    turning circle 35 deg: advance {figures['advance_L']:.1f} L, tactical diameter "
         f"{figures['tactical_diameter_L']:.1f} L,"

@@ -7,6 +7,8 @@ the core's form."""
 from math import atan, log10, pi
 from typing import NamedTuple
 
+from twin.num import num
+
 Estimates = dict[str, tuple[float, str]]  # name -> value, key in SOURCES
 
 SOURCES = {
@@ -85,7 +87,8 @@ def outside(h: Hull) -> list[str]:
         if not lo <= h.ratios[name] <= hi:
             found.setdefault(name, []).append(f"{SOURCES[source].split(')')[0]}) {lo:g} to {hi:g}")
     return [
-        f"{name} = {h.ratios[name]:.3g} is unlike the hulls of {', '.join(where)}: rougher until calibrated"
+        f"{name} = {num(h.ratios[name], 3)} is unlike the hulls of {', '.join(where)}: rougher until "
+        "calibrated"
         for name, where in found.items()
     ]
 
