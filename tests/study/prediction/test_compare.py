@@ -97,7 +97,7 @@ def test_a_calibrated_ship_is_held_against_her_structural_floor(sailed, make, kv
 def test_the_command_line_prints_the_verdict_first_and_the_next_command_last(verb, on_disk, make, capsys):
     assert verb("compare", on_disk(make()), "--ship", "kvlcc2") == 0
     out = capsys.readouterr().out.splitlines()
-    assert out[0].startswith("After 120 s the model is") and out[-1].startswith("next: twin ")
+    assert out[0].startswith("120 s open-loop error: ") and out[-1].startswith("next: twin ")
 
 
 def test_json_on_standard_output_is_alone_there(verb, on_disk, make, capsys):
