@@ -35,7 +35,7 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
     """
     breathe = realtime.drop_pages if settings["loop.drop_pages"] else int
     breathe()
-    ship = load_ship(settings["ship.file"])
+    ship = load_ship(settings["ship.file"], arrays=False)
     notes: list[str] = []
     if settings["residual.file"] != "none":
         network.open_library(breathe)
@@ -171,5 +171,5 @@ def certify_aside(
     saturation: tuple[float, float, float],
 ) -> None:
     """Work the certificate out, put it on file and say it: what the other process does."""
-    ship = load_ship(ship_file)
+    ship = load_ship(ship_file, arrays=False)
     print(kept(path, Model.of(ship), K, h, **on_board(ship, delay, adapted, saturation)).to_json())
