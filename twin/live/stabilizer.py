@@ -3,11 +3,12 @@ hold now."""
 
 from math import degrees, hypot, pi
 
-from twin.live.certificate import comparison as c3
 from twin.live.certificate.periods import TOO_LONG
+from twin.live.certificate.rolled_tube import RolledTube
 from twin.live.certificate.tube import STILL, Three, Tube
 from twin.live.guard import CONTROLS
 from twin.live.observer.estimate import Observer
+from twin.live.observer.rollback import RollBack
 from twin.live.parity import Parity
 from twin.live.seen import Certified
 from twin.live.signals.derive import turn
@@ -32,7 +33,7 @@ class Stabilizer:
     def __init__(self, tube: Tube | None = None, why_not: str = "no certificate"):
         self.tube, self.why_not = tube, why_not
         self.promises = tube is not None and tube.certificate.ok
-        self._step_margin = max(1.0 - c3.radius(tube.certificate.G), 0.0) if tube and self.promises else 0.0
+        self._step_margin = tube.certificate.step_margin if tube else 0.0
         self._parity = Parity(tube.certificate.heading_noise) if tube else None
         self._restarts = -1
         self._inside = 0  # ticks that she has surely been in the set
@@ -106,10 +107,13 @@ class Stabilizer:
     def _steps(self, observer: Observer, measured: Measured, tube: Tube, dt: float, acts: bool) -> None:
         got = tuple([observer.received[a] and self._in_time(a, measured, tube) for a in NU])
         self._watch(observer, got, tube)
+        sea = measured.si.get("H_s", 0.0)
+        if isinstance(tube, RolledTube) and isinstance(observer, RollBack):
+            tube.follow(observer.path, sea, acts)
+            return
         heading = observer.received["psi"] and self._in_time("psi", measured, tube)
         in_time = self._since_late_s > 0.0
         pulled = tuple([0.0 if g and in_time else observer.pulled[a] for a, g in zip(NU, got, strict=True)])
-        sea = measured.si.get("H_s", 0.0)
         tube.step(got, sea, pulled if any(pulled) else STILL, dt, acts, heading, observer.pulled["psi"])  # type: ignore[arg-type]
 
     @property
