@@ -115,8 +115,19 @@ class Certificate(Promise):
 
     def bound_in(self, H_s: float) -> Row:
         """The ultimate bound in a sea of that height [m/s, m/s, rad/s]."""
-        more: Row = tuple(H_s * x for x in self.disturbance.per_metre)  # type: ignore[assignment]
-        return c3.add(self.bound, c3.apply(self.gains_disturbance, more))
+        d = self.disturbance
+        return self._again(
+            d.noise(self.noise, H_s),
+            Disturbance(d.at(H_s)),
+            d.heading_noise(self.heading_noise, H_s),
+        ).bound
+
+    def _again(self, noise: Row, d: Disturbance, heading_noise: float) -> Promise:
+        """The promise of the same observer with this noise and disturbance."""
+        return _promised(
+            self.plant, self.K, self.delays, noise, d, heading_noise, self.extra_growth,
+            self.estimated_heading, self.inner,
+        )  # fmt: skip
 
     def to_json(self) -> str:
         table = json.loads(json.dumps(asdict(self)))
@@ -146,17 +157,7 @@ class Certificate(Promise):
     def follows(self) -> bool:
         """Whether all that is promised is what the theorem makes of the plant, K, delay, noise and
         disturbance that stand beside it."""
-        again = _promised(
-            self.plant,
-            self.K,
-            self.delays,
-            self.noise,
-            self.disturbance,
-            self.heading_noise,
-            self.extra_growth,
-            self.estimated_heading,
-            self.inner,
-        )
+        again = self._again(self.noise, self.disturbance, self.heading_noise)
         usable = all(isfinite(x) and x > 0.0 for x in (*self.K, self.h)) and all(
             isfinite(x) and x >= 0.0 for x in (*self.noise, self.heading_noise)
         )

@@ -60,8 +60,8 @@ class RolledTube(Tube):
 
     def reset(self, start: Three | None = None, psi: float | None = None) -> None:
         """Begin anew from what the instruments leave open; before now she was at most her way from there."""
-        self.beta = self.certificate.noise if start is None else start
-        self.psi = self.certificate.heading_noise if psi is None else psi
+        self.beta = self.noise if start is None else start
+        self.psi = self.heading_noise if psi is None else psi
         if not self._nodes:
             return
         bound, last = (*self.beta, self.psi), self._nodes[-1]
@@ -135,7 +135,9 @@ class RolledTube(Tube):
         force = c.disturbance.at(H_s)
         if not acts:
             force = add(force, scaled_row(-1.0, c.saturation))
-        self._noise: Four = (*c.noise, c.heading_noise)
+        self.noise: Three = c.disturbance.noise(c.noise, H_s)
+        self.heading_noise = c.disturbance.heading_noise(c.heading_noise, H_s)
+        self._noise: Four = (*self.noise, self.heading_noise)
         self.way: Three = way(c.plant, force)
         d = self._one.pushes(force, self.way[2])
         self._rows = tuple((*row, x) for row, x in zip(self._one.M, d, strict=True))

@@ -11,6 +11,7 @@ from typing import Any
 from twin import whole
 from twin.errors import TwinError
 from twin.live.certificate.certificate import VERSION, Certificate, certify
+from twin.live.certificate.plant import usual_disturbance
 from twin.physics.model import Model
 
 
@@ -43,4 +44,6 @@ def mark(model: Model, *settings: Any) -> str:
     """What the certificate depends on, as a hash: the ship's numbers, her effects, the settings and the
     theorem's version."""
     ship = replace(model.ship, notes={})
-    return hashlib.sha256(repr((VERSION, ship, model.effects, *settings)).encode()).hexdigest()[:16]
+    return hashlib.sha256(
+        repr((VERSION, ship, model.effects, usual_disturbance(model), *settings)).encode()
+    ).hexdigest()[:16]
