@@ -97,7 +97,7 @@ def test_the_fleets_tube_is_the_tube_of_the_loop():
     """Test: one ship of the bench, drop-outs and all. Expected: the same bound as Tube, tick by tick."""
     model, c = certified(Case("kvlcc2", 10.0, (3, 2, 1), 1))
     fleet = Fleet(model, c, 1, seed=4, H_s=1.0, dropouts=True)
-    tube = Tube(c)
+    tube = Tube(c, fleet.stated)
     for k in range(400):
         fleet.step(k)
         beta = tube.step(tuple(bool(x) for x in fleet.received[:, 0]), H_s=1.0)
