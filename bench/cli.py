@@ -51,6 +51,11 @@ BENCHES: dict[str, Bench] = {
         "is the promise kept where its assumptions are not?",
         "twin-bench assumptions --seconds 300",
     ),
+    "seaway": Bench(
+        "bench.seaway",
+        "what a seaway costs the promise, and is it kept there?",
+        "twin-bench seaway --ship kvlcc2",
+    ),
     "hidden-effects": Bench(
         "bench.league.hidden_effects",
         "the hidden-effect league: is what is missing named?",

@@ -12,11 +12,15 @@ uncertainty grows."""
 from collections import deque
 from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
+from typing import TYPE_CHECKING
 
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
-from twin.physics.state import Rates
+from twin.physics.state import Force, Rates, Situation
+
+if TYPE_CHECKING:
+    from twin.live.observer.dynamics import Known
 
 STATES = ("x", "y", "psi", "u", "v", "r")
 WATER = {"u": "u_r", "v": "v_r"}  # what stands in for a speed over ground
@@ -80,6 +84,9 @@ class Observer:
     def steer(self, rates: Rates) -> None:
         """The model's accelerations from now on."""
         self.rates = rates
+
+    def remember(self, physics: "Known", s: Situation, learned: Force) -> None:
+        """What drives the model until the next tick, for an observer that goes back to it (`RollBack`)."""
 
     def correct(self, measured: Measured) -> Estimate:
         """The model carried to now, then pulled by what is measured."""

@@ -114,7 +114,7 @@ def of_ship(model: Model, **ranges: tuple[float, float]) -> OperatingSet:
         "wind_to": (-pi, pi),
         "depth": (1.5 * T, 1e4 * T),
         "H_s": (0.0, min(8.0, 0.1 * L)),
-        "T_p": (1.0, 25.0),
+        "T_p": (min(1.0, 0.25 * L**0.5), 25.0),
         "wave_to": (-pi, pi),
         "draught": (0.6 * T, 1.2 * T),
         "bank_port": (0.5 * ship.B, 1e4 * L),
