@@ -1,0 +1,20 @@
+"""`python -m bench.fleet VERB`: run, table, fit."""
+
+import argparse
+import sys
+
+from bench.fleet import run as verb_run
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python -m bench.fleet", description="Random ships of many forms, asked.")
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    each = {"run": verb_run}
+    for name, module in each.items():
+        module.add_arguments(verbs.add_parser(name, description=(module.__doc__ or "").splitlines()[0]))
+    args = parser.parse_args()
+    return int(each[args.verb].run(args))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
