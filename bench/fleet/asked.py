@@ -25,7 +25,25 @@ from twin.study.first_model.init import OPTIONS, first_model
 from twin.study.reference.sailed import Sailed as Reference
 from twin.study.track.track import track
 
-KEPT_FACTS = ("verdict", "reason", "missing", "more", "one_of", "probabilities", "weather", "rivals", "answer", "path", "floor", "not_judged", "not_visible", "p_value", "p_value_at_best", "facts")
+KEPT_FACTS = (
+    "verdict",
+    "reason",
+    "missing",
+    "more",
+    "one_of",
+    "probabilities",
+    "weather",
+    "rivals",
+    "answer",
+    "path",
+    "floor",
+    "not_judged",
+    "not_visible",
+    "p_value",
+    "p_value_at_best",
+    "p_value_score",
+    "facts",
+)
 
 
 def voyage(s: Sailed) -> Voyage:
@@ -45,11 +63,14 @@ def calibrated(ship: Ship) -> tuple[Model, dict[str, Any]]:
         "calibration_s": time.process_time() - began,
         "reference_s": sum(v.duration_s for v in sailed_before),
         "share": done.result["floor"]["share"],
+        "left_out_scores": done.ship.notes["structural"].get("left_out_scores", []),
         "knows": [type(e).__name__ for e in done.ship.effects],
     }
 
 
-def rows(family: str, seed: int, voyages: int, store: Path | None, done: frozenset[str], until: float = np.inf) -> Iterator[dict[str, Any]]:
+def rows(
+    family: str, seed: int, voyages: int, store: Path | None, done: frozenset[str], until: float = np.inf
+) -> Iterator[dict[str, Any]]:
     """A row a voyage of this ship; those whose keys are `done` are not asked again. The calibrated ship is kept
     in `store`."""
     ship = build(family, seed)
@@ -85,11 +106,29 @@ def _asked(ship: Ship, case: Case, model: Model, facts: dict[str, Any]) -> dict[
     row |= {k: result[k] for k in KEPT_FACTS if k in result}
     row["cpu_s"] = time.process_time() - began
     row["candidates"] = [
-        {k: c[k] for k in ("effect", "probability", "parameters", "typical_force", "error_without", "error_with", "error_floor", "cannot_be_told_from")}
+        {
+            k: c[k]
+            for k in (
+                "effect",
+                "probability",
+                "parameters",
+                "typical_force",
+                "error_without",
+                "error_with",
+                "error_floor",
+                "cannot_be_told_from",
+            )
+        }
         for c in result["candidates"]
     ]
     row["judged"] = [
-        {"effects": s, "weight": f.hypothesis.log_weight, "scenario": f.hypothesis.world, "error_m": f.off_m, "expected_m": f.floor_m}
+        {
+            "effects": s,
+            "weight": f.hypothesis.log_weight,
+            "scenario": f.hypothesis.world,
+            "error_m": f.off_m,
+            "expected_m": f.floor_m,
+        }
         for s, f in said.found.items()
     ]
     row["oracle"] = oracle(said, case)
@@ -104,7 +143,10 @@ def oracle(said: Diagnosis, case: Case) -> dict[str, float] | None:
         return None
     day = tuple(n for n in said.result["facts"]["likeliest"] if n in c.weather and n not in true)
     chosen = c.ordered((*day, *true))
-    base = min((s for s in said.found if not c.causes(s) and np.isfinite(said.found[s].off_m)), key=lambda s: said.found[s].off_m)
+    base = min(
+        (s for s in said.found if not c.causes(s) and np.isfinite(said.found[s].off_m)),
+        key=lambda s: said.found[s].off_m,
+    )
     without = said.found[()].off_m if any(n in c.weather for n in true) else said.found[base].off_m
     found = said.found.get(chosen)
     if found is None:
@@ -113,5 +155,8 @@ def oracle(said: Diagnosis, case: Case) -> dict[str, float] | None:
     numbers = {}
     for i, u in enumerate(c.effects):
         if u.owner in true:
-            numbers[u.label] = [float(u.centre + u.sd * found.posterior.z[i]), float(u.sd * found.posterior.covariance[i, i] ** 0.5)]
+            numbers[u.label] = [
+                float(u.centre + u.sd * found.posterior.z[i]),
+                float(u.sd * found.posterior.covariance[i, i] ** 0.5),
+            ]
     return {"without_m": without, "with_m": error, "numbers": numbers}

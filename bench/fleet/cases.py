@@ -93,7 +93,9 @@ def sailed(ship: Ship, case: Case) -> Sailed:
     return _sailed(ship, case.key, plan_name, day, flaws, rng)
 
 
-def _sailed(ship: Ship, name: str, plan_name: str, day: weather.Weather, flaws: hidden.Flaws, rng: np.random.Generator) -> Sailed:
+def _sailed(
+    ship: Ship, name: str, plan_name: str, day: weather.Weather, flaws: hidden.Flaws, rng: np.random.Generator
+) -> Sailed:
     lasts = np.clip(ship.p.unit_s * rng.uniform(*LENGTHS), 60 * MINUTES[0], 60 * MINUTES[1])
     seed = int(rng.integers(2**31))
     true = sail.sail(ship, PLANS[plan_name](rng), day, float(lasts), seed, flaws)

@@ -74,14 +74,20 @@ class Drive:
         """Shaft speed that a drooping engine keeps [1/s]."""
         return n * (1 - self.droop * tanh(2 * (1 - u / self.p.U0 * self.n0 / max(n, 0.1 * self.n0))))
 
-    def rudder(self, delta: float, u_in: float, v: float, r: float, T: float, u: float) -> tuple[float, float]:
+    def rudder(
+        self, delta: float, u_in: float, v: float, r: float, T: float, u: float
+    ) -> tuple[float, float]:
         """Normal force of the rudder [N], and its inflow speed [m/s]."""
         A = pi / 4 * self.p.D_P**2 * self.p.propellers
         race = (max(u_in * u_in + 2 * max(T, 0.0) / (RHO * A), 0.0)) ** 0.5
         u_R = (1 - self.slip) * abs(u_in) + self.slip * (abs(u_in) + 0.6 * (race - abs(u_in)))
         v_R = self.straighten * (v + 1.5 * self.x_R * self.p.L * r)
         alpha = delta - atan2(-v_R, max(u_R, 1e-3)) if u_R > 0 else delta
-        eff = alpha if abs(alpha) < self.stall else (1 if alpha > 0 else -1) * self.stall * exp(-1.5 * (abs(alpha) - self.stall))
+        eff = (
+            alpha
+            if abs(alpha) < self.stall
+            else (1 if alpha > 0 else -1) * self.stall * exp(-1.5 * (abs(alpha) - self.stall))
+        )
         return 0.5 * RHO * self.p.A_R * self.lift * (u_R * u_R + v_R * v_R) * sin(eff), u_R
 
     def balance(self, resistance: float) -> "Drive":

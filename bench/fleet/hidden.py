@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from bench.fleet.drive import Drive
-from bench.fleet.particulars import G, RHO, Particulars
+from bench.fleet.particulars import RHO, G, Particulars
 
 Draw = np.random.Generator
 
@@ -100,13 +100,22 @@ def shallow(p: Particulars, d: Drive, rng: Draw, s: float) -> Change:
 
 
 def bank(p: Particulars, d: Drive, rng: Draw, s: float) -> Change:
-    return Change({"bank": 0.03 * s * rng.uniform(0.7, 1.3)}, {"bank": side(rng) * rng.uniform(1.2, 2.5) * p.B})
+    return Change(
+        {"bank": 0.03 * s * rng.uniform(0.7, 1.3)}, {"bank": side(rng) * rng.uniform(1.2, 2.5) * p.B}
+    )
 
 
-big_wind = lambda p, d, rng, s: {"wind": 15.0 * min(1.0, (p.L / 120) ** 0.4) * s**0.5, "wind_from": rng.uniform(0, 6.28)}  # noqa: E731
+big_wind = lambda p, d, rng, s: {
+    "wind": 15.0 * min(1.0, (p.L / 120) ** 0.4) * s**0.5,
+    "wind_from": rng.uniform(0, 6.28),
+}
 big_sea = lambda p, d, rng, s: {"swell": 0.025 * p.L**0.85 * s**0.5, "swell_from": rng.uniform(0, 6.28)}  # noqa: E731
 stream = lambda p, d, rng, s: {"stream": 0.2 * p.U0 * s, "stream_to": rng.uniform(0, 6.28)}  # noqa: E731
-tide = lambda p, d, rng, s: {"tide": 0.15 * p.U0 * s, "tide_s": rng.uniform(60, 150) * p.unit_s, "eddy": 0.02 * p.U0 * s}  # noqa: E731
+tide = lambda p, d, rng, s: {
+    "tide": 0.15 * p.U0 * s,
+    "tide_s": rng.uniform(60, 150) * p.unit_s,
+    "eddy": 0.02 * p.U0 * s,
+}
 
 CATALOGUE: dict[str, Entry] = {
     "HullFouling": _flaw(lambda p, d, rng, s: {"fouling": 0.4 * s * drag0(p, d), "fouling_power": rng.uniform(1.7, 2.1)}),

@@ -16,7 +16,7 @@ from math import atan2, exp, hypot, sin
 
 import numpy as np
 
-from bench.fleet.particulars import G, RHO, Linear, Particulars
+from bench.fleet.particulars import RHO, G, Linear, Particulars
 
 Force = tuple[float, float, float]
 Draw = np.random.Generator
@@ -45,9 +45,24 @@ class Mmg(Hull):
     def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
         super().__init__(p, a, resistance)
         b = 2 * p.C_b * p.B / p.L
-        self.x = (-rng.uniform(0.02, 0.07), b * rng.uniform(-0.1, 0.1), rng.uniform(0.0, 0.02), rng.uniform(0.2, 0.8))
-        self.y = (-rng.uniform(0.9, 1.9), rng.uniform(0.0, 0.5), -rng.uniform(0.2, 0.5), rng.uniform(-0.02, 0.02))
-        self.n = (-rng.uniform(0.0, 0.1), -rng.uniform(0.15, 0.35), rng.uniform(-0.02, 0.06), -rng.uniform(0.005, 0.03))
+        self.x = (
+            -rng.uniform(0.02, 0.07),
+            b * rng.uniform(-0.1, 0.1),
+            rng.uniform(0.0, 0.02),
+            rng.uniform(0.2, 0.8),
+        )
+        self.y = (
+            -rng.uniform(0.9, 1.9),
+            rng.uniform(0.0, 0.5),
+            -rng.uniform(0.2, 0.5),
+            rng.uniform(-0.02, 0.02),
+        )
+        self.n = (
+            -rng.uniform(0.0, 0.1),
+            -rng.uniform(0.15, 0.35),
+            rng.uniform(-0.02, 0.06),
+            -rng.uniform(0.005, 0.03),
+        )
 
     def poly(self, u: float, v: float, r: float) -> tuple[float, Force]:
         U = max(hypot(u, v), 0.05 * self.p.U0)
@@ -68,7 +83,13 @@ class Heeling(Mmg):
 
     def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
         super().__init__(p, a, resistance, rng)
-        self.h = (rng.uniform(-0.02, 0.05), -rng.uniform(0.0, 0.04), rng.uniform(-0.6, 0.6), rng.uniform(-0.3, 0.3), -rng.uniform(0, 0.2))
+        self.h = (
+            rng.uniform(-0.02, 0.05),
+            -rng.uniform(0.0, 0.04),
+            rng.uniform(-0.6, 0.6),
+            rng.uniform(-0.3, 0.3),
+            -rng.uniform(0, 0.2),
+        )
 
     def force(self, u: float, v: float, r: float, heel: float, dt: float) -> Force:
         q, (X, Y, N) = self.poly(u, v, r)
@@ -85,7 +106,12 @@ class Abkowitz(Hull):
     def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
         super().__init__(p, a, resistance)
         self.y = (-rng.uniform(1.0, 2.5), -rng.uniform(0.2, 0.6), rng.uniform(-0.1, 0.3))
-        self.n = (rng.uniform(0.0, 0.15), -rng.uniform(0.2, 0.45), -rng.uniform(0.01, 0.04), rng.uniform(-0.03, 0.05))
+        self.n = (
+            rng.uniform(0.0, 0.15),
+            -rng.uniform(0.2, 0.45),
+            -rng.uniform(0.01, 0.04),
+            rng.uniform(-0.03, 0.05),
+        )
         self.x = (-rng.uniform(0.02, 0.09), rng.uniform(0.0, 0.02), rng.uniform(-0.03, 0.06))
         self.u = rng.uniform(0.8, 1.15)
 
@@ -112,8 +138,18 @@ class Modulus(Hull):
     def force(self, u: float, v: float, r: float, heel: float, dt: float) -> Force:
         p, a, w = self.p, self.a, r * self.p.L
         s = abs(u)
-        Y = s * (a.Y_v * v + a.Y_r * w) + self.y[0] * abs(v) * v + self.y[1] * abs(v) * w + self.y[2] * abs(w) * w
-        N = s * (a.N_v * v + a.N_r * w) + self.n[0] * abs(v) * v + self.n[1] * abs(v) * w + self.n[2] * abs(w) * w
+        Y = (
+            s * (a.Y_v * v + a.Y_r * w)
+            + self.y[0] * abs(v) * v
+            + self.y[1] * abs(v) * w
+            + self.y[2] * abs(w) * w
+        )
+        N = (
+            s * (a.N_v * v + a.N_r * w)
+            + self.n[0] * abs(v) * v
+            + self.n[1] * abs(v) * w
+            + self.n[2] * abs(w) * w
+        )
         X = self.x[0] * v * v + self.x[1] * w * w + self.x[2] * v * w
         return self.area * X - self.resistance(u), self.area * Y, self.area * p.L * N
 
@@ -122,7 +158,9 @@ class Strip(Hull):
     def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
         super().__init__(p, a, resistance)
         x = np.linspace(-0.45, 0.45, 10)
-        drag = rng.uniform(0.5, 1.0) * (1 + rng.uniform(0, 0.8) * (2 * x) ** 2 + rng.uniform(-0.4, 0.4) * 2 * x)
+        drag = rng.uniform(0.5, 1.0) * (
+            1 + rng.uniform(0, 0.8) * (2 * x) ** 2 + rng.uniform(-0.4, 0.4) * 2 * x
+        )
         self.strips = [(float(k) * p.L, float(c) * 0.1) for k, c in zip(x, drag, strict=True)]
         self.suck = rng.uniform(0.0, 0.05)
 
@@ -154,7 +192,12 @@ class Surface(Hull):
             )
             for _ in range(count)
         ]  # fmt: skip
-        self.cube = (-rng.uniform(0.5, 1.3), -rng.uniform(0.1, 0.4), -rng.uniform(0.05, 0.25), -rng.uniform(0.005, 0.03))
+        self.cube = (
+            -rng.uniform(0.5, 1.3),
+            -rng.uniform(0.1, 0.4),
+            -rng.uniform(0.05, 0.25),
+            -rng.uniform(0.005, 0.03),
+        )
 
     def force(self, u: float, v: float, r: float, heel: float, dt: float) -> Force:
         p, a = self.p, self.a
@@ -176,7 +219,10 @@ class Memory(Modulus):
 
     def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
         super().__init__(p, a, resistance, rng)
-        self.lags = [(rng.uniform(0.10, 0.2), rng.uniform(0.15, 0.4)), (rng.uniform(0.2, 0.4), rng.uniform(0.8, 2.0))]
+        self.lags = [
+            (rng.uniform(0.10, 0.2), rng.uniform(0.15, 0.4)),
+            (rng.uniform(0.2, 0.4), rng.uniform(0.8, 2.0)),
+        ]
         self.start()
 
     def start(self) -> None:
@@ -201,7 +247,10 @@ class Planing(Hull):
     def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
         super().__init__(p, a, resistance)
         self.lifts, self.aft = rng.uniform(0.1, 0.35), rng.uniform(0.0, 0.05)
-        self.y, self.n = (-rng.uniform(0.5, 1.2), -rng.uniform(0, 0.1)), (-rng.uniform(0.05, 0.2), -rng.uniform(0.02, 0.06))
+        self.y, self.n = (
+            (-rng.uniform(0.5, 1.2), -rng.uniform(0, 0.1)),
+            (-rng.uniform(0.05, 0.2), -rng.uniform(0.02, 0.06)),
+        )
 
     def force(self, u: float, v: float, r: float, heel: float, dt: float) -> Force:
         p, a, w = self.p, self.a, r * self.p.L
@@ -223,7 +272,9 @@ def waving(p: Particulars, a: Linear, rng: Draw) -> Callable[[float], float]:
     """Friction and waves that grow steeply."""
     share, m = rng.uniform(0.1, 0.35), rng.uniform(4.0, 5.5)
     q = 0.5 * RHO * p.L * p.T * p.U0**2 * a.R_0
-    return lambda u: q * ((1 - share) * (abs(u) / p.U0) ** 1.85 + share * (abs(u) / p.U0) ** m) * (1.0 if u > 0 else -1.2)
+    return lambda u: (
+        q * ((1 - share) * (abs(u) / p.U0) ** 1.85 + share * (abs(u) / p.U0) ** m) * (1.0 if u > 0 else -1.2)
+    )
 
 
 def hump(p: Particulars, a: Linear, rng: Draw) -> Callable[[float], float]:

@@ -34,9 +34,19 @@ def mixed(rng: np.random.Generator) -> list[Leg]:
         if mode == COURSE:
             out.append(Leg(COURSE, rng.uniform(4, 9), turn, 0, rate))
         elif mode == ZIGZAG:
-            out.append(Leg(ZIGZAG, rng.uniform(9, 16), *(radians(float(rng.choice([10, 15, 20]))),) * 2, rate))
+            out.append(
+                Leg(ZIGZAG, rng.uniform(9, 16), *(radians(float(rng.choice([10, 15, 20]))),) * 2, rate)
+            )
         elif mode == RUDDER:
-            out.append(Leg(RUDDER, rng.uniform(4, 12), float(rng.choice([-1, 1])) * radians(rng.uniform(8, 30)), 0, rate))
+            out.append(
+                Leg(
+                    RUDDER,
+                    rng.uniform(4, 12),
+                    float(rng.choice([-1, 1])) * radians(rng.uniform(8, 30)),
+                    0,
+                    rate,
+                )
+            )
         else:
             out.append(Leg(STEPS, rng.uniform(8, 14), radians(15), 0, rate))
     return out
@@ -44,20 +54,34 @@ def mixed(rng: np.random.Generator) -> list[Leg]:
 
 def courses(rng: np.random.Generator) -> list[Leg]:
     return [Leg(COURSE, 4)] + [
-        Leg(COURSE, rng.uniform(5, 9), float(rng.choice([-1, 1])) * radians(rng.uniform(15, 80))) for _ in range(80)
+        Leg(COURSE, rng.uniform(5, 9), float(rng.choice([-1, 1])) * radians(rng.uniform(15, 80)))
+        for _ in range(80)
     ]
 
 
 def speeds(rng: np.random.Generator) -> list[Leg]:
     return [Leg(COURSE, 4)] + [
-        Leg(COURSE, rng.uniform(6, 9), float(rng.choice([-1, 0, 1])) * radians(rng.uniform(5, 25)), 0, rng.uniform(0.45, 1.0))
+        Leg(
+            COURSE,
+            rng.uniform(6, 9),
+            float(rng.choice([-1, 0, 1])) * radians(rng.uniform(5, 25)),
+            0,
+            rng.uniform(0.45, 1.0),
+        )
         for _ in range(80)
     ]
 
 
 def circle(rng: np.random.Generator) -> list[Leg]:
     a = radians(rng.uniform(15, 35))
-    return [Leg(COURSE, 3), *(leg for _ in range(10) for leg in (Leg(RUDDER, 16, a), Leg(COURSE, 5), Leg(RUDDER, 16, -a), Leg(COURSE, 5)))]
+    return [
+        Leg(COURSE, 3),
+        *(
+            leg
+            for _ in range(10)
+            for leg in (Leg(RUDDER, 16, a), Leg(COURSE, 5), Leg(RUDDER, 16, -a), Leg(COURSE, 5))
+        ),
+    ]
 
 
 PLANS = {
@@ -79,7 +103,9 @@ class Helmsman:
             self.leg = next(self.legs, Leg(COURSE, 10))
             self.until = t + self.leg.lengths * self.unit
             self.base, self.sign = psi, 1.0
-            self.want = (self.want if self.leg.a == 0 else psi) + (self.leg.a if self.leg.mode == COURSE else 0.0)
+            self.want = (self.want if self.leg.a == 0 else psi) + (
+                self.leg.a if self.leg.mode == COURSE else 0.0
+            )
             self.next_step = t
         leg = self.leg
         if leg.mode == COURSE:
@@ -93,6 +119,9 @@ class Helmsman:
             d = leg.a
         else:
             if t >= self.next_step:
-                self.held, self.next_step = float(self.rng.uniform(-leg.a, leg.a)), t + self.rng.uniform(0.7, 2.5) * self.unit
+                self.held, self.next_step = (
+                    float(self.rng.uniform(-leg.a, leg.a)),
+                    t + self.rng.uniform(0.7, 2.5) * self.unit,
+                )
             d = self.held
         return max(-hard, min(hard, d)), leg.rate

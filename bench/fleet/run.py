@@ -22,13 +22,28 @@ ROWS = "rows.jsonl"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("folder", type=Path, help="rows are added to FOLDER/rows.jsonl, ships kept in FOLDER/ships")
-    parser.add_argument("--families", nargs="+", default=list(FAMILIES), choices=list(FAMILIES), metavar="FAMILY", help=f"of {', '.join(FAMILIES)}")
+    parser.add_argument(
+        "folder", type=Path, help="rows are added to FOLDER/rows.jsonl, ships kept in FOLDER/ships"
+    )
+    parser.add_argument(
+        "--families",
+        nargs="+",
+        default=list(FAMILIES),
+        choices=list(FAMILIES),
+        metavar="FAMILY",
+        help=f"of {', '.join(FAMILIES)}",
+    )
     parser.add_argument("--seeds", type=_span, default="0-3", help="ships of each family: FIRST-LAST")
-    parser.add_argument("--voyages", type=int, default=VOYAGES, help="asked of each ship (default: %(default)s)")
+    parser.add_argument(
+        "--voyages", type=int, default=VOYAGES, help="asked of each ship (default: %(default)s)"
+    )
     parser.add_argument("--workers", type=int, default=1, help="processes (default: %(default)s)")
-    parser.add_argument("--seconds", type=float, default=float("inf"), help="begin no case after so many seconds")
-    parser.add_argument("--scheduler", metavar="ADDRESS", help="a dask scheduler in the place of own processes")
+    parser.add_argument(
+        "--seconds", type=float, default=float("inf"), help="begin no case after so many seconds"
+    )
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="a dask scheduler in the place of own processes"
+    )
 
 
 def _span(text: str) -> range:

@@ -21,7 +21,23 @@ if TYPE_CHECKING:
     from bench.fleet.ship import Ship
 
 HARD = np.radians(35)
-KEPT = ("t", "x", "y", "psi", "u", "v", "r", "u_r", "v_r", "heel", "rudder", "order", "n", "wind", "wind_from")
+KEPT = (
+    "t",
+    "x",
+    "y",
+    "psi",
+    "u",
+    "v",
+    "r",
+    "u_r",
+    "v_r",
+    "heel",
+    "rudder",
+    "order",
+    "n",
+    "wind",
+    "wind_from",
+)
 FINEST = 0.5  # [s] longest step
 
 
@@ -30,7 +46,15 @@ def step_of(ship: "Ship") -> float:
     return 1.0 / np.ceil(1.0 / min(FINEST, ship.p.unit_s / 40))
 
 
-def sail(ship: "Ship", legs: list[Leg], weather: Weather, duration_s: float, seed: int, flaws: Flaws | None = None, heading: float | None = None) -> dict[str, np.ndarray]:
+def sail(
+    ship: "Ship",
+    legs: list[Leg],
+    weather: Weather,
+    duration_s: float,
+    seed: int,
+    flaws: Flaws | None = None,
+    heading: float | None = None,
+) -> dict[str, np.ndarray]:
     """The truth of a voyage, a row a step."""
     f, p, d, hull = flaws or Flaws(), ship.p, ship.drive, ship.hull
     rng = np.random.default_rng([seed, 11])
@@ -44,12 +68,16 @@ def sail(ship: "Ship", legs: list[Leg], weather: Weather, duration_s: float, see
     deep = shallow(f.shallow)
     m_y, J = m_y * deep, J * deep
     deeper = 1 + 0.9 * f.mass
-    I = p.mass * (p.k_zz * p.L) ** 2 * (1 + 1.02 * f.mass) + J  # noqa: E741
+    I = p.mass * (p.k_zz * p.L) ** 2 * (1 + 1.02 * f.mass) + J
     x = y = v = r = heel = heel_rate = blade = gear = 0.0
     u, n, old, pool, pool_rate, stuck = p.U0, d.n0, None, 0.0, 0.0, -1.0
     late: deque[float] = deque([0.0] * (int(f.lag_s / dt) + 1))
     w_roll = (9.81 * ship.GM * (1 - f.soft)) ** 0.5 / (0.4 * p.B)
-    strips = [(k / 10 * p.L, 0.1 * f.cross_flow * (0.3 + 0.7 * (2 * k / 10) ** 2)) for k in range(-4, 6)] if f.cross_flow else []
+    strips = (
+        [(k / 10 * p.L, 0.1 * f.cross_flow * (0.3 + 0.7 * (2 * k / 10) ** 2)) for k in range(-4, 6)]
+        if f.cross_flow
+        else []
+    )
     hull.start()
     out = np.empty((steps, len(KEPT)))
     for i in range(steps):
@@ -97,13 +125,17 @@ def sail(ship: "Ship", legs: list[Leg], weather: Weather, duration_s: float, see
             X, Y, N = X + a[0], Y + a[1], N + a[2]
         X, Y, N = flawed(f, p, X, Y, N, u, v, r, c, s, t, speed, weather, strips)
         side_pull = (m_y + mass) * u * r
-        heel_rate += dt * (-w_roll**2 * heel - 0.12 * w_roll * heel_rate + 0.25 * (side_pull / mass) * p.T / (0.4 * p.B) ** 2)
+        heel_rate += dt * (
+            -(w_roll**2) * heel
+            - 0.12 * w_roll * heel_rate
+            + 0.25 * (side_pull / mass) * p.T / (0.4 * p.B) ** 2
+        )
         heel += dt * heel_rate
         if f.heel_N:
             q = 0.5 * RHO * p.L * p.T * speed * speed * heel
             Y, N = Y + f.heel_Y * q * (1 + abs(heel)), N + f.heel_N * q * p.L
         if f.slosh:
-            pool_rate += dt * (-f.slosh_w**2 * pool - 0.06 * f.slosh_w * pool_rate - u * r)
+            pool_rate += dt * (-(f.slosh_w**2) * pool - 0.06 * f.slosh_w * pool_rate - u * r)
             pool += dt * pool_rate
             q = f.slosh * mass * f.slosh_w**2 * pool
             Y, N = Y + q, N + 0.3 * p.L * q
@@ -113,7 +145,23 @@ def sail(ship: "Ship", legs: list[Leg], weather: Weather, duration_s: float, see
         a, b, e = mass + m_y, x_G * mass, I + x_G * x_G * mass
         det = a * e - b * b
         slope = (X / (mass + m_x), (e * Y - b * N) / det, (a * N - b * Y) / det)
-        out[i] = t, x, y, psi, u + u_c, v + v_c, r, u, v, heel, gear, order, n, around.wind[i], around.wind_from[i]
+        out[i] = (
+            t,
+            x,
+            y,
+            psi,
+            u + u_c,
+            v + v_c,
+            r,
+            u,
+            v,
+            heel,
+            gear,
+            order,
+            n,
+            around.wind[i],
+            around.wind_from[i],
+        )
         g = slope if old is None else tuple(1.5 * k - 0.5 * o for k, o in zip(slope, old, strict=True))
         old = slope
         x, y = x + dt * ((u + u_c) * c - (v + v_c) * s), y + dt * ((u + u_c) * s + (v + v_c) * c)
@@ -151,7 +199,14 @@ def flawed(f: Flaws, p, X, Y, N, u, v, r, c, s, t, speed, weather, strips):  # t
     if f.ice and sin(2 * pi * t / f.ice_s) + 0.5 * sin(5.3 * t / f.ice_s) > 0.6:
         X -= f.ice
     if f.passing[0]:
-        k = 0.5 * RHO * p.L * p.T * p.U0**2 * exp(-((((t % f.passing_s) - 0.5 * f.passing_s) / (1.2 * p.unit_s)) ** 2))
+        k = (
+            0.5
+            * RHO
+            * p.L
+            * p.T
+            * p.U0**2
+            * exp(-((((t % f.passing_s) - 0.5 * f.passing_s) / (1.2 * p.unit_s)) ** 2))
+        )
         Y, N = Y + k * f.passing[0], N + k * p.L * f.passing[1]
     if f.thruster:
         q = f.thruster * exp(-((u / (0.6 * p.U0)) ** 2))

@@ -80,4 +80,3 @@ def plausible(ship: Ship) -> bool:
     stop = run([Leg(COURSE, 1), Leg(COURSE, 99, rate=0.0)], 45)
     slow = np.argmax(stop["u"] < 0.5 * p.U0)
     return bool(slow and 1.0 < (stop["t"][slow] / p.unit_s) < 42)
-

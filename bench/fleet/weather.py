@@ -5,7 +5,7 @@ from math import atan2, cos, exp, hypot, pi, sin, tau
 
 import numpy as np
 
-from bench.fleet.particulars import G, RHO, Particulars
+from bench.fleet.particulars import RHO, G, Particulars
 
 AIR = 1.225
 STEP_DEG = 10
@@ -52,11 +52,19 @@ class Windage:
 
     def __init__(self, p: Particulars, rng: np.random.Generator) -> None:
         angle = np.radians(np.arange(0, 181, STEP_DEG))
-        wave = lambda sd: sd * rng.standard_normal() * np.sin(2 * angle) + sd * rng.standard_normal() * np.sin(3 * angle)  # noqa: E731
+        wave = lambda sd: (
+            sd * rng.standard_normal() * np.sin(2 * angle) + sd * rng.standard_normal() * np.sin(3 * angle)
+        )
         ahead, astern = rng.uniform(0.5, 0.9), rng.uniform(0.4, 0.8)
-        self.x = np.where(angle < pi / 2, -ahead, -astern) * np.cos(angle) * (1 + 0.2 * np.sin(angle)) + wave(0.05)
+        self.x = np.where(angle < pi / 2, -ahead, -astern) * np.cos(angle) * (1 + 0.2 * np.sin(angle)) + wave(
+            0.05
+        )
         self.y = rng.uniform(0.7, 1.05) * np.sin(angle) ** rng.uniform(0.8, 1.3) + wave(0.04)
-        self.n = rng.uniform(0.06, 0.16) * np.sin(2 * angle) + rng.uniform(-0.05, 0.05) * np.sin(angle) + wave(0.01)
+        self.n = (
+            rng.uniform(0.06, 0.16) * np.sin(2 * angle)
+            + rng.uniform(-0.05, 0.05) * np.sin(angle)
+            + wave(0.01)
+        )
         self.X, self.Y, self.N = ([float(v) for v in t] for t in (self.x, self.y, self.n))
         self.F, self.S = 0.5 * AIR * p.A_F, 0.5 * AIR * p.A_L
         self.arm = self.S * p.L
@@ -75,22 +83,33 @@ class Windage:
 class Surroundings:
     """The weather as the ship meets it, step by step."""
 
-    def __init__(self, w: Weather, p: Particulars, windage: Windage, rng: np.random.Generator, dt: float, steps: int) -> None:
+    def __init__(
+        self, w: Weather, p: Particulars, windage: Windage, rng: np.random.Generator, dt: float, steps: int
+    ) -> None:
         self.w, self.p, self.windage, self.dt = w, p, windage, dt
-        gust, veer, east, north, squall = (wander(rng, s, dt, steps) for s in (w.gust_s, 3 * w.gust_s, w.eddy_s, w.eddy_s, 60.0))
+        gust, veer, east, north, squall = (
+            wander(rng, s, dt, steps) for s in (w.gust_s, 3 * w.gust_s, w.eddy_s, w.eddy_s, 60.0)
+        )
         t = np.arange(steps) * dt
         self.wind = (w.wind * np.maximum(1 + w.gust * gust, 0.0)).tolist()
         self.wind_from = (w.wind_from + 0.08 * veer).tolist()
         to = w.stream_to + 0.6 * np.sin(tau * t / w.tide_s)
         speed = w.stream + w.tide * np.sin(tau * t / w.tide_s + 0.7)
-        self.stream_n, self.stream_e = ((speed * np.cos(to) + w.eddy * north).tolist(), (speed * np.sin(to) + w.eddy * east).tolist())
+        self.stream_n, self.stream_e = (
+            (speed * np.cos(to) + w.eddy * north).tolist(),
+            (speed * np.sin(to) + w.eddy * east).tolist(),
+        )
         self.squall = (w.squall * np.maximum(squall - 0.8, 0.0)).tolist()
         self.waves = self._swell(rng) if w.swell > 0 else []
 
     def _swell(self, rng: np.random.Generator) -> list[tuple[float, ...]]:
         """Wave components: amplitude, frequency, number, direction, phase."""
         f = np.geomspace(0.75, 1.6, 9) / self.w.swell_s * (1 + 0.03 * rng.uniform(-1, 1, 9))
-        s = f**-5 * np.exp(-1.25 * (self.w.swell_s * f) ** -4) * 3.3 ** np.exp(-0.5 * ((self.w.swell_s * f - 1) / 0.08) ** 2)
+        s = (
+            f**-5
+            * np.exp(-1.25 * (self.w.swell_s * f) ** -4)
+            * 3.3 ** np.exp(-0.5 * ((self.w.swell_s * f - 1) / 0.08) ** 2)
+        )
         e = s * np.gradient(f)
         a = np.sqrt(2 * e / e.sum() * self.w.swell**2 / 16)
         spread = self.w.swell_from + pi + 0.25 * rng.standard_normal(9)

@@ -32,6 +32,8 @@ from twin.study.diagnosis.verdict import (
     weights,
 )
 from twin.study.estimation.start import waves_on
+from twin.study.reference.healthy import compared, score
+from twin.study.reference.structure import floor_of
 
 SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
@@ -87,6 +89,7 @@ def diagnose(
         "missing": list(decision.missing),
         "more": decision.more,
         "one_of": list(facts.one_of) if decision.reason == "one_of" else [],
+        **_healthy(case, ship),
         "probabilities": {"nothing_missing": capped(nothing), "unknown": capped(unknown)},
         "candidates": listed,
         "rivals": rivals(weighed, found),
@@ -127,6 +130,26 @@ def diagnose(
     }
     result["sentence"] = decision.sentence(result)
     return Diagnosis(plain(result), case, found)
+
+
+def _healthy(case: Case, ship: Ship) -> dict[str, Any]:
+    """How rare a voyage would be on this ship in health, by its reference voyages (reference/healthy.py);
+    nothing where the ship file lacks their scores, or several voyages were judged together."""
+    scores = ship.notes.get("structural", {}).get("left_out_scores", [])
+    floor, usual = (
+        floor_of(ship, "beside"),
+        {"p_value": None, "p_value_at_best": None, "p_value_references": 0},
+    )
+    if not scores or floor is None or len(case.tracks) > 1:
+        return usual
+    causes = [n for n in case.causes(case.candidates) if n not in case.unnamed]
+    found = compared(score(case.reduced(case.lines, [floor])[0], causes, case.weather), scores)
+    return {
+        "p_value": found.p,
+        "p_value_at_best": found.at_best,
+        "p_value_references": found.references,
+        "p_value_score": found.score,
+    }
 
 
 def _candidate(

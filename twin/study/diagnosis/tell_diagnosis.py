@@ -24,6 +24,7 @@ def told(result: dict[str, Any]) -> list[str]:
     lines.append(
         f"nothing missing: {chances['nothing_missing']:.0%}   something unknown: {chances['unknown']:.0%}"
     )
+    lines.append(_healthy(result))
     if result["next_manoeuvre"]:
         m = result["next_manoeuvre"]
         lines += [
@@ -45,6 +46,19 @@ def told(result: dict[str, Any]) -> list[str]:
             f"{', '.join(result['not_visible'])}."
         )
     return lines
+
+
+def _healthy(result: dict[str, Any]) -> str:
+    """How rare the voyage would be on this ship in health."""
+    if result["p_value"] is None:
+        return (
+            "against healthy voyages: not asked (several voyages together, or a ship file without the scores "
+            "of its reference voyages: calibrate anew)"
+        )
+    return (
+        f"against healthy voyages: p = {result['p_value']:.2g} by {result['p_value_references']} reference "
+        f"voyages, which can show {result['p_value_at_best']:.2g} at best"
+    )
 
 
 def _today(weather: list[dict[str, Any]]) -> list[str]:
