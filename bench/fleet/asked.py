@@ -1,4 +1,5 @@
-"""One ship of the fleet asked: a first model from particulars, calibrated on her references, then `diagnose` on
+"""One ship of the fleet asked: a first model from particulars, calibrated on her references, then
+`diagnose` on
 each voyage; a row of facts and truth for each."""
 
 import pickle
@@ -51,7 +52,8 @@ def voyage(s: Sailed) -> Voyage:
 
 
 def calibrated(ship: Ship) -> tuple[Model, dict[str, Any]]:
-    """The ship as her owner has her after `twin init` and `twin calibrate`; seconds and number of references."""
+    """The ship as her owner has her after `twin init` and `twin calibrate`; seconds and number of
+    references."""
     began = time.process_time()
     given = {name: None for name, *_ in OPTIONS} | ship.given(generator(ship, 4))
     start, _ = first_model(f"{ship.family}-{ship.seed}", given)
@@ -71,7 +73,8 @@ def calibrated(ship: Ship) -> tuple[Model, dict[str, Any]]:
 def rows(
     family: str, seed: int, voyages: int, store: Path | None, done: frozenset[str], until: float = np.inf
 ) -> Iterator[dict[str, Any]]:
-    """A row a voyage of this ship; those whose keys are `done` are not asked again. The calibrated ship is kept
+    """A row a voyage of this ship; those whose keys are `done` are not asked again. The calibrated ship is
+    kept
     in `store`."""
     ship = build(family, seed)
     cases = [c for c in plan(ship, voyages) if c.key not in done]
@@ -93,11 +96,23 @@ def rows(
 def _asked(ship: Ship, case: Case, model: Model, facts: dict[str, Any]) -> dict[str, Any]:
     one, began = sailed(ship, case), time.process_time()
     row: dict[str, Any] = {
-        "key": case.key, "family": case.family, "seed": case.seed, "kind": case.kind, "hidden": case.hidden,
-        "flaws": one.flaws, "day": asdict(one.weather), "minutes": one.time_s[-1] / 60, "length_m": ship.p.L,
-        "speed_mps": ship.p.U0, "instruments": {k: v for k, v in asdict(ship.kit).items() if k.startswith("has_") or k in ("coarse", "every_s")},
-        "ordered": ship.drive.ordered, "version": twin.__version__, **facts,
-    }  # fmt: skip
+        "key": case.key,
+        "family": case.family,
+        "seed": case.seed,
+        "kind": case.kind,
+        "hidden": case.hidden,
+        "flaws": one.flaws,
+        "day": asdict(one.weather),
+        "minutes": one.time_s[-1] / 60,
+        "length_m": ship.p.L,
+        "speed_mps": ship.p.U0,
+        "instruments": {
+            k: v for k, v in asdict(ship.kit).items() if k.startswith("has_") or k in ("coarse", "every_s")
+        },
+        "ordered": ship.drive.ordered,
+        "version": twin.__version__,
+        **facts,
+    }
     try:
         said = diagnose([voyage(one)], model)
     except Exception as error:  # a case that cannot be asked is a row that says so
@@ -135,7 +150,7 @@ def _asked(ship: Ship, case: Case, model: Model, facts: dict[str, Any]) -> dict[
     return plain(row)
 
 
-def oracle(said: Diagnosis, case: Case) -> dict[str, float] | None:
+def oracle(said: Diagnosis, case: Case) -> dict[str, Any] | None:
     """Open-loop error with nothing but the day's weather, and with what is truly hidden beside it [m]."""
     c = said.case
     true = c.ordered([n for n in case.hidden if n in CATALOGUE])

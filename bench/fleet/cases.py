@@ -78,9 +78,13 @@ def can_show(ship: Ship, name: str) -> bool:
     """Whether a bridge with these instruments could ever name it."""
     kit = ship.kit
     return {
-        "Wind": kit.has_wind, "WaveDrift": kit.has_sea, "ShallowWater": kit.has_depth, "Bank": kit.has_bank,
-        "RollCoupling": kit.has_roll and ship.family != "heeling", "SteeringLag": ship.drive.ordered,
-    }.get(name, kit.has_log if name.startswith("SpeedLog") else True)  # fmt: skip
+        "Wind": kit.has_wind,
+        "WaveDrift": kit.has_sea,
+        "ShallowWater": kit.has_depth,
+        "Bank": kit.has_bank,
+        "RollCoupling": kit.has_roll and ship.family != "heeling",
+        "SteeringLag": ship.drive.ordered,
+    }.get(name, kit.has_log if name.startswith("SpeedLog") else True)
 
 
 def sailed(ship: Ship, case: Case) -> Sailed:

@@ -38,15 +38,30 @@ class Drive:
         k0 = 0.30 * (p.pitch / 0.8) * rng.uniform(0.9, 1.1)
         boat = p.L < 30
         d = Drive(
-            p, str(rng.choice(["linear", "quadratic", "quadrants"])),
-            (k0, -k0 / (1.1 * p.pitch) * rng.uniform(0.75, 0.95), -k0 / (1.1 * p.pitch) ** 2 * rng.uniform(0.1, 0.25)),
-            rng.uniform(0.1, 0.22), (0.5 * p.C_b - 0.02) * rng.uniform(0.7, 1.1), rng.uniform(0.0, 1.0),
-            rng.choice([0.0, 0.0, 0.02, 0.05]) * 1.0, rng.uniform(0.5, 2.0) if boat else rng.uniform(5.0, 20.0),
-            0.45 * p.B if p.propellers == 2 else 0.0, rng.uniform(2.2, 3.0), np.radians(rng.uniform(28, 42)),
-            rng.uniform(0.4, 0.75), rng.uniform(0.1, 0.4), rng.uniform(-0.51, -0.46), rng.uniform(0.5, 1.0),
-            np.radians(rng.uniform(12, 30) if boat else rng.uniform(2.3, 4.5)), rng.uniform(0.1, 0.3) if boat else rng.uniform(0.3, 1.5),
-            np.radians(rng.choice([0.0, 0.0, 0.3])), bool(rng.random() < 0.3),
-        )  # fmt: skip
+            p,
+            str(rng.choice(["linear", "quadratic", "quadrants"])),
+            (
+                k0,
+                -k0 / (1.1 * p.pitch) * rng.uniform(0.75, 0.95),
+                -k0 / (1.1 * p.pitch) ** 2 * rng.uniform(0.1, 0.25),
+            ),
+            rng.uniform(0.1, 0.22),
+            (0.5 * p.C_b - 0.02) * rng.uniform(0.7, 1.1),
+            rng.uniform(0.0, 1.0),
+            rng.choice([0.0, 0.0, 0.02, 0.05]) * 1.0,
+            rng.uniform(0.5, 2.0) if boat else rng.uniform(5.0, 20.0),
+            0.45 * p.B if p.propellers == 2 else 0.0,
+            rng.uniform(2.2, 3.0),
+            np.radians(rng.uniform(28, 42)),
+            rng.uniform(0.4, 0.75),
+            rng.uniform(0.1, 0.4),
+            rng.uniform(-0.51, -0.46),
+            rng.uniform(0.5, 1.0),
+            np.radians(rng.uniform(12, 30) if boat else rng.uniform(2.3, 4.5)),
+            rng.uniform(0.1, 0.3) if boat else rng.uniform(0.3, 1.5),
+            np.radians(rng.choice([0.0, 0.0, 0.3])),
+            bool(rng.random() < 0.3),
+        )
         return d
 
     def coefficient(self, J: float) -> float:
@@ -74,10 +89,8 @@ class Drive:
         """Shaft speed that a drooping engine keeps [1/s]."""
         return n * (1 - self.droop * tanh(2 * (1 - u / self.p.U0 * self.n0 / max(n, 0.1 * self.n0))))
 
-    def rudder(
-        self, delta: float, u_in: float, v: float, r: float, T: float, u: float
-    ) -> tuple[float, float]:
-        """Normal force of the rudder [N], and its inflow speed [m/s]."""
+    def rudder(self, delta: float, u_in: float, v: float, r: float, T: float, u: float) -> float:
+        """Normal force of the rudder [N]."""
         A = pi / 4 * self.p.D_P**2 * self.p.propellers
         race = (max(u_in * u_in + 2 * max(T, 0.0) / (RHO * A), 0.0)) ** 0.5
         u_R = (1 - self.slip) * abs(u_in) + self.slip * (abs(u_in) + 0.6 * (race - abs(u_in)))
@@ -88,7 +101,7 @@ class Drive:
             if abs(alpha) < self.stall
             else (1 if alpha > 0 else -1) * self.stall * exp(-1.5 * (abs(alpha) - self.stall))
         )
-        return 0.5 * RHO * self.p.A_R * self.lift * (u_R * u_R + v_R * v_R) * sin(eff), u_R
+        return 0.5 * RHO * self.p.A_R * self.lift * (u_R * u_R + v_R * v_R) * sin(eff)
 
     def balance(self, resistance: float) -> "Drive":
         """The shaft speed that drives the ship at service speed."""

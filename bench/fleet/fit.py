@@ -1,8 +1,11 @@
 """The decision fitted, with each family of ships held out in turn: `python -m bench.fleet fit FOLDER`.
 
-Two forms are asked. The table of rules as it is (twin/study/diagnosis/decision.py) with its thresholds moved, one
-at a time, as long as the ships of the other families gain by it. And a logistic model that is monotone in a few
-facts, which says of each cause of the explanation how likely it is there, in the place of the rules that name."""
+Two forms are asked. The table of rules as it is (twin/study/diagnosis/decision.py) with its thresholds
+moved, one
+at a time, as long as the ships of the other families gain by it. And a logistic model that is monotone in a
+few
+facts, which says of each cause of the explanation how likely it is there, in the place of the rules that
+name."""
 
 import argparse
 import json
@@ -16,7 +19,7 @@ from scipy.optimize import minimize
 
 from bench.fleet import judged
 from bench.fleet.judged import Row, Share, share
-from bench.fleet.table import rows_of
+from bench.fleet.table import lines, rows_of
 from twin.study.diagnosis import decision
 from twin.study.diagnosis.facts import Cause, Facts
 
@@ -206,7 +209,8 @@ def run(args: argparse.Namespace) -> int:
     rows = [r | {"read": Facts.read(r["facts"])} for r in rows_of(args.folder)]
     families = sorted({r["family"] for r in rows})
     held: dict[str, list[dict[str, tuple[int, int]]]] = {"today": [], "thresholds moved": [], "logistic": []}
-    chosen, curve = {}, {}
+    chosen: dict[str, Any] = {}
+    curve: dict[float, list[dict[str, tuple[int, int]]]] = {}
     for family in families:
         own, others = [r for r in rows if r["family"] == family], [r for r in rows if r["family"] != family]
         held["today"].append(outcome(own, by_table))
@@ -229,7 +233,7 @@ def run(args: argparse.Namespace) -> int:
     }
     result["page"] = told(result)
     args.json.write_text(json.dumps(result, indent=1))
-    print("\n".join(result["page"]))
+    print("\n".join(told(result)))
     return 0
 
 
@@ -243,26 +247,10 @@ def _weights(w: np.ndarray) -> dict[str, float]:
 
 def told(result: Mapping[str, Any]) -> list[str]:
     """What was fitted, for the page."""
-    figures = list(next(iter(result["held_out"].values())))
-    out = [
-        "",
-        "## The decision fitted, each family held out in turn",
-        "",
-        "| | " + " | ".join(result["held_out"]) + " |",
-        "|---|" + "---|" * len(result["held_out"]),
-    ]
-    out += [
-        f"| {f} | " + " | ".join(result["held_out"][n][f] for n in result["held_out"]) + " |" for f in figures
-    ]
-    out += [
-        "",
-        "Names against false alarms, of the logistic model with each family held out, by the probability from which a cause is named:",
-        "",
-        "| from | single, gains | pair and triple, gains | wrong name | healthy, named |",
-        "|---|---|---|---|---|",
-    ]
-    out += [
-        f"| {t} | {c['single, gains']} | {c['pair and triple, gains']} | {c['wrong name']} | {c['healthy, named']} |"
-        for t, c in result["curve"].items()
-    ]
-    return out
+    held: Mapping[str, Mapping[str, str]] = result["held_out"]
+    body = [(figure, *(held[name][figure] for name in held)) for figure in held["today"]]
+    out = lines("The decision fitted, each family held out in turn", "", ("", *held), body)
+    keys = ("single, gains", "pair and triple, gains", "wrong name", "healthy, named")
+    text = "Of the logistic model with each family held out, by the probability from which a cause is named."
+    curve = [(t, *(c[k] for k in keys)) for t, c in result["curve"].items()]
+    return out + lines("Names against false alarms", text, ("from", *keys), curve)

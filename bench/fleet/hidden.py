@@ -1,5 +1,6 @@
 """What is hidden: every effect of the catalogue in a form of its own, and kinds that no catalogue has. Each
-entry takes (particulars, drive, rng, strength) and returns what changes: numbers of `Flaws`, of the weather, of
+entry takes (particulars, drive, rng, strength) and returns what changes: numbers of `Flaws`, of the
+weather, of
 the ship's loading; strength 1 is plain to see, 0.1 is not."""
 
 from collections.abc import Callable
@@ -105,28 +106,38 @@ def bank(p: Particulars, d: Drive, rng: Draw, s: float) -> Change:
     )
 
 
-big_wind = lambda p, d, rng, s: {
-    "wind": 15.0 * min(1.0, (p.L / 120) ** 0.4) * s**0.5,
-    "wind_from": rng.uniform(0, 6.28),
-}
-big_sea = lambda p, d, rng, s: {"swell": 0.025 * p.L**0.85 * s**0.5, "swell_from": rng.uniform(0, 6.28)}  # noqa: E731
-stream = lambda p, d, rng, s: {"stream": 0.2 * p.U0 * s, "stream_to": rng.uniform(0, 6.28)}  # noqa: E731
-tide = lambda p, d, rng, s: {
-    "tide": 0.15 * p.U0 * s,
-    "tide_s": rng.uniform(60, 150) * p.unit_s,
-    "eddy": 0.02 * p.U0 * s,
-}
+def big_wind(p: Particulars, d: Drive, rng: Draw, s: float) -> dict[str, float]:
+    return {"wind": 15.0 * min(1.0, (p.L / 120) ** 0.4) * s**0.5, "wind_from": rng.uniform(0, 6.28)}
+
+
+def big_sea(p: Particulars, d: Drive, rng: Draw, s: float) -> dict[str, float]:
+    return {"swell": 0.025 * p.L**0.85 * s**0.5, "swell_from": rng.uniform(0, 6.28)}
+
+
+def stream(p: Particulars, d: Drive, rng: Draw, s: float) -> dict[str, float]:
+    return {"stream": 0.2 * p.U0 * s, "stream_to": rng.uniform(0, 6.28)}
+
+
+def tide(p: Particulars, d: Drive, rng: Draw, s: float) -> dict[str, float]:
+    return {"tide": 0.15 * p.U0 * s, "tide_s": rng.uniform(60, 150) * p.unit_s, "eddy": 0.02 * p.U0 * s}
+
 
 CATALOGUE: dict[str, Entry] = {
-    "HullFouling": _flaw(lambda p, d, rng, s: {"fouling": 0.4 * s * drag0(p, d), "fouling_power": rng.uniform(1.7, 2.1)}),
+    "HullFouling": _flaw(
+        lambda p, d, rng, s: {"fouling": 0.4 * s * drag0(p, d), "fouling_power": rng.uniform(1.7, 2.1)}
+    ),
     "PropellerWear": _flaw(lambda p, d, rng, s: {"prop_wear": 0.16 * s}),
     "RudderWear": _flaw(lambda p, d, rng, s: {"rudder_wear": min(0.3 * s, 0.7)}),
     "RudderOffset": _flaw(lambda p, d, rng, s: {"rudder_offset": side(rng) * np.radians(2.2) * s}),
     "CrossFlowDrag": _flaw(lambda p, d, rng, s: {"cross_flow": 0.6 * s}),
     "PropellerWalk": _flaw(lambda p, d, rng, s: {"walk": side(rng) * 0.07 * s}),
-    "TowForce": _flaw(lambda p, d, rng, s: {"tow": _hook(p, drag0(p, d), rng, s), "tow_s": rng.uniform(2, 5) * p.unit_s}),
+    "TowForce": _flaw(
+        lambda p, d, rng, s: {"tow": _hook(p, drag0(p, d), rng, s), "tow_s": rng.uniform(2, 5) * p.unit_s}
+    ),
     "ExternalForce": _flaw(lambda p, d, rng, s: {"pull": _to(rng, 0.3 * s * drag0(p, d))}),
-    "RollCoupling": _flaw(lambda p, d, rng, s: {"heel_N": -0.08 * s, "heel_Y": 0.05 * s, "soft": min(0.5 * s, 0.6)}),
+    "RollCoupling": _flaw(
+        lambda p, d, rng, s: {"heel_N": -0.08 * s, "heel_Y": 0.05 * s, "soft": min(0.5 * s, 0.6)}
+    ),
     "Loading": _flaw(lambda p, d, rng, s: {"mass": 0.13 * s, "x_G": -0.014 * s * p.L * side(rng)}),
     "SteeringLag": _flaw(lambda p, d, rng, s: {"lag_s": 0.07 * s * p.unit_s, "slow": min(0.5 * s, 0.7)}),
     "HeadingBias": _flaw(lambda p, d, rng, s: _compass(rng, np.radians(2.2) * s)),
@@ -134,7 +145,9 @@ CATALOGUE: dict[str, Entry] = {
     "SpeedLogBias": _flaw(lambda p, d, rng, s: {"log_bias": side(rng) * 0.045 * s * p.U0}),
     "SpeedLogScale": _flaw(lambda p, d, rng, s: {"log_scale": side(rng) * 0.07 * s}),
     "SpeedLogMisalignment": _flaw(lambda p, d, rng, s: {"log_angle": side(rng) * np.radians(3.0) * s}),
-    "AntennaOffset": _flaw(lambda p, d, rng, s: {"antenna": (side(rng) * 0.3 * s * p.L, side(rng) * 0.2 * s * p.B)}),
+    "AntennaOffset": _flaw(
+        lambda p, d, rng, s: {"antenna": (side(rng) * 0.3 * s * p.L, side(rng) * 0.2 * s * p.B)}
+    ),
     "SensorDelay": _flaw(lambda p, d, rng, s: {"late_s": s * (0.06 * p.unit_s + 0.4)}),
     "Wind": _weather(big_wind),
     "WaveDrift": _weather(big_sea),
@@ -142,7 +155,7 @@ CATALOGUE: dict[str, Entry] = {
     "VaryingCurrent": _weather(tide),
     "ShallowWater": shallow,
     "Bank": bank,
-}  # fmt: skip
+}
 
 
 def _hook(p: Particulars, R: float, rng: Draw, s: float) -> tuple[float, float, float]:
@@ -161,21 +174,30 @@ def _compass(rng: Draw, bias: float) -> dict[str, float]:
 
 OUTSIDE: dict[str, Entry] = {
     "Ice": _flaw(lambda p, d, rng, s: {"ice": 0.7 * s * drag0(p, d), "ice_s": rng.uniform(2, 4) * p.unit_s}),
-    "PassingShip": _flaw(lambda p, d, rng, s: {"passing": (0.03 * s * side(rng), 0.01 * s * side(rng)), "passing_s": rng.uniform(10, 16) * p.unit_s}),
-    "Sloshing": _flaw(lambda p, d, rng, s: {"slosh": 0.13 * s, "slosh_w": rng.uniform(2, 3) * (G / p.L) ** 0.5}),
+    "PassingShip": _flaw(
+        lambda p, d, rng, s: {
+            "passing": (0.03 * s * side(rng), 0.01 * s * side(rng)),
+            "passing_s": rng.uniform(10, 16) * p.unit_s,
+        }
+    ),
+    "Sloshing": _flaw(
+        lambda p, d, rng, s: {"slosh": 0.13 * s, "slosh_w": rng.uniform(2, 3) * (G / p.L) ** 0.5}
+    ),
     "Backlash": _flaw(lambda p, d, rng, s: {"backlash": np.radians(3.0) * s}),
     "Squall": _weather(lambda p, d, rng, s: {"squall": 20.0 * min(1.0, (p.L / 120) ** 0.4) * s**0.5}),
     "Thruster": _flaw(lambda p, d, rng, s: {"thruster": side(rng) * 0.5 * s * drag0(p, d)}),
     "Ventilation": _flaw(lambda p, d, rng, s: {"ventilation": 0.35 * s}),
     "StuckRudder": _flaw(lambda p, d, rng, s: {"stuck_s": s * rng.uniform(1, 2) * p.unit_s}),
     "Hunting": _flaw(lambda p, d, rng, s: {"hunting": 0.12 * s}),
-    "YawDamping": _flaw(lambda p, d, rng, s: {"yaw_damping": 0.012 * s * RHO * p.L**3 * p.T * p.U0 * side(rng)}),
+    "YawDamping": _flaw(
+        lambda p, d, rng, s: {"yaw_damping": 0.012 * s * RHO * p.L**3 * p.T * p.U0 * side(rng)}
+    ),
     "SwayDamping": _flaw(lambda p, d, rng, s: {"sway_damping": 0.08 * s * RHO * p.L * p.T * p.U0}),
     "Flooding": _flaw(lambda p, d, rng, s: {"flood": -0.03 * s * p.L / (60 * p.unit_s), "mass": 0.04 * s}),
     "ReceiverWander": _flaw(lambda p, d, rng, s: {"wander": s * (3.0 + 0.05 * p.L)}),
     "SlowCompass": _flaw(lambda p, d, rng, s: {"compass_s": s * (0.15 * p.unit_s + 0.5)}),
     "RateScale": _flaw(lambda p, d, rng, s: {"rate_scale": side(rng) * 0.2 * s}),
     "BentPlate": _flaw(lambda p, d, rng, s: {"flap": side(rng) * 0.006 * s * RHO * p.L * p.T}),
-}  # fmt: skip
+}
 OF_THE_VOYAGE = ("Wind", "WaveDrift", "Current", "VaryingCurrent", "ShallowWater", "Bank")
 EVERY = {**CATALOGUE, **OUTSIDE}

@@ -16,7 +16,8 @@ from math import atan2, exp, hypot, sin
 
 import numpy as np
 
-from bench.fleet.particulars import RHO, G, Linear, Particulars
+from bench.fleet.particulars import RHO, Linear, Particulars
+from bench.fleet.resistance import hump, power_law, waving
 
 Force = tuple[float, float, float]
 Draw = np.random.Generator
@@ -119,7 +120,8 @@ class Abkowitz(Hull):
         p, a, y, n = self.p, self.a, self.y, self.n
         s = max(u, 0.0) / p.U0
         v, r = v / p.U0, r * p.L / p.U0
-        # linear terms by the first order of the speed's change, and a little beside it; the others as they are
+        # linear terms by the first order of the speed's change, and a little beside it; the others as they
+        # are
         k = 1.0 + self.u * (s - 1.0) + 0.1 * (s - 1.0) ** 2
         Y = k * (a.Y_v * v + a.Y_r * r) + y[0] * v**3 + y[1] * v * r * r + y[2] * v * v * r
         N = k * (a.N_v * v + a.N_r * r) + n[0] * v**3 + n[1] * v * v * r + n[2] * r**3 + n[3] * v * r * r
@@ -174,9 +176,12 @@ class Strip(Hull):
             N -= x * f
         drift = atan2(v, max(u, 0.1 * p.U0))
         return (
-            self.area * (abs(Y) * self.suck * sin(abs(drift))) - self.resistance(u) - 0.04 * self.area * v * v,
-            self.area * Y, self.area * N,
-        )  # fmt: skip
+            self.area * (abs(Y) * self.suck * sin(abs(drift)))
+            - self.resistance(u)
+            - 0.04 * self.area * v * v,
+            self.area * Y,
+            self.area * N,
+        )
 
 
 class Surface(Hull):
@@ -187,11 +192,16 @@ class Surface(Hull):
         count = 6
         self.bumps = [
             (
-                rng.uniform(-0.5, 0.5), rng.uniform(-0.9, 0.9), rng.uniform(0.15, 0.5), rng.uniform(0.3, 0.9),
-                rng.uniform(-0.012, 0.012), rng.uniform(-0.06, 0.06), rng.uniform(-0.02, 0.02),
+                rng.uniform(-0.5, 0.5),
+                rng.uniform(-0.9, 0.9),
+                rng.uniform(0.15, 0.5),
+                rng.uniform(0.3, 0.9),
+                rng.uniform(-0.012, 0.012),
+                rng.uniform(-0.06, 0.06),
+                rng.uniform(-0.02, 0.02),
             )
             for _ in range(count)
-        ]  # fmt: skip
+        ]
         self.cube = (
             -rng.uniform(0.5, 1.3),
             -rng.uniform(0.1, 0.4),
@@ -260,29 +270,6 @@ class Planing(Hull):
         N = s * f * (a.N_v * v + a.N_r * w) + self.n[0] * abs(v) * w + self.n[1] * abs(w) * w
         N -= self.aft * (u / p.U0) ** 2 * Y
         return -self.resistance(u) - 0.05 * self.area * v * v, self.area * Y, self.area * p.L * N
-
-
-def power_law(p: Particulars, a: Linear, rng: Draw) -> Callable[[float], float]:
-    """Resistance by a power of speed near two."""
-    k, q = rng.uniform(1.75, 2.35), 0.5 * RHO * p.L * p.T * p.U0**2 * a.R_0
-    return lambda u: q * (abs(u) / p.U0) ** k * (1.0 if u > 0 else -1.3)
-
-
-def waving(p: Particulars, a: Linear, rng: Draw) -> Callable[[float], float]:
-    """Friction and waves that grow steeply."""
-    share, m = rng.uniform(0.1, 0.35), rng.uniform(4.0, 5.5)
-    q = 0.5 * RHO * p.L * p.T * p.U0**2 * a.R_0
-    return lambda u: (
-        q * ((1 - share) * (abs(u) / p.U0) ** 1.85 + share * (abs(u) / p.U0) ** m) * (1.0 if u > 0 else -1.2)
-    )
-
-
-def hump(p: Particulars, a: Linear, rng: Draw) -> Callable[[float], float]:
-    """A hump at a Froude number near 0.45 over the friction."""
-    high, at, wide = rng.uniform(0.2, 0.7), rng.uniform(0.36, 0.5), rng.uniform(0.08, 0.14)
-    raw = lambda u: u * u * (1 + high * exp(-(((u / (G * p.L) ** 0.5 - at) / wide) ** 2)))  # noqa: E731
-    q = 0.5 * RHO * p.L * p.T * p.U0**2 * a.R_0 / raw(p.U0)
-    return lambda u: q * raw(abs(u)) * (1.0 if u > 0 else -1.2)
 
 
 FAMILIES = {  # what hulls, of what kinds of ship, with what resistance

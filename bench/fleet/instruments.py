@@ -1,10 +1,12 @@
-"""What the instruments of a ship write down: noise, lateness, small faults that are usual on this ship, steps of
+"""What the instruments of a ship write down: noise, lateness, small faults that are usual on this ship,
+steps of
 quantisation, gaps; and the faults that are hidden."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.signal import lfilter
 
 from bench.fleet.hidden import Flaws
 from bench.fleet.particulars import Particulars
@@ -50,14 +52,34 @@ class Kit:
     def draw(p: Particulars, rng: np.random.Generator, heels: bool) -> "Kit":
         boat, small = p.L < 30, lambda sd: float(sd * rng.standard_normal())
         return Kit(
-            every_s=float(np.clip(p.unit_s / rng.uniform(14, 26), 0.1, 2.0)), gnss=rng.uniform(0.15, 0.6) if boat else rng.uniform(0.3, 1.2),
-            gnss_wander=rng.uniform(0.1, 0.5) if boat else rng.uniform(0.3, 1.2), gnss_late=rng.uniform(0.05, 0.4), speed=rng.uniform(0.02, 0.06),
-            speed_late=rng.uniform(0.05, 0.5), heading=np.radians(rng.uniform(0.05, 0.3)), heading_bias=np.radians(small(0.3)), deviation=np.radians(small(0.2)),
-            rate=np.radians(rng.uniform(0.01, 0.05)) * (6 if boat else 1), rate_bias=small(0.001) / p.unit_s, log=rng.uniform(0.03, 0.08), log_scale=small(0.012),
-            log_late=rng.uniform(0.1, 1.0), log_angle=np.radians(small(0.4)), arm=(small(0.015) * p.L, small(0.03) * p.B), high=p.B * rng.uniform(0.5, 1.2),
-            wind_factor=1 + small(0.08), wind_angle=np.radians(small(4.0)), has_log=rng.random() < 0.75, has_wind=rng.random() < 0.67, has_sea=rng.random() < 0.5,
-            has_roll=heels or rng.random() < 0.4, has_bank=rng.random() < 0.4, has_depth=rng.random() < 0.6, coarse=rng.random() < 0.35, lost=rng.choice([0.0, 0.0, 0.005, 0.02]) * 1.0,
-        )  # fmt: skip
+            every_s=float(np.clip(p.unit_s / rng.uniform(14, 26), 0.1, 2.0)),
+            gnss=rng.uniform(0.15, 0.6) if boat else rng.uniform(0.3, 1.2),
+            gnss_wander=rng.uniform(0.1, 0.5) if boat else rng.uniform(0.3, 1.2),
+            gnss_late=rng.uniform(0.05, 0.4),
+            speed=rng.uniform(0.02, 0.06),
+            speed_late=rng.uniform(0.05, 0.5),
+            heading=np.radians(rng.uniform(0.05, 0.3)),
+            heading_bias=np.radians(small(0.3)),
+            deviation=np.radians(small(0.2)),
+            rate=np.radians(rng.uniform(0.01, 0.05)) * (6 if boat else 1),
+            rate_bias=small(0.001) / p.unit_s,
+            log=rng.uniform(0.03, 0.08),
+            log_scale=small(0.012),
+            log_late=rng.uniform(0.1, 1.0),
+            log_angle=np.radians(small(0.4)),
+            arm=(small(0.015) * p.L, small(0.03) * p.B),
+            high=p.B * rng.uniform(0.5, 1.2),
+            wind_factor=1 + small(0.08),
+            wind_angle=np.radians(small(4.0)),
+            has_log=rng.random() < 0.75,
+            has_wind=rng.random() < 0.67,
+            has_sea=rng.random() < 0.5,
+            has_roll=heels or rng.random() < 0.4,
+            has_bank=rng.random() < 0.4,
+            has_depth=rng.random() < 0.6,
+            coarse=rng.random() < 0.35,
+            lost=rng.choice([0.0, 0.0, 0.005, 0.02]) * 1.0,
+        )
 
 
 def record(
@@ -91,8 +113,6 @@ def record(
     c["sway_velocity_mps"] = step(at("v", slow) + r * ax + noise(k.speed), 0.05)
     seen = true["psi"]
     if f.compass_s:
-        from scipy.signal import lfilter
-
         a = dt / (dt + f.compass_s)
         seen = seen[0] + lfilter([a], [1, a - 1], seen - seen[0])
     seen = np.interp(t, true["t"], seen)

@@ -50,7 +50,8 @@ def told_weather(row: Row) -> set[str]:
 
 
 def right(row: Row, missing: Sequence[str] | None = None, verdict: str | None = None) -> bool:
-    """Whether an answer says what the truth is: every hidden cause of ship and instruments and no other, every
+    """Whether an answer says what the truth is: every hidden cause of ship and instruments and no other,
+    every
     hidden weather; a healthy ship is not accused; what is in no catalogue has no name."""
     missing, verdict = row["missing"] if missing is None else missing, verdict or row["verdict"]
     named, hidden = causes(missing), set(row["hidden"])
@@ -72,7 +73,7 @@ def alarm(row: Row) -> bool:
 def gains(row: Row) -> bool:
     """Whether the truth, known, would bring the ship a tenth nearer to where it went."""
     oracle = row.get("oracle")
-    return bool(oracle) and oracle["with_m"] <= (1 - GAINS) * oracle["without_m"]
+    return oracle is not None and bool(oracle["with_m"] <= (1 - GAINS) * oracle["without_m"])
 
 
 def wrong_names(row: Row) -> set[str]:
@@ -111,7 +112,8 @@ def truths(row: Row) -> dict[str, float]:
 
 
 def intervals(row: Row) -> list[tuple[str, bool]]:
-    """Of every number of a cause that is rightly named: which, and whether its 95 % interval holds the truth."""
+    """Of every number of a cause that is rightly named: which, and whether its 95 % interval holds the
+    truth."""
     true, out = truths(row), []
     for c in row["candidates"]:
         if c["effect"] in row["missing"] and c["effect"] in row["hidden"]:

@@ -10,7 +10,8 @@ COURSE, ZIGZAG, RUDDER, STEPS = range(4)
 
 @dataclass
 class Leg:
-    """COURSE: turn by `a` and hold; ZIGZAG: rudder +-a at heading +-b; RUDDER: hold; STEPS: random steps up to
+    """COURSE: turn by `a` and hold; ZIGZAG: rudder +-a at heading +-b; RUDDER: hold; STEPS: random steps up
+    to
     `a`."""
 
     mode: int
@@ -85,9 +86,12 @@ def circle(rng: np.random.Generator) -> list[Leg]:
 
 
 PLANS = {
-    "mixed": mixed, "zigzag": lambda rng: zigzag(float(rng.choice([10, 15, 20]))), "courses": courses,
-    "speeds": speeds, "circle": circle,
-}  # fmt: skip
+    "mixed": mixed,
+    "zigzag": lambda rng: zigzag(float(rng.choice([10, 15, 20]))),
+    "courses": courses,
+    "speeds": speeds,
+    "circle": circle,
+}
 
 
 class Helmsman:

@@ -1,6 +1,7 @@
 """What a random ship is: her size, and the linear derivatives that a published regression gives such a ship.
 
-Normalised by 1/2 rho L T U^2 (forces), 1/2 rho L^2 T U^2 (moments), v' = v/U, r' = r L/U. Regression: Kijima et
+Normalised by 1/2 rho L T U^2 (forces), 1/2 rho L^2 T U^2 (moments), v' = v/U, r' = r L/U. Regression:
+Kijima et
 al. (1990), deep water, even keel; its published scatter is about 15 %, which is drawn anew for each ship."""
 
 from dataclasses import dataclass
@@ -74,10 +75,20 @@ def draw(rng: np.random.Generator, kind: str) -> Particulars:
     area = L * T * rng.uniform(0.017, 0.026) * (1.4 if kind in ("ferry", "boat") else 1.0)
     tall = {"tanker": 0.045, "cargo": 0.06, "container": 0.09, "ferry": 0.11, "boat": 0.10}[kind]
     return Particulars(
-        L, B, T, rng.uniform(*block), rng.uniform(*froude) * (G * L) ** 0.5, rng.uniform(-0.03, 0.03) * L,
-        rng.uniform(0.23, 0.27), D, rng.uniform(0.65, 1.0), area, B * B * rng.uniform(0.45, 0.9),
-        L * L * tall * rng.uniform(0.8, 1.2), 1 + twin,
-    )  # fmt: skip
+        L,
+        B,
+        T,
+        rng.uniform(*block),
+        rng.uniform(*froude) * (G * L) ** 0.5,
+        rng.uniform(-0.03, 0.03) * L,
+        rng.uniform(0.23, 0.27),
+        D,
+        rng.uniform(0.65, 1.0),
+        area,
+        B * B * rng.uniform(0.45, 0.9),
+        L * L * tall * rng.uniform(0.8, 1.2),
+        1 + twin,
+    )
 
 
 def linear(p: Particulars, rng: np.random.Generator) -> Linear:

@@ -1,4 +1,5 @@
-"""The fleet's command: `python -m bench.fleet run FOLDER` asks ships and writes a row a voyage; `table` makes the
+"""The fleet's command: `python -m bench.fleet run FOLDER` asks ships and writes a row a voyage; `table`
+makes the
 figures, `fit` the decision."""
 
 import argparse
@@ -69,7 +70,7 @@ def read(path: Path) -> Iterator[dict[str, Any]]:
 def one_ship(job: tuple[str, int, int, str, frozenset[str], float]) -> list[str]:
     """Rows of one ship, as lines."""
     family, seed, voyages, folder, known, until = job
-    out = []
+    out: list[str] = []
     if time.time() > until:
         return out
     try:
@@ -107,7 +108,7 @@ def run(args: argparse.Namespace) -> int:
 
 def gather(folder: Path) -> None:
     """Rows of ships that were cut off, put with the others; each key once."""
-    rows = {}
+    rows: dict[str, dict[str, Any]] = {}
     for path in [folder / ROWS, *sorted((folder / "parts").glob("*.jsonl"))]:
         if path.exists():
             rows |= {row["key"]: row for row in read(path)}

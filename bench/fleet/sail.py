@@ -108,7 +108,7 @@ def sail(
         T *= 1 - f.prop_wear * (1.15 - 0.3 * max(u_in, 0) / max(abs(n) * p.D_P, 0.1))
         if f.ventilation and sin(2 * pi * t / (1.3 * p.unit_s)) > 0.6:
             T *= 1 - f.ventilation
-        F, u_R = d.rudder(delta, u_in, v, r, T, u)
+        F = d.rudder(delta, u_in, v, r, T, u)
         F *= 1 - f.rudder_wear * (1 - 0.3 * abs(delta))
         side = F * cos(delta)
         X += (1 - d.t) * T - 0.75 * F * sin(delta)
@@ -142,9 +142,9 @@ def sail(
         X += (mass + m_y) * v * r + x_G * mass * r * r
         Y -= (mass + m_x) * u * r
         N -= x_G * mass * u * r
-        a, b, e = mass + m_y, x_G * mass, I + x_G * x_G * mass
-        det = a * e - b * b
-        slope = (X / (mass + m_x), (e * Y - b * N) / det, (a * N - b * Y) / det)
+        sway, both, yaw = mass + m_y, x_G * mass, I + x_G * x_G * mass
+        det = sway * yaw - both * both
+        slope = (X / (mass + m_x), (yaw * Y - both * N) / det, (sway * N - both * Y) / det)
         out[i] = (
             t,
             x,

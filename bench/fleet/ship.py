@@ -1,4 +1,5 @@
-"""A ship of a family: hull, drive, windage and what is usual of its instruments; and whether it is plausible."""
+"""A ship of a family: hull, drive, windage and what is usual of its instruments; and whether it is
+plausible."""
 
 from dataclasses import dataclass
 
@@ -30,11 +31,20 @@ class Ship:
         """What the owner types into `twin init`: particulars to a few per cent."""
         p, near = self.p, lambda v, sd=0.01: float(v * (1 + sd * rng.standard_normal()))
         return {
-            "length-pp-m": p.L, "beam-m": p.B, "draught-m": p.T, "block-coefficient": round(near(p.C_b), 3), "x-g-m": p.x_G,
-            "service-speed-mps": near(p.U0), "shaft-speed-rpm": near(60 * self.drive.n0), "propellers": float(p.propellers),
-            "propeller-diameter-m": p.D_P, "pitch-ratio": near(p.pitch, 0.03), "rudder-area-m2": near(p.A_R, 0.03),
-            "frontal-area-m2": near(p.A_F, 0.1), "lateral-area-m2": near(p.A_L, 0.1),
-        }  # fmt: skip
+            "length-pp-m": p.L,
+            "beam-m": p.B,
+            "draught-m": p.T,
+            "block-coefficient": round(near(p.C_b), 3),
+            "x-g-m": p.x_G,
+            "service-speed-mps": near(p.U0),
+            "shaft-speed-rpm": near(60 * self.drive.n0),
+            "propellers": float(p.propellers),
+            "propeller-diameter-m": p.D_P,
+            "pitch-ratio": near(p.pitch, 0.03),
+            "rudder-area-m2": near(p.A_R, 0.03),
+            "frontal-area-m2": near(p.A_F, 0.1),
+            "lateral-area-m2": near(p.A_L, 0.1),
+        }
 
 
 def build(family: str, seed: int) -> Ship:
@@ -48,16 +58,23 @@ def build(family: str, seed: int) -> Ship:
         drive = Drive.draw(p, rng)
         drive.balance(R(p.U0))
         ship = Ship(
-            family, seed, p, shape(p, a, R, rng), drive, weather.Windage(p, rng), instruments.Kit.draw(p, rng, family == "heeling"),
+            family,
+            seed,
+            p,
+            shape(p, a, R, rng),
+            drive,
+            weather.Windage(p, rng),
+            instruments.Kit.draw(p, rng, family == "heeling"),
             p.B * rng.uniform(0.04, 0.09),
-        )  # fmt: skip
+        )
         if plausible(ship):
             return ship
     raise RuntimeError(f"{family} {seed}: no plausible ship in {TRIES}")
 
 
 def plausible(ship: Ship) -> bool:
-    """IMO MSC.137(76) with a fifth of slack: advance and tactical diameter at 35 degrees, first overshoots; and
+    """IMO MSC.137(76) with a fifth of slack: advance and tactical diameter at 35 degrees, first overshoots;
+    and
     half of the speed is lost in one to forty lengths when the shaft stops."""
     p = ship.p
     if not 0.2 * ship.drive.n0 * p.D_P < p.U0 < 1.3 * ship.drive.n0 * p.D_P * p.pitch:

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 from math import atan2, cos, exp, hypot, pi, sin, tau
 
 import numpy as np
+from scipy.signal import lfilter
 
 from bench.fleet.particulars import RHO, G, Particulars
 
@@ -40,11 +41,18 @@ def draw(p: Particulars, rng: np.random.Generator, calm: bool) -> Weather:
     stream = share * min(0.6, 0.08 * p.U0) * rng.weibull(1.5)
     high = share * rng.choice([0.0, 0.0, 1.0, 1.0, 2.0]) * 0.004 * p.L**0.75 * rng.uniform(0.3, 1.2)
     return Weather(
-        wind=share * big * 7.0 * rng.weibull(2.0), wind_from=rng.uniform(0, tau), gust=rng.uniform(0.08, 0.2),
-        gust_s=rng.uniform(10, 40), stream=stream, stream_to=rng.uniform(0, tau), eddy=stream * rng.uniform(0.02, 0.15),
-        eddy_s=rng.uniform(250, 900), swell=high, swell_s=float(np.clip((p.L / 1.56) ** 0.5 * rng.uniform(0.6, 1.3), 2, 14)),
+        wind=share * big * 7.0 * rng.weibull(2.0),
+        wind_from=rng.uniform(0, tau),
+        gust=rng.uniform(0.08, 0.2),
+        gust_s=rng.uniform(10, 40),
+        stream=stream,
+        stream_to=rng.uniform(0, tau),
+        eddy=stream * rng.uniform(0.02, 0.15),
+        eddy_s=rng.uniform(250, 900),
+        swell=high,
+        swell_s=float(np.clip((p.L / 1.56) ** 0.5 * rng.uniform(0.6, 1.3), 2, 14)),
         swell_from=rng.uniform(0, tau),
-    )  # fmt: skip
+    )
 
 
 class Windage:
@@ -52,9 +60,11 @@ class Windage:
 
     def __init__(self, p: Particulars, rng: np.random.Generator) -> None:
         angle = np.radians(np.arange(0, 181, STEP_DEG))
-        wave = lambda sd: (
-            sd * rng.standard_normal() * np.sin(2 * angle) + sd * rng.standard_normal() * np.sin(3 * angle)
-        )
+
+        def wave(sd: float) -> np.ndarray:
+            two, three = sd * rng.standard_normal(2)
+            return two * np.sin(2 * angle) + three * np.sin(3 * angle)
+
         ahead, astern = rng.uniform(0.5, 0.9), rng.uniform(0.4, 0.8)
         self.x = np.where(angle < pi / 2, -ahead, -astern) * np.cos(angle) * (1 + 0.2 * np.sin(angle)) + wave(
             0.05
@@ -159,8 +169,6 @@ def wander(rng: np.random.Generator, time_s: float, dt: float, steps: int) -> np
     k = exp(-dt / time_s)
     e = rng.standard_normal(steps) * (1 - k * k) ** 0.5
     e[0] = rng.standard_normal()
-    from scipy.signal import lfilter
-
     return lfilter([1.0], [1.0, -k], e)
 
 
