@@ -104,10 +104,10 @@ def lines(title: str, text: str, head: Sequence[str], body: Sequence[Sequence[ob
 def _head(rows: Sequence[Row]) -> list[str]:
     ships, families = len({(r["family"], r["seed"]) for r in rows}), len({r["family"] for r in rows})
     about = (
-        f"{len(rows)} voyages of {ships} random ships of {families} families (`bench/fleet`). Wind, stream and "
-        "swell on every voyage, a third of it not recorded; instruments with faults of their own; two to six "
-        "reference voyages; no force in the twin's form. Weather that is named or told as today's never counts "
-        "against an answer. Intervals: 95 % (Wilson). Made from the rows of the first command:"
+        f"{len(rows)} voyages of {ships} random ships of {families} families (`bench/fleet`). Wind, stream "
+        "and swell on every voyage, a third of it not recorded; instruments with faults of their own; two "
+        "to six reference voyages; no force in the twin's form. Weather that is named or told as today's "
+        "never counts against an answer. Intervals: 95 % (Wilson). Made from the rows of the first command:"
     )
     return [
         "# The decision on ships of many forms",

@@ -111,7 +111,7 @@ DIAGNOSE = (
     JsonKey("path.error_without", "m", "open-loop error there without any cause"),
     JsonKey("path.error_floor", "m", "what is expected of this ship when nothing is wrong"),
     JsonKey("p_value", "-", "how often a healthy voyage scores as high, by this ship's references, or null"),
-    JsonKey("p_value_at_best", "-", "the least that so few references can show: 1 / (n + 1), or null"),
+    JsonKey("p_value_at_best", "-", "the least that so few references can show, or null"),
     JsonKey("p_value_references", "", "n, the reference voyages whose score the ship file has"),
     JsonKey("p_value_score", "-", "its score: greatest log Bayes factor of one cause to first order"),
     JsonKey("next_manoeuvre", "", "what to sail next; null where nothing is asked"),

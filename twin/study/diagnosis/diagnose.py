@@ -133,17 +133,15 @@ def diagnose(
 
 
 def _healthy(case: Case, ship: Ship) -> dict[str, Any]:
-    """How rare a voyage would be on this ship in health, by its reference voyages (reference/healthy.py);
-    nothing where the ship file lacks their scores, or several voyages were judged together."""
+    """How rare the voyages would be on this ship in health, by its reference voyages (reference/healthy.py);
+    nothing where the ship file lacks their scores."""
     scores = ship.notes.get("structural", {}).get("left_out_scores", [])
-    floor, usual = (
-        floor_of(ship, "beside"),
-        {"p_value": None, "p_value_at_best": None, "p_value_references": 0},
-    )
-    if not scores or floor is None or len(case.tracks) > 1:
-        return usual
+    floor = floor_of(ship, "beside")
+    if not scores or floor is None:
+        return {"p_value": None, "p_value_at_best": None, "p_value_references": 0, "p_value_score": None}
     causes = [n for n in case.causes(case.candidates) if n not in case.unnamed]
-    found = compared(score(case.reduced(case.lines, [floor])[0], causes, case.weather), scores)
+    own = [score(case.reduced([line], [floor])[0], causes, case.weather) for line in case.lines]
+    found = compared(own, scores)
     return {
         "p_value": found.p,
         "p_value_at_best": found.at_best,

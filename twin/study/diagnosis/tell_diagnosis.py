@@ -50,10 +50,10 @@ def told(result: dict[str, Any]) -> list[str]:
 
 def _healthy(result: dict[str, Any]) -> str:
     """How rare the voyage would be on this ship in health."""
-    if result["p_value"] is None:
+    if result.get("p_value") is None:
         return (
-            "against healthy voyages: not asked (several voyages together, or a ship file without the scores "
-            "of its reference voyages: calibrate anew)"
+            "against healthy voyages: not asked, the ship file lacks the scores of its reference voyages "
+            "(calibrate anew)"
         )
     return (
         f"against healthy voyages: p = {result['p_value']:.2g} by {result['p_value_references']} reference "

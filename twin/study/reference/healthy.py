@@ -62,12 +62,15 @@ def score(reduced: Reduced, causes: Sequence[str], weather: Sequence[str]) -> fl
     return max((e for s, e in weigh_sets(reduced, sets) if s), default=alone[0][1]) - alone[0][1]
 
 
-def compared(own: float, healthy: Sequence[float]) -> Healthy:
-    """Of a voyage's score among those of the references."""
-    if not healthy:
-        return Healthy(own, None, None, 0)
-    n = len(healthy)
-    return Healthy(own, (1 + sum(s >= own for s in healthy)) / (n + 1), 1 / (n + 1), n)
+def compared(own: Sequence[float], healthy: Sequence[float]) -> Healthy:
+    """Of voyages' scores among those of the references. Of m voyages asked at once, m times the least p of
+    any (Bonferroni)."""
+    highest, n, m = max(own), len(healthy), len(own)
+    if not n:
+        return Healthy(highest, None, None, 0)
+    return Healthy(
+        highest, min(1.0, m * (1 + sum(s >= highest for s in healthy)) / (n + 1)), min(1.0, m / (n + 1)), n
+    )
 
 
 def left_out_scores(
