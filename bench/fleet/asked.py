@@ -126,6 +126,7 @@ def _asked(ship: Ship, case: Case, model: Model, facts: dict[str, Any]) -> dict[
             for k in (
                 "effect",
                 "probability",
+                "confidence",
                 "parameters",
                 "typical_force",
                 "error_without",
@@ -156,7 +157,13 @@ def oracle(said: Diagnosis, case: Case) -> dict[str, Any] | None:
     true = c.ordered([n for n in case.hidden if n in CATALOGUE])
     if len(true) < len(case.hidden) or not true:
         return None
-    day = tuple(n for n in said.result["facts"]["likeliest"] if n in c.weather and n not in true)
+    held = {part for n in true for part in c.catalogue[n].holds}
+    true = tuple(n for n in true if n not in held)
+    day = tuple(
+        n
+        for n in said.result["facts"]["likeliest"]
+        if n in c.weather and n not in (*true, *held) and not set(c.catalogue[n].holds) & set(true)
+    )
     chosen = c.ordered((*day, *true))
     base = min(
         (s for s in said.found if not c.causes(s) and np.isfinite(said.found[s].off_m)),

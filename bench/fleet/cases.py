@@ -47,10 +47,15 @@ def generator(ship: Ship, *more: int) -> np.random.Generator:
     return np.random.default_rng([ship.seed, sorted(FAMILIES).index(ship.family), *more])
 
 
+def practice(family: str, seed: int) -> tuple[int, bool, np.random.Generator]:
+    """How many reference voyages there are of a ship, and whether calm days were chosen for them."""
+    rng = np.random.default_rng([seed, sorted(FAMILIES).index(family), 1])
+    return int(rng.choice(REFERENCES)), bool(rng.random() < 0.6), rng
+
+
 def references(ship: Ship) -> list[Sailed]:
     """Two to six voyages of a healthy ship, on days that were chosen for it or not; one zigzag at least."""
-    rng = generator(ship, 1)
-    count, chosen = int(rng.choice(REFERENCES)), bool(rng.random() < 0.6)
+    count, chosen, rng = practice(ship.family, ship.seed)
     plans = ["zigzag", *rng.choice(list(PLANS), count - 1)]
     out = []
     for i, plan in enumerate(plans):
@@ -106,5 +111,5 @@ def _sailed(
     good = np.isfinite(true["u"])
     true = {k: v[good] for k, v in true.items()}
     t, columns = instruments.record(ship, true, day, seed, flaws)
-    told = {k: v for k, v in vars(flaws).items() if v not in (0.0, (0.0, 0.0), (0.0, 0.0, 0.0))}
+    told = {k: v for k, v in vars(flaws).items() if np.any(v)}
     return Sailed(name, t, columns, day, told)

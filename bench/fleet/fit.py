@@ -11,6 +11,7 @@ import argparse
 import json
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import contextmanager
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -21,24 +22,24 @@ from bench.fleet import judged
 from bench.fleet.judged import Row, Share, share
 from bench.fleet.table import lines, rows_of
 from twin.study.diagnosis import decision
+from twin.study.diagnosis.confidence import FACTS
 from twin.study.diagnosis.facts import Cause, Facts
 
-GRID = {  # what is tried of each threshold
-    "SURE": (0.5, 0.6, 0.7, 0.8, 0.9, 0.95),
+GRID = {  # what is tried of each threshold that acts on facts alone (others steer the search as well)
+    "NAMED": (0.7, 0.8, 0.9, 0.95),
     "CERTAIN": (0.7, 0.8, 0.9, 0.95, 0.99),
     "LOST": (0.3, 0.5, 0.7, 0.9),
-    "CLEAR": (1.5, 3.0, 5.0, 8.0),
-    "NEARLY": (1.25, 1.5, 1.75, 2.0, 2.5, 3.0),
-    "MOSTLY": (0.3, 0.4, 0.5, 0.6, 0.7),
     "BETTER": (0.0, 0.05, 0.1, 0.15, 0.2),
-    "SIGNIFICANT": (2.0, 3.0, 4.0, 5.0),
-    "CHANGED": (1.0, 2.0, 3.0),
+    "SIGNIFICANT": (2.0, 3.0, 4.0, 5.0, 6.0, 8.0),
+    "CHANGED": (1.0, 2.0, 3.0, 4.0),
     "POWER": (0.5, 0.6, 0.75),
 }
+BEFORE = {"NAMED": 0.8, "SIGNIFICANT": 3.0}  # before the fleet was asked; the others stand as they did
 ALARMS = 0.04  # share of healthy voyages that may be accused, at the working point
 COST = 5.0  # of a healthy voyage accused beyond that, in hidden causes that are named
 WRONG = 0.5  # of a wrong name
 RIDGE = 1.0
+BINS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 1.0)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -85,7 +86,7 @@ def asked(row: Row) -> bool:
 
 def moved(rows: Sequence[Row]) -> dict[str, float]:
     """Thresholds by coordinate ascent from today's; a move must be worth a case in a hundred."""
-    best = {k: float(getattr(decision, k)) for k in GRID}
+    best = {k: float(getattr(decision, k)) for k in GRID} | BEFORE
     with thresholds(best):
         top = worth(rows, by_table)
     for _ in range(2):
@@ -98,37 +99,19 @@ def moved(rows: Sequence[Row]) -> dict[str, float]:
     return best
 
 
-# facts of a cause that make it likelier, each growing (the sign is fixed), and about the size of one
-FEATURES: dict[str, Callable[[Facts, Cause], float]] = {
-    "log_odds": lambda f, c: (
-        float(np.log(np.clip(c.probability, 1e-3, 0.999) / (1 - np.clip(c.probability, 1e-3, 0.999)))) / 3
-    ),
-    "log_bayes_factor": lambda f, c: float(np.arcsinh(c.log_bayes_factor / 3)),
-    "alone": lambda f, c: float(np.arcsinh(c.alone / 3)),
-    "error_gain": lambda f, c: 3 * max(c.error_gain or 0.0, -0.3),
-    "significance": lambda f, c: float(np.log1p(min(c.significance, 30.0))),
-    "named_not_unknown": lambda f, c: -3 * f.unknown,
-    "left_little": lambda f, c: -float(np.log(max(f.left.error or 1.0, 0.5))),
-    "was_astray": lambda f, c: float(np.log(max(f.error_nothing, 0.3))),
-    "plain_world": lambda f, c: -float(np.log1p(max(f.left.restless, 0.0))),
-    "no_push": lambda f, c: -float(np.log1p(max(f.transient, 0.0))) / 3,
-    "alone_in_set": lambda f, c: -float(sum(x.in_explanation for x in f.causes) - 1),
-}
-
-
 def examples(rows: Sequence[Row]) -> tuple[np.ndarray, np.ndarray]:
     """(M, F) facts and (M,) truth of every cause of every explanation."""
     x, y = [], []
     for row in rows:
         for c in row["read"].causes:
-            if c.in_explanation or c.effect in row["read"].likeliest:
+            if c.in_explanation:
                 x.append(values(row["read"], c))
                 y.append(c.effect in row["hidden"])
-    return np.array(x).reshape(-1, len(FEATURES)), np.array(y, float)
+    return np.array(x).reshape(-1, len(FACTS)), np.array(y, float)
 
 
 def values(f: Facts, c: Cause) -> list[float]:
-    return [feature(f, c) for feature in FEATURES.values()]
+    return [feature(f, c) for feature in FACTS.values()]
 
 
 def logistic(x: np.ndarray, y: np.ndarray) -> np.ndarray:
@@ -156,11 +139,7 @@ def by_logistic(w: np.ndarray, limit: float) -> Decide:
 
     def decide(row: Row) -> Answer:
         f: Facts = row["read"]
-        named = [
-            c.effect
-            for c in f.causes
-            if (c.in_explanation or c.effect in f.likeliest) and probability(w, f, c) >= limit
-        ]
+        named = [c.effect for c in f.causes if c.in_explanation and probability(w, f, c) >= limit]
         if named:
             return (*named, *decision.weather_named(f)), "missing"
         d = decision.decide(f)
@@ -169,6 +148,19 @@ def by_logistic(w: np.ndarray, limit: float) -> Decide:
         return d.missing, d.verdict
 
     return decide
+
+
+def foretold(rows: Sequence[Row], family: str) -> list[tuple[float, bool]]:
+    """What ships of the other families say of each cause of this family's explanations, and whether it is
+    there."""
+    w = logistic(*examples([r for r in rows if r["family"] != family]))
+    return [
+        (probability(w, r["read"], c), c.effect in r["hidden"])
+        for r in rows
+        if r["family"] == family
+        for c in r["read"].causes
+        if c.in_explanation
+    ]
 
 
 def working_point(rows: Sequence[Row], w: np.ndarray) -> float:
@@ -208,12 +200,13 @@ def added(all_of: Sequence[dict[str, tuple[int, int]]]) -> dict[str, str]:
 def run(args: argparse.Namespace) -> int:
     rows = [r | {"read": Facts.read(r["facts"])} for r in rows_of(args.folder)]
     families = sorted({r["family"] for r in rows})
-    held: dict[str, list[dict[str, tuple[int, int]]]] = {"today": [], "thresholds moved": [], "logistic": []}
+    held: dict[str, list[dict[str, tuple[int, int]]]] = {"before": [], "thresholds moved": [], "logistic": []}
     chosen: dict[str, Any] = {}
     curve: dict[float, list[dict[str, tuple[int, int]]]] = {}
     for family in families:
         own, others = [r for r in rows if r["family"] == family], [r for r in rows if r["family"] != family]
-        held["today"].append(outcome(own, by_table))
+        with thresholds(BEFORE):
+            held["before"].append(outcome(own, by_table))
         best = moved(others)
         with thresholds(best):
             held["thresholds moved"].append(outcome(own, by_table))
@@ -224,10 +217,14 @@ def run(args: argparse.Namespace) -> int:
         for t in np.round(np.arange(0.2, 0.99, 0.05), 2).tolist():
             curve.setdefault(t, []).append(outcome(own, by_logistic(w, t)))
     w = logistic(*examples(rows))
+    told_of = [x for f in families for x in foretold(rows, f)]
     result = {
         "voyages": len(rows),
         "held_out": {name: added(each) for name, each in held.items()},
         "chosen_by_family_held_out": chosen,
+        "reliability": [
+            [lo, hi, str(share([there for p, there in told_of if lo <= p < hi]))] for lo, hi in pairwise(BINS)
+        ],
         "curve": {str(t): added(each) for t, each in curve.items()},
         "of_all": {"thresholds": moved(rows), "limit": working_point(rows, w), "weights": _weights(w)},
     }
@@ -238,19 +235,25 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _changed(best: Mapping[str, float]) -> dict[str, float]:
-    return {k: v for k, v in best.items() if v != getattr(decision, k)}
+    return {k: v for k, v in best.items() if v != BEFORE.get(k, getattr(decision, k))}
 
 
 def _weights(w: np.ndarray) -> dict[str, float]:
-    return dict(zip(["constant", *FEATURES], [round(float(v), 3) for v in w], strict=True))
+    return dict(zip(["constant", *FACTS], [round(float(v), 3) for v in w], strict=True))
 
 
 def told(result: Mapping[str, Any]) -> list[str]:
     """What was fitted, for the page."""
     held: Mapping[str, Mapping[str, str]] = result["held_out"]
-    body = [(figure, *(held[name][figure] for name in held)) for figure in held["today"]]
+    body = [(figure, *(held[name][figure] for name in held)) for figure in held["before"]]
     out = lines("The decision fitted, each family held out in turn", "", ("", *held), body)
     keys = ("single, gains", "pair and triple, gains", "wrong name", "healthy, named")
     text = "Of the logistic model with each family held out, by the probability from which a cause is named."
     curve = [(t, *(c[k] for k in keys)) for t, c in result["curve"].items()]
-    return out + lines("Names against false alarms", text, ("from", *keys), curve)
+    out += lines("Names against false alarms", text, ("from", *keys), curve)
+    text = (
+        "What the fit to the other families says of each cause of an explanation (`confidence` in the "
+        "answer), and how often it is there."
+    )
+    body = [(f"{lo:g} to {hi:g}", there) for lo, hi, there in result["reliability"]]
+    return out + lines("Confidence, each family held out in turn", text, ("said", "there"), body)

@@ -57,6 +57,7 @@ CANDIDATE = (
     JsonKey("effect", "", "name of the effect", "one is likely"),
     JsonKey("belongs_to", "", "ship, instrument or voyage", FACTS),
     JsonKey("probability", "1", "that it is there, among all that was weighed", "one is likely"),
+    JsonKey("confidence", "1", "share of causes with such facts that were there on other ships", FACTS),
     JsonKey("parameters[].name", "", "one of its numbers", "one is likely"),
     JsonKey("parameters[].value", "of the number", "its estimate", "one is likely"),
     JsonKey("parameters[].low95", "of the number", "lower end of its 95 % interval", "one is likely"),

@@ -15,6 +15,7 @@ from twin.recording.voyage import Voyage
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.assemble import assemble, unjudged_because
 from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.confidence import confidence
 from twin.study.diagnosis.consider import Considered, consider
 from twin.study.diagnosis.decision import decide
 from twin.study.diagnosis.led import held_out_error, horizon_s
@@ -170,6 +171,7 @@ def _candidate(
         "effect": name,
         "belongs_to": case.catalogue[name].belongs_to,
         "probability": capped(probability),
+        "confidence": _confidence(considered, name),
         "parameters": parameters(case, sized(case, best), name),
         "typical_force": typical_force(case, best.model, name),
         "error_horizon_s": horizon_s(case.tracks[0], case.model),
@@ -180,6 +182,12 @@ def _candidate(
         "cannot_be_told_from": list(considered.like.get(name) or alike(case, weighed, name)),
         "says": (case.catalogue[name].__doc__ or "").strip().splitlines()[0],
     }
+
+
+def _confidence(considered: Considered, name: str) -> float | None:
+    """How often such a cause was there on other ships; None where that was not measured."""
+    cause = next((c for c in considered.facts.causes if c.effect == name), None)
+    return confidence(considered.facts, cause) if cause else None
 
 
 def _without(case: Case, found: dict[tuple[str, ...], Found], considered: Considered, name: str) -> float:

@@ -107,6 +107,8 @@ def _candidate(c: dict[str, Any]) -> list[str]:
     if changes(c.get("over_time", ())):
         lines.append("          not the same all the time (1 = the size above):")
         lines += [_part(p) for p in c["over_time"]]
+    if c.get("confidence") is not None:
+        lines.append(f"          on other ships {c['confidence']:.0%} of causes with such facts were there")
     if c["cannot_be_told_from"]:
         lines.append(f"          not told from {', '.join(c['cannot_be_told_from'])}")
     return lines
