@@ -20,7 +20,7 @@ from scipy.optimize import minimize
 
 from bench.fleet import judged
 from bench.fleet.judged import Row, Share, share
-from bench.fleet.table import lines, rows_of
+from bench.fleet.table import lines, read_facts, rows_of
 from twin.study.diagnosis import decision
 from twin.study.diagnosis.confidence import FACTS
 from twin.study.diagnosis.facts import Cause, Facts
@@ -31,10 +31,15 @@ GRID = {  # what is tried of each threshold that acts on facts alone (others ste
     "LOST": (0.3, 0.5, 0.7, 0.9),
     "BETTER": (0.0, 0.05, 0.1, 0.15, 0.2),
     "SIGNIFICANT": (2.0, 3.0, 4.0, 5.0, 6.0, 8.0),
+    "USUAL": (0.1, 0.25, 0.5, 2.0),
     "CHANGED": (1.0, 2.0, 3.0, 4.0),
     "POWER": (0.5, 0.6, 0.75),
 }
-BEFORE = {"NAMED": 0.8, "SIGNIFICANT": 3.0}  # before the fleet was asked; the others stand as they did
+BEFORE = {
+    "NAMED": 0.8,
+    "SIGNIFICANT": 3.0,
+    "USUAL": 2.0,
+}  # before the fleet was asked; the others stand as they did
 ALARMS = 0.04  # share of healthy voyages that may be accused, at the working point
 COST = 5.0  # of a healthy voyage accused beyond that, in hidden causes that are named
 WRONG = 0.5  # of a wrong name
@@ -198,7 +203,7 @@ def added(all_of: Sequence[dict[str, tuple[int, int]]]) -> dict[str, str]:
 
 
 def run(args: argparse.Namespace) -> int:
-    rows = [r | {"read": Facts.read(r["facts"])} for r in rows_of(args.folder)]
+    rows = [r | {"read": read_facts(r)} for r in rows_of(args.folder)]
     families = sorted({r["family"] for r in rows})
     held: dict[str, list[dict[str, tuple[int, int]]]] = {"before": [], "thresholds moved": [], "logistic": []}
     chosen: dict[str, Any] = {}

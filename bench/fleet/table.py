@@ -4,6 +4,7 @@ import argparse
 import json
 from collections import Counter
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from textwrap import wrap
@@ -142,9 +143,19 @@ def _figures(rows: Sequence[Row]) -> list[str]:
     return lines("Figures", text, ("", "goal", "as answered", "decided again"), body)
 
 
+def read_facts(row: Row) -> Facts:
+    """The facts of a row; how many references reach its score is got from p where the row is older than the
+    fact."""
+    facts, p, least = Facts.read(row["facts"]), row.get("p_value"), row.get("p_value_at_best")
+    if facts.reached is not None or p is None or least is None:
+        return facts
+    n = round(1 / least) - 1
+    return replace(facts, reached=round(p * (n + 1) - 1) / n)
+
+
 def decided(row: Row) -> dict[str, Any]:
     """The row with the answer that the decision of today gives to its facts."""
-    d = decide(Facts.read(row["facts"]))
+    d = decide(read_facts(row))
     return {**row, "missing": list(d.missing), "verdict": d.verdict, "reason": d.reason}
 
 

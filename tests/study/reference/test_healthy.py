@@ -18,13 +18,13 @@ def told(information, pull):
 
 def test_p_counts_the_references_that_reach_the_score_and_is_never_less_than_one_of_them_more():
     """By hand: two of three at least as high, a tie among them: (1 + 2) / 4."""
-    assert compared([1.0], [0.5, 1.0, 3.0])[1:] == (0.75, 0.25, 3)
+    assert compared([1.0], [0.5, 1.0, 3.0])[1:] == (0.75, 0.25, 3, pytest.approx(2 / 3))
     assert compared([9.0], [0.5, 1.0, 3.0]).p == 0.25
-    assert compared([9.0], [])[1:] == (None, None, 0)
+    assert compared([9.0], [])[1:] == (None, None, 0, None)
 
 
 def test_two_voyages_asked_at_once_are_two_chances():
-    assert compared([0.0, 9.0], [0.5, 1.0, 3.0])[1:] == (0.5, 0.5, 3)
+    assert compared([0.0, 9.0], [0.5, 1.0, 3.0])[1:] == (0.5, 0.5, 3, 0.0)
 
 
 def test_the_score_is_the_bayes_factor_of_the_cause_that_explains_most():

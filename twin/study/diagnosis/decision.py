@@ -11,7 +11,7 @@ from typing import Any
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.facts import Cause, Facts, Left
 
-# probabilities [1]: NAMED and SIGNIFICANT were fitted with whole families of ships held out (bench/fleet,
+# probabilities [1]: NAMED, SIGNIFICANT and USUAL were fitted with families of ships held out (bench/fleet,
 # docs/results/judgement.md); the others are conventions that no family asked to move
 NAMED = 0.9  # from which a cause is named
 SURE = 0.8  # from which weather is told, a likely cause is asked about, or nothing said to be missing
@@ -28,6 +28,7 @@ SIGNIFICANT = 5.0  # standard deviations of an instrument's clearest number from
 CHANGED = (
     2.0  # standard deviations of its form by which a number must differ from what the ship's file has (95 %)
 )
+USUAL = 0.25  # share of the reference voyages that reach a voyage's score, from which it is no news
 POWER = 0.75  # share of the causes that must have shown before nothing is said to be missing
 
 
@@ -105,6 +106,7 @@ CAUSE_RULES: tuple[
     tuple[str, Callable[[Facts, Cause], bool]], ...
 ] = (  # why an effect is not named, first hit wins
     ("not_in_explanation", lambda f, c: not c.in_explanation),
+    ("as_on_references", lambda f, c: f.reached is not None and f.reached >= USUAL),
     ("unlikely", lambda f, c: c.probability < NAMED and c.with_rivals < CERTAIN),
     ("change_within_form", lambda f, c: c.in_ship_file and (c.alone <= CLEAR or c.change <= CHANGED)),
     ("not_significant", lambda f, c: c.belongs_to == "instrument" and c.significance <= SIGNIFICANT),

@@ -33,8 +33,7 @@ from twin.study.diagnosis.verdict import (
     weights,
 )
 from twin.study.estimation.start import waves_on
-from twin.study.reference.healthy import compared, score
-from twin.study.reference.structure import floor_of
+from twin.study.reference.healthy import Healthy
 
 SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
@@ -90,7 +89,7 @@ def diagnose(
         "missing": list(decision.missing),
         "more": decision.more,
         "one_of": list(facts.one_of) if decision.reason == "one_of" else [],
-        **_healthy(case, ship),
+        **_healthy(considered.healthy),
         "probabilities": {"nothing_missing": capped(nothing), "unknown": capped(unknown)},
         "candidates": listed,
         "rivals": rivals(weighed, found),
@@ -133,21 +132,13 @@ def diagnose(
     return Diagnosis(plain(result), case, found)
 
 
-def _healthy(case: Case, ship: Ship) -> dict[str, Any]:
-    """How rare the voyages would be on this ship in health, by its reference voyages (reference/healthy.py);
-    nothing where the ship file lacks their scores."""
-    scores = ship.notes.get("structural", {}).get("left_out_scores", [])
-    floor = floor_of(ship, "beside")
-    if not scores or floor is None:
-        return {"p_value": None, "p_value_at_best": None, "p_value_references": 0, "p_value_score": None}
-    causes = [n for n in case.causes(case.candidates) if n not in case.unnamed]
-    own = [score(case.reduced([line], [floor])[0], causes, case.weather) for line in case.lines]
-    found = compared(own, scores)
+def _healthy(found: Healthy | None) -> dict[str, Any]:
+    """How rare the voyages would be in health, as JSON has it."""
     return {
-        "p_value": found.p,
-        "p_value_at_best": found.at_best,
-        "p_value_references": found.references,
-        "p_value_score": found.score,
+        "p_value": found.p if found else None,
+        "p_value_at_best": found.at_best if found else None,
+        "p_value_references": found.references if found else 0,
+        "p_value_score": found.score if found else None,
     }
 
 

@@ -48,6 +48,7 @@ class Healthy(NamedTuple):
     p: float | None  # None: no reference has a score
     at_best: float | None  # the least that so many references can show
     references: int
+    reached: float | None  # share of the references that score at least as high
 
 
 def score(reduced: Reduced, causes: Sequence[str], weather: Sequence[str]) -> float:
@@ -67,10 +68,9 @@ def compared(own: Sequence[float], healthy: Sequence[float]) -> Healthy:
     any (Bonferroni)."""
     highest, n, m = max(own), len(healthy), len(own)
     if not n:
-        return Healthy(highest, None, None, 0)
-    return Healthy(
-        highest, min(1.0, m * (1 + sum(s >= highest for s in healthy)) / (n + 1)), min(1.0, m / (n + 1)), n
-    )
+        return Healthy(highest, None, None, 0, None)
+    reach = sum(s >= highest for s in healthy)
+    return Healthy(highest, min(1.0, m * (1 + reach) / (n + 1)), min(1.0, m / (n + 1)), n, reach / n)
 
 
 def left_out_scores(
