@@ -20,6 +20,7 @@ from bench.fleet.run import ROWS, read
 from twin.study.diagnosis.decision import decide
 from twin.study.diagnosis.facts import Facts
 
+BY_HAND = "## What it says"  # from this title on
 BINS = (0.05, 0.2, 0.5, 0.8, 0.9, 0.95, 1.0)
 
 
@@ -125,6 +126,10 @@ def _head(rows: Sequence[Row]) -> list[str]:
         "python -m bench.fleet fit FOLDER --json fit.json",
         "python -m bench.fleet table FOLDER --fit fit.json --page docs/results/judgement.md",
         "```",
+        "",
+        "**Right**: every hidden cause of ship and instruments is named and no other; hidden weather is named",
+        "or told; a healthy ship is not accused. **Its oracle gains**: the truth, fitted by the twin's own form",
+        "of it, brings the open-loop error down by a tenth.",
     ]
 
 
@@ -252,11 +257,18 @@ def _cost(rows: Sequence[Row]) -> list[str]:
     ]
 
 
+def by_hand(path: Path) -> str:
+    """What was written by hand at the end of a page that is there: kept when the page is made again."""
+    before = path.read_text() if path.exists() else ""
+    place = before.find(f"\n{BY_HAND}\n")
+    return before[place:] if place >= 0 else ""
+
+
 def run(args: argparse.Namespace) -> int:
     rows = rows_of(args.folder)
     text = page(rows, json.loads(args.fit.read_text()) if args.fit else None)
     if args.page:
-        args.page.write_text(text)
+        args.page.write_text(text + by_hand(args.page))
     else:
         print(text)
     if args.json:
