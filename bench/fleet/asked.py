@@ -115,11 +115,12 @@ def _asked(ship: Ship, case: Case, model: Model, facts: dict[str, Any]) -> dict[
     }
     try:
         said = diagnose([voyage(one)], model)
+        row["cpu_s"] = time.process_time() - began
+        row["oracle"] = oracle(said, case)
     except Exception as error:  # a case that cannot be asked is a row that says so
         return row | {"failed": f"{type(error).__name__}: {error}"}
     result = said.result
     row |= {k: result[k] for k in KEPT_FACTS if k in result}
-    row["cpu_s"] = time.process_time() - began
     row["candidates"] = [
         {
             k: c[k]
@@ -147,7 +148,6 @@ def _asked(ship: Ship, case: Case, model: Model, facts: dict[str, Any]) -> dict[
         }
         for s, f in said.found.items()
     ]
-    row["oracle"] = oracle(said, case)
     return plain(row)
 
 

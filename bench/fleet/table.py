@@ -145,8 +145,8 @@ def _figures(rows: Sequence[Row]) -> list[str]:
     body.append(("95 % intervals of rightly named causes that hold the truth", "90 to 98 %", share(held), ""))
     text = (
         "As answered when they were asked, with the thresholds that were conventions; and decided again from "
-        "the same facts by the table of today, three thresholds of which were fitted to these ships (what that "
-        "is worth on families left out of the fit stands below)."
+        "the same facts by the table of today, three thresholds of which were fitted to these ships. What "
+        "that is worth on families left out of the fit stands below."
     )
     return lines("Figures", text, ("", "goal", "as answered", "decided again"), body)
 
