@@ -76,6 +76,11 @@ BENCHES: dict[str, Bench] = {
         "how fast logs and tables are read, in how much memory",
         "twin-bench import-speed",
     ),
+    "fleet": Bench(
+        "bench.fleet.run",
+        "random ships of many forms: a row of facts and truth for each voyage",
+        "twin-bench fleet FOLDER --seeds 0-1 --workers 2",
+    ),
     "real": Bench(
         "bench.real.kvlcc2", "measured KVLCC2 manoeuvres (SIMMAN 2008)", "twin-bench real --data DIR"
     ),

@@ -15,7 +15,8 @@ from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
 from twin.study.prediction.left_out import models_without, path_error
 from twin.study.reference.derivatives import first_prior
-from twin.study.reference.nuisance import from_references, nuisance_unknowns, temper_of, usual_unknowns
+from twin.study.reference.healthy import left_out_scores
+from twin.study.reference.nuisance import known_from, nuisance_unknowns, temper_of, usual_unknowns
 from twin.study.reference.sailed import fed
 from twin.study.reference.structure import floor_beside
 from twin.study.reference.weather import strengths
@@ -33,7 +34,8 @@ def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
     beside = floor_beside(lines, unknowns, floor)
     temper = temper_of(innovate(lines, [beside])[0], unknowns)
     centres = np.array([first_prior(u, ship).centre for u in unknowns])
-    nuisance, between = from_references(lines, unknowns, beside, temper, centres)
+    references = known_from(lines, unknowns, beside, temper, centres)
+    nuisance, between = references.nuisance(), references.between
     path = path_errors(ship, tracks, lines, unknowns, beside, temper, centres, between)
     sd = np.array([u.sd for u in nuisance.unknowns])
     covariance = np.linalg.inv(nuisance.information)
@@ -46,6 +48,7 @@ def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
         "beside": plain(asdict(beside)),
         "temper_beside": temper,
         "weather": strengths(tracks, model, known),
+        "left_out_scores": left_out_scores(tracks, model, known, references, beside, temper),
     } | ({"path_error": path} if path else {})
 
 

@@ -23,8 +23,7 @@ from twin.study.estimation.columns import (
     lateness_unknowns,
     rough_unknowns,
 )
-from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
-from twin.study.estimation.rough import doubted
+from twin.study.estimation.innovations import Floor, Linear, innovate
 from twin.study.reference.nuisance import (
     TEMPER,
     from_references,
@@ -35,11 +34,11 @@ from twin.study.reference.nuisance import (
     temper_of,
     usual_unknowns,
 )
-from twin.study.reference.seaway import levelled, stirred, swung
+from twin.study.reference.reading import read_lines
+from twin.study.reference.seaway import swung
 from twin.study.reference.structure import floor_beside, floor_of, structural_floor
 from twin.study.reference.weather import as_usual, strengths
 from twin.study.track.excitation import manoeuvred
-from twin.study.track.segments import read_parts
 from twin.study.track.track import Track, track
 
 Progress = Callable[[str], None]
@@ -81,7 +80,7 @@ def of_tracks(
     if references:
         progress("reading the reference voyages")
         usual = usual_unknowns(model, catalogue)
-        lines = _lines([swung(track(v, ship), model) for v in references], model, usual, catalogue)
+        lines = read_lines([swung(track(v, ship), model) for v in references], model, usual, catalogue)
         if floor_of(ship) is None:
             progress("finding the structural floor")
             path = structural_floor(_of_core(lines, usual), core_unknowns(model))
@@ -107,7 +106,7 @@ def of_tracks(
             n: ODDS_WEATHER if e.is_weather() else ODDS_UNNAMED if n in unnamed else ODDS
             for n, e in judged.items()
         },
-        _lines(tracks, model, unknowns, judged, MOST_SEGMENTS),
+        read_lines(tracks, model, unknowns, judged, MOST_SEGMENTS),
         any(manoeuvred(t, ship) for t in tracks),
         floor.white,
         floor.sensor,
@@ -152,25 +151,3 @@ def unjudged_because(
     if all(lacking):
         return min(lacking, key=len)
     return tuple(n for n in effect.needs_ship if getattr(model.ship, n, None) is None)
-
-
-def _lines(
-    tracks: Sequence[Track],
-    model: Model,
-    unknowns: Sequence[Unknown],
-    catalogue: dict[str, type[Effect]],
-    most: int | None = None,
-) -> tuple[Linear, ...]:
-    """The tracks with what waves do to them taken for that, linearised where they will be read (`most`
-    segments); what waves change of the ship's own forces, and what is only roughly known, no hypothesis takes
-    away."""
-    models = [model.without_inputs(t.missing())[0] for t in tracks]
-    parts = read_parts([levelled(t) for t in tracks], float(model.ship.scale("time")), most)
-    slack = [
-        np.hypot(stirred(t, m)[np.searchsorted(t.steps(), p.steps())], doubted(p, m))
-        for t, p, m in zip(tracks, parts, models, strict=True)
-    ]
-    return tuple(
-        replace(linearise(p, m, unknowns, catalogue), slack=s)
-        for p, m, s in zip(parts, models, slack, strict=True)
-    )

@@ -14,11 +14,9 @@ from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import Floor, Linear, innovate
 from twin.study.reference.directions import directions
 from twin.study.reference.evidence import Nuisance, Reduced, posterior, reduce
+from twin.study.reference.reading import MOST_SEGMENTS
 from twin.study.track.track import Track
 from twin.study.track.unrest import shaken
-
-# of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
-MOST_SEGMENTS = 20
 
 
 @dataclass(frozen=True)

@@ -141,6 +141,7 @@ def why_not(c: Result, reason: str) -> str:
         else "nobody asked"
     )
     return {
+        "as_on_references": "single causes explained as much of healthy reference voyages of this ship",
         "not_significant": f"not one of its numbers is clearly other than {none}",
         "change_within_form": f"not one of its numbers is clearly other than {none}",
         "no_nearer": f"adding it does not reduce the open-loop error ({with_it})",

@@ -25,6 +25,7 @@ def told(result: dict[str, Any]) -> list[str]:
     lines.append(
         f"nothing missing: {chances['nothing_missing']:.0%}   something unknown: {chances['unknown']:.0%}"
     )
+    lines.append(_healthy(result))
     if result["next_manoeuvre"]:
         m = result["next_manoeuvre"]
         lines += [
@@ -46,6 +47,19 @@ def told(result: dict[str, Any]) -> list[str]:
             f"{', '.join(result['not_visible'])}."
         )
     return lines
+
+
+def _healthy(result: dict[str, Any]) -> str:
+    """How rare the voyage would be on this ship in health."""
+    if result.get("p_value") is None:
+        return (
+            "against healthy voyages: not asked, the ship file lacks the scores of its reference voyages "
+            "(calibrate anew)"
+        )
+    return (
+        f"against healthy voyages: p = {result['p_value']:.2g} by {result['p_value_references']} reference "
+        f"voyages, which can show {result['p_value_at_best']:.2g} at best"
+    )
 
 
 def _today(weather: list[dict[str, Any]]) -> list[str]:
@@ -94,6 +108,8 @@ def _candidate(c: dict[str, Any]) -> list[str]:
     if changes(c.get("over_time", ())):
         lines.append("          not the same all the time (1 = the size above):")
         lines += [_part(p) for p in c["over_time"]]
+    if c.get("confidence") is not None:
+        lines.append(f"          on other ships {c['confidence']:.0%} of causes with such facts were there")
     if c["cannot_be_told_from"]:
         lines.append(f"          not told from {', '.join(c['cannot_be_told_from'])}")
     return lines
