@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from twin.study.instruments.verb import KINEMATIC
 
 from bench import answer, instruments_real
 from bench.instruments_plant import LATE, PAIRS, SIZES, planted
@@ -136,7 +135,7 @@ def asked(
         columns,
         {"velocity_frame": "course" if bridge else "body"},
     )
-    return estimate([finished(raw, KINEMATIC)], hull.L), truth
+    return estimate([finished(raw, controls=False)], hull.L), truth
 
 
 def _plain(row: Row) -> dict[str, Any]:

@@ -5,14 +5,14 @@ from pathlib import Path
 
 import numpy as np
 
-from bench import nmea2000
 from twin.live.signals.channels import BY_NAME
+from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.study.instruments.estimate import Instruments, estimate
 from twin.study.instruments.told import told
 
 YACHT = ("furuno-130842-figure8-fast.raw", "furuno-130842-wide-turn.raw")
-SOURCES = {"heading": 52, "satellites": 52, "turning": 27, "water": 35}
+SOURCES = {"": "52", "yaw_rate_degps": "27"}  # the faster of two rate sensors
 ESSO = ("turn_14-Oct-2020_14_08_51.csv", "turn_14-Oct-2020_14_29_49.csv", "zigzag_31-Jul-2020_13_04_24.csv")
 ESSO_LENGTH_M = 3.0
 CHANNELS = {  # column -> channel
@@ -31,7 +31,7 @@ def asked(data: Path) -> dict[str, Instruments]:
     for name in YACHT:
         path = data / "logs" / "nmea2000" / name
         if path.is_file():
-            out[name] = estimate([nmea2000.voyage(nmea2000.read(path), path.stem, **SOURCES)])
+            out[name] = estimate([read_voyage(path, sources=SOURCES, controls=False)])
     for name in ESSO:
         path = data / "esso_osaka" / name
         if path.is_file():

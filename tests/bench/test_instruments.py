@@ -1,5 +1,4 @@
-"""Faults are planted as they are named, NMEA 2000 is read as its table says, and two real circles agree about
-their log."""
+"""Faults are planted as they are named, and two real circles agree about their log."""
 
 import os
 from pathlib import Path
@@ -7,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bench import nmea2000
 from bench.instruments_plant import SIZES, planted
 from bench.instruments_real import SOURCES, YACHT, log_lacks
 from bench.reference import HULLS
+from twin.recording.read import read_voyage
 from twin.study.instruments.estimate import estimate
 
 DATA = os.environ.get("SHIPTWIN_DATA")
@@ -74,29 +73,12 @@ def test_a_fault_is_planted_as_it_is_named(sailed, fault, channel, more):
     assert difference == pytest.approx(more, abs=2e-4)
 
 
-def test_a_heading_by_nmea_2000_by_hand(tmp_path):
-    # 0x9c51 = 40017 x 1e-4 rad; 0xffff: not available
-    lines = [
-        "2026-06-08T01:51:24.000Z,2,127250,52,255,8,ff,51,9c,ff,7f,55,06,fc",
-        "2026-06-08T01:51:24.100Z,2,127250,52,255,8,ff,ff,ff,ff,7f,55,06,fc",
-    ]
-    path = tmp_path / "log.raw"
-    path.write_text("# format=FAST\n" + "\n".join(lines) + "\n")
-    t, values = nmea2000.read(path)[127250, 52]
-    assert (
-        t[1] - t[0] == pytest.approx(0.1, abs=1e-3)
-        and values[0, 0] == pytest.approx(4.0017)
-        and np.isnan(values[1, 0])
-    )
-
-
 @pytest.mark.skipif(not DATA, reason="SHIPTWIN_DATA says where real voyages are")
 def test_two_real_circles_agree_about_the_log_within_eight_per_cent():
     shown = []
     for name in YACHT:
-        found = estimate(
-            [nmea2000.voyage(nmea2000.read(Path(DATA) / "logs" / "nmea2000" / name), name, **SOURCES)]
-        )
+        path = Path(DATA) / "logs" / "nmea2000" / name
+        found = estimate([read_voyage(path, sources=SOURCES, controls=False)])
         shown.append(1.0 - log_lacks(found) / found.readings[0].speed)
         assert {"smoothing"} <= set(found.faults)
     assert shown[0] == pytest.approx(shown[1], rel=0.08) and 0.6 < shown[0] < 0.9

@@ -7,8 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import twin
+from twin.api.json_key import absent_keys, unknown_paths
+from twin.api.json_keys import KEYS
 from twin.cli import main
-from twin.errors import DataError
+from twin.errors import DataError, UsageError
 from twin.physics.ship import load
 from twin.recording.read import Raw, finished
 from twin.study.instruments.arrow import Block, reduce
@@ -123,6 +126,26 @@ def test_the_verb_writes_json_and_a_ship_file_that_loads(healthy, write_csv, tmp
     lag = next(e for e in load(out).effects if type(e).__name__ == "HeadingLag")
     assert lag.lag == pytest.approx(2.0, abs=0.2) and lag.turned == 0.0
     assert "shown by the residuals of" in capsys.readouterr().out
+
+
+def test_in_python_it_is_the_verbs_json_a_line_a_page_and_a_corrected_ship(healthy, write_csv):
+    """Test: a late compass, rudder and shaft not recorded. Expected: every key of the table, and no other."""
+    path, ship = write_csv(late(healthy, HEADING, 2.0)), load("kvlcc2")
+    with pytest.raises(DataError, match="needs rudder_angle_deg"):
+        twin.read_voyage(path)
+    found = twin.instruments(ship, twin.read_voyage(path, controls=False))
+    assert unknown_paths(KEYS["instruments"], found.to_dict()) == []
+    assert absent_keys(KEYS["instruments"], found.to_dict()) == []
+    assert found.faults == ["heading_delay"] and found.effects == ["HeadingLag"]
+    assert repr(found) == "<InstrumentCheck of voyage: heading_delay>"
+    assert "heading late (HeadingLag)" in found.page()
+    lag = next(e for e in found.corrected(ship).effects if type(e).__name__ == "HeadingLag")
+    assert lag.lag == pytest.approx(2.0, abs=0.2)
+
+
+def test_another_word_for_what_turned_the_velocity_is_refused_in_one_line(healthy):
+    with pytest.raises(UsageError, match="velocity_by='gyro': give 'compass' or 'receiver'"):
+        twin.instruments(None, voyage(healthy), velocity_by="gyro")
 
 
 def test_a_map_takes_off_what_a_map_can(healthy, write_csv, tmp_path, capsys):

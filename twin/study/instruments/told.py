@@ -4,10 +4,10 @@ import math
 import textwrap
 from typing import Any
 
+from twin.num import num
 from twin.study.instruments.findings import Estimate, Instruments
 from twin.study.instruments.unknowns import ALWAYS, FAULTS
 
-SCHEMA_VERSION = 1
 SHOWN = {"rad": ("deg", 180.0 / math.pi), "rad/s": ("deg/min", 180.0 / math.pi * 60.0), "-": ("%", 100.0)}
 PLAIN = ("leeway",)  # no percentage
 READ = {
@@ -23,9 +23,8 @@ READ = {
 
 
 def as_json(found: Instruments) -> dict[str, Any]:
-    """The documented result (docs/instruments.md)."""
+    """What was found, in SI units and radians (docs/json.md)."""
     return {
-        "schema_version": SCHEMA_VERSION,
         "voyages": [
             {
                 "name": r.name,
@@ -133,24 +132,25 @@ def _fault(found: Instruments, fault: str) -> list[str]:
             f"  or, in its place: {', '.join(FAULTS[x].words for x in found.instead[fault])} (these "
             "voyages do not tell which)"
         )
-    falls = [f"{k} {_in(a, READ[k])} -> {_in(b, READ[k])}" for k, (a, b) in found.falls[fault].items()]
+    falls = [f"{k} {amount(a, READ[k])} -> {amount(b, READ[k])}" for k, (a, b) in found.falls[fault].items()]
     return out + ([f"  shown by the residuals of {', '.join(falls)}"] if falls else [])
 
 
-def _in(value: float, unit: str) -> str:
+def amount(value: float, unit: str) -> str:
+    """A number of this SI unit as it is told: angles in degrees, shares in percent."""
     name, k = SHOWN.get(unit, (unit, 1.0))
-    return f"{value * k:.3g} {name}"
+    return f"{num(value * k, 3)} {name}"
 
 
 def _sized(e: Estimate) -> str:
     name, k = ("", 1.0) if e.unknown.name in PLAIN else SHOWN.get(e.unknown.unit, (e.unknown.unit, 1.0))
     lo, hi = e.interval
-    return f"{e.value * k:.3g} {name} (95 %: {lo * k:.3g} to {hi * k:.3g})"
+    return f"{num(e.value * k, 3)} {name} (95 %: {num(lo * k, 3)} to {num(hi * k, 3)})"
 
 
 def _limit(e: Estimate) -> str:
     name, k = ("", 1.0) if e.unknown.name in PLAIN else SHOWN.get(e.unknown.unit, (e.unknown.unit, 1.0))
-    return f"{e.limit * k:.2g} {name}"
+    return f"{num(e.limit * k)} {name}"
 
 
 def _unknown(found: Instruments, numbers: list[Estimate]) -> list[str]:
