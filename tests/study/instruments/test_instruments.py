@@ -57,7 +57,7 @@ def near(found, name, truth):
     assert e.seen and abs(e.value - truth) < 3.0 * e.sd, (name, e.value, e.sd)
 
 
-def test_a_healthy_ship_has_no_fault_and_her_stream_is_found(healthy):
+def test_a_healthy_ship_has_no_fault_and_its_stream_is_found(healthy):
     found = estimate([voyage(healthy)], 100.0)
     assert found.faults == ()
     for name, truth in (("current_north", 0.3), ("current_east", -0.4)):

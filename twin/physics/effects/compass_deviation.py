@@ -25,6 +25,7 @@ class CompassDeviation(SensorFault):
     """The ship's own iron turns the compass, by another angle on every heading."""
 
     attitude = True
+    kinematic = True
     source = (
         "Admiralty Manual for the Deviation of the Compass (Evans & Smith); ISO 1069 (coefficients A "
         "to E); Bowditch (2019) ch. 7"

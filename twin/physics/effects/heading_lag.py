@@ -21,6 +21,7 @@ class HeadingLag(SensorFault):
     straight course all is well."""
 
     attitude = True
+    kinematic = True
     source = (
         "ISO 11606 and ISO 22090-3 (follow-up error of heading devices); Skog & Haendel (2011) IEEE "
         "Trans. ITS 12, 1014-1023"

@@ -17,6 +17,7 @@ class ReceiverSmoothing(SensorFault):
     """The receiver smooths course and speed over ground, so in a turn they come later than the position
     does."""
 
+    kinematic = True
     source = (
         "Kaplan & Hegarty (2017) Understanding GPS/GNSS, 3rd ed., ch. 8 and 13 (loop bandwidth, "
         "navigation filter); IEC 61108-1"
