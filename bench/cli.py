@@ -66,6 +66,11 @@ BENCHES: dict[str, Bench] = {
         "instruments that lie: how soon it is said, and how often in vain",
         "twin-bench lies --hull usv",
     ),
+    "instruments": Bench(
+        "bench.instruments",
+        "faults of known size in the instruments, by kinematics alone",
+        "twin-bench instruments --seeds 2",
+    ),
     "import-mistakes": Bench(
         "bench.import_mistakes",
         "mistakes of a recording: named, and never proved where there are none",

@@ -46,6 +46,11 @@ VERBS: dict[str, Verb] = {
         "measurements in, checked",
         "twin import log.csv --map log-map.toml -o voyage.mcap",
     ),
+    "instruments": Verb(
+        "twin.commands.instruments",
+        "what is wrong with the instruments, by how their readings go together",
+        "twin instruments circle.mcap --ship alma.toml -o alma2.toml",
+    ),
     "calibrate": Verb(
         "twin.commands.calibrate",
         "fits the core to reference voyages",

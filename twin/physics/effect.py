@@ -100,6 +100,9 @@ class Effect:
     copies: ClassVar[tuple[str, ...]] = ()
     # effects that are a part of this one, so that beside it they say nothing
     holds: ClassVar[tuple[str, ...]] = ()
+    # whether how the readings go together shows it and the ship's motion hardly does: `twin instruments` looks
+    # for it, a diagnosis only where it is asked to
+    kinematic: ClassVar[bool] = False
     irregular: ClassVar[bool] = False  # whether it comes and goes with what no input shows
     # share of its length by which its side force may attack elsewhere than its form has it (one sd)
     lever: ClassVar[float] = 0.0

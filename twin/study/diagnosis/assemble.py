@@ -62,10 +62,13 @@ def of_tracks(
     ship: Ship,
     references: Sequence[Voyage] = (),
     progress: Progress = lambda text: None,
+    asked: Sequence[type[Effect]] = (),
 ) -> Case:
     """The same of tracks, with what waves do to them already found (`twin add` has some of a voyage for the
-    fit and some for the proof)."""
-    model, catalogue, tracks = Model.of(ship), known_effects(), tuple(sailed)
+    fit and some for the proof). `asked`: effects that are judged although `twin instruments` looks for them
+    (`Effect.kinematic`)."""
+    model, tracks = Model.of(ship), tuple(sailed)
+    catalogue = {n: e for n, e in known_effects().items() if not e.kinematic or e in asked}
     unnamed = {e.__name__: e for e in UNNAMED}
     judged = catalogue | unnamed
     candidates = judgeable(tracks, model, judged)

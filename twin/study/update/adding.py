@@ -121,7 +121,7 @@ def fitted(
     progress: Progress = lambda text: None,
 ) -> Fitted:
     """These effects where the voyages have them, beside the voyages' own water and weather."""
-    case = of_tracks(tracks, ship, progress=progress)
+    case = of_tracks(tracks, ship, progress=progress, asked=effects)
     unknown = [e.__name__ for e in effects if e.__name__ not in case.candidates]
     if unknown:
         raise SettingsError(
