@@ -106,6 +106,8 @@ class Effect:
     # the number without which the others are a form of nothing; of most effects any of them is enough
     size: ClassVar[str] = ""
     source: ClassVar[str] = ""
+    # whether it is a fault of the one propeller or rudder of a ship without actuators of its own
+    one_screw: ClassVar[bool] = False
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)

@@ -14,8 +14,9 @@ from typing import Any
 
 from twin.errors import SettingsError, did_you_mean
 
+from .actuators.file import read as read_actuators
 from .effect import Effect
-from .particulars import DERIVATIVES, PARTICULARS, Derivatives, Ship
+from .particulars import DERIVATIVES, ONE_SCREW, PARTICULARS, Derivatives, Ship
 from .ship_text import SCHEMA_VERSION, save, text, to_table
 
 __all__ = [
@@ -85,15 +86,25 @@ def from_table(table: Mapping[str, Any], where: str = "") -> Ship:
             f"{SCHEMA_VERSION}. Update the twin."
         )
     particulars = _numbers(_section(table, "particulars", where), PARTICULARS, f"{where}particulars.")
+    actuators, noted = read_actuators(table["actuators"], where, _value) if "actuators" in table else ((), {})
+    optional = ("A_F", "A_L", *(ONE_SCREW if actuators else ()))
     for f in PARTICULARS:
-        if f.default is None and f.name not in particulars and f.name not in ("A_F", "A_L"):
+        if f.default is None and f.name not in particulars and f.name not in optional:
             raise SettingsError(
                 f"{where}particulars.{f.name} ({f.metadata['doc']}, {f.metadata['unit']}) is missing. Add it."
             )
     derivatives = Derivatives(
         **_numbers(_section(table, "derivatives", where), DERIVATIVES, f"{where}derivatives.")
     )
-    ship = replace(Ship(str(table["name"]), **particulars), derivatives=derivatives, notes=dict(table))  # type: ignore[arg-type]
+    notes = dict(table)
+    if noted:
+        notes["derivatives"] = {**notes.get("derivatives", {}), **noted}
+    ship = replace(
+        Ship(str(table["name"]), **particulars),  # type: ignore[arg-type]
+        derivatives=derivatives,
+        actuators=actuators,
+        notes=notes,
+    )
     effects = _section(table, "effects", where)
     return replace(
         ship,

@@ -7,8 +7,7 @@ import numpy as np
 
 from twin.errors import DataError
 from twin.physics.effect import Effect
-from twin.physics.effects import UNNAMED
-from twin.physics.effects import catalogue as known_effects
+from twin.physics.effects import of_ship, unnamed_of
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
@@ -66,8 +65,8 @@ def of_tracks(
 ) -> Case:
     """The same of tracks, with what waves do to them already found (`twin add` has some of a voyage for the
     fit and some for the proof)."""
-    model, catalogue, tracks = Model.of(ship), known_effects(), tuple(sailed)
-    unnamed = {e.__name__: e for e in UNNAMED}
+    model, catalogue, tracks = Model.of(ship), of_ship(ship), tuple(sailed)
+    unnamed = {e.__name__: e for e in unnamed_of(ship)}
     judged = catalogue | unnamed
     candidates = judgeable(tracks, model, judged)
     as_before = as_usual(strengths(tracks, model, catalogue), _felt_before(references, model, catalogue))
