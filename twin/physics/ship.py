@@ -14,6 +14,7 @@ from typing import Any
 
 from twin.errors import SettingsError, did_you_mean
 
+from .actuators import Actuator
 from .actuators.file import read as read_actuators
 from .effect import Effect
 from .particulars import DERIVATIVES, ONE_SCREW, PARTICULARS, Derivatives, Ship
@@ -27,6 +28,7 @@ __all__ = [
     "bundled",
     "from_table",
     "load",
+    "load_actuators",
     "save",
     "text",
     "to_table",
@@ -58,6 +60,19 @@ def load(path: str | os.PathLike[str]) -> Ship:
         said = " ".join(str(error).split())[:200]
         raise SettingsError(f"{path}: not a valid TOML file: {said}. Save it as plain UTF-8 text.") from None
     return from_table(table, f"{path}: ")
+
+
+def load_actuators(path: str | os.PathLike[str]) -> tuple[Actuator, ...]:
+    """The [[actuators]] of a TOML file; SettingsError says what is wrong and where."""
+    try:
+        with open(path, "rb") as file:
+            table = tomllib.load(file)
+    except (OSError, ValueError, RecursionError) as error:
+        why = getattr(error, "strerror", None) or " ".join(str(error).split())[:200]
+        raise SettingsError(f"{path}: cannot be read as TOML ({why}).") from None
+    if not table.get("actuators"):
+        raise SettingsError(f"{path}: holds no [[actuators]]. A sail is none that this twin knows.")
+    return read_actuators(table["actuators"], f"{path}: ", _value)[0]
 
 
 def bundled() -> list[str]:

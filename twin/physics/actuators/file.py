@@ -39,7 +39,8 @@ def _one(
         raise SettingsError(f"{where}: name = {name!r} must be small letters, digits and _, such as port.")
     where = f"{where} ({name})"
     if kind not in KINDS:
-        raise SettingsError(f"{where}: kind = {kind!r} is not known.{did_you_mean(str(kind), KINDS)}")
+        sail = " A sailing vessel is none that this twin models." * ("sail" in str(kind).lower())
+        raise SettingsError(f"{where}: kind = {kind!r} is not known.{sail}{did_you_mean(str(kind), KINDS)}")
     if not isinstance(channels, list) or not channels:
         raise SettingsError(f'{where}: channels = ["rate_rpm", ...] is missing: what is recorded of it.')
     for c in channels:
