@@ -24,7 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--actuators",
         metavar="FILE.toml",
-        help="tables [[actuators]] of what drives and steers the ship, where that is not one propeller with a "
+        help="tables [[actuators]] of what drives and steers the ship, where that is not a propeller with a "
         "rudder (docs/actuators.md)",
     )
     parser.add_argument("-o", "--output", required=True, metavar="SHIP.toml", help="the ship file to write")
