@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
     if args.check:
         return _checked(args.check, ship, args.json)
     by_form = [e for e in UNNAMED if e.__name__ == args.name]
-    family = [e for e in OF_ACTUATORS if e.__name__ == args.name]
+    family: list[type[Effect]] = [e for e in OF_ACTUATORS if e.__name__ == args.name]
     mine = of_ship(ship).values() if ship else catalogue().values()
     chosen: list[type[Effect]] = by_form or family or ([find(args.name)] if args.name else list(mine))
     if args.json:
