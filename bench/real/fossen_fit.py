@@ -1,4 +1,4 @@
-"""A plain least-squares fit of Fossen's 3-DOF model to a boat with two fixed thrusters, and its open-loop error.
+"""A plain least-squares fit of Fossen's 3-DOF model to a boat with two fixed thrusters: its open-loop error.
 
     u_dot = a1 v r + a2 u + a3 |u| u + a4 (T_p + T_s) + a5
     v_dot = b1 u r + b2 v + b3 |v| v + b4 r + b5
@@ -99,9 +99,9 @@ def main() -> None:
         c = columns(read_voyage(path))
         for horizon in HORIZONS_S:
             place, turn = errors(c, theta, horizon)
-            print(
-                f"{path}: {horizon:.0f} s  median {np.nanmedian(np.nan_to_num(place, nan=1e9)):.3g} m  {np.nanmedian(turn):.3g} deg ({len(place)})"
-            )
+            metres = np.nanmedian(np.nan_to_num(place, nan=1e9))
+            degrees = np.nanmedian(turn)
+            print(f"{path}: {horizon:.0f} s  median {metres:.3g} m  {degrees:.3g} deg ({len(place)})")
 
 
 if __name__ == "__main__":
