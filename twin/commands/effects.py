@@ -9,7 +9,8 @@ import numpy  # noqa: F401 (where it is loaded, an installed effect that does no
 
 from twin import whole
 from twin.errors import SettingsError
-from twin.physics.effects import BUILT_IN, UNNAMED, catalogue, find
+from twin.physics.effect import Effect
+from twin.physics.effects import BUILT_IN, OF_ACTUATORS, UNNAMED, catalogue, find, of_ship
 from twin.physics.ship import Ship, load
 from twin.report.catalogue import as_table, one, overview, page
 
@@ -38,7 +39,9 @@ def run(args: argparse.Namespace) -> int:
     if args.check:
         return _checked(args.check, ship, args.json)
     by_form = [e for e in UNNAMED if e.__name__ == args.name]
-    chosen = by_form or ([find(args.name)] if args.name else list(catalogue().values()))
+    family: list[type[Effect]] = [e for e in OF_ACTUATORS if e.__name__ == args.name]
+    mine = of_ship(ship).values() if ship else catalogue().values()
+    chosen: list[type[Effect]] = by_form or family or ([find(args.name)] if args.name else list(mine))
     if args.json:
         _write(
             args.json,

@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from twin import whole
-from twin.physics.ship import save
+from twin.physics.ship import load_actuators, save
 from twin.recording.import_voyage import write_json
 from twin.study.first_model.init import OPTIONS, REQUIRED, doubts, first_model, sea_trial, summary
 
@@ -21,6 +21,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             metavar="X",
             help=f"{doc} [{lo:g} to {hi:g}]",
         )
+    parser.add_argument(
+        "--actuators",
+        metavar="FILE.toml",
+        help="tables [[actuators]] of what drives and steers the ship, where that is not a propeller with a "
+        "rudder (docs/actuators.md)",
+    )
     parser.add_argument("-o", "--output", required=True, metavar="SHIP.toml", help="the ship file to write")
     parser.add_argument("--force", action="store_true", help="write over a file that is there")
     parser.add_argument("--json", metavar="FILE", help="the same as JSON; - is standard output")
@@ -29,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     whole.not_over(args.output, [args.output], args.force)
     given = {option: getattr(args, option.replace("-", "_")) for option, *_ in OPTIONS}
-    ship, warnings = first_model(args.name, given)
+    ship, warnings = first_model(args.name, given, load_actuators(args.actuators) if args.actuators else ())
     figures = sea_trial(ship)
     warnings += doubts(figures, ship.C_b)
     save(ship, args.output)

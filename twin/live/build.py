@@ -4,6 +4,7 @@ import sys
 from math import ceil
 from pathlib import Path
 
+from twin.errors import SettingsError
 from twin.live import realtime
 from twin.live.certificate.certificate import Certificate, on_board
 from twin.live.certificate.rolled_tube import tube_of
@@ -41,6 +42,11 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
     breathe = realtime.drop_pages if settings["loop.drop_pages"] else int
     breathe()
     ship = load_ship(settings["ship.file"], arrays=False)
+    if ship.actuators:
+        raise SettingsError(
+            f"{settings['ship.file']}: the loop on board does not take [[actuators]] yet. Ashore twin "
+            "calibrate, compare, diagnose and add do."
+        )
     notes: list[str] = []
     if settings["residual.file"] != "none":
         network.open_library(breathe)

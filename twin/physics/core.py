@@ -86,7 +86,9 @@ def coefficients(ship: "Ship") -> Coefficients:
     mx_G = ship.m * ship.x_G
     m_vr, m_rv = mx_G - d.Y_rdot * m_ * L, mx_G - d.N_vdot * m_ * L
     m_r = ship.I_z - d.N_rdot * m_ * L**2
-    D, n_scale = ship.D_P, rho * ship.D_P**4
+    # a ship of actuators has no propeller and no rudder of its own: what they would give is nothing
+    D, A_R = (1.0, 0.0) if ship.actuators else (ship.D_P, ship.A_R)
+    n_scale = rho * D**4
     return Coefficients(
         m=ship.m,
         mx_G=mx_G,
@@ -126,7 +128,7 @@ def coefficients(ship: "Ship") -> Coefficients:
         wake_share=1.0 - d.w,
         slipstream=d.kappa * 8.0 / (pi * rho * D**2),
         inflow=d.epsilon**2,
-        rudder=0.5 * rho * ship.A_R * d.C_L,
+        rudder=0.5 * rho * A_R * d.C_L,
         drag_R=1.0 - d.t_R,
         side_R=1.0 + d.a_H,
         lever_R=(d.x_R + d.a_H * d.x_H) * L,

@@ -100,8 +100,8 @@ class Effect:
     copies: ClassVar[tuple[str, ...]] = ()
     # effects that are a part of this one, so that beside it they say nothing
     holds: ClassVar[tuple[str, ...]] = ()
-    # whether how the readings go together shows it and the ship's motion hardly does: `twin instruments` looks
-    # for it, a diagnosis only where it is asked to
+    # whether how the readings go together shows it and the ship's motion hardly does: `twin instruments`
+    # looks for it, a diagnosis only where it is asked to
     kinematic: ClassVar[bool] = False
     irregular: ClassVar[bool] = False  # whether it comes and goes with what no input shows
     # share of its length by which its side force may attack elsewhere than its form has it (one sd)
@@ -109,6 +109,8 @@ class Effect:
     # the number without which the others are a form of nothing; of most effects any of them is enough
     size: ClassVar[str] = ""
     source: ClassVar[str] = ""
+    # whether it is a fault of the one propeller or rudder of a ship without actuators of its own
+    one_screw: ClassVar[bool] = False
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)

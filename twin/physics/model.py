@@ -10,7 +10,9 @@ from .maths import cos, sin, total
 from .ship import Ship
 from .state import STILL, Force, Number, Rates, Situation, Water
 
+# of a ship with actuators of its own, propeller and rudder give nothing, and the actuators follow
 CORE = ("hull", "coriolis", "propeller", "rudder")
+NONE: core.Tau = (0.0, 0.0, 0.0)
 Eta_nu = tuple[Number, Number, Number, Number, Number, Number]
 
 
@@ -45,7 +47,8 @@ class Model:
             ship = push.alter(ship)
         object.__setattr__(self, "loaded", ship)
         object.__setattr__(self, "c", ship.c)
-        object.__setattr__(self, "names", (*CORE, *(type(push).__name__ for push in self.pushes)))
+        parts = tuple(a.name for a in ship.actuators)
+        object.__setattr__(self, "names", (*CORE, *parts, *(type(push).__name__ for push in self.pushes)))
 
     @classmethod
     def of(cls, ship: Ship) -> "Model":
@@ -89,6 +92,15 @@ class Model:
         X, Y, N = core.damping(u, v, r, c)
         turning = core.coriolis(u, v, r, c)
         munk = turning[2] + c.mx_G * u * r
+        if ship.actuators:
+            return [
+                (X * (1.0 + w.k_u), Y * (1.0 + w.k_v), N + w.k_r * (N + munk)),
+                turning,
+                NONE,
+                NONE,
+                *[a.force(s.told, u, v, r, ship) for a in ship.actuators],  # type: ignore[arg-type]
+                *[push.force(s, ship) for push in self.pushes],
+            ]
         return [
             (X * (1.0 + w.k_u), Y * (1.0 + w.k_v), N + w.k_r * (N + munk)),
             turning,

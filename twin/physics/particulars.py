@@ -10,17 +10,11 @@ from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import Any
 
+from .actuators import Actuator
 from .core import Coefficients, coefficients
 from .effect import Effect
+from .number import number
 from .state import Number
-
-
-def number(default: float | None, unit: str, lo: float, hi: float, doc: str, sd: float = 0.0) -> Any:
-    """A number of the ship: value, unit, the range outside which it is a mistake, meaning, width of its
-    prior."""
-    return field(
-        default=default, metadata={"unit": unit, "lo": lo, "hi": hi, "doc": doc, "sd": sd}, kw_only=True
-    )
 
 
 @dataclass(frozen=True)
@@ -109,6 +103,8 @@ class Ship:
     A_L: Number = number(None, "m2", 1e-4, 20000.0, "lateral area above the water")
     derivatives: Derivatives = field(default_factory=Derivatives, kw_only=True)
     effects: tuple[Effect, ...] = field(default=(), kw_only=True)
+    # what drives and steers the ship; none: one propeller with a rudder behind it (D_P, A_R)
+    actuators: tuple[Actuator, ...] = field(default=(), kw_only=True)
     # sources, sd, structural, history ...
     notes: Mapping[str, Any] = field(default_factory=dict, kw_only=True, compare=False)
 
@@ -149,8 +145,36 @@ class Ship:
             "time": self.L_pp / self.U_0,
         }[of]
 
+    def actuator(self, name: str) -> Actuator:
+        """The actuator of that name; KeyError when the ship has none."""
+        for a in self.actuators:
+            if a.name == name:
+                return a
+        raise KeyError(name)
+
+    def derivative(self, name: str) -> Number:
+        """A number that voyages can tell: a derivative, or that of an actuator (`port.gain`)."""
+        owner, dot, own = name.rpartition(".")
+        return getattr(self.actuator(owner), own) if dot else getattr(self.derivatives, name)
+
+    def has(self, name: str) -> bool:
+        """Whether there is a derivative, or a number of an actuator, of that name."""
+        owner, dot, own = name.rpartition(".")
+        if not dot:
+            return hasattr(self.derivatives, name)
+        return any(a.name == owner and getattr(a, own, None) is not None for a in self.actuators)
+
     def with_derivatives(self, **values: Number) -> "Ship":
-        return replace(self, derivatives=replace(self.derivatives, **values))
+        """The ship with some of these numbers changed (see `derivative`)."""
+        own = {k: v for k, v in values.items() if "." in k}
+        if not own:
+            return replace(self, derivatives=replace(self.derivatives, **values))
+        parts = []
+        for a in self.actuators:
+            mine = {k.partition(".")[2]: v for k, v in own.items() if k.partition(".")[0] == a.name}
+            parts.append(a.but(**mine) if mine else a)
+        plain = {k: v for k, v in values.items() if k not in own}
+        return replace(self, actuators=tuple(parts), derivatives=replace(self.derivatives, **plain))
 
     def with_effects(self, *effects: Effect) -> "Ship":
         """The ship with these effects added; one of the same name is replaced."""
@@ -163,3 +187,5 @@ class Ship:
 
 PARTICULARS = tuple(f for f in fields(Ship) if f.metadata)
 DERIVATIVES = fields(Derivatives)
+# without actuators of its own a ship has one propeller and one rudder, and these are theirs
+ONE_SCREW = ("D_P", "A_R")

@@ -15,8 +15,10 @@ from typing import Any
 from twin.errors import SettingsError, did_you_mean
 
 from . import ship_arrays
+from .actuators import Actuator
+from .actuators.file import read as read_actuators
 from .effect import Effect
-from .particulars import DERIVATIVES, PARTICULARS, Derivatives, Ship
+from .particulars import DERIVATIVES, ONE_SCREW, PARTICULARS, Derivatives, Ship
 from .ship_text import SCHEMA_VERSION, save, text, to_table
 
 __all__ = [
@@ -27,6 +29,7 @@ __all__ = [
     "bundled",
     "from_table",
     "load",
+    "load_actuators",
     "save",
     "text",
     "to_table",
@@ -63,6 +66,19 @@ def load(path: str | os.PathLike[str], arrays: bool = True) -> Ship:
     return from_table(table, f"{path}: ")
 
 
+def load_actuators(path: str | os.PathLike[str]) -> tuple[Actuator, ...]:
+    """The [[actuators]] of a TOML file; SettingsError says what is wrong and where."""
+    try:
+        with open(path, "rb") as file:
+            table = tomllib.load(file)
+    except (OSError, ValueError, RecursionError) as error:
+        why = getattr(error, "strerror", None) or " ".join(str(error).split())[:200]
+        raise SettingsError(f"{path}: cannot be read as TOML ({why}).") from None
+    if not table.get("actuators"):
+        raise SettingsError(f"{path}: holds no [[actuators]]. A sail is none that this twin knows.")
+    return read_actuators(table["actuators"], f"{path}: ", _value)[0]
+
+
 def bundled() -> list[str]:
     """Names of the ships that come with the twin."""
     return sorted(p.stem for p in (Path(__file__).parent.parent / "ships").glob("*.toml"))
@@ -89,15 +105,25 @@ def from_table(table: Mapping[str, Any], where: str = "") -> Ship:
             f"{SCHEMA_VERSION}. Update the twin."
         )
     particulars = _numbers(_section(table, "particulars", where), PARTICULARS, f"{where}particulars.")
+    actuators, noted = read_actuators(table["actuators"], where, _value) if "actuators" in table else ((), {})
+    optional = ("A_F", "A_L", *(ONE_SCREW if actuators else ()))
     for f in PARTICULARS:
-        if f.default is None and f.name not in particulars and f.name not in ("A_F", "A_L"):
+        if f.default is None and f.name not in particulars and f.name not in optional:
             raise SettingsError(
                 f"{where}particulars.{f.name} ({f.metadata['doc']}, {f.metadata['unit']}) is missing. Add it."
             )
     derivatives = Derivatives(
         **_numbers(_section(table, "derivatives", where), DERIVATIVES, f"{where}derivatives.")
     )
-    ship = replace(Ship(str(table["name"]), **particulars), derivatives=derivatives, notes=dict(table))  # type: ignore[arg-type]
+    notes = dict(table)
+    if noted:
+        notes["derivatives"] = {**notes.get("derivatives", {}), **noted}
+    ship = replace(
+        Ship(str(table["name"]), **particulars),  # type: ignore[arg-type]
+        derivatives=derivatives,
+        actuators=actuators,
+        notes=notes,
+    )
     effects = _section(table, "effects", where)
     return replace(
         ship,

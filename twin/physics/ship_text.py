@@ -10,10 +10,11 @@ from typing import Any
 from twin import whole
 
 from . import ship_arrays
+from .actuators.file import tables as actuator_tables
 from .particulars import DERIVATIVES, PARTICULARS, Ship
 
 SCHEMA_VERSION = 1
-SECTIONS = ("schema_version", "name", "particulars", "derivatives", "effects")
+SECTIONS = ("schema_version", "name", "particulars", "derivatives", "effects", "actuators")
 
 
 def to_table(ship: Ship) -> dict[str, Any]:
@@ -47,6 +48,8 @@ def to_table(ship: Ship) -> dict[str, Any]:
         }
         for e in ship.effects
     }
+    if ship.actuators:
+        table["actuators"] = actuator_tables(ship.actuators, notes.get("derivatives", {}))
     return table | {k: v for k, v in notes.items() if k not in SECTIONS}
 
 
@@ -73,12 +76,13 @@ def text(table: Mapping[str, Any]) -> str:
         for k, v in ({k: table[k] for k in ("schema_version", "name")} | plain).items()
     ]
     sections = {key: table[key] for key in ("particulars", "derivatives")}
-    sections |= {f"effects.{name}": numbers for name, numbers in table["effects"].items()}
+    sections |= {f"effects.{_key(name)}": numbers for name, numbers in table["effects"].items()}
     for section, entries in (sections | {_key(k): v for k, v in tables.items()}).items():
         lines += ["", f"[{section}]"]
         for name, entry in entries.items():
             doc = docs.get(f"{section}.{name}")
             lines.append(f"{_key(name)} = {_inline(entry)}" + (f"  # {doc}" if doc else ""))
+    lists = ({"actuators": table["actuators"]} if table.get("actuators") else {}) | lists
     for name, items in lists.items():
         for item in items:
             lines += ["", f"[[{_key(name)}]]", *(f"{_key(k)} = {_inline(v)}" for k, v in item.items())]

@@ -5,6 +5,7 @@ from collections.abc import Collection, Sequence
 from pathlib import Path
 
 from twin.errors import DataError
+from twin.live.signals.channels import BY_NAME
 from twin.recording.mapping import FRAMED, NAMES, Column, Layout, Map, TimeColumn, nearest
 from twin.recording.sheet import Sheet, open_text
 
@@ -20,7 +21,7 @@ MISSPELT = 0.85  # a name this much alike is a slip of the pen, not another quan
 
 def own_names(path: Path, names: Sequence[str]) -> tuple[Map, tuple[str, ...]]:
     """(the map of the contract's own names, one sentence for each column that is not used)."""
-    columns = {n: Column(n) for n in names if n in NAMES} | over_ground(names)
+    columns = {n: Column(n) for n in names if n in NAMES or n in BY_NAME} | over_ground(names)
     used = {*TIMES, *(c.column for c in columns.values())}
     unused = tuple(unknown(path, name) for name in names if name and name not in used)
     times = [name for name in TIMES if name in names]

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from twin.errors import SettingsError, did_you_mean
+from twin.live.signals.channels import BY_NAME
 from twin.recording.mapping import (
     FRAMED,
     FRAMES,
@@ -196,7 +197,7 @@ def number(value: Any, where: str) -> float:
 
 
 def channel_name(name: str, where: str) -> None:
-    if name not in NAMES:
+    if name not in NAMES and name not in BY_NAME:
         near = nearest(name, NAMES)
         hint = f" Did you mean {near!r}?" if near else ""
         raise SettingsError(f"{where}: no channel is called {name!r}.{hint} docs/import.md lists them.")

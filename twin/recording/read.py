@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from twin.errors import DataError, did_you_mean
-from twin.live.signals.channels import BY_NAME
+from twin.live.signals.channels import BY_NAME, of_actuators
 from twin.recording.cells import converted, earlier, number_keys, optional_keys, sum_of, text_keys, there
 from twin.recording.formats import Format, recognised
 from twin.recording.formats.choose import Sources, chosen
@@ -324,7 +324,8 @@ def with_time(raw: Raw) -> None:
 
 def require(raw: Raw, controls: bool = True) -> None:
     """Heading, controls, and position or velocity must hold samples; DataError names all that do not."""
-    needed = ("heading_true_north_deg", *(CONTROLS if controls else ()))
+    parts = any(present(raw.columns, name) for name in of_actuators(raw.columns))
+    needed = ("heading_true_north_deg", *(CONTROLS if controls and not parts else ()))
     missing = [name for name in needed if not present(raw.columns, name)]
     if not present(raw.columns, *CHART) and not present(raw.columns, *FRAMED):
         missing.append(f"{' and '.join(CHART)} (or {' and '.join(PLACES)}, or {' and '.join(FRAMED)})")

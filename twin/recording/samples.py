@@ -36,7 +36,7 @@ def sentinel(name: str, values: np.ndarray) -> np.ndarray:
     ch = BY_NAME[name]
     with np.errstate(invalid="ignore"):
         out = ~((values >= ch.low) & (values <= ch.high)) & np.isin(values, GENERIC)
-        for code in CODES[name]:
+        for code in CODES.get(name, ()):
             out |= np.abs(values - code) <= abs(code) * IN_RANGE_TOO
     return np.asarray(out) & ~_on_the_way(values, np.asarray(out))
 

@@ -15,11 +15,39 @@ UNITS: dict[str, dict[str, float]] = {
     "degps": {"deg/s": 1.0, "deg/min": 1.0 / 60.0, "rad/s": DEG_PER_RAD},
     "rpm": {"rpm": 1.0, "1/min": 1.0, "1/s": 60.0, "Hz": 60.0, "rad/s": 30.0 / pi},
 }
-FROUDE_POWER = {"s": 0.5, "m": 1.0, "mps": 0.5, "deg": 0.0, "degps": -0.5, "rpm": -0.5}
+# the last part of an actuator's channel -> its unit
+OF_ACTUATORS = {
+    "command": "share", "pwm_us": "us", "rate_rpm": "rpm", "rate_rev_s": "rev_s", "thrust_n": "n",
+    "angle_deg": "deg", "angle_rad": "rad", "pitch_ratio": "ratio",
+}  # fmt: skip
+UNITS |= {
+    "share": {"share": 1.0, "%": 0.01},
+    "us": {"us": 1.0, "ms": 1e3},
+    "rev_s": {"1/s": 1.0, "rpm": 1.0 / 60.0, "rad/s": 0.5 / pi},
+    "n": {"N": 1.0, "kN": 1e3, "kgf": 9.80665},
+    "rad": {"rad": 1.0, "deg": pi / 180.0},
+    "ratio": {"ratio": 1.0, "%": 0.01},
+}
+FROUDE_POWER = {
+    "share": 0.0,
+    "us": 0.0,
+    "rev_s": -0.5,
+    "n": 3.0,
+    "rad": 0.0,
+    "ratio": 0.0,
+    "s": 0.5,
+    "m": 1.0,
+    "mps": 0.5,
+    "deg": 0.0,
+    "degps": -0.5,
+    "rpm": -0.5,
+}
 
 
 def unit_of(name: str) -> str:
     """The unit a name ends with: `yaw_rate_degps` -> `degps`, `wave_period_peak_s` -> `s`."""
+    if "." in name:
+        return OF_ACTUATORS[name.rpartition(".")[2]]
     return name.rpartition("_")[2]
 
 

@@ -3,6 +3,7 @@ there tells of the ship."""
 
 import numpy as np
 
+from twin.physics.particulars import Ship
 from twin.recording.voyage import Voyage
 
 CONTROLS = ("rudder_angle_deg", "propeller_rate_rpm")
@@ -26,10 +27,16 @@ def gaps(voyage: Voyage, name: str) -> list[tuple[float, float]]:
     return [(float(t[i]), float(t[i + 1])) for i in at]
 
 
-def known(voyage: Voyage, time_s: np.ndarray) -> np.ndarray:
+def of_ship(ship: Ship | None) -> tuple[str, ...]:
+    """The channels that say what drives and steers a ship."""
+    parts = ship.actuators if ship is not None else ()
+    return tuple(c for a in parts for c in a.columns()) or CONTROLS
+
+
+def known(voyage: Voyage, time_s: np.ndarray, controls: tuple[str, ...] = CONTROLS) -> np.ndarray:
     """(N,) bool: whether a time lies in no such gap of any control."""
     out = np.ones(time_s.size, bool)
-    for name in CONTROLS:
+    for name in controls:
         for last, first in gaps(voyage, name):
             a, b = np.searchsorted(time_s, [last, first], side="left")
             out[a + (a < time_s.size and time_s[a] <= last) : b] = False

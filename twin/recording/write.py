@@ -6,10 +6,11 @@ from pathlib import Path
 import numpy as np
 
 from twin import __version__
-from twin.live.keelson.messages import Row
+from twin.live.keelson.messages import field_name, row_with
 from twin.live.log.mcap_damage import EXTENT, extent
 from twin.live.log.mcap_index import PROVENANCE
 from twin.live.log.record import LogFile
+from twin.live.signals.channels import of_actuators
 from twin.recording.timebase import moment_of
 from twin.recording.voyage import Voyage
 
@@ -24,7 +25,8 @@ def write_voyage(voyage: Voyage, path: str | Path) -> None:
     """Writes aside and renames: the file is whole or not there. Missing samples are left out of a row."""
     start_ns = round(moment_of(voyage.meta.get("start_time_utc")) * NS)
     names = sorted(voyage.columns)
-    with LogFile(path) as log:
+    row_class = row_with(of_actuators(names))
+    with LogFile(path, {"shiptwin.Row": row_class}) as log:
         log.describe(
             ABOUT, {key: json.dumps(value) for key, value in (*voyage.meta.items(), ("name", voyage.name))}
         )
@@ -38,7 +40,7 @@ def write_voyage(voyage: Voyage, path: str | Path) -> None:
                 voyage.time_s[rows].tolist(), table.tolist(), np.isfinite(table).tolist(), strict=True
             ):
                 held = {n: x for n, x, ok in zip(names, values, there, strict=True) if ok}
-                row = Row(time_s=time_s, **held)
+                row = row_class(time_s=time_s, **{field_name(n): x for n, x in held.items()})
                 log.add(TOPIC, "shiptwin.Row", row.SerializeToString(), _log_ns(start_ns, time_s))
 
 

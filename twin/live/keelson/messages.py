@@ -7,7 +7,7 @@ flat enough to plot by path in Lichtblick, Foxglove and PlotJuggler: `estimate.h
 
 from typing import Any
 
-from twin.live.keelson.schema import Field, classes_from_table, descriptor_set, keelson_class
+from twin.live.keelson.schema import Field, apart, classes_from_table, descriptor_set, keelson_class
 from twin.live.signals.channels import CHANNELS
 
 
@@ -95,6 +95,25 @@ String: Any = keelson_class("keelson.TimestampedString")
 _CLASSES = classes_from_table("shiptwin", TABLE)
 Row: Any = _CLASSES["Row"]
 Tick: Any = _CLASSES["Tick"]
+
+
+def field_name(channel: str) -> str:
+    """A channel as a field of a message: `port.rate_rpm` -> `port__rate_rpm`."""
+    return channel.replace(".", "__")
+
+
+def channel_name(field: str) -> str:
+    """The other way round."""
+    return field.replace("__", ".")
+
+
+def row_with(channels: list[str]) -> Any:
+    """The class of a row that holds these channels of actuators too; Row itself when there are none."""
+    if not channels:
+        return Row
+    fields = [*TABLE["Row"], *((field_name(c), "double?") for c in channels)]
+    return apart("shiptwin", {"Row": fields})["Row"]
+
 
 _TIMESTAMP = "google.protobuf.Timestamp"
 Envelope: Any = classes_from_table(

@@ -54,6 +54,14 @@ def classes_from_table(
     return {name: _class_of(_POOL.FindMessageTypeByName(f"{package}.{name}")) for name in table}
 
 
+def apart(package: str, table: dict[str, list[Field]]) -> dict[str, Any]:
+    """The same in a pool of their own, so that a type may have the name of one that is known."""
+    pool = DescriptorPool()
+    messages = [proto_file.message(name, fields, package) for name, fields in table.items()]
+    pool.AddSerializedFile(proto_file.file(f"{package}.proto", package, (), messages))
+    return {name: _class_of(pool.FindMessageTypeByName(f"{package}.{name}")) for name in table}
+
+
 def descriptor_set(message_class: Any) -> bytes:
     """The FileDescriptorSet an MCAP schema record holds: the type's file after every file it imports."""
     files: dict[str, bytes] = {}

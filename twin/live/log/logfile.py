@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from twin.errors import TwinError
 from twin.live.keelson.messages import schema_bytes
+from twin.live.keelson.schema import descriptor_set
 from twin.live.log.mcap_read import McapReader, Message
 from twin.live.log.mcap_write import McapWriter
 
@@ -22,8 +23,9 @@ class LogFile:
     it.
     """
 
-    def __init__(self, path: str | Path):
-        self.path = Path(path)
+    def __init__(self, path: str | Path, classes: dict[str, Any] | None = None):
+        """`classes`: by type name those that are not the usual ones (a row with the ship's actuators)."""
+        self.path, self._classes = Path(path), classes or {}
         self._aside = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
 
     def __enter__(self) -> "LogFile":
@@ -39,11 +41,15 @@ class LogFile:
         self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int | None = None
     ) -> None:
         """One message without its envelope; times are nanoseconds since 1970."""
-        channel = self._writer.channel(topic, type_name, schema_bytes)
+        channel = self._writer.channel(topic, type_name, self._schema)
         try:
             self._writer.add(channel, payload, log_ns, log_ns if publish_ns is None else publish_ns)
         except OSError as failure:
             raise self._error(failure) from None
+
+    def _schema(self, type_name: str) -> bytes:
+        own = self._classes.get(type_name)
+        return schema_bytes(type_name) if own is None else descriptor_set(own)
 
     def describe(self, name: str, values: dict[str, str]) -> None:
         """A named table of words about the file (MCAP metadata)."""

@@ -14,6 +14,7 @@ from google.protobuf.message import DecodeError
 
 from twin.errors import DataError
 from twin.live.keelson.decode import Decoder, Result
+from twin.live.keelson.messages import channel_name
 from twin.live.keelson.schema import classes_from_set
 from twin.live.keelson.wire import double_columns
 from twin.live.log.mcap_read import McapReader
@@ -117,7 +118,10 @@ class Found:
         numbers, odd = double_columns(messages)
         if odd.any():
             self.refused[f"{wanted} {UNREADABLE}"] += int(odd.sum())
-        names = {field.number: field.name for field in self._class(type_name, wanted).DESCRIPTOR.fields}
+        names = {
+            field.number: channel_name(field.name)
+            for field in self._class(type_name, wanted).DESCRIPTOR.fields
+        }
         return {names[number]: values for number, values in numbers.items() if number in names}, ~odd
 
     def _sample(self, result: Result) -> None:

@@ -4,8 +4,12 @@ old.
 A channel's name is its CSV column, its field in the wide log record and, where Keelson has one, its subject.
 """
 
+import re
 from dataclasses import dataclass
 from math import inf, pi
+from typing import Any
+
+from twin.physics.actuators.channels import CHANNELS_OF, attribute_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,4 +124,32 @@ CHANNELS: tuple[Channel, ...] = (
     ),
     Channel("roll_deg", "phi", DEG, -90.0, 90.0, 90.0, doc="heel, starboard side down positive"),
 )
-BY_NAME: dict[str, Channel] = {c.name: c for c in CHANNELS}
+ACTUATOR_CHANNEL = re.compile(rf"[a-z][a-z0-9_]{{0,30}}\.({'|'.join(CHANNELS_OF)})")
+
+
+class ByName(dict[str, Channel]):
+    """The table's channels by name, and those of a ship's actuators (`port.rate_rpm`) as they are asked
+    for."""
+
+    def __contains__(self, name: object) -> bool:
+        return super().__contains__(name) or (
+            isinstance(name, str) and bool(ACTUATOR_CHANNEL.fullmatch(name))
+        )
+
+    def __missing__(self, name: str) -> Channel:
+        if not (isinstance(name, str) and ACTUATOR_CHANNEL.fullmatch(name)):
+            raise KeyError(name)
+        owner, _, last = name.rpartition(".")
+        c = CHANNELS_OF[last]
+        return Channel(name, attribute_of(name), c.to_si, c.low, c.high, doc=f"{owner}: {c.doc}")
+
+    def get(self, name: str, default: Any = None) -> Any:
+        return self[name] if name in self else default  # noqa: SIM401 (this is that get)
+
+
+BY_NAME = ByName({c.name: c for c in CHANNELS})
+
+
+def of_actuators(names: Any) -> list[str]:
+    """Those among these names that are channels of actuators."""
+    return [n for n in names if ACTUATOR_CHANNEL.fullmatch(n)]

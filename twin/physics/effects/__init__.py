@@ -5,10 +5,13 @@ An installed package adds its own by the entry point group `twin.effects`, name 
 
 import sys
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from twin.errors import SettingsError, did_you_mean
 from twin.physics.effect import Effect
 
+from .actuator_lag import ActuatorLag
+from .angle_offset import AngleOffset
 from .antenna_offset import AntennaOffset
 from .bank import Bank
 from .compass_deviation import CompassDeviation
@@ -20,6 +23,7 @@ from .heading_bias import HeadingBias
 from .heading_lag import HeadingLag
 from .hull_fouling import HullFouling
 from .loading import Loading
+from .of_actuator import OfActuator, of
 from .propeller_walk import PropellerWalk
 from .propeller_wear import PropellerWear
 from .receiver_smoothing import ReceiverSmoothing
@@ -34,10 +38,15 @@ from .speed_log_misalignment import SpeedLogMisalignment
 from .speed_log_scale import SpeedLogScale
 from .steering_lag import SteeringLag
 from .swaying_mass import SwayingMass
+from .thruster_wear import ThrusterWear
+from .thruster_zero import ThrusterZero
 from .tow_force import TowForce
 from .varying_current import VaryingCurrent
 from .wave_drift import WaveDrift
 from .wind import Wind
+
+if TYPE_CHECKING:
+    from twin.physics.particulars import Ship
 
 BUILT_IN: tuple[type[Effect], ...] = (
     Wind,
@@ -70,6 +79,28 @@ BUILT_IN: tuple[type[Effect], ...] = (
 )
 # known by their form, so that nothing of the catalogue is named in their place
 UNNAMED: tuple[type[Effect], ...] = (RudderPlay, SwayingMass)
+# families: each is an effect for every actuator that it suits (`ThrusterWear.port`)
+OF_ACTUATORS: tuple[type[OfActuator], ...] = (ThrusterWear, ThrusterZero, AngleOffset, ActuatorLag)
+
+
+def of_ship(ship: "Ship") -> dict[str, type[Effect]]:
+    """What may be wrong with this ship: the catalogue; of a ship with actuators of its own their effects, and
+    not those of one propeller and rudder."""
+    if not ship.actuators:
+        return catalogue()
+    known = {name: effect for name, effect in catalogue().items() if not effect.one_screw}
+    own: list[type[Effect]] = [
+        of(family, a.name)  # type: ignore[arg-type]
+        for a in ship.actuators
+        for family in OF_ACTUATORS
+        if family.suits(a)
+    ]
+    return known | {e.__name__: e for e in own}
+
+
+def unnamed_of(ship: "Ship") -> tuple[type[Effect], ...]:
+    """Of those known by their form alone, what this ship can have."""
+    return tuple(e for e in UNNAMED if not (ship.actuators and e.one_screw))
 
 
 @lru_cache(maxsize=1)
@@ -109,6 +140,12 @@ def find(name: str) -> type[Effect]:
     for effect in BUILT_IN:
         if effect.__name__ == name:
             return effect
+    family, dot, actuator = name.partition(".")
+    for kind in OF_ACTUATORS:
+        if family == kind.__name__:
+            if not dot or not actuator:
+                raise SettingsError(f"{family} is of one actuator: write {family}.NAME, as in {family}.port.")
+            return of(kind, actuator)  # type: ignore[arg-type]
     if name in (e.__name__ for e in UNNAMED):
         raise SettingsError(
             f"{name} is known by its form alone: what a repair mends is no part of a ship "
@@ -121,5 +158,5 @@ def find(name: str) -> type[Effect]:
         raise SettingsError(
             f"The installed effect {name} cannot be used: {broken[name]}. Try: twin effects --check {name}"
         )
-    known = catalogue()
+    known = [*catalogue(), *(f"{e.__name__}.NAME" for e in OF_ACTUATORS)]
     raise SettingsError(f"Unknown effect {name!r}.{did_you_mean(name, known)}")

@@ -15,6 +15,7 @@ class PropellerWalk(Force):
     """The single screw pushes its stern to one side, the more the harder it turns: helm to go straight, at
     any speed."""
 
+    one_screw = True
     source = "Brix (1993) Manoeuvring Technical Manual (side force of a single screw)"
 
     c_y: float = param(

@@ -15,6 +15,7 @@ class PropellerWear(Force):
     """The propeller gives less thrust than it did, so the ship is slower and its rudder, in a weaker
     slipstream, bites less."""
 
+    one_screw = True
     source = (
         "Carlton (2018) Marine Propellers and Propulsion, 4th ed. (blade roughness and damage in service)"
     )

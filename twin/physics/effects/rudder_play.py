@@ -15,6 +15,7 @@ class RudderPlay(Lag):
     """The rudder hangs loose in its linkage: it stops short of the angle that is shown, on either side, and
     lags behind each time it turns back."""
 
+    one_screw = True
     source = (
         "Tao & Kokotovic (1996) Adaptive control of systems with actuator and sensor nonlinearities, "
         "ch. 2 (backlash)"

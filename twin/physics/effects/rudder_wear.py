@@ -14,6 +14,7 @@ class RudderWear(Force):
     """The rudder gives less force at the same angle: the ship answers late, turns wider and is harder to stop
     turning."""
 
+    one_screw = True
     source = "Yasukawa & Yoshimura (2015) J. Mar. Sci. Technol. 20, 37-52, eq. (20)-(27): a share of F_N"
 
     loss: float = param(0.15, unit="-", lo=0.0, hi=0.8, sd=0.15, doc="share of the rudder force that is lost")

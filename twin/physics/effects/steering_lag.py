@@ -23,6 +23,7 @@ class SteeringLag(Lag):
     angle stand between order and angle."""
 
     copies = ("ease",)
+    one_screw = True
     source = "SOLAS II-1/29 (65 deg in 28 s); Van Amerongen (1982) Adaptive steering of ships, ch. 2"
 
     delay: float = param(

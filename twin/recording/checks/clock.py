@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from twin.live.signals.channels import of_actuators
 from twin.num import num
 from twin.recording.checks.answer import Check, doubtful, good, wrong
 from twin.recording.checks.view import View
@@ -84,7 +85,8 @@ def time_gaps(view: View) -> Check:
 
 def control_gaps(view: View) -> Check:
     """Gaps of rudder and shaft in which these changed."""
-    found = {name: gaps(view.voyage, name) for name in CONTROLS}
+    parts = of_actuators(view.voyage.columns)
+    found = {name: gaps(view.voyage, name) for name in (*CONTROLS, *parts)}
     said = [
         f"{name} changed in {len(g)} gap{'s' * (len(g) > 1)} of {num(sum(b - a for a, b in g), 4)} s in all, "
         "the "

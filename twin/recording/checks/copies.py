@@ -36,7 +36,11 @@ def copies(view: View) -> Check:
 def pairs(view: View) -> list[tuple[str, str]]:
     derived = view.voyage.meta.get("derived", {})
     constant = view.voyage.meta.get("constant", ())
-    names = [n for n in view.voyage.columns if n not in derived and n not in constant and n not in MAY_BE]
+    names = [
+        n
+        for n in view.voyage.columns
+        if n not in derived and n not in constant and n not in MAY_BE and "." not in n
+    ]
     return [(a, b) for a, b in combinations(names, 2) if unit_of(a) == unit_of(b)]
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from twin.num import num
 from twin.physics.effect import Effect
-from twin.physics.effects import catalogue
+from twin.physics.effects import of_ship
 from twin.physics.effects.antenna_offset import AntennaOffset
 from twin.physics.effects.steering_lag import SteeringLag
 from twin.physics.effects.wind import Wind
@@ -103,7 +103,7 @@ def calibrate(
     ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
     if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
         progress("fitting to where it went")
-        led = rolled_out(tracks, Model.of(ships["steps"]), excited, catalogue()).ship
+        led = rolled_out(tracks, Model.of(ships["steps"]), excited, of_ship(ship)).ship
         ships["paths"] = with_core_of(ships["steps"], led)
     off = {way: errors(Model.of(s), held_out) for way, s in ships.items()}
     way = by if by in ships else min(ships, key=lambda way: size(off[way]) - BETTER * (way == "steps"))
@@ -133,7 +133,7 @@ def _with_antenna(
 
 
 def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
-    model, known = Model.of(ship), catalogue()
+    model, known = Model.of(ship), of_ship(ship)
     unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
     progress("fitting the core, and asking whether the rudder that was recorded is its order")
     tracks = [levelled(t) for t in sailed]
@@ -231,7 +231,7 @@ def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
 
 
 def _row(d: Derivative, ship: Ship, after: Ship) -> dict[str, Any]:
-    before, value = (float(getattr(s.derivatives, d.unknown.name)) for s in (ship, after))
+    before, value = (float(s.derivative(d.unknown.name)) for s in (ship, after))
     return {"name": d.unknown.name, "before": before, "value": value, "sd": d.sd, "excited": d.excited}
 
 

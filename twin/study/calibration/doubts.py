@@ -5,6 +5,7 @@ from types import MappingProxyType
 from typing import Any
 
 from twin.num import num
+from twin.physics.actuators import NUMBERS
 from twin.physics.ship import DERIVATIVES
 
 EDGE = 1e-6  # of the box: a value nearer than this to its end was stopped by it
@@ -33,8 +34,12 @@ def doubts(
 
 
 def _stopped(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
-    box = {f.name: (f.metadata["lo"], f.metadata["hi"]) for f in DERIVATIVES}
-    names = [d["name"] for d in derivatives if d["excited"] and _at_an_end(d["value"], *box[d["name"]])]
+    box = {f.name: (f.metadata["lo"], f.metadata["hi"]) for f in (*DERIVATIVES, *NUMBERS.values())}
+    names = [
+        d["name"]
+        for d in derivatives
+        if d["excited"] and _at_an_end(d["value"], *box[d["name"].rpartition(".")[2]])
+    ]
     if not names:
         return []
     return [

@@ -77,9 +77,7 @@ def rolled_out(
     """The model whose core leads the ship most nearly where it went, begun from `model` or from the
     unknowns' centres."""
     problem = _Problem(tracks, model, unknowns, catalogue)
-    here = (
-        np.array([float(getattr(model.ship.derivatives, u.name)) for u in unknowns]) - problem.centre
-    ) / problem.sd
+    here = (np.array([float(model.ship.derivative(u.name)) for u in unknowns]) - problem.centre) / problem.sd
     starts = [here, np.zeros_like(here)]
     problem.weigh(starts[0])
     z = min(starts, key=lambda start: problem.cost(problem.residual(start), start))

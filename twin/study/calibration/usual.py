@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.physics.effects import catalogue
+from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
@@ -28,7 +28,7 @@ CLEAR = 4.0  # standard errors
 def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
     """Offsets from the ship file and their covariance, in the unknowns' own units; by how much numbers differ
     from voyage to voyage; and the floor `beside` all that. A diagnosis starts from here."""
-    model, known = Model.of(ship), catalogue()
+    model, known = Model.of(ship), of_ship(ship)
     unknowns = usual_unknowns(model, known)
     lines = [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
     beside = floor_beside(lines, unknowns, floor)
@@ -68,7 +68,9 @@ def path_errors(
     model, sd = Model.of(ship), np.array([u.sd for u in unknowns])
     pull = (centres - np.array([u.centre for u in unknowns])) / sd
     scatter = np.array([between.get(u.label, 0.0) ** 2 for u in unknowns])
-    without = models_without(model, unknowns, innovate(lines, [floor])[0], scatter, pull, temper, catalogue())
+    without = models_without(
+        model, unknowns, innovate(lines, [floor])[0], scatter, pull, temper, of_ship(ship)
+    )
     found = path_error(model, tracks, without)
     return found.entry() if found else {}
 
@@ -77,7 +79,7 @@ def clearly_hers(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
     """What this ship clearly shows of lasting effects: not wrong, but part of it. What no ship can show (a
     rudder ahead of its order) stands in for something else, and is kept in mind without being told."""
     can = {
-        u.label: (u.lo - u.centre, u.hi - u.centre) for u in nuisance_unknowns(Model.of(ship), catalogue())
+        u.label: (u.lo - u.centre, u.hi - u.centre) for u in nuisance_unknowns(Model.of(ship), of_ship(ship))
     }
     sd = np.sqrt(np.diag(np.array(found["covariance"])))
     return [

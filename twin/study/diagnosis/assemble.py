@@ -7,8 +7,7 @@ import numpy as np
 
 from twin.errors import DataError
 from twin.physics.effect import Effect
-from twin.physics.effects import UNNAMED
-from twin.physics.effects import catalogue as known_effects
+from twin.physics.effects import of_ship, unnamed_of
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
@@ -68,8 +67,8 @@ def of_tracks(
     fit and some for the proof). `asked`: effects that are judged although `twin instruments` looks for them
     (`Effect.kinematic`)."""
     model, tracks = Model.of(ship), tuple(sailed)
-    catalogue = {n: e for n, e in known_effects().items() if not e.kinematic or e in asked}
-    unnamed = {e.__name__: e for e in UNNAMED}
+    catalogue = {n: e for n, e in of_ship(ship).items() if not e.kinematic or e in asked}
+    unnamed = {e.__name__: e for e in unnamed_of(ship)}
     judged = catalogue | unnamed
     candidates = judgeable(tracks, model, judged)
     as_before = as_usual(strengths(tracks, model, catalogue), _felt_before(references, model, catalogue))

@@ -13,6 +13,7 @@ from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.diagnosis.case import Case
 from twin.study.estimation.innovations import linearise
+from twin.study.prediction.trial import controls
 from twin.study.track.track import READINGS, Track
 
 LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of its lengths
@@ -90,7 +91,8 @@ def sail(case: Case, model: Model, order: Order) -> Track:
     like = case.tracks[0]
     h = float(model.ship.scale("time")) / STEPS_PER_LENGTH
     steps = LENGTHS * STEPS_PER_LENGTH
-    usual = float(np.median(like.n[like.whole]))
+    parts = bool(model.ship.actuators)
+    usual = 0.5 if parts else float(np.median(like.n[like.whole]))
     weather = {name: float(np.median(values)) for name, values in like.weather.items()}
     state = (0.0, 0.0, 0.0, float(np.median(like.state[:, 3])), 0.0, 0.0)
     helm, L = Helm(), float(model.ship.L_pp)
@@ -100,7 +102,7 @@ def sail(case: Case, model: Model, order: Order) -> Track:
             break
         delta, power = order(helm)
         states[k], orders[k] = state, (delta, power * usual)
-        s = Situation(delta=delta, n=power * usual, t=k * h, **weather)
+        s = Situation(**controls(model, delta, power * usual), t=k * h, **weather)
         state = model.step(state, s, h)
         speed = max(abs(state[3]), 1e-3)
         helm.lengths, helm.turned, helm.rate = helm.lengths + speed * h / L, state[2], state[5] * L / speed
@@ -119,7 +121,14 @@ def sail(case: Case, model: Model, order: Order) -> Track:
         measured,
         like.sd,
         np.ones(steps, bool),
+        told=_told(model, orders) if parts else None,
     )
+
+
+def _told(model: Model, orders: np.ndarray) -> dict[str, np.ndarray]:
+    """What the actuators were told, (N,) each."""
+    each = controls(model, orders[:, 0], orders[:, 1])["told"]  # type: ignore[arg-type]
+    return {name: np.broadcast_to(x, len(orders)).astype(float) for name, x in each.items()}
 
 
 def separation(case: Case, model: Model, track: Track, first: str, second: str, z: np.ndarray) -> float:

@@ -4,14 +4,16 @@ readings.
 Derivatives of the core and parameters of the effects are treated alike; a column is a secant over a plausible
 size, so that a parameter which is not quite linear counts with what it would really do."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from twin.physics.actuators import NUMBERS
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-from twin.physics.ship import DERIVATIVES
+from twin.physics.ship import DERIVATIVES, Ship
 from twin.study.estimation import form, rough, tossed
 from twin.study.estimation.respond import faulty, respond
 from twin.study.track.track import Track
@@ -77,15 +79,29 @@ def core_unknowns(model: Model) -> list[Unknown]:
     """The core's derivatives, with the ship file's own standard errors where it has them."""
     own = model.ship.notes.get("derivatives", {})
     out = []
-    for f in DERIVATIVES:
-        value, m = float(getattr(model.ship.derivatives, f.name)), f.metadata
-        if f.name in FIXED or m["sd"] == 0.0:
-            continue
-        entry = own.get(f.name, {})
+    for name, value, m in _told_by_voyages(model.ship):
+        entry = own.get(name, {})
         sd = entry.get("prior_sd", None) if isinstance(entry, dict) else None
-        sd = float(sd) if sd else max(m["sd"], 0.15 * abs(value))
-        out.append(Unknown("core", f.name, m["unit"], value, sd, m["lo"], m["hi"]))
+        sd = float(sd) if sd else max(m["sd"], 0.15 * abs(value) if "." not in name else 0.0)
+        out.append(Unknown("core", name, m["unit"], value, sd, m["lo"], m["hi"]))
     return out
+
+
+# of the propeller and the rudder that a ship with actuators of its own has not, or shares with these
+OF_SCREW = ("K_T0", "K_T1")
+OF_RUDDER = ("kappa", "C_L", "t_R", "a_H", "x_H", "gamma_v", "gamma_r", "gamma_a")
+
+
+def _told_by_voyages(ship: Ship) -> Iterator[tuple[str, float, Mapping[str, Any]]]:
+    """(name, value, declaration) of every number of the core that voyages may tell."""
+    rudders = any(a.A_R is not None for a in ship.actuators)
+    off = (*OF_SCREW, *(() if rudders else OF_RUDDER)) if ship.actuators else ()
+    for f in DERIVATIVES:
+        if f.name not in FIXED and f.metadata["sd"] and f.name not in off:
+            yield f.name, float(getattr(ship.derivatives, f.name)), f.metadata
+    for a in ship.actuators:
+        for name in a.told():
+            yield f"{a.name}.{name}", float(getattr(a, name)), NUMBERS[name].metadata
 
 
 def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:

@@ -198,7 +198,7 @@ class _Problem:
 def _present(model: Model, unknown: Unknown) -> float:
     """The unknown's value in the model as it stands; its centre where the effect is not there."""
     if unknown.owner == "core":
-        return float(getattr(model.ship.derivatives, unknown.name))
+        return float(model.ship.derivative(unknown.name))
     for effect in model.effects:
         if type(effect).__name__ == unknown.owner:
             return float(getattr(effect, unknown.name))

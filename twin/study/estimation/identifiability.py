@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 
 from twin.errors import DataError
-from twin.physics.effects import catalogue
+from twin.physics.effects import of_ship
 from twin.physics.effects.current import Current
 from twin.physics.model import Model
 from twin.physics.state import Force, Situation
 from twin.recording.voyage import Voyage
 from twin.study.estimation.columns import columns, core_unknowns, effect_unknowns
-from twin.study.estimation.respond import lagged, readings
+from twin.study.estimation.respond import readings, steered
 from twin.study.track.track import READINGS, STATE, Track, track
 
 UNKNOWNS = ("x", "y", "psi", "u", "v", "r", "current north", "current east", "force X", "force Y", "force N")
@@ -128,11 +128,12 @@ def _run(t: Track, model: Model, starts: np.ndarray, steps: int, nudges: np.ndar
     push = Force(*by[8:11])
     model = replace(model.but(here), residual=lambda s: push)
     state = tuple(t.state[first, i] + by[i] for i in range(len(STATE)))
-    delta, out = lagged(t, model), []
+    controls, out = steered(t, model), []
     for k in range(steps):
         rows = first + k
         inputs = {name: x[rows] for name, x in t.weather.items()} | {
-            "delta": delta[rows],
+            "delta": controls["delta"][rows],
+            "told": None if t.told is None else {k: x[rows] for k, x in controls["told"].items()},
             "n": t.n[rows],
             "t": t.t[rows],
         }
@@ -148,7 +149,7 @@ def angles(t: Track, model: Model) -> dict[str, dict[str, Any]]:
     """For each force and flow that the voyage can feed: its angles to the span of the core's columns, and
     what of it lies inside.
     """
-    thin, known = _thinned(t), catalogue()
+    thin, known = _thinned(t), of_ship(model.ship)
     scale = _axis_scale(model)
     core = basis(_stacked(columns(thin, model, core_unknowns(model), known)[0], scale))
     spans, out = {}, {}
@@ -175,7 +176,7 @@ def residual_angles(
     """For each axis: the residual's features against the core's columns of that axis (the paper's F_theta
     against F_D); with its last layer W (3, F) also how much of the learned force the core could give itself.
     """
-    thin, known = _thinned(t), catalogue()
+    thin, known = _thinned(t), of_ship(model.ship)
     A = columns(thin, model, core_unknowns(model), known)[0]
     s = thin.situation()
     model.nu_dot(s)
@@ -247,6 +248,7 @@ def _thinned(t: Track) -> Track:
     return replace(
         t, t=t.t[rows], state=t.state[rows], delta=t.delta[rows], n=t.n[rows],
         weather={k: w[rows] for k, w in t.weather.items()}, measured=t.measured[rows], whole=t.whole[rows],
+        told=None if t.told is None else {k: x[rows] for k, x in t.told.items()},
     )  # fmt: skip
 
 

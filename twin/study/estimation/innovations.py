@@ -20,6 +20,7 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.effects import find
+from twin.physics.maths import total
 from twin.physics.model import Model
 from twin.study.estimation.abreast import Where, abreast, beside_each
 from twin.study.estimation.columns import LATE, Unknown, beside, columns, turns
@@ -44,10 +45,11 @@ from twin.study.estimation.respond import (
     advance,
     faulty,
     jacobian,
-    lagged,
+    keep_steered,
     later,
     respond,
     standard,
+    steered,
     when_true,
 )
 from twin.study.estimation.start import undone
@@ -194,7 +196,7 @@ def _bends(
     some = track.where(steps)
 
     def slopes(m: Model) -> np.ndarray:
-        some.rudder[m.lags] = lagged(track, m)[steps]  # a gear is stepped through all of them
+        keep_steered(some, m, track, steps)  # a gear is stepped through all of them
         return np.concatenate([jacobian(some, m)[:, :, 2:], _by_current(some, m)], axis=2)
 
     out, here = np.zeros((steps.size, 3, 6, len(unknowns)), np.float32), slopes(model)
@@ -237,7 +239,7 @@ def _without_current(model: Model) -> Model:
 def busy(track: Track, model: Model) -> np.ndarray:
     """(N, 3) how hard hull, propeller and rudder are at work, as accelerations [m/s2, m/s2, rad/s2], over the
     last length."""
-    s = track.situation(delta=lagged(track, model))
+    s = track.situation(**steered(track, model))
     forces = model.known(s)
     width = max(3, int(model.ship.scale("time") / track.h))
     out = np.empty((len(track), 3))
@@ -245,6 +247,8 @@ def busy(track: Track, model: Model) -> np.ndarray:
         square = np.zeros(track.t.shape)
         for name in ("hull", "propeller", "rudder", "coriolis"):
             square += np.broadcast_to(getattr(forces[name], axis), track.t.shape) ** 2
+        if parts := [getattr(forces[a.name], axis) for a in model.ship.actuators]:
+            square += np.broadcast_to(total(parts), track.t.shape) ** 2
         mean = np.convolve(square, np.ones(width) / width, "same")
         out[:, i] = np.sqrt(mean) / (model.c.m_u, model.c.m_v, model.c.m_r)[i]
     return out

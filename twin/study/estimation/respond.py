@@ -1,9 +1,10 @@
 """What a model says along a track: the accelerations it would give the ship there, and what the instruments
 would read."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,7 @@ from twin.study.track.track import READINGS, STATE, Track
 def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3) accelerations [m/s2, m/s2, rad/s2] and (N, 8) readings (see READINGS) of a ship that moves along
     the track."""
-    s = track.situation(delta=lagged(track, model))
+    s = track.situation(**steered(track, model))
     nu_dot = _nu_dot(s, model)
     s.u_dot, s.v_dot, _ = nu_dot.T
     return nu_dot, readings(s, model)
@@ -25,7 +26,7 @@ def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
 
 def accelerations(track: Track, model: Model) -> np.ndarray:
     """(N, 3) accelerations alone."""
-    return _nu_dot(track.situation(delta=lagged(track, model)), model)
+    return _nu_dot(track.situation(**steered(track, model)), model)
 
 
 def standard(model: Model) -> np.ndarray:
@@ -87,24 +88,46 @@ GEARS = 16  # steering gears whose rudder a track remembers
 
 def lagged(track: Track, model: Model) -> np.ndarray:
     """(N,) the rudder as it truly stands [rad], when the track holds its order and the model has a lag."""
+    return _lagged(track, model)[0]
+
+
+def steered(track: Track, model: Model) -> dict[str, Any]:
+    """Rudder and actuators as they truly stand, as fields of Situation."""
+    delta, told = _lagged(track, model)
+    return {"delta": delta} if told is None else {"delta": delta, "told": told}
+
+
+def keep_steered(track: Track, model: Model, of: Track, steps: np.ndarray) -> None:
+    """Lets a choice of steps of a track remember what lags made of all of them."""
+    delta, told = _lagged(of, model)
+    some = None if told is None else {k: x[steps] for k, x in told.items()}
+    track.rudder[model.lags] = (delta[steps], some)
+
+
+def _lagged(track: Track, model: Model) -> tuple[np.ndarray, Mapping[str, np.ndarray] | None]:
     gears = model.lags
     if gears not in track.rudder:
         if len(track.rudder) >= GEARS:
             track.rudder.clear()
-        track.rudder[gears] = _behind(track, gears)
-    return track.rudder[gears]
+        of_rudder = [g for g in gears if not getattr(g, "actuator", "")]
+        told = track.told
+        for gear in gears if told else ():
+            assert told is not None
+            name = f"{getattr(gear, 'actuator', '')}."
+            told = {k: _behind(track, [gear], x) if k.startswith(name) else x for k, x in told.items()}
+        track.rudder[gears] = (_behind(track, of_rudder, track.delta), told)
+    return track.rudder[gears]  # type: ignore[no-any-return]
 
 
-def _behind(track: Track, gears: Sequence[Lag]) -> np.ndarray:
-    delta = track.delta
+def _behind(track: Track, gears: Sequence[Lag], values: np.ndarray) -> np.ndarray:
     for gear in map(_plain, gears):
-        order = np.interp(track.t - gear.dead_time(), track.t, delta)
+        order = np.interp(track.t - gear.dead_time(), track.t, values)
         out = np.empty_like(order)
         actual, h = float(order[0]), track.h
         for k, wanted in enumerate(order.tolist()):
             out[k] = actual = gear.step(actual, wanted, h)
-        delta = out
-    return delta
+        values = out
+    return values
 
 
 def _plain(gear: Lag) -> Lag:
@@ -114,7 +137,9 @@ def _plain(gear: Lag) -> Lag:
 
 def advance(track: Track, model: Model) -> np.ndarray:
     """(N, 6) where the model would be one grid step on, from each point of the smooth motion."""
-    s = track.situation(delta=_between(lagged(track, model)), n=_between(track.n))
+    delta, told = _lagged(track, model)
+    half = None if told is None else {k: _between(x) for k, x in told.items()}
+    s = track.situation(delta=_between(delta), n=_between(track.n), told=half)
     state = tuple(track.state.T)
     return np.column_stack(model.step(state, s, track.h))
 
@@ -127,13 +152,13 @@ def _between(values: np.ndarray) -> np.ndarray:
 def jacobian(track: Track, model: Model) -> np.ndarray:
     """(N, 3, 6) derivative of the accelerations by x, y, psi, u, v, r, by central differences (position does
     not matter)."""
-    delta = lagged(track, model)
+    controls = steered(track, model)
     U, r = float(model.ship.scale("speed")), 1.0 / float(model.ship.scale("time"))
     out = np.zeros((len(track), 3, 6))
     for j, size in ((2, 1e-3), (3, 1e-3 * U), (4, 1e-3 * U), (5, 1e-3 * r)):
         sides = []
         for sign in (1.0, -1.0):
-            s = track.situation(delta=delta)
+            s = track.situation(**controls)
             setattr(s, STATE[j], getattr(s, STATE[j]) + sign * size)
             sides.append(_nu_dot(s, model))
         out[:, :, j] = (sides[0] - sides[1]) / (2.0 * size)

@@ -30,7 +30,9 @@ def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
     if track.swell is None or name not in HELM:
         return np.zeros((len(track), 3))
     period_s = wave_period_s(track)
-    mean = replace(track, delta=running_mean(track.delta, max(1, round(period_s / track.h))))
+    width = max(1, round(period_s / track.h))
+    told = None if track.told is None else {k: running_mean(x, width) for k, x in track.told.items()}
+    mean = replace(track, delta=running_mean(track.delta, width), told=told)
     swift = pushed(track, model) - pushed(mean, model)
     return _earlier(swift, track, period_s) if name.endswith(EARLIER) else swift
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from twin.errors import SettingsError
 from twin.num import num
+from twin.physics.actuators import Actuator
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship
 from twin.study.first_model import regressions as reg
@@ -51,17 +52,19 @@ OPTIONS: tuple[tuple[str, str, float, float], ...] = (
 REQUIRED = ("length-pp-m", "beam-m", "draught-m")
 # what is given, and is no particular of the ship file
 INSIDE = ("shaft-speed-rpm", "propellers", "pitch-ratio", "rudder-height-m")
+LEAST_FULL = 0.05  # of length x beam x draught, of two slender hulls with much water between them
 FULL = 0.7  # block coefficient from which ships often do not go straight by themselves
 Given = Mapping[str, float | None]
 Numbers = dict[str, tuple[float, str]]  # name -> value, source
 
 
-def first_model(name: str, given: Given) -> tuple[Ship, list[str]]:
-    """The ship, and in words what to doubt about it; SettingsError where a number cannot be right."""
+def first_model(name: str, given: Given, actuators: tuple[Actuator, ...] = ()) -> tuple[Ship, list[str]]:
+    """The ship, and in words what to doubt about it; SettingsError where a number cannot be right. A ship
+    with `actuators` may have two hulls, so that it fills little of length x beam x draught."""
     if not name.strip():
         raise SettingsError("NAME is empty. Give the ship a name.")
     _check(given)
-    p = _particulars(given)
+    p = _particulars(given, LEAST_FULL if actuators else 0.2)
     h = reg.Hull(*(p[k][0] for k in ("L_pp", "B", "T", "C_b", "U_0", "x_G", "rho")))
     d = _derivatives(reg.nearest(h), p, given)
     notes: dict[str, Any] = {
@@ -70,7 +73,7 @@ def first_model(name: str, given: Given) -> tuple[Ship, list[str]]:
     }
     used = {part for _, source in (*p.values(), *d.values()) for part in source.split("; ")}
     notes["sources"] = {key: text for key, text in reg.SOURCES.items() if key in used}
-    ship = replace(_ship(name.strip(), p, d), notes=notes)
+    ship = replace(_ship(name.strip(), p, d), notes=notes, actuators=actuators)
     _in_ranges(ship)
     rough = [k for k, (_, s) in p.items() if s in ("ROUGH", "ALEX")]
     guessed = [f"{', '.join(rough)}: guessed by size only; give them if you can"] if rough else []
@@ -104,16 +107,16 @@ def _check(given: Given) -> None:
         )
 
 
-def _particulars(given: Given) -> Numbers:
+def _particulars(given: Given, least: float = 0.2) -> Numbers:
     """Particulars with their sources, given or estimated."""
     L, B, T = (float(given[o]) for o in REQUIRED)  # type: ignore[arg-type]
     rho, box = given["rho-kg-m3"] or 1025.0, L * B * T
     mass, C_b, speed = given["mass-kg"], given["block-coefficient"], given["service-speed-mps"]
     by_mass = None if mass is None else mass / (rho * box)
-    if by_mass is not None and not 0.2 <= by_mass <= 0.99:
+    if by_mass is not None and not least <= by_mass <= 0.99:
         raise SettingsError(
-            f"--mass-kg {mass:g} fills {by_mass:.0%} of length x beam x draught; a ship fills 20 to 99 %. "
-            "Check the mass (kg) and the draught."
+            f"--mass-kg {mass:g} fills {by_mass:.0%} of length x beam x draught; a ship fills {least:.0%} to "
+            "99 %. Check the mass (kg) and the draught."
         )
     if by_mass is not None and C_b is not None and abs(by_mass / C_b - 1.0) > 0.05:
         raise SettingsError(
@@ -260,7 +263,8 @@ def sea_trial(ship: Ship) -> dict[str, Any]:
     circle = turning_circle(model, radians(35.0))
     over = zigzag(model, radians(20.0), radians(20.0))
     figures = {
-        "shaft_speed_rpm": 60.0 * shaft_speed(model, ship.U_0),
+        "shaft_speed_rpm": None if ship.actuators else 60.0 * shaft_speed(model, ship.U_0),
+        **({"power": shaft_speed(model, ship.U_0)} if ship.actuators else {}),
         "service_speed_mps": ship.U_0,
         "advance_L": circle.advance,
         "tactical_diameter_L": circle.tactical_diameter,
@@ -269,6 +273,14 @@ def sea_trial(ship: Ship) -> dict[str, Any]:
         "straight_line_stability": straight_line_stability(model),
     }
     return {k: None if v is None else float(f"{v:.4g}") for k, v in figures.items()}
+
+
+def _driven(ship: Ship, figures: Mapping[str, Any], bridge: str) -> str:
+    """What drives the ship at service speed."""
+    at = f"at {ship.U_0:.3g} m/s ({ship.U_0 / 0.514444:.1f} kn)"
+    if ship.actuators:
+        return f"{100.0 * figures['power']:.0f} % of the power of {len(ship.actuators)} actuators {at}"
+    return f"{figures['shaft_speed_rpm']:.0f} rpm {at}: {bridge}"
 
 
 def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
@@ -315,8 +327,7 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
     lines += [
         "",
         "  sea trial of this model (estimates; how it turns is only roughly right until it is calibrated)",
-        f"    {figures['shaft_speed_rpm']:.0f} rpm at {num(ship.U_0, 3)} m/s ({ship.U_0 / 0.514444:.1f} kn): "
-        f"{bridge}",
+        f"    {_driven(ship, figures, bridge)}",
         f"    turning circle 35 deg: advance {figures['advance_L']:.1f} L, tactical diameter "
         f"{figures['tactical_diameter_L']:.1f} L,"
         f" {100 * figures['speed_left']:.0f} % of the speed left",

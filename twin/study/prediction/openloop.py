@@ -20,7 +20,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 from twin.study.estimation.innovations import MEMORY_B, Floor, busy
-from twin.study.estimation.respond import lagged, readings, standard
+from twin.study.estimation.respond import readings, standard, steered
 from twin.study.estimation.start import noisy, seen, steadied, true_motion
 from twin.study.reference.structure import once_off
 from twin.study.track.track import READINGS, STATE, Track
@@ -226,7 +226,9 @@ class _Run:
         self.runs = 1  # of every window, side by side
         self.known = replace(model, residual=None)
         self.learned = model.residual
-        self.inputs = dict(track.weather) | {"delta": lagged(track, model), "n": track.n}
+        controls = steered(track, model)
+        self.told = dict(controls.pop("told", {}))
+        self.inputs = dict(track.weather) | controls | {"n": track.n}
         if wind_to is not None:
             self.inputs["wind_to"] = wind_to
         if slow is not None:
@@ -259,7 +261,12 @@ class _Run:
             values[name] = values[name] + ahead * (
                 np.tile(self.inputs[name][after], self.runs) - values[name]
             )
-        return Situation(**values, t=np.tile(self.track.t[step], self.runs) + ahead * self.track.h)
+        told = {name: self._between(x, step, after, ahead) for name, x in self.told.items()} or None
+        return Situation(**values, told=told, t=np.tile(self.track.t[step], self.runs) + ahead * self.track.h)
+
+    def _between(self, x: np.ndarray, step: np.ndarray, after: np.ndarray, ahead: float) -> np.ndarray:
+        """A control of every window, `ahead` of a step after `step`."""
+        return np.tile(x[step] + ahead * (x[after] - x[step]), self.runs)
 
     def _model(self, k: int, state: tuple) -> Model:
         """The model with what is learned and what is slow held for one step."""
@@ -280,6 +287,8 @@ class _Run:
         self.known.forces(s, self.known.water(s))
         W = self.start.size
         own = {name: getattr(s, name)[:W] for name in (*STATE, "u_r", "v_r", "t", *self.inputs)}
+        if s.told is not None:
+            own["told"] = {name: x[:W] for name, x in s.told.items()}
         return Force(*(np.tile(f, self.runs) for f in self.learned(Situation(**own))))  # type: ignore[misc]
 
     def _read(self, k: int, state: tuple) -> np.ndarray:

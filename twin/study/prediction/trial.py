@@ -7,8 +7,10 @@ and of the 20/20 <= 25 deg."""
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import degrees, hypot, pi, radians
+from typing import Any
 
 from twin.physics import core
+from twin.physics.actuators.helm import told
 from twin.physics.model import Eta_nu, Model
 from twin.physics.state import Situation
 
@@ -30,10 +32,28 @@ def shaft_speed(model: Model, speed: float) -> float:
     """Propeller rate [1/s] at which thrust and resistance balance at this speed [m/s], going straight in
     still water."""
     c = model.c
+    if model.ship.actuators:
+        return _power(model, speed)
     drag = -core.damping(speed, 0.0, 0.0, c)[0]
     a, b = c.T_nn, c.T_nu * c.wake_share * speed  # (1-t) (a n^2 + b n) = drag
     need = drag / c.thrust_share
     return (-b + (b * b + 4.0 * a * need) ** 0.5) / (2.0 * a)
+
+
+def controls(model: Model, delta: float, n: float) -> dict[str, Any]:
+    """Rudder and shaft, or what actuators are told for as much, as fields of Situation."""
+    ship = model.ship
+    return {"told": told(ship, delta, n)} if ship.actuators else {"delta": delta, "n": n}
+
+
+def _power(model: Model, speed: float) -> float:
+    """The share of full power at which the ship neither gains nor loses way; all where that is too little."""
+    low, high = 0.0, 1.0
+    for _ in range(40):
+        middle = 0.5 * (low + high)
+        gains = model.nu_dot(Situation(u=speed, **controls(model, 0.0, middle))).u > 0.0
+        low, high = (low, middle) if gains else (middle, high)
+    return 0.5 * (low + high)
 
 
 def sail(
@@ -51,7 +71,7 @@ def sail(
     for i in range(int(seconds / h)):
         order = steer(state)
         delta += max(-most, min(most, order - delta))
-        state = model.step(state, Situation(delta=delta, n=n), h)
+        state = model.step(state, Situation(**controls(model, delta, n)), h)
         log.append(((i + 1) * h, state))
     return log
 

@@ -13,7 +13,7 @@ import numpy as np
 from twin.physics import core
 from twin.physics.model import Model
 from twin.physics.state import Growth
-from twin.study.estimation.respond import lagged
+from twin.study.estimation.respond import steered
 from twin.study.estimation.start import noisy, true_motion
 from twin.study.track.track import STATE, Track
 
@@ -47,7 +47,7 @@ def energy(tracks: Sequence[Track], models: Sequence[Model]) -> Energy:
 def _energy(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     width = max(2, round(0.5 * float(model.ship.scale("time")) / track.h))
     state, wind_to = true_motion(track, model)
-    s = track.situation(delta=lagged(track, model), **dict(zip(STATE, state.T, strict=True)))
+    s = track.situation(**steered(track, model), **dict(zip(STATE, state.T, strict=True)))
     s.wind_to = wind_to
     physics = replace(model, residual=None)
     known = physics.known(s)

@@ -66,11 +66,7 @@ def with_derivatives(ship: Ship, found: Sequence[Derivative]) -> Ship:
 
 def with_core_of(ship: Ship, other: Ship) -> Ship:
     """The ship with the derivatives of another fit to the same voyages; their standard errors stay."""
-    values = {
-        name: float(getattr(other.derivatives, name))
-        for name in ship.notes["derivatives"]
-        if hasattr(other.derivatives, name)
-    }
+    values = {name: float(other.derivative(name)) for name in ship.notes["derivatives"] if other.has(name)}
     entries = {name: ship.notes["derivatives"][name] | {"value": value} for name, value in values.items()}
     return noted(ship.with_derivatives(**values), "derivatives", entries)
 

@@ -41,7 +41,7 @@ def with_or_without_gear(
         return fit(
             tracks,
             about,
-            (*unknowns, *(gear_unknowns(about) if about.lags else ())),
+            (*unknowns, *(gear_unknowns(about) if about.lags and not about.ship.actuators else ())),
             known,
             Floor(),
             temper=temper,
@@ -49,7 +49,7 @@ def with_or_without_gear(
         )
 
     without = fitted(model)
-    if model.lags:
+    if model.lags or model.ship.actuators:
         return without
     for begun in (model, without.model):
         if (with_gear := geared(begun, tracks, unknowns, known, temper)).lags and (
@@ -64,7 +64,7 @@ def geared(
 ) -> Model:
     """The model with the most probable steering gear, if the voyages clearly ask for one; a gear that is
     there already stays."""
-    if model.lags:
+    if model.lags or model.ship.actuators:
         return model
     sd, time = np.array([u.sd for u in unknowns]), float(model.ship.scale("time"))
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from twin.physics.effects import catalogue
+from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.fit import evidence
@@ -44,7 +44,7 @@ def swung(track: Track, model: Model) -> Track:
     whatever else may be wrong with it; else without. A sea that was measured need not be proved, but must be
     the likelier."""
     track = track if track.swell is None else replace(track, swell=None)
-    usable, known = model.without_inputs(track.missing())[0], catalogue()
+    usable, known = model.without_inputs(track.missing())[0], of_ship(model.ship)
     unknowns = nuisance_unknowns(usable, known)
     try:
         rough, sea, calm = _likeliest(track, usable, unknowns)
@@ -72,7 +72,7 @@ def _likeliest(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple
         read_parts([t], float(model.ship.scale("time")), MOST_SEGMENTS)[0] for t in (track, levelled(rough))
     ]
     lines, sd = (
-        [linearise(p, model, unknowns, catalogue()) for p in parts],
+        [linearise(p, model, unknowns, of_ship(model.ship)) for p in parts],
         np.array([u.sd for u in unknowns]),
     )
 

@@ -33,7 +33,11 @@ def _turned(track: Track, ship: Ship) -> float:
 
 def _throttled(track: Track) -> float:
     """How far the shaft's speed moved, as a share of its median."""
-    n = track.n[track.whole]
+    drives = [x for k, x in (track.told or {"n": track.n}).items() if not k.endswith((".angle", ".pitch"))]
+    return max((_moved(x[track.whole]) for x in drives), default=0.0)
+
+
+def _moved(n: np.ndarray) -> float:
     if not n.size:
         return 0.0
     low, high = np.quantile(n, [0.02, 0.98])

@@ -12,10 +12,11 @@ import numpy as np
 from scipy.linalg import solveh_banded
 
 from twin.errors import DataError
+from twin.live.signals.channels import BY_NAME
 from twin.physics.ship import Ship
 from twin.physics.state import WEATHER, Situation
 from twin.recording.holes import HOLE_S, inside, lined, longest, pieces, slopes
-from twin.recording.unknown_controls import CONTROLS, known
+from twin.recording.unknown_controls import known, of_ship
 from twin.recording.voyage import Voyage
 
 MEASURED = {  # reading -> channel
@@ -74,17 +75,24 @@ class Track:
     swell: np.ndarray | None = None
     # (N, 8): times its usual scatter that each reading has at that moment (unrest.py)
     unrest: np.ndarray | None = None
+    # of a ship with actuators of its own what is recorded of them, `name.attribute` in SI; else None
+    told: Mapping[str, np.ndarray] | None = None
     # behind each steering gear
-    rudder: dict[Any, np.ndarray] = field(init=False, repr=False, compare=False, default_factory=dict)
+    rudder: dict[Any, Any] = field(init=False, repr=False, compare=False, default_factory=dict)
 
     def __len__(self) -> int:
         return self.t.size
 
-    def situation(self, **replaced: np.ndarray) -> Situation:
+    def situation(self, **replaced: Any) -> Situation:
         """The whole track as one Situation of arrays."""
         values = dict(zip(STATE, self.state.T, strict=True))
         return Situation(
-            **(values | {"delta": self.delta, "n": self.n, "t": self.t} | dict(self.weather) | replaced)
+            **(
+                values
+                | {"delta": self.delta, "n": self.n, "told": self.told, "t": self.t}
+                | dict(self.weather)
+                | replaced
+            )
         )
 
     def missing(self) -> set[str]:
@@ -115,6 +123,7 @@ class Track:
             measured=self.measured[keep],
             swell=swell,
             unrest=unrest,
+            told=None if self.told is None else {k: x[keep] for k, x in self.told.items()},
         )
 
     def steps(self) -> np.ndarray:
@@ -133,22 +142,29 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
             f"({3 * length_s:.0f} s): "
             "nothing can be judged from it. Record at least twenty minutes of manoeuvring."
         )
-    hold_s = {name: _hold_s(voyage, name) for name in CONTROLS}
+    hold_s = {name: _hold_s(voyage, name) for name in of_ship(ship)}
     hole_s = max(HOLE_S, 3.0 * max(hold_s.values()))
     grid = _alone(voyage, *GRIDDED).on_grid(h, hole_s=hole_s)
+    nothing = np.full(grid.time_s.size, np.nan)
     at = np.rint((grid.time_s - voyage.time_s[0]) / h).astype(np.int64)
     measured = np.column_stack([_samples(voyage, channel, at, h) for channel in MEASURED.values()])
-    delta, n = (
-        _bridge(_alone(voyage, name).on_grid(h, hold, hole_s).si(name), hold, at * h)
+    controls = {
+        BY_NAME[name].attribute: _bridge(
+            _alone(voyage, name).on_grid(h, hold, hole_s).si(name) if name in voyage.columns else nothing,
+            hold,
+            at * h,
+        )
         for name, hold in hold_s.items()
-    )
-    whole = np.isfinite(delta) & np.isfinite(n)
+    }
+    whole = np.isfinite(np.array(list(controls.values()))).all(0)
     if not whole.any():
+        lacking = [name for name in hold_s if not voyage.has(name)]
+        said = f" The voyage has no {', no '.join(lacking)}." * bool(lacking)
         raise DataError(
-            f"{voyage.name}: rudder_angle_deg and propeller_rate_rpm are never there together. Check the map."
+            f"{voyage.name}: {' and '.join(hold_s)} are never there together.{said} Check the map."
         )
     state, sd = smooth_motion(measured, h, ship)
-    whole &= moved_as_read(measured, h, length_s) & known(voyage, grid.time_s)
+    whole &= moved_as_read(measured, h, length_s) & known(voyage, grid.time_s, tuple(hold_s))
     if not whole.any():
         raise DataError(
             f"{voyage.name}: controls, place and heading are never there together. Check the "
@@ -160,12 +176,13 @@ def track(voyage: Voyage, ship: Ship, steps_per_length: float = STEPS_PER_LENGTH
         grid.time_s - voyage.time_s[0],
         h,
         state,
-        np.nan_to_num(delta),
-        np.nan_to_num(n),
+        np.nan_to_num(controls.pop("delta", nothing)),
+        np.nan_to_num(controls.pop("n", nothing)),
         weather,
         measured,
         sd,
         whole,
+        told={k: np.nan_to_num(x) for k, x in controls.items()} or None,
     )
 
 

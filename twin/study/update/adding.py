@@ -15,7 +15,7 @@ import numpy as np
 from twin.errors import DataError, SettingsError
 from twin.live.signals.channels import BY_NAME
 from twin.physics.effect import Effect
-from twin.physics.effects import catalogue
+from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import short
@@ -261,8 +261,7 @@ def _at_an_end(u: Unknown, value: float) -> bool:
 
 def lasting(names: Sequence[str]) -> list[str]:
     """Those effects that belong to ship or instruments and not to one voyage."""
-    known = catalogue()
-    return [n for n in names if known[n].lasts()]
+    return [n for n in names if find(n).lasts()]
 
 
 def thirds(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:

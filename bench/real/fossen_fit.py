@@ -1,0 +1,108 @@
+"""A plain least-squares fit of Fossen's 3-DOF model to a boat with two fixed thrusters: its open-loop error.
+
+    u_dot = a1 v r + a2 u + a3 |u| u + a4 (T_p + T_s) + a5
+    v_dot = b1 u r + b2 v + b3 |v| v + b4 r + b5
+    r_dot = c1 u v + c2 r + c3 |r| r + c4 v + c5 (T_p - T_s) + c6
+The accelerations are slopes of the recorded speeds; no priors, no bounds, no filter.
+
+    python -m bench.real.fossen_fit FIT.mcap ... --on HELD.mcap ...
+"""
+
+import argparse
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from twin.recording.read import read_voyage
+from twin.recording.voyage import Voyage
+
+STEP_S, SMOOTH_S = 0.1, 1.0
+STOP_US, SPAN_US, AHEAD_N, ASTERN_N = 1511.0, 400.0, 56.7, 26.9  # the thrusters' own curve
+HORIZONS_S, STRIDE_S = (10.0, 60.0), 10.0
+Columns = dict[str, np.ndarray]
+
+
+def columns(voyage: Voyage) -> Columns:
+    """What the fit reads, on an even grid in SI."""
+    v = voyage.on_grid(STEP_S)
+    out = {
+        n: v.si(c)
+        for n, c in {
+            "x": "north_m", "y": "east_m", "psi": "heading_true_north_deg", "u": "surge_velocity_mps",
+            "v": "sway_velocity_mps", "r": "yaw_rate_degps",
+        }.items()
+    }  # fmt: skip
+    return out | {"p": thrust(v["port.pwm_us"]), "s": thrust(v["starboard.pwm_us"])}
+
+
+def thrust(pwm: np.ndarray) -> np.ndarray:
+    """[N] by the bollard curve, a straight line on each side."""
+    c = (pwm - STOP_US) / SPAN_US
+    return np.where(c > 0.0, AHEAD_N * c, ASTERN_N * c)
+
+
+def regressors(u: Any, v: Any, r: Any, p: Any, s: Any) -> list[list[Any]]:
+    one = np.ones_like(u)
+    return [
+        [v * r, u, abs(u) * u, p + s, one],
+        [u * r, v, abs(v) * v, r, one],
+        [u * v, r, abs(r) * r, v, p - s, one],
+    ]
+
+
+def fitted(voyages: Sequence[Columns]) -> list[np.ndarray]:
+    """Coefficients of the three equations."""
+    kernel = np.ones(round(SMOOTH_S / STEP_S)) / round(SMOOTH_S / STEP_S)
+    rows: list[list[np.ndarray]] = [[], [], []]
+    slopes: list[list[np.ndarray]] = [[], [], []]
+    for c in voyages:
+        smooth = {n: np.convolve(c[n], kernel, "same") for n in "uvrps"}
+        for i, (X, n) in enumerate(zip(regressors(*(smooth[n] for n in "uvrps")), "uvr", strict=True)):
+            a, b = np.column_stack(X), np.gradient(smooth[n], STEP_S)
+            ok = np.isfinite(a).all(1) & np.isfinite(b)
+            rows[i].append(a[ok])
+            slopes[i].append(b[ok])
+    return [
+        np.linalg.lstsq(np.concatenate(a), np.concatenate(b), rcond=None)[0]
+        for a, b in zip(rows, slopes, strict=True)
+    ]
+
+
+def errors(c: Columns, theta: list[np.ndarray], horizon_s: float) -> tuple[list[float], list[float]]:
+    """Open-loop position [m] and heading [deg] errors of windows that begin every STRIDE_S."""
+    steps, stride = round(horizon_s / STEP_S), round(STRIDE_S / STEP_S)
+    place, turn = list[float](), list[float]()
+    for k in range(0, c["x"].size - steps, stride):
+        x, y, psi, u, v, r = (float(c[n][k]) for n in ("x", "y", "psi", "u", "v", "r"))
+        for i in range(k, k + steps):
+            X = regressors(*(np.float64(q) for q in (u, v, r, c["p"][i], c["s"][i])))
+            du, dv, dr = (float(np.dot(t, q)) for t, q in zip(theta, X, strict=True))
+            x += STEP_S * (u * np.cos(psi) - v * np.sin(psi))
+            y += STEP_S * (u * np.sin(psi) + v * np.cos(psi))
+            psi, u, v, r = psi + STEP_S * r, u + STEP_S * du, v + STEP_S * dv, r + STEP_S * dr
+        end = k + steps
+        off = (psi - c["psi"][end] + np.pi) % (2.0 * np.pi) - np.pi
+        if np.isfinite(c["x"][end]):  # a fit that ran away counts: the table has medians
+            place.append(float(np.hypot(x - c["x"][end], y - c["y"][end])))
+            turn.append(abs(float(np.degrees(off))))
+    return place, turn
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("voyages", nargs="+")
+    parser.add_argument("--on", nargs="+", required=True)
+    args = parser.parse_args()
+    theta = fitted([columns(read_voyage(p)) for p in args.voyages])
+    for path in args.on:
+        c = columns(read_voyage(path))
+        for horizon in HORIZONS_S:
+            place, turn = errors(c, theta, horizon)
+            metres = np.nanmedian(np.nan_to_num(place, nan=1e9))
+            degrees = np.nanmedian(turn)
+            print(f"{path}: {horizon:.0f} s  median {metres:.3g} m  {degrees:.3g} deg ({len(place)})")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,110 @@
+# ruff: noqa: RUF009  (a number is declared by a call)
+"""One actuator of a ship: what it is, where it stands, what is recorded of it, and its numbers.
+
+A command c (a share of full, or a pulse width counted from 1500 us in spans of 400 us) gives at rest
+
+    T_0 = T_ahead g(c - zero) - T_astern g(zero - c),   g(x) = linear e + (1 - linear) e^2,
+    e = max(x - dead, 0)/(1 - dead)
+
+and with the water running along it, u_a, T = gain (T_0 - slow (T_ahead e_ahead + T_astern e_astern) u_a/U_0).
+Turns n give T = gain rho D^4 (K_T0 |n| n + K_T1 |n| u_a/D) [Fossen 2021, ch. 9].
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import TYPE_CHECKING, Any, Self
+
+from twin.physics.number import number
+from twin.physics.state import Number
+
+if TYPE_CHECKING:
+    from twin.physics.core import Coefficients, Tau
+    from twin.physics.particulars import Ship
+
+
+@dataclass(frozen=True)
+class Actuator:
+    """Forces come from `force`; `channels` are what is recorded of it, such as ("rate_rpm", "angle_deg").
+
+    The metadata of each number: unit, range, meaning, `sd` of its prior where reference voyages may tell it,
+    `key` in the ship file, and `of`: the attributes one of which must be recorded for it to matter."""
+
+    name: str
+    kind: str
+    channels: tuple[str, ...]
+    x: Number = number(0.0, "m", -300.0, 300.0, "ahead of midship", key="x_m")
+    y: Number = number(0.0, "m", -60.0, 60.0, "to starboard of the centreline", key="y_m")
+    gain: Number = number(1.0, "-", 0.0, 5.0, "thrust over what its curve says", sd=0.2)
+    zero: Number = number(0.0, "-", -0.5, 0.5, "command at which it gives nothing", sd=0.01, of="command pwm")
+    trim: Number = number(
+        0.0, "rad", -3.2, 3.2, "true angle less the recorded one", sd=0.03, key="trim_rad", of="angle"
+    )
+    ahead: Number = number(None, "N", 1e-3, 1e7, "greatest thrust ahead at rest", key="ahead_n")
+    astern: Number = number(None, "N", 1e-3, 1e7, "greatest thrust astern at rest", key="astern_n")
+    dead: Number = number(0.0, "-", 0.0, 0.5, "command up to which it stands still")
+    linear: Number = number(0.0, "-", 0.0, 1.0, "share of the bollard curve that is a straight line")
+    slow: Number = number(
+        0.2, "-", 0.0, 2.0, "thrust lost at service speed, of the greatest", sd=0.15, of="command pwm"
+    )
+    D: Number = number(None, "m", 0.005, 15.0, "propeller diameter", key="diameter_m")
+    K_T0: Number = number(0.32, "-", 0.02, 1.5, "thrust coefficient at J = 0")
+    K_T1: Number = number(-0.32, "-", -1.5, 0.0, "slope of the thrust coefficient over J", sd=0.1, of="rate")
+    pitch_0: Number = number(0.8, "-", 0.1, 2.0, "pitch over diameter that K_T0 is of", key="pitch_ratio")
+    A_R: Number = number(None, "m2", 1e-5, 250.0, "area of the rudder behind it", key="rudder_area_m2")
+    U_half: Number = number(
+        None, "m/s", 0.05, 40.0, "speed at which half of a tunnel thruster's force is left", key="half_mps"
+    )
+    # the ship's own propeller and rudder with this one's numbers, made once
+    _made: dict[Any, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
+
+    def but(self, **numbers: Number) -> Self:
+        """The same with some of its numbers changed."""
+        return replace(self, **numbers)
+
+    @property
+    def attributes(self) -> tuple[str, ...]:
+        """What is recorded of it, as physics calls it."""
+        from .channels import CHANNELS_OF
+
+        return tuple(CHANNELS_OF[c].attribute for c in self.channels)
+
+    def columns(self) -> tuple[str, ...]:
+        """Its channels by their whole names, as a voyage has them."""
+        return tuple(f"{self.name}.{c}" for c in self.channels)
+
+    def told(self) -> tuple[str, ...]:
+        """Its numbers that voyages can tell."""
+        has = self.attributes
+        return tuple(
+            f.name
+            for f in NUMBERS.values()
+            if f.metadata["sd"] and (not f.metadata.get("of") or set(f.metadata["of"].split()) & set(has))
+        )
+
+    def coefficients(self, ship: "Ship") -> "Coefficients":
+        """The coefficients of the ship's propeller and rudder, with this one's numbers."""
+        key = id(ship)
+        if key not in self._made or self._made[key][0] is not ship:
+            from twin.physics.core import coefficients
+
+            own: dict[str, Any] = {"K_T0": self.K_T0, "K_T1": self.K_T1, "x_R": self.x / ship.L_pp}
+            made = replace(
+                ship,
+                D_P=self.D,
+                A_R=0.0 if self.A_R is None else self.A_R,
+                actuators=(),
+                derivatives=replace(ship.derivatives, **own),
+            )
+            self._made.clear()
+            self._made[key] = (ship, coefficients(made))
+        return self._made[key][1]  # type: ignore[no-any-return]
+
+    def force(self, told: Mapping[str, Number], u: Number, v: Number, r: Number, ship: "Ship") -> "Tau":
+        """(X [N], Y [N], N [N m]) in body axes; `told`: what is recorded of all actuators, `name.attribute`
+        in SI; (u, v, r): the ship through the water."""
+        from .kinds import KINDS
+
+        return KINDS[self.kind].force(self, told, u, v, r, ship)
+
+
+NUMBERS = {f.name: f for f in fields(Actuator) if f.metadata}

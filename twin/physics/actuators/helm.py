@@ -1,0 +1,42 @@
+"""What is told to the actuators when somebody only says "helm over" and "so much power"."""
+
+from math import pi
+
+from twin.physics.particulars import Ship
+from twin.physics.state import Number
+
+from .actuator import Actuator
+from .channels import DRIVES
+from .kinds import SPAN_US, STOP_US
+
+FULL = 35.0 * pi / 180.0  # helm at which thrusters that cannot turn give all and nothing
+
+
+def told(ship: Ship, helm: Number, power: Number) -> dict[str, Number]:
+    """`name.attribute` -> value of every actuator. `helm` [rad] is positive to starboard; `power` is a share
+    of full (of the turns that drive the ship at service speed where turns are recorded).
+
+    What turns is turned; a ship with nothing that turns is steered by the thrust of its two sides."""
+    turning = any("angle" in a.attributes for a in ship.actuators)
+    out: dict[str, Number] = {}
+    for a in ship.actuators:
+        for attribute in a.attributes:
+            out[f"{a.name}.{attribute}"] = _one(a, attribute, ship, helm, power, turning)
+    return out
+
+
+def _one(a: Actuator, attribute: str, ship: Ship, helm: Number, power: Number, turning: bool) -> Number:
+    if attribute == "pitch":
+        return a.pitch_0
+    if attribute == "angle":
+        return helm if a.kind != "azimuth" else (-helm if a.x < 0.0 else helm)
+    assert attribute in DRIVES
+    if a.kind == "tunnel_thruster":
+        share = 0.0 * power
+    else:
+        share = power if turning or not a.y else power * (1.0 - helm / FULL * (1.0 if a.y > 0.0 else -1.0))
+    if attribute == "pwm":
+        return STOP_US + SPAN_US * share
+    if attribute == "rate":
+        return share * 1.6 * ship.U_0 / a.D  # advance ratio 0.6
+    return share if attribute == "command" else share * 2.0 * ship.scale("force")

@@ -1,0 +1,98 @@
+"""The kinds of actuator: what each needs to be told, and the force it gives."""
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, NamedTuple
+
+from twin.physics import core
+from twin.physics.maths import cos, positive, sin
+from twin.physics.state import Number
+
+from .actuator import Actuator
+
+if TYPE_CHECKING:
+    from twin.physics.particulars import Ship
+
+Told = Mapping[str, Number]
+STOP_US, SPAN_US = 1500.0, 400.0  # a controller's pulse at stop, and from there to full
+
+
+class Kind(NamedTuple):
+    """`needs`: attributes that must be recorded beside one that says how hard it pushes."""
+
+    force: Callable[[Actuator, Told, Number, Number, Number, "Ship"], core.Tau]
+    needs: tuple[str, ...]
+    may: tuple[str, ...]
+    doc: str
+
+
+def push(a: Actuator, told: Told, u_a: Number, ship: "Ship") -> Number:
+    """Thrust [N] along the actuator's own axis, with the water running along it at u_a [m/s]."""
+    name = a.name
+    if "thrust" in a.attributes:
+        return a.gain * told[f"{name}.thrust"]
+    if "rate" in a.attributes:
+        n, f = told[f"{name}.rate"], ship.rho * a.D**4
+        pitch = told[f"{name}.pitch"] / a.pitch_0 if "pitch" in a.attributes else 1.0
+        return a.gain * f * abs(n) * (a.K_T0 * n * pitch + a.K_T1 * u_a / a.D)
+    c = told[f"{name}.command"] if "command" in a.attributes else (told[f"{name}.pwm"] - STOP_US) / SPAN_US
+    ahead = positive(c - a.zero - a.dead, 1e-8) / (1.0 - a.dead)
+    astern = positive(a.zero - c - a.dead, 1e-8) / (1.0 - a.dead)
+    at_rest = a.ahead * _curve(a, ahead) - a.astern * _curve(a, astern)
+    return a.gain * (at_rest - a.slow * (a.ahead * ahead + a.astern * astern) * u_a / ship.U_0)
+
+
+def _curve(a: Actuator, e: Number) -> Number:
+    return (a.linear + (1.0 - a.linear) * e) * e
+
+
+def _at(a: Actuator, X: Number, Y: Number) -> core.Tau:
+    """A force where the actuator stands, with its moment about midship."""
+    return X, Y, a.x * Y - a.y * X
+
+
+def fixed(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
+    return _at(a, push(a, told, u - a.y * r, ship), 0.0)
+
+
+def azimuth(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
+    """Its angle is where the thrust pushes the ship to: 0 ahead, positive to starboard."""
+    angle = told[f"{a.name}.angle"] + a.trim
+    c, s = cos(angle), sin(angle)
+    T = push(a, told, (u - a.y * r) * c + (v + a.x * r) * s, ship)
+    return _at(a, T * c, T * s)
+
+
+def steered(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
+    """Its angle is counted like a rudder's: positive turns the ship to starboard when the jet is astern."""
+    angle = told[f"{a.name}.angle"] + a.trim
+    c, s = cos(angle), sin(angle)
+    T = push(a, told, u - a.y * r, ship)
+    return _at(a, T * c, -T * s)
+
+
+def tunnel(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
+    """Pushes to starboard when told to go ahead, the less the faster the ship: half of it at U_half."""
+    share = 1.0 if a.U_half is None else 1.0 / (1.0 + (u / a.U_half) ** 2)
+    return _at(a, 0.0, share * push(a, told, v + a.x * r, ship))
+
+
+def propeller(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
+    """As the ship's own propeller and rudder, with the hull's wake and thrust deduction."""
+    c, along = a.coefficients(ship), u - a.y * r
+    T = push(a, told, c.wake_share * along, ship)
+    X, Y, N = c.thrust_share * T, 0.0, 0.0
+    if "angle" in a.attributes:
+        drag, Y, N = core.rudder(along, v, r, told[f"{a.name}.angle"] + a.trim, T, c)
+        X = X + drag
+    return X, Y, N - a.y * X
+
+
+KINDS: dict[str, Kind] = {
+    "propeller": Kind(propeller, (), ("angle",), "on a shaft, with or without a rudder in its slipstream"),
+    "controllable_pitch": Kind(propeller, ("pitch",), ("angle",), "a shaft whose blades turn"),
+    "fixed_thruster": Kind(fixed, (), (), "pushes along the ship"),
+    "azimuth": Kind(azimuth, ("angle",), (), "turns all round; its angle is where it pushes the ship to"),
+    "waterjet": Kind(steered, ("angle",), (), "its angle is counted like a rudder's"),
+    "outboard": Kind(steered, ("angle",), (), "its angle is counted like a rudder's"),
+    "tunnel_thruster": Kind(tunnel, (), (), "pushes to starboard when told to go ahead"),
+}

@@ -1,0 +1,78 @@
+"""Effects of one named actuator: `ThrusterWear.port` is ThrusterWear of the actuator that is called port.
+
+A family is declared once, like every effect; `of(family, name)` is the effect for one actuator, and the same
+name gives the same class each time."""
+
+from functools import cache
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+
+from twin.errors import SettingsError, did_you_mean
+from twin.physics.actuators import Actuator
+from twin.physics.effect import Effect, Force
+from twin.physics.state import Force as ForceVector
+from twin.physics.state import Situation
+
+if TYPE_CHECKING:
+    from twin.physics.particulars import Ship
+
+E = TypeVar("E", bound="OfActuator")
+
+
+class OfActuator(Effect):
+    """What is common to effects of one actuator."""
+
+    actuator: ClassVar[str] = ""
+    recorded: ClassVar[tuple[str, ...]] = ()  # one of these must be recorded of it
+
+    @classmethod
+    def suits(cls, a: Actuator) -> bool:
+        """Whether an actuator can have it."""
+        return not cls.recorded or bool(set(cls.recorded) & set(a.attributes))
+
+    def check(self, ship: "Ship", where: str = "") -> None:
+        """Refuse an actuator that the ship has not, or that cannot have the effect."""
+        name, known = type(self).__name__, [a.name for a in ship.actuators]
+        if self.actuator not in known:
+            has = did_you_mean(self.actuator, known) if known else " The ship file has no [[actuators]]."
+            raise SettingsError(f"{where}effects.{name}: no actuator is called {self.actuator!r}.{has}")
+        if not self.suits(ship.actuator(self.actuator)):
+            raise SettingsError(
+                f"{where}effects.{name}: of {self.actuator} no {' and no '.join(self.recorded)} is recorded. "
+                f'Remove [effects."{name}"].'
+            )
+        super().check(ship, where)
+
+    def __reduce__(self) -> Any:
+        family, _, actuator = type(self).__name__.partition(".")
+        return remade, (family, actuator, self.values())
+
+
+class ActuatorForce(OfActuator, Force):
+    """The force that an actuator gives otherwise, less the one that the ship file has of it."""
+
+    def altered(self, a: Actuator) -> Actuator:
+        """The actuator as it is with the effect."""
+        return a
+
+    def force(self, s: Situation, ship: "Ship") -> ForceVector:
+        a = ship.actuator(self.actuator)
+        was = a.force(s.told, s.u_r, s.v_r, s.r, ship)  # type: ignore[arg-type]
+        now = self.altered(a).force(s.told, s.u_r, s.v_r, s.r, ship)  # type: ignore[arg-type]
+        return ForceVector(now[0] - was[0], now[1] - was[1], now[2] - was[2])
+
+
+@cache
+def of(family: type[E], actuator: str) -> type[E]:
+    """The effect of that family for one actuator; the same class each time."""
+    return type(
+        f"{family.__name__}.{actuator}",
+        (family,),
+        {"actuator": actuator, "__doc__": family.__doc__, "__module__": family.__module__},
+    )
+
+
+def remade(family: str, actuator: str, values: dict[str, Any]) -> Effect:
+    """The effect again, where it was sent from one process to another."""
+    from twin.physics.effects import find
+
+    return find(f"{family}.{actuator}")(**values)
