@@ -103,7 +103,8 @@ VERBS: dict[str, Verb] = {
 }
 
 
-EXTRAS = {"scipy": "study", "torch": "train", "onnx": "train", "starlette": "studio", "uvicorn": "studio"}  # package -> the extra that brings it
+# package -> the extra that brings it
+EXTRAS = {"scipy": "study", "torch": "train", "onnx": "train", "starlette": "studio", "uvicorn": "studio"}
 ASIDE = ("export", "bench")  # packages of the source folder that an installation may lack
 
 

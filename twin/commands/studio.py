@@ -3,9 +3,9 @@
 import argparse
 
 EPILOG = """
-The page is served on 127.0.0.1; the printed link opens it once. Nothing leaves this computer, and nothing is loaded
-from elsewhere. Each action shows the command line that does the same; long work goes on when the page is closed.
-docs/studio.md.
+The page is served on 127.0.0.1; the printed link opens it once. Nothing leaves this computer, and nothing is
+loaded from elsewhere. Each action shows the command line that does the same; long work goes on when the page
+is closed. docs/studio.md.
 """
 
 

@@ -1,4 +1,4 @@
-"""What a worker does for each verb: the function of the Python interface, its JSON, and what the pages draw."""
+"""What a worker does for each verb: the Python interface's function, its JSON, and what the pages draw."""
 
 import difflib
 import shlex
@@ -54,8 +54,9 @@ def compare(asked: Asked, job: Path, tell: Tell) -> None:
     tell("predicting")
     found = comparison.of_sailed(ship, sailed, HORIZONS_S)
     result = found.to_dict() | {
-        "command": command_of(asked), "files": {"ship": asked["ship"], "voyages": asked["voyages"]},
-    }  # fmt: skip
+        "command": command_of(asked),
+        "files": {"ship": asked["ship"], "voyages": asked["voyages"]},
+    }
     write_result(job, "result.json", result)
     _view("compare", result, job, tell, found.model, sailed)
 
@@ -71,7 +72,7 @@ def diagnose(asked: Asked, job: Path, tell: Tell) -> None:
         "command": f"twin diagnose {shlex.join(asked['voyages'])} --ship {shlex.quote(asked['ship'])}",
         "verdict_text": done.result["sentence"],
         "files": {"ship": asked["ship"], "voyages": asked["voyages"]},
-    }  # fmt: skip
+    }
     write_result(job, "result.json", result)
     tell("drawing")
     tracks, model = list(done.case.tracks), done.case.model
@@ -109,11 +110,12 @@ def add(asked: Asked, job: Path, tell: Tell) -> str | None:
     result = made.result | {
         "command": command_of(asked),
         "files": {
-            "ship": asked["ship"], "voyages": asked["voyages"],
+            "ship": asked["ship"],
+            "voyages": asked["voyages"],
             "judged": asked.get("held_outs") or asked["voyages"],
         },
         "output": asked["output"] if accepted else None,
-    }  # fmt: skip
+    }
     if accepted:
         save(made.ship, asked["output"])
     write_result(job, "result.json", result)
@@ -128,8 +130,13 @@ def add(asked: Asked, job: Path, tell: Tell) -> str | None:
 
 
 DO: dict[str, Callable[[Asked, Path, Tell], str | None]] = {
-    "look": look, "import": import_, "compare": compare, "diagnose": diagnose, "calibrate": calibrate, "add": add,
-}  # fmt: skip
+    "look": look,
+    "import": import_,
+    "compare": compare,
+    "diagnose": diagnose,
+    "calibrate": calibrate,
+    "add": add,
+}
 
 
 def _read(paths: list[str], ship: str, tell: Tell) -> list[Sailed]:
@@ -159,6 +166,6 @@ def write_view(job: Path, drawn: dict[str, Any], more: dict[str, Any]) -> None:
 
 def difference(before: str, after: str) -> list[str]:
     """The two ship files, line by line, as `diff -u` shows them; long lines are cut."""
-    texts = [Path(name).read_text(encoding="utf-8").splitlines() for name in (before, after)]
-    lines = difflib.unified_diff(*texts, fromfile=before, tofile=after, n=1, lineterm="")
+    one, other = (Path(name).read_text(encoding="utf-8").splitlines() for name in (before, after))
+    lines = difflib.unified_diff(one, other, fromfile=before, tofile=after, n=1, lineterm="")
     return [line if len(line) <= LONGEST_LINE else f"{line[:LONGEST_LINE]} ..." for line in lines]

@@ -1,10 +1,8 @@
 """The routes: thin over the project's files, its jobs, and the Python interface."""
 
-import json
 import tempfile
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -27,21 +25,12 @@ from twin.studio.jobs import SHOWN, Jobs
 from twin.studio.live import Live
 from twin.studio.project import Project
 from twin.studio.remedies import edited
+from twin.studio.replies import Do, answered, body_of, page_files, toml_name
 from twin.studio.verbs import checked, files_of
 from twin.study.update.remove import remove
 
-MAX_JSON = 256 * 1024  # bytes of a request
 MAX_UPLOAD = 1 << 30  # bytes of a file
 TURN_S = 0.2  # between two looks at what waits
-KINDS = {
-    "html": "text/html",
-    "css": "text/css",
-    "js": "text/javascript",
-    "svg": "image/svg+xml",
-    "txt": "text/plain",
-}
-STATUS = {1: 500, 2: 400, 4: 422, 5: 400}  # exit code -> status
-Do = Callable[[Request], Awaitable[Any]]
 
 
 class Studio:
@@ -56,18 +45,33 @@ class Studio:
         get, put = self._get, self._put
         routes = [
             *(Route(path, self._file) for path in self.page),
-            get("/api/project", self.told), get("/api/form", self.form), get("/api/effects", self.effects),
-            get("/api/ships/{name}", self.ship), get("/api/turn", self.turn), get("/api/difference", self.differ),
-            put("/api/ships/try", self.try_ship), put("/api/ships", self.save_ship), put("/api/remove", self.remove),
-            put("/api/demo", self.demo), put("/api/tags", self.tag), put("/api/files/{name}", self.upload),
-            put("/api/maps", self.save_map), put("/api/remedy", self.remedy),
-            get("/api/jobs", self.jobs_told), put("/api/jobs", self.ask), get("/api/jobs/{job}", self.job),
-            put("/api/jobs/{job}/cancel", self.cancel), put("/api/jobs/{job}/forget", self.forget),
-            Route("/api/jobs/{job}/{file}", self.job_file), Route("/api/files/{name}", self.download),
-            put("/api/live", self.attach, always=True), put("/acknowledge", self.live.acknowledge, always=True),
-            Route("/events", self.live.events), Route("/live", self.live.page),
+            get("/api/project", self.told),
+            get("/api/form", self.form),
+            get("/api/effects", self.effects),
+            get("/api/ships/{name}", self.ship),
+            get("/api/turn", self.turn),
+            get("/api/difference", self.differ),
+            put("/api/ships/try", self.try_ship),
+            put("/api/ships", self.save_ship),
+            put("/api/remove", self.remove),
+            put("/api/demo", self.demo),
+            put("/api/tags", self.tag),
+            put("/api/files/{name}", self.upload),
+            put("/api/maps", self.save_map),
+            put("/api/remedy", self.remedy),
+            get("/api/jobs", self.jobs_told),
+            put("/api/jobs", self.ask),
+            get("/api/jobs/{job}", self.job),
+            put("/api/jobs/{job}/cancel", self.cancel),
+            put("/api/jobs/{job}/forget", self.forget),
+            Route("/api/jobs/{job}/{file}", self.job_file),
+            Route("/api/files/{name}", self.download),
+            put("/api/live", self.attach, always=True),
+            put("/acknowledge", self.live.acknowledge, always=True),
+            Route("/events", self.live.events),
+            Route("/live", self.live.page),
             *(Route(path, self.live.page) for path in self.live.pages if path != "/"),
-        ]  # fmt: skip
+        ]
         return Starlette(routes=routes, lifespan=self._lifespan)
 
     @asynccontextmanager
@@ -194,7 +198,7 @@ class Studio:
         return {"name": path.name, "bytes": size}
 
     async def save_map(self, request: Request) -> Any:
-        """A map as it was typed, when it is a valid one; a map may be written over, for it is worked on here."""
+        """A map as it was typed, when it is a valid one; it may be written over: it is worked on here."""
         said = await body_of(request)
         name = toml_name(said.get("name"))
         path = self.project.path(name)
@@ -281,55 +285,3 @@ class Studio:
         place, speed = said.get("connect"), float(said.get("speed") or 1.0)
         name = await run_in_threadpool(self.live.attach, str(place) if place else None, log, speed)
         return {"name": name}
-
-
-def answered(do: Do) -> Do:
-    """The same as JSON, a mistake as its one line."""
-
-    async def answer(request: Request) -> Response:
-        try:
-            found = await do(request)
-        except TwinError as error:
-            return JSONResponse(
-                {"said": str(error), "exit_code": error.exit_code}, STATUS.get(error.exit_code, 400)
-            )
-        except OSError as error:
-            said = f"{Path(str(error.filename or '')).name}: {error.strerror}."
-            return JSONResponse({"said": said, "exit_code": 1}, 500)
-        return found if isinstance(found, Response) else JSONResponse(found)
-
-    return answer
-
-
-async def body_of(request: Request) -> dict[str, Any]:
-    """The object that a request says; UsageError when it is none or too long."""
-    data = b""
-    async for part in request.stream():
-        data += part
-        if len(data) > MAX_JSON:
-            raise UsageError(f"a request says at most {MAX_JSON} bytes.")
-    try:
-        said = json.loads(data)
-    except (ValueError, RecursionError):
-        said = None
-    if not isinstance(said, dict):
-        raise UsageError("a request says one JSON object.")
-    return said
-
-
-def toml_name(name: Any) -> str:
-    text = str(name or "").strip()
-    if not text:
-        raise SettingsError("a name for the file is needed.")
-    return text if text.endswith(".toml") else f"{text}.toml"
-
-
-def page_files() -> dict[str, tuple[str, bytes]]:
-    """{path: (type, bytes)} of the page: all there is, looked up in a table and never on a disk."""
-    out = {}
-    for file in files("twin.studio.page").iterdir():
-        kind = KINDS.get(file.name.rpartition(".")[2])
-        if kind and file.is_file():
-            path = "/" if file.name == "page.html" else f"/app/{file.name}"
-            out[path] = (f"{kind}; charset=utf-8", file.read_bytes())
-    return out

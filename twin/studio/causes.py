@@ -1,4 +1,4 @@
-"""A cause of a diagnosis in the units of the bridge: its numbers, which way it acts, and what it changes in a voyage."""
+"""A cause of a diagnosis in the units of the bridge: its numbers, its direction, what it changes."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from math import degrees
@@ -110,8 +110,8 @@ def cause_view(
 
 
 def changed(plain: Iterable[np.ndarray], lines: Iterable[np.ndarray]) -> dict[str, float | None]:
-    """What a cause changes in the predictions, on average over them: speed ahead [kn], and how far heading [deg]
-    and place [m] are moved."""
+    """What a cause changes in the predictions, on average over them: speed ahead [kn], and how far heading
+    [deg] and place [m] are moved."""
     d = np.concatenate([b - a for a, b in zip(plain, lines, strict=True)])
     at = {name: d[:, i] for i, name in enumerate(READINGS)}
 

@@ -1,4 +1,4 @@
-"""Who may come in: the printed link opens the page once, its cookie keeps it open, and nobody else is answered."""
+"""Who may come in: the printed link opens the page once, its cookie keeps it open."""
 
 import hmac
 from http.cookies import CookieError, SimpleCookie
@@ -11,8 +11,9 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from twin.live.bridge.server import HEADERS, HOST, Doors
 
 POLICY = (
-    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; img-src 'self' blob: data:; "
-    "frame-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'self'"
+    "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; "
+    "img-src 'self' blob: data:; frame-src 'self'; base-uri 'none'; "
+    "form-action 'none'; frame-ancestors 'self'"
 )
 ANSWERED = HEADERS | {"Content-Security-Policy": POLICY, "X-Frame-Options": "SAMEORIGIN"}
 CLOSED = "This page is opened with the link that twin studio prints. Each link opens it once.\n"

@@ -116,5 +116,5 @@ def correlated(x: np.ndarray, y: np.ndarray) -> dict[str, Any]:
     return {"correlation": r, "p": erfc(abs(float(z)) / sqrt(2.0)), "independent_samples": n}
 
 
-def _finite(x: float) -> float | None:
+def _finite(x: Any) -> float | None:
     return float(x) if np.isfinite(x) else None

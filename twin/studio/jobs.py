@@ -1,10 +1,10 @@
-"""Long work in processes of its own, its state in files: a reload, a new server or a dead worker lose nothing.
+"""Long work in processes of its own, its state in files: a reload or a dead worker loses nothing.
 
-jobs/0007-diagnose/   job.json       what is asked (twin/studio/verbs.py), and the command line that does the same
+jobs/0007-diagnose/   job.json       what is asked (verbs.py), and the command line that does the same
                       worker.json    which process does it, since when
                       progress.jsonl a line a step: seconds since it began, words
                       result.json    the documented JSON of the verb, as `--json` writes it
-                      view.json      what the pictures are drawn from       report.html  the same as one page
+                      view.json      what the pictures are drawn from; report.html: the same as one page
                       end.json       how it ended: exit code and, when not 0, the one line that says why
 """
 
@@ -27,6 +27,7 @@ from twin.studio.project import JOBS, Project
 from twin.studio.verbs import command_of
 
 AT_ONCE = 2  # workers
+START_S = 2.0  # until a worker has loaded what it needs
 NAME = re.compile(r"\d{4}-[a-z]+")
 JOB, WORKER, PROGRESS, END = "job.json", "worker.json", "progress.jsonl", "end.json"
 CANCELLED = 130
@@ -74,9 +75,14 @@ class Jobs:
         few = {key: os.environ.get(key, "1") for key in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS")}
         with open(folder / "log.txt", "ab") as log:
             worker = subprocess.Popen(
-                command, cwd=self.project.folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
-                start_new_session=True, env=os.environ | few,
-            )  # fmt: skip
+                command,
+                cwd=self.project.folder,
+                stdin=subprocess.DEVNULL,
+                stdout=log,
+                stderr=log,
+                start_new_session=True,
+                env=os.environ | few,
+            )
         self._ours[name] = worker
         note = {"pid": worker.pid, "born": born(worker.pid), "began_s": round(time.time(), 3)}
         whole.write(folder / WORKER, json.dumps(note) + "\n")
@@ -112,12 +118,19 @@ class Jobs:
         over_s = end.get("ended_s") or time.time()
         took_s = None if began_s is None else round(over_s - began_s, 1)
         return {
-            "name": name, "state": state, "verb": note.get("asked", {}).get("verb"), "asked": note.get("asked"),
-            "command": note.get("command"), "created_s": note.get("created_s"), "took_s": took_s,
+            "name": name,
+            "state": state,
+            "verb": note.get("asked", {}).get("verb"),
+            "asked": note.get("asked"),
+            "command": note.get("command"),
+            "created_s": note.get("created_s"),
+            "took_s": took_s,
             "usual_s": self._usual_s(note) if state in ("running", "waiting") else None,
-            "progress": lines_of(folder / PROGRESS), "said": end.get("said"), "exit_code": end.get("exit_code"),
+            "progress": lines_of(folder / PROGRESS),
+            "said": end.get("said"),
+            "exit_code": end.get("exit_code"),
             "has": [f for f in SHOWN if (folder / f).is_file()],
-        }  # fmt: skip
+        }
 
     def all_told(self) -> list[dict[str, Any]]:
         return [self.told(name) for name in self.names()]
@@ -140,7 +153,7 @@ class Jobs:
         shutil.rmtree(self.at(name))
 
     def _usual_s(self, note: Mapping[str, Any]) -> float | None:
-        """How long this verb took on average, in this project, for each byte that it read; None before the first."""
+        """How long this verb took in this project, by the bytes that it read; None before the first."""
         verb, size = note.get("asked", {}).get("verb"), self._bytes(note)
         rates = []
         for name in self.names()[::-1]:
@@ -155,10 +168,10 @@ class Jobs:
                 continue
             read_then = self._bytes(done)
             if read_then:
-                rates.append((end["ended_s"] - worker["began_s"]) / read_then)
+                rates.append(max(end["ended_s"] - worker["began_s"] - START_S, 0.0) / read_then)
             if len(rates) == 5:
                 break
-        return round(size * sum(rates) / len(rates), 1) if rates and size else None
+        return round(START_S + size * sum(rates) / len(rates), 1) if rates and size else None
 
     def _bytes(self, note: Mapping[str, Any]) -> int:
         """Size of the voyages that a job reads."""
@@ -203,7 +216,7 @@ def born(pid: int) -> str:
 
 
 def alive(worker: Mapping[str, Any]) -> bool:
-    """Whether the process of a worker's note is there and is the same one, not another that got its number."""
+    """Whether the process of a worker's note is there, and not another that got its number."""
     pid = int(worker.get("pid", 0))
     if Path("/proc/self/stat").exists():
         return bool(worker.get("born")) and born(pid) == worker["born"]

@@ -1,4 +1,4 @@
-"""A file looked at before it is imported: its format, the map, every channel, and what the checks say of it."""
+"""A file looked at before it is imported: format, map, every channel, and what the checks say of it."""
 
 import json
 import tomllib
@@ -58,11 +58,15 @@ def _entries(table: Map | None) -> list[dict[str, Any]]:
         return []
     return [
         {
-            "channel": channel, "column": ", ".join(map(str, c.parts)), "unit": c.unit, "sign": c.sign,
-            "offset": c.offset, "frame": c.frame if c.frame != "body" else None,
+            "channel": channel,
+            "column": ", ".join(map(str, c.parts)),
+            "unit": c.unit,
+            "sign": c.sign,
+            "offset": c.offset,
+            "frame": c.frame if c.frame != "body" else None,
         }
         for channel, c in table.columns.items()
-    ]  # fmt: skip
+    ]
 
 
 def _of_voyage(voyage: Voyage, ship: Any, job: Path) -> dict[str, Any]:
@@ -74,21 +78,29 @@ def _of_voyage(voyage: Voyage, ship: Any, job: Path) -> dict[str, Any]:
     )
     whole_bytes(job / "series.f32", np.ascontiguousarray(series, dtype="<f4").tobytes())
     return {
-        "voyage": voyage.name, "rows": len(voyage), "duration_s": voyage.duration_s, "step_s": voyage.step_s,
-        "samples": int(series.shape[1]), "every": every,
+        "voyage": voyage.name,
+        "rows": len(voyage),
+        "duration_s": voyage.duration_s,
+        "step_s": voyage.step_s,
+        "samples": int(series.shape[1]),
+        "every": every,
         "columns": [_column(voyage, name) for name in names],
-        "absent": list(voyage.absent()), "notes": [str(n) for n in voyage.meta.get("notes", ())],
+        "absent": list(voyage.absent()),
+        "notes": [str(n) for n in voyage.meta.get("notes", ())],
         "checks": [_check(c, names) for c in checks],
         "refused": [c.name for c in checks if c.unusable],
-    }  # fmt: skip
+    }
 
 
 def _column(voyage: Voyage, name: str) -> dict[str, Any]:
     x = voyage.columns[name]
     return {
-        "name": name, "low": float(np.nanmin(x)), "high": float(np.nanmax(x)),
-        "there": float(np.isfinite(x).mean()), "derived": voyage.meta.get("derived", {}).get(name),
-    }  # fmt: skip
+        "name": name,
+        "low": float(np.nanmin(x)),
+        "high": float(np.nanmax(x)),
+        "there": float(np.isfinite(x).mean()),
+        "derived": voyage.meta.get("derived", {}).get(name),
+    }
 
 
 def _check(check: Any, names: list[str]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""A project: one folder of plain files (logs, maps, ship files), the jobs that were done on them, and their tags."""
+"""A project: one folder of plain files (logs, maps, ship files), the jobs done on them, and their tags."""
 
 import json
 import os

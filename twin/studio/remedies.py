@@ -57,7 +57,7 @@ def channels_of(check: Check, columns: Any) -> list[str]:
 
 
 def remedies_of(check: Check, columns: Any) -> list[dict[str, Any]]:
-    """[{"says": the fix, "edit": what it changes}], one a way out; empty where no entry of a map would help."""
+    """[{"says": the fix, "edit": what it changes}], one a way out; empty where no entry would help."""
     if check.ok or "In the map: " not in check.text:
         return []
     fixes = check.text.partition("In the map: ")[2].removesuffix(".").split("; or: ")

@@ -56,6 +56,7 @@ def listening(port: int) -> socket.socket:
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         sock.bind((HOST, port))
+        sock.listen(128)  # so that whoever opens the link at once waits, and is not turned away
     except OSError as failure:
         sock.close()
         raise TwinError(

@@ -1,4 +1,4 @@
-"""A ship for its form: particulars with units and sources, and the sea trials of its model beside IMO's limits."""
+"""A ship for its form: particulars with units and sources, and the model's sea trials beside IMO's limits."""
 
 import shlex
 from collections.abc import Mapping
@@ -19,6 +19,7 @@ from twin.study.update.history import ladder
 
 UNITS = ("kgm2", "kg-m3", "mps", "rpm", "m2", "kg", "m")  # that the name of an option ends in
 SHOWN = {"kgm2": "kg m2", "kg-m3": "kg/m3", "mps": "m/s", "rpm": "1/min"}
+WORDS = {"x-g": "centre of gravity ahead of midship", "rho": "density of the water", "length-pp": "length pp"}
 HELD_OVER = 0.6  # of the largest rudder angle: a rudder held over
 LONGEST_S = 3600.0
 IMO = (  # MSC.137(76): figure, what it is called, its unit, its limit
@@ -36,10 +37,15 @@ def form() -> list[dict[str, Any]]:
         name = option.removesuffix(f"-{unit}") if unit else option
         out.append(
             {
-                "option": option, "name": name.replace("-", " "), "unit": SHOWN.get(unit, unit), "doc": doc,
-                "low": low, "high": high, "required": option in REQUIRED,
+                "option": option,
+                "name": WORDS.get(name, name.replace("-", " ")),
+                "unit": SHOWN.get(unit, unit),
+                "doc": doc,
+                "low": low,
+                "high": high,
+                "required": option in REQUIRED,
             }
-        )  # fmt: skip
+        )
     return out
 
 
@@ -79,12 +85,16 @@ def described(ship: Ship) -> dict[str, Any]:
     notes: Mapping[str, Any] = ship.notes
     return plain(
         {
-            "ship": ship.name, "trial": trial(ship), "effects": [_effect(e) for e in ship.effects],
+            "ship": ship.name,
+            "sources": notes.get("sources", {}),
+            "trial": trial(ship),
+            "effects": [_effect(e) for e in ship.effects],
             "particulars": _numbers(ship, notes.get("particulars", {})),
             "derivatives": _numbers(ship.derivatives, notes.get("derivatives", {})),
-            "calibrated": "structural" in notes, "history": ladder(ship),
+            "calibrated": "structural" in notes,
+            "history": ladder(ship),
         }
-    )  # fmt: skip
+    )
 
 
 def _effect(effect: Any) -> dict[str, Any]:
@@ -120,16 +130,20 @@ def trial(ship: Ship) -> dict[str, Any]:
     return {
         "figures": figures,
         "limits": [
-            {"name": text, "unit": unit, "value": figures.get(key), "limit": limit} for key, text, unit, limit in IMO
+            {"name": text, "unit": unit, "value": figures.get(key), "limit": limit}
+            for key, text, unit, limit in IMO
         ],
-        "circle": {"x": (np.array(circle["east_m"]) / L)[::4].tolist(), "y": (np.array(circle["north_m"]) / L)[::4].tolist()},
+        "circle": {
+            "x": (np.array(circle["east_m"]) / L)[::4].tolist(),
+            "y": (np.array(circle["north_m"]) / L)[::4].tolist(),
+        },
         "zigzag": {"t": np.array(zigzag["time_s"])[::4].tolist(), "y": heading[::4].tolist()},
-    }  # fmt: skip
+    }
 
 
 def measured_turn(path: str, ship: Ship) -> dict[str, Any]:
-    """The longest turn of a voyage with the rudder held over to one side: its way in ship lengths from where it
-    began, ahead upwards and to starboard to the right (a turn to port is mirrored), and its heading [deg]."""
+    """The longest turn of a voyage with the rudder held over: its way in ship lengths from where it began,
+    ahead upwards and to starboard to the right (a turn to port is mirrored), and its heading [deg]."""
     v = read_voyage(path)
     if not v.has("north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg"):
         raise SettingsError(f"{v.name}: position, heading and rudder are needed to show a turn.")
@@ -149,8 +163,12 @@ def measured_turn(path: str, ship: Ship) -> dict[str, Any]:
     L, every = float(ship.L_pp), max(1, (b - a) // 800)
     return plain(
         {
-            "voyage": v.name, "rudder_deg": float(np.nanmean(np.abs(rudder[keep]))), "start_s": float(t[a]),
-            "duration_s": float(t[b - 1] - t[a]), "x": (aside / L)[::every].tolist(), "y": (ahead / L)[::every].tolist(),
+            "voyage": v.name,
+            "rudder_deg": float(np.nanmean(np.abs(rudder[keep]))),
+            "start_s": float(t[a]),
+            "duration_s": float(t[b - 1] - t[a]),
+            "x": (aside / L)[::every].tolist(),
+            "y": (ahead / L)[::every].tolist(),
             "turned_deg": float(np.degrees(abs(psi[-1] - psi[0]))),
         }
-    )  # fmt: skip
+    )

@@ -10,7 +10,7 @@ Asked = Mapping[str, Any]
 
 
 class Verb(NamedTuple):
-    """`needs` and `may`: keys of what is asked (lists of file names end in s); `typed`: the words of its command."""
+    """`needs` and `may`: keys of what is asked (lists end in s); `typed`: the words of its command."""
 
     needs: tuple[str, ...]
     may: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""`python -m twin.studio.work JOB`: does one job of a project, in a process of its own, and writes down what it found."""
+"""`python -m twin.studio.work JOB`: does one job of a project, in a process of its own."""
 
 import json
 import sys

@@ -101,7 +101,11 @@ export function seriesCard(done, v, view, extra) {
         off.push({ name: `measured − ${name}`, t: T(voyage, residual.t), y: unpack(residual.y), look, gaps: voyage.restarts });
       }
     });
-    for (const more of extra?.lines?.(c.name) || []) { lines.push({ ...more, t: T(v, v.grid), gaps: v.restarts }); }
+    for (const more of extra?.lines?.(c.name) || []) {
+      const first = v.channels.find((x) => x.name === c.name), key = Object.keys(first.lines)[0], without = unpack(first.lines[key].y), residual = unpack(first.residuals[key].y);
+      lines.push({ ...more, t: T(v, v.grid), gaps: v.restarts });
+      off.push({ ...more, name: `measured − ${more.name}`, y: residual.map((x, i) => x + without[i] - more.y[i]), t: T(v, v.grid), gaps: v.restarts });
+    }
     return [timePlot(title, lines, { unit, view, compared: true }), timePlot(`${title}, difference`, off, { unit, view, height: 100, band: c.noise || undefined })];
   });
   const inputs = v.inputs.map((c) => { const [title, unit] = named(c.name); return timePlot(title, [{ name: "recorded", t: unpackOnce(v, c.measured.t), y: unpack(c.measured.y), look: "c-measured" }], { unit, view, height: 110 }); });

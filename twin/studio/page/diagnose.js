@@ -60,7 +60,7 @@ function changes(told) {
   if (!told.changes) return null;
   const words = { speed: (x) => `${num(Math.abs(x))} kn ${x < 0 ? "slower" : "faster"}`, heading: (x) => `${num(x)} deg of heading`, place: (x) => `${num(x)} m of place` };
   const said = told.changes.filter((c) => c.value !== null).map((c) => { const low = c.low95 ?? null, high = c.high95 ?? null; return `${words[c.what](c.value)}${low === null || high === null ? "" : ` (${[low, high].map(Math.abs).sort((x, y) => x - y).map((x) => num(x)).join(" to ")})`}`; });
-  return el("p", null, `On the bridge, on average over a prediction: ${said.join(", ")}.`);
+  return el("p", null, `On the bridge, on average over a prediction from the measured state: ${said.join(", ")}.`);
 }
 
 function rivals(d) {

@@ -18,7 +18,7 @@ export function chart(title, lines, options = {}) {
   const paint = () => { drawing = lined(title, lines, options, Math.max(Math.round(box.clientWidth) || 480, 240)); box.replaceChildren(drawing); };
   new ResizeObserver(paint).observe(box);
   const rows = () => [["line", options.x || "x", options.y || "y"], ...lines.flatMap((l) => Array.from(l.x, (x, i) => [l.name, x, l.y[i]]))];
-  return el("figure", null, el("figcaption", null, el("b", null, title), legend), box, keepers(title, () => drawing, rows));
+  return el("figure", null, el("figcaption", null, el("b", null, title), legend, keepers(title, () => drawing, rows)), box);
 }
 
 function lined(title, lines, o, width) {
@@ -92,7 +92,7 @@ export function heatStrip(voyage, heat, view) {
   view.watch(paint);
   const words = ["below 1.5", "1.5 to 4", "4 to 9", "9 and more"], key = words.map((w, i) => el("span", null, svg("svg", { width: 15, height: 11, "aria-hidden": "true" }, svg("rect", { class: `heat${i}`, width: 15, height: 11 })), ` ${w}`));
   const rows = () => [["time_s", ...heat.rows.map((r) => r.name)], ...Array.from(heat.t, (t, i) => [t, ...heat.rows.map((r) => r.y[i])])];
-  return el("figure", null, el("figcaption", null, el("b", null, title), el("span.legend", null, "times the noise: ", key)), box, keepers(title, () => drawing, rows));
+  return el("figure", null, el("figcaption", null, el("b", null, title), el("span.legend", null, "times the noise: ", key), keepers(title, () => drawing, rows)), box);
 }
 
 const short = (text, width) => (text.length > width / 6.4 ? text.replace("through water", "water").replace("velocity", "vel.") : text);
@@ -109,5 +109,5 @@ export function whiskers(title, rows) {
     const y = i * row + 16, z = (v) => Math.max(-3, Math.min(3, (v - r.prior) / r.prior_sd));
     out.append(svg("text", { class: "strong", x: 0, y: y + 4 }, r.name), svg("path", { class: "l c-measured", d: `M${X(-1.96)} ${y - 4}H${X(1.96)}` }), svg("path", { class: "l c-model", d: `M${X(z(r.value - 1.96 * r.sd))} ${y + 3}H${X(z(r.value + 1.96 * r.sd))}` }), svg("circle", { class: "c-model fill", cx: X(z(r.value)), cy: y + 3, r: 4 }), svg("text", { x: width - 80, y: y + 5 }, num(r.value, 4)));
   });
-  return el("figure", null, el("figcaption", null, el("b", null, title), el("span.legend", null, el("span", null, el("i.c-measured"), "prior, 95 %"), el("span", null, el("i.c-model"), "after, 95 %"))), el(".draw", null, out), keepers(title, () => out, () => [["name", "prior", "prior_sd", "value", "sd"], ...rows.map((r) => [r.name, r.prior, r.prior_sd, r.value, r.sd])]));
+  return el("figure", null, el("figcaption", null, el("b", null, title), el("span.legend", null, el("span", null, el("i.c-measured"), "prior, 95 %"), el("span", null, el("i.c-model"), "after, 95 %")), keepers(title, () => out, () => [["name", "prior", "prior_sd", "value", "sd"], ...rows.map((r) => [r.name, r.prior, r.prior_sd, r.value, r.sd])])), el(".draw", null, out));
 }

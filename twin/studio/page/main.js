@@ -62,7 +62,7 @@ function work() {
     const time = j.state === "waiting" ? "waits for its turn" : `${clock(gone)} so far${left === null ? "" : left > 0 ? `, about ${clock(left)} left` : ", longer than usual"}`;
     const bar = el("progress", { max: 1, "aria-label": `${j.verb}: how far` });
     if (j.usual_s) bar.value = Math.min(gone / j.usual_s, 0.98);
-    return el(".job", { "data-job": j.name }, bar, el("span.text", null, el("b", null, `${j.verb}: `), `${j.progress.at(-1)?.text || "starting"} · ${time}`), state.project.read_only ? null : button("Cancel", doing(async () => { await ask(`/api/jobs/${j.name}/cancel`, {}); await again(); }), { class: "small", "aria-label": `Cancel ${j.verb}` }));
+    return el(".job", { "data-job": j.name }, bar, el("span.text", null, el("b", null, `${j.verb === "look" ? "reading" : j.verb}: `), `${j.progress.at(-1)?.text || "starting"} · ${time}`), state.project.read_only ? null : button("Cancel", doing(async () => { await ask(`/api/jobs/${j.name}/cancel`, {}); await again(); }), { class: "small", "aria-label": `Cancel ${j.verb}` }));
   }));
 }
 

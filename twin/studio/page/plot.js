@@ -38,13 +38,15 @@ export function timePlot(title, lines, options) {
   const view = options.view, box = el(".draw"), readout = el(".readout", { "aria-hidden": "true" });
   const data = joined(lines), legend = el("span.legend", null, lines.map((l) => el("span", null, el(`i.${l.look.replaceAll(" ", ".")}`), l.name)));
   if (data[0].length) { view.ends[0] = Math.min(view.ends[0], data[0][0]); view.ends[1] = Math.max(view.ends[1], data[0].at(-1)); }
-  const figure = el("figure", { role: "img", "aria-label": `${title}${options.unit ? ` [${options.unit}]` : ""} over time. ${lines.map((l) => `${l.name} ${spread(l.y)}`).join("; ")}` }, el("figcaption", null, el("b", null, `${title}${options.unit ? ` [${options.unit}]` : ""}`), legend), box, readout);
+  const words = `${title}${options.unit ? ` [${options.unit}]` : ""}`;
+  box.setAttribute("role", "img");
+  box.setAttribute("aria-label", `${words} over time. ${lines.map((l) => `${l.name} ${spread(l.y)}`).join("; ")}`);
   const self = { plot: null, paint() { paint(self, box, data, lines, options, view, readout); } };
   plots.add(self);
   new ResizeObserver(() => { if (!box.isConnected) { self.plot?.destroy(); plots.delete(self); } else self.paint(); }).observe(box);
   view.watch(() => self.plot?.setScale("x", { min: view.range()[0], max: view.range()[1] }));
   const rows = () => [["time_s", ...lines.map((l) => l.name)], ...Array.from(data[0], (t, i) => [t, ...data.slice(1).map((y) => y[i])])];
-  return el("figure", null, figure, keepers(title, () => drawn(title, data, lines, options, view), rows));
+  return el("figure", null, el("figcaption", null, el("b", null, words), legend, keepers(title, () => drawn(title, data, lines, options, view), rows)), box, readout);
 }
 
 function spread(y) {

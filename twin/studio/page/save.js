@@ -45,7 +45,7 @@ export const giveText = (text, name, kind = "text/csv") => give(new Blob([text],
 /** The three buttons; `drawing()` gives an SVG element, `rows()` the numbers behind it. */
 export function keepers(title, drawing, rows) {
   const name = plainName(title), props = (what) => ({ class: "small", "aria-label": `Save ${title} as ${what}` });
-  return el(".tools", null,
+  return el(".tools.keep", { role: "group", "aria-label": `Save ${title}` },
     button("PNG", async () => give(await png(alone(drawing())), `${name}.png`), props("PNG")),
     button("SVG", () => giveText(alone(drawing()), `${name}.svg`, "image/svg+xml"), props("SVG")),
     button("CSV", () => giveText(csv(rows()), `${name}.csv`), props("CSV")));

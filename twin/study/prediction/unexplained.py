@@ -46,8 +46,8 @@ def energy(tracks: Sequence[Track], models: Sequence[Model]) -> Energy:
 
 @dataclass(frozen=True)
 class Missing:
-    """The force that the model misses over time: `t` (N,) [s], `force` and what sensor noise gives it, `noise`,
-    (N, 3): X, Y [N], N [N m]; `whole` (N,): where it is known. `width` steps are averaged in each."""
+    """The force that the model misses over time: `t` (N,) [s], `force` and what sensor noise gives it,
+    `noise`, (N, 3): X, Y [N], N [N m]; `whole` (N,): where it is known; each a mean over `width` steps."""
 
     t: np.ndarray
     force: np.ndarray
@@ -59,8 +59,8 @@ class Missing:
 
 
 def missing_force(track: Track, model: Model) -> Missing:
-    """M (measured acceleration - the model's), averaged over half a ship length of sailing; `model` must be one
-    that the track can feed (`reference.sailed.fed`)."""
+    """M (measured acceleration - the model's), averaged over half a ship length of sailing; `model`
+    must be one that the track can feed (`reference.sailed.fed`)."""
     width = max(2, round(0.5 * float(model.ship.scale("time")) / track.h))
     state, wind_to = true_motion(track, model)
     s = track.situation(delta=lagged(track, model), **dict(zip(STATE, state.T, strict=True)))
