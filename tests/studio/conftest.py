@@ -35,7 +35,9 @@ class Served:
 @pytest.fixture(scope="module")
 def project(tmp_path_factory):
     """One for all tests of a file."""
-    project = Project(tmp_path_factory.mktemp("project"))
+    folder = tmp_path_factory.mktemp("project") / "voyages"
+    folder.mkdir()
+    project = Project(folder)
     project.take_demo()
     return project
 

@@ -142,7 +142,7 @@ def trial(ship: Ship) -> dict[str, Any]:
 
 
 def measured_turn(path: str, ship: Ship) -> dict[str, Any]:
-    """The longest turn of a voyage with the rudder held over: its way in ship lengths from where it began,
+    """The largest turn of a voyage with the rudder held over: its way in ship lengths from where it began,
     ahead upwards and to starboard to the right (a turn to port is mirrored), and its heading [deg]."""
     v = read_voyage(path)
     if not v.has("north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg"):
@@ -151,12 +151,13 @@ def measured_turn(path: str, ship: Ship) -> dict[str, Any]:
     side = np.where(np.abs(rudder) > HELD_OVER * np.nanmax(np.abs(rudder)), np.sign(rudder), 0.0)
     starts = np.flatnonzero(np.r_[True, np.diff(side) != 0.0])
     ends = np.r_[starts[1:], side.size]
-    held = [(t[b - 1] - t[a], a, b) for a, b in zip(starts, ends, strict=True) if side[a] != 0.0]
+    held = [(a, b) for a, b in zip(starts, ends, strict=True) if side[a] != 0.0]
     if not held:
         raise SettingsError(f"{v.name}: its rudder is never put over.")
-    _, a, b = max(held)
+    psi = np.unwrap(np.radians(v["heading_true_north_deg"]))
+    a, b = max(held, key=lambda k: abs(psi[k[1] - 1] - psi[k[0]]))
     keep = slice(a, b)
-    psi = np.unwrap(np.radians(v["heading_true_north_deg"][keep]))
+    psi = psi[keep]
     north, east = v["north_m"][keep] - v["north_m"][a], v["east_m"][keep] - v["east_m"][a]
     ahead = north * np.cos(psi[0]) + east * np.sin(psi[0])
     aside = side[a] * (east * np.cos(psi[0]) - north * np.sin(psi[0]))

@@ -18,7 +18,7 @@ export async function reload() {
   state.jobs = state.project.jobs;
 }
 
-const cache = new Map();
+const cache = new Map(), last = { job: "", all: null };
 
 /** A JSON file of a job that is over: it never changes. */
 export async function found(job, file = "result.json") {
@@ -29,7 +29,8 @@ export async function found(job, file = "result.json") {
 
 /** The samples of a file that was looked at: {time_s, channel: Float32Array}. */
 export async function samples(job, looked) {
-  const answer = await fetch(`/api/jobs/${job}/series.f32`), all = new Float32Array(await answer.arrayBuffer());
+  if (last.job !== job) { last.all = new Float32Array(await (await fetch(`/api/jobs/${job}/series.f32`)).arrayBuffer()); last.job = job; }
+  const all = last.all;
   const row = (i) => all.subarray(i * looked.samples, (i + 1) * looked.samples), out = { time_s: row(0) };
   looked.columns.forEach((c, i) => { out[c.name] = row(i + 1); });
   return out;

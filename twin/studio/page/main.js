@@ -25,7 +25,8 @@ async function draw() {
   const mine = ++drawing, r = route(), [title, part] = PARTS[r.part] || PARTS.data, held = document.activeElement?.id;
   document.title = `${title} · twin studio`;
   by("parts").replaceChildren(...Object.entries(PARTS).map(([name, [text]]) => el("a", { href: address(name), "aria-current": name === r.part ? "page" : undefined }, text)));
-  by("folder").textContent = `${state.project.folder}${state.project.read_only ? " (read only)" : ""}`;
+  by("folder").textContent = `${state.project.folder.split(/[\\/]/).pop()}${state.project.read_only ? " (read only)" : ""}`;
+  by("folder").title = state.project.folder;
   let shown;
   try { shown = await part(r); } catch (error) { say(error.message); shown = [el("h1", null, title), el("p", null, error.message)]; }
   if (mine !== drawing) return;

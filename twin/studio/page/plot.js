@@ -41,10 +41,12 @@ export function timePlot(title, lines, options) {
   const words = `${title}${options.unit ? ` [${options.unit}]` : ""}`;
   box.setAttribute("role", "img");
   box.setAttribute("aria-label", `${words} over time. ${lines.map((l) => `${l.name} ${spread(l.y)}`).join("; ")}`);
-  const self = { plot: null, paint() { paint(self, box, data, lines, options, view, readout); } };
+  const self = { plot: null, near: false, width: 0, stale: true, paint(always) { if (always || (self.near && (self.stale || self.width !== Math.floor(box.clientWidth)))) paint(self, box, data, lines, options, view, readout); } };
+  box.style.minHeight = `${options.height || 170}px`;
   plots.add(self);
   new ResizeObserver(() => { if (!box.isConnected) { self.plot?.destroy(); plots.delete(self); } else self.paint(); }).observe(box);
-  view.watch(() => self.plot?.setScale("x", { min: view.range()[0], max: view.range()[1] }));
+  new IntersectionObserver((seen) => { self.near = seen.at(-1).isIntersecting; self.paint(); }, { rootMargin: "400px" }).observe(box); // far below it waits
+  view.watch(() => { if (self.near && self.plot) self.plot.setScale("x", { min: view.range()[0], max: view.range()[1] }); else self.stale = true; });
   const rows = () => [["time_s", ...lines.map((l) => l.name)], ...Array.from(data[0], (t, i) => [t, ...data.slice(1).map((y) => y[i])])];
   return el("figure", null, el("figcaption", null, el("b", null, words), legend, keepers(title, () => drawn(title, data, lines, options, view), rows)), box, readout);
 }
@@ -59,6 +61,8 @@ function paint(self, box, data, lines, options, view, readout) {
   const width = Math.floor(box.clientWidth);
   if (!width) return;
   self.plot?.destroy();
+  self.width = width;
+  self.stale = false;
   const axis = { stroke: look("soft"), grid: { stroke: look("grid"), width: 1 }, ticks: { stroke: look("line"), width: 1 }, font: "12px system-ui, sans-serif" };
   const [from, to] = view.range();
   self.plot = new uPlot({
@@ -126,4 +130,5 @@ function drawn(title, data, lines, options, view) {
 }
 
 /** All plots in new colours. */
-export function repaint() { for (const p of plots) p.paint(); }
+export function repaint() { for (const p of plots) { p.stale = true; p.paint(); } }
+window.addEventListener("beforeprint", () => { for (const p of plots) p.paint(true); });
