@@ -32,8 +32,9 @@ def page(tab, served):
 
 
 def go(page, address):
-    """Another address, drawn."""
+    """Another address, drawn anew also when it is shown already."""
     before = page.value("twinStudio.drawn")
+    address += f"{'&' if '?' in address else '?'}again={before}"
     page.value(f"location.hash = {json.dumps(address)}")
     page.wait(f"twinStudio.drawn > {before}", 30)
 
@@ -91,7 +92,7 @@ def test_data_compare_diagnose_add_compare_with_the_numbers_of_the_command_line(
     assert added["accepted"] and (project.folder / added["output"]).exists()
     assert "proved" in shown(page) and "+[effects.HullFouling]" in shown(page)
     page.value("document.getElementById('to-compare').click()")
-    page.wait("document.querySelector('#compare-ship')", 30)
+    page.wait("!!document.querySelector('#compare-ship')", 30)
     press(page, "Compare")
     last = answer(project, ended(page, "compare"))
     assert last["files"] == {"ship": added["output"], "voyages": ["tuesday.mcap"]}
@@ -119,11 +120,11 @@ def test_a_reload_in_the_middle_of_work_loses_nothing(page, project):
     press(page, "Diagnose")
     page.wait("location.hash.startsWith('#/diagnose/0')", 30)
     name = page.value("location.hash.split('/')[2]")
-    page.wait(f"{OVER.format(name=json.dumps(name))} === 'running' && document.querySelector('#work progress')", 60)
+    page.wait(f"{OVER.format(name=json.dumps(name))} === 'running' && !!document.querySelector('#work progress')", 60)
     page.value("location.reload()")
     time.sleep(0.3)
     page.wait("window.twinStudio?.drawn > 0", 30)
-    page.wait(f"document.querySelector('#work [data-job=\"{name}\"]') || {OVER.format(name=json.dumps(name))} === 'done'", 30)
+    page.wait(f"!!document.querySelector('#work [data-job=\"{name}\"]') || {OVER.format(name=json.dumps(name))} === 'done'", 30)
     assert ended(page, "diagnose") == name
     assert answer(project, name)["missing"] == ["HullFouling"]
 
@@ -148,7 +149,7 @@ def test_a_killed_worker_is_said_and_the_work_can_be_done_again(page, project):
 def test_an_owners_bad_table_is_mended_by_the_button_and_imported(page, project, spoiled):
     """Test: a rudder that is positive to port. Expected: refused, mended by the remedy, imported, compared."""
     go(page, "#/data/owner.csv")
-    page.wait("document.getElementById('remedy-rudder_sign-0')", 60)
+    page.wait("!!document.getElementById('remedy-rudder_sign-0')", 60)
     assert "Refused while rudder_sign" in shown(page)
     assert page.value("[...document.querySelectorAll('article')][0].querySelectorAll('canvas').length") == 2
     page.value("document.getElementById('remedy-rudder_sign-0').click()")

@@ -53,7 +53,7 @@ export function horizonCard(done) {
 
 function whereCard(a, view, voyage) {
   const { where, worst_windows: worst } = a.result;
-  const rows = worst.map((w) => [el("span", null, button(`${clock(w.start_s)} to ${clock(w.end_s)}`, () => { if (w.voyage !== voyage) change({ voyage: w.voyage, from: w.start_s.toFixed(2), to: w.end_s.toFixed(2) }); else view.set(w.start_s, w.end_s); document.getElementById("series")?.scrollIntoView(); }, { class: "small", "aria-label": `Show ${w.voyage} from ${num(w.start_s, 5)} to ${num(w.end_s, 5)} s` })), w.voyage, num(w.position_m), num(w.heading_deg), num(w.error_ratio)]);
+  const rows = worst.map((w) => [el("span", null, button(`${clock(w.start_s)} to ${clock(w.end_s)}`, () => { if (w.voyage !== voyage) change({ voyage: w.voyage, from: w.start_s.toFixed(2), to: w.end_s.toFixed(2) }); else view.set(w.start_s, w.end_s); document.getElementById("series")?.scrollIntoView(); }, { class: "small", "aria-label": `${clock(w.start_s)} to ${clock(w.end_s)} of ${w.voyage}, show it` })), w.voyage, num(w.position_m), num(w.heading_deg), num(w.error_ratio)]);
   const force = a.result.unexplained_force;
   return card("Where it is wrong", where.length ? table("Conditions in which the error is larger than elsewhere", ["condition", ["times elsewhere"], ["share of the time"]], where.map((w) => [w.condition, num(w.error_ratio), `${num(100 * w.time_share)} %`])) : el("p", null, "No condition of sailing stands out beyond chance."),
     table("Worst predictions", ["when", "voyage", ["position [m]"], ["heading [deg]"], ["times the mean"]], rows),

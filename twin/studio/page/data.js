@@ -17,7 +17,7 @@ function overview() {
     f.kind === "data" ? "to be imported" : f.kind, size(f.bytes),
     f.kind === "voyage" ? tagger(f) : "", el("a", { href: `/api/files/${encodeURIComponent(f.name)}`, download: f.name, "aria-label": `Save ${f.name}` }, "save")]);
   return [el("h1", null, "Data"), dropper(),
-    rows.length ? card("Files of this project", table("Plain files in the project's folder; the command line reads and writes the same", ["file", "what it is", ["size"], "kept for", ""], rows))
+    rows.length ? card("Files of this project", table("Plain files in the project's folder; the command line reads and writes the same", ["file", "what it is", ["size"], "kept for", "copy"], rows))
       : card("Nothing here yet", el("p", null, "Drop a log or a table above, or begin with the tanker that comes with the twin: calibrated on calm voyages, it sails badly on Monday."), button("Copy the demo voyages here", doing(async () => { await ask("/api/demo", {}); await again(); }), { class: "main", id: "demo", disabled: state.project.read_only }))];
 }
 

@@ -93,7 +93,7 @@ for (const b of document.querySelectorAll("[data-theme-name]")) b.addEventListen
 let keptTheme = null;
 try { keptTheme = localStorage.getItem("theme"); } catch { /* a browser that keeps nothing */ }
 theme(keptTheme ?? (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
-window.addEventListener("hashchange", () => { say(""); work(); draw(); });
+window.addEventListener("hashchange", doing(again)); // files may have come from elsewhere meanwhile
 window.twinStudio = { state, drawn: 0, change };
 
 try {

@@ -36,7 +36,7 @@ async function trials(s, r) {
   const limits = t.limits.map((l) => [l.name, `${num(l.value)} ${l.unit}`, `${num(l.limit)} ${l.unit}`, l.value === null ? "–" : el(`span.${l.value <= l.limit ? "good" : "bad"}`, null, l.value <= l.limit ? "within" : "beyond")]);
   return card("Sea trials of the model", pick, measured?.problem ? el("p.fair", null, measured.problem) : measured ? el("p.note", null, `The largest turn of ${measured.voyage} with the rudder held over, and not from straight ahead: ${num(measured.duration_s)} s, ${num(measured.turned_deg)} deg of heading, drawn to starboard.`) : null,
     el(".two", null, chart("Turning circle", lines, { equal: true, x: "ship lengths aside", y: "ship lengths ahead", height: 330 }), chart("20/20 zigzag", [{ name: "heading", x: t.zigzag.t, y: t.zigzag.y, look: "c-model" }], { x: "seconds", y: "deg", height: 330, marks: [{ y: 45, text: "limit of the first overshoot" }, { y: -45, text: "" }] })),
-    table("Figures beside the limits of IMO MSC.137(76)", ["figure", ["model"], ["limit"], ""], limits));
+    table("Figures beside the limits of IMO MSC.137(76)", ["figure", ["model"], ["limit"], "within it"], limits));
 }
 
 /** A first model from the main particulars, drawn while it is filled in. */
