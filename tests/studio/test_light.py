@@ -2,8 +2,12 @@
 
 import subprocess
 import sys
+import tomllib
+from pathlib import Path
 
 import pytest
+
+from twin.studio.replies import page_files
 
 HEAVY = {"starlette", "uvicorn", "anyio"}
 LOADS = {
@@ -22,3 +26,10 @@ def test_the_server_is_loaded_by_nothing_else(what):
     loaded = set(done.stdout.partition("LOADED")[2].split())
     assert loaded, done.stderr
     assert not loaded & HEAVY
+
+
+def test_an_installation_gets_every_file_of_the_page():
+    root = Path(__file__).parents[2]
+    kept = tomllib.loads((root / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]["twin.studio.page"]
+    there = {f"*{p.suffix}" for p in (root / "twin/studio/page").iterdir() if p.is_file() and p.suffix != ".py"}
+    assert there <= set(kept) and "/app/uplot-license.txt" in page_files()

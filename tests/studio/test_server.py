@@ -172,7 +172,7 @@ def test_a_job_that_fails_says_the_line_and_code_of_the_command_line(client, pro
 
 
 def test_a_cancelled_job_stops_and_can_be_asked_again(client, project):
-    status, said = client.json("/api/jobs", {"verb": "diagnose", "ship": "tanker.toml", "voyages": ["monday.mcap"]})
+    _, said = client.json("/api/jobs", {"verb": "diagnose", "ship": "tanker.toml", "voyages": ["monday.mcap"]})
     name = said["job"]
     until = time.monotonic() + 30
     while client.json(f"/api/jobs/{name}")[1]["state"] == "waiting":

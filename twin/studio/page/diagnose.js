@@ -58,8 +58,8 @@ const span = (numbers) => { const v = numbers.map((n) => n.value); return `${num
 
 function changes(told) {
   if (!told.changes) return null;
-  const words = { speed: (x) => `${num(Math.abs(x))} kn ${x < 0 ? "slower" : "faster"}`, heading: (x) => `${num(x)} deg of heading`, place: (x) => `${num(x)} m of place` };
-  const said = told.changes.filter((c) => c.value !== null).map((c) => { const low = c.low95 ?? null, high = c.high95 ?? null; return `${words[c.what](c.value)}${low === null || high === null ? "" : ` (${[low, high].map(Math.abs).sort((x, y) => x - y).map((x) => num(x)).join(" to ")})`}`; });
+  const words = { speed: (x) => `${num(Math.abs(x), 2)} kn ${x < 0 ? "slower" : "faster"}`, heading: (x) => `${num(x, 2)} deg of heading`, place: (x) => `${num(x, 2)} m of place` };
+  const said = told.changes.filter((c) => c.value !== null).map((c) => { const low = c.low95 ?? null, high = c.high95 ?? null; return `${words[c.what](c.value)}${low === null || high === null ? "" : ` (${[low, high].map(Math.abs).sort((x, y) => x - y).map((x) => num(x, 2)).join(" to ")})`}`; });
   return el("p", null, `On the bridge, on average over a prediction from the measured state: ${said.join(", ")}.`);
 }
 
