@@ -2,6 +2,8 @@
 
 import http.client
 import json
+import subprocess
+import sys
 import time
 
 import anyio
@@ -216,3 +218,23 @@ def test_the_ships_page_gets_numbers_with_sources_and_a_measured_turn(client):
     assert {p["name"]: p["source"] for p in ship["particulars"]}["L_pp"] == "YY15"
     turn = client.json("/api/turn?ship=tanker.toml&voyage=monday.mcap")[1]
     assert turn["turned_deg"] > 10 and turn["y"][-1] > 0.5
+
+
+def test_a_log_of_a_twin_is_shown_on_the_bridges_page(client, project):
+    """Test: a minute of Monday through the loop, attached. Expected: the page, its frames, and nothing after leaving."""
+    from twin.recording.read import read_voyage
+    from twin.recording.write import write_voyage
+
+    write_voyage(read_voyage(project.folder / "monday.mcap").between(0.0, 60.0), project.folder / "minute.mcap")
+    words = [sys.executable, "-m", "twin", "replay", "minute.mcap", "--ship", "tanker.toml", "-o", "ticks.mcap"]
+    subprocess.run(words, cwd=project.folder, check=True, capture_output=True, timeout=120)
+    assert client.ask("/events")[0] == 404
+    assert client.json("/api/live", {"log": "ticks.mcap"}) == (200, {"name": "ticks.mcap"})
+    assert client.json("/api/project")[1]["live"] == "ticks.mcap" and b"chart.js" in client.ask("/main.js")[2]
+    connection = http.client.HTTPConnection("127.0.0.1", client.port, timeout=20)
+    connection.request("GET", "/events", headers={"Host": f"127.0.0.1:{client.port}", "Cookie": client.cookie})
+    answer = connection.getresponse()
+    frame = next(line for line in iter(answer.readline, b"") if line.startswith(b"data: {"))
+    connection.close()
+    assert json.loads(frame[6:])["ship"]["ship"] == "KVLCC2"
+    assert client.json("/api/live", {"leave": True})[0] == 200 and client.json("/api/project")[1]["live"] == ""

@@ -143,7 +143,8 @@ def test_a_killed_worker_is_said_and_the_work_can_be_done_again(page, project):
     page.value("document.getElementById('retry').click()")
     page.wait(f"location.hash.startsWith('#/diagnose/0') && !location.hash.includes({json.dumps(name)})", 30)
     again = ended(page, "diagnose")
-    assert answer(project, again)["missing"] == ["HullFouling"]
+    asked = [json.loads((project.folder / "jobs" / n / "job.json").read_text())["asked"] for n in (name, again)]
+    assert asked[0] == asked[1] and answer(project, again)["files"]["voyages"] == asked[1]["voyages"]
 
 
 def test_an_owners_bad_table_is_mended_by_the_button_and_imported(page, project, spoiled):

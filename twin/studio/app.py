@@ -120,6 +120,7 @@ class Studio:
             "version": __version__,
             "files": files,
             "jobs": jobs,
+            "live": self.live.name,
         }
 
     async def form(self, request: Request) -> Any:

@@ -46,6 +46,11 @@ class Live:
         Thread(target=watch.run, args=(lambda: self.watch is watch,), name="live", daemon=True).start()
         return feed.name
 
+    @property
+    def name(self) -> str:
+        """Of what is looked at; "" for nothing."""
+        return self.watch.feed.name if self.watch is not None else ""
+
     def leave(self) -> None:
         self.watch = None
 
