@@ -103,8 +103,7 @@ VERBS: dict[str, Verb] = {
 }
 
 
-# package -> the extra that brings it
-EXTRAS = {"scipy": "study", "torch": "train", "onnx": "train", "starlette": "studio", "uvicorn": "studio"}
+EXTRAS = {"scipy": "study", "torch": "train", "onnx": "train"}  # package -> the extra that brings it
 ASIDE = ("export", "bench")  # packages of the source folder that an installation may lack
 
 

@@ -2,6 +2,10 @@
 
 import argparse
 
+from twin.errors import TwinError
+
+NEEDED = ("starlette", "uvicorn", "anyio", "scipy")  # what the extra brings
+
 EPILOG = """
 The page is served on 127.0.0.1; the printed link opens it once. Nothing leaves this computer, and nothing is
 loaded from elsewhere. Each action shows the command line that does the same; long work goes on when the page
@@ -31,6 +35,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    from twin.studio.serve import served
-
+    try:
+        from twin.studio.serve import served
+    except ModuleNotFoundError as error:
+        package = (error.name or "").partition(".")[0]
+        if package not in NEEDED:
+            raise
+        raise TwinError(
+            f"`twin studio` needs the package {package}. Run: pip install 'shiptwin[studio]'"
+        ) from None
     return served(args)
