@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 import tomllib
 from collections.abc import Iterator
@@ -16,6 +17,7 @@ JOBS = "jobs"
 TAGS = ("reference", "voyage", "held_out")
 LONGEST_NAME = 120
 BUNDLED = Path(__file__).parent.parent / "voyages"
+ARRAYS = re.compile(r"\.[0-9a-f]{8}\.json$")  # what a calibration found, beside its ship file
 KINDS = (  # how a file's name ends, what it is here
     (".toml", "settings"),
     (".mcap", "voyage"),
@@ -95,9 +97,8 @@ class Project:
 
     def take_demo(self) -> list[str]:
         """The bundled tanker and its two voyages, copied where they are not there yet."""
-        taken = [
-            name for name in ("tanker.toml", "monday.mcap", "tuesday.mcap") if not self.path(name).exists()
-        ]
+        bundled = sorted(p.name for p in BUNDLED.iterdir() if p.suffix in (".toml", ".mcap", ".json"))
+        taken = [name for name in bundled if not self.path(name).exists()]
         for name in taken:
             shutil.copyfile(BUNDLED / name, self.path(name))
         self.tag("tuesday.mcap", "held_out")
@@ -106,6 +107,8 @@ class Project:
 
 def kind_of(path: Path) -> str:
     """ship, map, settings, voyage, page, learned, answer, or data to be imported."""
+    if ARRAYS.search(path.name):
+        return "arrays of a ship"
     kind = next((kind for end, kind in KINDS if path.name.lower().endswith(end)), "data")
     if kind != "settings":
         return kind
