@@ -59,6 +59,7 @@ ORDER = (
     "twin.study",
     "twin.report",
     "twin.api",
+    "twin.studio",
     "twin.commands",
 )
 ONLY_IN_EXPORT = {"torch"}

@@ -99,9 +99,9 @@ def test_the_page_of_diagnose_ranks_causes_in_newtons_with_the_command_beside(
     assert complaints == []
     for words in (
         "Current (probability 97 %) is missing",
-        "512 kN aside",
+        "512 kN across it",
         "; ship file 0.200",
-        "32.0 MN m turning",
+        "32.0 MN m of turning",
         "VaryingCurrent",
         "reciprocal runs",
         "twin add Current",
