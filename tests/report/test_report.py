@@ -66,7 +66,7 @@ def test_the_page_opens_in_a_browser_without_a_complaint_and_shows_every_part(pa
         "Provenance",
     ):
         assert f"<h2>{words}</h2>" in dom
-    assert dom.index("<h1>After 120 s") < dom.index("<h2>") and "twin diagnose" in dom
+    assert dom.index("<h1>120 s open-loop error") < dom.index("<h2>") and "twin diagnose" in dom
 
 
 def test_the_page_is_dark_when_it_is_asked_to_be(page):
