@@ -37,6 +37,7 @@ def formula(effect: type[Effect]) -> str:
     """The head of its file: what it means, and the equation."""
     return inspect.cleandoc(sys.modules[effect.__module__].__doc__ or "")
 
+
 CHANGE = "a diagnosis weighs only a change of it"
 
 
