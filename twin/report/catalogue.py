@@ -38,6 +38,9 @@ def formula(effect: type[Effect]) -> str:
     return inspect.cleandoc(sys.modules[effect.__module__].__doc__ or "")
 
 
+CHANGE = "a diagnosis weighs only a change of it"
+
+
 def inputs(effect: type[Effect]) -> list[str]:
     """The columns of a voyage without which it is switched off."""
     return [INPUTS.get(name, name) for name in effect.needs]
@@ -119,7 +122,7 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
         [f"of a ship {', '.join(effect.needs_ship)}"] if effect.needs_ship else []
     )
     lines += [f"attacks   {_attacks(effect)}"] if effect.lever else []
-    lines += ["found by  twin instruments; no diagnosis weighs it"] if effect.kinematic else []
+    lines += [f"found by  twin instruments; {CHANGE}"] if effect.kinematic else []
     lines += [textwrap.fill(f"source    {effect.source}", width, subsequent_indent=" " * 10)]
     add = f"next: twin add {effect.__name__} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"
     return "\n".join([*lines, "", "next: mend it; no ship file holds it" if effect in UNNAMED else add])
@@ -181,7 +184,7 @@ def _entry(effect: type[Effect]) -> list[str]:
     if effect.needs_ship:
         needs += f"; of the ship {', '.join(effect.needs_ship)}"
     needs += f". Attacks {_attacks(effect)}" if effect.lever else ""
-    needs += ". `twin instruments` looks for it; no diagnosis weighs it" if effect.kinematic else ""
+    needs += f". `twin instruments` looks for it; {CHANGE}" if effect.kinematic else ""
     rows = [
         f"| `{name}` | {unit} | {size} | {box} | {sd} | {doc.replace('|', '/')} |"
         for name, unit, size, box, sd, doc in (row(p, None) for p in effect.params())

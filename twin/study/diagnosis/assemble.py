@@ -65,9 +65,10 @@ def of_tracks(
 ) -> Case:
     """The same of tracks, with what waves do to them already found (`twin add` has some of a voyage for the
     fit and some for the proof). `asked`: effects that are judged although `twin instruments` looks for them
-    (`Effect.kinematic`)."""
+    (`Effect.kinematic`); of those in the ship file a change is judged all the same."""
     model, tracks = Model.of(ship), tuple(sailed)
-    catalogue = {n: e for n, e in of_ship(ship).items() if not e.kinematic or e in asked}
+    wanted = {*asked, *(type(e) for e in model.effects)}
+    catalogue = {n: e for n, e in of_ship(ship).items() if not e.kinematic or e in wanted}
     unnamed = {e.__name__: e for e in unnamed_of(ship)}
     judged = catalogue | unnamed
     candidates = judgeable(tracks, model, judged)
