@@ -25,6 +25,5 @@ def test_it_by_hand():
     assert said(replace(f, left=replace(f.left, error=1.0))) == pytest.approx(0.293, abs=1e-3)
 
 
-def test_weather_and_what_explains_nothing_have_none():
-    assert said(facts(cause(belongs_to="voyage"))) is None
+def test_what_explains_nothing_has_none():
     assert said(facts(cause(in_explanation=False))) is None

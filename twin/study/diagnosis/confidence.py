@@ -49,9 +49,8 @@ WEIGHTS = {"log_odds": 0.83, "clearness": 0.82, "alone": 1.27, "left_little": 0.
 
 
 def confidence(f: Facts, c: Cause) -> float | None:
-    """Share of such causes that were there; None of a cause that is no part of the explanation, or water and
-    weather."""
-    if not c.in_explanation or c.belongs_to == "voyage":
+    """Share of such causes that were there; None of one that is no part of the explanation."""
+    if not c.in_explanation:
         return None
     s = CONSTANT + sum(WEIGHTS[name] * fact(f, c) for name, fact in FACTS.items())
     low, high = TOLD
