@@ -102,6 +102,7 @@ class Stabilizer:
         """The observer was set to what is measured."""
         tube.reset(self._first(observer, measured, tube), self._heading(observer, measured, tube))
         self._restarts, self._inside = observer.restarts, tube.window
+        self._seaway = "H_s" in measured.si
         if self._parity:
             self._parity.begin()
 

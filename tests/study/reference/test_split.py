@@ -10,7 +10,7 @@ from twin.live.certificate.plant import seaway_of, usual_disturbance
 from twin.physics import ship as ships
 from twin.physics.model import Model
 from twin.physics.state import Situation
-from twin.study.prediction.hierarchical import hierarchical_quantile
+from twin.study.reference.hierarchical import hierarchical_quantile
 from twin.study.reference.split import Sailed, low_frequency, scores, section, window
 
 STEP_S = 0.1

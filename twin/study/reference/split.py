@@ -19,7 +19,7 @@ from twin.live.certificate.plant import DRIFT, MOTION, Row
 from twin.physics import core
 from twin.physics.model import Model
 from twin.physics.state import Situation
-from twin.study.prediction.hierarchical import hierarchical_quantile
+from twin.study.reference.hierarchical import hierarchical_quantile
 
 PERIODS = 1.2  # of the waves, over which the motion is averaged
 UNITS = ("N/m", "N/m", "N m/m", "m/s/m", "m/s/m", "rad/s/m", "rad/m")
