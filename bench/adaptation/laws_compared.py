@@ -128,7 +128,7 @@ def ships(seeds: int) -> dict[str, list[Any]]:
 
 
 def hulls() -> dict[str, Any]:
-    """Hers, and what may become of it."""
+    """The ship's own, and what may become of it."""
     hull = HULLS["kvlcc2"]
     heavy, held = (changed(FULL)[name][0].hull for name in ("Mass error M (+5%)", "Damping error D (+10%)"))
     return {

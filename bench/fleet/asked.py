@@ -20,7 +20,7 @@ from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.calibration.calibrate import calibrate
 from twin.study.diagnosis.diagnose import Diagnosis, diagnose
-from twin.study.diagnosis.led import held_out_error
+from twin.study.diagnosis.open_loop_check import held_out_error
 from twin.study.diagnosis.refine import refine
 from twin.study.first_model.init import OPTIONS, first_model
 from twin.study.reference.sailed import Sailed as Reference
@@ -142,7 +142,7 @@ def _asked(ship: Ship, case: Case, model: Model, facts: dict[str, Any]) -> dict[
         {
             "effects": s,
             "weight": f.hypothesis.log_weight,
-            "scenario": f.hypothesis.world,
+            "scenario": f.hypothesis.scenario,
             "error_m": f.off_m,
             "expected_m": f.floor_m,
         }

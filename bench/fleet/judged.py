@@ -52,7 +52,7 @@ def told_weather(row: Row) -> set[str]:
 def right(row: Row, missing: Sequence[str] | None = None, verdict: str | None = None) -> bool:
     """Whether an answer says what the truth is: every hidden cause of ship and instruments and no other,
     every
-    hidden weather; a healthy ship is not accused; what is in no catalogue has no name."""
+    hidden weather; no cause is named on a healthy ship; what is in no catalogue has no name."""
     missing, verdict = row["missing"] if missing is None else missing, verdict or row["verdict"]
     named, hidden = causes(missing), set(row["hidden"])
     if row["kind"] == "outside":

@@ -22,7 +22,7 @@ from twin.study.diagnosis.facts import Facts
 
 RIGHT = (
     "**Right**: every hidden cause of ship and instruments is named and no other; hidden weather is named or "
-    "told; a healthy ship is not accused. **Its oracle gains**: the truth, fitted by the twin's own form of "
+    "told; no cause is named on a healthy ship. **Its oracle gains**: the truth, fitted by the twin's own form of "
     "it, brings the open-loop error down by a tenth."
 )
 BY_HAND = "## What it says"  # from this title on

@@ -19,7 +19,7 @@ from twin.study.reference.evidence import Hypothesis, Nuisance, likeliest, poste
 
 
 def as_she_is(case):
-    told = posterior(case.reduced(case.lines, case.worlds(["usual"]))[0], ())
+    told = posterior(case.reduced(case.lines, case.scenarios(["usual"]))[0], ())
     return Found(Hypothesis((), "usual", told.log_evidence, 0.0), told, case.model)
 
 

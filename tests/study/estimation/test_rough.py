@@ -54,7 +54,7 @@ def test_a_steady_pull_that_a_known_wind_may_have_missed_tells_little(windy):
     about the wind's form. Expected: less with it, for the wind blew from one side; and as much of a compass
     that is off."""
     sure = replace(windy, nuisance=_sure(windy.nuisance))
-    with_doubt, without = (case.reduced(case.lines, case.worlds(["usual"]))[0] for case in (windy, sure))
+    with_doubt, without = (case.reduced(case.lines, case.scenarios(["usual"]))[0] for case in (windy, sure))
     pull, compass = (with_doubt.rows((name,)) for name in ("ExternalForce", "HeadingBias"))
     tells = lambda reduced, rows: float(np.trace(reduced.A[np.ix_(rows, rows)]))
     assert tells(with_doubt, pull) < 0.85 * tells(without, pull)

@@ -19,7 +19,7 @@ from twin.recording.jsonable import plain
 from twin.study.calibration.held_out import HeldOut, by_regime, errors, size
 from twin.study.calibration.parts import clearly, placed, with_or_without_wind
 from twin.study.calibration.rollout import rolled_out
-from twin.study.calibration.usual import clearly_hers, usual
+from twin.study.calibration.usual import clearly_there, usual
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import Floor
@@ -103,14 +103,14 @@ def calibrate(
     ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
     if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
         progress("fitting to where it went")
-        led = rolled_out(tracks, Model.of(ships["steps"]), excited, of_ship(ship)).ship
-        ships["paths"] = with_core_of(ships["steps"], led)
+        open_loop_check = rolled_out(tracks, Model.of(ships["steps"]), excited, of_ship(ship)).ship
+        ships["paths"] = with_core_of(ships["steps"], open_loop_check)
     off = {way: errors(Model.of(s), held_out) for way, s in ships.items()}
     way = by if by in ships else min(ships, key=lambda way: size(off[way]) - BETTER * (way == "steps"))
     progress("learning what is usual on this ship")
-    hers = usual(ships[way], tracks, core.floor)
+    lasting_ones = usual(ships[way], tracks, core.floor)
     judged = {"held_out": off[way], "by_regime": by_regime(Model.of(ships[way]), held_out)}
-    after = noted(ships[way], "structural", hers | judged)
+    after = noted(ships[way], "structural", lasting_ones | judged)
     return Calibrated(after, plain(_result(ship, after, core, way, errors(Model.of(ship), held_out))))
 
 
@@ -118,16 +118,16 @@ def _with_antenna(
     first: AntennaOffset, sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]
 ) -> Core:
     """The same with the antenna in the model from the start: what heel and turning carry it about is no sway
-    of hers, and had bent the core."""
+    of its own, and had bent the core."""
     found = _core(sailed, ship.with_effects(first), progress)
     antenna = AntennaOffset(
         **{name: number["value"] for name, number in found.numbers[AntennaOffset.__name__].items()}
     )
     # until predictions are better with the other (`placed`)
-    hers = (e for e in ship.effects if isinstance(e, AntennaOffset))
+    lasting_ones = (e for e in ship.effects if isinstance(e, AntennaOffset))
     return replace(
         found,
-        effects=(*hers, *(e for e in found.effects if not isinstance(e, AntennaOffset))),
+        effects=(*lasting_ones, *(e for e in found.effects if not isinstance(e, AntennaOffset))),
         antenna=antenna,
     )
 
@@ -202,7 +202,7 @@ def _found_here(name: str, ship: Ship, core: Core) -> bool:
 
 def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str, float]]) -> dict[str, Any]:
     """What --json holds."""
-    hers = after.notes["structural"]
+    lasting_ones = after.notes["structural"]
     return {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
@@ -211,15 +211,15 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "fitted_by": by,
         **{key: _said(owner.__name__, after, core) for key, owner in SAID.items()},
         "waves": waves_on(core.tracks),
-        "too_faint": [name for name, felt in hers["weather"].items() if felt > FAINT],
-        "usual": clearly_hers(after, hers),
-        "between_voyages": hers["between_voyages"],
+        "too_faint": [name for name, felt in lasting_ones["weather"].items() if felt > FAINT],
+        "usual": clearly_there(after, lasting_ones),
+        "between_voyages": lasting_ones["between_voyages"],
         "floor": asdict(core.floor),
         "temper": core.temper,
-        "by_regime": hers["by_regime"],
+        "by_regime": lasting_ones["by_regime"],
         "held_out": [
             e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]}
-            for b, e in zip(before, hers["held_out"], strict=True)
+            for b, e in zip(before, lasting_ones["held_out"], strict=True)
         ],
     }
 

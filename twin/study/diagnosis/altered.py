@@ -40,7 +40,7 @@ def sized(case: Case, found: Found) -> Posterior:
         return found.posterior
     lines, at = standing(case, found, case.unknowns)
     wider = replace(case, nuisance=_scattered(case.nuisance, SCATTER * moved))
-    reduced = wider.reduced(lines, case.worlds([found.hypothesis.world], found.doubt), at)[0]
+    reduced = wider.reduced(lines, case.scenarios([found.hypothesis.scenario], found.doubt), at)[0]
     return posterior(reduced, found.hypothesis.effects)
 
 

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.clear import change, significance
 from twin.study.diagnosis.decision import CLEAR, SURE, explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
-from twin.study.diagnosis.led import roughly
 from twin.study.diagnosis.moments import Moment, moments
+from twin.study.diagnosis.open_loop_check import roughly
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
 from twin.study.estimation.start import wave_period_s
@@ -148,11 +148,11 @@ def _explanation(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets,
 def left_over(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found], chosen: Sets) -> Left:
     """What a set of effects leaves over."""
     own, nothing = found[chosen], found[without_causes(case, weighed, found)]
-    worlds = [h for h in weighed if h.effects == chosen]
-    plain = next((h for h in worlds if WORLDS[h.world].plain), None)
+    scenarios = [h for h in weighed if h.effects == chosen]
+    plain = next((h for h in scenarios if SCENARIOS[h.scenario].plain), None)
     return Left(
         error=_ratio(own.off_m, own.floor_m), share=_ratio(own.off_m, nothing.off_m),
-        restless=worlds[0].log_weight - plain.log_weight if plain else NO_GAP,
+        restless=scenarios[0].log_weight - plain.log_weight if plain else NO_GAP,
     )  # fmt: skip
 
 

@@ -14,12 +14,12 @@ from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.assemble import assemble, unjudged_because
-from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.confidence import confidence
 from twin.study.diagnosis.consider import Considered, consider
 from twin.study.diagnosis.decision import decide
-from twin.study.diagnosis.led import held_out_error, horizon_s
 from twin.study.diagnosis.manoeuvres import next_manoeuvre
+from twin.study.diagnosis.open_loop_check import held_out_error, horizon_s
 from twin.study.diagnosis.overtime import over_time
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.search import search
@@ -200,7 +200,7 @@ def _weather(
     )
     out = {"effect": name, "belongs_to": case.catalogue[name].belongs_to, "probability": capped(probability)}
     if best is None:
-        flow = WORLDS[weighed[0].world].flow * case.floor.flow * float(case.model.ship.U_0)
+        flow = SCENARIOS[weighed[0].scenario].flow * case.floor.flow * float(case.model.ship.U_0)
         return out | {
             "parameters": [{"name": "scatter", "value": flow, "unit": "m/s"}],
             "typical_force": None,

@@ -6,7 +6,7 @@ from typing import Any
 from twin.num import num
 
 Result = dict[str, Any]
-SMALL = "It is too small to show in where these voyages led the ship: `twin add` may ask for others."
+SMALL = "It is too small to reduce the open-loop error of these voyages: `twin add` may ask for others."
 
 
 def named(result: Result) -> str:

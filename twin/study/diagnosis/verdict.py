@@ -9,9 +9,9 @@ import numpy as np
 
 from twin.physics import core
 from twin.physics.model import Model
-from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.decision import CERTAIN, CLEAR, LOST, SURE
-from twin.study.diagnosis.led import LUXURY
+from twin.study.diagnosis.open_loop_check import COMPLEXITY
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.without import without
 from twin.study.estimation.columns import Unknown
@@ -39,7 +39,7 @@ def rivals(weighed: Sequence[Hypothesis], found: Mapping[tuple[str, ...], Found]
     return [
         {
             "effects": list(h.effects),
-            "scenario": h.world,
+            "scenario": h.scenario,
             "log_bayes_factor": h.log_weight - weighed[0].log_weight,
             "error_m": found[h.effects].off_m if h.effects in found else None,
         }
@@ -83,7 +83,7 @@ def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
 def restless_water(case: Case, h: Hypothesis) -> list[str]:
     """The effect that water is which moves more than on the reference voyages: a stream that changes, whether
     its course has a name or not."""
-    if WORLDS[h.world].flow <= 1.0 or WORLDS[h.world].unknown:
+    if SCENARIOS[h.scenario].flow <= 1.0 or SCENARIOS[h.scenario].unknown:
         return []
     return [name for name in case.weather if case.catalogue[name].holds]
 
@@ -94,8 +94,8 @@ def _nameless(case: Case, h: Hypothesis, alone: Mapping[str, float]) -> bool:
     that does clearly more `alone` (log weight of each effect by itself)."""
     known = [alone.get(name, -np.inf) for name in case.names(h.effects)]
     formed = [alone.get(name, -np.inf) for name in h.effects if name in case.unnamed]
-    restless = WORLDS[h.world].unknown and not any(of_the_sea(case, name) for name in h.effects)
-    return restless or (bool(formed) and max(known, default=-np.inf) <= max(formed) + LUXURY)
+    restless = SCENARIOS[h.scenario].unknown and not any(of_the_sea(case, name) for name in h.effects)
+    return restless or (bool(formed) and max(known, default=-np.inf) <= max(formed) + COMPLEXITY)
 
 
 def of_the_sea(case: Case, name: str) -> bool:

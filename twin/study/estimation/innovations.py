@@ -352,7 +352,7 @@ def _reading(track: Track, floor: Floor) -> np.ndarray:
     """(N, 8) variance of each reading."""
     return np.square(
         floor.sensor
-        * np.broadcast_to(track.sd if track.unrest is None else track.sd * track.unrest, (len(track), 8))
+        * np.broadcast_to(track.sd if track.ripple is None else track.sd * track.ripple, (len(track), 8))
     )
 
 

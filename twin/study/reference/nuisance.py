@@ -113,13 +113,18 @@ class Known:
         told = [t for i, t in enumerate(self.told) if i != without]
         mean, covariance = ship_of(told, self.scatter, self.pull)
         covariance = covariance + np.diag(self.scatter)
-        hers = [i for i, u in enumerate(self.unknowns) if not u.every_day]
-        information = np.linalg.inv(covariance[np.ix_(hers, hers)])
+        lasting_ones = [i for i, u in enumerate(self.unknowns) if not u.every_day]
+        information = np.linalg.inv(covariance[np.ix_(lasting_ones, lasting_ones)])
         sizes = of_any_day(mean, np.diag(covariance), self.unknowns)
         usual = {
             u.label: float(u.sd * size) for u, size in zip(self.unknowns, sizes, strict=True) if u.every_day
         }
-        return Nuisance(tuple(self.unknowns[i] for i in hers), information, information @ mean[hers], usual)
+        return Nuisance(
+            tuple(self.unknowns[i] for i in lasting_ones),
+            information,
+            information @ mean[lasting_ones],
+            usual,
+        )
 
 
 def known_from(

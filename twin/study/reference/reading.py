@@ -10,7 +10,7 @@ from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import Linear, linearise
 from twin.study.estimation.rough import doubted
-from twin.study.reference.seaway import levelled, stirred
+from twin.study.reference.seaway import excited, levelled
 from twin.study.track.segments import read_parts
 from twin.study.track.track import Track
 
@@ -31,7 +31,7 @@ def read_lines(
     models = [model.without_inputs(t.missing())[0] for t in tracks]
     parts = read_parts([levelled(t) for t in tracks], float(model.ship.scale("time")), most)
     slack = [
-        np.hypot(stirred(t, m)[np.searchsorted(t.steps(), p.steps())], doubted(p, m))
+        np.hypot(excited(t, m)[np.searchsorted(t.steps(), p.steps())], doubted(p, m))
         for t, p, m in zip(tracks, parts, models, strict=True)
     ]
     return tuple(

@@ -120,7 +120,7 @@ def levelled(track: Track) -> Track:
     return replace(track, weather={**track.weather, **heel})
 
 
-def stirred(track: Track, model: Model) -> np.ndarray:
+def excited(track: Track, model: Model) -> np.ndarray:
     """(N, 3) acceleration by which waves change the mean of what hull, rudder and propeller do, for drag is
     not in proportion to speed: halfway between both ends of the swing, less the middle [m/s2, m/s2,
     rad/s2]."""

@@ -73,8 +73,8 @@ class Track:
     whole: np.ndarray  # (N,) bool: controls and motion known, so that the model can be run through
     # (N, 6): in surge, sway, yaw how fast waves swing it [rad/s], and their accelerations (seaway.py)
     swell: np.ndarray | None = None
-    # (N, 8): times its usual scatter that each reading has at that moment (unrest.py)
-    unrest: np.ndarray | None = None
+    # (N, 8): times its usual scatter that each reading has at that moment (ripple.py)
+    ripple: np.ndarray | None = None
     # of a ship with actuators of its own what is recorded of them, `name.attribute` in SI; else None
     told: Mapping[str, np.ndarray] | None = None
     # behind each steering gear
@@ -111,7 +111,7 @@ class Track:
     def where(self, keep: slice | np.ndarray) -> "Track":
         """Some of the grid steps; where others are left out between them, `whole` must be False on one
         side."""
-        swell, unrest = (None if x is None else x[keep] for x in (self.swell, self.unrest))
+        swell, ripple = (None if x is None else x[keep] for x in (self.swell, self.ripple))
         return replace(
             self,
             t=self.t[keep],
@@ -122,7 +122,7 @@ class Track:
             weather={k: w[keep] for k, w in self.weather.items()},
             measured=self.measured[keep],
             swell=swell,
-            unrest=unrest,
+            ripple=ripple,
             told=None if self.told is None else {k: x[keep] for k, x in self.told.items()},
         )
 

@@ -27,7 +27,7 @@ def shaken(track: Track, time: float) -> Track:
     swift, lately = (max(3, round(k * time / track.h)) for k in (SWIFT, LATELY))
     size = np.column_stack([_lately(np.abs(e - running_mean(e, swift)), lately) for e in beside.T])
     more = NORMAL * size / track.sd
-    return replace(track, unrest=np.where(more > CLEAR, more, 1.0)) if (more > CLEAR).any() else track
+    return replace(track, ripple=np.where(more > CLEAR, more, 1.0)) if (more > CLEAR).any() else track
 
 
 def _lately(values: np.ndarray, steps: int) -> np.ndarray:
