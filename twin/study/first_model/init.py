@@ -114,8 +114,8 @@ def _particulars(given: Given, least: float = 0.2) -> Numbers:
     by_mass = None if mass is None else mass / (rho * box)
     if by_mass is not None and not least <= by_mass <= 0.99:
         raise SettingsError(
-            f"--mass-kg {mass:g} fills {by_mass:.0%} of length x beam x draught; a ship fills {least:.0%} to 99 %. "
-            "Check the mass (kg) and the draught."
+            f"--mass-kg {mass:g} fills {by_mass:.0%} of length x beam x draught; a ship fills "
+            f"{least:.0%} to 99 %. Check the mass (kg) and the draught."
         )
     if by_mass is not None and C_b is not None and abs(by_mass / C_b - 1.0) > 0.05:
         raise SettingsError(
