@@ -181,7 +181,11 @@ class _Problem:
 
     def _cost(self, z: np.ndarray) -> float:
         lines = self._linearised(z, [u for u in self.unknowns if u.owner == LATE])
-        return _cost(z, innovate(lines, [self.floor])[0], self.temper)
+        try:
+            normal = innovate(lines, [self.floor])[0]
+        except np.linalg.LinAlgError:  # a model that runs away between two readings: a step too far
+            return np.inf
+        return _cost(z, normal, self.temper)
 
     def _linearised(
         self, z: np.ndarray, unknowns: Sequence[Unknown], exact: bool = False
