@@ -1,7 +1,7 @@
 """The voyages that come with the twin, for `twin demo` and the tutorial: `python -m bench.bundled` makes them
 again.
 
-A tanker is calibrated on calm reference voyages of the reference sea; then something happens to her that
+A tanker is calibrated on calm reference voyages of the reference sea; then something happens to it that
 nobody tells the twin. Two voyages are kept at 1 Hz, one to find it on and one to prove it on."""
 
 import sys

@@ -51,6 +51,11 @@ BENCHES: dict[str, Bench] = {
         "is the promise kept where its assumptions are not?",
         "twin-bench assumptions --seconds 300",
     ),
+    "seaway": Bench(
+        "bench.seaway",
+        "what a seaway costs the promise, and is it kept there?",
+        "twin-bench seaway --ship kvlcc2",
+    ),
     "hidden-effects": Bench(
         "bench.league.hidden_effects",
         "the hidden-effect league: is what is missing named?",
@@ -61,6 +66,11 @@ BENCHES: dict[str, Bench] = {
         "instruments that lie: how soon it is said, and how often in vain",
         "twin-bench lies --hull usv",
     ),
+    "instruments": Bench(
+        "bench.instruments",
+        "faults of known size in the instruments, by kinematics alone",
+        "twin-bench instruments --seeds 2",
+    ),
     "import-mistakes": Bench(
         "bench.import_mistakes",
         "mistakes of a recording: named, and never proved where there are none",
@@ -70,6 +80,11 @@ BENCHES: dict[str, Bench] = {
         "bench.import_speed",
         "how fast logs and tables are read, in how much memory",
         "twin-bench import-speed",
+    ),
+    "fleet": Bench(
+        "bench.fleet.run",
+        "random ships of many forms: a row of facts and truth for each voyage",
+        "twin-bench fleet FOLDER --seeds 0-1 --workers 2",
     ),
     "real": Bench(
         "bench.real.kvlcc2", "measured KVLCC2 manoeuvres (SIMMAN 2008)", "twin-bench real --data DIR"

@@ -229,7 +229,7 @@ def _begun(name: str, given: dict[str, float], path: Path) -> Ship:
 
 
 def _other(folder: Path, case: Path) -> tuple[Ship, list[Voyage]]:
-    """A ship of others from her particulars, calibrated on her references (the last is also what is held
+    """A ship of others from its particulars, calibrated on its references (the last is also what is held
     out)."""
     references = sorted(case.glob("reference_*.csv"))
     key = json.loads((case / "truth.json").read_text())["reference_set"]

@@ -33,7 +33,7 @@ NAMES = (
     "water_depth_m",
 )
 CHILD = """
-import json, resource, sys, time
+import json, sys, time
 from pathlib import Path
 from twin.recording.read import raw_of, finished
 start = time.process_time()  # seconds of one core, whatever else the machine does
@@ -42,7 +42,7 @@ read_s = time.process_time() - start
 samples = sum(x.size for x in raw.columns.values())
 voyage = finished(raw)
 print(json.dumps({"read_s": read_s, "voyage_s": time.process_time() - start, "rows": len(voyage), "samples": samples,
-                  "peak_mb": resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0}))
+                  "peak_mb": int(open("/proc/self/status").read().split("VmHWM:")[1].split()[0]) / 1024.0}))
 """
 
 

@@ -26,7 +26,7 @@ from twin.physics.effects import catalogue, find
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.study.diagnosis.assemble import of_tracks
-from twin.study.diagnosis.case import WORLDS
+from twin.study.diagnosis.case import SCENARIOS
 from twin.study.diagnosis.case import Case as Judged
 from twin.study.diagnosis.refine import Found
 from twin.study.estimation.innovations import Floor, innovate, linearise
@@ -163,7 +163,7 @@ def _trials(ship: Ship, hull: str, seed: int, folder: Path, full: bool) -> Itera
 
 def _of_pair(ship: Ship, used: Track, held: Track, said: str, full: bool) -> Iterator[dict[str, Any]]:
     case = of_tracks([used], ship)
-    usual = case.reduced(case.lines, case.worlds(["usual"]))[0]
+    usual = case.reduced(case.lines, case.scenarios(["usual"]))[0]
     for name in lasting(case.names(case.candidates)):
         print(f"{said}: {name} ...", file=sys.stderr)
         made = fitted(ship, [find(name)], [used]) if full else _first_order(case, usual, name)
@@ -173,7 +173,7 @@ def _of_pair(ship: Ship, used: Track, held: Track, said: str, full: bool) -> Ite
 def _first_order(case: Judged, usual: Any, name: str) -> Fitted:
     """The effect where the equations about none of it have it."""
     own = boxed(usual, (name,), posterior(usual, (name,)))
-    h = Hypothesis((name,), next(iter(WORLDS)), own.log_evidence, 0.0)
+    h = Hypothesis((name,), next(iter(SCENARIOS)), own.log_evidence, 0.0)
     return of_hypothesis(case, (name,), Found(h, own, case.model))
 
 

@@ -41,7 +41,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="EFFECT",
         action="append",
         default=[],
-        help="what happens to her that nobody tells (repeat): HullFouling, ...",
+        help="what happens to it that nobody tells (repeat): HullFouling, ...",
     )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--hz", type=float, default=10.0, help="how often the sea moves on (default: 10)")
@@ -49,7 +49,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--duration", type=float, default=math.inf, metavar="S", help="how long (default: until stopped)"
     )
     parser.add_argument(
-        "--after", type=float, default=0.0, metavar="S", help="let her sail so long before anybody hears her"
+        "--after", type=float, default=0.0, metavar="S", help="let it sail so long before anybody hears it"
     )
     parser.add_argument("--csv", metavar="FILE", help="write the voyage there at once, and speak to nobody")
     parser.add_argument(

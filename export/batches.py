@@ -13,7 +13,7 @@ from twin.live.learning.learned import scale_of
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
-STRIDE = 2  # grid steps in one step of a roll-out: a sixteenth of the time the ship takes to sail her length
+STRIDE = 2  # grid steps in one step of a roll-out: a sixteenth of the time the ship takes to sail its length
 STATE = ("x", "y", "psi", "u", "v", "r")
 BLOCKS = 1000  # numbers of blocks kept for each voyage
 

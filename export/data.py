@@ -65,7 +65,7 @@ class Leg:
 
 
 def model_of(ship: Ship, tracks: Sequence[Track]) -> Model:
-    """The ship's model as all the voyages can feed it; her current effects are left to the frame when all
+    """The ship's model as all the voyages can feed it; its current effects are left to the frame when all
     have a log."""
     model = in_one(Model.of(ship), tracks)
     if all(_logged(t) for t in tracks):

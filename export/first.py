@@ -1,4 +1,4 @@
-"""A first residual for a ship, from calm-water voyages: what her core leaves over, learned without
+"""A first residual for a ship, from calm-water voyages: what its core leaves over, learned without
 differentiating a sensor.
 
     python -m export.first VOYAGE.mcap... --ship kvlcc2 -o twin/ships/kvlcc2.residual.onnx

@@ -45,7 +45,7 @@ def known(model: Model, s: Situation) -> torch.Tensor:
 
 def left_over(model: Model, s: Situation, rate: torch.Tensor, scale: torch.Tensor) -> torch.Tensor:
     """(B, 3) what the known forces leave, in units of the force scale; sets the speeds through water of s."""
-    forces = known(model, s)  # first: it finds how her added mass has grown
+    forces = known(model, s)  # first: it finds how its added mass has grown
     return (needed(model, rate, s.grown) - forces) / scale
 
 
@@ -113,7 +113,7 @@ def _onward(
 
 
 def allowed(model: Model) -> torch.Tensor:
-    """(6,) an error of this size counts as one: a hundredth of her length, her speed, a radian and their
+    """(6,) an error of this size counts as one: a hundredth of its length, its speed, a radian and their
     ratios."""
     L, U = float(model.ship.L_pp), float(model.ship.U_0)
     return 0.01 * torch.tensor([L, L, 1.0, U, U, U / L])

@@ -90,7 +90,7 @@ class Residual(torch.nn.Module):
 
 
 def names_for(legs: Sequence[Leg], model: Model) -> tuple[str, ...]:
-    """Which inputs the voyages can feed: her motion and controls; the air too where every voyage measured it,
+    """Which inputs the voyages can feed: its motion and controls; the air too where every voyage measured it,
     unless the wind has its name in the model already (few voyages would teach the network their weathers by
     heart)."""
     measured = all("wind_speed" in leg.inputs for leg in legs)

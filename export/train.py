@@ -40,7 +40,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--ship",
         metavar="SHIP.toml",
         required=True,
-        help="her model: calibrate it first, the network then has less to do",
+        help="its model: calibrate it first, the network then has less to do",
     )
     parser.add_argument(
         "-o",

@@ -50,6 +50,7 @@ ORDER = (
     "twin.study.track",
     "twin.study.estimation",
     "twin.study.reference",
+    "twin.study.instruments",
     "twin.study.prediction",
     "twin.study.calibration",
     "twin.study.diagnosis",
@@ -58,6 +59,7 @@ ORDER = (
     "twin.study",
     "twin.report",
     "twin.api",
+    "twin.studio",
     "twin.commands",
 )
 ONLY_IN_EXPORT = {"torch"}

@@ -36,6 +36,11 @@ VERBS: dict[str, Verb] = {
         "the twin for the bridge, in a browser or in the terminal",
         "twin view --connect tcp/127.0.0.1:7447",
     ),
+    "studio": Verb(
+        "twin.commands.studio",
+        "the workbench in a browser: data, compare, diagnose, add",
+        "twin studio voyages --demo",
+    ),
     "init": Verb(
         "twin.commands.init",
         "a first model of my ship from what its owner knows",
@@ -45,6 +50,11 @@ VERBS: dict[str, Verb] = {
         "twin.commands.import_",
         "measurements in, checked",
         "twin import log.csv --map log-map.toml -o voyage.mcap",
+    ),
+    "instruments": Verb(
+        "twin.commands.instruments",
+        "what is wrong with the instruments, by how their readings go together",
+        "twin instruments circle.mcap --ship alma.toml -o alma2.toml",
     ),
     "calibrate": Verb(
         "twin.commands.calibrate",

@@ -2,7 +2,7 @@
 lie.
 
 The change has just happened when a voyage begins, and nothing is learned yet; or it comes in the middle, when
-the law on board has heard the ship as she was for five minutes (adaptation_named.py: there it is a named
+the law on board has heard the ship as it was for five minutes (adaptation_named.py: there it is a named
 effect that grows). All laws see the same stream of unexplained force and regressors (from the hybrid's own
 filter, which does not use what they learn), and are judged by the free runs of 120 s that follow. Boxes, ball
 and gate are those of twin/live/learning/adapt.py for all of them."""
@@ -87,7 +87,7 @@ def compare(shop: Any, seeds: int) -> dict[str, Any]:
 
     hearing = Hearing.of(shop, Model(nominal()), "hybrid")
     heard = {name: hearing.of_voyages(cases, STARTS_S) for name, cases in ships(seeds).items()}
-    clean, out = heard["as she is"], {"changed": {}, "lies": {}}
+    clean, out = heard["as it is"], {"changed": {}, "lies": {}}
     for name, law in laws().items():
         shop.tell(f"law: {name}")
         out["changed"][name] = {ship: judged(law, some) for ship, some in heard.items()}
@@ -123,16 +123,16 @@ def midway_laws() -> dict[str, Any]:
 
 
 def ships(seeds: int) -> dict[str, list[Any]]:
-    """The ship as the models know her, and changed ones; the same seas for all."""
+    """The ship as the models know it, and changed ones; the same seas for all."""
     return {name: zigzags(seeds, 80_000, hull=h) for name, h in hulls().items()}
 
 
 def hulls() -> dict[str, Any]:
-    """Hers, and what may become of it."""
+    """The ship's own, and what may become of it."""
     hull = HULLS["kvlcc2"]
     heavy, held = (changed(FULL)[name][0].hull for name in ("Mass error M (+5%)", "Damping error D (+10%)"))
     return {
-        "as she is": hull,
+        "as it is": hull,
         "mass +5 %": heavy,
         "damping +10 %": held,
         "fouling: resistance +30 %": replace(hull, R0=1.3 * hull.R0),
@@ -142,15 +142,15 @@ def hulls() -> dict[str, Any]:
 
 
 def changes() -> dict[str, Any]:
-    """What happens to her at CHANGE_S."""
+    """What happens to it at CHANGE_S."""
     altered = hulls()
     became = {
         name: Change(CHANGE_S, altered[name])
         for name in altered
-        if name not in ("as she is", "windage +50 %")
+        if name not in ("as it is", "windage +50 %")
     }
     return {
-        "as she is": None,
+        "as it is": None,
         **became,
         "wind x 1.5": Change(CHANGE_S, wind=1.5),
         "wind x 2": Change(CHANGE_S, wind=2.0),
@@ -158,7 +158,7 @@ def changes() -> dict[str, Any]:
 
 
 def midway(hearing: Any, seeds: int) -> dict[str, Any]:
-    """Of every change in the middle: errors by window, by how she learns."""
+    """Of every change in the middle: errors by window, by how it learns."""
     out: dict[str, Any] = {}
     for name, change in changes().items():
         hearing.shop.tell(f"midway: {name}")

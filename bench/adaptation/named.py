@@ -66,19 +66,19 @@ GROWTHS = {
         "Loading", {"mass": 0.05, "draught": 0.0, "x_G": 0.0}, {"m": 1.05}, {"m": 1.10}, "mass", 0.10
     ),
     "windage, and half as much again": Growth("", {}, {}, {"A_L": 1.5, "A_F": 1.5}),
-    "as she is": Growth("", {}, {}, {}),
+    "as it is": Growth("", {}, {}, {}),
 }
 
 
 def with_effect(growth: Growth, model: Model) -> Model:
-    """The model that the ship file has before she grows; on board the law learns what the file names."""
+    """The model that the ship file has before it grows; on board the law learns what the file names."""
     if growth.effect:
         model = Model(model.ship, (*model.effects, find(growth.effect)(**growth.file)))
     return replace(model, ship=replace(model.ship, effects=model.effects))
 
 
 def growing(growth: Growth, seeds: int) -> list[Any]:
-    """Zigzags of her hull before, and of that after from CHANGE_S on."""
+    """Zigzags of its hull before, and of that after from CHANGE_S on."""
     hull = HULLS["kvlcc2"]
     before, after = (
         replace(hull, **{k: f * getattr(hull, k) for k, f in by.items()})

@@ -30,7 +30,7 @@ def page(r: dict[str, Any]) -> list[str]:
         "",
         *_table(r["changed"], ships, lambda x: f"{x['heading_early_deg']:.3f} / {x['lateral_early_m']:.2f}"),
         "",
-        "## Measurements that lie, on the ship as she is",
+        "## Measurements that lie, on the ship as it is",
         "",
         "Heading deg / lateral m (300 to 540 s), and the greatest |A| that ever acted (at most 1).",
         "",
@@ -72,16 +72,16 @@ def _by_scenario(midway: dict[str, Any]) -> list[str]:
 
 
 def figure(r: dict[str, Any], path: Path) -> None:
-    """Heading error of the free runs over time since the change, each change beside the ship as she is."""
+    """Heading error of the free runs over time since the change, each change beside the ship as it is."""
     import matplotlib
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
     since = [t - r["change_s"] for t in r["starts_s"]]
-    changed = [name for name in r["midway"] if name != "as she is"]
+    changed = [name for name in r["midway"] if name != "as it is"]
     fig, axes = plt.subplots(2, -(-len(changed) // 2), figsize=(11, 6), sharex=True)
-    healthy = r["midway"]["as she is"]["on"]["heading_deg"]
+    healthy = r["midway"]["as it is"]["on"]["heading_deg"]
     for ax, name in zip(axes.flat, changed, strict=False):
         both = r["midway"][name]
         for how, colour in (("off", "tab:orange"), ("on", "tab:blue"), ("told", "tab:green")):

@@ -28,7 +28,7 @@ HEAD = """# The hidden-effect league
 
 Voyages come from the reference sea (`bench/reference`: 6-DOF, MMG, no formula shared with the twin); each
 ship is a bundled file calibrated on six calm reference voyages. A case is one voyage of 30 minutes (the 2 m
-boat: 20 minutes, 900 of her lengths), diagnosed alone, with the reference voyages known only through the ship
+boat: 20 minutes, 900 of its lengths), diagnosed alone, with the reference voyages known only through the ship
 file.
 
 * **Named**: the hidden effect is the first of `missing`. **In its group**: it is among `missing`, or among

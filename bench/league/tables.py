@@ -71,7 +71,7 @@ def effects(rows: Sequence[Row]) -> str:
 
 
 def gain(rows: Sequence[Row]) -> str:
-    """Forces, flows and lags by what there is to win: a name that leads her no better is worth little, and
+    """Forces, flows and lags by what there is to win: a name that leads it no better is worth little, and
     can hardly be found."""
     mine = [
         r

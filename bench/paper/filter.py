@@ -1,4 +1,4 @@
-"""The hybrid's own filter: where each ship is, how she moves through the water and where the water goes, from
+"""The hybrid's own filter: where each ship is, how it moves through the water and where the water goes, from
 the past alone.
 
 State: x, y, psi, u, v, r (through the water), the current north and east, and the accelerations that neither

@@ -198,7 +198,7 @@ def _seven(t: dict[str, Any]) -> list[str]:
             for n in names
         ]
         lines.append(
-            f"| {case if case != 'GNSS sensor noise (0.5 m)' else 'GNSS noise (as she is; before: none)'} | "
+            f"| {case if case != 'GNSS sensor noise (0.5 m)' else 'GNSS noise (as it is; before: none)'} | "
             f"{' | '.join(cells)} |"
         )
     lines += [

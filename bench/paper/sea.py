@@ -53,12 +53,12 @@ SPEEDS = {
     "Maneuvering": 0.333,
     "Cruising": 0.677,
     "Full speed": 0.935,
-}  # 5, 10.5 and 14.5 kn of 15.5: she has no 20 kn
+}  # 5, 10.5 and 14.5 kn of 15.5: it has no 20 kn
 
 
 @dataclass(frozen=True)
 class Sailed:
-    """A voyage as measured, and where she truly was (N, 3) at its samples."""
+    """A voyage as measured, and where it truly was (N, 3) at its samples."""
 
     voyage: Voyage
     truth: np.ndarray
@@ -66,8 +66,8 @@ class Sailed:
 
 def lessons(plan: Plan) -> list[Case]:
     """What is learned from, in the order of time. Any 15 in a row hold the same manoeuvres in the same seas,
-    so that training, validation and test are alike; speeds take turns with them. She is driven harder than
-    her service speed and slower than half of
+    so that training, validation and test are alike; speeds take turns with them. It is driven harder than
+    its service speed and slower than half of
     it: what a network was never shown (a propeller that turns faster than U_0 needs) it must leave to the
         physics."""
     return [
@@ -108,12 +108,12 @@ def unseen(plan: Plan) -> list[Case]:
 
 
 def changed(plan: Plan) -> dict[str, list[Case]]:
-    """Table 7: the ship as the models know her, and two that are not."""
+    """Table 7: the ship as the models know it, and two that are not."""
     hull = HULLS["kvlcc2"]
     heavy = replace(hull, name="kvlcc2", m=1.05 * hull.m)
     held = replace(hull, R0=1.1 * hull.R0, X=_more(hull.X, 1.1), Y=_more(hull.Y, 1.1), N=_more(hull.N, 1.1))
     return {
-        "as she is": zigzags(plan.changed, 50_000, angles=plan.angles, duration_s=plan.run_s),
+        "as it is": zigzags(plan.changed, 50_000, angles=plan.angles, duration_s=plan.run_s),
         "Mass error M (+5%)": zigzags(
             plan.changed, 50_000, angles=plan.angles, duration_s=plan.run_s, hull=heavy
         ),

@@ -1,7 +1,7 @@
 """The nominal ship of the paper's comparison: literature coefficients that are off by what such tables
 usually are for a real ship.
 
-The bundled KVLCC2 is fitted to her own published tests, better known than any owner's ship. Each factor below
+The bundled KVLCC2 is fitted to its own published tests, better known than any owner's ship. Each factor below
 is an error of 4 to 20 %, the spread of regression formulas and of scale effects; none was chosen after seeing
 a result."""
 
@@ -33,7 +33,7 @@ OFF = {  # the nominal value over the published one
 
 
 def nominal() -> Ship:
-    """KVLCC2 as her owner's first model might have her."""
+    """KVLCC2 as its owner's first model might have it."""
     ship = load("kvlcc2")
     return ship.with_derivatives(
         **{name: factor * getattr(ship.derivatives, name) for name, factor in OFF.items()}

@@ -1,4 +1,4 @@
-"""Random numbers of a fleet: each ship draws from her own seed, whatever ships sail beside her."""
+"""Random numbers of a fleet: each ship draws from its own seed, whatever ships sail beside it."""
 
 import numpy as np
 

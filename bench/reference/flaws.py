@@ -99,7 +99,7 @@ def blade_angle(f, h, feedback):
 
 
 def propeller_walk(f, h, thrust, n, u_P, u):
-    """The blades push the stern sideways, most when they back and when she is slow: Y, N."""
+    """The blades push the stern sideways, most when they back and when it is slow: Y, N."""
     load = np.abs(thrust) * (1 + 0.5 * np.exp(-((u / (0.3 * h.U0)) ** 2))) * np.where(n >= 0, 1.0, -2.0)
     Y = f.walk * load
     return Y, -0.49 * h.L * Y
@@ -139,7 +139,7 @@ def bank(f, h, u, clearance):
 
 
 def ice(f, h, x, y, u):
-    """Brash fields: extra drag where she happens to be: X."""
+    """Brash fields: extra drag where it happens to be: X."""
     length = f.ice_length
     field = np.sin(x / length + f.ice_phase) * np.sin(y / length + 2 * f.ice_phase) + 0.4 * np.sin(
         (x - y) / (0.4 * length)

@@ -32,7 +32,7 @@ class Hull:
     Jz: float
     x_G: float  # [m] forward of midship
     k_zz: float  # yaw gyration / L
-    U0: float  # [m/s] service speed, at which propeller_rate_service drives her
+    U0: float  # [m/s] service speed, at which propeller_rate_service drives it
     R0: float  # calm resistance'
     X: tuple  # vv vr rr vvvv
     Y: tuple  # v r vvv vvr vrr rrr

@@ -13,7 +13,7 @@ class Leg:
     lengths: float  # how long, in L/U0 of time
     a: float = 0.0
     b: float = 0.0
-    rate: float = 1.0  # propeller rate / initial rate; below zero: astern until she stops
+    rate: float = 1.0  # propeller rate / initial rate; below zero: astern until it stops
 
 
 def zigzag(angle):

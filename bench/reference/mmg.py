@@ -14,7 +14,7 @@ def hull(h, u, v, r, p, phi, shallow=(1.0, 1.0, 1.0)):
     """Force of the water on the bare hull: X, Y, N, K.
 
     MMG polynomials in v' and r' (Yasukawa & Yoshimura 2015) plus heel terms (Son & Nomoto 1981).
-    Odd derivatives change sign when she goes astern; below walking pace a cross-flow yaw drag takes over.
+    Odd derivatives change sign when it goes astern; below walking pace a cross-flow yaw drag takes over.
     `shallow` multiplies resistance, sway and yaw derivatives.
     """
     U = np.sqrt(u * u + v * v + (0.02 * h.U0) ** 2)

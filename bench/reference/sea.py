@@ -1,4 +1,4 @@
-"""The sea itself: ships, each with her helmsman, weather, flaws and instruments, stepped tick by tick."""
+"""The sea itself: ships, each with its helmsman, weather, flaws and instruments, stepped tick by tick."""
 
 from dataclasses import replace
 from types import SimpleNamespace
@@ -53,13 +53,13 @@ def hull_of(case) -> Hull:
 
 
 def hull_later(case) -> Hull:
-    """Her hull once she has changed."""
+    """Its hull once it has changed."""
     now = hull_of(case)
     later = now if case.change.hull is None else hull_of(replace(case, hull=case.change.hull))
     if later.L != now.L:
         raise ValueError(
             f"a change cannot make {now.name} ({now.L:g} m) a ship of {later.L:g} m. Give a "
-            "hull of her length."
+            "hull of its length."
         )
     return later
 

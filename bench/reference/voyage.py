@@ -13,7 +13,7 @@ AXES = ("X_N", "Y_N", "N_Nm")
 
 @dataclass(frozen=True)
 class Change:
-    """From `at_s` on she is another `hull` of the same length, and the wind blows `wind` times as hard; all
+    """From `at_s` on it is another `hull` of the same length, and the wind blows `wind` times as hard; all
     else goes on."""
 
     at_s: float
@@ -62,7 +62,7 @@ class Recording:
 
 
 def simulate(cases, tick_s=0.1, batch=64) -> list[Recording]:
-    """Sail all cases, many at a time; a ship's voyage does not depend on the ships that sail beside her."""
+    """Sail all cases, many at a time; a ship's voyage does not depend on the ships that sail beside it."""
     cases, out = list(cases), {}
     sizes = {}
     for i, case in enumerate(cases):

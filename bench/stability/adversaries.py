@@ -104,7 +104,7 @@ def certified(case: Case) -> tuple[Model, Certificate]:
 
 
 class Fleet:
-    """Many ships of one kind at once, each with an observer and an adversary of her own."""
+    """Many ships of one kind at once, each with an observer and an adversary of its own."""
 
     def __init__(
         self,
@@ -121,7 +121,9 @@ class Fleet:
         self.numbers = movable(model.effects, model.ship) if moving else ()
         self.time = model.ship.scale("time")  # L/U_0 [s]
         self.limit = np.array(c.disturbance.at(H_s))[:, None]
-        self.noise = np.array(c.noise)[:, None]
+        self.stated = c.disturbance.noise(c.noise, H_s)
+        self.noise = np.array(self.stated)[:, None]
+        self.heading_noise = c.disturbance.heading_noise(HEADING_NOISE, H_s)
         self.inverse = np.array([core.accelerations(*row, model.c) for row in c3.IDENTITY]).T  # M^-1
         self.true = replace(model, residual=lambda s: Force(*self.push))
         self.twin = Confined.to(replace(model, residual=lambda s: Force(*self.learned)), c.operating)
@@ -136,7 +138,7 @@ class Fleet:
         self.truth = (zero, zero, psi, *nu)
         self.estimate = nu + self.noise * rng.uniform(-1, 1, (3, n))
         self.past = deque(maxlen=self.c.delay_samples + 1)
-        self.tube = np.repeat(np.array(self.c.noise)[:, None], n, axis=1)
+        self.tube = np.repeat(np.array(self.stated)[:, None], n, axis=1)
         window = look_back(self.c.delay_samples)
         self.before, self.after = deque([self.tube], maxlen=window), deque([self.tube], maxlen=window)
         self.alive = np.ones(n, bool)
@@ -171,7 +173,7 @@ class Fleet:
         return np.choose(self.policy, [error, self.corner, square, white])
 
     def _twin(self, k: int, before: tuple[Any, ...], side: np.ndarray) -> Confined:
-        """What the observer integrates: the ship's equations, with every number of her effects where the
+        """What the observer integrates: the ship's equations, with every number of its effects where the
         adversary wants it."""
         if not self.numbers:
             return self.twin
@@ -212,7 +214,7 @@ class Fleet:
         side = self._against(k)
         force = np.sign(self.inverse.T @ (side / np.array(self.c.bound)[:, None])) * self.limit
         self.push, self.learned = -self.share * force, (1.0 - self.share) * force
-        heading = self.truth[2] + HEADING_NOISE * side[2]
+        heading = self.truth[2] + self.heading_noise * side[2]
         before = (0.0, 0.0, heading, *self.estimate)
         self.estimate = np.array(
             self._twin(k, before, side).step(before, Situation(**self.inputs), self.h)[3:]
@@ -246,10 +248,11 @@ class Fleet:
         """The same bound as `Tube`, for all runs at once."""
         c, step = self.c, self.c.step
         V, drift, now, again = (np.array(x) for x in (step.V, step.drift, step.now, step.again))
-        d = np.array(c.push) @ self.limit[:, 0] + c.calm
+        turned = np.array([c.h * p + row[3] for p, row in zip(c.plant.heading, c.plant.bend, strict=False)])
+        d = np.array(c.push) @ self.limit[:, 0] + c.calm + turned * (self.heading_noise - c.heading_noise)
         E = V @ self.tube + d[:, None]
         self.before.append(E)
-        told = np.array(step.told(tuple(d.tolist()), c.noise))
+        told = np.array(step.told(tuple(d.tolist()), self.stated))
         seen = (
             now @ self.tube
             + again[:, None] * np.max(self.before, axis=0)

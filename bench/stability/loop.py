@@ -98,7 +98,7 @@ class Loops(Fleet):
             zip(self.loops, self.ears, self._instruments(k).T.tolist(), strict=True)
         ):
             said = zip(CHANNELS, values, strict=True)
-            taken_s = now_s - 0.5 * self.h * self.late[i]
+            taken_s = now_s - 0.5 * self.h * float(self.late[i])
             ears.next = [
                 Reading(channel, x, WALL + taken_s, now_s, "ship") for channel, x in said if np.isfinite(x)
             ]

@@ -22,6 +22,7 @@ from twin.live.learning.residual import bundled
 from twin.physics.ship import load
 
 SCHEMA_VERSION = 1
+PYTHON = (sys.executable, "-P", "-m")  # -P: a folder named twin/ where it is called is no package
 PARTS = 2000  # ticks with a stop-watch on each part, after the measured ones
 PACED_S = 20.0
 COUNTED_FROM = 5000  # steps: a quick look does not wait for valgrind
@@ -72,7 +73,7 @@ def measure(args: argparse.Namespace) -> dict[str, Any]:
         peers = {"hybrid": {}, "peers": {}, "look_ahead": {}}
         if not args.no_peers:
             answer.tell("the peers ...")
-            peers = _json_of([sys.executable, "-m", "bench.tick.peers"], "the peers")
+            peers = _json_of([*PYTHON, "bench.tick.peers"], "the peers")
         counted = {}
         if args.steps >= COUNTED_FROM and not args.no_instructions and instructions.available():
             answer.tell("counting instructions with valgrind ...")
@@ -137,11 +138,10 @@ class Place:
     def loop(self, steps: int, parts: int, pace: str) -> dict[str, Any]:
         """One run of the service, fed by a process beside it."""
         rows, settings = self.folder / "rows", str(self.folder / "twin.toml")
-        python = [sys.executable, "-m"]
         measured = ["bench.tick.process", settings, str(mark.new(rows)), str(steps), str(parts), pace]
-        feeder = subprocess.Popen([*python, "bench.tick.feed", str(rows), self.endpoint, "twin", "ship"])
+        feeder = subprocess.Popen([*PYTHON, "bench.tick.feed", str(rows), self.endpoint, "twin", "ship"])
         try:
-            return _json_of([*python, *measured], "the loop")
+            return _json_of([*PYTHON, *measured], "the loop")
         finally:
             feeder.terminate()
             feeder.wait(10)

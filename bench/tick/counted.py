@@ -94,7 +94,7 @@ PROGRAMS: dict[str, Callable[[], Step]] = {"analytic": analytic, "network": netw
 
 
 def _messages(t: float) -> list[tuple[str, bytes]]:
-    """What the instruments of a ship say that weaves her way north, with a little waver on it."""
+    """What the instruments of a ship say that weaves its way north, with a little waver on it."""
     speed, swing, pace, ns = 7.0, 0.1, 0.06, int((WALL_S + t) * 1e9)  # heading swing sin(pace t) [rad]
     waver = sin(7.0 * t) + 0.3 * cos(31.0 * t)
     psi, r = swing * sin(pace * t), swing * pace * cos(pace * t)

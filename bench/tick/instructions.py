@@ -39,7 +39,7 @@ def _count(name: str, home: str) -> int:
 
 def start(watcher: tuple[str, ...], name: str, repeats: int, home: str) -> "subprocess.Popen[str]":
     """The program, watched; its surroundings are the same each time."""
-    command = [*watcher, sys.executable, "-m", "bench.tick.instructions", name, str(repeats)]
+    command = [*watcher, sys.executable, "-P", "-m", "bench.tick.instructions", name, str(repeats)]
     env = {"PYTHONHASHSEED": "0", "PYTHONDONTWRITEBYTECODE": "1", "PATH": "/usr/bin:/bin", "HOME": home}
     return subprocess.Popen(command, env=env, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 

@@ -29,7 +29,7 @@ from twin.physics.ship import load
 from twin.physics.state import Situation
 
 WINDOW = 50
-SETTLE = 4000  # steps of the twin, 80 s, until her filters have settled and she learns
+SETTLE = 4000  # steps of the twin, 80 s, until its filters have settled and it learns
 ROUNDS, HOT = 20, 10
 STEP_S = 0.1
 AHEAD_S, FINE_S, COARSE_S, ENSEMBLE = 120.0, 0.1, 1.0, 64
@@ -124,7 +124,7 @@ def measure(repeats: int) -> dict[str, Any]:
 
 
 def _mean_us(times: list[float]) -> float:
-    """Of five steps together, in one of which she learns; the median of such means."""
+    """Of five steps together, in one of which it learns; the median of such means."""
     every = counted.EVERY
     return quantiles(
         [sum(times[i : i + every]) / every for i in range(0, len(times) - every + 1, every)], ("median",)

@@ -73,7 +73,7 @@ def test_every_change_in_the_middle_comes_when_the_windows_expect_it():
     """Expected: one window ends where the change begins, the others begin at it or later; asked of a fouled,
     a heavier and a held ship and of a step of wind."""
     made = changes()
-    assert {c.at_s for c in made.values() if c} == {CHANGE_S} and made["as she is"] is None
+    assert {c.at_s for c in made.values() if c} == {CHANGE_S} and made["as it is"] is None
     assert ROUND_S[0] + 120.0 == CHANGE_S == ROUND_S[1] and sorted(ROUND_S) == list(ROUND_S)
     for word in ("mass", "damping", "fouling", "wind"):
         assert any(word in name for name in made)
@@ -104,7 +104,7 @@ def test_the_page_holds_every_change_and_keeps_what_was_written_by_hand(tmp_path
         "voyages": 6,
         "change_s": CHANGE_S,
         "starts_s": ROUND_S,
-        "changed": {"none": {"as she is": cell}},
+        "changed": {"none": {"as it is": cell}},
         "lies": {"none": {"stuck": cell}},
         "midway": {name: {"off": one, "on": one, "told": one} for name in changes()},
         "named": {

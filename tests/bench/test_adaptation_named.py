@@ -125,7 +125,7 @@ def test_the_interval_that_holds_the_truth_is_counted(worn):
     )
     assert (
         said["half_95"]["TS-02"][0] == pytest.approx(1.96 * 0.1 * number.sd)
-        and arrival(GROWTHS["as she is"], worn, known, np.array([])) is None
+        and arrival(GROWTHS["as it is"], worn, known, np.array([])) is None
     )
 
 
@@ -150,7 +150,7 @@ def result():
         "half_95": {"TS-01": [0.05] * many},
         "spread": {"TS-01": [0.01] * many},
     }
-    growths = {"grows": {"how": ways, "number": number}, "as she is": {"how": ways, "number": None}}
+    growths = {"grows": {"how": ways, "number": number}, "as it is": {"how": ways, "number": None}}
     return {"seeds": 2, "change_s": CHANGE_S, "late_s": 600.0, "starts_s": STARTS_S, "growths": growths}
 
 

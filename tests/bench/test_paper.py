@@ -211,7 +211,7 @@ def test_the_page_has_the_papers_numbers_and_the_figures_are_small(tiny):
 
 def test_the_loop_closed_over_the_reference_sea_settles_and_a_hostile_residual_stays_bounded(tiny):
     """Expected: without a residual, settled within six lengths with hardly any overshoot and the rudder far
-    from its stop; a hostile one, as strong as its bound allows, cannot turn her round."""
+    from its stop; a hostile one, as strong as its bound allows, cannot turn it round."""
     rows = {(x["mode"], x["scenario"]): x for x in tiny[0]["tables"]["fig5"]}
     assert len(rows) == 9
     for scenario in paper_sea.SCENARIOS:

@@ -46,7 +46,7 @@ def test_the_lstm_has_two_layers_of_128():
 
 
 def test_the_filter_finds_a_disturbance_that_no_known_force_explains(ship):
-    """Test: a ship pushed aside by 1 cm/s2 beyond her model. Expected: the filter says so within 20 %."""
+    """Test: a ship pushed aside by 1 cm/s2 beyond its model. Expected: the filter says so within 20 %."""
     s = peers.situation(ship)
     model = Model.of(ship)
     peer, push = ShipFilter(model, peers.situation(ship), 0.1), 0.01
@@ -124,7 +124,7 @@ def test_what_is_counted_runs_as_a_whole():
 
 
 def test_the_twins_step_beside_the_peers_does_all_the_work():
-    """Test: 120 s of it. Expected: the estimate follows the measurements, the network acts, and she
+    """Test: 120 s of it. Expected: the estimate follows the measurements, the network acts, and it
     learns."""
     step = counted.hybrid(6000)
     e = [step() for _ in range(6000)][-1]

@@ -1,4 +1,4 @@
-"""A ship that sails by her own equations, instruments that read her, and a loop that listens: no clock, no
+"""A ship that sails by its own equations, instruments that read it, and a loop that listens: no clock, no
 socket, no file."""
 
 import random
@@ -37,7 +37,7 @@ NOISE = {
 
 @dataclass
 class Sailing:
-    """The true ship, and what her instruments say of her each 0.1 s."""
+    """The true ship, and what its instruments say of it each 0.1 s."""
 
     ship: Ship
     model: Model
@@ -47,7 +47,7 @@ class Sailing:
     seed: int = 1
     t: float = 0.0
     source: str = "ship"
-    H_s: float | None = None  # wave height that she reports [m], None: she has no wave sensor
+    H_s: float | None = None  # wave height that it reports [m], None: it has no wave sensor
     shaft: float = 0.0
     state: tuple[float, ...] = field(default=(), init=False)
 

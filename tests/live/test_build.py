@@ -1,4 +1,4 @@
-"""From settings to a loop: where her certificate comes from, and what is said when there is none."""
+"""From settings to a loop: where its certificate comes from, and what is said when there is none."""
 
 import hashlib
 import json

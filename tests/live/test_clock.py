@@ -7,7 +7,7 @@ import pytest
 from twin.live.clock import ManualClock, MonotonicClock, ReplayClock
 
 
-class World:
+class Scenario:
     """A world whose time moves only when somebody sleeps or `pass_by` is called."""
 
     def __init__(self) -> None:
@@ -27,21 +27,21 @@ class World:
 
 
 def test_deadlines_do_not_drift_however_long_the_steps_take() -> None:
-    world = World()
-    clock = world.clock()
+    scenario = Scenario()
+    clock = scenario.clock()
     times = []
     for _ in range(1000):
         times.append(clock.wait().time_s)
-        world.pass_by(0.013)
+        scenario.pass_by(0.013)
     assert times == pytest.approx([100.0 + i * 0.02 for i in range(1000)], abs=1e-9)
     assert clock.overruns == 0
 
 
 def test_C2_a_stall_of_200_ms_skips_periods_and_makes_no_burst() -> None:
-    world = World()
-    clock = world.clock()
+    scenario = Scenario()
+    clock = scenario.clock()
     clock.wait()
-    world.pass_by(0.207)
+    scenario.pass_by(0.207)
     late = clock.wait()
     assert (late.skipped, clock.overruns) == (9, 9)
     assert late.late_s == pytest.approx(0.007)
@@ -51,12 +51,12 @@ def test_C2_a_stall_of_200_ms_skips_periods_and_makes_no_burst() -> None:
 
 @pytest.mark.parametrize("stall_s", [0.2, 0.2192, 0.211, 0.2001, 0.209])
 def test_C2_after_a_stall_in_its_sleep_no_two_ticks_are_closer_than_half_a_period(stall_s: float) -> None:
-    world = World()
+    scenario = Scenario()
 
     def stalled(seconds: float) -> None:
-        world.pass_by(seconds + (stall_s if world.mono < 100.01 else 0.0))
+        scenario.pass_by(seconds + (stall_s if scenario.mono < 100.01 else 0.0))
 
-    clock = MonotonicClock(50.0, world.monotonic, world.wall, stalled)
+    clock = MonotonicClock(50.0, scenario.monotonic, scenario.wall, stalled)
     times = [clock.wait().time_s for _ in range(6)]
     gaps = [b - a for a, b in itertools.pairwise(times)]
     assert max(gaps) > stall_s and min(gaps) >= 0.01 - 1e-9
@@ -66,38 +66,38 @@ def test_C2_after_a_stall_in_its_sleep_no_two_ticks_are_closer_than_half_a_perio
 
 
 def test_a_step_that_is_merely_late_skips_nothing() -> None:
-    world = World()
-    clock = world.clock()
+    scenario = Scenario()
+    clock = scenario.clock()
     clock.wait()
-    world.pass_by(0.025)
+    scenario.pass_by(0.025)
     late = clock.wait()
     assert late.skipped == 0 and late.late_s == pytest.approx(0.005)
 
 
 @pytest.mark.parametrize("step_s", [3600.0, -7200.0, 1.0])
 def test_C9_a_step_of_the_wall_clock_moves_no_deadline(step_s: float) -> None:
-    world = World()
-    clock = world.clock()
+    scenario = Scenario()
+    clock = scenario.clock()
     first = clock.wait()
-    world.set_by = step_s
+    scenario.set_by = step_s
     stepped = clock.wait()
     assert stepped.wall_s - first.wall_s == pytest.approx(step_s + 0.02)
     assert stepped.time_s == pytest.approx(100.02) and stepped.skipped == 0
 
 
 def test_C10_a_pause_of_ten_seconds_is_one_skip() -> None:
-    world = World()
-    clock = world.clock(10.0)
+    scenario = Scenario()
+    clock = scenario.clock(10.0)
     clock.wait()
-    world.pass_by(10.0)
+    scenario.pass_by(10.0)
     assert clock.wait().skipped == 99
 
 
 def test_slack_is_what_is_left_of_the_period() -> None:
-    world = World()
-    clock = world.clock()
+    scenario = Scenario()
+    clock = scenario.clock()
     clock.wait()
-    world.pass_by(0.004)
+    scenario.pass_by(0.004)
     assert clock.slack_s() == pytest.approx(0.016)
 
 

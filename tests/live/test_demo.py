@@ -1,4 +1,4 @@
-"""The demo: a ship sails, her twin listens, the log replays to the same states; and what a terminal shows."""
+"""The demo: a ship sails, its twin listens, the log replays to the same states; and what a terminal shows."""
 
 import os
 import signal
@@ -55,7 +55,7 @@ def test_it_says_where_the_log_is_and_the_next_command(done):
 
 
 def test_an_interrupt_ends_the_demo_and_the_sea(tmp_path):
-    """Test: Ctrl-C while she sails. Expected: exit code 130 soon, and no process of the sea left."""
+    """Test: Ctrl-C while it sails. Expected: exit code 130 soon, and no process of the sea left."""
     process = subprocess.Popen([*DEMO, "--seconds", "60"], cwd=tmp_path, stdout=subprocess.PIPE, text=True)
     for line in process.stdout:
         if "Hz" in line:

@@ -62,10 +62,10 @@ def mutated(dice: random.Random, data: bytes) -> bytes:
         return data[: dice.randrange(len(data))]
     if how == 1:
         return dice.randbytes(dice.randrange(200))
-    spoilt = bytearray(data)
+    degraded = bytearray(data)
     for _ in range(dice.randrange(1, 4)):
-        spoilt[dice.randrange(len(spoilt))] ^= 1 << dice.randrange(8)
-    return bytes(spoilt)
+        degraded[dice.randrange(len(degraded))] ^= 1 << dice.randrange(8)
+    return bytes(degraded)
 
 
 def sailed(ship, learned, count, numbers):

@@ -19,7 +19,7 @@ def hybrid(kvlcc2):
     return LearnedForce(kvlcc2, load(bundled(kvlcc2), kvlcc2))
 
 
-def spoilt(ship, factor):
+def degraded(ship, factor):
     """The bundled residual with its last layer times a factor."""
     path = bundled(ship)
     table = json.loads(path.with_suffix(".json").read_bytes())
@@ -43,9 +43,9 @@ def test_with_a_good_residual_the_twin_is_hybrid(make_bridge, hybrid):
 
 
 def test_M10_a_residual_that_makes_it_worse_is_switched_off_and_says_so(kvlcc2, make_bridge):
-    """Test: the bundled last layer negated and tripled, on a ship that is exactly her model. Expected:
+    """Test: the bundled last layer negated and tripled, on a ship that is exactly its model. Expected:
     physics only within the window."""
-    learned = spoilt(kvlcc2, -6.0)
+    learned = degraded(kvlcc2, -6.0)
     ticks = make_bridge(loop={"learned": learned}, noise=0.3).run(260.0)
     assert ticks[600].mode == "hybrid"
     assert ticks[-1].mode == "physics only" and any(
@@ -55,7 +55,7 @@ def test_M10_a_residual_that_makes_it_worse_is_switched_off_and_says_so(kvlcc2, 
 
 
 def test_M6_a_residual_that_stays_at_its_bound_is_switched_off(kvlcc2, make_bridge):
-    ticks = make_bridge(loop={"learned": spoilt(kvlcc2, 1e4)}).run(30.0)
+    ticks = make_bridge(loop={"learned": degraded(kvlcc2, 1e4)}).run(30.0)
     off = [t for t in ticks if any("stays at its bound" in r for r in t.reasons)]
     assert off and off[0].index < 150 and ticks[-1].mode == "physics only"
 

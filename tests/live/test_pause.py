@@ -15,7 +15,7 @@ from twin.physics.effect import Lag
 
 
 def pause(bridge, seconds):
-    """The machine stands still; the ship and her instruments go on."""
+    """The machine stands still; the ship and its instruments go on."""
     for _ in range(round(seconds / 0.1)):
         bridge.sailing.advance()
     bridge.now_s += seconds

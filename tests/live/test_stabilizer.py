@@ -38,7 +38,7 @@ def test_without_measurements_the_bound_grows_and_comes_back(kvlcc2, make_bridge
 
 
 def test_a_speed_that_was_not_measured_as_she_began_is_not_bounded_as_if_it_had_been(kvlcc2, make_bridge):
-    """Test: a ship that drifts at 0.6 m/s, her sway first measured in the second tick. Expected: no promise
+    """Test: a ship that drifts at 0.6 m/s, its sway first measured in the second tick. Expected: no promise
     until the bound has come back."""
     bridge = stabilized(kvlcc2, make_bridge)
     bridge.sailing.state = (0.0, 0.0, 0.5, 6.0, 0.6, 0.0)
@@ -91,7 +91,7 @@ def test_back_in_the_operating_set_the_promise_waits_until_nothing_looks_back_ou
 
 def test_without_the_controls_nothing_is_promised(kvlcc2, make_bridge):
     """Test: nobody says how fast the propeller turns. Expected: the physics runs on with none, so the bound
-    is not that of her motion."""
+    is not that of its motion."""
     bridge = stabilized(kvlcc2, make_bridge)
     assert bridge.run(20.0)[-1].certificate.inside
     silent = bridge.run(20.0, lambda readings, b: [r for r in readings if r.channel != "propeller_rate_rpm"])

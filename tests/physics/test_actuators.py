@@ -55,8 +55,8 @@ def test_a_ship_file_without_actuators_has_no_line_of_them():
 def test_a_thruster_by_hand():
     a = ship_with(PORT).actuator("port")
     X, Y, N = a.force({"port.command": 0.5}, 0.0, 0.0, 0.0, load("usv"))
-    assert (X, Y) == (pytest.approx(50.0 * 0.25, abs=1e-3), 0.0)
-    assert N == pytest.approx(0.3 * 12.5, abs=1e-3)  # on the port side it turns the ship to starboard
+    assert (pytest.approx(50.0 * 0.25, abs=1e-3), 0.0) == (X, Y)
+    assert pytest.approx(0.3 * 12.5, abs=1e-3) == N  # on the port side it turns the ship to starboard
 
 
 def test_an_azimuth_by_hand():
@@ -65,8 +65,8 @@ def test_an_azimuth_by_hand():
     X, Y, N = ship.actuator("port").force(
         {"port.thrust": 10.0, "port.angle": radians(30.0)}, 0, 0, 0, ship
     )
-    assert X == pytest.approx(10.0 * 3**0.5 / 2) and Y == pytest.approx(5.0)
-    assert N == pytest.approx(-0.4 * 5.0 - 0.2 * X)
+    assert pytest.approx(10.0 * 3**0.5 / 2) == X and pytest.approx(5.0) == Y
+    assert pytest.approx(-0.4 * 5.0 - 0.2 * X) == N
 
 
 def test_an_outboard_turned_like_a_rudder_to_starboard_turns_the_ship_to_starboard():
@@ -132,8 +132,8 @@ def test_an_effect_is_of_one_named_actuator():
     worn.check(ship)
     s = Situation(**MOTION, told=told)
     forces = Model(ship, (worn,)).known(s)
-    assert forces["ThrusterWear.port"].X == pytest.approx(-0.18 * forces["port"].X)
-    assert forces["ThrusterWear.port"].N == pytest.approx(-0.18 * forces["port"].N)
+    assert pytest.approx(-0.18 * forces["port"].X) == forces["ThrusterWear.port"].X
+    assert pytest.approx(-0.18 * forces["port"].N) == forces["ThrusterWear.port"].N
     assert find("ThrusterWear.port") is type(worn) and find("ThrusterWear.starboard") is not type(worn)
     assert pickle.loads(pickle.dumps(worn)) == worn
 
@@ -143,7 +143,7 @@ def test_an_angle_offset_turns_what_the_azimuth_does():
     effect = find("AngleOffset.port")(offset=radians(6.0))
     s = Situation(told={"port.thrust": 10.0, "port.angle": 0.5 * pi})
     got, turned = effect.force(s, ship), 0.5 * pi + radians(6.0)
-    assert got.X == pytest.approx(10.0 * np.cos(turned)) and got.Y == pytest.approx(10 * np.sin(turned) - 10)
+    assert pytest.approx(10.0 * np.cos(turned)) == got.X and pytest.approx(10 * np.sin(turned) - 10) == got.Y
 
 
 def test_the_catalogue_of_a_ship_with_thrusters_holds_their_effects_and_no_rudders():

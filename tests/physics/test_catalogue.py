@@ -90,15 +90,17 @@ def test_the_tutorial_runs(tmp_path):
     if done.returncode and "setuptools" in done.stderr:
         pytest.skip("no setuptools here to build a package with")
     assert done.returncode == 0, done.stderr
-    world = os.environ | {"PYTHONPATH": str(tmp_path / "site")}
+    scenario = os.environ | {"PYTHONPATH": str(tmp_path / "site")}
     twin = [sys.executable, "-m", "twin.cli", "effects"]
-    shown = subprocess.run([*twin, "SeaAnchor"], capture_output=True, text=True, env=world, cwd=ROOT)
+    shown = subprocess.run([*twin, "SeaAnchor"], capture_output=True, text=True, env=scenario, cwd=ROOT)
     assert "drogue" in shown.stdout and "drag_area" in shown.stdout, shown.stderr
-    subprocess.run([sys.executable, "-c", check], check=True, env=world, cwd=tmp_path / "site")
+    subprocess.run([sys.executable, "-c", check], check=True, env=scenario, cwd=tmp_path / "site")
     ship = (ROOT / "twin" / "ships" / "usv.toml").read_text() + re.findall(
         r"```toml\n(\[effects.*?)```", TUTORIAL, re.S
     )[0]
     (tmp_path / "mine.toml").write_text(ship)
     load = f"from twin.physics.ship import load; print(load({str(tmp_path / 'mine.toml')!r}).effects)"
-    loaded = subprocess.run([sys.executable, "-c", load], capture_output=True, text=True, env=world, cwd=ROOT)
+    loaded = subprocess.run(
+        [sys.executable, "-c", load], capture_output=True, text=True, env=scenario, cwd=ROOT
+    )
     assert "SeaAnchor(drag_area=3.5)" in loaded.stdout, loaded.stderr

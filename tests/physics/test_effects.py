@@ -37,6 +37,9 @@ ISSUE = [
     "AntennaOffset",
     "SensorDelay",
     "GyroBias",
+    "HeadingLag",
+    "CompassDeviation",
+    "ReceiverSmoothing",
 ]
 READ = ("x", "y", "psi", "u", "v", "r", "u_r", "v_r", "wind_to")
 # change sign in a mirror
@@ -51,6 +54,7 @@ MIRRORED = {  # parameters that do so too
     "SpeedLogMisalignment": {"angle"},
     "AntennaOffset": {"starboard"},
     "GyroBias": {"bias"},
+    "CompassDeviation": {"A", "C", "E"},
     "VaryingCurrent": {"east"} | {f"east_{wave}{k}" for wave in "cs" for k in "123"},
 }
 each = pytest.mark.parametrize("Kind", (*BUILT_IN, *UNNAMED), ids=lambda kind: kind.__name__)

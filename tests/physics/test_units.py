@@ -114,7 +114,7 @@ FIELDS |= dict.fromkeys(("u_dot", "v_dot"), "m/s2")
 
 
 @pytest.fixture
-def world(ship, moment, monkeypatch):
+def scenario(ship, moment, monkeypatch):
     """The ship and the moment with their units, and the constants of physics with theirs."""
     from dataclasses import replace
 
@@ -128,8 +128,8 @@ def world(ship, moment, monkeypatch):
     )
 
 
-def test_the_core_gives_newtons_and_newton_metres(world):
-    ship, moment = world
+def test_the_core_gives_newtons_and_newton_metres(scenario):
+    ship, moment = scenario
     for name, force in Model(ship).known(moment()).items():
         for component, unit in zip(force, ("N", "N", "N m"), strict=True):
             assert not isinstance(component, Quantity) or component.unit == UNITS[unit], name
@@ -138,8 +138,8 @@ def test_the_core_gives_newtons_and_newton_metres(world):
 
 
 @pytest.mark.parametrize("Kind", BUILT_IN, ids=lambda kind: kind.__name__)
-def test_an_effect_gives_the_unit_it_should(Kind, world):
-    ship, moment = world
+def test_an_effect_gives_the_unit_it_should(Kind, scenario):
+    ship, moment = scenario
     sized = {p.name: (p.default or p.sd) * p.scale(ship) for p in Kind.params()}
     for p in Kind.params():
         if p.of:

@@ -1,4 +1,4 @@
-"""A ship that exists only in kinematics: her columns agree, until a test plants a mistake."""
+"""A ship that exists only in kinematics: its columns agree, until a test plants a mistake."""
 
 import os
 from pathlib import Path

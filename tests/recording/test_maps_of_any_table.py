@@ -130,7 +130,7 @@ def test_a_map_that_cannot_be_meant_so_says_why(entry, words):
 
 def test_a_map_is_proposed_for_a_bridges_export_and_reads_it(tmp_path):
     """Test: names and units of a bridge system, speed in knots and rate in deg/min without saying so.
-    Expected: both found, by how she moves."""
+    Expected: both found, by how it moves."""
     t = np.arange(300.0)
     psi = 45.0 + 20.0 * np.sin(t / 15.0)
     way = 6.0 * np.exp(1j * np.radians(psi))

@@ -143,7 +143,7 @@ def test_a_magnetic_heading_is_told_and_not_refused(sail):
 
 
 def test_a_stopped_shaft_proves_no_unit(sail):
-    """Test: the ship runs out with her shaft stopped (a quarter of a turn a minute of noise). Expected: the
+    """Test: the ship runs out with its shaft stopped (a quarter of a turn a minute of noise). Expected: the
     unit of the turns cannot be told."""
     d = bridge(sail)
     rng = np.random.default_rng(1)

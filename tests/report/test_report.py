@@ -66,7 +66,7 @@ def test_the_page_opens_in_a_browser_without_a_complaint_and_shows_every_part(pa
         "Provenance",
     ):
         assert f"<h2>{words}</h2>" in dom
-    assert dom.index("<h1>After 120 s") < dom.index("<h2>") and "twin diagnose" in dom
+    assert dom.index("<h1>120 s open-loop error") < dom.index("<h2>") and "twin diagnose" in dom
 
 
 def test_the_page_is_dark_when_it_is_asked_to_be(page):
@@ -99,9 +99,9 @@ def test_the_page_of_diagnose_ranks_causes_in_newtons_with_the_command_beside(
     assert complaints == []
     for words in (
         "Current (probability 97 %) is missing",
-        "512 kN aside",
+        "512 kN across it",
         "; ship file 0.200",
-        "32.0 MN m turning",
+        "32.0 MN m of turning",
         "VaryingCurrent",
         "reciprocal runs",
         "twin add Current",
@@ -141,7 +141,7 @@ def test_the_page_of_an_unknown_cause_says_when_it_pushed_her_and_what_it_resemb
     dom, complaints = opened(tmp_path / "d.html")
     assert complaints == []
     for words in (
-        "Moments at which something pushed her",
+        "Moments at which something pushed it",
         "1:00 to 1:35",
         "724 kN",
         "-11.7 MN m",

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Progress, Result, frame, metres, quietly
 from twin.api.voyages import PathLike, several
+from twin.num import num
 from twin.physics.model import Model
 from twin.physics.particulars import Ship
 from twin.recording.voyage import Voyage
@@ -47,7 +48,9 @@ class Comparison(Result):
 
     def __repr__(self) -> str:
         row = self.data["horizons"][-1]
-        error = f"{metres(row['position_mae_m'])}, {row['heading_mae_deg']:.2g} deg at {row['horizon_s']:g} s"
+        error = (
+            f"{metres(row['position_mae_m'])}, {num(row['heading_mae_deg'], 2)} deg at {row['horizon_s']:g} s"
+        )
         expected = f"expected {metres(row['noise_floor']['position_mae_m'])}"
         return f"<Comparison of {self.data['ship']!r}: {error}; {expected}>"
 

@@ -31,6 +31,8 @@ ABOUT = (
 CHECKS = (
     JsonKey("data_checks[].check", "", "name of a check of the data, as in docs/import.md"),
     JsonKey("data_checks[].ok", "", "whether the data passes, or could not tell"),
+    JsonKey("data_checks[].proved", "", "whether the check proves a mistake"),
+    JsonKey("data_checks[].told", "", "whether the data could tell at all"),
     JsonKey("data_checks[].text", "", "the answer in a sentence"),
     JsonKey("data_checks[].voyage", "", "which voyage", "more than one voyage was given"),
 )

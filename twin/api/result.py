@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from twin.num import num
+
 if TYPE_CHECKING:
     import pandas
 
@@ -62,4 +64,4 @@ class Result:
 
 def metres(value: float | None) -> str:
     """A length [m] with as many digits as are known."""
-    return "?" if value is None else f"{value:.3g} m"
+    return "?" if value is None else f"{num(value, 3)} m"

@@ -13,13 +13,14 @@ from twin.recording.voyage import Voyage
 PathLike = str | os.PathLike[str]
 
 
-def read_voyage(path: PathLike, map: PathLike | None = None) -> Voyage:
+def read_voyage(path: PathLike, map: PathLike | None = None, *, controls: bool = True) -> Voyage:
     """One voyage: an MCAP log, or a text file by the channels' names or by a `map` of its own columns.
 
     DataError (a line that says what, where and what to do) when the file cannot be used; SettingsError when
-    the map is not valid. The format of a map: docs/import.md.
+    the map is not valid. The format of a map: docs/import.md. `controls` False: rudder and shaft need
+    not be there, as for `instruments`.
     """
-    return read(Path(path), read_map(Path(map)) if map is not None else None)
+    return read(Path(path), read_map(Path(map)) if map is not None else None, controls=controls)
 
 
 def read_voyages(paths: PathLike | Iterable[PathLike], map: PathLike | None = None) -> list[Voyage]:

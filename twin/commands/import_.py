@@ -27,7 +27,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="a log or a table of any known format; several tables are joined",
     )
     parser.add_argument("--map", metavar="MAP.toml", help="the file's own columns, units, signs and clock")
-    parser.add_argument("--ship", metavar="SHIP.toml", help="her particulars let the checks say more")
+    parser.add_argument("--ship", metavar="SHIP.toml", help="its particulars let the checks say more")
     parser.add_argument(
         "--source",
         metavar="[CHANNEL=]NAME",
@@ -77,12 +77,12 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _next(voyage: str, ship: str | None) -> str:
-    """A ship that was never calibrated is, on her reference voyages, before anything is compared with her;
+    """A ship that was never calibrated is, on its reference voyages, before anything is compared with it;
     whether this is one, nobody knows."""
     if ship and "structural" not in load(ship).notes:
         better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
         return (
-            "her model was not calibrated yet. Import the voyages on which nothing was wrong (three or "
+            "its model was not calibrated yet. Import the voyages on which nothing was wrong (three or "
             "more), then "
             f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship} -o {better}; after that, twin diagnose "
             f"LATER.mcap --ship {better}"

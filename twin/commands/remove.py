@@ -1,4 +1,4 @@
-"""`twin remove`: take an effect out of a ship's model again; her history remembers both."""
+"""`twin remove`: take an effect out of a ship's model again; its history remembers both."""
 
 import argparse
 import sys

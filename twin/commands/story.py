@@ -1,4 +1,4 @@
-"""The study's story on the voyages that come with the twin: she sails badly on Monday; by evening the twin
+"""The study's story on the voyages that come with the twin: it sails badly on Monday; by evening the twin
 knows why."""
 
 import json
@@ -18,7 +18,7 @@ def story(folder: Path) -> None:
     folder = Path(tempfile.mkdtemp(prefix="study-", dir=folder))
     answer, page, better = folder / "diagnosis.json", folder / "diagnosis.html", folder / "tanker-better.toml"
     print(
-        "\nA tanker, calibrated on calm voyages. On Monday she is not where her twin expects her. How "
+        "\nA tanker, calibrated on calm voyages. On Monday it is not where its twin expects it. How "
         "wrong, and where?"
     )
     _say(f"compare {_q(MONDAY)} --ship {_q(SHIP)}")

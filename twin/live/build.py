@@ -1,4 +1,4 @@
-"""From settings to a loop: the ship, her residual, her certificate, and what had to be left out, in words."""
+"""From settings to a loop: the ship, its residual, its certificate, and what had to be left out, in words."""
 
 import sys
 from math import ceil
@@ -6,7 +6,9 @@ from pathlib import Path
 
 from twin.errors import SettingsError
 from twin.live import realtime
-from twin.live.certificate.certificate import Certificate, Tube, kept, mark, on_board, on_file
+from twin.live.certificate.certificate import Certificate, on_board
+from twin.live.certificate.rolled_tube import tube_of
+from twin.live.certificate.store import kept, mark, on_file
 from twin.live.gates.sensors import Sensors
 from twin.live.guard import Guard
 from twin.live.learning import network
@@ -14,7 +16,10 @@ from twin.live.learning import residual as residuals
 from twin.live.learning.learned import LearnedForce
 from twin.live.learning.residual import Residual, ResidualError, WrongShip
 from twin.live.loop import Ears, Loop
+from twin.live.observer.dynamics import first_current
+from twin.live.observer.estimate import Observer
 from twin.live.observer.predict import Predictor
+from twin.live.observer.rollback import RollBack, inner_steps
 from twin.live.outbox import Outbox
 from twin.live.signals.config import Settings
 from twin.live.stabilizer import Stabilizer
@@ -22,13 +27,13 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.ship import load as load_ship
 
-CERTIFY = "from twin.live.build import certify_aside; certify_aside({!r}, {!r}, {!r}, {!r}, {!r}, {!r}, {!r})"
+CERTIFY = "from twin.live.build import certify_aside; certify_aside{!r}"
 LATENESS = 1.05  # periods within which a tick still counts as one
 CERTIFY_S = 20.0  # the longest the service's start waits for a certificate
 
 
 def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | None = CERTIFY_S) -> Loop:
-    """The loop these settings describe; SettingsError when they cannot be used. `patience_s`: how long her
+    """The loop these settings describe; SettingsError when they cannot be used. `patience_s`: how long its
     certificate may take, None for as long as it takes.
 
     What loading a library leaves in memory is given back before the next one is loaded: their sum would be
@@ -36,7 +41,7 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
     """
     breathe = realtime.drop_pages if settings["loop.drop_pages"] else int
     breathe()
-    ship = load_ship(settings["ship.file"])
+    ship = load_ship(settings["ship.file"], arrays=False)
     if ship.actuators:
         raise SettingsError(
             f"{settings['ship.file']}: the loop on board does not take [[actuators]] yet. Ashore twin "
@@ -65,6 +70,7 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
         rate,
         settings["observer.gain"] or stabilizer.gain,
         stabilizer=stabilizer,
+        observer=observer_of(settings, ship, settings["observer.gain"] or stabilizer.gain),
         predictor=Predictor(
             ship, tuple(settings["prediction.horizons_s"]), settings["prediction.refresh_s"], rate
         ),
@@ -125,17 +131,30 @@ def stabilizer_of(
     h, K = LATENESS / settings["loop.rate_hz"], settings["observer.gain"] or None
     oldest_s = settings["observer.oldest_s"] or min(max(0.0125 * ship.L_pp / ship.U_0, h), 1.2)
     delay = max(ceil(oldest_s / h - 1e-6), 1)
-    adapted, said = settings["adaptation.on"], ""
-    wanted = mark(Model.of(ship), K, h, on_board(ship, delay, adapted, saturation))
+    adapted, said, steps = settings["adaptation.on"], "", steps_of(settings, ship)
+    wanted = mark(Model.of(ship), K, h, on_board(ship, delay, adapted, saturation, steps))
     path = certificate_file(settings, wanted)
     certificate = on_file(path, wanted)
     if certificate is None:
         certificate, said = _worked_out(
-            patience_s, settings["ship.file"], str(path), K, h, delay, adapted, saturation
+            patience_s, settings["ship.file"], str(path), K, h, delay, adapted, saturation, steps
         )
     if certificate is None:
         return Stabilizer(None, f"not worked out ({said})")
-    return Stabilizer(Tube(certificate), "" if certificate.ok else certificate.reason)
+    return Stabilizer(tube_of(certificate), "" if certificate.ok else certificate.reason)
+
+
+def steps_of(settings: Settings, ship: Ship) -> int:
+    """Into how many steps the observer cuts a period."""
+    return int(settings["observer.inner_steps"]) or inner_steps(ship, 1.0 / settings["loop.rate_hz"])
+
+
+def observer_of(settings: Settings, ship: Ship, gain: float) -> Observer:
+    """The observer of this ship at this rate."""
+    steps, current = steps_of(settings, ship), first_current(ship)
+    if steps == 1:
+        return Observer(ship, gain, current)
+    return RollBack(ship, LATENESS / settings["loop.rate_hz"] / steps, gain, current)
 
 
 def _worked_out(patience_s: float | None, *arguments: object) -> tuple[Certificate | None, str]:
@@ -143,7 +162,7 @@ def _worked_out(patience_s: float | None, *arguments: object) -> tuple[Certifica
     line."""
     import subprocess  # here and not above: only the first start needs it
 
-    command = [sys.executable, "-c", CERTIFY.format(*arguments)]
+    command = [sys.executable, "-c", CERTIFY.format(arguments)]
     try:
         done = subprocess.run(command, capture_output=True, text=True, timeout=patience_s, check=True)
         return Certificate.from_json(done.stdout), ""
@@ -175,7 +194,8 @@ def certify_aside(
     delay: int,
     adapted: bool,
     saturation: tuple[float, float, float],
+    inner: int,
 ) -> None:
     """Work the certificate out, put it on file and say it: what the other process does."""
-    ship = load_ship(ship_file)
-    print(kept(path, Model.of(ship), K, h, **on_board(ship, delay, adapted, saturation)).to_json())
+    ship = load_ship(ship_file, arrays=False)
+    print(kept(path, Model.of(ship), K, h, **on_board(ship, delay, adapted, saturation, inner)).to_json())

@@ -1,6 +1,6 @@
 """`twin demo`: a ship's twin alive, from nothing, in about a minute.
 
-A reference ship sails in a process of her own, her instruments speak Keelson over Zenoh, the loop listens,
+A reference ship sails in a process of its own, its instruments speak Keelson over Zenoh, the loop listens,
 estimates, speaks and logs; the log is then replayed, and the replay held against what was said live.
 """
 
@@ -30,7 +30,7 @@ from twin.physics.ship import load
 
 SEA = "bench.sea_process"  # the reference sea: a program beside the twin, not a part of it
 UNDER_WAY, START_S = "under way", 60.0  # what the sea says when it is ready, and the longest wait for it
-RUN_IN = 2.0  # ship lengths that she sails straight before a manoeuvre begins
+RUN_IN = 2.0  # ship lengths that it sails straight before a manoeuvre begins
 SEEN = (
     "north_m",
     "east_m",
@@ -42,7 +42,7 @@ SEEN = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--seconds", type=float, default=30.0, help="how long she sails (default: 30)")
+    parser.add_argument("--seconds", type=float, default=30.0, help="how long it sails (default: 30)")
     parser.add_argument(
         "--ship", default="kvlcc2", help="a bundled ship: kvlcc2 (320 m; the default), usv (2 m, lively), ..."
     )
@@ -60,7 +60,7 @@ def run(args: argparse.Namespace) -> int:
     folder = Path(args.logs) / time.strftime("demo-%Y%m%d-%H%M%S")
     settings = settings_for(args.ship, folder)
     print(
-        f"{ship.name} sails a {args.manoeuvre} in the reference sea for {args.seconds:g} s; her twin listens."
+        f"{ship.name} sails a {args.manoeuvre} in the reference sea for {args.seconds:g} s; its twin listens."
     )
     with reference_sea(settings, args, RUN_IN * ship.L_pp / ship.U_0):
         view = View(sys.stdout, f"shiptwin demo: {ship.name}", args.seconds, str(folder))
@@ -86,13 +86,13 @@ def settings_for(ship: str, folder: Path) -> Settings:
 
 @contextmanager
 def reference_sea(settings: Settings, args: argparse.Namespace, after_s: float) -> Iterator[None]:
-    """The ship and her instruments, in a process of its own, until the demo is over; she is under way for
+    """The ship and its instruments, in a process of its own, until the demo is over; it is under way for
     `after_s`."""
     if importlib.util.find_spec("bench") is None:
         raise TwinError(
             "The reference sea (package `bench`) is not installed here. Run `make demo` in the source folder."
         )
-    command = [sys.executable, "-m", SEA, "--connect", settings["bus.listen"], "--hull", args.ship]
+    command = [sys.executable, "-P", "-m", SEA, "--connect", settings["bus.listen"], "--hull", args.ship]
     command += ["--manoeuvre", args.manoeuvre, "--after", f"{after_s:.0f}"]
     command += ["--base", settings["bus.base"], "--entity", settings["bus.entity"]]
     with tempfile.TemporaryFile("w+") as said:
@@ -106,7 +106,7 @@ def reference_sea(settings: Settings, args: argparse.Namespace, after_s: float) 
 
 
 def _wait_for(sea: "subprocess.Popen[bytes]", said: IO[str]) -> None:
-    """Until she is under way."""
+    """Until it is under way."""
     until, text = time.monotonic() + START_S, ""
     while UNDER_WAY not in text:
         ended = sea.poll() is not None or time.monotonic() > until

@@ -2,7 +2,7 @@
 recorded helm, engine and weather.
 
 Every `every_s` a ship is set off where the estimate was, with the current and the learned force as they were
-known then, and carried ahead; after each horizon she is compared with what was measured. Never a smoothed
+known then, and carried ahead; after each horizon it is compared with what was measured. Never a smoothed
 fit.
 """
 

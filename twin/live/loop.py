@@ -55,12 +55,13 @@ class Loop:
         predictor: Predictor | None = None,
         sensors: Sensors | None = None,
         guard: Guard | None = None,
+        observer: Observer | None = None,
     ):
         self.ship, self.rate_hz, self.period_s = ship, rate_hz, 1.0 / rate_hz
         self.ears, self.voice, self.learned = ears, voice, learned
         self.sensors = sensors or Sensors(ship)
         self.dynamics, self.faults = Dynamics(ship), KnownFaults(ship)
-        self.observer = Observer(ship, gain, self.dynamics.first_current)
+        self.observer = observer or Observer(ship, gain, self.dynamics.first_current)
         self.guard = guard or Guard(ship, learned)
         self.checks = CrossChecks(ship)
         self.predictor = predictor or Predictor(ship, rate_hz=rate_hz)
@@ -91,6 +92,7 @@ class Loop:
         self.learned.learn(measured_nu(measured), situation, forces, learned, physics, dt, verdict.frozen)
         self.dynamics.adopt(self.learned.effects)
         self.observer.steer(self.dynamics.ahead(situation, forces, learned.force, self.period_s))
+        self.observer.remember(self.dynamics.now, situation, learned.force)
         ahead = self.predictor.advance(
             instant.time_s,
             estimate,

@@ -1,4 +1,4 @@
-"""Who speaks, and what wrote a log: ship, hash of her model, settings, version."""
+"""Who speaks, and what wrote a log: ship, hash of its model, settings, version."""
 
 import json
 from typing import Any

@@ -3,11 +3,12 @@ hold now."""
 
 from math import degrees, hypot, pi
 
-from twin.live.certificate import comparison as c3
 from twin.live.certificate.periods import TOO_LONG
+from twin.live.certificate.rolled_tube import RolledTube
 from twin.live.certificate.tube import STILL, Three, Tube
 from twin.live.guard import CONTROLS
 from twin.live.observer.estimate import Observer
+from twin.live.observer.rollback import RollBack
 from twin.live.parity import Parity
 from twin.live.seen import Certified
 from twin.live.signals.derive import turn
@@ -26,16 +27,17 @@ USELESS = 1e3  # m/s: a bound above every speed at sea
 
 class Stabilizer:
     """Steps the tube once a tick; without a certificate it promises nothing, and says so by `inside` being
-    false. Where she may have left the operating set the tube begins anew from what is measured, and promises
+    false. Where it may have left the operating set the tube begins anew from what is measured, and promises
     again once all that a late measurement looks back on is inside."""
 
     def __init__(self, tube: Tube | None = None, why_not: str = "no certificate"):
         self.tube, self.why_not = tube, why_not
         self.promises = tube is not None and tube.certificate.ok
-        self._step_margin = max(1.0 - c3.radius(tube.certificate.G), 0.0) if tube and self.promises else 0.0
+        self._step_margin = tube.certificate.step_margin if tube else 0.0
         self._parity = Parity(tube.certificate.heading_noise) if tube else None
         self._restarts = -1
-        self._inside = 0  # ticks that she has surely been in the set
+        self._seaway = False  # whether a wave height is known
+        self._inside = 0  # ticks that it has surely been in the set
         self._since_late_s = float("inf")  # seconds for which every tick came in time
         self._surprised = dict.fromkeys(NU, 0.0)
         self.outside: str | None = why_not
@@ -65,9 +67,12 @@ class Stabilizer:
             self._begin(observer, measured, tube)
         late = self._clocked(dt, tube)
         self._steps(observer, measured, tube, dt, acts)
+        if ("H_s" in measured.si) is not self._seaway:  # till now the noise was that of another sea
+            self._seaway, self._inside = "H_s" in measured.si, 0
+            tube.reset(self._first(observer, measured, tube), self._heading(observer, measured, tube))
         certificate, first = tube.certificate, self._first(observer, measured, tube)
         within = min(tube.beta[0], first[0]), min(tube.beta[1], first[1]), min(tube.beta[2], first[2])
-        apart = self._parity.feed(measured, observer.estimate, tube.beta, dt) if self._parity else ""
+        apart = self._apart(observer, measured, tube, dt)
         self.outside = late or doubt or apart or _unsure(measured) or tube.outside(s, within, dt)
         self._inside = self._inside + 1 if self.outside is None else 0
         if proven := self._inside >= tube.window:
@@ -87,10 +92,17 @@ class Stabilizer:
             self._step_margin,
         )
 
+    def _apart(self, observer: Observer, measured: Measured, tube: Tube, dt: float) -> str:
+        if self._parity is None:
+            return ""
+        self._parity.heading_noise = tube.heading_noise
+        return self._parity.feed(measured, observer.estimate, tube.beta, dt)
+
     def _begin(self, observer: Observer, measured: Measured, tube: Tube) -> None:
         """The observer was set to what is measured."""
         tube.reset(self._first(observer, measured, tube), self._heading(observer, measured, tube))
         self._restarts, self._inside = observer.restarts, tube.window
+        self._seaway = "H_s" in measured.si
         if self._parity:
             self._parity.begin()
 
@@ -106,10 +118,13 @@ class Stabilizer:
     def _steps(self, observer: Observer, measured: Measured, tube: Tube, dt: float, acts: bool) -> None:
         got = tuple([observer.received[a] and self._in_time(a, measured, tube) for a in NU])
         self._watch(observer, got, tube)
+        sea = measured.si.get("H_s", 0.0)
+        if isinstance(tube, RolledTube) and isinstance(observer, RollBack):
+            tube.follow(observer.path, sea, acts)
+            return
         heading = observer.received["psi"] and self._in_time("psi", measured, tube)
         in_time = self._since_late_s > 0.0
         pulled = tuple([0.0 if g and in_time else observer.pulled[a] for a, g in zip(NU, got, strict=True)])
-        sea = measured.si.get("H_s", 0.0)
         tube.step(got, sea, pulled if any(pulled) else STILL, dt, acts, heading, observer.pulled["psi"])  # type: ignore[arg-type]
 
     @property
@@ -124,21 +139,21 @@ class Stabilizer:
     def _watch(self, observer: Observer, got: tuple[bool, ...], tube: Tube) -> None:
         """How often an accepted sample lies farther from the estimate than bound and noise allow: one in many
         may, a row of them tells of a larger disturbance or a worse sensor than was assumed."""
-        for axis, accepted, most, noise in zip(NU, got, tube.widest, tube.certificate.noise, strict=True):
+        for axis, accepted, most, noise in zip(NU, got, tube.widest, tube.noise, strict=True):
             if accepted:
                 off = abs(observer.innovation[axis]) > most + noise
                 self._surprised[axis] += (off - self._surprised[axis]) / MEMORY
 
     def _first(self, observer: Observer, measured: Measured, tube: Tube) -> Three:
         """What the estimate is off by at most, asking the instruments alone: how far it lies from what was
-        measured, its noise and her way since; where nothing was, all that a ship can."""
-        c, e = tube.certificate, observer.estimate
+        measured, its noise and its way since; where nothing was, all that a ship can."""
+        e = observer.estimate
         u, v, r = (
             abs(measured.si[a] - now) + noise + measured.age_s(a) * way
             if self._in_time(a, measured, tube)
             else 2.0 * most
             for a, now, noise, way, most in zip(
-                NU, (e.u, e.v, e.r), c.noise, tube.way, observer.most, strict=True
+                NU, (e.u, e.v, e.r), tube.noise, tube.way, observer.most, strict=True
             )
         )
         return u, v, r
@@ -148,7 +163,7 @@ class Stabilizer:
         if not self._in_time("psi", measured, tube):
             return pi
         off = abs(turn(measured.si["psi"] - observer.estimate.psi))
-        return off + tube.certificate.heading_noise + measured.age_s("psi") * observer.most[2]
+        return off + tube.heading_noise + measured.age_s("psi") * observer.most[2]
 
     def _in_time(self, attribute: str, measured: Measured, tube: Tube) -> bool:
         """Measured by its own instrument, not older than the certificate allows, and not from before a late

@@ -96,7 +96,7 @@ def _force_row(name: str, force: tuple[float, ...]) -> str:
 
 
 def ahead(tick: Any) -> list[str]:
-    """Where she will be; a round of predictions is done only now and then."""
+    """Where it will be; a round of predictions is done only now and then."""
     return [
         f"in {p.horizon_s:.0f} s: heading {_number(p.state, 'heading_true_north_deg', 0)} deg, "
         f"{_number(p.state, 'north_m', 0)} m north, {_number(p.state, 'east_m', 0)} m east "

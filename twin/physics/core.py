@@ -139,7 +139,7 @@ def coefficients(ship: "Ship") -> Coefficients:
 
 
 def resistance(u: Number, c: Coefficients) -> Number:
-    """Force ahead [N] on the bare hull in calm water, and what waves make of it as her speed nears theirs
+    """Force ahead [N] on the bare hull in calm water, and what waves make of it as its speed nears theirs
     (X_uuu)."""
     U = abs(u)
     return (c.X_u + (c.X_uu + c.X_uuu * U) * U) * u

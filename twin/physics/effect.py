@@ -100,8 +100,11 @@ class Effect:
     copies: ClassVar[tuple[str, ...]] = ()
     # effects that are a part of this one, so that beside it they say nothing
     holds: ClassVar[tuple[str, ...]] = ()
+    # whether how the readings go together shows it and the ship's motion hardly does: `twin instruments`
+    # looks for it; a diagnosis weighs only a change of one that the ship file has
+    kinematic: ClassVar[bool] = False
     irregular: ClassVar[bool] = False  # whether it comes and goes with what no input shows
-    # share of her length by which its side force may attack elsewhere than its form has it (one sd)
+    # share of its length by which its side force may attack elsewhere than its form has it (one sd)
     lever: ClassVar[float] = 0.0
     # the number without which the others are a form of nothing; of most effects any of them is enough
     size: ClassVar[str] = ""

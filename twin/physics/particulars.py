@@ -1,5 +1,5 @@
 # ruff: noqa: RUF009  (a number is declared by a call)
-"""What is known of one ship in numbers: her particulars, her derivatives and her effects, frozen.
+"""What is known of one ship in numbers: its particulars, its derivatives and its effects, frozen.
 
 Each number is declared once: unit, the range outside which it is a mistake, meaning, and the width of its
 prior."""

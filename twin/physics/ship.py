@@ -1,4 +1,4 @@
-"""A ship and the TOML file that holds her.
+"""A ship and the TOML file that holds it.
 
 Every number in a ship file is a table { value, unit, source } (a fitted one has its standard error `sd` too),
 so that an owner can see where each came from. Effects stand under [effects.NAME]; what calibration found
@@ -14,6 +14,7 @@ from typing import Any
 
 from twin.errors import SettingsError, did_you_mean
 
+from . import ship_arrays
 from .actuators import Actuator
 from .actuators.file import read as read_actuators
 from .effect import Effect
@@ -37,9 +38,10 @@ __all__ = [
 MAX_BYTES = 32_000_000  # of a ship file; what calibration keeps in one takes less than 1 MB
 
 
-def load(path: str | os.PathLike[str]) -> Ship:
+def load(path: str | os.PathLike[str], arrays: bool = True) -> Ship:
     """Read a ship file (or a bundled ship by its bare name, such as `kvlcc2`); SettingsError says what is
-    wrong and where."""
+    wrong and where. `arrays`: also the long arrays that calibration left beside it, which the study reads and
+    nothing on board does."""
     path = _bundled(path)
     try:
         with open(path, "rb") as file:
@@ -59,6 +61,8 @@ def load(path: str | os.PathLike[str]) -> Ship:
     except (ValueError, RecursionError) as error:
         said = " ".join(str(error).split())[:200]
         raise SettingsError(f"{path}: not a valid TOML file: {said}. Save it as plain UTF-8 text.") from None
+    if arrays:
+        table = ship_arrays.joined(table, Path(path))
     return from_table(table, f"{path}: ")
 
 

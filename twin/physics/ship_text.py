@@ -4,10 +4,12 @@ import json
 import os
 import re
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from twin import whole
 
+from . import ship_arrays
 from .actuators.file import tables as actuator_tables
 from .particulars import DERIVATIVES, PARTICULARS, Ship
 
@@ -108,5 +110,13 @@ def _inline(value: Any) -> str:
 
 
 def save(ship: Ship, path: str | os.PathLike[str]) -> None:
-    """Write the ship file aside and rename it into place, so that no half file is ever seen."""
-    whole.write(path, text(to_table(ship)))
+    """Write the ship file aside and rename it into place, so that no half file is ever seen; its long arrays
+    go to a file beside it (`ship_arrays`), which is written first."""
+    place, (table, long) = Path(path), ship_arrays.divided(to_table(ship), SECTIONS)
+    before = place.read_text(errors="replace") if place.is_file() else ""
+    if long:
+        table[ship_arrays.SECTION] = ship_arrays.write(place, long)
+    now = text(table)
+    whole.write(place, now)
+    if not long or table[ship_arrays.SECTION]["file"] not in before:
+        ship_arrays.forget(place, before)

@@ -28,9 +28,9 @@ class Water(NamedTuple):
 
     (u, v): its velocity in body axes [m/s]. (k_u, k_v, k_r): by how much it holds the hull harder in surge,
     sway and yaw, as shares of the hull's damping, in yaw of the whole moment, Munk's included (a bottom
-    squeezes the stream past her; propeller and rudder, in the wake, do not feel it). k_m, k_j: by how much
-    more of it sways and turns with her, as shares of the added mass in sway and of the added inertia in yaw.
-    k_t: share of the thrust that drives her by which it takes the ship back (thrust deduction).
+    squeezes the stream past it; propeller and rudder, in the wake, do not feel it). k_m, k_j: by how much
+    more of it sways and turns with it, as shares of the added mass in sway and of the added inertia in yaw.
+    k_t: share of the thrust that drives it by which it takes the ship back (thrust deduction).
     """
 
     u: Number = 0.0

@@ -24,7 +24,7 @@ class Zeta(NamedTuple):
 
 
 def _air(s: Situation) -> tuple[Number, Number]:
-    """The air past the ship, body axes [m/s]: where it goes, seen from her."""
+    """The air past the ship, body axes [m/s]: where it goes, seen from it."""
     return s.wind_speed * cos(s.wind_to - s.psi) - s.u, s.wind_speed * sin(s.wind_to - s.psi) - s.v
 
 

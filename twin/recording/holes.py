@@ -11,8 +11,8 @@ import numpy as np
 
 # of a hole without any row that a grid keeps [s]; no reading of the motion is believed for so long
 HOLE_S = 600.0
-LENGTHS = 4.0  # L/U_0 without a reading, over which a ship may turn by more than her smooth motion can say
-WAITS = 3.0  # and so many usual waits for the next reading, where she is read more slowly than that
+LENGTHS = 4.0  # L/U_0 without a reading, over which a ship may turn by more than its smooth motion can say
+WAITS = 3.0  # and so many usual waits for the next reading, where it is read more slowly than that
 FEWEST = 4  # readings that tell of a motion: one more than a path of no jerk has freedoms
 
 

@@ -1,4 +1,4 @@
-"""Where the ship was and how she moved, on the chart and in her own axes; what is absent is derived."""
+"""Where the ship was and how it moved, on the chart and in its own axes; what is absent is derived."""
 
 from collections.abc import Mapping
 from typing import Any

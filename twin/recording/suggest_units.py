@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.columns_seen import Seen
 from twin.recording.formats.guess import Guess, guess
 from twin.recording.resample import continuous
@@ -69,8 +70,8 @@ def clock_unit(values: np.ndarray) -> tuple[str, str]:
     steps = np.diff(values[np.isfinite(values)])
     step = float(np.median(steps)) if steps.size else 1.0
     if step >= 20.0 and steps.size > 10:
-        return "ms", f"a step of {step:.4g}: milliseconds? CONFIRM"
-    return "s", f"a step of {step:.4g}"
+        return "ms", f"a step of {num(step, 4)}: milliseconds? CONFIRM"
+    return "s", f"a step of {num(step, 4)}"
 
 
 def text_format(stamps: Sequence[str]) -> dict[str, Any] | None:
@@ -190,9 +191,11 @@ def speed_unit(entries: dict[str, Any], taken: Taken, time: dict[str, Any]) -> N
         for other in (speed, "sway_velocity_mps" if speed == "surge_velocity_mps" else speed):
             if other in entries:
                 entries[other].keys["unit"] = unit
-                entries[other].why.append(f"unit by the distance between positions (ratio {ratio:.3g})")
+                entries[other].why.append(f"unit by the distance between positions (ratio {num(ratio, 3)})")
     else:
-        entries[speed].why.append(f"the positions move {ratio:.3g} times as far as this says: unit? CONFIRM")
+        entries[speed].why.append(
+            f"the positions move {num(ratio, 3)} times as far as this says: unit? CONFIRM"
+        )
 
 
 def distance(seen: Seen, taken: Taken, entries: dict[str, Any]) -> float | None:
@@ -245,5 +248,5 @@ def turn_unit(entries: dict[str, Any], taken: Taken, time: dict[str, Any]) -> No
             entries[rate].keys["unit"] = unit
             if ratio < 0.0:
                 entries[rate].keys["sign"] = -1
-            entries[rate].why.append(f"unit by the heading's turning (ratio {ratio:.3g})")
+            entries[rate].why.append(f"unit by the heading's turning (ratio {num(ratio, 3)})")
             return

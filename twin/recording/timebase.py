@@ -10,6 +10,7 @@ import numpy as np
 
 from twin.errors import DataError
 from twin.live.keelson.stamps import LATEST_S, YEAR_S
+from twin.num import num
 from twin.recording.mapping import TimeColumn
 from twin.recording.units import UNITS
 
@@ -172,9 +173,10 @@ def rebuilt(path: Path, time_s: np.ndarray, step: bool | float) -> tuple[np.ndar
     worst, allowed = int(np.argmax(off)), rounding + step
     if off[worst] > allowed:
         raise DataError(
-            f"{path}: row {worst + 1}: the stamp {time_s[worst]:g} s lies {off[worst]:.3g} s from an even "
-            f"step of {step:.6g} s; rounding explains {allowed:.2g} s. Rows are missing, or the step is "
+            f"{path}: row {worst + 1}: the stamp {time_s[worst]:g} s lies {num(off[worst], 3)} s from an "
+            "even "
+            f"step of {step:.6g} s; rounding explains {num(allowed, 2)} s. Rows are missing, or the step is "
             "wrong: leave rebuild out."
         )
-    within = f"the stamps are within {off.max():.2g} s of it"
+    within = f"the stamps are within {num(off.max(), 2)} s of it"
     return time_s[0] + step * k, f"time stamps rebuilt with an even step of {step:.6g} s ({within})"

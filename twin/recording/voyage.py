@@ -11,6 +11,7 @@ import numpy as np
 
 from twin.errors import DataError, did_you_mean
 from twin.live.signals.channels import BY_NAME, CHANNELS, Channel
+from twin.num import num
 from twin.recording.holes import HOLE_S, WAITS, sailed_s, steps_on
 from twin.recording.resample import continuous, resampled, wrapped
 
@@ -131,7 +132,8 @@ class Voyage:
         hole_s = self.hole_s if hole_s is None else hole_s
         if sailed_s(self.time_s, hole_s) / step_s > MOST_STEPS:
             raise DataError(
-                f"{self.name}: {self.sailed_s:.4g} s are more than {MOST_STEPS:.0e} steps of {step_s:.3g} s, "
+                f"{self.name}: {num(self.sailed_s, 4)} s are more than {MOST_STEPS:.0e} steps of "
+                f"{num(step_s, 3)} s, "
                 "in which this ship "
                 f"must be looked at; there are {len(self)} samples. Cut it into shorter voyages."
             )

@@ -9,16 +9,17 @@ from typing import Any
 
 import numpy  # noqa: F401 (where it is loaded, an installed effect that does not work on arrays is left out)
 
+from twin.num import num
 from twin.physics.effect import FORM, Effect, Param
 from twin.physics.effects import UNNAMED
 from twin.physics.ship import Ship
 from twin.recording.inputs import INPUTS
 
 KINDS = {
-    "Force": "pushes the ship, or changes her inertia",
+    "Force": "pushes the ship, or changes its inertia",
     "Flow": "changes the water that hull, propeller and rudder feel",
     "Lag": "gives an actuator a state of its own",
-    "SensorFault": "leaves the ship alone and changes what an instrument says of her",
+    "SensorFault": "leaves the ship alone and changes what an instrument says of it",
 }
 SCALES = {"force": "F_0", "moment": "F_0 L", "speed": "U_0", "time": "L/U_0", "length": "L"}
 SCALES_SAID = (
@@ -37,6 +38,9 @@ def formula(effect: type[Effect]) -> str:
     return inspect.cleandoc(sys.modules[effect.__module__].__doc__ or "")
 
 
+CHANGE = "a diagnosis weighs only a change of it"
+
+
 def inputs(effect: type[Effect]) -> list[str]:
     """The columns of a voyage without which it is switched off."""
     return [INPUTS.get(name, name) for name in effect.needs]
@@ -48,8 +52,8 @@ def _instead(effect: type[Effect]) -> str:
 
 
 def _attacks(effect: type[Effect]) -> str:
-    """How well it is known where along her it attacks, in words."""
-    return f"within {effect.lever:.0%} of her length of where the form has it (one standard deviation)"
+    """How well it is known where along the hull it attacks, in words."""
+    return f"within {effect.lever:.0%} of its length of where the form has it (one standard deviation)"
 
 
 def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:
@@ -118,6 +122,7 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
         [f"of a ship {', '.join(effect.needs_ship)}"] if effect.needs_ship else []
     )
     lines += [f"attacks   {_attacks(effect)}"] if effect.lever else []
+    lines += [f"found by  twin instruments; {CHANGE}"] if effect.kinematic else []
     lines += [textwrap.fill(f"source    {effect.source}", width, subsequent_indent=" " * 10)]
     add = f"next: twin add {effect.__name__} --ship SHIP.toml --voyage VOYAGE.mcap -o SHIP2.toml"
     return "\n".join([*lines, "", "next: mend it; no ship file holds it" if effect in UNNAMED else add])
@@ -126,7 +131,7 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
 def row(p: Param, ship: Ship | None) -> tuple[str, str, str, str, str, str]:
     """A parameter in a table: name, unit, plausible size, box, prior width, meaning."""
     k, times = (p.scale(ship), "") if ship else (1.0, f" {SCALES[p.of]}" if p.of else "")
-    says = lambda x: f"{x * k:.4g}" + (times if x else "")  # noqa: E731
+    says = lambda x: f"{num(x * k, 4)}" + (times if x else "")  # noqa: E731
     form = "" if p.form == FORM else f" (its form may be off by {p.form:.0%})"
     return p.name, p.unit, says(p.default), f"{says(p.lo)} .. {says(p.hi)}", says(p.sd), p.doc + form
 
@@ -150,8 +155,8 @@ def page(effects: list[type[Effect]]) -> str:
         "number take). Prior sd: how far a "
         "parameter may lie from none before it counts as unlikely; the prior is normal about none, and "
         "one-sided where the box ends there. None "
-        "is the ship as `twin calibrate` found her: what acted on the reference voyages alike is hers, and "
-        "not missing.",
+        "is the ship as `twin calibrate` found it: what acted on the reference voyages alike is part of it, "
+        "and not missing.",
         "",
     ]
     for kind, means in KINDS.items():
@@ -179,6 +184,7 @@ def _entry(effect: type[Effect]) -> list[str]:
     if effect.needs_ship:
         needs += f"; of the ship {', '.join(effect.needs_ship)}"
     needs += f". Attacks {_attacks(effect)}" if effect.lever else ""
+    needs += f". `twin instruments` looks for it; {CHANGE}" if effect.kinematic else ""
     rows = [
         f"| `{name}` | {unit} | {size} | {box} | {sd} | {doc.replace('|', '/')} |"
         for name, unit, size, box, sd, doc in (row(p, None) for p in effect.params())

@@ -23,11 +23,11 @@ function rankingSection() {
 function candidate(c) {
   const force = c.typical_force || {}, weak = (c.probability || 0) < 0.1 && !(RESULT.missing || []).includes(c.effect);
   const left = el("div", null, el("h3", null, c.effect), el("div", null, bar(c.probability || 0), `${num(100 * (c.probability || 0), 2)} %`));
-  const said = [["X_N", "ahead", "N"], ["Y_N", "aside", "N"], ["N_Nm", "turning", "N m"]].filter(([k]) => force[k]).map(([k, w, u]) => `${si(Math.abs(force[k]), u)} ${w}`);
-  const right = el("div", null, said.length ? el("div", null, said.join(", ")) : null, (c.parameters || []).map(parameter));
+  const said = [["X_N", "along the ship", "N"], ["Y_N", "across it", "N"], ["N_Nm", "of turning", "N m"]].filter(([k]) => force[k]).map(([k, w, u]) => `${si(Math.abs(force[k]), u)} ${w}`);
+  const right = el("div", null, said.length ? el("div", { title: "root mean square over these voyages; the sign is in its numbers" }, `${said.join(", ")} (root mean square)`) : null, (c.parameters || []).length > 6 ? curve(c.parameters) : (c.parameters || []).map(parameter));
   if (c.error_without !== undefined && c.error_with !== undefined && c.error_without !== null) right.append(el("p.note", null, `error ${num(c.error_without)} m without it, ${num(c.error_with)} m with it${c.error_floor ? `; a true cause may leave ${num(c.error_floor)} m` : ""}`));
   if ((c.cannot_be_told_from || []).length) right.append(el("div", null, el("span.note", null, "cannot be told from "), c.cannot_be_told_from.map((n) => el("span.chip", null, n))));
-  if ((c.over_time || []).length > 1) right.append(el("div", null, el("span.note", null, "part by part (1 is the size above) "), c.over_time.map((p) => el("span.chip", null, `${clock(p.start_s)} to ${clock(p.end_s)}: ${num(p.share, 2)} ± ${num(p.sd, 2)}`))));
+  if ((c.over_time || []).length > 1) right.append(el("div", null, el("span.note", null, "part by part (1 is the size above) "), c.over_time.map((p) => el("span.chip", null, `${DATA.voyages.length > 1 && p.voyage ? `${p.voyage} ` : ""}${clock(p.start_s)} to ${clock(p.end_s)}: ${num(p.share, 2)} ± ${num(p.sd, 2)}`))));
   if (!weak && worthTrying(c.effect)) right.append(command(addCommand(c.effect)));
   return el(weak ? ".candidate.weak" : ".candidate", null, left, right);
 }
@@ -38,12 +38,29 @@ function worthTrying(effect) {
   return RESULT.verdict === "undecided" || named.some((c) => (c.cannot_be_told_from || []).includes(effect));
 }
 
-/** Stretches on which something pushed her that was not there before and after. */
+/** Stretches on which something pushed it that was not there before and after. */
 function momentsSection() {
   const list = RESULT.moments || [];
   if (!list.length) return null;
   const rows = list.map((m) => stretchRow(m, el("td.n", null, si(m.X_N, "N")), el("td.n", null, si(m.Y_N, "N")), el("td.n", null, si(m.N_Nm, "N m"))));
-  return section("Moments at which something pushed her", "and not before or after; click one to see it in the plots", table([...(DATA.voyages.length > 1 ? ["voyage"] : []), "when", ">ahead", ">to starboard", ">turning to starboard"], rows));
+  return section("Moments at which something pushed it", "and not before or after; click one to see it in the plots", table([...(DATA.voyages.length > 1 ? ["voyage"] : []), "when", ">ahead", ">to starboard", ">turning to starboard"], rows));
+}
+
+const drawings = document.createElement("template");
+drawings.innerHTML = "<svg></svg>";
+
+/** Many numbers that follow each other in time: a curve, with its 95 % band. */
+function curve(list) {
+  const stems = [...new Set(list.map((p) => p.name.replace(/_?\d+$/, "")))];
+  return el("div", null, stems.map((stem) => {
+    const part = list.filter((p) => p.name.replace(/_?\d+$/, "") === stem), all = part.flatMap((p) => [p.low95, p.high95, 0]), low = Math.min(...all), high = Math.max(...all), wide = 320, tall = 70;
+    const X = (i) => (wide * i) / Math.max(part.length - 1, 1), Y = (v) => 4 + ((tall - 8) * (high - v)) / (high - low || 1), at = (key) => part.map((p, i) => `${X(i).toFixed(1)},${Y(p[key]).toFixed(1)}`);
+    const shape = (tag, props) => { const node = document.createElementNS(drawings.content.firstChild.namespaceURI, tag); for (const [k, v] of Object.entries(props)) node.setAttribute(k, v); return node; };
+    const drawing = shape("svg", { viewBox: `0 0 ${wide} ${tall}`, width: wide, height: tall, role: "img", "aria-label": `${stem} over time, ${num(Math.min(...part.map((p) => p.value)))} to ${num(Math.max(...part.map((p) => p.value)))} ${part[0].unit}` });
+    drawing.style.maxWidth = "100%";
+    drawing.append(shape("polygon", { points: [...at("low95"), ...at("high95").reverse()].join(" "), class: "tube" }), shape("path", { d: `M0 ${Y(0)}H${wide}`, class: "nought" }), shape("polyline", { points: at("value").join(" "), class: "middle" }));
+    return el("div", null, el("code", null, `${stem}, ${part.length} numbers over the voyage`), el("div", null, drawing), el("span.note", null, `${num(low)} to ${num(high)} ${part[0].unit}; shaded: 95 %`));
+  }));
 }
 
 /** A number with its 95 % interval; the dashed mark is zero. */

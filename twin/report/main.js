@@ -73,16 +73,16 @@ function plotsSection(v) {
 function channelPanel(v, c) {
   const [word, unit] = named(c.name), value = el(".value");
   const lines = LINES.map((l) => ({ data: c.lines[l.key], colour: l.colour, width: 1.6, breaks: v.restarts, gap: 1e9 }));
-  const main = plot(96, [{ data: c.measured, colour: "measured", width: 1.6, alpha: 0.9 }, ...lines]);
+  const main = plot(96, [{ data: c.measured, colour: "measured", width: 1.6, alpha: 0.9 }, ...lines], { label: `${word}, measured and modelled, over time` });
   const panel = view.panels[view.panels.length - 1];
-  const rest = plot(50, LINES.map((l) => ({ data: c.residuals[l.key], colour: LINES.length > 1 ? l.colour : "residual", width: 1.3, breaks: v.restarts, gap: 1e9 })), { band: c.noise || 1e-6 });
-  panel.say = (t) => { value.textContent = t === null ? "" : `${clock(t)}  ${num(valueAt(c.measured, t))}\n${LINES.map((l) => `${l.word} ${num(valueAt(c.lines[l.key], t))}`).join("\n")}`; };
+  const rest = plot(50, LINES.map((l) => ({ data: c.residuals[l.key], colour: LINES.length > 1 ? l.colour : "residual", width: 1.3, breaks: v.restarts, gap: 1e9 })), { band: c.noise || 1e-6, label: `${word}, measured − model, over time` });
+  panel.say = (t) => { value.textContent = t === null ? "" : `${clock(t)}  ${num(valueAt(c.measured, t))}\n${LINES.map((l) => `${l.word} ${num(valueAt(c.lines[l.key], t))}\nmeasured − it ${num(valueAt(c.residuals[l.key], t))}`).join("\n")}`; };
   return el(".panel", null, el(".name", null, el("b", null, word), el("small", null, `${unit}; below: measured − model, noise ±${num(c.noise, 2)}`), value), el("div", null, main, rest));
 }
 
 function inputPanel(c) {
   const [word, unit] = named(c.name), value = el(".value");
-  const box = plot(58, [{ data: c.measured, colour: "measured", width: 1.3, gap: 90 }]);
+  const box = plot(58, [{ data: c.measured, colour: "measured", width: 1.3, gap: 90 }], { label: `${word}, recorded, over time` });
   view.panels[view.panels.length - 1].say = (t) => { value.textContent = t === null ? "" : `${clock(t)}  ${num(valueAt(c.measured, t))}`; };
   return el(".panel", null, el(".name", null, el("b", null, word), el("small", null, unit), value), box);
 }

@@ -6,6 +6,9 @@ function setZoom(from, to) {
   if (to - from < least) { const mid = (from + to) / 2; from = mid - least / 2; to = mid + least / 2; }
   view.from = Math.max(v.start_s, from);
   view.to = Math.min(v.end_s, to);
+  const all = view.from <= v.start_s && view.to >= v.end_s, theme = (location.hash.match(/theme=(dark|light)/) || [""])[0];
+  const said = [theme, all ? "" : `t=${view.from.toFixed(1)},${view.to.toFixed(1)}`].filter(Boolean).join("&");
+  if (location.hash.replace("#", "") !== said) try { history.replaceState(null, "", said ? `#${said}` : location.pathname); } catch { /* a page in a frame has no address of its own */ }
   redraw();
 }
 
@@ -22,8 +25,8 @@ function lower(t, x) {
 }
 
 /** A canvas of this height that knows its size in pixels. */
-function sheet(height) {
-  const canvas = el("canvas", { style: { height: `${height}px` } });
+function sheet(height, label) {
+  const canvas = el("canvas", { role: "img", "aria-label": label || "times", style: { height: `${height}px` } });
   const start = () => {
     const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth;
     canvas.width = Math.round(width * ratio);
@@ -77,7 +80,8 @@ function line(pen, { t, y }, X, Y, from, to, gap, breaks) {
 /** Round steps for an axis. */
 function steps(low, high, count) {
   const raw = (high - low) / count || 1, power = 10 ** Math.floor(Math.log10(raw));
-  const step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= raw);
+  let step = [1, 2, 5, 10].map((k) => k * power).find((s) => s >= raw);
+  while (Math.floor(high / step + 1e-9) - Math.ceil(low / step - 1e-9) < 1) step /= 2;
   const out = [];
   for (let v = Math.ceil(low / step) * step; v <= high + 1e-9 * step; v += step) out.push(Math.abs(v) < step * 1e-6 ? 0 : v);
   return out;
@@ -95,7 +99,7 @@ const LEFT = 46; // room for numbers
 
 /** One plot: series [{data, colour, width, breaks}], an optional band about zero. */
 function plot(height, series, options = {}) {
-  const [canvas, start] = sheet(height), cursor = el(".cursor"), picked = el(".picked");
+  const [canvas, start] = sheet(height, options.label), cursor = el(".cursor"), picked = el(".picked");
   const box = el(".draw", null, canvas, cursor, picked);
   const seconds = (px) => view.from + ((px - LEFT) / Math.max(canvas.clientWidth - LEFT, 1)) * (view.to - view.from);
   const panel = { cursor, seconds, draw() { paint(start, series, options); } };
@@ -131,7 +135,7 @@ function grid(pen, X, Y, width, height, low, high, options) {
   for (const v of steps(low, high, Math.max(2, Math.floor(height / 24)))) {
     const y = Math.round(Y(v)) + 0.5;
     pen.beginPath(); pen.moveTo(LEFT, y); pen.lineTo(width, y); pen.stroke();
-    if (y > 5 && y < height - 4) pen.fillText(num(v), LEFT - 6, y);
+    if (y > 4 && y < height - 3) pen.fillText(num(v), LEFT - 6, y);
   }
   for (const t of timeSteps(view.from, view.to, width)) { const x = Math.round(X(t)) + 0.5; pen.beginPath(); pen.moveTo(x, 0); pen.lineTo(x, height); pen.stroke(); }
 }

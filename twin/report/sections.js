@@ -9,23 +9,25 @@ function errorsSection() {
     rows.push({ horizon: h.horizon_s, word, unit, floor, now, then, x: now / floor, x0: then === null ? null : then / floor });
     all.push(now / floor, then === null ? 1 : then / floor);
   }
-  const top = Math.max(4, ...all.filter(isFinite)) * 1.25, low = 0.5, P = (x) => `${(100 * Math.log(Math.max(x, low) / low)) / Math.log(top / low)}%`;
+  const top = Math.max(4, ...all.filter(isFinite)) * 1.25, low = Math.min(0.5, ...all.filter((x) => isFinite(x) && x > 0)) / 1.25, P = (x) => `${(100 * Math.log(Math.max(x, low) / low)) / Math.log(top / low)}%`;
   const box = el(".errors");
   let last = null;
   for (const r of rows) {
     box.append(el(".what", null, r.horizon === last ? "" : el("b", null, `${r.horizon} s ahead`)), scale(r, P), said(r));
     last = r.horizon;
   }
-  const marks = [0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].filter((x) => x <= top);
+  const marks = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].filter((x) => x <= top && x >= low);
   const ticks = el(".ticks", null, marks.map((x) => el("span", { style: { left: P(x) } }, x === 1 ? "noise" : `×${x}`)));
   box.append(el("div"), ticks, el("div"));
   const about = `open loop from the measured state, ${RESULT.horizons.map((h) => h.windows).slice(-1)[0]} windows; noise: ${DATA.floor === "sensors" ? "what a perfect model would show through these instruments" : "what instruments and the calibrated model's own limits leave"}`;
-  return section("Error in units of noise", about, box, forces());
+  const key = rows.some((r) => r.then !== null) ? [["var(--before)", "before"], ["var(--model)", "after"]] : [["var(--good)", "below 1.5 times the noise"], ["var(--model)", "more"]];
+  const legend = el(".legend", null, key.map(([colour, word]) => el("span", null, el("i.box", { style: { background: colour } }), word)));
+  return section("Error in units of noise", about, legend, box, forces());
 }
 
 function scale(r, P) {
   const out = el(".scale", null, el(".axis"), el(".one", { style: { left: P(1) } }));
-  if (r.then === null) out.append(el(".bar", { style: { left: P(0.5), width: P(r.x), background: r.x < 1.5 ? "var(--good)" : "" } }));
+  if (r.then === null) out.append(el(".bar", { style: { left: "0", width: P(r.x), background: r.x < 1.5 ? "var(--good)" : "" } }));
   else {
     const [a, b] = [Math.min(r.x, r.x0), Math.max(r.x, r.x0)];
     out.append(el(".fall", { style: { left: P(a), width: `calc(${P(b)} - ${P(a)})`, background: r.x < r.x0 ? "" : "var(--bad)" } }));
@@ -67,7 +69,7 @@ function bar(share) {
 /** A row about a stretch of a voyage: a click shows it in the plots. */
 function stretchRow(w, ...cells) {
   const go = () => { pickVoyage(Math.max(DATA.voyages.findIndex((v) => v.name === w.voyage), 0)); const pad = 0.25 * (w.end_s - w.start_s); setZoom(w.start_s - pad, w.end_s + pad); document.getElementById("plots").scrollIntoView({ behavior: "smooth" }); };
-  return el("tr.go", { onclick: go, tabIndex: 0, onkeydown: (e) => e.key === "Enter" && go() }, DATA.voyages.length > 1 ? el("td", null, w.voyage || "") : null, el("td", null, `${clock(w.start_s)} to ${clock(w.end_s)}`), ...cells);
+  return el("tr.go", { onclick: go, tabIndex: 0, onkeydown: (e) => { if (e.key === "Enter" || e.key === " ") { e.preventDefault(); go(); } }, "aria-label": `Show ${clock(w.start_s)} to ${clock(w.end_s)} in the plots` }, DATA.voyages.length > 1 ? el("td", null, w.voyage || "") : null, el("td", null, `${clock(w.start_s)} to ${clock(w.end_s)}`), ...cells);
 }
 
 function worstSection() {
@@ -93,7 +95,7 @@ function checksSection() {
 }
 
 function provenanceSection() {
-  const files = (list) => (list || []).map((v) => el("tr", null, el("td", null, v.name + (v.part ? ` (${v.part})` : "")), el("td", null, v.start_time_utc || ""), el("td", null, el("code", null, (v.sha256 || "").slice(0, 16)))));
+  const files = (list) => (list || []).map((v) => el("tr", null, el("td", null, (v.name || String(v)) + (v.part ? ` (${v.part})` : "")), el("td", null, v.start_time_utc || ""), el("td", null, el("code", null, (v.sha256 || "").slice(0, 16)))));
   const out = [];
   const model = RESULT.model ? ["core", ...RESULT.model.effects, ...(RESULT.model.residual ? ["residual"] : [])].join(" + ") + (RESULT.model.hash ? `, hash ${RESULT.model.hash}` : "") : null;
   if (model) out.push(el("p.note", null, `Model: ${RESULT.ship}, ${model}`));

@@ -1,6 +1,6 @@
 // The track over ground and the heat strip.
 function trackPlot(v, lines) {
-  const height = 380, [canvas, start] = sheet(height), t = v.track;
+  const height = 380, [canvas, start] = sheet(height, `Track of ${v.name} over ground, measured and modelled`), t = v.track;
   const paths = [{ x: t.x, y: t.y, name: "measured" }, ...lines.map((l) => ({ ...t.lines[l.key], name: l.colour }))];
   const draw = () => {
     const [pen, width] = start();
@@ -56,7 +56,7 @@ function heatColour(x) {
 
 /** Channel by time: how many times its noise each channel is off. */
 function heatStrip(v) {
-  const row = 19, names = 210, [canvas, start] = sheet(row * v.heat.rows.length + 20);
+  const row = 19, names = 210, [canvas, start] = sheet(row * v.heat.rows.length + 20, `Errors of ${v.name} over time, by channel, in units of its noise`);
   const draw = () => {
     const [pen, width] = start(), X = (t) => names + ((t - v.start_s) / (v.end_s - v.start_s)) * (width - names), t = v.heat.t;
     const shades = Array.from({ length: 61 }, (_, i) => `rgb(${heatColour(HEAT_TOP ** (i / 60)).join(",")})`);

@@ -11,6 +11,7 @@ import pytest
 from twin.errors import SettingsError
 from twin.live.certificate import certificate as cert
 from twin.live.certificate import comparison as c3
+from twin.live.certificate import store
 from twin.live.certificate.certificate import Certificate, Confined, Disturbance, certify
 from twin.live.certificate.enclosure import sampled, slopes
 from twin.live.observer.estimate import gain_for
@@ -234,14 +235,14 @@ def test_a_certificate_goes_through_its_file_unchanged(vlcc, tmp_path):
     model, c = vlcc
     assert Certificate.from_json(c.to_json()) == c
     path = tmp_path / "kvlcc2.certificate.json"
-    first = cert.kept(path, model, 0.3, 0.1)
+    first = store.kept(path, model, 0.3, 0.1)
     stamp = path.stat().st_mtime_ns
-    assert cert.kept(path, model, 0.3, 0.1) == first and path.stat().st_mtime_ns == stamp
-    other = cert.kept(path, model.but(find("HullFouling").plausible(model.ship)), 0.3, 0.1)
+    assert store.kept(path, model, 0.3, 0.1) == first and path.stat().st_mtime_ns == stamp
+    other = store.kept(path, model.but(find("HullFouling").plausible(model.ship)), 0.3, 0.1)
     assert other.fingerprint != first.fingerprint
     for garbage in ("", "{", json.dumps({"version": 0}), "[]"):
         path.write_text(garbage)
-        assert cert.kept(path, model, 0.3, 0.1) == first
+        assert store.kept(path, model, 0.3, 0.1) == first
 
 
 def test_the_loop_reads_a_certificate_without_numpy(vlcc, tmp_path):

@@ -123,7 +123,7 @@ def test_I5_a_coherent_spoof_is_seen_by_the_speed_log(served):
 
     def spoofed(readings, b):
         more = {NORTH: 0.7 * (b.now_s - start), "east_m": 0.7 * (b.now_s - start)}
-        more |= {SURGE: 1.0}  # she heads about north-east
+        more |= {SURGE: 1.0}  # it heads about north-east
         water = [r for r in logged(readings, b) if "through_water" in r.channel]
         return [r._replace(value=r.value + more.get(r.channel, 0.0)) for r in readings] + water
 

@@ -1,4 +1,4 @@
-"""A rudder's feedback that is stuck: found by how she turns, and what it taught taken back; a rudder that is
+"""A rudder's feedback that is stuck: found by how it turns, and what it taught taken back; a rudder that is
 truly held is not accused."""
 
 from dataclasses import replace

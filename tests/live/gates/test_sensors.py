@@ -228,7 +228,7 @@ def test_I17_a_speed_in_knots_is_named(bridge):
 
 def test_I18_a_rudder_of_the_wrong_sign_is_named(bridge):
     ticks = bridge.run(300.0, only("rudder_angle_deg", lambda r, b: r._replace(value=-r.value)))
-    assert said(ticks, "against her rudder")
+    assert said(ticks, "against its rudder")
 
 
 def test_I19_the_heading_runs_through_north_without_a_jump(make_bridge):

@@ -85,37 +85,39 @@ import zstandard
 from twin.live.log.mcap_index import *
 message = record(MESSAGE, pack("<HIQQ", 1, 0, 0, 0))
 raw = record(SCHEMA, pack("<H", 1), text("x"), text("protobuf"), pack("<I", 0))
-raw += record(CHANNEL, pack("<HH", 1, 1), text("t"), text("protobuf"), text_map({})) + message *
-int(sys.argv[2])
+raw += record(CHANNEL, pack("<HH", 1, 1), text("t"), text("protobuf"), text_map({}))
+raw += message * int(sys.argv[2])
 data = zstandard.ZstdCompressor(level=19).compress(raw)
 head = pack("<QQQI", 0, 0, len(raw), crc32(raw)) + text("zstd")
 with open(sys.argv[1], "wb") as file:
-    file.write(MAGIC + record(HEADER, text(""), text("shiptwin")) + record(CHUNK, head, pack("<Q", len(data)),
-    data))
+    file.write(MAGIC + record(HEADER, text(""), text("shiptwin")) + record(CHUNK, head, pack("<Q", len(data)), data))
+"""
+PEAK = """
+import sys
+def peak():  # [kB] of this process alone: ru_maxrss begins at its parent's
+    return int(open("/proc/self/status").read().split("VmHWM:")[1].split()[0])
 """
 RECOVERED = """
-import resource, sys
 from twin.live.log.recover import recover_folder
-before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+before = peak()
 print(*recover_folder(sys.argv[1]))
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+print(peak() - before)
 """
 READ = """
-import resource, sys
 from twin.errors import DataError
 from twin.live.log.mcap_read import McapReader
-before, reader = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, McapReader(sys.argv[1])
+before, reader = peak(), McapReader(sys.argv[1])
 try:
     print(sum(1 for _ in reader.messages()))
 except DataError as error:
     print(error)
-print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)
+print(peak() - before)
 """
 
 
 def run(script, *words):
     return subprocess.run(
-        [sys.executable, "-c", script, *map(str, words)],
+        [sys.executable, "-c", PEAK + script, *map(str, words)],
         capture_output=True,
         text=True,
         check=True,

@@ -65,7 +65,7 @@ def test_foulings_column_is_the_calm_water_resistance(kvlcc2):
 
 
 def test_a_heavier_ships_column_holds_her_inertia(kvlcc2):
-    """Expected: M times what her accelerations change by, by a model loaded so; she has no force of that
+    """Expected: M times what its accelerations change by, by a model loaded so; it has no force of that
     name."""
     loaded = find("Loading")(mass=0.02, draught=0.0, x_G=0.0)
     numbers, found, s = columns(kvlcc2, loaded)

@@ -225,7 +225,7 @@ def test_M13_a_residual_of_another_ship_or_model_is_never_used(kvlcc2, parts):
     with pytest.raises(WrongShip, match="another model"):
         check(*parts, kvlcc2.with_derivatives(gamma_a=-0.1))
     drag, harder = find("CrossFlowDrag")(c_d=0.3), find("CrossFlowDrag")(c_d=0.3, c_mid=0.1)
-    # before drag had a place along her
+    # before drag had a place along the hull
     assert (
         ship_hash(kvlcc2.with_effects(drag)) == "2869635e5d42bc0d" != ship_hash(kvlcc2.with_effects(harder))
     )

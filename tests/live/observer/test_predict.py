@@ -1,4 +1,4 @@
-"""What is said about the future: right for a ship that obeys her model, honest about doubt, a little in
+"""What is said about the future: right for a ship that obeys its model, honest about doubt, a little in
 each tick."""
 
 from dataclasses import replace

@@ -16,7 +16,7 @@ from twin.api.json_keys import KEYS
 from twin.physics.ship import load
 from twin.recording.write import write_voyage
 from twin.study.calibration.doubts import doubts
-from twin.study.calibration.usual import clearly_hers
+from twin.study.calibration.usual import clearly_there
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def test_calibrating_again_starts_from_the_prior_and_not_from_its_own_answer(cal
 def test_what_no_ship_can_show_is_not_told_as_usual(calibrated):
     ship, _ = calibrated
     labels = ["SteeringLag.delay", "HeadingBias.bias"]
-    told = clearly_hers(
+    told = clearly_there(
         ship, {"labels": labels, "offset": [-0.4, 0.02], "covariance": [[1e-4, 0.0], [0.0, 1e-6]]}
     )
     assert [t["name"] for t in told] == ["HeadingBias.bias"]
@@ -138,7 +138,7 @@ def test_a_file_that_is_no_voyage_leaves_no_ship_file(tmp_path, capsys):
 
 
 def test_an_antenna_that_stands_elsewhere_on_the_references_becomes_a_part_of_the_ship(voyages, tmp_path):
-    """64 m ahead of where the ship file has it, as if the receiver were never told her length; predictions
+    """64 m ahead of where the ship file has it, as if the receiver were never told its length; predictions
     are better for it."""
     paths = []
     for name in ("calm", "calm too", "nothing"):
@@ -181,9 +181,9 @@ def on_a_mast(v, height):
 
 
 def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship(tmp_path):
-    """Test: three voyages of a container ship that heels by some degrees in her turns, seen by an antenna 30
+    """Test: three voyages of a container ship that heels by some degrees in its turns, seen by an antenna 30
     m above the axis of roll, and by a low one.
-    Expected: its height and no place ahead, and predictions as good as with the low one (the heel of her
+    Expected: its height and no place ahead, and predictions as good as with the low one (the heel of its
         turns had been taken for sway)."""
     sailed = simulate(
         [

@@ -6,16 +6,17 @@ import numpy as np
 import pytest
 
 from twin.physics.effect import Force, param
-from twin.physics.effects import BUILT_IN, catalogue
+from twin.physics.effects import BUILT_IN, catalogue, find
 from twin.physics.model import Model
 from twin.physics.state import Force as ForceVector
+from twin.study.diagnosis.assemble import of_tracks
 from twin.study.reference.nuisance import daily, lasting, of_known_weather
 from twin.study.reference.weather import strengths
 from twin.study.track.track import track
 
 
 class SwellSurge(Force):
-    """A swell that somebody else's package knows of pushes her along."""
+    """A swell that somebody else's package knows of pushes it along."""
 
     belongs_to = "voyage"
     needs = ("H_s", "wave_to")
@@ -68,3 +69,17 @@ def test_what_every_day_brings_a_little_of_is_declared_number_by_number(tanker):
 def test_an_effect_of_nobody_is_refused_when_it_is_declared():
     with pytest.raises(ValueError, match="belongs_to = 'sea'"):
         type("Nobodys", (Force,), {"belongs_to": "sea"})
+
+
+def test_what_the_readings_alone_show_is_no_cause_of_a_diagnosis_unless_it_is_in_the_file_or_asked_for(make, kvlcc2):
+    """Expected: neither candidate, nor not judged, nor a usual error of a calibration; `twin add` can ask."""
+    kinematic = {e.__name__ for e in BUILT_IN if e.kinematic}
+    assert kinematic == {"HeadingLag", "CompassDeviation", "ReceiverSmoothing"}
+    sailed = [track(make(seconds=600.0), kvlcc2)]
+    case, asked = of_tracks(sailed, kvlcc2), of_tracks(sailed, kvlcc2, asked=[find("HeadingLag")])
+    assert kinematic.isdisjoint(case.catalogue) and kinematic.isdisjoint(u.owner for u in case.unknowns)
+    assert kinematic & set(asked.candidates) == {"HeadingLag"}
+    assert set(asked.candidates) - set(case.candidates) == {"HeadingLag"}
+    slow = of_tracks(sailed, kvlcc2.with_effects(find("HeadingLag")(lag=1.0)))
+    assert kinematic & set(slow.candidates) == {"HeadingLag"}
+    assert kinematic.isdisjoint(u.owner for u in lasting(Model.of(kvlcc2), catalogue()))

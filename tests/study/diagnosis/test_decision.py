@@ -170,3 +170,12 @@ def test_every_reason_for_not_naming_has_its_words():
         for reason, _ in CAUSE_RULES
         if reason not in ("not_in_explanation", "unlikely")
     )
+
+
+def test_a_cause_is_no_news_where_healthy_voyages_of_the_ship_show_as_much():
+    """Test: a clear cause, and how many reference voyages a single cause explains as much. Expected: named where
+    none reaches it or nobody knows, and not from a quarter of them on."""
+    clear = facts(cause())
+    assert decide(clear).missing == decide(replace(clear, reached=0.0)).missing == ("HullFouling",)
+    told = decide(replace(clear, reached=0.25))
+    assert told.missing == () and told.not_named == {"HullFouling": "as_on_references"}

@@ -98,7 +98,7 @@ def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_res
 
 
 def test_liquid_that_swings_in_a_slack_tank_is_no_load(tanker, voyages):
-    """Test: a tank of an eighth of her mass, forward or aft, whose liquid swings aside. Expected: unknown, no
+    """Test: a tank of an eighth of its mass, forward or aft, whose liquid swings aside. Expected: unknown, no
     name, and what it looks like."""
     result = diagnose([voyages["Sloshing"]], tanker).result
     assert result["verdict"] == "unknown" and result["missing"] == [], "\n".join(told(result))

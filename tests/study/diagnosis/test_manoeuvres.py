@@ -22,7 +22,7 @@ def test_the_ship_sails_every_manoeuvre(case, name):
 
 @pytest.mark.parametrize("name", MANOEUVRES)
 def test_a_model_that_runs_away_has_sailed_no_manoeuvre(case, name):
-    """Test: a hull that pushes her on. Expected: a track that ends, and no advice that was made of it."""
+    """Test: a hull that pushes it on. Expected: a track that ends, and no advice that was made of it."""
     wild = case.model.but(find("TowForce").absent(case.model.ship).but(ahead=1e300))
     assert np.isnan(sail(case, wild, MANOEUVRES[name][0]).state[-1]).any()
     assert next_manoeuvre(case, wild, "HullFouling", "PropellerWear", np.ones(len(case.effects))) is None

@@ -19,7 +19,7 @@ from twin.study.reference.evidence import Hypothesis, Nuisance, likeliest, poste
 
 
 def as_she_is(case):
-    told = posterior(case.reduced(case.lines, case.worlds(["usual"]))[0], ())
+    told = posterior(case.reduced(case.lines, case.scenarios(["usual"]))[0], ())
     return Found(Hypothesis((), "usual", told.log_evidence, 0.0), told, case.model)
 
 
@@ -61,7 +61,7 @@ def test_ships_that_pass_are_seen_when_they_pass_and_nobody_is_acquitted(tanker,
 
 
 def test_where_waves_toss_her_more_is_asked_of_a_push(monkeypatch, tanker, voyages):
-    """Test: a healthy voyage of which one stretch is 20 nats likelier with a push, what swings her slowly,
+    """Test: a healthy voyage of which one stretch is 20 nats likelier with a push, what swings it slowly,
     and waves.
     Expected: a moment, but in waves none."""
     case = assemble([voyages["nothing"]], tanker)

@@ -13,8 +13,8 @@ from twin.study.diagnosis.refine import (
     IRREGULAR,
     _bends,
     _bent,
-    _climb,
     _doubt,
+    _newton,
     _place,
     _told,
     _Top,
@@ -53,8 +53,8 @@ def test_what_no_day_brings_steers_no_climb(case):
     narrow, kept = case.along(case.lines, ("SteeringLag",))
     z = np.zeros(len(case.effects))
     z[rows(case, "SteeringLag")] = 1.0
-    whole = _climb(case, ("SteeringLag",), rows(case, "SteeringLag"), "usual", z)[1]
-    alone = _climb(narrow, ("SteeringLag",), rows(narrow, "SteeringLag"), "usual", z[kept])[1]
+    whole = _newton(case, ("SteeringLag",), rows(case, "SteeringLag"), "usual", z)[1]
+    alone = _newton(narrow, ("SteeringLag",), rows(narrow, "SteeringLag"), "usual", z[kept])[1]
     assert len(narrow.unknowns) < 0.5 * len(case.unknowns) and kept.sum() == len(narrow.effects)
     # prior widths, along a ridge of the gear's own numbers
     assert alone == pytest.approx(whole[kept], abs=0.15)
@@ -67,9 +67,9 @@ def test_a_climb_never_ends_where_the_voyages_are_less_probable_than_where_it_be
 
     def probable(at):
         lines = about(case, at, mine, [case.effects[i] for i in mine])[1]
-        return case.reduced(lines, case.worlds(["usual"], DOUBTS[0]), at)[0].base - 0.5 * float(at @ at)
+        return case.reduced(lines, case.scenarios(["usual"], DOUBTS[0]), at)[0].base - 0.5 * float(at @ at)
 
-    end = _climb(case, ("SteeringLag",), mine, "usual", z)[1]
+    end = _newton(case, ("SteeringLag",), mine, "usual", z)[1]
     assert probable(end) >= probable(z)
 
 
@@ -82,7 +82,7 @@ def test_a_ship_that_no_filter_can_follow_is_no_step_to_take(case):
         _told(case, here, "usual", np.zeros_like(z)) is not None
         and _told(case, wild, "usual", np.zeros_like(z)) is None
     )
-    end = _climb(case, ("Loading",), mine, "usual", z)[1]
+    end = _newton(case, ("Loading",), mine, "usual", z)[1]
     assert np.isfinite(end).all()
 
 
@@ -95,7 +95,7 @@ def test_a_slow_gear_is_found_however_far_out_it_stands(case):
     for start in ([2.0, 2.0, 0.0], [0.5, 4.0, 0.0], [0.0, 0.0, 4.0], [4.0, 4.0, 4.0]):
         z = np.zeros(len(case.effects))
         z[mine] = start
-        other = _climb(case, ("SteeringLag",), mine, "usual", z)[0]
+        other = _newton(case, ("SteeringLag",), mine, "usual", z)[0]
         assert other.log_weight < top.best.log_weight + 0.5
     assert top.at[mine][1] == pytest.approx(1.57, abs=0.3)  # 65 deg in as long as it sails so many lengths
 
@@ -104,7 +104,7 @@ def test_a_climb_that_got_no_higher_is_asked_in_no_other_world(case, monkeypatch
     mine = rows(case, "RudderWear")
     z = np.zeros(len(case.effects))
     z[mine] = 0.5
-    top = _Top.of(case, ("RudderWear",), *_climb(case, ("RudderWear",), mine, "usual", z)[1:])
+    top = _Top.of(case, ("RudderWear",), *_newton(case, ("RudderWear",), mine, "usual", z)[1:])
     asked = []
     monkeypatch.setattr(_Top, "of", classmethod(lambda cls, *_: asked.append(1) or top))
     higher = {**top.judged, "usual": replace(top.judged["usual"], log_evidence=1e9)}

@@ -7,7 +7,7 @@ import pytest
 
 from twin.physics.effects import catalogue
 from twin.study.diagnosis.assemble import assemble
-from twin.study.diagnosis.case import WORLDS
+from twin.study.diagnosis.case import SCENARIOS
 from twin.study.diagnosis.decision import SURE
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.search import _Book, search
@@ -22,8 +22,8 @@ def case(tanker, voyages):
 
 
 def book(case):
-    names = list(WORLDS)
-    return _Book(case, dict(zip(names, case.reduced(case.lines, case.worlds(names)), strict=True)))
+    names = list(SCENARIOS)
+    return _Book(case, dict(zip(names, case.reduced(case.lines, case.scenarios(names)), strict=True)))
 
 
 def weighed(case, *judged):
@@ -31,7 +31,7 @@ def weighed(case, *judged):
     held = book(case)
     for chosen in judged:
         held.judge(chosen)
-    return {world: h.log_weight for (s, world), h in held.entries.items() if s == PAIR}
+    return {scenario: h.log_weight for (s, scenario), h in held.entries.items() if s == PAIR}
 
 
 def test_a_pair_is_weighed_about_the_part_where_it_explains_more_whichever_was_judged_first(case):
@@ -39,8 +39,8 @@ def test_a_pair_is_weighed_about_the_part_where_it_explains_more_whichever_was_j
     for both in (weighed(case, PAIR[:1], PAIR[1:]), weighed(case, PAIR[1:], PAIR[:1])):
         # beside no weather a pair is weighed where that is among the likeliest
         known = worn.keys() & slow.keys()
-        assert {world: both[world] for world in known} == pytest.approx(
-            {world: max(worn[world], slow[world]) for world in known}, abs=1.0
+        assert {scenario: both[scenario] for scenario in known} == pytest.approx(
+            {scenario: max(worn[scenario], slow[scenario]) for scenario in known}, abs=1.0
         )
     assert max(slow.values()) > max(worn.values())
 
@@ -54,7 +54,7 @@ def test_a_pair_begins_where_the_likelier_of_its_parts_was_found_and_that_is_not
     worn, slow = (held.found[(name,)].hypothesis.log_weight for name in PAIR)
     began = {}
 
-    def begins(case, chosen, world, z, wider, hoped, known):
+    def begins(case, chosen, scenario, z, wider, hoped, known):
         began.update(z=z, known=known)
         return replace(
             held.found[PAIR[1:]], hypothesis=replace(held.found[PAIR[1:]].hypothesis, effects=chosen)
@@ -123,7 +123,7 @@ def test_an_effect_that_ended_at_nothing_says_no_more_than_the_rest(case, monkey
     list."""
     held = book(case)
 
-    def at_nothing(case, chosen, world, z, wider, hoped, known):
+    def at_nothing(case, chosen, scenario, z, wider, hoped, known):
         none = held.found[()]
         h = replace(none.hypothesis, effects=chosen, log_evidence=1e6)
         return Found(h, replace(none.posterior, z=np.zeros(len(case.effects))), case.model), [h]

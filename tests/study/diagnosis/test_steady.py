@@ -9,7 +9,7 @@ from twin.physics.effects.current import Current
 from twin.physics.effects.varying_current import VaryingCurrent
 from twin.physics.model import Model
 from twin.study.diagnosis.assemble import assemble
-from twin.study.diagnosis.case import WORLDS
+from twin.study.diagnosis.case import SCENARIOS
 from twin.study.diagnosis.search import _Book, search
 from twin.study.diagnosis.steady import EDDIES, changes, steady
 
@@ -42,8 +42,8 @@ def test_only_a_stream_that_may_change_and_does_not_is_called_steady(case):
 
 
 def test_a_set_with_a_stream_that_did_not_change_is_not_asked_again_nor_any_that_holds_it(case, monkeypatch):
-    names = list(WORLDS)
-    held = _Book(case, dict(zip(names, case.reduced(case.lines, case.worlds(names)), strict=True)))
+    names = list(SCENARIOS)
+    held = _Book(case, dict(zip(names, case.reduced(case.lines, case.scenarios(names)), strict=True)))
     monkeypatch.setattr(
         "twin.study.diagnosis.search.steady", lambda case, found: "VaryingCurrent" in found.hypothesis.effects
     )

@@ -29,7 +29,7 @@ def mirrored(t):
 def test_every_term_pushes_a_mirrored_ship_the_mirrored_way(sailed, name):
     t, model = sailed
     here = form.accelerations(t, model, name)
-    assert np.abs(here).max() > 0.0 or name.startswith("X_at")  # of speeds at which she never sailed
+    assert np.abs(here).max() > 0.0 or name.startswith("X_at")  # of speeds at which it never sailed
     assert form.accelerations(mirrored(t), model, name) == pytest.approx(here * MIRROR)
 
 
@@ -71,7 +71,7 @@ def test_the_cubic_terms_are_what_a_published_polynomial_has_and_the_modulus_for
 
 
 def test_resistance_may_be_otherwise_about_every_speed_and_between_two_of_them_in_shares():
-    """By hand: at 0.7 U_0 the terms about 0.6 and 0.8 U_0 count half; ahead and astern they push her the same
+    """By hand: at 0.7 U_0 the terms about 0.6 and 0.8 U_0 count half; ahead and astern they push it the same
     way round; all of them together are one coefficient of the square of the speed."""
     zero, ahead = np.zeros(5), np.array([0.7, -0.7, 0.6, 1.0, 1.3])
     a = form.Along(zero, zero, zero, zero, zero, ahead)

@@ -84,7 +84,7 @@ def test_how_late_positions_are_is_told_however_rough_the_path_through_them(judg
     scatter, would move it by five)."""
     t, model, _ = judged
     rng = np.random.default_rng(5)
-    before = np.minimum(t.t - late_s, 0.0)  # she sailed straight
+    before = np.minimum(t.t - late_s, 0.0)  # it sailed straight
     place = np.column_stack(
         [np.interp(t.t - late_s, t.t, x) + before * (x[1] - x[0]) / t.h for x in t.state[:, :2].T]
     )
@@ -216,7 +216,7 @@ def test_a_damaged_floor_in_the_ship_file_is_one_line(tanker):
     with pytest.raises(
         SettingsError,
         match=r"\[structural\] floor in the ship file is damaged "
-        r".*'far'.*Calibrate her again",
+        r".*'far'.*Calibrate it again",
     ):
         floor_of(replace(tanker, notes={**tanker.notes, "structural": table}))
 

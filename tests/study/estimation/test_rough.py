@@ -1,4 +1,4 @@
-"""What an effect's form may miss that the ship's file got after her calibration."""
+"""What an effect's form may miss that the ship's file got after its calibration."""
 
 from dataclasses import replace
 
@@ -15,12 +15,12 @@ from twin.study.estimation.rough import KNOWN, TERMS, accelerations, doubted
 
 @pytest.fixture(scope="module")
 def windy(tanker, voyages):
-    """A voyage in wind, by a ship whose file knows the wind since she was calibrated."""
+    """A voyage in wind, by a ship whose file knows the wind since it was calibrated."""
     return assemble([voyages["Wind"]], tanker.with_effects(find("Wind").plausible(tanker)))
 
 
 def test_a_tenth_of_a_known_wind_is_doubted_at_each_moment_and_for_each_course(windy):
-    """And where along her it pushes her aside by a twentieth of her length: N = L Y / 20."""
+    """And where along the hull it pushes it aside by a twentieth of its length: N = L Y / 20."""
     (track,), model = windy.tracks, windy.model
     force = respond(track, model)[0] - respond(track, replace(model, effects=()))[0]
     pushed = model.known(track.situation())["Wind"].Y
@@ -54,7 +54,7 @@ def test_a_steady_pull_that_a_known_wind_may_have_missed_tells_little(windy):
     about the wind's form. Expected: less with it, for the wind blew from one side; and as much of a compass
     that is off."""
     sure = replace(windy, nuisance=_sure(windy.nuisance))
-    with_doubt, without = (case.reduced(case.lines, case.worlds(["usual"]))[0] for case in (windy, sure))
+    with_doubt, without = (case.reduced(case.lines, case.scenarios(["usual"]))[0] for case in (windy, sure))
     pull, compass = (with_doubt.rows((name,)) for name in ("ExternalForce", "HeadingBias"))
     tells = lambda reduced, rows: float(np.trace(reduced.A[np.ix_(rows, rows)]))
     assert tells(with_doubt, pull) < 0.85 * tells(without, pull)

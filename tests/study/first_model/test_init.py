@@ -1,4 +1,4 @@
-"""`twin init`: a first model of any ship from what her owner knows, and clear words where it cannot be."""
+"""`twin init`: a first model of any ship from what its owner knows, and clear words where it cannot be."""
 
 import json
 from math import radians

@@ -26,7 +26,7 @@ def test_every_condition_has_words_and_a_mask(windows, kvlcc2):
 
 
 def test_the_wind_comes_from_the_side_it_comes_from(make, kvlcc2):
-    """Test: heading north, wind from the east. Expected: starboard beam (a little ahead of it: she moves)."""
+    """Test: heading north, wind from the east. Expected: starboard beam (a little ahead of it: it moves)."""
     v = make(seconds=600.0, wind=20.0, noise=0.0)
     v.columns["rudder_angle_deg"][:] = 0.0
     v.columns["heading_true_north_deg"][:] = 0.0
@@ -54,7 +54,7 @@ def test_an_error_that_comes_with_turning_to_port_is_put_down_to_it(make, kvlcc2
     for one in w:
         one.promised[:, :, means([one], 60.0).values["turning"] < -0.05, 0] += 30.0
     found = locate.regimes(w, 60.0, kvlcc2)
-    words = ("turning to port", "drifting to starboard")  # she drifts to starboard when she turns to port
+    words = ("turning to port", "drifting to starboard")  # it drifts to starboard when it turns to port
     assert found and found[0]["condition"].startswith(words) and found[0]["error_ratio"] > 3.0
 
 

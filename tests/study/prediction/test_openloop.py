@@ -31,8 +31,8 @@ def test_the_model_that_made_a_voyage_without_noise_predicts_it_within_centimetr
 
 @pytest.mark.parametrize("lengths", [0.75, 1.5])
 def test_a_log_slower_than_the_ship_is_stepped_finer_and_stays_in_the_world(make, kvlcc2, lengths):
-    """Test: one row while she sails so many lengths. Expected: the model that made the voyage is off by what
-    the rudder did in between, not by what steps too long for her make of it (before: 1e6 m)."""
+    """Test: one row while it sails so many lengths. Expected: the model that made the voyage is off by what
+    the rudder did in between, not by what steps too long for its make of it (before: 1e6 m)."""
     full = make(noise=0.0)
     rows = slice(None, None, round(32 * lengths))
     slow = full.with_rows(full.time_s[rows], {n: x[rows] for n, x in full.columns.items()})
@@ -55,7 +55,7 @@ def test_a_perfect_model_errs_as_much_as_the_noise_floor_says(make, kvlcc2, name
 def test_a_structural_floor_is_no_lower_than_the_calibrated_ship_was_off_on_voyages_she_was_not_fitted_to(
     make, kvlcc2
 ):
-    """Test: a ship file says that 120 s ahead she was once 300 m and 9 deg off, 10 s ahead hardly. Expected:
+    """Test: a ship file says that 120 s ahead it was once 300 m and 9 deg off, 10 s ahead hardly. Expected:
     the structural floor says so, too, and in between as a power of the time; the sensors' floor and the
     model's error are what they were."""
     off = [

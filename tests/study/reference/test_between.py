@@ -14,12 +14,12 @@ P, SAID = 6, 400.0  # numbers, and how much a voyage says of each (in priors)
 def fleet(scatter, voyages, seed):
     """Voyages of one ship whose numbers are scattered about hers by `scatter` (P,) prior widths."""
     rng = np.random.default_rng(seed)
-    hers, out = rng.standard_normal(P), []
+    lasting_ones, out = rng.standard_normal(P), []
     for _ in range(voyages):
         root = rng.standard_normal((3 * P, P)) * np.sqrt(SAID / (3 * P))
-        e = root @ (hers + scatter * rng.standard_normal(P)) + rng.standard_normal(3 * P)
+        e = root @ (lasting_ones + scatter * rng.standard_normal(P)) + rng.standard_normal(3 * P)
         out.append(Told(root.T @ root, root.T @ e, float(e @ e)))
-    return hers, out
+    return lasting_ones, out
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -43,10 +43,10 @@ def test_a_single_voyage_says_nothing_of_the_next():
 
 def test_the_ships_own_numbers_are_known_no_better_than_their_scatter_over_the_voyages():
     scatter = np.full(P, 0.5)
-    hers, told = fleet(scatter, 8, 1)
+    lasting_ones, told = fleet(scatter, 8, 1)
     mean, covariance = ship_of(told, scatter**2, np.zeros(P))
     sd = np.sqrt(np.diag(covariance))
-    assert (sd > 0.4 * 0.5 / np.sqrt(8)).all() and (np.abs(mean - hers) < 3.5 * sd).all()
+    assert (sd > 0.4 * 0.5 / np.sqrt(8)).all() and (np.abs(mean - lasting_ones) < 3.5 * sd).all()
     sure = np.sqrt(np.diag(ship_of(told, np.zeros(P), np.zeros(P))[1]))
     assert (sd > 4.0 * sure).all()
 

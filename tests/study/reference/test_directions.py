@@ -78,12 +78,12 @@ def test_a_case_of_few_columns_tells_of_its_effects_what_the_whole_case_tells(ta
     few, kept = case.along(case.lines)
     assert kept.all() and len(few.unknowns) < len(case.unknowns)
     whole, small = (
-        posterior(c.reduced(c.lines, c.worlds(["usual"]))[0], ("RudderWear",)) for c in (case, few)
+        posterior(c.reduced(c.lines, c.scenarios(["usual"]))[0], ("RudderWear",)) for c in (case, few)
     )
     assert small.z == pytest.approx(whole.z, abs=0.05)
     assert small.log_evidence == pytest.approx(whole.log_evidence, abs=0.5)
     column = [u.label for u in case.unknowns].index("RudderWear.loss")
-    lines = innovate(few.lines, few.worlds(["usual"]))[0].A.shape[-1]
+    lines = innovate(few.lines, few.scenarios(["usual"]))[0].A.shape[-1]
     assert (
         lines == len(few.unknowns)
         and few.lines[0].A[..., -len(few.effects) :].any()

@@ -10,7 +10,7 @@ from twin.physics.model import Model
 from twin.study.estimation.start import steadied, told_of_waves, wave_period_s, waves_on
 from twin.study.prediction.openloop import coarse
 from twin.study.reference import seaway
-from twin.study.reference.seaway import at_sea, levelled, stirred, swung
+from twin.study.reference.seaway import at_sea, excited, levelled, swung
 from twin.study.track.track import track
 from twin.study.track.waves import LASTING, RATE, as_shown, carried, lasting, renewed, swinging
 
@@ -24,7 +24,7 @@ def calm(tanker, voyages):
 
 
 def in_waves(t, yaw=YAW, sway=SWAY, period_s=PERIOD_S):
-    """The same track in a sea that yaws and sways her, seen by all instruments alike, and her roll and rudder
+    """The same track in a sea that yaws and sways it, seen by all instruments alike, and its roll and rudder
     swinging with it."""
     omega = 2.0 * np.pi / period_s
     swing, rate = np.sin(omega * t.t), omega * np.cos(omega * t.t)
@@ -152,11 +152,11 @@ def test_waves_stir_the_mean_of_what_drag_does_and_nothing_without_waves(rough, 
     """Half of |v + a| (v + a) + |v - a| (v - a) is more than |v| v by a^2 sign v: of cross-flow drag with
     swings of 0.5 m/s about 1 m/s."""
     model = Model.of(tanker)
-    assert not stirred(calm, model).any()
+    assert not excited(calm, model).any()
     swing = 0.5 * np.sin(2.0 * np.pi / PERIOD_S * rough.t)
     drifting = np.column_stack([rough.state[:, :4], 1.0 + swing, 0.0 * swing])
     drag = replace(model, effects=(find("CrossFlowDrag")(c_d=0.4),))
-    more = (stirred(replace(rough, state=drifting), m) for m in (drag, model))
+    more = (excited(replace(rough, state=drifting), m) for m in (drag, model))
     added = np.median((next(more) - next(more))[200:-200, 1])
     by_hand = -0.5 * float(tanker.rho) * float(tanker.L_pp) * float(tanker.T) * 0.4 * 0.5**2 / drag.c.m_v
     assert added == pytest.approx(by_hand, rel=0.15)

@@ -71,7 +71,7 @@ def test_the_motion_on_both_sides_is_what_it_is_without_the_hole_and_no_step_bet
 
 def test_a_diagnosis_reads_both_sides_of_a_hole(make, kvlcc2):
     found = diagnose([with_hole(make(seed=3), 40000.0)], kvlcc2)
-    assert found.result["verdict"] in ("undecided", "nothing_missing"), "nothing is wrong with her"
+    assert found.result["verdict"] in ("undecided", "nothing_missing"), "nothing is wrong with it"
     assert not found.result["moments"] and not found.result["missing"]
     parts = {t > MIDDLE for line in found.case.lines for t in line.track.t[line.track.whole]}
     assert parts == {True, False}

@@ -1,23 +1,19 @@
 """The stabilizer's certificate: how far the observer's error can go, worked out from the ship's own numbers
-before she sails.
+before it sails.
 
-`certify` at start (or `kept`, which looks it up in a file), `Tube.step` once a tick.
+`certify` at start (or `kept` of store.py, which looks it up in a file), `Tube.step` once a tick.
 Assumptions, proof and what is not promised: docs/stability.md. Plain floats; only the sure bounds of the
 slopes need numpy, and only when they are not on file.
 """
 
 import hashlib
 import json
-import os
 from collections.abc import Sequence
-from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from math import isfinite
-from pathlib import Path
 from typing import Any
 
-from twin import whole
-from twin.errors import SettingsError, TwinError
+from twin.errors import SettingsError
 from twin.live.certificate import comparison as c3
 from twin.live.certificate.comparison import Matrix, Row
 from twin.live.certificate.heading_bound import with_heading
@@ -32,6 +28,7 @@ from twin.live.certificate.plant import (
     usual_disturbance,
     usual_noise,
 )
+from twin.live.certificate.rolled import assess_rolled, radius
 from twin.live.certificate.theorem import (
     Ages,
     Promise,
@@ -46,6 +43,7 @@ from twin.live.certificate.tube import Tube
 from twin.live.learning.movable import movable
 from twin.live.observer.estimate import fastest_gain, gain_for
 from twin.live.observer.operating import Confined, OperatingSet, of_ship
+from twin.live.observer.rollback import FULL
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
@@ -60,11 +58,8 @@ __all__ = [
     "best_gain",
     "certify",
     "gains_that_do",
-    "kept",
     "lipschitz",
-    "mark",
     "of_ship",
-    "on_file",
     "output_bound",
     "plant_of",
     "self_regressor",
@@ -74,7 +69,7 @@ __all__ = [
     "usual_noise",
 ]
 
-VERSION = 6
+VERSION = 7
 
 
 @dataclass(frozen=True)
@@ -94,6 +89,8 @@ class Certificate(Promise):
     extra_growth: Matrix | None = None
     # the physics is asked at the observer's heading: the bound of its error is a fourth state
     estimated_heading: bool = False
+    # steps into which a period is cut; more than one: samples correct their own time
+    inner: int = 1
     ship: str = ""
     fingerprint: str = ""
 
@@ -107,13 +104,30 @@ class Certificate(Promise):
         return self.plant.h
 
     @property
+    def step_margin(self) -> float:
+        """The share of an error that one sample surely takes away; 0 when none does."""
+        worst = radius(self.G) if self.inner > 1 else c3.radius(self.G)
+        return max(1.0 - worst, 0.0) if self.ok else 0.0
+
+    @property
     def operating(self) -> OperatingSet:
         return self.plant.operating
 
     def bound_in(self, H_s: float) -> Row:
         """The ultimate bound in a sea of that height [m/s, m/s, rad/s]."""
-        more: Row = tuple(H_s * x for x in self.disturbance.per_metre)  # type: ignore[assignment]
-        return c3.add(self.bound, c3.apply(self.gains_disturbance, more))
+        d = self.disturbance
+        return self._again(
+            d.noise(self.noise, H_s),
+            Disturbance(d.at(H_s)),
+            d.heading_noise(self.heading_noise, H_s),
+        ).bound
+
+    def _again(self, noise: Row, d: Disturbance, heading_noise: float) -> Promise:
+        """The promise of the same observer with this noise and disturbance."""
+        return _promised(
+            self.plant, self.K, self.delays, noise, d, heading_noise, self.extra_growth,
+            self.estimated_heading, self.inner,
+        )  # fmt: skip
 
     def to_json(self) -> str:
         table = json.loads(json.dumps(asdict(self)))
@@ -143,16 +157,7 @@ class Certificate(Promise):
     def follows(self) -> bool:
         """Whether all that is promised is what the theorem makes of the plant, K, delay, noise and
         disturbance that stand beside it."""
-        promised = with_heading if self.estimated_heading else assess
-        again = promised(
-            self.plant,
-            self.K,
-            self.delays,
-            self.noise,
-            self.disturbance,
-            self.heading_noise,
-            self.extra_growth,
-        )
+        again = self._again(self.noise, self.disturbance, self.heading_noise)
         usable = all(isfinite(x) and x > 0.0 for x in (*self.K, self.h)) and all(
             isfinite(x) and x >= 0.0 for x in (*self.noise, self.heading_noise)
         )
@@ -174,6 +179,7 @@ def certify(
     adapted: bool = False,
     saturation: Row = (0.0, 0.0, 0.0),
     estimated_heading: bool = False,
+    inner: int = 1,
 ) -> Certificate:
     """Work out the certificate of an observer with gain K [1/s] and period h [s] (its longest).
 
@@ -187,6 +193,7 @@ def certify(
     saturation: what a learned force can reach [N, N, N m]; it is added to the disturbance, so that any
         weights are covered.
     estimated_heading: the physics is evaluated at the observer's heading, so its error is a fourth state.
+    inner: steps into which a period is cut by an observer that corrects at a sample's own time (`RollBack`).
     """
     m: Ages = (delay_samples,) * 3 if isinstance(delay_samples, int) else tuple(delay_samples)  # type: ignore[assignment]
     _check((1.0, 1.0, 1.0) if K is None else _row(K), h, m, noise)
@@ -194,9 +201,11 @@ def certify(
     d = replace(d, calm=c3.add(d.calm, saturation))
     numbers = movable(model.effects, model.ship) if adapted else ()
     plant, noise = plant_of(model, operating_set or of_ship(model), h, numbers), tuple(noise)
-    K = suited_gain(plant, m, gain_for(model.ship), fastest_gain(h, max(m))) if K is None else _row(K)
-    promised = with_heading if estimated_heading else assess
-    promise = promised(plant, K, m, noise, d, heading_noise, extra_growth)  # type: ignore[arg-type]
+    if inner > 1:
+        K = _row(FULL / h)
+    else:
+        K = suited_gain(plant, m, gain_for(model.ship), fastest_gain(h, max(m))) if K is None else _row(K)
+    promise = _promised(plant, K, m, noise, d, heading_noise, extra_growth, estimated_heading, inner)  # type: ignore[arg-type]
     parts = {name: getattr(promise, name) for name in Promise.__dataclass_fields__}
     return Certificate(
         **parts,
@@ -209,36 +218,32 @@ def certify(
         saturation=saturation,  # type: ignore[arg-type]
         extra_growth=extra_growth,
         estimated_heading=estimated_heading,
+        inner=inner,
         ship=model.ship.name,
     )
 
 
-def kept(
-    path: str | os.PathLike[str], model: Model, K: float | Sequence[float] | None, h: float, **settings: Any
-) -> Certificate:
-    """The certificate from its file if it is of this ship, K and settings; else worked out and, where
-    possible, written there."""
-    wanted = mark(model, K, h, settings)
-    if found := on_file(path, wanted):
-        return found
-    made = replace(certify(model, K, h, **settings), fingerprint=wanted)
-    # a folder one may not write to costs half a second at each start, nothing else
-    with suppress(OSError, TwinError):
-        Path(path).parent.mkdir(parents=True, exist_ok=True)
-        whole.write(path, made.to_json())
-    return made
+def _promised(
+    plant: Plant,
+    K: Row,
+    m: Ages,
+    noise: Row,
+    d: Disturbance,
+    heading_noise: float,
+    extra: Matrix | None,
+    estimated_heading: bool,
+    inner: int,
+) -> Promise:
+    """The theorem that fits the observer."""
+    if inner > 1:
+        return assess_rolled(plant, K, inner, noise, d, heading_noise, m)
+    promised = with_heading if estimated_heading else assess
+    return promised(plant, K, m, noise, d, heading_noise, extra)
 
 
-def on_file(path: str | os.PathLike[str], wanted: str) -> Certificate | None:
-    """The certificate of that mark, if the file holds it."""
-    try:
-        found = Certificate.from_json(Path(path).read_text(encoding="utf-8"))
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
-    return found if found.fingerprint == wanted else None
-
-
-def on_board(ship: Ship, delay_samples: int, adapted: bool, saturation: Row) -> dict[str, Any]:
+def on_board(
+    ship: Ship, delay_samples: int, adapted: bool, saturation: Row, inner: int = 1
+) -> dict[str, Any]:
     """What the loop's own certificate is asked for."""
     return {
         "delay_samples": delay_samples,
@@ -247,14 +252,8 @@ def on_board(ship: Ship, delay_samples: int, adapted: bool, saturation: Row) -> 
         "heading_noise": HEADING_NOISE,
         "saturation": saturation,
         "estimated_heading": True,
+        "inner": inner,
     }
-
-
-def mark(model: Model, *settings: Any) -> str:
-    """What the certificate depends on, as a hash: the ship's numbers, her effects, the settings and the
-    theorem's version."""
-    ship = replace(model.ship, notes={})
-    return hashlib.sha256(repr((VERSION, ship, model.effects, *settings)).encode()).hexdigest()[:16]
 
 
 def _row(K: float | Sequence[float]) -> Row:

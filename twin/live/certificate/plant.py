@@ -1,11 +1,12 @@
-"""What the stabilizer's theorem needs to know of a ship: how steep her equations are over the operating set,
-and how she is disturbed.
+"""What the stabilizer's theorem needs to know of a ship: how steep its equations are over the operating set,
+and how it is disturbed.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from twin.errors import SettingsError
 from twin.live.certificate import comparison as c3
 from twin.live.certificate.comparison import AXES, Matrix, Row
 from twin.live.learning.movable import Movable
@@ -65,15 +66,25 @@ class Plant:
 
 @dataclass(frozen=True)
 class Disturbance:
-    """Bound of what neither physics nor network explain, |f - f_learned| [N, N, N m]: calm water, and per
-    metre of wave height.
+    """Bound of what neither physics nor network explain of the low-frequency motion, |f - f_learned| [N, N,
+    N m]: calm water, and per metre of wave height (second-order drift). `motion`: how far the motion with the
+    waves is from it, per metre [m/s, m/s, rad/s, rad]; all zero where nothing is split: the drift is then the
+    whole of the waves' force.
     """
 
     calm: Row
     per_metre: Row = (0.0, 0.0, 0.0)
+    motion: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
     def at(self, H_s: float) -> Row:
         return tuple(a + b * H_s for a, b in zip(self.calm, self.per_metre, strict=True))  # type: ignore[return-value]
+
+    def noise(self, noise: Row, H_s: float) -> Row:
+        """What an instrument may be off from the low-frequency motion in that sea."""
+        return tuple(n + a * H_s for n, a in zip(noise, self.motion, strict=False))  # type: ignore[return-value]
+
+    def heading_noise(self, noise: float, H_s: float) -> float:
+        return noise + self.motion[3] * H_s
 
 
 def plant_of(model: Model, operating: OperatingSet, h: float, numbers: Sequence[Movable] = ()) -> Plant:
@@ -103,6 +114,29 @@ def _size(x: Any) -> float:
     return float(getattr(x, "magnitude", abs(x)))
 
 
+DRIFT = ("drift_X", "drift_Y", "drift_N")  # [N/m, N/m, N m/m]
+MOTION = ("motion_u", "motion_v", "motion_r", "motion_psi")  # [m/s/m, m/s/m, rad/s/m, rad/m]
+
+
+def seaway_of(ship: Ship) -> tuple[Row, tuple[float, float, float, float]] | None:
+    """What the ship file says of a seaway, by metre of H_s: the drift, and the motion with the waves; None
+    where it says nothing. SettingsError where it says no number."""
+    table = ship.notes.get("seaway")
+    if table is None:
+        return None
+    found = []
+    for name in (*DRIFT, *MOTION):
+        entry = table.get(name) if isinstance(table, Mapping) else None
+        value = entry.get("value") if isinstance(entry, Mapping) else entry
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not 0.0 <= value < 1e18:
+            raise SettingsError(
+                f"{ship.name}: seaway.{name} = {value!r}: a number from 0 on is needed. Calibrate again, or "
+                "leave the whole section out."
+            )
+        found.append(float(value))
+    return (found[0], found[1], found[2]), (found[3], found[4], found[5], found[6])
+
+
 HEADING_NOISE = 0.005  # rad: three deviations of a usual compass
 
 
@@ -114,7 +148,8 @@ def usual_noise(ship: Ship) -> Row:
 
 
 def usual_disturbance(model: Model) -> Disturbance:
-    """Before any voyage: in calm water 1 % of 1/2 rho U_0^2 L T ahead and in yaw and three times that aside;
+    """What the ship file found on reference voyages ([seaway], `twin/study/reference/split.py`), else a size
+    before any voyage: in calm water 1 % of 1/2 rho U_0^2 L T ahead and in yaw and three times that aside;
     in waves their pressure.
 
     The waves' part is the Froude-Krylov size rho g H_s times (B T, L T, L^2 T) and shares that a tanker
@@ -122,9 +157,12 @@ def usual_disturbance(model: Model) -> Disturbance:
     """
     ship = model.loaded
     force, moment = ship.scale("force"), ship.scale("moment")
+    calm: Row = (force, 3.0 * force, moment)
+    if found := seaway_of(model.ship):
+        return Disturbance(calm, *found)
     wave = ship.rho * core.GRAVITY * ship.T
     return Disturbance(
-        (force, 3.0 * force, moment),
+        calm,
         (0.5 * wave * ship.B, 0.75 * wave * ship.L_pp, 0.22 * wave * ship.L_pp**2),
     )
 

@@ -58,7 +58,7 @@ class Recursion:
     @property
     def pushed(self) -> Row:
         """How much of the push of one sample reaches p with a measurement: by itself, by way of older
-        samples, and by what her path between two samples leaves the line."""
+        samples, and by what its path between two samples leaves the line."""
         return tuple(
             1.0 + (b + 0.5) * pull if m else keep
             for m, b, pull, keep in zip(self.m, self.before, self.pull, self.keep, strict=True)
@@ -143,11 +143,11 @@ def assess(
     """Theorems 1 and 2 of docs/stability.md for one gain, once the slopes are known."""
     step = recursion(plant, K, m, extra)
     push, calm = pushed(plant, heading_noise)
-    end, worst, ratio = c3.settled(step.G), c3.radius(step.G), _ratio(plant, K, extra)
-    reason = _reason(plant, K, m, ratio, worst, extra)
+    end, worst, share = c3.settled(step.G), c3.radius(step.G), ratio(plant, K, extra)
+    reason = _reason(plant, K, m, share, worst, extra)
     if end is None:
         none = c3.matrix(lambda i, j: NEVER)
-        return Promise(False, reason, 1.0 - ratio, -NEVER, NOWHERE, none, none, step.G, push, calm, step)
+        return Promise(False, reason, 1.0 - share, -NEVER, NOWHERE, none, none, step.G, push, calm, step)
     by_force, by_noise = (
         c3.product(c3.product(end, step.share()), push),
         c3.product(end, c3.diagonal(step.heard)),
@@ -155,12 +155,12 @@ def assess(
     sampling = c3.apply(c3.product(end, step.share()), calm)
     bound = c3.add(c3.apply(by_force, d.calm), c3.apply(by_noise, noise), sampling)
     return Promise(
-        True, reason, 1.0 - ratio, _rate(step, plant.h), bound, by_force, by_noise, step.G, push, calm, step
+        True, reason, 1.0 - share, _rate(step, plant.h), bound, by_force, by_noise, step.G, push, calm, step
     )
 
 
 def pushed(plant: Plant, heading_noise: float, part: float = CURVE) -> tuple[Matrix, Row]:
-    """d = push force + calm: a bounded force, an error of heading, what one step misses of her path (`part`,
+    """d = push force + calm: a bounded force, an error of heading, what one step misses of its path (`part`,
     see CURVE), what adaptation moves."""
     h, swing = plant.h, plant.swing()
     along = c3.plus(c3.IDENTITY, c3.matrix(lambda i, j: (0.5 + part) * h * swing[i][j]))
@@ -240,7 +240,7 @@ def best_gain(
     return K
 
 
-def _ratio(plant: Plant, K: Row, extra: Matrix | None) -> float:
+def ratio(plant: Plant, K: Row, extra: Matrix | None) -> float:
     """The share of K at which K - A^M ceases to be an M-matrix (Theorem 1)."""
     growth = plant.growth() if extra is None else c3.plus(plant.growth(), extra)
     return c3.radius(c3.matrix(lambda i, j: growth[i][j] / K[i]))

@@ -86,10 +86,8 @@ class Tube:
     def reset(self, start: Three | None = None, psi: float | None = None) -> None:
         """Begin anew from what the instruments leave open. What a late measurement looks back on stays in the
         windows."""
-        self.beta = self.certificate.noise if start is None else start
-        self.psi = (
-            psi if psi is not None and self.certificate.estimated_heading else self.certificate.heading_noise
-        )
+        self.beta = self.noise if start is None else start
+        self.psi = psi if psi is not None and self.certificate.estimated_heading else self.heading_noise
         first, second, third = self._after
         u, v, r = self.beta
         self._widest = first.raised(u), second.raised(v), third.raised(r)
@@ -162,7 +160,7 @@ class Tube:
             pull, back = c.step.pull[2], c.step.before[2]
             again = back * pull * (h * self._widest[2] + pull * self._headings.kept[0][1]) + pull * curve
             self.psi = (
-                (1.0 - pull + short * c.K[2]) * E + again + pull * (1.0 + back * pull) * c.heading_noise
+                (1.0 - pull + short * c.K[2]) * E + again + pull * (1.0 + back * pull) * self.heading_noise
             )
         self._headings.push(self.psi)
 
@@ -186,10 +184,14 @@ class Tube:
         self._disturbance = (
             c.disturbance.at(H_s) if acts else add(c.disturbance.at(H_s), scaled_row(-1.0, c.saturation))
         )
-        # how fast she can change her motion
+        # how fast it can change its motion
         self.way: Three = add(c.plant.most, scaled_row(1.0 / c.h, one.pushed(self._disturbance)))
         d = add(one.pushed(self._disturbance), one.calm)
-        told = step.told(d, c.noise)
+        self.noise: Three = c.disturbance.noise(c.noise, H_s)
+        self.heading_noise = c.disturbance.heading_noise(c.heading_noise, H_s)
+        if not c.estimated_heading:
+            self.psi = self.heading_noise
+        told = step.told(d, self.noise)
         self._table: Rows = tuple(
             (*one.V[i], d[i], one.turned[i], *step.now[i], step.again[i], *step.drift[i], told[i])
             for i in (0, 1, 2)
@@ -211,7 +213,7 @@ class Tube:
 
     def outside(self, s: Situation, within: Three | None = None, dt: float = 0.0) -> str | None:
         """What leaves the operating set, or may within a sample, in words; None when the ship is surely in
-        it. `within`: how far she may be from the estimate, where that is known better than by the tube; dt:
+        it. `within`: how far it may be from the estimate, where that is known better than by the tube; dt:
         how long the last tick was, if longer than a sample."""
         return self.certificate.operating.outside(
             s, add(within or self.beta, scaled_row(max(self.certificate.h, dt), self.way))

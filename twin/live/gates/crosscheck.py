@@ -72,7 +72,7 @@ class CrossChecks:
 
 
 class Way:
-    """Positions against the way that speed and heading make; along and across the ship, as a share of her
+    """Positions against the way that speed and heading make; along and across the ship, as a share of its
     speed."""
 
     def __init__(self, U_0: float):
@@ -134,7 +134,7 @@ class Way:
 
 class Stream:
     """Speed over ground less speed through water: a current, which stays where it is over minutes, whichever
-    way she heads."""
+    way it heads."""
 
     REMEMBERS = 60.0  # blocks
 
@@ -170,7 +170,7 @@ class Stream:
     def _judge(self, both: bool) -> None:
         ahead, aside, c, s = (total / self._since_s for total in self._sums)
         size = hypot(c, s)
-        if size < 0.9:  # she turned through too much of the compass
+        if size < 0.9:  # it turned through too much of the compass
             return
         c, s = c / size, s / size
         if self._current is None:

@@ -1,7 +1,7 @@
 """Instruments whose faults are known: what the ship file says is wrong with them is taken off before anybody
 uses it.
 
-measured' = measured - (read(s) - s), read being what the instruments would say of the ship where she is
+measured' = measured - (read(s) - s), read being what the instruments would say of the ship where it is
     believed to be.
 """
 

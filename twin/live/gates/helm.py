@@ -80,7 +80,7 @@ class Helm:
         allowed = SLACK * moment + OF_MOMENTS * self._work + OF_MOVEMENT * abs(self._lower - self._moved)
         said = degrees(self._at or 0.0)
         if abs(unexplained_Nm - self._start) > allowed:
-            self.stuck = f"rudder_angle_deg stays at {said:.1f} while she turns as if it moved"
+            self.stuck = f"rudder_angle_deg stays at {said:.1f} while it turns as if it moved"
         if self._still_s > RESTS * self.time_s:
             self.resting = (
                 f"rudder_angle_deg has stayed at {said:.1f} for {RESTS * self.time_s:.0f} s: "

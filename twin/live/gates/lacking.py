@@ -1,4 +1,4 @@
-"""Shaft and rudder against what the ship does: the force that her equations lack, if both are where their
+"""Shaft and rudder against what the ship does: the force that its equations lack, if both are where their
 feedback says.
 
     lacking = M (nu_hat(t) - nu_hat(0) - integral of nu_dot(model)) / t          over blocks of time

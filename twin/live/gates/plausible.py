@@ -113,7 +113,7 @@ class Plausibility:
                 said.append(f"{what}: it {word}")
         if self._helm.judged and self._helm.correlation() < -0.5:
             said.append(
-                "yaw_rate_degps against rudder_angle_deg: she turns against her rudder; one of the "
+                "yaw_rate_degps against rudder_angle_deg: it turns against its rudder; one of the "
                 "two has the wrong sign"
             )
         return said

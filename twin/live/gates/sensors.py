@@ -34,7 +34,7 @@ NOISY = (
 FROM = {"wind_from": "wind_to", "wave_from": "wave_to"}  # physics says where wind and waves go
 FAR = inf
 SILENT_S = 10.0  # a source that the owner named and that has not spoken for so long since the start is named
-FASTEST_SHAFT = 5.0  # of U_0/D_P: three times what drives a ship at her service speed
+FASTEST_SHAFT = 5.0  # of U_0/D_P: three times what drives a ship at its service speed
 
 
 class Sensors:

@@ -3,7 +3,7 @@
     column_j = M [nu_dot(theta + e_j step) - nu_dot(theta)]/step        [N, N, N m for one unit of theta_j]
 
 The column is a secant of the one physics: whatever a number does, by a force, by the ship's inertia or by the
-water she feels, stands in it. What has no column of this kind does not move: a current has a filter of its
+water it feels, stands in it. What has no column of this kind does not move: a current has a filter of its
 own (estimate.py), a late gear has a state, and a wrong instrument leaves the ship alone."""
 
 from collections.abc import Sequence
@@ -19,7 +19,7 @@ from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 
 REACH = 2.0  # how far a number may go from the ship file's, in deviations of its prior
-# the same where it changes her inertia or the water she feels: all slopes change with it, and the certificate
+# the same where it changes its inertia or the water it feels: all slopes change with it, and the certificate
 # must hold
 NEAR = 0.5
 STEP = 0.1  # of a secant, in deviations of the prior
@@ -47,8 +47,8 @@ class Movable(NamedTuple):
 
 
 def adaptable(effect: Effect) -> bool:
-    """Whether an effect's numbers may move: it pushes the ship, or changes how she feels the water without
-    carrying her along."""
+    """Whether an effect's numbers may move: it pushes the ship, or changes how it feels the water without
+    carrying it along."""
     return isinstance(effect, ForceEffect) or (isinstance(effect, Flow) and not effect.stream)
 
 

@@ -21,7 +21,7 @@ from twin.physics.ship import Ship
 from twin.physics.state import Force
 
 MEMORY = 10.0  # in L/U_0
-STIRRED = 0.01  # prior deviations by which what acts must have moved before the model is made anew
+EXCITED = 0.01  # prior deviations by which what acts must have moved before the model is made anew
 
 
 class Named:
@@ -95,7 +95,7 @@ class Named:
     def _act(self) -> None:
         """New effects once what acts has moved by more than nothing."""
         acting = self.acting()
-        if max(abs(a - b) for a, b in zip(acting, self._acting, strict=True)) > STIRRED:
+        if max(abs(a - b) for a, b in zip(acting, self._acting, strict=True)) > EXCITED:
             self._acting = acting
             self.effects = moved(self.effects, self.numbers, self._values(acting))
 

@@ -47,7 +47,7 @@ OPERATORS = frozenset(
 )
 MAX_BYTES = 8_000_000
 OPSETS = range(13, 26)
-# numbers that came after the first residuals, by section or effect: a ship without them is the model she was
+# numbers that came after the first residuals, by section or effect: a ship without them is the model it was
 LATER = {
     "derivatives": ("gamma_a", "X_uuu"),
     "CrossFlowDrag": ("c_aft", "c_mid"),
@@ -63,7 +63,7 @@ class ResidualError(SettingsError):
 
 
 class WrongShip(ResidualError):
-    """A residual made for another ship, or for another state of her model: never used, and not passed over
+    """A residual made for another ship, or for another state of its model: never used, and not passed over
     in silence."""
 
 
@@ -186,7 +186,7 @@ def bundled(ship: Ship) -> Path | None:
 
 
 def ship_hash(ship: Ship) -> str:
-    """Identifies the model that a residual was trained on top of: every number of the ship and her
+    """Identifies the model that a residual was trained on top of: every number of the ship and its
     effects."""
     table = ships.to_table(ship)
     numbers = {
@@ -206,7 +206,7 @@ def _same_ship(manifest: Manifest, ship: Ship, where: str) -> None:
     if manifest.ship_name != ship.name:
         raise WrongShip(
             f"{where}: made for the ship {manifest.ship_name!r}, this one is {ship.name!r}. Give "
-            "her own residual, or none"
+            "its own residual, or none"
         )
     if manifest.ship_hash and manifest.ship_hash != ship_hash(ship):
         raise WrongShip(

@@ -35,7 +35,8 @@ def trim(folder: Path, name: str, quota: Quota, writing: Path | None = None) -> 
     """Deletes the oldest finished files until the folder keeps its limits; what was done in one sentence, ""
     for nothing. OSError when too little is free and nothing is left to delete."""
     old, total, gone = own_files(folder, name, writing), _size(writing), []
-    total += sum(file.size for file in old)
+    for file in old:
+        total += file.size
     # not the clock: set wrong, it would delete everything
     newest_s = max((file.time_s for file in old), default=0.0)
     free = _free(folder) if quota.free_mb else 0

@@ -1,4 +1,4 @@
-"""What is known of the ship, kept true to the moment: her model with the current as it is now, the rudder
+"""What is known of the ship, kept true to the moment: its model with the current as it is now, the rudder
 where it is now, and without those effects whose inputs nobody measures.
 
     nu_dot = M^-1 (sum of the known forces + the learned one) + r x nu_c
@@ -90,18 +90,27 @@ class Known:
         )
 
     def force_for(self, u_dot: Number, v_dot: Number, r_dot: Number, grown: Growth = LIGHT) -> Force:
-        """The force that an acceleration takes, where her added mass has `grown`."""
+        """The force that an acceleration takes, where its added mass has `grown`."""
         return Force(*core.force_for(u_dot, v_dot, r_dot, self.model.c, grown))
+
+
+def _streams(ship: Ship) -> list[Flow]:
+    """Its currents: the observer's filter follows all of them together."""
+    return [e for e in ship.effects if isinstance(e, Flow) and e.stream]
+
+
+def first_current(ship: Ship) -> tuple[float, float]:
+    """The current that the ship file knows, towards north and east [m/s]."""
+    north, east = (float(total(getattr(e, axis, 0.0) for e in _streams(ship))) for axis in ("north", "east"))
+    return north, east
 
 
 class Dynamics:
     """Which physics holds now: `now` is rebuilt by `situation` from what is measured."""
 
     def __init__(self, ship: Ship):
-        # the observer's filter follows all of them together
-        streams = [e for e in ship.effects if isinstance(e, Flow) and e.stream]
-        north, east = (float(total(getattr(e, axis, 0.0) for e in streams)) for axis in ("north", "east"))
-        self.first_current = north, east
+        streams = _streams(ship)
+        self.first_current = first_current(ship)
         self.ship = ship
         self.full = Model(ship, tuple(e for e in ship.effects if e not in streams))
         self.off: tuple[Effect, ...] = ()  # effects without their inputs

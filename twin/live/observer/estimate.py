@@ -12,11 +12,15 @@ uncertainty grows."""
 from collections import deque
 from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
+from typing import TYPE_CHECKING
 
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
-from twin.physics.state import Rates
+from twin.physics.state import Force, Rates, Situation
+
+if TYPE_CHECKING:
+    from twin.live.observer.dynamics import Known
 
 STATES = ("x", "y", "psi", "u", "v", "r")
 WATER = {"u": "u_r", "v": "v_r"}  # what stands in for a speed over ground
@@ -30,7 +34,7 @@ HISTORY = 256  # ticks remembered, to compare a late sample with its own time
 
 @dataclass(slots=True)
 class Estimate:
-    """Where the ship is and how she moves [SI], `sigma` of each, and the current towards north and east
+    """Where the ship is and how it moves [SI], `sigma` of each, and the current towards north and east
     [m/s]."""
 
     x: float = 0.0
@@ -73,13 +77,16 @@ class Observer:
         self.rates = Rates(0.0, 0.0, 0.0)
         self._now_s: float | None = None
         speed, turning = 4.0 * ship.U_0 + 5.0, 8.0 * ship.U_0 / ship.L_pp
-        self.most = speed, speed, turning  # no ship moves faster, whatever her instruments and her model say
+        self.most = speed, speed, turning  # no ship moves faster, whatever its instruments and its model say
         self._past: deque[tuple[float, tuple[float, ...]]] = deque(maxlen=HISTORY)
         self._current = CurrentFilter(ship, *current)
 
     def steer(self, rates: Rates) -> None:
         """The model's accelerations from now on."""
         self.rates = rates
+
+    def remember(self, physics: "Known", s: Situation, learned: Force) -> None:
+        """What drives the model until the next tick, for an observer that goes back to it (`RollBack`)."""
 
     def correct(self, measured: Measured) -> Estimate:
         """The model carried to now, then pulled by what is measured."""

@@ -1,7 +1,7 @@
 """The operating set: the motions and the inputs for which something is promised.
 
 In the ship's own scales, so that one rule serves a 2 m boat and a 320 m tanker: speed through the water in
-U_0, turning in U_0/L, depth in draughts, propeller in the rate that drives her at U_0. Outside it the
+U_0, turning in U_0/L, depth in draughts, propeller in the rate that drives it at U_0. Outside it the
 certificate says nothing, and the twin says that.
 """
 
@@ -114,7 +114,7 @@ def of_ship(model: Model, **ranges: tuple[float, float]) -> OperatingSet:
         "wind_to": (-pi, pi),
         "depth": (1.5 * T, 1e4 * T),
         "H_s": (0.0, min(8.0, 0.1 * L)),
-        "T_p": (1.0, 25.0),
+        "T_p": (min(1.0, 0.25 * L**0.5), 25.0),
         "wave_to": (-pi, pi),
         "draught": (0.6 * T, 1.2 * T),
         "bank_port": (0.5 * ship.B, 1e4 * L),

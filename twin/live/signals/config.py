@@ -70,7 +70,16 @@ KEYS: tuple[Key, ...] = (
     Key(
         "sensors.max_delay_s", float, 2.0, "a sample stamped longer ago than this is refused", "s", 0.1, 60.0
     ),
-    Key("observer.gain", float, 0.0, "K, 0 for 12 U_0/L or what her certificate asks for", "1/s", 0.0, 20.0),
+    Key("observer.gain", float, 0.0, "K, 0 for 12 U_0/L or what its certificate asks for", "1/s", 0.0, 20.0),
+    Key(
+        "observer.inner_steps",
+        int,
+        0,
+        "steps of the model in a period, more than one: samples correct their own time; 0 for the ship's own",
+        "",
+        0,
+        100,
+    ),
     Key(
         "observer.oldest_s",
         float,

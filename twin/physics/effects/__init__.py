@@ -14,16 +14,19 @@ from .actuator_lag import ActuatorLag
 from .angle_offset import AngleOffset
 from .antenna_offset import AntennaOffset
 from .bank import Bank
+from .compass_deviation import CompassDeviation
 from .cross_flow_drag import CrossFlowDrag
 from .current import Current
 from .external_force import ExternalForce
 from .gyro_bias import GyroBias
 from .heading_bias import HeadingBias
+from .heading_lag import HeadingLag
 from .hull_fouling import HullFouling
 from .loading import Loading
 from .of_actuator import OfActuator, of
 from .propeller_walk import PropellerWalk
 from .propeller_wear import PropellerWear
+from .receiver_smoothing import ReceiverSmoothing
 from .roll_coupling import RollCoupling
 from .rudder_offset import RudderOffset
 from .rudder_play import RudderPlay
@@ -70,6 +73,9 @@ BUILT_IN: tuple[type[Effect], ...] = (
     AntennaOffset,
     SensorDelay,
     GyroBias,
+    HeadingLag,
+    CompassDeviation,
+    ReceiverSmoothing,
 )
 # known by their form, so that nothing of the catalogue is named in their place
 UNNAMED: tuple[type[Effect], ...] = (RudderPlay, SwayingMass)

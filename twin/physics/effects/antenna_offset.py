@@ -17,8 +17,8 @@ from twin.physics.state import Situation
 
 
 class AntennaOffset(SensorFault):
-    """The satellite antenna stands elsewhere on board than the settings say: she seems to swing about the
-    wrong point."""
+    """The satellite antenna stands elsewhere on board than the settings say: the ship seems to swing about
+    the wrong point."""
 
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 2 and 13 (lever arms)"
 

@@ -1,4 +1,4 @@
-"""Bank suction: the stream between hull and bank runs faster, and pulls the ship to the bank and her bow off
+"""Bank suction: the stream between hull and bank runs faster, and pulls the ship to the bank and its bow off
 it.
 
 d: from the ship's side to the bank (where there is none, 10000 m)
@@ -15,7 +15,7 @@ from twin.physics.state import Number, Situation
 
 
 class Bank(Force):
-    """A bank close by sucks the ship toward it and pushes her bow away, with the square of her speed."""
+    """A bank close by sucks the ship toward it and pushes its bow away, with the square of its speed."""
 
     belongs_to = "voyage"
     needs = ("bank_port", "bank_starboard")

@@ -3,7 +3,7 @@
 Y = -1/2 rho T  int c(x) |v_r + x r| (v_r + x r) dx
 N = -1/2 rho T  int c(x) |v_r + x r| (v_r + x r) x dx,
     c(x) = c_d - 2 c_aft x / L + c_mid (1 - 12 x^2/L^2)
-x from -L/2 to L/2 in ten strips; the mean of c over her length is c_d (but for the strips' own coarseness).
+x from -L/2 to L/2 in ten strips; the mean of c over its length is c_d (but for the strips' own coarseness).
 """
 
 from twin.physics.effect import Force, param
@@ -15,7 +15,7 @@ STRIPS = tuple((i + 0.5) / 10.0 - 0.5 for i in range(10))  # middle of each stri
 
 
 class CrossFlowDrag(Force):
-    """Bilge keels, growth or a blunt bilge hold the ship against the water that crosses under her when she
+    """Bilge keels, growth or a blunt bilge hold the ship against the water that crosses under it when it
     drifts and turns."""
 
     size = "c_d"
@@ -30,7 +30,7 @@ class CrossFlowDrag(Force):
         lo=0.0,
         hi=2.0,
         sd=0.4,
-        doc="drag coefficient beyond that of the hull's derivatives, mean of her length",
+        doc="drag coefficient beyond that of the hull's derivatives, mean of its length",
     )
     c_aft: float = param(
         0.0,

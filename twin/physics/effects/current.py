@@ -18,8 +18,8 @@ class Current(Flow):
     stream = True
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.3"
 
-    north: float = param(0.0, unit="m/s", lo=-0.6, hi=0.6, sd=0.08, of="speed", doc="current toward north")
-    east: float = param(0.0, unit="m/s", lo=-0.6, hi=0.6, sd=0.08, of="speed", doc="current toward east")
+    north: float = param(0.0, unit="m/s", lo=-1.0, hi=1.0, sd=0.08, of="speed", doc="current toward north")
+    east: float = param(0.0, unit="m/s", lo=-1.0, hi=1.0, sd=0.08, of="speed", doc="current toward east")
 
     def water(self, s: Situation, ship: Ship) -> Water:
         c, si = cos(s.psi), sin(s.psi)

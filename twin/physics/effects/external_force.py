@@ -12,8 +12,8 @@ from twin.physics.state import Situation
 
 
 class ExternalForce(Force):
-    """Something pulls at her from a fixed bearing: a mooring or tug line from shore, a swell that was not
-    measured."""
+    """Something pulls at the ship from a fixed bearing: a mooring or tug line from shore, a swell that was
+    not measured."""
 
     belongs_to = "voyage"
     every_day = ("north", "east")

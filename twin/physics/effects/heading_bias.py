@@ -15,18 +15,25 @@ from twin.physics.state import Situation
 
 
 class HeadingBias(SensorFault):
-    """The compass shows a heading that is off by a constant, so she seems to drift sideways wherever she
+    """The compass shows a heading that is off by a constant, so the ship seems to drift sideways wherever it
     goes."""
 
     attitude = True
     source = "ISO 8728 and IMO A.424(XI) (gyro-compass settle-point error)"
 
-    bias: float = param(0.02, unit="rad", lo=-0.2, hi=0.2, sd=0.02, doc="shown heading less the true one")
+    bias: float = param(
+        0.02,
+        unit="rad",
+        lo=-0.55,
+        hi=0.55,
+        sd=0.02,
+        doc="shown heading less the true one (variation of 30 deg is in)",
+    )
     turned: float = param(
         0.0,
         unit="rad",
-        lo=-0.2,
-        hi=0.2,
+        lo=-0.55,
+        hi=0.55,
         sd=0.02,
         doc="by what speed over ground is turned: bias, or 0 (see above)",
     )

@@ -11,7 +11,7 @@ from twin.physics.state import Situation
 
 
 class HullFouling(Force):
-    """Growth on the hull makes her harder to drive: the same shaft speed gives less speed."""
+    """Growth on the hull makes the ship harder to drive: the same shaft speed gives less speed."""
 
     source = (
         "ITTC 7.5-02-03-01.4 (roughness allowance); Schultz (2007) Biofouling 23, 331-341 (+10 % slime "

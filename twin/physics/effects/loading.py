@@ -6,8 +6,8 @@ Added masses in sway and yaw and the hull's lift grow with T^2 + a B T, as regre
 body's with T^2 alone), cross-flow drag with T, the added mass in surge with m, the resistance with the wetted
 surface 1.7 L T + C_b L B. Derivatives are stored over T, so that one power of k is there already.
 
-A load that stands farther aft trims her by the stern, trim / T = -(shift / L) C_b / C_IL, and her lift moves
-aft with her draught:
+A load that stands farther aft trims it by the stern, trim / T = -(shift / L) C_b / C_IL, and its lift moves
+aft with its draught:
     Y_uv -> (1 + 0.67 trim / T) Y_uv,  N_uv -> N_uv - 0.27 trim / T Y_uv,  Y_ur -> (1 + 0.8 trim / T) Y_ur,
         N_ur -> (1 + 0.3 trim / T) N_ur
 """
@@ -31,12 +31,12 @@ BLUNT = {
 }  # a of each, and a over C_b; the terms in B/L left out
 LIFT = {"Y_uv": 0.67, "Y_ur": 0.8, "N_ur": 0.3}  # share by which a trim of one draught raises them
 LEVER = -0.27  # [L] by which N_uv changes with Y_uv
-LEAST = 0.2  # share of the area above the water that stays: superstructure, however deep she lies
+LEAST = 0.2  # share of the area above the water that stays: superstructure, however deep it lies
 
 
 class Loading(Force):
-    """She is loaded otherwise than the model believes: mass, draught or trim differ, so she answers slower or
-    quicker."""
+    """The ship is loaded otherwise than the model believes: mass, draught or trim differ, so it answers
+    slower or quicker."""
 
     source = (
         "Clarke, Gedling & Hine (1983) Trans. RINA 125 (T/L powers); Inoue, Hirano & Kijima (1981) Int. "

@@ -1,6 +1,6 @@
 """Propeller walk: the blades push the stern sideways, with the square of the shaft speed.
 
-Two screws that turn outward or inward alike have none; what is left where one of them gives less turns her,
+Two screws that turn outward or inward alike have none; what is left where one of them gives less turns it,
 too, and is called this.
 Y = rho D^4   c_y n |n|,   N = rho D^4 L c_n n |n|
 """
@@ -12,7 +12,7 @@ from twin.physics.state import Situation
 
 
 class PropellerWalk(Force):
-    """The single screw pushes her stern to one side, the more the harder it turns: helm to go straight, at
+    """The single screw pushes its stern to one side, the more the harder it turns: helm to go straight, at
     any speed."""
 
     one_screw = True

@@ -12,8 +12,8 @@ from twin.physics.state import Situation
 
 
 class PropellerWear(Force):
-    """The propeller gives less thrust than it did, so she is slower and her rudder, in a weaker slipstream,
-    bites less."""
+    """The propeller gives less thrust than it did, so the ship is slower and its rudder, in a weaker
+    slipstream, bites less."""
 
     one_screw = True
     source = (

@@ -12,8 +12,8 @@ from twin.physics.state import Situation
 
 
 class RollCoupling(Force):
-    """When she heels she is no longer the same on both sides: heel pushes her aside and turns her, most in a
-    turn."""
+    """When the ship heels it is no longer the same on both sides: heel pushes it aside and turns it, most in
+    a turn."""
 
     needs = ("phi",)
     source = (

@@ -11,8 +11,8 @@ from twin.physics.state import Situation
 
 
 class RudderOffset(Force):
-    """The rudder's zero is not where the indicator says, so she needs the same angle to go straight at every
-    speed."""
+    """The rudder's zero is not where the indicator says, so the ship needs the same angle to go straight at
+    every speed."""
 
     one_screw = True
     source = "IMO MSC/Circ.1053 (2002), neutral rudder angle; Yasukawa & Yoshimura (2015) eq. (20)-(27)"

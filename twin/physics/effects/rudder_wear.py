@@ -11,7 +11,7 @@ from twin.physics.state import Situation
 
 
 class RudderWear(Force):
-    """The rudder gives less force at the same angle: she answers late, turns wider and is harder to stop
+    """The rudder gives less force at the same angle: the ship answers late, turns wider and is harder to stop
     turning."""
 
     one_screw = True

@@ -19,7 +19,7 @@ from twin.physics.state import Number, Situation
 
 
 class SensorDelay(SensorFault):
-    """Satellite position and velocity come late, so she seems to lag behind herself on the track."""
+    """Satellite position and velocity come late, so the ship seems to lag behind itself on the track."""
 
     source = (
         "Skog & Haendel (2011) Time synchronization errors in loosely coupled GPS-aided INS, IEEE "

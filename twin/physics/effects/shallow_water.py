@@ -2,12 +2,12 @@
 
     F = T/h,  g(F) = F^2/(1 - F):   X, Y, N of the hull times 1 + surge g, 1 + sway g, 1 + yaw g
     added mass in sway times 1 + heavier g, in yaw times 1 + slower g
-    of the thrust 1 - thrust F^2 drives her (and at the rudder it is what it was)
+    of the thrust 1 - thrust F^2 drives it (and at the rudder it is what it was)
 N is the whole moment of the hull, Munk's included. With sway = 0.75 the side force grows x1.4, x2.0 and x4.2
 at h/T = 2, 1.5 and 1.2, as Kijima's regression 1/(1-F)^n - F gives for a full tanker (n = 0.9); with heavier
 = 1 the added mass x1.5, x2.3 and x5.2. Li & Wu's regression has 1.5 to 3 for it and a third of that in yaw,
 slender bodies 0.5 for both. The propeller draws harder at the stern of a hull that the bottom holds: with
-thrust = 0.35 it drives her by 9, 16 and 24 % less, as (1 - t)/(1 - 0.2 F + 0.7295 F^2) has it. Below h/T =
+thrust = 0.35 it drives it by 9, 16 and 24 % less, as (1 - t)/(1 - 0.2 F + 0.7295 F^2) has it. Below h/T =
 1.05 the growth is held."""
 
 from twin.physics.effect import Flow, param
@@ -17,7 +17,7 @@ from twin.physics.state import Situation, Water
 
 
 class ShallowWater(Flow):
-    """Little water under the keel: she slows, turns wider and answers later, the more the closer the
+    """Little water under the keel: the ship slows, turns wider and answers later, the more the closer the
     bottom."""
 
     belongs_to = "voyage"

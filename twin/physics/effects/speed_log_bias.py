@@ -12,7 +12,7 @@ from twin.physics.state import Situation
 
 class SpeedLogBias(SensorFault):
     """The speed log shows a constant too much or too little ahead, which looks like a current that turns with
-    her."""
+    it."""
 
     needs = ("u_r",)
     source = "IMO MSC.96(72) (performance of speed logs: 2 % or 0.2 kn)"

@@ -18,7 +18,7 @@ class SpeedLogScale(SensorFault):
     source = "IMO MSC.96(72) (performance of speed logs: 2 % or 0.2 kn)"
 
     scale: float = param(
-        0.04, unit="-", lo=-0.4, hi=0.4, sd=0.04, doc="shown speed over the true one, less 1"
+        0.04, unit="-", lo=-0.6, hi=0.6, sd=0.04, doc="shown speed over the true one, less 1"
     )
 
     def read(self, s: Situation, ship: Ship) -> Situation:

@@ -1,10 +1,10 @@
-"""Mass that swings aside and round with her but is not driven ahead: liquid in slack tanks, water in an open
+"""Mass that swings aside and round with it but is not driven ahead: liquid in slack tanks, water in an open
 hold.
 
     Y = -m share (dv/dt + u r + place dr/dt),  N = -m (share place (dv/dt + u r) + inertia L^2 dr/dt)
 m: mass of the ship. Liquid far below the period of its tank goes with the ship's side, as a mass would.
     Several tanks have a centre (place) and an
-inertia about midship of their own. What they do to her heel is left out.
+inertia about midship of their own. What they do to its heel is left out.
 """
 
 from twin.physics.effect import Force, param
@@ -12,8 +12,8 @@ from twin.physics.particulars import Ship
 
 
 class SwayingMass(Force):
-    """Something swings aside and round with her that is not driven ahead: liquid in slack tanks, water in an
-    open hold."""
+    """Something swings aside and round with the ship that is not driven ahead: liquid in slack tanks, water
+    in an open hold."""
 
     source = (
         "Abramson (1966) The dynamic behavior of liquids in moving containers, NASA SP-106, ch. 6 "

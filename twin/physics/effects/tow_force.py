@@ -10,11 +10,11 @@ from twin.physics.state import Situation
 
 
 class TowForce(Force):
-    """Something pulls at her that turns with her: a tow, a thruster left on, a dragging anchor, a list that
-    nobody recorded."""
+    """Something pulls at the ship and turns with it: a tow, a thruster left on, a dragging anchor, a list
+    that nobody recorded."""
 
     belongs_to = "voyage"
-    source = "Newton's second law; size: shares of her own resistance"
+    source = "Newton's second law; size: shares of its own resistance"
 
     ahead: float = param(-0.5, unit="N", lo=-8.0, hi=8.0, sd=0.6, of="force", doc="force ahead")
     starboard: float = param(0.3, unit="N", lo=-8.0, hi=8.0, sd=0.5, of="force", doc="force to starboard")

@@ -41,8 +41,8 @@ class VaryingCurrent(Flow):
         "tidal analysis (Foreman 1977)"
     )
 
-    north: float = param(0.0, unit="m/s", lo=-0.6, hi=0.6, sd=0.08, of="speed", doc="mean toward north")
-    east: float = param(0.0, unit="m/s", lo=-0.6, hi=0.6, sd=0.08, of="speed", doc="mean toward east")
+    north: float = param(0.0, unit="m/s", lo=-1.0, hi=1.0, sd=0.08, of="speed", doc="mean toward north")
+    east: float = param(0.0, unit="m/s", lo=-1.0, hi=1.0, sd=0.08, of="speed", doc="mean toward east")
     north_c1: float = _wave(1, "north", "cosine")
     north_s1: float = _wave(1, "north", "sine")
     north_c2: float = _wave(2, "north", "cosine")

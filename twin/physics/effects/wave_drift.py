@@ -21,7 +21,7 @@ from twin.physics.state import Number, Situation
 
 
 class WaveDrift(Force):
-    """The sea pushes the ship slowly along with the waves, slows her in head seas and turns her across
+    """The sea pushes the ship slowly along with the waves, slows it in head seas and turns it across
     them."""
 
     belongs_to = "voyage"

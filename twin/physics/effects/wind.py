@@ -17,12 +17,12 @@ RHO_AIR = 1.225  # kg/m3 at 15 degC, ISO 2533
 
 
 class Wind(Force):
-    """Wind pushes the ship aside, slows or drives her, and turns her; worst in ballast and at low speed."""
+    """Wind pushes the ship aside, slows or drives it, and turns it; worst in ballast and at low speed."""
 
     belongs_to = "voyage"
     needs = ("wind_speed", "wind_to")
     needs_ship = ("A_F", "A_L")
-    lever = 0.05  # it moves along her with the direction, by more than four coefficients say
+    lever = 0.05  # it moves along it with the direction, by more than four coefficients say
     source = (
         "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.1; Blendermann (1994) "
         "coefficient ranges"

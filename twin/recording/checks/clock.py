@@ -3,6 +3,7 @@
 import numpy as np
 
 from twin.live.signals.channels import of_actuators
+from twin.num import num
 from twin.recording.checks.answer import Check, doubtful, good, wrong
 from twin.recording.checks.view import View
 from twin.recording.unknown_controls import CONTROLS, gaps
@@ -58,7 +59,8 @@ def time_stamps(view: View) -> Check:
     if scatter > UNEVEN:
         return doubtful(
             name,
-            f"the steps are uneven: {inside.min():.3g} to {inside.max():.3g} s, usually {usual:.3g} s. "
+            f"the steps are uneven: {num(inside.min(), 3)} to {num(inside.max(), 3)} s, usually "
+            f"{num(usual, 3)} s. "
             "Were the stamps taken at arrival? Log the sensor's own time.",
         )
     return good(name, f"a sample every {usual:.6g} s, scatter {100 * scatter:.1f} % of a step.")
@@ -72,7 +74,7 @@ def time_gaps(view: View) -> Check:
     limit = max(GAP_STEPS * usual, min(GAP_S, 20.0 * usual))
     gaps = np.flatnonzero(steps > limit)
     if not gaps.size:
-        return good(name, f"no step is longer than {limit:.3g} s.")
+        return good(name, f"no step is longer than {num(limit, 3)} s.")
     worst = int(gaps[np.argmax(steps[gaps])])
     return doubtful(
         name,
@@ -86,8 +88,9 @@ def control_gaps(view: View) -> Check:
     parts = of_actuators(view.voyage.columns)
     found = {name: gaps(view.voyage, name) for name in (*CONTROLS, *parts)}
     said = [
-        f"{name} changed in {len(g)} gap{'s' * (len(g) > 1)} of {sum(b - a for a, b in g):.4g} s in all, the "
-        f"longest {b - a:.4g} s after {a:g} s"
+        f"{name} changed in {len(g)} gap{'s' * (len(g) > 1)} of {num(sum(b - a for a, b in g), 4)} s in all, "
+        "the "
+        f"longest {num(b - a, 4)} s after {a:g} s"
         for name, g in found.items()
         if g
         for a, b in [max(g, key=lambda pair: pair[1] - pair[0])]
@@ -129,7 +132,7 @@ def clock_steps(view: View) -> Check:
 
 
 def went_on(voyage: Voyage, i: int, usual: float) -> bool:
-    """Whether the ship was way on and yet moved over a gap no more than she does in a few rows."""
+    """Whether the ship was way on and yet moved over a gap no more than it does in a few rows."""
     if any(
         name in voyage.meta.get("derived", {}) for name in ("north_m", "surge_velocity_mps")
     ) and not voyage.has("north_m"):

@@ -59,7 +59,7 @@ class Windows:
 
 
 def windows(view: View) -> Windows | None:
-    """As long as the ship takes to turn ten degrees; None where she hardly turns."""
+    """As long as the ship takes to turn ten degrees; None where it hardly turns."""
     r = rms(view.si("yaw_rate_degps"))
     if not r > 1e-5:
         return None

@@ -71,6 +71,6 @@ def course_as_heading(view: View) -> str:
         return ""
     return (
         f"the heading is the course over ground in {100 * np.mean(drift < SAME_DEG):.0f} % of the rows, "
-        f"to the last digit, while she turns by {swung:.0f} deg: "
+        f"to the last digit, while it turns by {swung:.0f} deg: "
         "the column holds the course, no compass. Give the compass, or the voyage has no heading."
     )

@@ -1,7 +1,8 @@
-"""Without an independent position: a ship goes nearly where she points."""
+"""Without an independent position: a ship goes nearly where it points."""
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, wrong
 from twin.recording.checks.view import View, rms
 
@@ -22,7 +23,8 @@ def course_against_heading(name: str, view: View) -> Check:
     if view.speed > FASTEST_MPS:
         return wrong(
             name,
-            f"the ship makes {view.speed:.3g} m/s: is the time in minutes or hours, the position in feet?",
+            f"the ship makes {num(view.speed, 3)} m/s: is the time in minutes or hours, the position in "
+            "feet?",
         )
     if drift > np.radians(LARGE_DRIFT_DEG) and earth < 0.5 * drift and not view.derived("surge_velocity_mps"):
         return wrong(
@@ -35,6 +37,6 @@ def course_against_heading(name: str, view: View) -> Check:
     if abs(mean) > 45.0:
         return doubtful(
             name,
-            f"the ship moves {mean:.0f} deg off her heading on average: are heading, north and east right?",
+            f"the ship moves {mean:.0f} deg off its heading on average: are heading, north and east right?",
         )
     return cannot_tell(name, f"position and velocities are not independent ({saw}).")

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.course import course_against_heading
 from twin.recording.checks.mistakes import AS_THEY_ARE, GEOMETRY, SCALES, Mistake, turned
@@ -56,7 +57,8 @@ def velocity_frame(view: View) -> Check:
     legs = cut(view)
     if not enough_way(legs):
         far = (
-            f"the ship moves {rms(legs.moved):.2g} m in a window, the position's noise is {legs.noise:.2g} m."
+            f"the ship moves {num(rms(legs.moved), 2)} m in a window, the position's noise is "
+            f"{num(legs.noise, 2)} m."
         )
         return cannot_tell(NAME, far)
     off = legs.miss(AS_THEY_ARE)
@@ -67,7 +69,7 @@ def velocity_frame(view: View) -> Check:
 
 
 def enough_way(legs: Legs) -> bool:
-    """Whether the ship moves by more in a window than her position is uncertain."""
+    """Whether the ship moves by more in a window than its position is uncertain."""
     return bool(np.isfinite(legs.moved).any()) and rms(legs.moved) >= 5.0 * legs.noise + 1e-9
 
 
@@ -148,7 +150,8 @@ def constant_turn(legs: Legs, saw: str) -> tuple[float, Check]:
     angle, factor = float(np.degrees(np.arctan2(b, a))), float(np.hypot(a, b))
     return float(np.sqrt(left)), wrong(
         NAME,
-        f"{saw}; the heading is {angle:.1f} deg off and the ground passes {factor:.3g} times as fast as the "
+        f"{saw}; the heading is {angle:.1f} deg off and the ground passes {num(factor, 3)} times as fast as "
+        "the "
         f"speeds say. A magnetic or grid heading? In the map: offset = {angle:.1f} for it.",
     )
 

@@ -9,7 +9,7 @@ from twin.recording.checks.view import View
 
 LEAST_OFFSET_DEG, LEAST_SPREAD_DEG, ALIKE_S = 4.0, 60.0, 30.0
 STREAM_MPS, LEEWAY, SIGMAS = 0.5, 0.015, 3.0  # an expected stream; leeway in parts of the speed
-DRIFTING, FEWEST_LEGS = 0.05, 4  # leeway where she never sails straight
+DRIFTING, FEWEST_LEGS = 0.05, 4  # leeway where it never sails straight
 
 
 @dataclass(frozen=True)
@@ -35,12 +35,12 @@ class Offset:
         )
         return (
             f"the heading is {-self.lacks:+.1f} deg off the course over ground (+- {2 * self.error:.1f}) "
-            f"where she sails straight, {why}: magnetic, or mounted askew?"
+            f"where it sails straight, {why}: magnetic, or mounted askew?"
         )
 
 
 def by_course(view: View) -> Offset | None:
-    """The constant part, on straight stretches, where a ship goes where she points but for a stream and her
+    """The constant part, on straight stretches, where a ship goes where it points but for a stream and its
     leeway.
 
     aside = tan(lacks) ahead + stream across, means over half a minute; a stream is expected within

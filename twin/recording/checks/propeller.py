@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.view import View
 
@@ -24,27 +25,28 @@ def propeller_rate(view: View) -> Check:
     on = thrust_on(view, n)
     under_way = on & (speed > 0.5 * view.speed) & (view.velocity.real > 0.0)
     if np.count_nonzero(under_way) < 10 or view.speed < 0.05 or not view.way_on:
-        return cannot_tell(name, "the ship is hardly ever under way with her propeller turning.")
+        return cannot_tell(name, "the ship is hardly ever under way with its propeller turning.")
     rate, way = float(np.median(n[under_way])), float(np.median(speed[under_way]))
     if view.ship is not None:
         return advance(name, way, rate, float(view.ship.D_P))
     if 60.0 * rate < SLOWEST_RPM:
         return wrong(
             name,
-            f"the ship makes {way:.2f} m/s with {60 * rate:.3g} turns a minute, {way / rate:.1f} m a turn: "
+            f"the ship makes {way:.2f} m/s with {num(60 * rate, 3)} turns a minute, {way / rate:.1f} m a "
+            "turn: "
             "no propeller does; "
             'the column is believed to be in 1/s. In the map: unit = "1/s" for it (with --ship this is '
             "computed).",
         )
     return good(
         name,
-        f"{60 * rate:.3g} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked "
+        f"{num(60 * rate, 3)} rpm at {way:.2f} m/s, {way / rate:.2f} m a turn; with --ship this is checked "
         "closer.",
     )
 
 
 def thrust_on(view: View, n: np.ndarray) -> np.ndarray:
-    """Where the shaft turns and the ship keeps her speed: one that runs out with her shaft stopped says
+    """Where the shaft turns and the ship keeps its speed: one that runs out with its shaft stopped says
     nothing of its unit."""
     usual = float(np.nanquantile(n, 0.9))
     signed = view.si("propeller_rate_rpm")
@@ -62,14 +64,15 @@ def thrust_on(view: View, n: np.ndarray) -> np.ndarray:
 def advance(name: str, way: float, rate: float, diameter: float) -> Check:
     low, high = ADVANCE
     j = way / (rate * diameter)
-    saw = f"advance ratio J = U/(nD) = {way:.3g}/({rate:.3g} x {diameter:.3g}) = {j:.3g}"
+    saw = f"advance ratio J = U/(nD) = {num(way, 3)}/({num(rate, 3)} x {num(diameter, 3)}) = {num(j, 3)}"
     if low <= j <= high:
         return good(name, f"{saw}, as a ship under way has it.")
     for factor, said, other in ADVANCE_MISTAKES:
         if 0.25 <= j * factor <= 1.4:
             return wrong(
                 name,
-                f"{saw}; {j * factor:.2g} if {said}: that is believed, unless the file is of {other} ship.",
+                f"{saw}; {num(j * factor, 2)} if {said}: that is believed, unless the file is of {other} "
+                "ship.",
             )
     return doubtful(
         name, f"{saw}, expected {low:g} to {high:g}: another ship's file, a wrong unit, or a wrong diameter?"

@@ -3,9 +3,9 @@ be.
 
 place      position and velocity tell of the same way made good
 turning    heading and rate of turn tell of the same turning
-course     under way the ship goes nearly where she points
-rudder     way on, a rudder over to starboard turns her to starboard
-thrust     with a steady speed and her shaft turning ahead she goes ahead
+course     under way the ship goes nearly where it points
+rudder     way on, a rudder over to starboard turns it to starboard
+thrust     with a steady speed and its shaft turning ahead it goes ahead
 """
 
 from collections.abc import Callable
@@ -67,7 +67,7 @@ def over_ground(view: View) -> np.ndarray | None:
 
 
 def drift(view: View) -> np.ndarray | None:
-    """The angle from the heading to the way over ground [rad], where she has way on; None where there is
+    """The angle from the heading to the way over ground [rad], where it has way on; None where there is
     none."""
     way = over_ground(view)
     if way is None:

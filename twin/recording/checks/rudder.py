@@ -7,6 +7,7 @@ Nomoto's first order, its gains as they grow with speed, and Norrbin's cubic dam
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.view import View, fit
 
@@ -23,7 +24,7 @@ def rudder_sign(view: View) -> Check:
         return cannot_tell(name, "no rudder was recorded.")
     if not view.way_on:
         return cannot_tell(
-            name, "she has no way on, and a rudder turns only a ship that moves through the water."
+            name, "it has no way on, and a rudder turns only a ship that moves through the water."
         )
     same, against = held_turns(view)
     if same + against and min(same, against) == 0:
@@ -34,13 +35,13 @@ def rudder_sign(view: View) -> Check:
     saw = f"the rudder explains {100 * share:.0f} % of the changes of yaw rate"
     if share < RUDDER_SHARE:
         return cannot_tell(
-            name, f"{saw}; held over until she has turned by {HELD_TURN_DEG:.0f} deg it would show."
+            name, f"{saw}; held over until it has turned by {HELD_TURN_DEG:.0f} deg it would show."
         )
     return sign_seen(name, saw, b > 0.0, share > PROOF_SHARE)
 
 
 def seen_gain(view: View) -> tuple[float, bool] | None:
-    """(share that the rudder explains, whether it turns her to its own side); None where it cannot show."""
+    """(share that the rudder explains, whether it turns it to its own side); None where it cannot show."""
     if not view.voyage.has("rudder_angle_deg") or not view.way_on:
         return None
     same, against = held_turns(view)
@@ -115,11 +116,12 @@ def rudder_unit(view: View) -> Check:
         return good(name, f"the rudder reaches {most:.1f} deg.")
     if swung < 20.0:
         return cannot_tell(
-            name, f"the rudder stays within {most:.2g} deg, and the heading within {swung:.0f} deg."
+            name, f"the rudder stays within {num(most, 2)} deg, and the heading within {swung:.0f} deg."
         )
     return wrong(
         name,
-        f"the rudder stays within {most:.2g} 'deg' while the heading swings {swung:.0f} deg: it is believed "
+        f"the rudder stays within {num(most, 2)} 'deg' while the heading swings {swung:.0f} deg: it is "
+        "believed "
         "to be in "
         'radians. In the map: unit = "rad" for it.',
     )

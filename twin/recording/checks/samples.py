@@ -3,6 +3,7 @@
 import numpy as np
 
 from twin.live.signals.channels import BY_NAME
+from twin.num import num
 from twin.recording.checks.answer import Check, doubtful, good
 from twin.recording.checks.view import View
 from twin.recording.samples import spikes as spike_rows
@@ -30,7 +31,7 @@ def missing_samples(view: View) -> Check:
 
 
 def _follows(v: Voyage, name: str) -> bool:
-    """Whether an absent channel is found from others: the true wind from the apparent one and her own
+    """Whether an absent channel is found from others: the true wind from the apparent one and its own
     motion."""
     return (
         name.startswith("true_wind_")
@@ -51,7 +52,7 @@ def hole(v: Voyage, name: str) -> str:
     if gaps[i] <= limit:
         return ""
     where = "begins late," if i == 0 else "ends early," if i == gaps.size - 1 else "has a hole,"
-    return f"{name} {where} {gaps[i]:.4g} s from {edges[i]:g} s"
+    return f"{name} {where} {num(gaps[i], 4)} s from {edges[i]:g} s"
 
 
 def plausible_values(view: View) -> Check:
@@ -72,7 +73,7 @@ def spikes(view: View) -> Check:
         rows = spike_rows(values, BY_NAME[name].wraps)
         if rows.size:
             i = int(rows[0])
-            found.append(f"{name} {rows.size}, first {values[i]:.4g} at {view.voyage.time_s[i]:g} s")
+            found.append(f"{name} {rows.size}, first {num(values[i], 4)} at {view.voyage.time_s[i]:g} s")
     if found:
         return doubtful(
             "spikes", f"lonely samples: {'; '.join(found)}. In the map: despike = true blanks them."
@@ -152,7 +153,9 @@ def standing(
         return ""
     t = view.even.time_s
     said = text.format(moved[i] * unit)
-    return f"{name} stays {x[starts[i]]:.6g} from {t[starts[i]]:.4g} to {t[ends[i]]:.4g} s while {said}"
+    return (
+        f"{name} stays {x[starts[i]]:.6g} from {num(t[starts[i]], 4)} to {num(t[ends[i]], 4)} s while {said}"
+    )
 
 
 def spread(x: np.ndarray) -> float:

@@ -108,9 +108,9 @@ def coarse(view: View) -> View:
 SAYS = {
     "place": "position and velocity tell of different ways",
     "turning": "heading and rate of turn tell of different turning",
-    "course": "the ship does not go where her heading points",
-    "rudder": "the rudder turns her to the other side",
-    "thrust": "she goes astern with her shaft turning ahead",
+    "course": "the ship does not go where its heading points",
+    "rudder": "the rudder turns it to the other side",
+    "thrust": "it goes astern with its shaft turning ahead",
 }
 
 

@@ -1,7 +1,8 @@
-"""Is this voyage of this ship, and long enough to say something about her?"""
+"""Is this voyage of this ship, and long enough to say something about it?"""
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good
 from twin.recording.checks.view import View
 
@@ -15,25 +16,27 @@ STEADY_RUDDER_DEG = 1.0
 
 
 def ship_size(view: View) -> Check:
-    """Speed and turning against the length of the ship, and her draught."""
+    """Speed and turning against the length of the ship, and its draught."""
     name = "ship_size"
     if view.ship is None:
-        return cannot_tell(name, "give --ship to compare speed, turning and draught with her size.")
+        return cannot_tell(name, "give --ship to compare speed, turning and draught with its size.")
     length, speed = float(view.ship.L_pp), view.speed
     froude = speed / np.sqrt(G * length)
     turning = tightest(view, length)
     draught = float(np.nanmedian(view.voyage["draught_mean_m"])) if view.voyage.has("draught_mean_m") else 0.0
-    saw = f"Froude number {froude:.3f}, tightest turn r L/U = {turning:.2f} with L = {length:.4g} m"
+    saw = f"Froude number {froude:.3f}, tightest turn r L/U = {turning:.2f} with L = {num(length, 4)} m"
     other = (
-        f"Another ship's file, or a model's ([scale] froude = ...)? {view.ship.name} is {length:.4g} m long."
+        f"Another ship's file, or a model's ([scale] froude = ...)? {view.ship.name} is {num(length, 4)} m "
+        "long."
     )
     if froude > FASTEST_FROUDE:
-        return doubtful(name, f"{saw}: {speed:.3g} m/s is too fast for her. {other}")
+        return doubtful(name, f"{saw}: {num(speed, 3)} m/s is too fast for it. {other}")
     if turning > TIGHTEST_TURN:
         return doubtful(name, f"{saw}: no ship turns within {1 / turning:.2f} lengths. {other}")
     if draught and not 0.4 < draught / float(view.ship.T) < 2.0:
         return doubtful(
-            name, f"draught {draught:.3g} m, but {view.ship.name} has {float(view.ship.T):.3g} m. {other}"
+            name,
+            f"draught {num(draught, 3)} m, but {view.ship.name} has {num(float(view.ship.T), 3)} m. {other}",
         )
     return good(name, f"{saw}: possible for {view.ship.name}.")
 
@@ -61,10 +64,10 @@ def duration(view: View) -> Check:
     )
     if view.ship is not None:
         lengths = sailed / float(view.ship.L_pp)
-        saw = f"{seconds:.4g} s, {lengths:.0f} ship lengths"
+        saw = f"{num(seconds, 4)} s, {lengths:.0f} ship lengths"
         short = lengths < SHORT_LENGTHS
     else:
-        saw, short = f"{seconds:.4g} s, {sailed:.4g} m", seconds < SHORT_S
+        saw, short = f"{num(seconds, 4)} s, {num(sailed, 4)} m", seconds < SHORT_S
     if short:
         return doubtful(
             name,

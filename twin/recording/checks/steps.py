@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.relations import over_ground
 from twin.recording.checks.view import View
@@ -57,7 +58,7 @@ def samples_of(view: View) -> Samples | None:
 
 
 def expected_steps(view: View, t: np.ndarray) -> np.ndarray:
-    """How far she turns from one sample to the next [deg]: by the rate of turn, else by the course over
+    """How far it turns from one sample to the next [deg]: by the rate of turn, else by the course over
     ground, else not."""
     v = view.voyage
     if not view.derived("yaw_rate_degps") and v.has("yaw_rate_degps"):
@@ -221,7 +222,9 @@ def jump(view: View, s: Samples) -> Check | None:
         return None
     i = int(big[np.argmax(np.abs(s.odd[big]))])
     rate = abs(s.odd[i]) / max(s.t[i + 1] - s.t[i], 1e-9)
-    text = f"the heading jumps by {s.odd[i]:+.1f} deg at {s.t[i + 1]:g} s ({rate:.3g} deg/s) and stays there"
+    text = (
+        f"the heading jumps by {s.odd[i]:+.1f} deg at {s.t[i + 1]:g} s ({num(rate, 3)} deg/s) and stays there"
+    )
     independent = not view.derived("yaw_rate_degps") or (over_ground(view) is not None and view.way_on)
     who = "the rate of turn" if not view.derived("yaw_rate_degps") else "the course over ground"
     if not independent:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.view import View, fit, rms
 from twin.recording.units import DEG_PER_RAD
@@ -54,15 +55,16 @@ def yaw_rate(view: View) -> Check:
     turn = np.degrees(rms(swung))
     if not np.isfinite(k) or (turn < 0.5 and np.degrees(rms(summed)) < 5.0):
         return cannot_tell(
-            name, f"the heading changes by {turn:.2g} deg in {seconds:.3g} s; a turn would show it."
+            name, f"the heading changes by {num(turn, 2)} deg in {num(seconds, 3)} s; a turn would show it."
         )
     ratio, said, fix = min(RATES, key=lambda c: abs(np.log(abs(k / c[0]))) if k * c[0] > 0 else np.inf)
-    saw = f"the heading turns by {k:.3g} x the summed yaw rate"
+    saw = f"the heading turns by {num(k, 3)} x the summed yaw rate"
     if left > 0.5 or error > 0.3 * abs(k):
         if rms(summed) < 3.0 * rms(swung) and turn < 2.0:
             return cannot_tell(
                 name,
-                f"the heading changes by {turn:.2g} deg in {seconds:.3g} s, too little beside the noise.",
+                f"the heading changes by {num(turn, 2)} deg in {num(seconds, 3)} s, too little beside the "
+                "noise.",
             )
         return doubtful(
             name, f"heading and yaw rate do not tell of the same turning ({100 * left:.0f} % of it is left)."

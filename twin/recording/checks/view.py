@@ -60,7 +60,7 @@ class View:
 
     @cached_property
     def way_on(self) -> bool:
-        """Whether the ship makes way: in a minute farther than her position and her speed are uncertain."""
+        """Whether the ship makes way: in a minute farther than its position and its speed are uncertain."""
         w = self.velocity * np.exp(1j * self.psi)
         first, last = self.windows(min(60.0, self.voyage.duration_s / 4.0))
         made = np.abs(self.summed(w, first, last)) / max(float(np.median(last - first)) * self.step_s, 1e-9)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
+from twin.num import num
 from twin.physics.effect import Effect
 from twin.physics.effects import of_ship
 from twin.physics.effects.antenna_offset import AntennaOffset
@@ -18,7 +19,7 @@ from twin.recording.jsonable import plain
 from twin.study.calibration.held_out import HeldOut, by_regime, errors, size
 from twin.study.calibration.parts import clearly, placed, with_or_without_wind
 from twin.study.calibration.rollout import rolled_out
-from twin.study.calibration.usual import clearly_hers, usual
+from twin.study.calibration.usual import clearly_there, usual
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import Floor
@@ -71,7 +72,7 @@ class Calibrated:
 class Core:
     """What a filter one step ahead makes of the voyages: the derivatives, and what they leave over."""
 
-    tracks: list[Track]  # with what waves do to her taken for that
+    tracks: list[Track]  # with what waves do to it taken for that
     model: Model
     derivatives: list[Derivative]
     # of the ship file; a steering gear and wind among them if the voyages asked for these
@@ -101,15 +102,15 @@ def calibrate(
     held_out = [(swung(t, core.model), first) for t, first in held_out]
     ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
     if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
-        progress("fitting to where she went")
-        led = rolled_out(tracks, Model.of(ships["steps"]), excited, of_ship(ship)).ship
-        ships["paths"] = with_core_of(ships["steps"], led)
+        progress("fitting to where it went")
+        open_loop_check = rolled_out(tracks, Model.of(ships["steps"]), excited, of_ship(ship)).ship
+        ships["paths"] = with_core_of(ships["steps"], open_loop_check)
     off = {way: errors(Model.of(s), held_out) for way, s in ships.items()}
     way = by if by in ships else min(ships, key=lambda way: size(off[way]) - BETTER * (way == "steps"))
     progress("learning what is usual on this ship")
-    hers = usual(ships[way], tracks, core.floor)
+    lasting_ones = usual(ships[way], tracks, core.floor)
     judged = {"held_out": off[way], "by_regime": by_regime(Model.of(ships[way]), held_out)}
-    after = noted(ships[way], "structural", hers | judged)
+    after = noted(ships[way], "structural", lasting_ones | judged)
     return Calibrated(after, plain(_result(ship, after, core, way, errors(Model.of(ship), held_out))))
 
 
@@ -117,16 +118,16 @@ def _with_antenna(
     first: AntennaOffset, sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]
 ) -> Core:
     """The same with the antenna in the model from the start: what heel and turning carry it about is no sway
-    of hers, and had bent the core."""
+    of its own, and had bent the core."""
     found = _core(sailed, ship.with_effects(first), progress)
     antenna = AntennaOffset(
         **{name: number["value"] for name, number in found.numbers[AntennaOffset.__name__].items()}
     )
     # until predictions are better with the other (`placed`)
-    hers = (e for e in ship.effects if isinstance(e, AntennaOffset))
+    lasting_ones = (e for e in ship.effects if isinstance(e, AntennaOffset))
     return replace(
         found,
-        effects=(*hers, *(e for e in found.effects if not isinstance(e, AntennaOffset))),
+        effects=(*lasting_ones, *(e for e in found.effects if not isinstance(e, AntennaOffset))),
         antenna=antenna,
     )
 
@@ -137,12 +138,12 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     progress("fitting the core, and asking whether the rudder that was recorded is its order")
     tracks = [levelled(t) for t in sailed]
     rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
-    progress("asking again whether waves swing her")
+    progress("asking again whether waves swing it")
     again = [swung(t, rough.model) for t in sailed]
     if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
         tracks = [levelled(t) for t in again]
         rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
-    progress("asking whether wind pushed her")
+    progress("asking whether wind pushed it")
     rough = with_or_without_wind(tracks, rough, known, TEMPER)
     unknowns = rough.unknowns
     progress("finding the structural floor")
@@ -156,7 +157,7 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
 
 
 def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
-    """What the ship file keeps of the numbers of a part of her that was found with the core."""
+    """What the ship file keeps of the numbers of a part of it that was found with the core."""
     source = f"calibrated {datetime.date.today().isoformat()}: {why}"
     return {
         u.name: {"value": float(value), "unit": u.unit, "sd": float(sd), "source": source}
@@ -195,13 +196,13 @@ def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
 
 
 def _found_here(name: str, ship: Ship, core: Core) -> bool:
-    """Whether a part of her is in the ship file as this calibration found it."""
+    """Whether a part of it is in the ship file as this calibration found it."""
     return name in ASKED_FOR or (core.antenna is not None and core.antenna in ship.effects)
 
 
 def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str, float]]) -> dict[str, Any]:
     """What --json holds."""
-    hers = after.notes["structural"]
+    lasting_ones = after.notes["structural"]
     return {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
@@ -210,21 +211,21 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "fitted_by": by,
         **{key: _said(owner.__name__, after, core) for key, owner in SAID.items()},
         "waves": waves_on(core.tracks),
-        "too_faint": [name for name, felt in hers["weather"].items() if felt > FAINT],
-        "usual": clearly_hers(after, hers),
-        "between_voyages": hers["between_voyages"],
+        "too_faint": [name for name, felt in lasting_ones["weather"].items() if felt > FAINT],
+        "usual": clearly_there(after, lasting_ones),
+        "between_voyages": lasting_ones["between_voyages"],
         "floor": asdict(core.floor),
         "temper": core.temper,
-        "by_regime": hers["by_regime"],
+        "by_regime": lasting_ones["by_regime"],
         "held_out": [
             e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]}
-            for b, e in zip(before, hers["held_out"], strict=True)
+            for b, e in zip(before, lasting_ones["held_out"], strict=True)
         ],
     }
 
 
 def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
-    """The numbers of a part of her that this calibration put into the ship file."""
+    """The numbers of a part of it that this calibration put into the ship file."""
     numbers = core.numbers[owner] if _found_here(owner, after, core) else {}
     return {name: {k: v for k, v in number.items() if k != "source"} for name, number in numbers.items()}
 
@@ -240,17 +241,19 @@ def told(result: dict[str, Any]) -> list[str]:
     for e in result["held_out"]:
         if e["position_m"] is not None:
             lines.append(
-                f"  {e['horizon_s']:>4.0f} s   {e['before_m']:>8.3g} m -> {e['position_m']:<8.3g} m    "
-                f"{e['before_deg']:>7.3g} deg -> {e['heading_deg']:<7.3g} deg   ({e['windows']} windows)"
+                f"  {e['horizon_s']:>4.0f} s   {num(e['before_m'], 3):>8} m -> {num(e['position_m'], 3):<8} "
+                "m    "
+                f"{num(e['before_deg'], 3):>7} deg -> {num(e['heading_deg'], 3):<7} deg   ({e['windows']} "
+                "windows)"
             )
     lines += [
-        f"  after {r['horizon_s']:.0f} s while {r['regime']}: {r['position_m']:.3g} m ({r['windows']} "
+        f"  after {r['horizon_s']:.0f} s while {r['regime']}: {num(r['position_m'], 3)} m ({r['windows']} "
         "windows)"
         for r in result["by_regime"]
     ]
     lines.append(
         "  fitted to "
-        + ("where she went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading")
+        + ("where it went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading")
     )
     if gear := result["gear"]:
         lines.append(
@@ -264,7 +267,7 @@ def told(result: dict[str, Any]) -> list[str]:
         )
     if wind := result["wind"]:
         lines.append(
-            f"  wind pushed her on these voyages: how is now part of the model (Wind: {_sizes(wind)})"
+            f"  wind pushed it on these voyages: how is now part of the model (Wind: {_sizes(wind)})"
         )
     lines += [
         f"  {name} was measured and too faint to be told: up to {HARDER:g} times as hard a push is reckoned "
@@ -272,15 +275,15 @@ def told(result: dict[str, Any]) -> list[str]:
         for name in result["too_faint"]
     ]
     lines += [f"  {text}" for text in told_of_waves(result["waves"])]
-    share = ", ".join(f"{100 * s:.2g} %" for s in result["floor"]["share"])
+    share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [
-        f"usual on this ship: {i['name']} {i['value']:.3g} +- {i['sd']:.1g} (kept in mind by diagnose)"
+        f"usual on this ship: {i['name']} {num(i['value'], 3)} +- {i['sd']:.1g} (kept in mind by diagnose)"
         for i in result["usual"]
     ]
     lines += ["", f"{'derivative':<10}{'before':>11}{'now':>11}{'+-':>9}"]
     lines += [
-        f"{d['name']:<10}{d['before']:>11.4g}{d['value']:>11.4g}{d['sd']:>9.2g}"
+        f"{d['name']:<10}{num(d['before'], 4):>11}{num(d['value'], 4):>11}{num(d['sd'], 2):>9}"
         for d in result["derivatives"]
         if d["excited"]
     ]
@@ -290,4 +293,6 @@ def told(result: dict[str, Any]) -> list[str]:
 
 
 def _sizes(numbers: dict[str, dict[str, Any]]) -> str:
-    return ", ".join(f"{name} {n['value']:.3g} +- {n['sd']:.1g} {n['unit']}" for name, n in numbers.items())
+    return ", ".join(
+        f"{name} {num(n['value'], 3)} +- {n['sd']:.1g} {n['unit']}" for name, n in numbers.items()
+    )

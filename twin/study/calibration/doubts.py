@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 from typing import Any
 
+from twin.num import num
 from twin.physics.actuators import NUMBERS
 from twin.physics.ship import DERIVATIVES
 
@@ -20,7 +21,7 @@ def doubts(
     derivatives: Sequence[Mapping[str, Any]], held_out: Sequence[Mapping[str, Any]], share: Sequence[float],
     usual: Sequence[Mapping[str, Any]] = (), between: Mapping[str, float] = MappingProxyType({}),
 ) -> list[str]:  # fmt: skip
-    """Sentences; none when the calibration is as it should be. `usual`: lasting effects that she shows;
+    """Sentences; none when the calibration is as it should be. `usual`: lasting effects that it shows;
     `between`: by how many widths of their priors numbers differ from voyage to voyage."""
     return [
         *_stopped(derivatives),
@@ -53,14 +54,14 @@ def _backwards(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
     none there is no hull."""
     flow = [d for d in derivatives if d["name"] in STRAIGHTENS]
     wrong = [
-        f"{d['name']} {d['value']:.2g}"
+        f"{d['name']} {num(d['value'], 2)}"
         for d in flow
         if STRAIGHTENS[d["name"]] * d["value"] < -CLEARLY * d["sd"]
     ]
     if not wrong:
         return []
     return [
-        f"{', '.join(wrong)}: the stern's own drift would help her rudder, as on no ship. Is rudder, yaw "
+        f"{', '.join(wrong)}: the stern's own drift would help its rudder, as on no ship. Is rudder, yaw "
         "rate or sway of the other sign, or late? "
         "twin compare, and the checks of twin import"
     ]
@@ -78,7 +79,7 @@ def _no_better(held_out: Sequence[Mapping[str, Any]]) -> list[str]:
         return ["no voyage was left to judge by: give one with --held-out"]
     last = judged[-1]
     rose = [
-        f"{last[before]:.3g} -> {last[after]:.3g} {unit}"
+        f"{num(last[before], 3)} -> {num(last[after], 3)} {unit}"
         for before, after, unit in (("before_m", "position_m", "m"), ("before_deg", "heading_deg", "deg"))
         if last[after] >= last[before]
     ]

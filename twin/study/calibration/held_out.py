@@ -1,4 +1,4 @@
-"""What a fit does not see, and how wrong a model is on it, open loop: by horizon, and by how hard she
+"""What a fit does not see, and how wrong a model is on it, open loop: by horizon, and by how hard it
 turns."""
 
 from collections.abc import Sequence

@@ -1,9 +1,9 @@
-"""Parts of the ship that are found with her core, if the reference voyages ask for them: where her antenna
-stands, and how wind pushes her.
+"""Parts of the ship that are found with its core, if the reference voyages ask for them: where its antenna
+stands, and how wind pushes it.
 
 Nothing is wrong on a reference voyage, so an antenna that clearly stands elsewhere was never where the file
-has it (a receiver that reports her centre of gravity, a lever arm left at zero). Wind that was recorded there
-pushed her, and a small ship seldom has a calm; left out, it would bend the core, and the floor would grow
+has it (a receiver that reports its centre of gravity, a lever arm left at zero). Wind that was recorded there
+pushed it, and a small ship seldom has a calm; left out, it would bend the core, and the floor would grow
 until it hides what is missing. Kept in mind alone, either would leave every prediction off."""
 
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ from twin.study.track.track import Track
 
 CLEAR = 4.0  # standard errors
 BETTER = 0.05  # share by which predictions of what was not used for the fit must be better with it
-# of the standard acceleration, by a plausible wind: what a fainter one seems to do is her own way through the
+# of the standard acceleration, by a plausible wind: what a fainter one seems to do is its own way through the
 # air, and no wind's
 PUSHED = 0.08
 
@@ -51,7 +51,7 @@ def clearly(found: Fit) -> AntennaOffset | None:
 
 
 def placed(ship: Ship, antenna: AntennaOffset | None, held_out: HeldOut) -> Ship:
-    """The ship with her antenna there, if so she is predicted better."""
+    """The ship with its antenna there, if so it is predicted better."""
     if antenna is None:
         return ship
     moved = ship.with_effects(antenna)

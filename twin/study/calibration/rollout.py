@@ -74,7 +74,7 @@ class _Problem:
 def rolled_out(
     tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue
 ) -> Model:
-    """The model whose core leads the ship most nearly where she went, begun from `model` or from the
+    """The model whose core leads the ship most nearly where it went, begun from `model` or from the
     unknowns' centres."""
     problem = _Problem(tracks, model, unknowns, catalogue)
     here = (np.array([float(model.ship.derivative(u.name)) for u in unknowns]) - problem.centre) / problem.sd

@@ -1,4 +1,4 @@
-"""What is usual on a ship: what her reference voyages leave known of the core, of every lasting effect and of
+"""What is usual on a ship: what its reference voyages leave known of the core, of every lasting effect and of
 the instruments."""
 
 from collections.abc import Mapping, Sequence
@@ -15,7 +15,8 @@ from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
 from twin.study.prediction.left_out import models_without, path_error
 from twin.study.reference.derivatives import first_prior
-from twin.study.reference.nuisance import from_references, nuisance_unknowns, temper_of, usual_unknowns
+from twin.study.reference.healthy import left_out_scores
+from twin.study.reference.nuisance import known_from, nuisance_unknowns, temper_of, usual_unknowns
 from twin.study.reference.sailed import fed
 from twin.study.reference.structure import floor_beside
 from twin.study.reference.weather import strengths
@@ -33,7 +34,8 @@ def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
     beside = floor_beside(lines, unknowns, floor)
     temper = temper_of(innovate(lines, [beside])[0], unknowns)
     centres = np.array([first_prior(u, ship).centre for u in unknowns])
-    nuisance, between = from_references(lines, unknowns, beside, temper, centres)
+    references = known_from(lines, unknowns, beside, temper, centres)
+    nuisance, between = references.nuisance(), references.between
     path = path_errors(ship, tracks, lines, unknowns, beside, temper, centres, between)
     sd = np.array([u.sd for u in nuisance.unknowns])
     covariance = np.linalg.inv(nuisance.information)
@@ -46,6 +48,7 @@ def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
         "beside": plain(asdict(beside)),
         "temper_beside": temper,
         "weather": strengths(tracks, model, known),
+        "left_out_scores": left_out_scores(tracks, model, known, references, beside, temper),
     } | ({"path_error": path} if path else {})
 
 
@@ -72,8 +75,8 @@ def path_errors(
     return found.entry() if found else {}
 
 
-def clearly_hers(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
-    """What this ship clearly shows of lasting effects: not wrong, but part of her. What no ship can show (a
+def clearly_there(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
+    """What this ship clearly shows of lasting effects: not wrong, but part of it. What no ship can show (a
     rudder ahead of its order) stands in for something else, and is kept in mind without being told."""
     can = {
         u.label: (u.lo - u.centre, u.hi - u.centre) for u in nuisance_unknowns(Model.of(ship), of_ship(ship))

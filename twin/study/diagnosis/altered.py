@@ -1,10 +1,10 @@
 """A ship that is loaded otherwise has other derivatives, which regressions over many hulls give: for any one
 hull they are only roughly right.
 
-How much heavier, deeper or trimmed she is, is then known no better than those regressions let it be. So the
+How much heavier, deeper or trimmed it is, is then known no better than those regressions let it be. So the
 numbers of an effect that alters the ship are told with each derivative that it changes free to change by a
-share of that more or less. And it is a load only if something of it still shows then, and if she floats with
-it: what is heavier lies deeper, by the area of her waterplane."""
+share of that more or less. And it is a load only if something of it still shows then, and if it floats with
+it: what is heavier lies deeper, by the area of its waterplane."""
 
 from dataclasses import replace
 
@@ -22,7 +22,7 @@ HULL = ("X_", "Y_", "N_")
 SCATTER = 0.5  # of single hulls about a regression, as a share of what it says
 # chi squared of a load's numbers from which they are more than derivatives that differ (95 % of three)
 SHOWS = 8.0
-# share of her draught by which mass and draught may disagree: other water, a waterplane that is not as usual
+# share of its draught by which mass and draught may disagree: other water, a waterplane that is not as usual
 AFLOAT = 0.02
 SURE = 2.5  # standard deviations beyond which they do
 
@@ -40,12 +40,12 @@ def sized(case: Case, found: Found) -> Posterior:
         return found.posterior
     lines, at = standing(case, found, case.unknowns)
     wider = replace(case, nuisance=_scattered(case.nuisance, SCATTER * moved))
-    reduced = wider.reduced(lines, case.worlds([found.hypothesis.world], found.doubt), at)[0]
+    reduced = wider.reduced(lines, case.scenarios([found.hypothesis.scenario], found.doubt), at)[0]
     return posterior(reduced, found.hypothesis.effects)
 
 
 def floats(case: Case, found: Found) -> bool:
-    """Whether what alters the ship under a hypothesis can be a load; what does not alter her can be what it
+    """Whether what alters the ship under a hypothesis can be a load; what does not alter it can be what it
     says."""
     own = [
         u
@@ -63,7 +63,7 @@ def floats(case: Case, found: Found) -> bool:
     before = case.model.loaded
 
     def deeper(z: np.ndarray) -> float:
-        """Than her mass would have her, as a share of her draught."""
+        """Than its mass would have it, as a share of its draught."""
         after = with_values(
             case.model, own, [u.centre + u.sd * x for u, x in zip(own, z, strict=True)], case.catalogue
         ).loaded
@@ -79,7 +79,7 @@ def _alters(kind: type[Effect]) -> bool:
 
 def _moved(case: Case, model: Model) -> np.ndarray:
     """(C,) how far the effects move each of the nuisance's numbers, in its own unit: derivatives over the
-    draught of the ship as she was."""
+    draught of the ship as it was."""
     before, after = case.model.loaded, model.loaded
     deeper = float(after.T) / float(before.T)
 

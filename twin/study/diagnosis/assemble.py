@@ -22,8 +22,7 @@ from twin.study.estimation.columns import (
     lateness_unknowns,
     rough_unknowns,
 )
-from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
-from twin.study.estimation.rough import doubted
+from twin.study.estimation.innovations import Floor, Linear, innovate
 from twin.study.reference.nuisance import (
     TEMPER,
     from_references,
@@ -34,11 +33,11 @@ from twin.study.reference.nuisance import (
     temper_of,
     usual_unknowns,
 )
-from twin.study.reference.seaway import levelled, stirred, swung
+from twin.study.reference.reading import read_lines
+from twin.study.reference.seaway import swung
 from twin.study.reference.structure import floor_beside, floor_of, structural_floor
 from twin.study.reference.weather import as_usual, strengths
 from twin.study.track.excitation import manoeuvred
-from twin.study.track.segments import read_parts
 from twin.study.track.track import Track, track
 
 Progress = Callable[[str], None]
@@ -62,10 +61,14 @@ def of_tracks(
     ship: Ship,
     references: Sequence[Voyage] = (),
     progress: Progress = lambda text: None,
+    asked: Sequence[type[Effect]] = (),
 ) -> Case:
     """The same of tracks, with what waves do to them already found (`twin add` has some of a voyage for the
-    fit and some for the proof)."""
-    model, catalogue, tracks = Model.of(ship), of_ship(ship), tuple(sailed)
+    fit and some for the proof). `asked`: effects that are judged although `twin instruments` looks for them
+    (`Effect.kinematic`); of those in the ship file a change is judged all the same."""
+    model, tracks = Model.of(ship), tuple(sailed)
+    wanted = {*asked, *(type(e) for e in model.effects)}
+    catalogue = {n: e for n, e in of_ship(ship).items() if not e.kinematic or e in wanted}
     unnamed = {e.__name__: e for e in unnamed_of(ship)}
     judged = catalogue | unnamed
     candidates = judgeable(tracks, model, judged)
@@ -80,7 +83,7 @@ def of_tracks(
     if references:
         progress("reading the reference voyages")
         usual = usual_unknowns(model, catalogue)
-        lines = _lines([swung(track(v, ship), model) for v in references], model, usual, catalogue)
+        lines = read_lines([swung(track(v, ship), model) for v in references], model, usual, catalogue)
         if floor_of(ship) is None:
             progress("finding the structural floor")
             path = structural_floor(_of_core(lines, usual), core_unknowns(model))
@@ -106,7 +109,7 @@ def of_tracks(
             n: ODDS_WEATHER if e.is_weather() else ODDS_UNNAMED if n in unnamed else ODDS
             for n, e in judged.items()
         },
-        _lines(tracks, model, unknowns, judged, MOST_SEGMENTS),
+        read_lines(tracks, model, unknowns, judged, MOST_SEGMENTS),
         any(manoeuvred(t, ship) for t in tracks),
         floor.white,
         floor.sensor,
@@ -119,7 +122,7 @@ def of_tracks(
 def _felt_before(
     references: Sequence[Voyage], model: Model, catalogue: dict[str, type[Effect]]
 ) -> dict[str, float]:
-    """How hard measured weather pushed her on the reference voyages, or on those of her calibration."""
+    """How hard measured weather pushed it on the reference voyages, or on those of its calibration."""
     if references:
         return strengths([track(v, model.ship) for v in references], model, catalogue)
     return dict(model.ship.notes.get("structural", {}).get("weather", {}))
@@ -151,25 +154,3 @@ def unjudged_because(
     if all(lacking):
         return min(lacking, key=len)
     return tuple(n for n in effect.needs_ship if getattr(model.ship, n, None) is None)
-
-
-def _lines(
-    tracks: Sequence[Track],
-    model: Model,
-    unknowns: Sequence[Unknown],
-    catalogue: dict[str, type[Effect]],
-    most: int | None = None,
-) -> tuple[Linear, ...]:
-    """The tracks with what waves do to them taken for that, linearised where they will be read (`most`
-    segments); what waves change of the ship's own forces, and what is only roughly known, no hypothesis takes
-    away."""
-    models = [model.without_inputs(t.missing())[0] for t in tracks]
-    parts = read_parts([levelled(t) for t in tracks], float(model.ship.scale("time")), most)
-    slack = [
-        np.hypot(stirred(t, m)[np.searchsorted(t.steps(), p.steps())], doubted(p, m))
-        for t, p, m in zip(tracks, parts, models, strict=True)
-    ]
-    return tuple(
-        replace(linearise(p, m, unknowns, catalogue), slack=s)
-        for p, m, s in zip(parts, models, slack, strict=True)
-    )

@@ -14,15 +14,13 @@ from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import Floor, Linear, innovate
 from twin.study.reference.directions import directions
 from twin.study.reference.evidence import Nuisance, Reduced, posterior, reduce
+from twin.study.reference.reading import MOST_SEGMENTS
+from twin.study.track.ripple import shaken
 from twin.study.track.track import Track
-from twin.study.track.unrest import shaken
-
-# of 16 ship lengths each; a small boat's hour holds more, and an even choice of them says enough
-MOST_SEGMENTS = 20
 
 
 @dataclass(frozen=True)
-class World:
+class Scenario:
     """One state of the world: factors on the floor's slow acceleration error (beside all that is usual; or
     `alone`, of the core alone) and on the water's own motion, and its odds."""
 
@@ -38,14 +36,14 @@ class World:
         return self.share == 1.0
 
 
-WORLDS: dict[str, World] = {
-    "usual": World(1.0, 1.0, 0.75),
-    "coarse": World(1.0, 1.0, 0.1, alone=True),
-    "rough": World(2.0, 1.0, 0.08, alone=True),
-    "streaming": World(1.0, 4.0, 0.04),
-    "flooding": World(1.0, 16.0, 0.01),  # only a varying current explains it
-    "strange": World(4.0, 1.0, 0.015, alone=True, unknown=True),
-    "stranger": World(8.0, 4.0, 0.005, alone=True, unknown=True),
+SCENARIOS: dict[str, Scenario] = {
+    "usual": Scenario(1.0, 1.0, 0.75),
+    "coarse": Scenario(1.0, 1.0, 0.1, alone=True),
+    "rough": Scenario(2.0, 1.0, 0.08, alone=True),
+    "streaming": Scenario(1.0, 4.0, 0.04),
+    "flooding": Scenario(1.0, 16.0, 0.01),  # only a varying current explains it
+    "strange": Scenario(4.0, 1.0, 0.015, alone=True, unknown=True),
+    "stranger": Scenario(8.0, 4.0, 0.005, alone=True, unknown=True),
 }
 UNEVEN = 20.0  # log evidence that a scatter of its own at every moment must add
 WAVES = 1.0  # fast part of the floor, of a standard acceleration, in the worst of weather
@@ -112,17 +110,17 @@ class Case:
         normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))
         return [reduce(n, self.nuisance, self.unknowns, self.effects, self.temper, at) for n in normals]
 
-    def worlds(self, names: Sequence[str], doubt: float = 0.0) -> list[Floor]:
+    def scenarios(self, names: Sequence[str], doubt: float = 0.0) -> list[Floor]:
         floors = (
             (self.path if w.alone else self.floor).scaled(w.share, flow=w.flow)
-            for w in map(WORLDS.__getitem__, names)
+            for w in map(SCENARIOS.__getitem__, names)
         )
         return [replace(floor, doubt=doubt) for floor in floors]
 
     @cached_property
     def told(self) -> np.ndarray:
         """(P, P) what these voyages tell of all unknowns, where they were linearised."""
-        return innovate(self.lines, self.worlds(["usual"]), MOST_SEGMENTS)[0].total()[0]
+        return innovate(self.lines, self.scenarios(["usual"]), MOST_SEGMENTS)[0].total()[0]
 
     def along(self, lines: Sequence[Linear], chosen: Sequence[str] = ()) -> tuple["Case", np.ndarray]:
         """The same with these lines and few columns: the directions in the place of the nuisance's own, and
@@ -146,11 +144,13 @@ class Case:
             nuisance=along.nuisance,
         ), kept
 
-    def log_prior(self, chosen: Sequence[str], world: str) -> float:
+    def log_prior(self, chosen: Sequence[str], scenario: str) -> float:
         changing = any(self.catalogue[name].is_weather() and self.catalogue[name].holds for name in chosen)
-        if (world == "flooding" and not changing) or self._twice(chosen):
+        if (scenario == "flooding" and not changing) or self._twice(chosen):
             return -np.inf
-        return float(np.log(WORLDS[world].probability) + sum(np.log(self.odds[name]) for name in chosen))
+        return float(
+            np.log(SCENARIOS[scenario].probability) + sum(np.log(self.odds[name]) for name in chosen)
+        )
 
     def _twice(self, chosen: Sequence[str]) -> bool:
         """Whether one of these effects is a part of another: together they say no more than that one."""
@@ -176,7 +176,7 @@ def settle(case: Case) -> Case:
         return [posterior(r, case.candidates).log_evidence for r in case.reduced(lines, floors)]
 
     lines, told = case.lines, scores(case.lines)
-    if any(x.track.unrest is not None for x in uneven) and max(shaky := scores(uneven)) > max(told) + UNEVEN:
+    if any(x.track.ripple is not None for x in uneven) and max(shaky := scores(uneven)) > max(told) + UNEVEN:
         lines, told = uneven, shaky
     best = int(np.argmax(told))
     return replace(case, lines=lines, floor=floors[best], path=_rougher(case.path, *grid[best]))
@@ -184,7 +184,7 @@ def settle(case: Case) -> Case:
 
 def _uneven(line: Linear, time: float) -> Linear:
     shown = shaken(line.shown, time)
-    return replace(line, shown=shown, track=replace(line.track, unrest=shown.unrest))
+    return replace(line, shown=shown, track=replace(line.track, ripple=shown.ripple))
 
 
 def _rougher(floor: Floor, white: float, sensor: float) -> Floor:

@@ -6,17 +6,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.clear import change, significance
 from twin.study.diagnosis.decision import CLEAR, SURE, explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
-from twin.study.diagnosis.led import roughly
 from twin.study.diagnosis.moments import Moment, moments
+from twin.study.diagnosis.open_loop_check import roughly
 from twin.study.diagnosis.refine import Found, Sets
 from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import Hypothesis
+from twin.study.reference.healthy import Healthy, compared, score
 from twin.study.reference.seaway import at_sea
+from twin.study.reference.structure import floor_of
 
 NO_GAP = 1e3  # log Bayes factor written where there is nothing to compare with
 
@@ -31,6 +33,7 @@ class Considered:
     like: Mapping[
         str, Sequence[str]
     ]  # effects that these voyages cannot tell from one of the likeliest hypothesis
+    healthy: Healthy | None  # how rare the voyages would be in health; None: the ship file has no scores
 
 
 def consider(
@@ -56,6 +59,7 @@ def consider(
     weather = [
         _cause(case, weighed, found, explanation, name, w, ()) for name, p in w.weather.items() if p >= SURE
     ]
+    healthy = against_healthy(case)
     strongest = max(pushes, key=lambda m: m.log_evidence, default=None)
     facts = Facts(
         nothing=w.nothing,
@@ -79,8 +83,21 @@ def consider(
         causes=tuple(sorted(causes, key=lambda c: -c.probability)),
         weather=tuple(sorted(weather, key=lambda c: -c.probability)),
         as_before=case.as_before,
+        reached=healthy.reached if healthy else None,
     )
-    return Considered(facts, base, pushes, like)
+    return Considered(facts, base, pushes, like, healthy)
+
+
+def against_healthy(case: Case) -> Healthy | None:
+    """How rare these voyages would be on this ship in health, by its reference voyages
+    (reference/healthy.py)."""
+    scores = case.model.ship.notes.get("structural", {}).get("left_out_scores", [])
+    floor = floor_of(case.model.ship, "beside")
+    if not scores or floor is None:
+        return None
+    causes = [n for n in case.causes(case.candidates) if n not in case.unnamed]
+    own = [score(case.reduced([line], [floor])[0], causes, case.weather) for line in case.lines]
+    return compared(own, scores)
 
 
 def without_causes(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found]) -> Sets:
@@ -131,11 +148,11 @@ def _explanation(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets,
 def left_over(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Found], chosen: Sets) -> Left:
     """What a set of effects leaves over."""
     own, nothing = found[chosen], found[without_causes(case, weighed, found)]
-    worlds = [h for h in weighed if h.effects == chosen]
-    plain = next((h for h in worlds if WORLDS[h.world].plain), None)
+    scenarios = [h for h in weighed if h.effects == chosen]
+    plain = next((h for h in scenarios if SCENARIOS[h.scenario].plain), None)
     return Left(
         error=_ratio(own.off_m, own.floor_m), share=_ratio(own.off_m, nothing.off_m),
-        restless=worlds[0].log_weight - plain.log_weight if plain else NO_GAP,
+        restless=scenarios[0].log_weight - plain.log_weight if plain else NO_GAP,
     )  # fmt: skip
 
 

@@ -14,11 +14,12 @@ from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.assemble import assemble, unjudged_because
-from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.case import SCENARIOS, Case
+from twin.study.diagnosis.confidence import confidence
 from twin.study.diagnosis.consider import Considered, consider
 from twin.study.diagnosis.decision import decide
-from twin.study.diagnosis.led import held_out_error, horizon_s
 from twin.study.diagnosis.manoeuvres import next_manoeuvre
+from twin.study.diagnosis.open_loop_check import held_out_error, horizon_s
 from twin.study.diagnosis.overtime import over_time
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.search import search
@@ -32,6 +33,7 @@ from twin.study.diagnosis.verdict import (
     weights,
 )
 from twin.study.estimation.start import waves_on
+from twin.study.reference.healthy import Healthy
 
 SCHEMA_VERSION = 1
 SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
@@ -87,6 +89,7 @@ def diagnose(
         "missing": list(decision.missing),
         "more": decision.more,
         "one_of": list(facts.one_of) if decision.reason == "one_of" else [],
+        **_healthy(considered.healthy),
         "probabilities": {"nothing_missing": capped(nothing), "unknown": capped(unknown)},
         "candidates": listed,
         "rivals": rivals(weighed, found),
@@ -129,6 +132,16 @@ def diagnose(
     return Diagnosis(plain(result), case, found)
 
 
+def _healthy(found: Healthy | None) -> dict[str, Any]:
+    """How rare the voyages would be in health, as JSON has it."""
+    return {
+        "p_value": found.p if found else None,
+        "p_value_at_best": found.at_best if found else None,
+        "p_value_references": found.references if found else 0,
+        "p_value_score": found.score if found else None,
+    }
+
+
 def _candidate(
     case: Case,
     weighed: Sequence[Any],
@@ -149,6 +162,7 @@ def _candidate(
         "effect": name,
         "belongs_to": case.catalogue[name].belongs_to,
         "probability": capped(probability),
+        "confidence": _confidence(considered, name),
         "parameters": parameters(case, sized(case, best), name),
         "typical_force": typical_force(case, best.model, name),
         "error_horizon_s": horizon_s(case.tracks[0], case.model),
@@ -159,6 +173,12 @@ def _candidate(
         "cannot_be_told_from": list(considered.like.get(name) or alike(case, weighed, name)),
         "says": (case.catalogue[name].__doc__ or "").strip().splitlines()[0],
     }
+
+
+def _confidence(considered: Considered, name: str) -> float | None:
+    """How often such a cause was there on other ships; None where that was not measured."""
+    cause = next((c for c in considered.facts.causes if c.effect == name), None)
+    return confidence(considered.facts, cause) if cause else None
 
 
 def _without(case: Case, found: dict[tuple[str, ...], Found], considered: Considered, name: str) -> float:
@@ -180,7 +200,7 @@ def _weather(
     )
     out = {"effect": name, "belongs_to": case.catalogue[name].belongs_to, "probability": capped(probability)}
     if best is None:
-        flow = WORLDS[weighed[0].world].flow * case.floor.flow * float(case.model.ship.U_0)
+        flow = SCENARIOS[weighed[0].scenario].flow * case.floor.flow * float(case.model.ship.U_0)
         return out | {
             "parameters": [{"name": "scatter", "value": flow, "unit": "m/s"}],
             "typical_force": None,

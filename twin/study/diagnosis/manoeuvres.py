@@ -16,7 +16,7 @@ from twin.study.estimation.innovations import linearise
 from twin.study.prediction.trial import controls
 from twin.study.track.track import READINGS, Track
 
-LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of her lengths
+LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of its lengths
 STEPS_PER_LENGTH = 12
 DEG = pi / 180.0
 

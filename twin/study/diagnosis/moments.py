@@ -1,9 +1,9 @@
-"""Moments at which something pushed her that was not there before and after: a ship that passed, a gust, a
+"""Moments at which something pushed it that was not there before and after: a ship that passed, a gust, a
 net that was caught and lost.
 
 What lasts all voyage is an effect. What lasts a few ship lengths is lost in the whole of it, and a ship with
-which nothing else is wrong would be acquitted. So, beside the best hypothesis, each stretch of a few lengths
-is asked whether it is likelier with a push of its own: a constant acceleration in surge, sway and yaw of
+which nothing else is wrong would be called sound. So, beside the best hypothesis, each stretch of a few
+lengths is asked whether it is likelier with a push of its own: a constant acceleration in surge, sway and yaw of
 about the size of the ship's own forces, integrated out."""
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ import numpy as np
 from twin.physics import core
 from twin.physics.model import Model
 from twin.study.diagnosis.case import MOST_SEGMENTS, Case
-from twin.study.diagnosis.led import plain
+from twin.study.diagnosis.open_loop_check import plain
 from twin.study.diagnosis.refine import Found, standing
 from twin.study.estimation.innovations import Floor, Linear, innovate
 from twin.study.estimation.respond import standard
@@ -25,8 +25,8 @@ from twin.study.track.segments import segments
 
 LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before
 CLEAR = 15.0  # log evidence, tempered, that a push of its own must add
-TOSSED = 30.0  # and where waves toss her: a group of them pushes, too
-SWELL_S = 25.0  # the longest waves; what swings her more slowly may be what is asked for
+IN_WAVES = 30.0  # and where waves toss it: a group of them pushes, too
+SWELL_S = 25.0  # the longest waves; what swings it more slowly may be what is asked for
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ def moments(case: Case, found: Found) -> list[Moment]:
     """The stretches that clearly had a push of their own under a hypothesis, the likeliest first; none that
     overlaps a likelier one."""
     out: list[Moment] = []
-    enough = {t.name: TOSSED if 0.0 < wave_period_s(t) < SWELL_S else CLEAR for t in case.tracks}
+    enough = {t.name: IN_WAVES if 0.0 < wave_period_s(t) < SWELL_S else CLEAR for t in case.tracks}
     for m in sorted(stretches(case, found), key=lambda m: -m.log_evidence):
         if m.log_evidence > enough[m.voyage] and not any(
             m.voyage == o.voyage and m.start_s < o.end_s and o.start_s < m.end_s for o in out
@@ -70,7 +70,7 @@ def moments(case: Case, found: Found) -> list[Moment]:
 def stretches(case: Case, found: Found) -> list[Moment]:
     """Every stretch of each length, with what it says."""
     lines, at = standing(case, found)
-    floor = case.worlds([plain(found.hypothesis).world], found.doubt)[0]
+    floor = case.scenarios([plain(found.hypothesis).scenario], found.doubt)[0]
     normal = innovate(lines, [floor], MOST_SEGMENTS)[0]
     theta = likeliest(
         normal, case.nuisance, case.unknowns, case.effects, case.temper, at, found.hypothesis.effects

@@ -25,7 +25,7 @@ def over_time(case: Case, found: Found, names: Sequence[str]) -> dict[str, list[
     """For each of these effects of the hypothesis: voyage, start_s, end_s, share and its standard deviation,
     part by part."""
     lines, at = standing(case, found)
-    normal = innovate(lines, case.worlds([found.hypothesis.world], found.doubt))[0]
+    normal = innovate(lines, case.scenarios([found.hypothesis.scenario], found.doubt))[0]
     directions = np.array([np.where([u.owner == name for u in case.effects], at, 0.0) for name in names])
     out: dict[str, list[dict[str, Any]]] = {name: [] for name in names}
     for rows in _parts([track for track, _, _ in normal.where]):

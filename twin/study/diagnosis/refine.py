@@ -3,7 +3,7 @@ counts in full.
 
 An effect is granted that its form is only roughly right: a share of its own force may be something else, the
 one of DOUBTS under which the voyages are most probable (no share of what the ship meets because a stream
-carries her: that is the hull's own force)."""
+carries it: that is the hull's own force)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.estimation.columns import ROUGH, Unknown, changed, with_values
 from twin.study.estimation.innovations import Linear, linearise
 from twin.study.estimation.respond import respond, standard
@@ -45,7 +45,7 @@ class Found:
     posterior: Posterior
     model: Model
     doubt: float = 0.0  # share of its own force that may be something else
-    off_m: float = float("nan")  # held-out position error, when it was asked (led.py)
+    off_m: float = float("nan")  # held-out position error, when it was asked (open_loop_check.py)
     # and what it would be were this the truth, in a world as it was on the reference voyages
     floor_m: float = float("nan")
     # what the voyages say about that place, in its world
@@ -55,14 +55,14 @@ class Found:
 def refine(
     case: Case,
     chosen: Sets,
-    world: str,
+    scenario: str,
     z: np.ndarray,
     wider: Sequence[str],
     hoped: float = -np.inf,
     known: Sets = (),
 ) -> tuple[Found, list[Hypothesis]]:
-    """Newton steps on the effects' own parameters, begun at `z` and taken in `world`, until they stand; begun
-    again farther out when that explains nothing plainly, or when a number whose effect is bent ended at
+    """Newton steps on the effects' own parameters, begun at `z` and taken in `scenario`, until they stand;
+    begun again farther out when that explains nothing plainly, or when a number whose effect is bent ended at
     nothing, or the whole below the log weight that was `hoped` for to first order (not those of effects that
     were found already, `known`: they were looked for far out when they were). What was found; and, about it,
     the hypothesis in every world, every one that has one of `wider` beside it, and every one without what any
@@ -70,7 +70,7 @@ def refine(
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     narrow, kept = case.along(case.lines, chosen)
     at = np.zeros_like(z)
-    top = _place(narrow, chosen, world, z[kept], hoped, known)
+    top = _place(narrow, chosen, scenario, z[kept], hoped, known)
     at[kept] = top.at
     model, lines = about(case, at, mine, case.unknowns)
     whole, _ = case.along(lines)
@@ -78,25 +78,25 @@ def refine(
     reduced = _everywhere(whole, chosen, whole.lines, at, doubt, top.near)
     judged, own = _judged(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
-    far = [h for world, h in top.judged.items() if world not in reduced]
+    far = [h for scenario, h in top.judged.items() if scenario not in reduced]
     others = [*_beside(case, chosen, reduced, wider), *_any_day(case, chosen, reduced)]
-    here = reduced[best.world]
-    return Found(best, boxed(here, chosen, own[best.world]), model, doubt, reduced=here), [
+    here = reduced[best.scenario]
+    return Found(best, boxed(here, chosen, own[best.scenario]), model, doubt, reduced=here), [
         *judged,
         *far,
         *others,
     ]
 
 
-def _place(case: Case, chosen: Sets, world: str, z: np.ndarray, hoped: float, known: Sets = ()) -> "_Top":
+def _place(case: Case, chosen: Sets, scenario: str, z: np.ndarray, hoped: float, known: Sets = ()) -> "_Top":
     """The best of the climbs that `refine` speaks of."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     new = np.array([i for i in mine if case.effects[i].owner not in known], dtype=int)
-    top = _Top.of(case, chosen, *_climb(case, chosen, mine, world, z)[1:])
+    top = _Top.of(case, chosen, *_newton(case, chosen, mine, scenario, z)[1:])
     first = clipped(case, z)
     first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
     for k, factor in enumerate(FARTHER):
-        plain, fallen = WORLDS[top.best.world].plain, top.best.log_weight < hoped
+        plain, fallen = SCENARIOS[top.best.scenario].plain, top.best.log_weight < hoped
         bent = [] if plain and not fallen and top.at[new].all() else _bent(case, new, top.at)
         lost = [i for i in bent if fallen or top.at[i] == 0.0]
         # numbers that work in proportion have one best place, which the first climb from afar found
@@ -124,12 +124,12 @@ class _Top:
 
     @classmethod
     def of(cls, case: Case, chosen: Sets, at: np.ndarray, lines: Sequence[Linear]) -> "_Top":
-        names = [n for n in WORLDS if np.isfinite(case.log_prior(chosen, n))]
+        names = [n for n in SCENARIOS if np.isfinite(case.log_prior(chosen, n))]
         return cls(
             at,
             lines,
             {
-                h.world: h
+                h.scenario: h
                 for h in _judged(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0], names))[0]
             },
         )
@@ -141,7 +141,7 @@ class _Top:
         return [
             n
             for n, h in self.judged.items()
-            if WORLDS[n].plain or h.log_weight > self.best.log_weight - BEHIND
+            if SCENARIOS[n].plain or h.log_weight > self.best.log_weight - BEHIND
         ]
 
     @property
@@ -151,29 +151,35 @@ class _Top:
     def or_from(self, case: Case, chosen: Sets, mine: np.ndarray, z: np.ndarray) -> "_Top":
         """This place, or a better one to which a climb in the usual world leads from `z`; other worlds are
         asked only if that one is better."""
-        here, at, lines = _climb(case, chosen, mine, "usual", z)
+        here, at, lines = _newton(case, chosen, mine, "usual", z)
         if here.log_weight <= self.judged["usual"].log_weight:
             return self
         return max(self, _Top.of(case, chosen, at, lines), key=lambda top: top.best.log_weight)
 
 
-def _climb(
-    case: Case, chosen: Sets, mine: np.ndarray, world: str, z: np.ndarray
+def _newton(
+    case: Case, chosen: Sets, mine: np.ndarray, scenario: str, z: np.ndarray
 ) -> tuple[Hypothesis, np.ndarray, Sequence[Linear]]:
     """Where the effects' parameters come to stand: the hypothesis there (in that world, by columns of its own
     alone), the place, and the tracks about it. A step after which the voyages are less probable is taken back
     by half, and by half again: what is bent may lead a whole step astray."""
     lines: Sequence[Linear] = case.lines
-    merit, best, aim, share, here = -np.inf, np.zeros_like(z), z, 1.0, Hypothesis(chosen, world, -np.inf, 0.0)
+    merit, best, aim, share, here = (
+        -np.inf,
+        np.zeros_like(z),
+        z,
+        1.0,
+        Hypothesis(chosen, scenario, -np.inf, 0.0),
+    )
     for _ in range(NEWTON):
         at = np.zeros_like(z)
         at[mine] = clipped(case, best + share * (aim - best))[mine]
         tried = about(case, at, mine, [case.effects[i] for i in mine])[1]
-        reduced = _told(case, tried, world, at)
+        reduced = _told(case, tried, scenario, at)
         if reduced and (now := reduced.base - 0.5 * float(at @ at)) > merit:
             own = posterior(reduced, chosen)
             here = Hypothesis(
-                chosen, world, log_evidence(reduced, chosen, own), case.log_prior(chosen, world)
+                chosen, scenario, log_evidence(reduced, chosen, own), case.log_prior(chosen, scenario)
             )
             merit, best, lines, share, aim = now, at, tried, 1.0, boxed(reduced, chosen, own).z
         else:
@@ -183,11 +189,11 @@ def _climb(
     return here, best, lines
 
 
-def _told(case: Case, lines: Sequence[Linear], world: str, at: np.ndarray) -> Reduced | None:
-    """What the voyages say there; nothing where no filter can follow such a ship (without her mass, she
+def _told(case: Case, lines: Sequence[Linear], scenario: str, at: np.ndarray) -> Reduced | None:
+    """What the voyages say there; nothing where no filter can follow such a ship (without its mass, it
     answers within a step)."""
     try:
-        return case.reduced(lines, case.worlds([world], DOUBTS[0]), at)[0]
+        return case.reduced(lines, case.scenarios([scenario], DOUBTS[0]), at)[0]
     except np.linalg.LinAlgError:
         return None
 
@@ -223,7 +229,7 @@ def _everywhere(
     case: Case, chosen: Sets, lines: Sequence[Linear], at: np.ndarray, doubt: float, names: Sequence[str]
 ) -> dict[str, Reduced]:
     """In each of these worlds."""
-    return dict(zip(names, case.reduced(lines, case.worlds(names, doubt), at), strict=True))
+    return dict(zip(names, case.reduced(lines, case.scenarios(names, doubt), at), strict=True))
 
 
 def _judged(
@@ -239,16 +245,18 @@ def _judged(
 def _doubt(case: Case, chosen: Sets, top: _Top) -> float:
     """The share of DOUBTS under which the voyages are most probable."""
     shares = (*IRREGULAR, *DOUBTS) if any(case.catalogue[name].irregular for name in chosen) else DOUBTS
-    reduced = case.reduced(top.lines, [case.worlds([top.best.world], share)[0] for share in shares], top.at)
+    reduced = case.reduced(
+        top.lines, [case.scenarios([top.best.scenario], share)[0] for share in shares], top.at
+    )
     return shares[int(np.argmax([posterior(r, chosen).log_evidence for r in reduced]))]
 
 
 def _beside(case: Case, chosen: Sets, reduced: dict[str, Reduced], wider: Sequence[str]) -> list[Hypothesis]:
     out = []
-    for world, r in reduced.items():
+    for scenario, r in reduced.items():
         for name, evidence in weigh_with(r, chosen, wider):
             both = tuple(n for n in case.candidates if n in (*chosen, name))
-            out.append(Hypothesis(both, world, evidence, case.log_prior(both, world)))
+            out.append(Hypothesis(both, scenario, evidence, case.log_prior(both, scenario)))
     return out
 
 

@@ -14,10 +14,10 @@ import numpy as np
 
 from twin.physics.effect import SensorFault
 from twin.study.diagnosis.altered import floats
-from twin.study.diagnosis.case import ODDS_WEAK, WORLDS, Case
+from twin.study.diagnosis.case import ODDS_WEAK, SCENARIOS, Case
 from twin.study.diagnosis.consider import left_over
 from twin.study.diagnosis.decision import NEARLY, explained
-from twin.study.diagnosis.led import Led, led
+from twin.study.diagnosis.open_loop_check import OpenLoopCheck, open_loop_check
 from twin.study.diagnosis.refine import Found, Sets, refine
 from twin.study.diagnosis.steady import steady
 from twin.study.estimation.columns import Unknown
@@ -47,11 +47,11 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
     """All hypotheses with their weights, best first; the few that were judged about their own size; and
     whether each candidate, had it its plausible size, would have shown."""
     progress("every effect and every pair")
-    worlds = dict(zip(WORLDS, case.reduced(case.lines, case.worlds(list(WORLDS))), strict=True))
-    seen = {name: visible(worlds["usual"], name) for name in case.candidates if name not in case.unnamed}
+    scenarios = dict(zip(SCENARIOS, case.reduced(case.lines, case.scenarios(list(SCENARIOS))), strict=True))
+    seen = {name: visible(scenarios["usual"], name) for name in case.candidates if name not in case.unnamed}
     weak = [name for name in seen if not seen[name] and case.catalogue[name].needs]
     case = replace(case, odds=dict(case.odds) | dict.fromkeys(weak, ODDS_WEAK))
-    book = _Book(case, worlds)
+    book = _Book(case, scenarios)
     searched = _searched(book, progress, seen)
     if book.last and not _explained(case, *searched[:2]):
         book.wide = True
@@ -67,8 +67,8 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
             break
         progress("judging " + " + ".join(chosen) + " about its own size")
         book.judge(chosen)
-    progress("asking where each would have led her")
-    book.asked = asked = led(book.case, book.found, book.weighed(), book.asked)
+    progress("running each open loop over held-out parts")
+    book.asked = asked = open_loop_check(book.case, book.found, book.weighed(), book.asked)
     return book.proved(asked), book.found | dict(asked.found), seen
 
 
@@ -88,7 +88,7 @@ def visible(reduced: Reduced, name: str) -> bool:
     )
 
 
-def _linear(case: Case, reduced: Reduced, world: str) -> list[tuple[Sets, float]]:
+def _linear(case: Case, reduced: Reduced, scenario: str) -> list[tuple[Sets, float]]:
     """Log evidence of weather alone and with each cause, and of every pair of causes beside the likeliest
     sets of weather."""
     some = [name for name in case.weather if case.odds[name] > ODDS_WEAK]
@@ -104,7 +104,7 @@ def _linear(case: Case, reduced: Reduced, world: str) -> list[tuple[Sets, float]
     )
     likely: dict[Sets, float] = {}
     for chosen, evidence in told:
-        day, weight = case.day(chosen), evidence + case.log_prior(chosen, world)
+        day, weight = case.day(chosen), evidence + case.log_prior(chosen, scenario)
         likely[day] = max(weight, likely.get(day, -np.inf))
     best = sorted(likely, key=lambda day: -likely[day])[:DAYS]
     more = [few for size in range(2, AT_FIRST + 1) for few in combinations(causes, size)]
@@ -114,23 +114,25 @@ def _linear(case: Case, reduced: Reduced, world: str) -> list[tuple[Sets, float]
 class _Book:
     """What is known of every hypothesis so far: first about nothing, then about the sizes that were found."""
 
-    def __init__(self, case: Case, worlds: dict[str, Reduced]) -> None:
-        self.case, self.worlds = case, worlds
+    def __init__(self, case: Case, scenarios: dict[str, Reduced]) -> None:
+        self.case, self.scenarios = case, scenarios
         self.wide = False  # whether every promising effect is judged, because the best so far leaves too much
-        self.asked: Led | None = None  # where those that could be the answer lead her
+        self.asked: OpenLoopCheck | None = None  # where those that could be the answer lead it
         self.entries: dict[tuple[Sets, str], Hypothesis] = {}
         # with a stream that may change and did not: no set that holds one of these is asked again
         self.steady: list[Sets] = []
-        for world, reduced in worlds.items():
-            for chosen, evidence in _linear(case, reduced, world):
-                self._enter(Hypothesis(chosen, world, evidence, case.log_prior(chosen, world)))
+        for scenario, reduced in scenarios.items():
+            for chosen, evidence in _linear(case, reduced, scenario):
+                self._enter(Hypothesis(chosen, scenario, evidence, case.log_prior(chosen, scenario)))
         nothing = max((h for h in self.entries.values() if not h.effects), key=lambda h: h.log_weight)
         day = max(
             (h for h in self.entries.values() if not case.causes(h.effects)), key=lambda h: h.log_weight
         ).effects
-        self.found: dict[Sets, Found] = {(): Found(nothing, posterior(worlds[nothing.world], ()), case.model)}
+        self.found: dict[Sets, Found] = {
+            (): Found(nothing, posterior(scenarios[nothing.scenario], ()), case.model)
+        }
         ranked = self.weighed()
-        quiet = not case.causes(ranked[0].effects) and WORLDS[ranked[0].world].plain
+        quiet = not case.causes(ranked[0].effects) and SCENARIOS[ranked[0].scenario].plain
         first = 0 if quiet else SINGLES  # none when the plain answer is that nothing is there
         singles = self._promising()
         self.first = [
@@ -142,12 +144,12 @@ class _Book:
 
     def _enter(self, h: Hypothesis) -> None:
         if np.isfinite(h.log_weight) and not any(set(s) <= set(h.effects) for s in self.steady):
-            self.entries[h.effects, h.world] = h
+            self.entries[h.effects, h.scenario] = h
 
     def weighed(self) -> list[Hypothesis]:
         return sorted(self.entries.values(), key=lambda h: -h.log_weight)
 
-    def proved(self, asked: Led) -> list[Hypothesis]:
+    def proved(self, asked: OpenLoopCheck) -> list[Hypothesis]:
         """The same with the evidence of the path, and without those that would win unjudged."""
         weighed = asked.weigh(self.weighed())
         best = max(h.log_weight for h in weighed if h.effects in self.found)
@@ -156,12 +158,12 @@ class _Book:
     def _promising(self) -> list[Sets]:
         """The single effects that explain something, best first."""
         ranked, case = self.weighed(), self.case
-        none = {(h.effects, h.world): h.log_evidence for h in ranked if not case.causes(h.effects)}
+        none = {(h.effects, h.scenario): h.log_evidence for h in ranked if not case.causes(h.effects)}
         ones = [h for h in ranked if len(case.causes(h.effects)) == 1]
         earned = (
             h.effects
             for h in ones
-            if h.log_evidence > none.get((case.day(h.effects), h.world), -np.inf) + EARNED
+            if h.log_evidence > none.get((case.day(h.effects), h.scenario), -np.inf) + EARNED
         )
         best: dict[Sets, Sets] = {}
         for chosen in earned:
@@ -199,7 +201,7 @@ class _Book:
         for simpler in self._simpler(ranked[0].effects):
             if simpler not in self.found:
                 return simpler
-        while self.last and (self.wide or not WORLDS[ranked[0].world].plain):
+        while self.last and (self.wide or not SCENARIOS[ranked[0].scenario].plain):
             if (chosen := self.last.pop(0)) not in self.found:
                 return chosen
         return None
@@ -234,13 +236,15 @@ class _Book:
         )
         # of three, one in another's place was never weighed
         guess = next((h for h in self.weighed() if h.effects == chosen), None)
-        world, hoped = (guess.world, guess.log_weight) if guess else (start.hypothesis.world, -np.inf)
+        scenario, hoped = (
+            (guess.scenario, guess.log_weight) if guess else (start.hypothesis.scenario, -np.inf)
+        )
         part = start.hypothesis.effects
         # where a part of the set was found to stand
-        about = start.reduced if part and start.reduced else self.worlds[world]
+        about = start.reduced if part and start.reduced else self.scenarios[scenario]
         z = boxed(about, chosen, posterior(about, chosen)).z
         wider = self.case.candidates if len(self.case.causes(chosen)) < MOST else self.case.weather
-        self.found[chosen], judged = refine(self.case, chosen, world, z, wider, hoped, part)
+        self.found[chosen], judged = refine(self.case, chosen, scenario, z, wider, hoped, part)
         if self._hollow(chosen):
             self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}
             judged = [h for h in judged if h.effects != chosen]
@@ -272,7 +276,7 @@ class _Book:
         if h.effects == chosen:
             return True
         if set(h.effects) < set(chosen):
-            before = self.entries.get((h.effects, h.world))
+            before = self.entries.get((h.effects, h.scenario))
             return before is not None and h.log_weight > before.log_weight
         return h.effects not in self.found and self._nearer(chosen, h)
 
@@ -281,5 +285,5 @@ class _Book:
         more: a slow gear is nothing to first order, and shows beside another effect only about its own
         size."""
         parts = [s for s in self.found if s and s != chosen and set(s) < set(wider.effects)]
-        before = self.entries.get((wider.effects, wider.world))
+        before = self.entries.get((wider.effects, wider.scenario))
         return not parts or before is None or wider.log_weight > before.log_weight

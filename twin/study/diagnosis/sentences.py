@@ -3,8 +3,10 @@ bridge."""
 
 from typing import Any
 
+from twin.num import num
+
 Result = dict[str, Any]
-SMALL = "It is too small to show in where these voyages led the ship: `twin add` may ask for others."
+SMALL = "It is too small to reduce the open-loop error of these voyages: `twin add` may ask for others."
 
 
 def named(result: Result) -> str:
@@ -134,11 +136,12 @@ def why_not(c: Result, reason: str) -> str:
     """Why what is likely is not named."""
     none = "the ship file has it" if any("in_ship_file" in p for p in c["parameters"]) else "none"
     with_it = (
-        f"{c['error_with']:.3g} m with it, {c['error_without']:.3g} m without"
+        f"{num(c['error_with'], 3)} m with it, {num(c['error_without'], 3)} m without"
         if c["error_with"] is not None
         else "nobody asked"
     )
     return {
+        "as_on_references": "single causes explained as much of healthy reference voyages of this ship",
         "not_significant": f"not one of its numbers is clearly other than {none}",
         "change_within_form": f"not one of its numbers is clearly other than {none}",
         "no_nearer": f"adding it does not reduce the open-loop error ({with_it})",
@@ -192,7 +195,7 @@ def _is_weather(result: Result, name: str) -> bool:
 def _more(result: Result) -> str:
     error = result["facts"]["left"]["error"]
     return (
-        f" Something more is missing: with all that the open-loop error is still {error:.2g} times the "
+        f" Something more is missing: with all that the open-loop error is still {num(error, 2)} times the "
         "expected one."
         if result["more"]
         else ""
@@ -206,8 +209,9 @@ def _near(result: Result) -> list[str]:
 def _error(result: Result) -> str:
     path = result["path"]
     return (
-        f"after {path['horizon_s']:.0f} s the model ends {path['error_without']:.3g} m from where the ship "
-        f"went ({path['error_floor']:.3g} m "
+        f"after {path['horizon_s']:.0f} s the model ends {num(path['error_without'], 3)} m from where the "
+        "ship "
+        f"went ({num(path['error_floor'], 3)} m "
         "is expected of this calibrated ship)"
     )
 
@@ -216,5 +220,5 @@ def _si(value: float, unit: str) -> str:
     """A size with the prefix that engineers use."""
     for prefix, factor in (("G", 1e9), ("M", 1e6), ("k", 1e3)):
         if abs(value) >= factor:
-            return f"{value / factor:.3g} {prefix}{unit}"
-    return f"{value:.3g} {unit}"
+            return f"{num(value / factor, 3)} {prefix}{unit}"
+    return f"{num(value, 3)} {unit}"

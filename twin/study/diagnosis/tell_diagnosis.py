@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from twin.num import num
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.overtime import changes
 from twin.study.estimation.start import told_of_waves
@@ -24,6 +25,7 @@ def told(result: dict[str, Any]) -> list[str]:
     lines.append(
         f"nothing missing: {chances['nothing_missing']:.0%}   something unknown: {chances['unknown']:.0%}"
     )
+    lines.append(_healthy(result))
     if result["next_manoeuvre"]:
         m = result["next_manoeuvre"]
         lines += [
@@ -47,6 +49,19 @@ def told(result: dict[str, Any]) -> list[str]:
     return lines
 
 
+def _healthy(result: dict[str, Any]) -> str:
+    """How rare the voyage would be on this ship in health."""
+    if result.get("p_value") is None:
+        return (
+            "against healthy voyages: not asked, the ship file lacks the scores of its reference voyages "
+            "(calibrate anew)"
+        )
+    return (
+        f"against healthy voyages: p = {result['p_value']:.2g} by {result['p_value_references']} reference "
+        f"voyages, which can show {result['p_value_at_best']:.2g} at best"
+    )
+
+
 def _today(weather: list[dict[str, Any]]) -> list[str]:
     """Today's water and wind, in a part of their own."""
     if not weather:
@@ -54,7 +69,7 @@ def _today(weather: list[dict[str, Any]]) -> list[str]:
     lines = ["", "today's water and wind:"]
     for w in weather:
         numbers = ", ".join(
-            f"{p['name']} {p['value']:.3g} {p['unit']}" for p in w["parameters"] if abs(p["value"]) > 0.0
+            f"{p['name']} {num(p['value'], 3)} {p['unit']}" for p in w["parameters"] if abs(p["value"]) > 0.0
         )
         pushed = (
             (f"; typically {say.force(w['typical_force'])}")
@@ -75,24 +90,26 @@ def _candidate(c: dict[str, Any]) -> list[str]:
         head += f" (together with {', '.join(c['together_with'])})"
     lines = [head]
     for p in c["parameters"]:
-        file = f"   (ship file: {p['in_ship_file']:.4g})" if "in_ship_file" in p else ""
+        file = f"   (ship file: {num(p['in_ship_file'], 4)})" if "in_ship_file" in p else ""
         end = "   (at the end of its box)" if p["at_box_end"] else ""
         lines.append(
-            f"          {p['name']:<12} {p['value']:>11.4g} {p['unit']:<5} 95 %: {p['low95']:.4g} "
-            f"to {p['high95']:.4g}{file}{end}"
+            f"          {p['name']:<12} {num(p['value'], 4):>11} {p['unit']:<5} 95 %: {num(p['low95'], 4)} "
+            f"to {num(p['high95'], 4)}{file}{end}"
         )
     force = c["typical_force"]
     if say.force(force):
         lines.append(f"          typically    {say.force(force)}")
-    floor = f" (a true cause may leave {c['error_floor']:.3g} m)" if c["error_floor"] is not None else ""
+    floor = f" (a true cause may leave {num(c['error_floor'], 3)} m)" if c["error_floor"] is not None else ""
     lines.append(
-        f"          {c['error_horizon_s']:.0f} s error  {c['error_without']:.3g} m without, "
-        f"{c['error_with']:.3g} m with it{floor}, "
+        f"          {c['error_horizon_s']:.0f} s error  {num(c['error_without'], 3)} m without, "
+        f"{num(c['error_with'], 3)} m with it{floor}, "
         "on parts not used for the fit"
     )
     if changes(c.get("over_time", ())):
         lines.append("          not the same all the time (1 = the size above):")
         lines += [_part(p) for p in c["over_time"]]
+    if c.get("confidence") is not None:
+        lines.append(f"          on other ships {c['confidence']:.0%} of causes with such facts were there")
     if c["cannot_be_told_from"]:
         lines.append(f"          not told from {', '.join(c['cannot_be_told_from'])}")
     return lines

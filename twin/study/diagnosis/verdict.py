@@ -9,9 +9,9 @@ import numpy as np
 
 from twin.physics import core
 from twin.physics.model import Model
-from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.decision import CERTAIN, CLEAR, LOST, SURE
-from twin.study.diagnosis.led import LUXURY
+from twin.study.diagnosis.open_loop_check import COMPLEXITY
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.without import without
 from twin.study.estimation.columns import Unknown
@@ -39,7 +39,7 @@ def rivals(weighed: Sequence[Hypothesis], found: Mapping[tuple[str, ...], Found]
     return [
         {
             "effects": list(h.effects),
-            "scenario": h.world,
+            "scenario": h.scenario,
             "log_bayes_factor": h.log_weight - weighed[0].log_weight,
             "error_m": found[h.effects].off_m if h.effects in found else None,
         }
@@ -83,19 +83,19 @@ def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
 def restless_water(case: Case, h: Hypothesis) -> list[str]:
     """The effect that water is which moves more than on the reference voyages: a stream that changes, whether
     its course has a name or not."""
-    if WORLDS[h.world].flow <= 1.0 or WORLDS[h.world].unknown:
+    if SCENARIOS[h.scenario].flow <= 1.0 or SCENARIOS[h.scenario].unknown:
         return []
     return [name for name in case.weather if case.catalogue[name].holds]
 
 
 def _nameless(case: Case, h: Hypothesis, alone: Mapping[str, float]) -> bool:
     """Whether what is at work under a hypothesis has no name: the world is so restless without a sea that
-    pushes her, or what is known by its form alone is there and does not merely mend the form of an effect
+    pushes it, or what is known by its form alone is there and does not merely mend the form of an effect
     that does clearly more `alone` (log weight of each effect by itself)."""
     known = [alone.get(name, -np.inf) for name in case.names(h.effects)]
     formed = [alone.get(name, -np.inf) for name in h.effects if name in case.unnamed]
-    restless = WORLDS[h.world].unknown and not any(of_the_sea(case, name) for name in h.effects)
-    return restless or (bool(formed) and max(known, default=-np.inf) <= max(formed) + LUXURY)
+    restless = SCENARIOS[h.scenario].unknown and not any(of_the_sea(case, name) for name in h.effects)
+    return restless or (bool(formed) and max(known, default=-np.inf) <= max(formed) + COMPLEXITY)
 
 
 def of_the_sea(case: Case, name: str) -> bool:
@@ -143,7 +143,7 @@ def power(case: Case, seen: Mapping[str, bool]) -> float:
 
 def parameters(case: Case, found: Posterior, name: str) -> list[dict[str, object]]:
     """Each parameter of one effect that what was recorded tells of, with its 95 % interval, inside its box;
-    that the form is only roughly right is part of it. Of an effect that the ship has already, also what her
+    that the form is only roughly right is part of it. Of an effect that the ship has already, also what its
     file says."""
     params = {p.name: p for p in case.catalogue[name].params()}
     recorded = {key for track in case.tracks for key in track.weather}

@@ -14,7 +14,7 @@ from twin.physics.actuators import NUMBERS
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, Ship
-from twin.study.estimation import form, rough, tossed
+from twin.study.estimation import form, rough, wave_induced
 from twin.study.estimation.respond import faulty, respond
 from twin.study.track.track import Track
 
@@ -43,7 +43,7 @@ FIXED = ("t", "w", "x_R", "epsilon")  # scale other derivatives one for one: the
 
 LATE = "late"  # owner of the instruments' usual lateness: a column, but no part of any model
 FORM = "form"  # owner of what the core leaves out of calm water (form.py): the same
-SEA = "sea"  # owner of what one wave does at once (tossed.py): the same
+SEA = "sea"  # owner of what one wave does at once (wave_induced.py): the same
 # owner of what the forms of effects that were added since calibration miss (rough.py): the same
 ROUGH = "rough"
 NO_MODEL = (LATE, FORM, SEA, ROUGH)
@@ -61,8 +61,8 @@ def form_unknowns() -> list[Unknown]:
 
 
 def sea_unknowns() -> list[Unknown]:
-    """How much of what swings her in time with the waves is the helm's, and goes with the yaw."""
-    return _beside_the_model(SEA, tossed.TERMS)
+    """How much of what swings it in time with the waves is the helm's, and goes with the yaw."""
+    return _beside_the_model(SEA, wave_induced.TERMS)
 
 
 def rough_unknowns(model: Model) -> list[Unknown]:
@@ -156,8 +156,8 @@ def columns(
             continue
         if unknown.owner == SEA:
             A[:, :, j], R[:, :, j] = (
-                tossed.accelerations(track, model, unknown.name),
-                tossed.readings(track, model, unknown.name),
+                wave_induced.accelerations(track, model, unknown.name),
+                wave_induced.readings(track, model, unknown.name),
             )
             continue
         if unknown.owner != "core" and missing.intersection(catalogue[unknown.owner].needs):

@@ -13,7 +13,7 @@ import numpy as np
 MOTION, PLACE, SPEEDS, SLOW, FLOW = slice(0, 6), slice(0, 2), slice(3, 6), slice(6, 9), slice(9, 11)
 BENDS = [2, 3, 4, 5, 9, 10]  # what accelerations depend on: heading, velocities, the water's own
 STATES = 11
-# in a sea; WAVE is what pushes her in each axis
+# in a sea; WAVE is what pushes it in each axis
 SHIP, WAVE, WAVES = slice(0, STATES), slice(11, 14), slice(11, 23)
 LIGHT = np.float32  # of the many tangents; covariances and sums need more
 

@@ -32,7 +32,7 @@ SUITES = {  # which readings are left out
     "without position": ("x", "y"),
     "without position and ground speed": ("x", "y", "u", "v"),
 }
-LENGTHS = 3.0  # a window lasts while the ship sails so many of her lengths
+LENGTHS = 3.0  # a window lasts while the ship sails so many of its lengths
 NUDGE = 0.1  # of the prior width
 UNSEEN = 1e-4  # a direction whose answer is below this share of the strongest is not seen
 ROWS = 1500  # of the voyage used for the angles

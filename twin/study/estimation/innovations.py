@@ -135,7 +135,7 @@ def linearise(
     """Everything about one track that does not depend on the floor (`at`: values of unknowns that the model
     already holds), about the motion as it was if the model's sensor faults are there. `smooth`: these are
     judged along that motion alone. `exact`: what unknowns push is known beside that motion, too, where the
-    filter believes her to be."""
+    filter believes it to be."""
     shown, track = track, undone(track, model)
     # what is late shows another moment: no slope of this one says a wave two seconds ago
     late_s, prompt = model.prompt()
@@ -157,7 +157,7 @@ def linearise(
     if model.faults:
         slopes = faulty(track, prompt)
         track, reader = waves.as_shown(track, slopes), slopes @ reader
-    if late_s:  # what was true between two steps is read at the nearer one, on her way to the other
+    if late_s:  # what was true between two steps is read at the nearer one, on its way to the other
         off = round(late_s / track.h) - late_s / track.h
         reader[:, SATELLITES] = reader[:, SATELLITES] @ (np.eye(STATES) + off * (system - np.eye(STATES)))
     A, R = (x.astype(np.float32, copy=False) for x in (A, R))
@@ -352,7 +352,7 @@ def _reading(track: Track, floor: Floor) -> np.ndarray:
     """(N, 8) variance of each reading."""
     return np.square(
         floor.sensor
-        * np.broadcast_to(track.sd if track.unrest is None else track.sd * track.unrest, (len(track), 8))
+        * np.broadcast_to(track.sd if track.ripple is None else track.sd * track.ripple, (len(track), 8))
     )
 
 

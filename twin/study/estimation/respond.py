@@ -30,7 +30,7 @@ def accelerations(track: Track, model: Model) -> np.ndarray:
 
 
 def standard(model: Model) -> np.ndarray:
-    """(3,) accelerations by the force and moment scale of the ship as her file has her [m/s2, m/s2, rad/s2]:
+    """(3,) accelerations by the force and moment scale of the ship as its file has it [m/s2, m/s2, rad/s2]:
     no hypothesis is likelier for what it makes of the noise."""
     c: core.Coefficients = model.ship.c
     force, moment = float(model.ship.scale("force")), float(model.ship.scale("moment"))

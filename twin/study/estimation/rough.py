@@ -1,4 +1,4 @@
-"""Weather that the model knows, and effects that were added since she was calibrated: their forms are only
+"""Weather that the model knows, and effects that were added since it was calibrated: their forms are only
 roughly right, and another day shows it.
 
 What such a form misses changes from moment to moment (the filter's slack), and it lasts: of a wind that blows
@@ -28,13 +28,13 @@ TERMS = tuple(f"{axis}_{course}" for axis in AXES for course in COURSES)
 
 
 def added(model: Model) -> list[tuple[Model, float]]:
-    """Of every effect of the model that was not there when she was calibrated, and of weather (another one on
+    """Of every effect of the model that was not there when it was calibrated, and of weather (another one on
     each day): the model without it, and by what share of its force its form may be wrong."""
     return [(_but(model, e), COMES_AND_GOES if e.irregular else KNOWN) for e in _since(model)]
 
 
 def elsewhere(model: Model, names: Collection[str] | None = None) -> list[tuple[Model, Model]]:
-    """Of every such effect (or those of `names`) whose side force may attack elsewhere along her: the model
+    """Of every such effect (or those of `names`) whose side force may attack elsewhere along it: the model
     with it farther ahead, and aft."""
     mine = [
         e

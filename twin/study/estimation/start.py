@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.signal import savgol_filter
 
+from twin.num import num
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.estimation.respond import later, stretches
@@ -49,26 +50,26 @@ def _earlier(track: Track, late_s: float) -> np.ndarray:
 
 def steadied(track: Track) -> Track:
     """The track with the motion that is slower than the waves, where a sea was seen to work (seaway.py): a
-    heading that a wave turned by a degree would lead her astray. A parabola is fitted about each point, over
+    heading that a wave turned by a degree would lead it astray. A parabola is fitted about each point, over
     so long that waves fall out of it (Savitzky & Golay 1964)."""
     steps = min(2 * round(0.5 * ABOUT * wave_period_s(track) / track.h) + 1, len(track) - 1 + len(track) % 2)
     return replace(track, state=savgol_filter(track.state, steps, 2, axis=0)) if steps > 3 else track
 
 
 def wave_period_s(track: Track) -> float:
-    """Of the waves that swing her most of the time."""
+    """Of the waves that swing it most of the time."""
     return 0.0 if track.swell is None else 2.0 * np.pi / float(np.median(track.swell[:, 1:3]))
 
 
 def waves_on(tracks: Sequence[Track]) -> list[dict[str, Any]]:
-    """On which voyages waves were seen to swing her, and how often."""
+    """On which voyages waves were seen to swing it, and how often."""
     return [{"voyage": t.name, "period_s": wave_period_s(t)} for t in tracks if t.swell is not None]
 
 
 def told_of_waves(waves: Sequence[dict[str, Any]]) -> list[str]:
     """The same in words."""
     said = "predictions begin in the motion without them, and they are no effect's doing"
-    return [f"On {w['voyage']} waves swing her about every {w['period_s']:.2g} s: {said}." for w in waves]
+    return [f"On {w['voyage']} waves swing it about every {num(w['period_s'], 2)} s: {said}." for w in waves]
 
 
 def undone(track: Track, model: Model) -> Track:

@@ -7,6 +7,7 @@ from math import radians
 from typing import Any
 
 from twin.errors import SettingsError
+from twin.num import num
 from twin.physics.actuators import Actuator
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship
@@ -58,8 +59,8 @@ Numbers = dict[str, tuple[float, str]]  # name -> value, source
 
 
 def first_model(name: str, given: Given, actuators: tuple[Actuator, ...] = ()) -> tuple[Ship, list[str]]:
-    """The ship, and in words what to doubt about her; SettingsError where a number cannot be right. A ship
-    with `actuators` may have two hulls, so that she fills little of length x beam x draught."""
+    """The ship, and in words what to doubt about it; SettingsError where a number cannot be right. A ship
+    with `actuators` may have two hulls, so that it fills little of length x beam x draught."""
     if not name.strip():
         raise SettingsError("NAME is empty. Give the ship a name.")
     _check(given)
@@ -84,7 +85,7 @@ def _two_fullnesses(given: Given, ship: Ship) -> list[str]:
     C_b = given["block-coefficient"]
     if given["mass-kg"] is None or C_b is None or abs(ship.C_b - C_b) < 5e-4:
         return []
-    return [f"--mass-kg gives C_b = {ship.C_b:.4g}, which is used; --block-coefficient {C_b:g} is not"]
+    return [f"--mass-kg gives C_b = {num(ship.C_b, 4)}, which is used; --block-coefficient {C_b:g} is not"]
 
 
 def _ship(name: str, particulars: Numbers, derivatives: Numbers) -> Ship:
@@ -114,8 +115,8 @@ def _particulars(given: Given, least: float = 0.2) -> Numbers:
     by_mass = None if mass is None else mass / (rho * box)
     if by_mass is not None and not least <= by_mass <= 0.99:
         raise SettingsError(
-            f"--mass-kg {mass:g} fills {by_mass:.0%} of length x beam x draught; a ship fills "
-            f"{least:.0%} to 99 %. Check the mass (kg) and the draught."
+            f"--mass-kg {mass:g} fills {by_mass:.0%} of length x beam x draught; a ship fills {least:.0%} to "
+            "99 %. Check the mass (kg) and the draught."
         )
     if by_mass is not None and C_b is not None and abs(by_mass / C_b - 1.0) > 0.05:
         raise SettingsError(
@@ -163,7 +164,7 @@ def _particulars(given: Given, least: float = 0.2) -> Numbers:
 
 
 def _derivatives(h: reg.Hull, p: Numbers, given: Given) -> Numbers:
-    """Derivatives with their sources; sets the propeller's diameter in p where only her shaft speed is
+    """Derivatives with their sources; sets the propeller's diameter in p where only its shaft speed is
     known."""
     out: Numbers = {f.name: (0.0, "ZERO") for f in DERIVATIVES}
     out |= reg.added_masses(h)
@@ -204,7 +205,7 @@ def _all_screws(h: reg.Hull, pitch: float, count: float) -> Numbers:
 
 
 def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
-    """Given, or usual for a hull as full as this, or such that the shaft speed given drives her at service
+    """Given, or usual for a hull as full as this, or such that the shaft speed given drives it at service
     speed."""
     usual, count = given["pitch-ratio"] or min(1.2, max(0.6, 1.7 - 1.2 * h.C_b)), _propellers(given)
     rpm = given["shaft-speed-rpm"]
@@ -223,7 +224,8 @@ def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
     pitch = _matching(lambda x: turns(D, x), rpm, 0.3, 2.0)
     if abs(turns(D, pitch) / rpm - 1.0) > 0.02:
         raise SettingsError(
-            f"--shaft-speed-rpm {rpm:g} cannot drive her at {h.U:.3g} m/s with a propeller of {D:.3g} m: no "
+            f"--shaft-speed-rpm {rpm:g} cannot drive it at {num(h.U, 3)} m/s with a propeller of {num(D, 3)} "
+            "m: no "
             "usual pitch does. "
             "Check shaft speed, service speed, propeller diameter and --propellers."
         )
@@ -248,7 +250,7 @@ def _in_ranges(ship: Ship) -> None:
             value = getattr(owner, f.name)
             if not f.metadata["lo"] <= value <= f.metadata["hi"]:
                 raise SettingsError(
-                    f"the regressions give {where}.{f.name} = {value:.3g} {f.metadata['unit']} "
+                    f"the regressions give {where}.{f.name} = {num(value, 3)} {f.metadata['unit']} "
                     f"({f.metadata['doc']}), outside "
                     f"[{f.metadata['lo']:g}, {f.metadata['hi']:g}]: this hull is too unlike a ship. Check "
                     "length, beam and draught."
@@ -286,9 +288,9 @@ def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
     out = []
     if figures["straight_line_stability"] <= 0 and C_b < FULL:
         out.append(
-            f"that so fine a hull (C_b {C_b:.2f}) does not go straight by herself is rare, and more likely "
+            f"that so fine a hull (C_b {C_b:.2f}) does not go straight by itself is rare, and more likely "
             "an error of these regressions than of "
-            "your numbers: calibrate before you trust how she turns"
+            "your numbers: calibrate before you trust how it turns"
         )
     if not 1.8 <= figures["tactical_diameter_L"] <= 6.5:
         out.append(
@@ -308,7 +310,7 @@ def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
 def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: Given) -> str:
     """What was given, what was estimated and from where, and the sea trial."""
     notes = ship.notes["particulars"]
-    lines = [f"{ship.name}: a first model from her main particulars", ""]
+    lines = [f"{ship.name}: a first model from its main particulars", ""]
     for f in PARTICULARS:
         source = notes[f.name]["source"]
         mark = "" if source == "given" else f"estimated: {reg.SOURCES.get(source, source).split(':')[0]}"
@@ -317,14 +319,14 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
             f"{f.metadata['doc']:38} {mark}".rstrip()
         )
     others = [f"--{option} {given[option]:g}" for option in INSIDE if given[option] is not None]
-    lines += ["", f"  also given, and in her derivatives: {', '.join(others)}"] if others else []
+    lines += ["", f"  also given, and in its derivatives: {', '.join(others)}"] if others else []
     bridge = "as given" if given["shaft-speed-rpm"] else "compare it with the bridge's"
-    unstable = "does not go straight by herself" + ", as many full ships" * (ship.C_b >= FULL)
-    stable = "goes straight by herself" if figures["straight_line_stability"] > 0 else unstable
+    unstable = "does not go straight by itself" + ", as many full ships" * (ship.C_b >= FULL)
+    stable = "goes straight by itself" if figures["straight_line_stability"] > 0 else unstable
     over = figures["overshoot_20_20_deg"]
     lines += [
         "",
-        "  sea trial of this model (estimates; how she turns is only roughly right until she is calibrated)",
+        "  sea trial of this model (estimates; how it turns is only roughly right until it is calibrated)",
         f"    {_driven(ship, figures, bridge)}",
         f"    turning circle 35 deg: advance {figures['advance_L']:.1f} L, tactical diameter "
         f"{figures['tactical_diameter_L']:.1f} L,"

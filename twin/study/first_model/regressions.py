@@ -1,4 +1,4 @@
-"""A ship's numbers from her main particulars: published regressions, each with its source and the hulls it
+"""A ship's numbers from its main particulars: published regressions, each with its source and the hulls it
 was made from.
 
 Prime form as in twin/physics/core.py. Names follow MMG where a regression does; `modulus.py` turns them into
@@ -6,6 +6,8 @@ the core's form."""
 
 from math import atan, log10, pi
 from typing import NamedTuple
+
+from twin.num import num
 
 Estimates = dict[str, tuple[float, str]]  # name -> value, key in SOURCES
 
@@ -35,7 +37,7 @@ SOURCES = {
     "ROUGH": "a guess by size only: expect a factor of 2",
     "GYR": "k_zz = 0.25 L, usual for merchant ships",
     "LSQ": "made from the sources named by least squares (modulus form)",
-    "RPM": "such that the shaft speed given drives her at service speed",
+    "RPM": "such that the shaft speed given drives it at service speed",
     "SEA": "sea water",
     "ZERO": "taken as zero",
 }
@@ -85,7 +87,8 @@ def outside(h: Hull) -> list[str]:
         if not lo <= h.ratios[name] <= hi:
             found.setdefault(name, []).append(f"{SOURCES[source].split(')')[0]}) {lo:g} to {hi:g}")
     return [
-        f"{name} = {h.ratios[name]:.3g} is unlike the hulls of {', '.join(where)}: rougher until calibrated"
+        f"{name} = {num(h.ratios[name], 3)} is unlike the hulls of {', '.join(where)}: rougher until "
+        "calibrated"
         for name, where in found.items()
     ]
 
@@ -94,7 +97,7 @@ def nearest(h: Hull) -> Hull:
     """The hull of usual proportions that is nearest to this one: a regression is never asked far outside its
     hulls.
 
-    A catamaran or a raft is taken for a ship of her length, draught and mass; calibration must do the rest.
+    A catamaran or a raft is taken for a ship of its length, draught and mass; calibration must do the rest.
     """
     B = min(h.L / 3.2, max(h.L / 9.0, h.B))
     return h._replace(B=B, C_b=min(0.87, max(0.42, h.C_b * h.B / B)))

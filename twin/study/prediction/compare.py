@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from twin.errors import DataError
+from twin.num import num
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
@@ -98,20 +99,19 @@ def verdict(result: dict[str, Any]) -> str:
     clearly = float(rows[-1]["noise_floor"].get("limit95", CLEARLY))
     row = rows[-1 if most[-1] >= clearly or max(most) < clearly else most.index(max(most))]
     floor, times = row["noise_floor"], [score.in_noise(row, k) for k in keys]
-    best = (
-        ("a model as good as its calibration") if row["noise_floor"]["of"] != "sensors" else "a perfect model"
-    )
-    head = f"After {row['horizon_s']:g} s the model is {row[keys[0]]:.3g} m and {row[keys[1]]:.2g} deg off"
-    would = f"{best} would look through these instruments ({floor[keys[0]]:.2g} m, {floor[keys[1]]:.2g} deg)"
+    of = "of the sensors alone" if floor["of"] == "sensors" else "for this calibrated ship"
+    error = f"{num(row[keys[0]], 3)} m and {num(row[keys[1]], 2)} deg"
+    expected = f"expected {of}: {num(floor[keys[0]], 2)} m and {num(floor[keys[1]], 2)} deg"
+    ratio = f"ratio {num(times[0], 2)} and {num(times[1], 2)}"
+    head = f"{row['horizon_s']:g} s open-loop error: {error}; {expected} ({ratio})"
     if max(times) < clearly:
-        return f"{head}: no worse than {would}."
-    tail = f", {times[0]:.2g} and {times[1]:.2g} times what {would}"
+        return f"{head}: no more than expected."
     where = result["where"][:1]
     return (
         head
-        + tail
         + "".join(
-            f"; it is {w['error_ratio']:.2g} times larger with {w['condition']} than elsewhere" for w in where
+            f"; it is {num(w['error_ratio'], 2)} times larger with {w['condition']} than elsewhere"
+            for w in where
         )
         + "."
     )

@@ -102,7 +102,7 @@ def predict(
 
 
 def _no_better(w: Windows, ship: Ship) -> Windows:
-    """The same with a structural run that is no nearer than the calibrated ship was on voyages that she was
+    """The same with a structural run that is no nearer than the calibrated ship was on voyages that it was
     not fitted to: what a core misses in the same way for minutes adds up to more than what wanders."""
     errors, ahead = w.errors(STRUCTURE), w.lead * w.track.h
     usual = {
@@ -166,7 +166,7 @@ def _leads(track: Track, horizons_s: Sequence[float], count: int) -> np.ndarray:
 
 def _starts(track: Track, placed: np.ndarray, shortest: int, stride_s: float) -> np.ndarray:
     """Evenly along the track; where it was logged more slowly than it is stepped, from the next step at which
-    she was placed."""
+    it was placed."""
     last = max(len(track) - max(shortest, 1), 1)
     stride = max(1, round(stride_s / track.h), int(np.ceil(last / MOST_WINDOWS)))
     start = np.arange(0, last, stride)

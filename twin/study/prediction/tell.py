@@ -3,6 +3,7 @@
 import textwrap
 from typing import Any
 
+from twin.num import num
 from twin.study.estimation.start import told_of_waves
 
 BAR = 24
@@ -33,7 +34,7 @@ def _units(error: float, floor: float) -> str:
     bar = 0
     while bar < BAR and 2.0 ** (bar * 5.0 / BAR) < times:
         bar += 1
-    return f"x{times:<6.3g}{'#' * bar}"
+    return f"x{num(times, 3):<6}{'#' * bar}"
 
 
 def _horizons(rows: list[dict[str, Any]]) -> list[str]:
@@ -41,7 +42,9 @@ def _horizons(rows: list[dict[str, Any]]) -> list[str]:
     out = ["", f"open loop   position [m]   across [m]   heading [deg]   position over its noise ({of})"]
     for r in rows:
         n = r["noise_floor"]
-        cells = [f"{r[k]:.3g} / {n[k]:.2g}" for k in ("position_mae_m", "lateral_mae_m", "heading_mae_deg")]
+        cells = [
+            f"{num(r[k], 3)} / {num(n[k], 2)}" for k in ("position_mae_m", "lateral_mae_m", "heading_mae_deg")
+        ]
         units = _units(r["position_mae_m"], n["position_mae_m"])
         out.append(f"{r['horizon_s']:>6g} s    {cells[0]:<15}{cells[1]:<13}{cells[2]:<16}{units}")
     return out
@@ -57,7 +60,7 @@ def _channels(channels: dict[str, dict[str, Any]]) -> list[str]:
             f"{c[k]:>{w}.3f}" if c[k] is not None else " " * (w - 1) + "-"
             for k, w in (("r2", 8), ("skill", 8))
         ]
-        out.append(f"{name:<36}{c['mae']:>9.3g}{c['noise']:>9.2g}{cells[0]}{cells[1]}")
+        out.append(f"{name:<36}{num(c['mae'], 3):>9}{num(c['noise'], 2):>9}{cells[0]}{cells[1]}")
     return out
 
 
@@ -76,7 +79,7 @@ def _where(result: dict[str, Any]) -> list[str]:
         return ["", "where: no condition stands out beyond chance"]
     out = ["", "where it fails (error against elsewhere, share of the time)"]
     return out + [
-        f"  x{w['error_ratio']:<5.2g}{100 * w['time_share']:>4.0f} %  {w['condition']}"
+        f"  x{num(w['error_ratio'], 2):<5}{100 * w['time_share']:>4.0f} %  {w['condition']}"
         for w in result["where"]
     ]
 
@@ -85,7 +88,7 @@ def _worst(windows: list[dict[str, Any]]) -> list[str]:
     out = ["", "worst windows"]
     return out + [
         f"  {w['voyage']}: {w['start_s']:.0f} to {w['end_s']:.0f} s, "
-        f"{w['position_m']:.3g} m and {w['heading_deg']:.2g} deg off (x{w['error_ratio']:.2g})"
+        f"{num(w['position_m'], 3)} m and {num(w['heading_deg'], 2)} deg off (x{num(w['error_ratio'], 2)})"
         for w in windows
     ]
 

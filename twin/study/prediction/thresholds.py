@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from twin.errors import did_you_mean
+from twin.num import num
 from twin.study.prediction import score
 from twin.study.track.track import MEASURED
 
@@ -57,7 +58,7 @@ def passed(result: dict[str, Any], limits: Sequence[tuple[str, float]]) -> list[
         if value is None:
             out.append(f"{name} is not in the result (see twin compare --help)")
         elif value > limit:
-            out.append(f"{name} = {value:.4g} is above {limit:g}")
+            out.append(f"{name} = {num(value, 4)} is above {limit:g}")
     return out
 
 

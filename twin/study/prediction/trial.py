@@ -124,7 +124,7 @@ def _at_heading(log: list[tuple[float, Eta_nu]], psi: float, side: float) -> Eta
 
 def straight_line_stability(model: Model) -> float:
     """Clarke's criterion C' = Y_v (N_r - m x_G u) - (Y_r - m u) N_v, in prime form: > 0 goes straight by
-    herself."""
+    itself."""
     c, d, ship = model.c, model.loaded.derivatives, model.loaded
     mass = 0.5 * ship.rho * ship.L_pp**2 * ship.T
     Y_v, N_v = d.Y_uv, d.N_uv + d.Y_vdot - d.X_udot

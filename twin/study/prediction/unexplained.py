@@ -44,7 +44,23 @@ def energy(tracks: Sequence[Track], models: Sequence[Model]) -> Energy:
     return Energy(missing, np.sum([p[1] for p in parts], axis=0), np.sum([p[2] for p in parts], axis=0))
 
 
-def _energy(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+@dataclass(frozen=True)
+class Missing:
+    """The force that the model misses over time: `t` (N,) [s], `force` and what sensor noise gives it,
+    `noise`, (N, 3): X, Y [N], N [N m]; `whole` (N,): where it is known; each a mean over `width` steps."""
+
+    t: np.ndarray
+    force: np.ndarray
+    noise: np.ndarray
+    whole: np.ndarray
+    width: int
+    known: np.ndarray  # (3,): energy of all known forces
+    learned: np.ndarray  # (3,): of the learned one
+
+
+def missing_force(track: Track, model: Model) -> Missing:
+    """M (measured acceleration - the model's), averaged over half a ship length of sailing; `model`
+    must be one that the track can feed (`reference.sailed.fed`)."""
     width = max(2, round(0.5 * float(model.ship.scale("time")) / track.h))
     state, wind_to = true_motion(track, model)
     s = track.situation(**steered(track, model), **dict(zip(STATE, state.T, strict=True)))
@@ -68,8 +84,14 @@ def _energy(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray, np.ndar
             for i in range(3)
         ]
     )
-    square = np.where(whole, np.square(missing) - np.square(shaken), 0.0)
-    return square.sum(0), each, np.square(learned)[track.whole].sum(0)
+    middle = track.t[:-width] + 0.5 * width * track.h
+    return Missing(middle, missing, shaken, whole[:, 0], width, each, np.square(learned)[track.whole].sum(0))
+
+
+def _energy(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    m = missing_force(track, model)
+    square = np.where(m.whole[:, None], np.square(m.force) - np.square(m.noise), 0.0)
+    return square.sum(0), m.known, m.learned
 
 
 def _slope(values: np.ndarray, h: float, width: int) -> np.ndarray:

@@ -67,10 +67,10 @@ def voyages(normal: Normal, sd: np.ndarray, temper: float) -> list[Told]:
 def ship_of(told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Mean and covariance of the ship's own numbers, from voyages that are scattered about them, and of
     priors (precision one)."""
-    blurred = [t.of_all(scatter) for t in told]
-    covariance = np.linalg.inv(np.eye(pull.size) + sum(t.A for t in blurred))
+    confounded = [t.of_all(scatter) for t in told]
+    covariance = np.linalg.inv(np.eye(pull.size) + sum(t.A for t in confounded))
     covariance = 0.5 * (covariance + covariance.T)
-    return covariance @ (pull + sum(t.b for t in blurred)), covariance
+    return covariance @ (pull + sum(t.b for t in confounded)), covariance
 
 
 def scattered(told: Sequence[Told], pull: np.ndarray) -> np.ndarray:

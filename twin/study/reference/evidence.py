@@ -30,7 +30,7 @@ class Hypothesis:
     """A set of effects in one state of the world, and what the data says of it."""
 
     effects: tuple[str, ...]
-    world: str
+    scenario: str
     log_evidence: float
     log_prior: float
 

@@ -1,5 +1,5 @@
 """Whether what was recorded as the rudder is its order: then the steering gear stands between it and the
-ship, and belongs to her model.
+ship, and belongs to its model.
 
 A rudder that is ordered at once arrives seconds later, and by then the ship has turned by less than the core
 would have it. Taken for the rudder, the order bends every derivative of sway and yaw; a fault of rudder or

@@ -2,7 +2,7 @@
 file, or from priors."""
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -18,7 +18,7 @@ from twin.study.estimation.columns import (
     sea_unknowns,
 )
 from twin.study.estimation.innovations import Floor, Linear, Normal, innovate
-from twin.study.reference.between import scattered, ship_of, voyages
+from twin.study.reference.between import Told, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
 
 USUAL = 0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
@@ -28,9 +28,9 @@ NOTHING = 1e6  # information of what is none
 
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of
-    each, beside what her file says of it."""
-    hers = (e for e in catalogue.values() if e.belongs_to != "voyage")
-    return [u for e in hers for u in effect_unknowns(e, model) if u.name not in e.copies]
+    each, beside what its file says of it. Not those that are another study's (`Effect.kinematic`)."""
+    its = (e for e in catalogue.values() if e.belongs_to != "voyage" and not e.kinematic)
+    return [u for e in its for u in effect_unknowns(e, model) if u.name not in e.copies]
 
 
 def daily(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
@@ -63,7 +63,7 @@ def instruments(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknow
 
 def nuisance_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Unknown, ...]:
     """Core derivatives and what they leave out, in calm water and in waves, what a healthy ship usually shows
-    of every lasting effect, and how late her instruments are."""
+    of every lasting effect, and how late its instruments are."""
     usual = (replace(u, sd=USUAL * u.sd) for u in lasting(model, catalogue))
     return (*core_unknowns(model), *form_unknowns(), *sea_unknowns(), *usual, *lateness_unknowns())
 
@@ -89,18 +89,56 @@ def from_references(
 
     `prior` (C,): prior means where they are not the unknowns' centres.
     """
+    known = known_from(lines, unknowns, floor, temper, prior)
+    return known.nuisance(), known.between
+
+
+@dataclass(frozen=True)
+class Known:
+    """What each reference voyage tells of these unknowns, in prior widths, and by how much (`scatter` (C,):
+    variances) numbers differ from one to another; `pull` (C,): of the priors' means."""
+
+    unknowns: tuple[Unknown, ...]
+    told: tuple[Told, ...]
+    scatter: np.ndarray
+    pull: np.ndarray
+
+    @property
+    def between(self) -> dict[str, float]:
+        """By what share of its prior's width a number differs, of those that do."""
+        return {u.label: float(np.sqrt(s)) for u, s in zip(self.unknowns, self.scatter, strict=True) if s}
+
+    def nuisance(self, without: int | None = None) -> Nuisance:
+        """As they concern the next voyage; `without` one of them, as that one would have been foretold."""
+        told = [t for i, t in enumerate(self.told) if i != without]
+        mean, covariance = ship_of(told, self.scatter, self.pull)
+        covariance = covariance + np.diag(self.scatter)
+        lasting_ones = [i for i, u in enumerate(self.unknowns) if not u.every_day]
+        information = np.linalg.inv(covariance[np.ix_(lasting_ones, lasting_ones)])
+        sizes = of_any_day(mean, np.diag(covariance), self.unknowns)
+        usual = {
+            u.label: float(u.sd * size) for u, size in zip(self.unknowns, sizes, strict=True) if u.every_day
+        }
+        return Nuisance(
+            tuple(self.unknowns[i] for i in lasting_ones),
+            information,
+            information @ mean[lasting_ones],
+            usual,
+        )
+
+
+def known_from(
+    lines: Sequence[Linear],
+    unknowns: tuple[Unknown, ...],
+    floor: Floor,
+    temper: float,
+    prior: np.ndarray | None = None,
+) -> Known:
+    """The same, voyage by voyage."""
     sd = np.array([u.sd for u in unknowns])
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
     told = voyages(innovate(lines, [floor])[0], sd, temper)
-    scatter = scattered(told, pull)
-    mean, covariance = ship_of(told, scatter, pull)
-    between = {u.label: float(np.sqrt(s)) for u, s in zip(unknowns, scatter, strict=True) if s}
-    covariance = covariance + np.diag(scatter)
-    hers = [i for i, u in enumerate(unknowns) if not u.every_day]
-    information = np.linalg.inv(covariance[np.ix_(hers, hers)])
-    sizes = of_any_day(mean, np.diag(covariance), unknowns)
-    usual = {u.label: float(u.sd * size) for u, size in zip(unknowns, sizes, strict=True) if u.every_day}
-    return Nuisance(tuple(unknowns[i] for i in hers), information, information @ mean[hers], usual), between
+    return Known(unknowns, tuple(told), scattered(told, pull), pull)
 
 
 def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknown]) -> np.ndarray:
@@ -114,7 +152,7 @@ def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknow
 def from_ship(model: Model, unknowns: tuple[Unknown, ...]) -> Nuisance:
     """What the ship file's calibration left open; where it says nothing, the priors."""
     stored = model.ship.notes.get("structural", {})
-    # added when she was calibrated already
+    # added when it was calibrated already
     since = {type(e).__name__ for e in model.effects} - set(stored.get("beside_effects", ()))
     place = {label: i for i, label in enumerate(stored.get("labels", [])) if label.split(".")[0] not in since}
     size = len(unknowns)

@@ -1,4 +1,5 @@
-"""Waves: what swings a ship faster than she manoeuvres is the sea's doing, not hers, and is not noise either.
+"""Waves: what swings a ship faster than it manoeuvres is the sea's doing, not its own, and is not noise
+either.
 
 The motion of first order in a seaway is large and swings about zero. A filter that takes it for noise that
 forgets itself from one reading to the next believes far too much, or trusts nothing. So the filter carries
@@ -28,7 +29,7 @@ from twin.study.track.track import Track, running_mean
 SWIFT = 3.0  # L/U_0: what swings about the mean over so long a time may be waves
 LATELY = 8.0  # L/U_0: on another course waves are met otherwise
 SEEN = 0.5  # share of what is swift in what is left over of sway or yaw, from which waves are looked for
-SEA = 0.003  # wave height in ship lengths from which a measured sea may move her
+SEA = 0.003  # wave height in ship lengths from which a measured sea may move it
 MOST_SEGMENTS = 12  # by which a sea is judged
 STRENGTHS = (1.0, 2.0, 4.0, 8.0)  # of the waves, in units of what the smooth path shows of them
 WHITES = (1.0, 8.0, 32.0)  # and of the noise that might be there instead
@@ -39,8 +40,8 @@ BEYOND = 3.0
 
 
 def swung(track: Track, model: Model) -> Track:
-    """The track with what waves do to her, if that is likelier than any noise or a slow gear would be,
-    whatever else may be wrong with her; else without. A sea that was measured need not be proved, but must be
+    """The track with what waves do to it, if that is likelier than any noise or a slow gear would be,
+    whatever else may be wrong with it; else without. A sea that was measured need not be proved, but must be
     the likelier."""
     track = track if track.swell is None else replace(track, swell=None)
     usable, known = model.without_inputs(track.missing())[0], of_ship(model.ship)
@@ -62,7 +63,7 @@ def swung(track: Track, model: Model) -> Track:
 
 
 def _likeliest(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple[Track, float, float]:
-    """The track in waves as strong as the readings ask for, if anything swings her; log evidence of that, and
+    """The track in waves as strong as the readings ask for, if anything swings it; log evidence of that, and
     of no waves."""
     floor, rough = floor_of(model.ship) or Floor(), _swinging(track, model)
     if rough.swell is None:
@@ -89,7 +90,7 @@ def _times(track: Track, strength: float) -> Track:
 
 
 def _swinging(track: Track, model: Model) -> Track:
-    """The track with what waves may do to her, or the same track where nothing swings her or there is too
+    """The track with what waves may do to it, or the same track where nothing swings it or there is too
     little of it."""
     time = float(model.ship.scale("time"))
     if not segments([track], time):
@@ -110,7 +111,7 @@ def _swinging(track: Track, model: Model) -> Track:
 
 
 def levelled(track: Track) -> Track:
-    """The track with its roll averaged over one period of the waves: how she heels to a wave would be taken
+    """The track with its roll averaged over one period of the waves: how it heels to a wave would be taken
     for its cause."""
     if track.swell is None:
         return track
@@ -119,7 +120,7 @@ def levelled(track: Track) -> Track:
     return replace(track, weather={**track.weather, **heel})
 
 
-def stirred(track: Track, model: Model) -> np.ndarray:
+def excited(track: Track, model: Model) -> np.ndarray:
     """(N, 3) acceleration by which waves change the mean of what hull, rudder and propeller do, for drag is
     not in proportion to speed: halfway between both ends of the swing, less the middle [m/s2, m/s2,
     rad/s2]."""
@@ -135,7 +136,7 @@ def stirred(track: Track, model: Model) -> np.ndarray:
 
 
 def at_sea(track: Track, model: Model) -> bool:
-    """Whether waves were measured that may move her."""
+    """Whether waves were measured that may move it."""
     return "H_s" in track.weather and bool(np.nanmedian(track.weather["H_s"]) > SEA * float(model.ship.L_pp))
 
 

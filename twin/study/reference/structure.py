@@ -34,7 +34,7 @@ BESIDE = 0.4
 
 
 def floor_of(ship: Ship, name: str = "floor") -> Floor | None:
-    """The floor that calibration left in the ship file, None when she was never calibrated: what the model
+    """The floor that calibration left in the ship file, None when it was never calibrated: what the model
     alone leaves (`floor`), or what is left beside all that is usual on this ship (`beside`)."""
     table = ship.notes.get("structural", {}).get(name)
     if not table:
@@ -46,7 +46,7 @@ def floor_of(ship: Ship, name: str = "floor") -> Floor | None:
         return Floor(_by_axis(table["share"]), **rest)
     except (TypeError, ValueError, KeyError) as error:
         raise SettingsError(
-            f"{ship.name}: [structural] {name} in the ship file is damaged ({error}). Calibrate her again."
+            f"{ship.name}: [structural] {name} in the ship file is damaged ({error}). Calibrate it again."
         ) from None
 
 

@@ -1,7 +1,7 @@
 """Weather that was measured and that the model does not know: did it blow harder than on the reference
 voyages?
 
-What pushed her then as hard as now is no news: it is reckoned with in every hypothesis that gains by it, and
+What pushed it then as hard as now is no news: it is reckoned with in every hypothesis that gains by it, and
 is never the answer."""
 
 from collections.abc import Mapping, Sequence
@@ -20,7 +20,7 @@ HARDER = 1.5  # times the push of the reference voyages that are news; a wind 1.
 def strengths(
     tracks: Sequence[Track], model: Model, catalogue: Mapping[str, type[Effect]]
 ) -> dict[str, float]:
-    """How hard each kind of measured weather that the model does not hold would push her at a plausible size:
+    """How hard each kind of measured weather that the model does not hold would push it at a plausible size:
     over the standard acceleration, on the voyage where it was hardest."""
     present = {type(e).__name__ for e in model.effects}
     unknown = [

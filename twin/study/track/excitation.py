@@ -1,4 +1,4 @@
-"""Whether a voyage holds a manoeuvre at all: a ship that only holds her course and speed tells one cause from
+"""Whether a voyage holds a manoeuvre at all: a ship that only holds its course and speed tells one cause from
 no other.
 
 Asked of what helm and engine did, never of how much the noise would let one see: a long straight run shows an
@@ -16,7 +16,7 @@ SHAFT = 0.1  # a change of the shaft's speed, as a share of its usual one
 
 
 def manoeuvred(track: Track, ship: Ship) -> bool:
-    """Whether the ship turned, or changed her shaft's speed, by more than it takes to hold course and
+    """Whether the ship turned, or changed its shaft's speed, by more than it takes to hold course and
     speed."""
     return bool(_turned(track, ship) >= TURN or _throttled(track) >= SHAFT)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.study.track.track import Track
 
-SEGMENT_LENGTHS = 16  # a segment lasts while the ship sails so many of her lengths
+SEGMENT_LENGTHS = 16  # a segment lasts while the ship sails so many of its lengths
 BEFORE_LENGTHS, AFTER_LENGTHS = 4, 2  # and so much of what is about it is kept
 
 

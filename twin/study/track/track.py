@@ -49,8 +49,8 @@ GRIDDED = (  # what is put on the grid whole: weather
     "apparent_wind_angle_deg",
 )
 STATE = ("x", "y", "psi", "u", "v", "r")
-STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail her own length
-# and no fewer, however slowly she was logged: with longer steps a ship cannot be stepped at all
+STEPS_PER_LENGTH = 32  # grid steps in the time the ship takes to sail its own length
+# and no fewer, however slowly it was logged: with longer steps a ship cannot be stepped at all
 FEWEST_PER_LENGTH = 8
 ROLLED = 0.3  # L/U_0 over which the measured heel is averaged before its rate is taken
 JERK = 0.15  # rad in (L/U_0)^3: how suddenly a ship turns; what is faster is the sea's doing
@@ -71,10 +71,10 @@ class Track:
     measured: np.ndarray  # (N, 8): READINGS, NaN where there was none
     sd: np.ndarray  # (8,): scatter of each reading about the smooth motion
     whole: np.ndarray  # (N,) bool: controls and motion known, so that the model can be run through
-    # (N, 6): in surge, sway, yaw how fast waves swing her [rad/s], and their accelerations (seaway.py)
+    # (N, 6): in surge, sway, yaw how fast waves swing it [rad/s], and their accelerations (seaway.py)
     swell: np.ndarray | None = None
-    # (N, 8): times its usual scatter that each reading has at that moment (unrest.py)
-    unrest: np.ndarray | None = None
+    # (N, 8): times its usual scatter that each reading has at that moment (ripple.py)
+    ripple: np.ndarray | None = None
     # of a ship with actuators of its own what is recorded of them, `name.attribute` in SI; else None
     told: Mapping[str, np.ndarray] | None = None
     # behind each steering gear
@@ -111,7 +111,7 @@ class Track:
     def where(self, keep: slice | np.ndarray) -> "Track":
         """Some of the grid steps; where others are left out between them, `whole` must be False on one
         side."""
-        swell, unrest = (None if x is None else x[keep] for x in (self.swell, self.unrest))
+        swell, ripple = (None if x is None else x[keep] for x in (self.swell, self.ripple))
         return replace(
             self,
             t=self.t[keep],
@@ -122,7 +122,7 @@ class Track:
             weather={k: w[keep] for k, w in self.weather.items()},
             measured=self.measured[keep],
             swell=swell,
-            unrest=unrest,
+            ripple=ripple,
             told=None if self.told is None else {k: x[keep] for k, x in self.told.items()},
         )
 
@@ -233,7 +233,7 @@ def _bridge(values: np.ndarray, longest_s: float, t: np.ndarray) -> np.ndarray:
 
 
 def moved_as_read(measured: np.ndarray, h: float, time: float) -> np.ndarray:
-    """(N,) bool: where readings (N, 8) of place and heading are near enough to say how she moved
+    """(N,) bool: where readings (N, 8) of place and heading are near enough to say how it moved
     (holes.py)."""
     x, y, psi, u, v, r = np.isfinite(measured[:, :6]).T
     return np.logical_and.reduce(

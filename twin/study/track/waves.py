@@ -5,7 +5,7 @@ slow.
     w' = -2 zeta omega_2 w - omega_2 o + omega p, o' = omega_2 w      omega_1, omega_2 = omega (1 -+ APART)
 
 Two resonances, one behind the other: the spectrum of w falls off with frequency to the fourth towards omega =
-0, as no wave pushes for long, and what she does slower than the waves is seen as well as in calm water. (w,
+0, as no wave pushes for long, and what it does slower than the waves is seen as well as in calm water. (w,
 o, p, q) are in units in which w has variance one and omega, so that frequency and size (`Track.swell`, seen
 in `seaway.py`) may change from step to step.
 Source: Fossen (2021) Handbook of Marine Craft, sec. 10.2 and 13.2.
@@ -18,7 +18,7 @@ from scipy.linalg import solve_continuous_lyapunov
 
 from twin.study.track.track import Track
 
-DAMPING = 0.1  # zeta: how broad a band waves swing her in
+DAMPING = 0.1  # zeta: how broad a band waves swing it in
 APART = 0.1  # of the resonances from the middle of the band, as a share of its frequency
 
 
@@ -74,7 +74,7 @@ def lasting(track: Track) -> np.ndarray:
 
 
 def variance(track: Track) -> np.ndarray:
-    """(N, 3) of the accelerations that waves give her [m2/s4, m2/s4, rad2/s4]."""
+    """(N, 3) of the accelerations that waves give it [m2/s4, m2/s4, rad2/s4]."""
     return np.zeros((len(track), 3)) if track.swell is None else np.square(track.swell[:, 3:])
 
 

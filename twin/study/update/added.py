@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
+from twin.num import num
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship
@@ -49,8 +50,10 @@ def refused(proof: Proof, shown: Fall) -> str:
 
 
 def _ratio(proof: Proof) -> str:
-    sizes = f"{proof.log_ratio:+.3g} (95 %: {proof.low95:.3g} to {proof.high95:.3g})"
-    return f"log likelihood ratio {sizes}, from {proof.needed:.2g} and with its interval above zero a proof"
+    sizes = f"{proof.log_ratio:+.3g} (95 %: {num(proof.low95, 3)} to {num(proof.high95, 3)})"
+    return (
+        f"log likelihood ratio {sizes}, from {num(proof.needed, 2)} and with its interval above zero a proof"
+    )
 
 
 def _metres(result: dict[str, Any], shown: Fall) -> str:
@@ -58,11 +61,14 @@ def _metres(result: dict[str, Any], shown: Fall) -> str:
     if row is None or shown.unit != "m":
         return shown.sentence()
     b, a, healthy = row["before"], row["after"], row["noise_floor"]
-    turned = f"{b['heading_mae_deg']:.2g} to {a['heading_mae_deg']:.2g} deg"
-    usual = f"usual for this ship: {healthy['position_mae_m']:.2g} m, {healthy['heading_mae_deg']:.2g} deg"
+    turned = f"{num(b['heading_mae_deg'], 2)} to {num(a['heading_mae_deg'], 2)} deg"
+    usual = (
+        f"usual for this ship: {num(healthy['position_mae_m'], 2)} m, "
+        f"{num(healthy['heading_mae_deg'], 2)} deg"
+    )
     return (
-        f"{shown.horizon_s:g} s open-loop error from {b['position_mae_m']:.3g} to "
-        f"{a['position_mae_m']:.3g} m and {turned} ({usual})"
+        f"{shown.horizon_s:g} s open-loop error from {num(b['position_mae_m'], 3)} to "
+        f"{num(a['position_mae_m'], 3)} m and {turned} ({usual})"
     )
 
 
@@ -95,7 +101,7 @@ def notes(
     calm = [f"{n.effect}.{n.name}" for n in made.numbers if n.gained < UNTOUCHED]
     if calm:
         notes.append(f"The voyages say little about {', '.join(calm)}: kept near what was believed before.")
-    ends = [f"{n.effect}.{n.name} = {n.value:.3g} {n.unit}" for n in made.numbers if n.at_box_end]
+    ends = [f"{n.effect}.{n.name} = {num(n.value, 3)} {n.unit}" for n in made.numbers if n.at_box_end]
     if ends:
         notes.append(
             f"careful: {', '.join(ends)} ended where its box ends: something else may be at work beside it "
@@ -180,8 +186,9 @@ def told(result: dict[str, Any]) -> list[str]:
         b, a, n = r["before"], r["after"], r["noise_floor"]
         out.append(
             f"{r['horizon_s']:>6g} "
-            f"s{b['position_mae_m']:>13.3g}{a['position_mae_m']:>12.3g}{n['position_mae_m']:>12.2g}"
-            f"{b['heading_mae_deg']:>15.2g}{a['heading_mae_deg']:>13.2g}{n['heading_mae_deg']:>13.2g}"
+            f"s{num(b['position_mae_m'], 3):>13}{num(a['position_mae_m'], 3):>12}"
+            f"{num(n['position_mae_m'], 2):>12}{num(b['heading_mae_deg'], 2):>15}"
+            f"{num(a['heading_mae_deg'], 2):>13}{num(n['heading_mae_deg'], 2):>13}"
         )
     at = [f"{r['horizon_s']:.0f} s {r['log_likelihood_ratio']:+.3g}" for r in result["proof"]["by_horizon"]]
     out += [f"log likelihood ratio by horizon ({result['proof']['kind']}): {', '.join(at)}"]
@@ -189,7 +196,7 @@ def told(result: dict[str, Any]) -> list[str]:
     if result["beside"]:
         out += ["water and weather of these voyages, not written", *_told_beside(result["beside"])]
     out += ["", "by regime: before, after [m]"] + [
-        f"  {w['before_m']:>8.3g}{w['after_m']:>9.3g}  {w['condition']}" for w in result["where"]
+        f"  {num(w['before_m'], 3):>8}{num(w['after_m'], 3):>9}  {w['condition']}" for w in result["where"]
     ]
     return [*out, "", *result["notes"]]
 
@@ -200,15 +207,15 @@ def _told_beside(parameters: dict[str, dict[str, Any]]) -> list[str]:
     many = (effect for effect in parameters if effect not in few)
     sizes = {effect: sum(p["value"] ** 2 for p in parameters[effect].values()) ** 0.5 for effect in many}
     return _told_numbers(few) + [
-        f"  {effect}: {size:.2g} together, of {len(parameters[effect])} numbers"
+        f"  {effect}: {num(size, 2)} together, of {len(parameters[effect])} numbers"
         for effect, size in sizes.items()
     ]
 
 
 def _told_numbers(parameters: dict[str, dict[str, Any]]) -> list[str]:
     return [
-        f"  {effect}.{n} = {p['value']:.4g} {p['unit']}   {p['low95']:.3g} to "
-        f"{p['high95']:.3g}" + "   (the end of its box)" * p["at_box_end"]
+        f"  {effect}.{n} = {num(p['value'], 4)} {p['unit']}   {num(p['low95'], 3)} to "
+        f"{num(p['high95'], 3)}" + "   (the end of its box)" * p["at_box_end"]
         for effect, numbers in parameters.items()
         for n, p in numbers.items()
     ]

@@ -21,7 +21,7 @@ from twin.physics.ship import Ship
 from twin.recording.jsonable import short
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.assemble import of_tracks
-from twin.study.diagnosis.case import WORLDS, Case
+from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.refine import Found, Sets, refine, standing
 from twin.study.diagnosis.verdict import parameters
 from twin.study.estimation.columns import Unknown
@@ -81,7 +81,7 @@ class Fitted:
         changes with the clock is taken as the whole voyages have it: no other hour tells of it."""
         case, chosen = self.case, self.found.hypothesis.effects
         lines, at = standing(case, self.found)
-        normal = innovate(lines, case.worlds([self.found.hypothesis.world], self.found.doubt), None)[0]
+        normal = innovate(lines, case.scenarios([self.found.hypothesis.scenario], self.found.doubt), None)[0]
         middle = [(i, float(lines[i].track.steps()[[a, b - 1]].mean())) for i, a, b in normal.where]
         of = np.array([min(parts - 1, int(parts * step / len(case.tracks[i]))) for i, step in middle])
         lasts = np.array(["t" not in case.catalogue[u.owner].needs for u in case.effects])
@@ -121,7 +121,7 @@ def fitted(
     progress: Progress = lambda text: None,
 ) -> Fitted:
     """These effects where the voyages have them, beside the voyages' own water and weather."""
-    case = of_tracks(tracks, ship, progress=progress)
+    case = of_tracks(tracks, ship, progress=progress, asked=effects)
     unknown = [e.__name__ for e in effects if e.__name__ not in case.candidates]
     if unknown:
         raise SettingsError(
@@ -159,7 +159,7 @@ def _beside_the_voyage(case: Case, names: Sets, progress: Progress) -> Found:
             return best
         chosen = best.hypothesis.effects
         likely = {
-            n: e + case.log_prior(_set(case, (*chosen, n)), best.hypothesis.world)
+            n: e + case.log_prior(_set(case, (*chosen, n)), best.hypothesis.scenario)
             for n, e in weigh_with(best.reduced, chosen, more)
         }
         likely = {n: w for n, w in likely.items() if w > best.hypothesis.log_weight - CLOSE}
@@ -192,14 +192,18 @@ def _judged(case: Case, chosen: Sets, start: Found | None) -> Found:
     """A set of effects about its own size, begun where a part of it was found to stand, or at its first-order
     guess in the likeliest world."""
     if start is not None and start.reduced is not None:
-        world, about, part = start.hypothesis.world, start.reduced, start.hypothesis.effects
+        scenario, about, part = start.hypothesis.scenario, start.reduced, start.hypothesis.effects
     else:
-        worlds = dict(zip(WORLDS, case.reduced(case.lines, case.worlds(list(WORLDS))), strict=True))
-        guess = {w: posterior(r, chosen).log_evidence + case.log_prior(chosen, w) for w, r in worlds.items()}
-        world = max(guess, key=lambda w: guess[w])
-        about, part = worlds[world], ()
+        scenarios = dict(
+            zip(SCENARIOS, case.reduced(case.lines, case.scenarios(list(SCENARIOS))), strict=True)
+        )
+        guess = {
+            w: posterior(r, chosen).log_evidence + case.log_prior(chosen, w) for w, r in scenarios.items()
+        }
+        scenario = max(guess, key=lambda w: guess[w])
+        about, part = scenarios[scenario], ()
     z = boxed(about, chosen, posterior(about, chosen)).z
-    return refine(case, chosen, world, z, (), known=part)[0]
+    return refine(case, chosen, scenario, z, (), known=part)[0]
 
 
 def _with(case: Case, names: Sets, z: np.ndarray) -> Model:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from twin.num import num
 from twin.physics.ship import Ship
 from twin.study.prediction import locate, score
 from twin.study.prediction.expected import told_by_references
@@ -35,7 +36,8 @@ class Fall:
 
     def sentence(self) -> str:
         return (
-            f"{self.measure} {self.before:.3g} -> {self.after:.3g} {self.unit} (change {self.low95:+.2g} "
+            f"{self.measure} {num(self.before, 3)} -> {num(self.after, 3)} {self.unit} (change "
+            f"{self.low95:+.2g} "
             f"to {self.high95:+.2g})"
         )
 

@@ -2,13 +2,14 @@
 
 from typing import Any
 
+from twin.num import num
 from twin.physics.ship import Ship
 
 SCHEMA_VERSION = 1
 
 
 def ladder(ship: Ship) -> list[dict[str, Any]]:
-    """Her steps, the oldest first."""
+    """Its steps, the oldest first."""
     return [dict(step) for step in ship.notes.get("history", []) if isinstance(step, dict)]
 
 
@@ -30,8 +31,8 @@ def told(ship: Ship) -> list[str]:
         )
         for e in step.get("errors", []):
             out.append(
-                f"{'':>12}{e['horizon_s']:>6g} s{e['before_m']:>9.3g} -> {e['after_m']:.3g}  "
-                f"({e['noise_floor_m']:.2g})"
+                f"{'':>12}{e['horizon_s']:>6g} s{num(e['before_m'], 3):>9} -> {num(e['after_m'], 3)}  "
+                f"({num(e['noise_floor_m'], 2)})"
             )
         if step.get("voyages"):
             out.append(
@@ -39,7 +40,7 @@ def told(ship: Ship) -> list[str]:
             )
         if "evidence" in step:
             e = step["evidence"]
-            sizes = f"{e['log_likelihood_ratio']:+.3g} ({e['low95']:.3g} to {e['high95']:.3g})"
+            sizes = f"{e['log_likelihood_ratio']:+.3g} ({num(e['low95'], 3)} to {num(e['high95'], 3)})"
             out.append(f"{'':>12}proof: {step['proof']}, log likelihood ratio {sizes}")
     return out
 

@@ -1,4 +1,4 @@
-"""`twin remove`: take an effect out of a ship's model again; her history remembers both."""
+"""`twin remove`: take an effect out of a ship's model again; its history remembers both."""
 
 import datetime
 from collections.abc import Sequence
@@ -11,7 +11,7 @@ SCHEMA_VERSION = 1
 
 
 def remove(ship: Ship, names: Sequence[str]) -> Ship:
-    """The ship without these effects; SettingsError when she has no such effect."""
+    """The ship without these effects; SettingsError when it has no such effect."""
     present = [type(e).__name__ for e in ship.effects]
     for name in names:
         if name not in present:

@@ -2,11 +2,11 @@
 yaw. No part of any model.
 
 The filter carries waves in a band of each axis (`waves.py`) that knows nothing of the others, nor of the
-rudder. But the helm follows each wave and a wave passes the rudder, so that what she does in time with the
-waves is read as her answer to the helm, stronger or later than it is: a slow gear (identification in closed
-loop, Ljung 1999, sec. 13.4). And one wave swings her in sway and surge as it does in yaw, a quarter of a
-period apart or not at all: as if she were watched from elsewhere on board. How strong, and when, is left open
-here for what is in time with the waves; what she does more slowly is not touched."""
+rudder. But the helm follows each wave and a wave passes the rudder, so that what it does in time with the
+waves is read as its answer to the helm, stronger or later than it is: a slow gear (identification in closed
+loop, Ljung 1999, sec. 13.4). And one wave swings it in sway and surge as it does in yaw, a quarter of a
+period apart or not at all: as if it were watched from elsewhere on board. How strong, and when, is left open
+here for what is in time with the waves; what it does more slowly is not touched."""
 
 from dataclasses import replace
 
@@ -26,7 +26,7 @@ TERMS = HELM | SWING
 
 
 def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
-    """(N, 3) [m/s2, m/s2, rad/s2] of one unit of a term; nothing where no waves swing her."""
+    """(N, 3) [m/s2, m/s2, rad/s2] of one unit of a term; nothing where no waves swing it."""
     if track.swell is None or name not in HELM:
         return np.zeros((len(track), 3))
     period_s = wave_period_s(track)
@@ -38,7 +38,7 @@ def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
 
 
 def readings(track: Track, model: Model, name: str) -> np.ndarray:
-    """(N, 8) of one unit of a term: where she is and how fast, aside or ahead, in time with her yaw."""
+    """(N, 8) of one unit of a term: where it is and how fast, aside or ahead, in time with its yaw."""
     out = np.zeros((len(track), len(READINGS)))
     if track.swell is None or name not in SWING:
         return out

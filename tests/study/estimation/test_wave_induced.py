@@ -7,7 +7,7 @@ import pytest
 
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.study.estimation import tossed
+from twin.study.estimation import wave_induced
 from twin.study.estimation.columns import SEA, sea_unknowns
 from twin.study.estimation.respond import accelerations, readings
 from twin.study.reference.nuisance import nuisance_unknowns
@@ -25,7 +25,7 @@ def model(tanker):
 
 @pytest.fixture(scope="module")
 def tossing(tanker, voyages):
-    """A straight voyage on which each wave yaws her by a degree, and the helmsman answers with two."""
+    """A straight voyage on which each wave yaws it by a degree, and the helmsman answers with two."""
     t = track(voyages["straight"], tanker)
     omega = 2.0 * np.pi / PERIOD_S
     state = t.state.copy()
@@ -35,27 +35,30 @@ def tossing(tanker, voyages):
     return replace(t, state=state, delta=t.delta - np.radians(2.0) * np.sin(omega * t.t), swell=swell)
 
 
-@pytest.mark.parametrize("name", tossed.TERMS)
+@pytest.mark.parametrize("name", wave_induced.TERMS)
 def test_in_calm_water_there_is_none_of_it(tossing, model, name):
     calm = replace(tossing, swell=None)
-    assert not tossed.accelerations(calm, model, name).any() and not tossed.readings(calm, model, name).any()
+    assert (
+        not wave_induced.accelerations(calm, model, name).any()
+        and not wave_induced.readings(calm, model, name).any()
+    )
 
 
-@pytest.mark.parametrize("name", tossed.HELM)
+@pytest.mark.parametrize("name", wave_induced.HELM)
 def test_a_mirrored_helm_answers_the_mirrored_way(tossing, model, name):
     state = tossing.state * np.array([1.0, -1.0, -1.0, 1.0, -1.0, -1.0])
     mirrored = replace(tossing, state=state, delta=-tossing.delta)
-    here = tossed.accelerations(tossing, model, name)
-    assert np.abs(here[:, 2]).max() > 0.0 and tossed.accelerations(mirrored, model, name) == pytest.approx(
-        here * MIRROR
-    )
+    here = wave_induced.accelerations(tossing, model, name)
+    assert np.abs(here[:, 2]).max() > 0.0 and wave_induced.accelerations(
+        mirrored, model, name
+    ) == pytest.approx(here * MIRROR)
 
 
 def test_what_is_left_open_of_the_helm_is_what_it_does_in_time_with_the_waves(tossing, model):
     """Test: the same voyage with a helm that was laid over by five degrees all the way. Expected: the same,
     but for what a stronger swing meets."""
     over = replace(tossing, delta=tossing.delta + np.radians(5.0))
-    one, other = (tossed.accelerations(t, model, "helm")[INSIDE, 2] for t in (tossing, over))
+    one, other = (wave_induced.accelerations(t, model, "helm")[INSIDE, 2] for t in (tossing, over))
     assert np.abs(other - one).max() < 0.1 * np.abs(one).max()
     # without the answer
     helm = replace(
@@ -70,7 +73,7 @@ def test_a_gear_that_is_a_little_late_in_waves_alone_is_the_helm_a_quarter_of_a_
     late = accelerations(tossing, model.but(find("SteeringLag")(delay=1.0, travel_time=0.0))) - accelerations(
         tossing, model
     )
-    quarter = tossed.accelerations(tossing, model, "helm_earlier")
+    quarter = wave_induced.accelerations(tossing, model, "helm_earlier")
     share = 2.0 * np.pi * 1.0 / PERIOD_S  # of a radian
     assert late[INSIDE, 2] == pytest.approx(
         -share * quarter[INSIDE, 2], abs=0.2 * share * np.abs(quarter).max()
@@ -78,13 +81,13 @@ def test_a_gear_that_is_a_little_late_in_waves_alone_is_the_helm_a_quarter_of_a_
 
 
 def test_a_swing_in_sway_in_time_with_the_yaw_is_seen_as_an_antenna_ahead_is_in_those_waves(tossing, model):
-    """Test: an antenna a tenth of her length ahead; what it shows of the waves, and the term. Expected: the
+    """Test: an antenna a tenth of its length ahead; what it shows of the waves, and the term. Expected: the
     same."""
     ahead = find("AntennaOffset")(ahead=0.1 * float(model.ship.L_pp), starboard=0.0)
-    still = tossed.steadied(tossing)
+    still = wave_induced.steadied(tossing)
     shown = [readings(t.situation(), m) for t in (tossing, still) for m in (model.but(ahead), model)]
     of_waves = (shown[0] - shown[1]) - (shown[2] - shown[3])
-    term = 0.1 * tossed.readings(tossing, model, "sway")
+    term = 0.1 * wave_induced.readings(tossing, model, "sway")
     for column in (0, 1, 4):  # x, y, v
         assert term[INSIDE, column] == pytest.approx(
             of_waves[INSIDE, column], abs=0.05 * np.abs(term[:, column]).max()

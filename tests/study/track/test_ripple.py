@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from twin.study.diagnosis.assemble import assemble
+from twin.study.track.ripple import shaken
 from twin.study.track.track import READINGS, track
-from twin.study.track.unrest import shaken
 
 GYRO = READINGS.index("r")
-# shorter than what the smooth motion of a tanker holds; forty times her gyro's usual scatter
+# shorter than what the smooth motion of a tanker holds; forty times its gyro's usual scatter
 PERIOD_S, SWING_DEGPS = 4.0, 0.15
 
 
@@ -32,7 +32,7 @@ def ripples(voyages):
 def test_each_reading_has_its_own_scatter_at_each_moment(ripples, tanker):
     quiet_s = 8.0 * float(tanker.scale("time"))
     t = track(ripples, tanker)
-    seen, half = shaken(t, float(tanker.scale("time"))).unrest, 0.5 * t.t[-1]
+    seen, half = shaken(t, float(tanker.scale("time"))).ripple, 0.5 * t.t[-1]
     calm, rough = t.t < half - quiet_s, t.t > half + quiet_s
     shown = seen[:, GYRO] * t.sd[GYRO]
     assert shown[rough].mean() == pytest.approx(np.radians(SWING_DEGPS), rel=0.25)
@@ -43,13 +43,13 @@ def test_one_wild_reading_is_no_unrest(voyages, tanker):
     t, time = track(voyages["RudderWear"], tanker), float(tanker.scale("time"))
     wild = t.measured.copy()
     wild[len(t) // 2, :GYRO] += 1000.0 * t.sd[:GYRO]
-    assert shaken(t, time).unrest is None and shaken(replace(t, measured=wild), time).unrest is None
+    assert shaken(t, time).ripple is None and shaken(replace(t, measured=wild), time).ripple is None
 
 
 def test_ripples_that_one_instrument_shows_are_no_rough_world_and_the_cause_is_found_in_them(
     ripples, voyages, tanker
 ):
     still, rippling = (assemble([v], tanker) for v in (voyages["RudderWear"], ripples))
-    assert all(x.track.unrest is None for x in still.lines)
-    assert all(x.track.unrest is not None for x in rippling.lines)
+    assert all(x.track.ripple is None for x in still.lines)
+    assert all(x.track.ripple is not None for x in rippling.lines)
     assert rippling.floor == still.floor

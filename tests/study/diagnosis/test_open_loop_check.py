@@ -1,4 +1,4 @@
-"""Where a hypothesis leads the ship, beside where she went."""
+"""Where a hypothesis leads the ship, beside where it went."""
 
 from dataclasses import replace
 
@@ -7,15 +7,15 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.diagnosis.assemble import assemble
-from twin.study.diagnosis.led import (
+from twin.study.diagnosis.open_loop_check import (
+    COMPLEXITY,
     FORM,
-    LUXURY,
-    Led,
+    OpenLoopCheck,
     _astray,
     _measured,
     held_out_error,
     horizon_s,
-    led,
+    open_loop_check,
     roughly,
 )
 from twin.study.diagnosis.refine import Found, refine
@@ -35,7 +35,7 @@ def asked(levered=None, **off_m):
     found = {
         s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off, FLOOR_M) for s, off in sets.items()
     }
-    return Led(
+    return OpenLoopCheck(
         found,
         {"usual": 8.0, "rough": 16.0},
         {(): 0.0} | (levered or {}),
@@ -45,19 +45,19 @@ def asked(levered=None, **off_m):
     )
 
 
-def says(*effects, world="usual"):
-    return Hypothesis(effects, world, -100.0, -1.0)
+def says(*effects, scenario="usual"):
+    return Hypothesis(effects, scenario, -100.0, -1.0)
 
 
 def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_too(tanker, voyages):
-    """Test: a model that holds the wind since she was calibrated, on a windy voyage; the same calibrated with
-    it. Expected: a tenth of where she would end without it belongs to the floor, with what a wind that pushes
-    a twentieth of her length farther ahead or aft would do; and nothing."""
+    """Test: a model that holds the wind since it was calibrated, on a windy voyage; the same calibrated with
+    it. Expected: a tenth of where it would end without it belongs to the floor, with what a wind that pushes
+    a twentieth of its length farther ahead or aft would do; and nothing."""
     windy = tanker.with_effects(find("Wind").plausible(tanker))
-    hers = replace(
+    lasting_ones = replace(
         windy, notes={**windy.notes, "structural": windy.notes["structural"] | {"beside_effects": ["Wind"]}}
     )
-    case, known = (assemble([voyages["Wind"]], ship) for ship in (windy, hers))
+    case, known = (assemble([voyages["Wind"]], ship) for ship in (windy, lasting_ones))
     (without, share), *others = added(case.model)
     assert share == KNOWN and not others and added(known.model) == []
     (ahead, aft), *more = elsewhere(case.model)
@@ -94,14 +94,14 @@ def test_the_path_has_the_floor_of_the_model_alone_and_the_steps_the_one_beside_
         notes["beside"]["share"]
     )
     weighed, found, _ = search(case)
-    floor = led(case, found, weighed).floor
+    floor = open_loop_check(case, found, weighed).floor
     assert floor["usual"] <= floor["rough"] <= floor["strange"] < 4.0 * floor["usual"]
 
 
 def test_what_goes_astray_loses_by_how_far_and_how_often():
     path = asked(nothing=20.0, Wind=16.0)
     assert path.log_probability(says("Wind")) == pytest.approx(-2.0 * TEN * np.log(16.0 / FLOOR_M))
-    assert path.log_probability(says("Wind", world="rough")) == 0.0
+    assert path.log_probability(says("Wind", scenario="rough")) == 0.0
     assert path.log_probability(says()) < path.log_probability(says("Wind"))
 
 
@@ -135,7 +135,7 @@ def test_a_pair_that_was_asked_is_not_excused_by_its_better_half():
 def test_a_second_effect_costs_more_where_one_leads_her_there_and_nothing_where_none_does():
     pair, none = says("Wind", "Bank"), says()
     for path, cost in (
-        (asked(nothing=20.0, Wind=7.0, Wind_Bank=7.0), LUXURY),
+        (asked(nothing=20.0, Wind=7.0, Wind_Bank=7.0), COMPLEXITY),
         (asked(nothing=20.0, Wind=15.0, Wind_Bank=7.0), 0.0),
     ):
         weighed = {h.effects: h.log_evidence for h in path.weigh([none, pair])}
@@ -154,7 +154,7 @@ def test_a_stream_is_not_asked_for_in_hours_that_were_left_out(tanker, voyages):
 
 def test_a_stream_as_strong_as_any_day_brings_leads_her_without_being_named(tanker, voyages):
     """Test: a hidden stream, on a ship whose reference voyages met streams of 0 (nobody told), half and twice
-    its size. Expected: nothing missing leads her astray by all of it, by what two such days do not bring, and
+    its size. Expected: nothing missing leads it astray by all of it, by what two such days do not bring, and
     not at all."""
     case = assemble([voyages["Current"]], tanker)
     named, _ = refine(case, ("Current",), "usual", np.zeros(len(case.effects)), ())
@@ -164,7 +164,7 @@ def test_a_stream_as_strong_as_any_day_brings_leads_her_without_being_named(tank
     for share in (0.0, 0.25, 1.0):
         daily = {case.effects[i].label: share * size for i in axes} if share else {}
         of_the_day = replace(case, nuisance=replace(case.nuisance, daily=daily))
-        told = posterior(of_the_day.reduced(case.lines, case.worlds(["usual"]))[0], ())
+        told = posterior(of_the_day.reduced(case.lines, case.scenarios(["usual"]))[0], ())
         off.append(held_out_error(of_the_day, Found(says(), told, case.model)))
     assert off[0] > off[1] > off[2] and off[2] == pytest.approx(held_out_error(case, named), rel=0.3)
 
@@ -179,10 +179,10 @@ def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker
     weighed, found, _ = search(case)
     assert weights(case, weighed).best.effects == ("RudderWear",)
     assert found["RudderWear",].off_m < 0.7 * found[()].off_m
-    path = led(case, found, weighed)
+    path = open_loop_check(case, found, weighed)
     assert path.windows == pytest.approx(case.tracks[0].t[-1] / horizon_s(case.tracks[0], case.model))
     worn, healthy = (
-        path.log_probability(replace(found[s].hypothesis, world="usual")) for s in (("RudderWear",), ())
+        path.log_probability(replace(found[s].hypothesis, scenario="usual")) for s in (("RudderWear",), ())
     )
     assert worn > healthy
     assert held_out_error(case, found[()]) == pytest.approx(found[()].off_m)
@@ -191,14 +191,14 @@ def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker
 def test_what_is_likely_by_now_is_asked_however_unlikely_it_was_where_it_was_found(tanker, voyages):
     """Test: a worn rudder that was found far below the best, and is the best since another set left the rest
     of it to what any day brings.
-    Expected: she is led by it, too, and not only by nothing."""
+    Expected: it is led by it, too, and not only by nothing."""
     case = assemble([voyages["RudderWear"]], tanker)
     weighed, found, _ = search(case)
     worn = replace(found["RudderWear",].hypothesis, log_evidence=-1e4)
     stale = found | {("RudderWear",): replace(found["RudderWear",], hypothesis=worn)}
-    assert ("RudderWear",) in led(case, stale, weighed).found and ("RudderWear",) not in led(
-        case, stale, [worn, found[()].hypothesis]
-    ).found
+    assert ("RudderWear",) in open_loop_check(case, stale, weighed).found and (
+        "RudderWear",
+    ) not in open_loop_check(case, stale, [worn, found[()].hypothesis]).found
 
 
 def test_the_floor_is_no_lower_than_what_the_calibration_measured_on_other_voyages(tanker, voyages):
@@ -210,7 +210,7 @@ def test_the_floor_is_no_lower_than_what_the_calibration_measured_on_other_voyag
         asked_of = replace(case, model=replace(case.model, ship=ship))
         assert _measured(asked_of) == pytest.approx(measured)
     weighed, found, _ = search(case)
-    floor = led(asked_of, found, weighed).floor
+    floor = open_loop_check(asked_of, found, weighed).floor
     assert list(floor.values()) == pytest.approx([500.0] * len(floor))
 
 
@@ -240,4 +240,4 @@ def test_weather_is_no_luxury_beside_a_cause():
     weighed = {h.effects: h.log_evidence for h in path.weigh([windy, two])}
     assert weighed[windy.effects] == pytest.approx(windy.log_evidence) and weighed[
         two.effects
-    ] == pytest.approx(two.log_evidence - LUXURY)
+    ] == pytest.approx(two.log_evidence - COMPLEXITY)

@@ -1,4 +1,4 @@
-"""Whether a hypothesis would also have led the ship where she went: a second witness beside the readings one
+"""Whether a hypothesis would also have led the ship where it went: a second test beside the readings one
 step ahead.
 
 One step ahead, a hypothesis is judged by what is fast; a little misfit of the core, repeated at every step,
@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.diagnosis.case import MOST_SEGMENTS, WORLDS, Case
+from twin.study.diagnosis.case import MOST_SEGMENTS, SCENARIOS, Case
 from twin.study.diagnosis.refine import Found, Sets, standing
 from twin.study.estimation.columns import with_values
 from twin.study.estimation.innovations import Floor, innovate
@@ -25,23 +25,23 @@ from twin.study.track.track import Track
 HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are predicted: the shorter of the two
 # log odds against a second effect that the path does not ask for: of two forms that are only roughly right,
 # one mends the other
-LUXURY = 10.0
+COMPLEXITY = 10.0
 # windows that count: what the core misses is the same in all of them, and more of the same tells no more
 MOST = 40.0
 FORM = 0.1  # share of what an effect does to the path that its form may miss
 ANY_DAY = 2.0  # standard deviations of what any day brings, that nobody need name
-SPOILT = 0.05  # share by which two effects lead her farther off than one of them, so that the other is none
+DEGRADED = 0.05  # share by which two effects lead it farther off than one of them, so that the other is none
 REACH = 60.0  # log odds behind the best up to which a hypothesis is asked
 
 
 @dataclass(frozen=True)
-class Led:
+class OpenLoopCheck:
     """How far from the measured path each hypothesis ended, and what noise and structure alone would have
     made of it."""
 
     found: Mapping[Sets, Found]  # with `off_m`; "nothing" is among them
     floor: Mapping[str, float]  # [m], by world
-    levered: Mapping[Sets, float]  # [m] and what each may leave whose side force attacks elsewhere along her
+    levered: Mapping[Sets, float]  # [m] and what each may leave whose side force attacks elsewhere along it
     windows: float  # that do not overlap, and no more than MOST
     irregular: frozenset[str]  # effects that come and go
     weather: frozenset[str]  # effects that are no cause, and no luxury
@@ -59,11 +59,13 @@ class Led:
 
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The same hypotheses with this evidence too, best first, but for those that spoil what a part of
-        them does. As far as one effect leads her there alone, two are a luxury."""
+        them does. As far as one effect leads it there alone, the second is not needed."""
         single = (self._path(f.off_m, f.floor_m) for s, f in self.found.items() if len(self._causes(s)) == 1)
-        luxury = max(0.0, LUXURY + max(single, default=-LUXURY))
-        kept = [h for h in weighed if not self._spoils(h.effects)]
-        extra = (self.log_probability(h) - luxury * max(0, len(self._causes(h.effects)) - 1) for h in kept)
+        complexity = max(0.0, COMPLEXITY + max(single, default=-COMPLEXITY))
+        kept = [h for h in weighed if not self._degrades(h.effects)]
+        extra = (
+            self.log_probability(h) - complexity * max(0, len(self._causes(h.effects)) - 1) for h in kept
+        )
         return sorted(
             (replace(h, log_evidence=h.log_evidence + e) for h, e in zip(kept, extra, strict=True)),
             key=lambda h: -h.log_weight,
@@ -72,8 +74,8 @@ class Led:
     def _causes(self, effects: Sets) -> Sets:
         return tuple(name for name in effects if name not in self.weather)
 
-    def _spoils(self, effects: Sets) -> bool:
-        """Whether a set leads her farther off than is usual, and than a part of it does: of two that are
+    def _degrades(self, effects: Sets) -> bool:
+        """Whether a set leads it farther off than is usual, and than a part of it does: of two that are
         there neither does that, but one that mends the steps of another's form."""
         own, parts = (
             self.found.get(effects),
@@ -82,7 +84,7 @@ class Led:
         return (
             own is not None
             and own.off_m > own.floor_m
-            and min(parts, default=np.inf) < (1.0 - SPOILT) * own.off_m
+            and min(parts, default=np.inf) < (1.0 - DEGRADED) * own.off_m
         )
 
     def _path(self, error: float, floor: float) -> float:
@@ -91,9 +93,12 @@ class Led:
         return -2.0 * self.windows * float(np.log(max(error, floor) / floor))
 
 
-def led(
-    case: Case, found: Mapping[Sets, Found], weighed: Sequence[Hypothesis], before: Led | None = None
-) -> Led:
+def open_loop_check(
+    case: Case,
+    found: Mapping[Sets, Found],
+    weighed: Sequence[Hypothesis],
+    before: OpenLoopCheck | None = None,
+) -> OpenLoopCheck:
     """Run nothing and every hypothesis that could still be the answer over the held-out parts (`weighed`:
     what is known of all of them by now; one is likelier than where it was found if it leaves to any day what
     another had found). What was asked `before` is not run again."""
@@ -119,12 +124,15 @@ def led(
     ends = {s: _floor(plain(found[s].hypothesis), floor, off[()], irregular, levered[s]) for s in off}
     asked = {s: replace(found[s], off_m=m, floor_m=ends[s]) for s, m in off.items()}
     windows = min(MOST, sum((len(t) - 1) * t.h / horizon_s(t, case.model) for t in case.tracks))
-    return Led(asked, floor, levered, windows, irregular, frozenset(case.weather))
+    return OpenLoopCheck(asked, floor, levered, windows, irregular, frozenset(case.weather))
 
 
 def _floors(case: Case) -> dict[str, float]:
     """[m] by world: what noise and structure alone would make of the path."""
-    steps = {name: _usual(case, floor) for name, floor in zip(WORLDS, case.worlds(list(WORLDS)), strict=True)}
+    steps = {
+        name: _usual(case, floor)
+        for name, floor in zip(SCENARIOS, case.scenarios(list(SCENARIOS)), strict=True)
+    }
     # what is run free is a core alone, and no better than it was when nothing was wrong
     least = max(steps["coarse"], _measured(case))
     known = roughly(case)
@@ -135,9 +143,12 @@ def plain(h: Hypothesis) -> Hypothesis:
     """The same in a world that is no rougher than on the reference voyages."""
     return (
         h
-        if WORLDS[h.world].plain
+        if SCENARIOS[h.scenario].plain
         else replace(
-            h, world=next(n for n, w in WORLDS.items() if w.plain and w.flow == WORLDS[h.world].flow)
+            h,
+            scenario=next(
+                n for n, w in SCENARIOS.items() if w.plain and w.flow == SCENARIOS[h.scenario].flow
+            ),
         )
     )
 
@@ -148,7 +159,7 @@ def _floor(
     """How far off a true hypothesis may be [m]: nature writes an effect otherwise, so a part of what it does
     is left; more of one that comes and goes, or whose side force may attack elsewhere."""
     left = COMES_AND_GOES if irregular.intersection(h.effects) else FORM if h.effects else 0.0
-    return float(np.hypot.reduce([floor[h.world], left * nothing_m, levered_m]))
+    return float(np.hypot.reduce([floor[h.scenario], left * nothing_m, levered_m]))
 
 
 def horizon_s(track: Track, model: Model) -> float:
@@ -172,7 +183,7 @@ def held_out_error(case: Case, found: Found) -> float:
         [np.inf if u.owner in chosen else ANY_DAY * day.get(u.label, 0.0) / u.sd for u in case.effects]
     )
     lasts = np.array(["t" not in case.catalogue[u.owner].needs for u in case.effects])
-    normal = innovate(lines, case.worlds([found.hypothesis.world], found.doubt), MOST_SEGMENTS)[0]
+    normal = innovate(lines, case.scenarios([found.hypothesis.scenario], found.doubt), MOST_SEGMENTS)[0]
     half = np.arange(len(normal.where)) % 2
     total, count = 0.0, 0
     for side in (0, 1):
@@ -207,14 +218,14 @@ def _usual(case: Case, floor: Floor) -> float:
 
 
 def roughly(case: Case) -> float:
-    """How far off [m] the forms of effects may leave her that are in the model since she was calibrated: a
-    share of where she would be without, and where she would be if their side force attacked elsewhere."""
+    """How far off [m] the forms of effects may leave it that are in the model since it was calibrated: a
+    share of where it would be without, and where it would be if their side force attacked elsewhere."""
     left = [share * _astray(case, without) for without, share in added(case.model)]
     return float(np.hypot.reduce([_levered(case, case.model), *left]))
 
 
 def _levered(case: Case, model: Model, names: Collection[str] | None = None) -> float:
-    """How far off [m] the side forces of a model's effects may leave her that attack elsewhere along her than
+    """How far off [m] the side forces of a model's effects may leave it that attack elsewhere along it than
     their forms have it."""
     left = 0.0
     for both in elsewhere(model, names):
@@ -232,7 +243,7 @@ def _astray(case: Case, model: Model) -> float:
 
 
 def _measured(case: Case) -> float:
-    """Mean position error [m] of the calibrated ship on voyages that she was not fitted to; nothing where no
+    """Mean position error [m] of the calibrated ship on voyages that it was not fitted to; nothing where no
     calibration measured it."""
     return float(
         once_off(

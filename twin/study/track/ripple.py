@@ -1,7 +1,7 @@
 """Readings that scatter more at some times than at others: short waves that shake an instrument but do not
 move the ship.
 
-A gyro shows ripples that swing her by a tenth of a degree and leave no trace in where she goes; on another
+A gyro shows ripples that swing it by a tenth of a degree and leave no trace in where it goes; on another
 course they are gone. A filter that trusts it alike at all times takes them for forces. So each reading's
 scatter is also looked for from moment to moment, in what is faster than a ship manoeuvres; whether that is
 likelier than an even one, the voyages say (`case.settle`): a sharp turn looks alike."""
@@ -13,7 +13,7 @@ from scipy.ndimage import median_filter
 
 from twin.study.track.track import Track, running_mean
 
-SWIFT = 0.5  # L/U_0: what swings about the mean over so long a time no ship does by her rudder
+SWIFT = 0.5  # L/U_0: what swings about the mean over so long a time no ship does by its rudder
 LATELY = 8.0  # L/U_0: on another course waves are met otherwise
 CLEAR = 1.5  # times its usual scatter, from which a reading scatters more
 NORMAL = 1.4826  # standard deviations in a median of sizes; one wild reading is none
@@ -27,7 +27,7 @@ def shaken(track: Track, time: float) -> Track:
     swift, lately = (max(3, round(k * time / track.h)) for k in (SWIFT, LATELY))
     size = np.column_stack([_lately(np.abs(e - running_mean(e, swift)), lately) for e in beside.T])
     more = NORMAL * size / track.sd
-    return replace(track, unrest=np.where(more > CLEAR, more, 1.0)) if (more > CLEAR).any() else track
+    return replace(track, ripple=np.where(more > CLEAR, more, 1.0)) if (more > CLEAR).any() else track
 
 
 def _lately(values: np.ndarray, steps: int) -> np.ndarray:

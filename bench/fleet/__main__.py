@@ -1,0 +1,24 @@
+"""`python -m bench.fleet VERB`: run, table, fit."""
+
+import argparse
+import sys
+
+from bench.fleet import fit as verb_fit
+from bench.fleet import run as verb_run
+from bench.fleet import table as verb_table
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(
+        prog="python -m bench.fleet", description="Random ships of many forms, asked."
+    )
+    verbs = parser.add_subparsers(dest="verb", required=True)
+    each = {"run": verb_run, "table": verb_table, "fit": verb_fit}
+    for name, module in each.items():
+        module.add_arguments(verbs.add_parser(name, description=(module.__doc__ or "").splitlines()[0]))
+    args = parser.parse_args()
+    return int(each[args.verb].run(args))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

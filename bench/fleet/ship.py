@@ -1,0 +1,99 @@
+"""A ship of a family: hull, drive, windage and what is usual of its instruments; and whether it is
+plausible."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bench.fleet import instruments, sail, weather
+from bench.fleet.drive import Drive
+from bench.fleet.hulls import FAMILIES, Hull
+from bench.fleet.manoeuvres import COURSE, RUDDER, Leg, zigzag
+from bench.fleet.particulars import Particulars, draw, linear
+
+TRIES = 60
+
+
+@dataclass
+class Ship:
+    """One random ship; `heels`: whether its heel acts on it and is recorded."""
+
+    family: str
+    seed: int
+    p: Particulars
+    hull: Hull
+    drive: Drive
+    windage: weather.Windage
+    kit: instruments.Kit
+    GM: float
+
+    def given(self, rng: np.random.Generator) -> dict[str, float]:
+        """What the owner types into `twin init`: particulars to a few per cent."""
+        p, near = self.p, lambda v, sd=0.01: float(v * (1 + sd * rng.standard_normal()))
+        return {
+            "length-pp-m": p.L,
+            "beam-m": p.B,
+            "draught-m": p.T,
+            "block-coefficient": round(near(p.C_b), 3),
+            "x-g-m": p.x_G,
+            "service-speed-mps": near(p.U0),
+            "shaft-speed-rpm": near(60 * self.drive.n0),
+            "propellers": float(p.propellers),
+            "propeller-diameter-m": p.D_P,
+            "pitch-ratio": near(p.pitch, 0.03),
+            "rudder-area-m2": near(p.A_R, 0.03),
+            "frontal-area-m2": near(p.A_F, 0.1),
+            "lateral-area-m2": near(p.A_L, 0.1),
+        }
+
+
+def build(family: str, seed: int) -> Ship:
+    """The first plausible ship of this seed: turning circle, zigzags and stopping as ships have them."""
+    for k in range(TRIES):
+        rng = np.random.default_rng([seed, sorted(FAMILIES).index(family), k])
+        shape, kinds, resistances = FAMILIES[family]
+        p = draw(rng, str(rng.choice(kinds)))
+        a = linear(p, rng)
+        R = resistances[rng.integers(len(resistances))](p, a, rng)
+        drive = Drive.draw(p, rng)
+        drive.balance(R(p.U0))
+        ship = Ship(
+            family,
+            seed,
+            p,
+            shape(p, a, R, rng),
+            drive,
+            weather.Windage(p, rng),
+            instruments.Kit.draw(p, rng, family == "heeling"),
+            p.B * rng.uniform(0.04, 0.09),
+        )
+        if plausible(ship):
+            return ship
+    raise RuntimeError(f"{family} {seed}: no plausible ship in {TRIES}")
+
+
+def plausible(ship: Ship) -> bool:
+    """IMO MSC.137(76) with a fifth of slack: advance and tactical diameter at 35 degrees, first overshoots;
+    and
+    half of the speed is lost in one to forty lengths when the shaft stops."""
+    p = ship.p
+    if not 0.2 * ship.drive.n0 * p.D_P < p.U0 < 1.3 * ship.drive.n0 * p.D_P * p.pitch:
+        return False
+    run = lambda legs, lengths: sail.sail(ship, legs, weather.Weather(), lengths * p.unit_s, 0, heading=0.0)  # noqa: E731
+    turn = run([Leg(COURSE, 1), Leg(RUDDER, 99, np.radians(35))], 16)
+    x, y, psi = turn["x"], turn["y"], turn["psi"]
+    if not np.isfinite(psi).all() or psi.max() < np.pi or turn["u"].min() < 0.1 * p.U0:
+        return False
+    start = int(np.argmax(turn["t"] >= p.unit_s))
+    advance = (x[np.argmax(psi > np.pi / 2)] - x[start]) / p.L
+    diameter = (y[np.argmax(psi > np.pi)] - y[start]) / p.L
+    if not (1.2 < advance < 5.4 and 1.2 < diameter < 6.0):
+        return False
+    for angle, most in ((10, 25), (20, 30)):
+        z = run(zigzag(angle), 30)
+        over = np.degrees(np.abs(z["psi"])).max() - angle
+        if not 0.5 < over < 1.5 * most:
+            return False
+    stop = run([Leg(COURSE, 1), Leg(COURSE, 99, rate=0.0)], 45)
+    slow = np.argmax(stop["u"] < 0.5 * p.U0)
+    return bool(slow and 1.0 < (stop["t"][slow] / p.unit_s) < 42)

@@ -1,0 +1,84 @@
+"""The fleet of families: ships that are ships, mirrored alike, and hidden things that show."""
+
+import numpy as np
+import pytest
+
+from bench.fleet import cases, hidden, instruments, sail, weather
+from bench.fleet.hulls import FAMILIES
+from bench.fleet.judged import Share, right
+from bench.fleet.manoeuvres import zigzag
+from bench.fleet.ship import build
+
+SEED = 3
+
+
+@pytest.fixture(scope="module")
+def ships():
+    return {family: build(family, SEED) for family in FAMILIES}
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_port_and_starboard_are_alike(ships, family):
+    """Expected: the mirrored motion gives the same force ahead, and the others with the other sign."""
+    ship = ships[family]
+    hull, U, L = ship.hull, ship.p.U0, ship.p.L
+    forces = []
+    for side in (1.0, -1.0):
+        hull.start()
+        forces.append(hull.force(0.9 * U, side * 0.1 * U, side * 0.3 * U / L, side * 0.05, 0.1))
+    (X, Y, N), (x, y, n) = forces
+    assert (
+        pytest.approx(x, rel=1e-9) == X
+        and pytest.approx(-y, rel=1e-9) == Y
+        and pytest.approx(-n, rel=1e-9) == N
+    )
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_ship_goes_as_fast_as_its_shaft_was_balanced_for(ships, family):
+    """Test: straight ahead in calm water, from service speed. Expected: it stays there within a tenth."""
+    ship = ships[family]
+    true = sail.sail(ship, [], weather.Weather(), 20 * ship.p.unit_s, 1)
+    assert true["u"][-1] == pytest.approx(ship.p.U0, rel=0.1)
+
+
+@pytest.mark.parametrize("name", hidden.EVERY)
+def test_what_is_hidden_shows_at_a_plain_size(ships, name):
+    """Test: the same zigzag and noise with it and without. Expected: a column that a bridge reads differs by more
+    than rounding."""
+    ship = next(s for f, s in ships.items() if f != "planing")
+    kit = ship.kit
+    ship = type(ship)(**{**ship.__dict__, "kit": type(kit)(**{**vars(kit), "has_log": True})})
+    change = hidden.EVERY[name](ship.p, ship.drive, np.random.default_rng(1), 1.5)
+    flaws = hidden.Flaws(**change.flaws)
+    read = []
+    for f, w in ((hidden.Flaws(), {}), (flaws, change.weather)):
+        true = sail.sail(ship, zigzag(20), weather.stronger(weather.Weather(), **w), 40 * ship.p.unit_s, 7, f)
+        read.append(instruments.record(ship, true, weather.Weather(), 7, f)[1])
+    most = max(
+        float(np.nanmax(np.abs(read[0][c] - read[1][c])) / (np.nanstd(read[0][c]) + 1e-9))
+        for c in read[0]
+        if c not in ("heading_true_north_deg", "true_wind_direction_deg")
+    )
+    turned = read[0]["heading_true_north_deg"] - read[1]["heading_true_north_deg"]
+    turned = float(np.percentile(np.abs((turned + 180) % 360 - 180), 90))
+    assert most > 0.05 or turned > 0.5
+
+
+def test_a_case_is_the_same_whenever_it_is_sailed(ships):
+    ship = ships["modulus"]
+    case = cases.plan(ship)[0]
+    one, two = cases.sailed(ship, case), cases.sailed(ship, case)
+    assert all(np.array_equal(one.columns[c], two.columns[c], equal_nan=True) for c in one.columns)
+
+
+def test_wilsons_interval_by_hand():
+    """Expected: 8 of 10 lies between 0.490 and 0.943 (Wilson 1927; z = 1.96)."""
+    assert Share(8, 10).interval() == pytest.approx((0.490, 0.943), abs=1e-3)
+
+
+def test_a_cause_too_many_makes_an_answer_wrong_and_weather_does_not():
+    row = {"kind": "single", "hidden": {"HullFouling": 1.0}, "verdict": "missing", "weather": []}
+    assert right(row | {"missing": ["HullFouling", "Wind"]})
+    assert not right(row | {"missing": ["HullFouling", "GyroBias"]})
+    assert not right(row | {"missing": []})

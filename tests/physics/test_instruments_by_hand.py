@@ -1,0 +1,94 @@
+"""What each instrument effect shows of one moment, by hand."""
+
+from dataclasses import replace
+from math import radians
+
+import pytest
+
+from twin.physics.effects import find
+from twin.physics.state import Situation
+
+
+def test_instruments_by_hand(ship):
+    s = Situation(
+        x=10.0,
+        y=20.0,
+        psi=radians(30),
+        u=4.0,
+        v=-0.5,
+        r=0.02,
+        u_r=3.9,
+        v_r=-0.4,
+        wind_to=1.0,
+        u_dot=0.1,
+        v_dot=-0.05,
+    )
+    compass = find("HeadingBias")(bias=0.02, turned=0.03).read(s, ship)
+    assert (compass.psi, compass.wind_to) == (pytest.approx(radians(30) + 0.02), pytest.approx(1.02))
+    assert (compass.u, compass.v) == (
+        pytest.approx(4 - 0.5 * 0.03, abs=2e-3),
+        pytest.approx(-0.5 - 4 * 0.03, abs=1e-3),
+    )
+    assert find("SpeedLogBias")(bias=0.2).read(s, ship).u_r == pytest.approx(4.1)
+    log = find("SpeedLogScale")(scale=0.05).read(s, ship)
+    assert (log.u_r, log.v_r) == (pytest.approx(4.095), pytest.approx(-0.42))
+    askew = find("SpeedLogMisalignment")(angle=radians(3)).read(s, ship)
+    assert (askew.u_r, askew.v_r) == (pytest.approx(3.87373, rel=1e-4), pytest.approx(-0.60356, rel=1e-4))
+    mast = find("AntennaOffset")(ahead=20.0, starboard=4.0).read(s, ship)
+    assert (mast.x, mast.y) == (pytest.approx(10 + 17.32051 - 2), pytest.approx(20 + 10 + 3.46410))
+    assert (mast.u, mast.v) == (pytest.approx(4 - 0.08), pytest.approx(-0.5 + 0.4))
+    heeled = find("AntennaOffset")(ahead=20.0, starboard=4.0, above=10.0).read(
+        replace(s, phi=radians(6), p=0.02), ship
+    )
+    # 4 + 10 sin 6 deg = 5.04528 m aside
+    assert (heeled.x, heeled.y) == (pytest.approx(10 + 17.32051 - 2.52264), pytest.approx(20 + 10 + 4.36934))
+    assert (heeled.u, heeled.v) == (
+        pytest.approx(4 - 0.10091, abs=1e-5),
+        pytest.approx(-0.5 + 0.4 + 0.19890, abs=1e-5),
+    )
+    level = find("AntennaOffset")(ahead=20.0, starboard=4.0, above=10.0).read(s, ship)
+    assert (level.x, level.y, level.v) == (mast.x, mast.y, mast.v)
+    late = find("SensorDelay")(delay=0.5, turned=0.5).read(s, ship)
+    # 0.25 s ago: 29.71352 deg
+    there = 0.5 * (3.975 * 0.8685145 + 0.4875 * 0.4956637), 0.5 * (3.975 * 0.4956637 - 0.4875 * 0.8685145)
+    assert (late.x, late.y) == (pytest.approx(10 - there[0]), pytest.approx(20 - there[1]))
+    assert find("SensorDelay")(delay=0.5, turned=0.5).prompt() == (
+        0.5,
+        find("SensorDelay")(delay=0.0, turned=0.5),
+    )
+    assert (late.u, late.v) == (pytest.approx(4 - 0.05 - 0.005), pytest.approx(-0.5 + 0.025 - 0.04))
+    assert find("GyroBias")(bias=0.001).read(s, ship).r == pytest.approx(0.021)
+
+
+def test_a_slow_compass_by_hand(ship):
+    s = Situation(psi=radians(30), u=4.0, v=-0.5, r=0.02)
+    # 0.04 rad behind; the velocity turned by 0.06 rad
+    slow = find("HeadingLag")(lag=2.0, turned=3.0).read(s, ship)
+    assert slow.psi == pytest.approx(radians(30) - 0.04)
+    assert (slow.u, slow.v) == (
+        pytest.approx(4 * 0.9982005 + 0.5 * 0.0599640, rel=1e-6),
+        pytest.approx(-0.5 * 0.9982005 + 4 * 0.0599640, rel=1e-6),
+    )
+
+
+def test_a_compass_with_iron_about_it_by_hand(ship):
+    # heading 30 deg: 0.01 + 0.02 x 0.5 + 0.03 x 0.8660254 + 0.04 x 0.8660254 + 0.05 x 0.5 = 0.1056218 rad;
+    # half of it turns the velocity
+    s = Situation(psi=radians(30), u=4.0, v=-0.5, wind_to=1.0)
+    iron = find("CompassDeviation")(A=0.01, B=0.02, C=0.03, D=0.04, E=0.05, turned=0.5).read(s, ship)
+    assert (iron.psi, iron.wind_to) == (pytest.approx(radians(30) + 0.1056218), pytest.approx(1.1056218))
+    assert (iron.u, iron.v) == (
+        pytest.approx(4 * 0.9986058 - 0.5 * 0.0527863, rel=1e-6),
+        pytest.approx(-0.5 * 0.9986058 - 4 * 0.0527863, rel=1e-6),
+    )
+
+
+def test_a_receiver_that_smooths_by_hand(ship):
+    # a = 2 x 0.02 = 0.04, 1 + a^2 = 1.0016
+    s = Situation(x=7.0, u=4.0, v=-0.5, r=0.02, u_dot=0.1, v_dot=-0.05)
+    smooth = find("ReceiverSmoothing")(time=2.0).read(s, ship)
+    assert (smooth.u, smooth.v) == (
+        pytest.approx((4 - 0.02) / 1.0016 - 0.2),
+        pytest.approx((-0.5 - 0.16) / 1.0016 + 0.1),
+    )
+    assert smooth.x == 7.0  # the place is prompt

@@ -1,0 +1,181 @@
+"""Faults of known size in the instruments of a ship of kinematics alone are found, and nothing is found where
+none is."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import twin
+from twin.api.json_key import absent_keys, unknown_paths
+from twin.api.json_keys import KEYS
+from twin.cli import main
+from twin.errors import DataError, UsageError
+from twin.physics.ship import load
+from twin.recording.read import Raw, finished
+from twin.study.instruments.arrow import Block, reduce
+from twin.study.instruments.estimate import estimate
+from twin.study.instruments.spline import Spline
+from twin.study.instruments.told import as_json, told
+
+HEADING, RATE, LOG = "heading_true_north_deg", "yaw_rate_degps", "surge_velocity_through_water_mps"
+EVERY = 5  # of the samples of the healthy ship, so that a test is quick
+KEPT = ("time_s", "north_m", "east_m", HEADING, "surge_velocity_mps", "sway_velocity_mps", RATE, LOG)
+
+
+@pytest.fixture
+def healthy(sail):
+    """{column: (N,)} of twelve minutes of zigzags twice a second; neither rudder nor shaft."""
+    full = sail(720.0, seed=3)
+    return {name: full[name][::EVERY] for name in KEPT}
+
+
+def voyage(columns, frame="body"):
+    columns = dict(columns)
+    time_s = columns.pop("time_s")
+    return finished(
+        Raw(Path("zigzag.csv"), np.arange(time_s.size), time_s, columns, {"velocity_frame": frame}),
+        controls=False,
+    )
+
+
+def late(columns, name, seconds):
+    x = np.unwrap(columns[name], period=360.0) if name == HEADING else columns[name]
+    return columns | {name: np.interp(columns["time_s"] - seconds, columns["time_s"], x)}
+
+
+def compass(columns, error):
+    """A compass that is off by error(psi) [rad]."""
+    psi = np.radians(columns[HEADING])
+    return columns | {HEADING: np.mod(np.degrees(psi + error(psi)), 360.0)}
+
+
+def near(found, name, truth):
+    """Within three of its own scatters, and no wider than that."""
+    e = found.of(name)
+    assert e.seen and abs(e.value - truth) < 3.0 * e.sd, (name, e.value, e.sd)
+
+
+def test_a_healthy_ship_has_no_fault_and_its_stream_is_found(healthy):
+    found = estimate([voyage(healthy)], 100.0)
+    assert found.faults == ()
+    for name, truth in (("current_north", 0.3), ("current_east", -0.4)):
+        near(found, name, truth)
+    assert "No instrument disagrees" in told(found)[0]
+
+
+@pytest.mark.parametrize(
+    "fault, effect, name, truth, plant",
+    [
+        ("heading_delay", "HeadingLag", "heading_delay", 2.0, lambda c: late(c, HEADING, 2.0)),
+        ("heading_bias", "HeadingBias", "A", -0.3, lambda c: compass(c, lambda psi: -0.3)),
+        ("deviation", "CompassDeviation", "B", 0.1, lambda c: compass(c, lambda psi: 0.1 * np.sin(psi))),
+        ("gyro_bias", "GyroBias", "gyro_bias", 0.001, lambda c: c | {RATE: c[RATE] + np.degrees(0.001)}),
+        ("log_scale", "SpeedLogScale", "log_scale", -0.25, lambda c: c | {LOG: 0.75 * c[LOG]}),
+    ],
+)
+def test_a_fault_is_found_with_its_size_and_by_its_name(healthy, fault, effect, name, truth, plant):
+    found = estimate([voyage(plant(healthy))], 100.0)
+    assert fault in found.faults
+    near(found, name, truth)
+    said = next(f for f in as_json(found)["faults"] if f["fault"] == fault)
+    assert said["effect"] == effect and said["residuals"]
+
+
+def test_two_faults_are_told_apart(healthy):
+    found = estimate([voyage(late(healthy | {RATE: healthy[RATE] + np.degrees(0.001)}, HEADING, 2.0))], 100.0)
+    assert set(found.faults) == {"heading_delay", "gyro_bias"}
+    near(found, "heading_delay", 2.0)
+    near(found, "gyro_bias", 0.001)
+
+
+def test_a_straight_course_says_that_ages_cannot_be_known(healthy):
+    """Test: no turn. Expected: nothing named, and what it would take is said."""
+    t = healthy["time_s"]
+    rng = np.random.default_rng(5)
+    straight = {
+        "time_s": t,
+        "north_m": 6.0 * t + 0.3 * rng.normal(size=t.size),
+        "east_m": 0.3 * rng.normal(size=t.size),
+        HEADING: np.mod(0.1 * rng.normal(size=t.size), 360.0),
+        RATE: 0.02 * rng.normal(size=t.size),
+        "surge_velocity_mps": 6.0 + 0.05 * rng.normal(size=t.size),
+        "sway_velocity_mps": 0.05 * rng.normal(size=t.size),
+    }
+    found = estimate([voyage(straight, "course")], 100.0)
+    assert found.faults == ()
+    assert all(
+        (e := found.of(name)) is None or not e.known for name in ("heading_delay", "rate_delay", "A", "B")
+    )
+    assert any("not known beside all others" in line for line in told(found))
+
+
+def test_without_heading_it_is_refused_in_one_line(healthy):
+    with pytest.raises(DataError, match="needs heading_true_north_deg"):
+        voyage({k: v for k, v in healthy.items() if k != HEADING})
+
+
+def test_the_verb_writes_json_and_a_ship_file_that_loads(healthy, write_csv, tmp_path, capsys):
+    path = write_csv(late(healthy, HEADING, 2.0))
+    out, answer = tmp_path / "mended.toml", tmp_path / "answer.json"
+    assert main(["instruments", str(path), "--ship", "kvlcc2", "-o", str(out), "--json", str(answer)]) == 0
+    said = json.loads(answer.read_text())
+    assert said["schema_version"] == 1 and [f["effect"] for f in said["faults"]] == ["HeadingLag"]
+    assert {n["name"]: n for n in said["numbers"]}["heading_delay"]["value"] == pytest.approx(2.0, abs=0.2)
+    lag = next(e for e in load(out).effects if type(e).__name__ == "HeadingLag")
+    assert lag.lag == pytest.approx(2.0, abs=0.2) and lag.turned == 0.0
+    assert "shown by the residuals of" in capsys.readouterr().out
+
+
+def test_in_python_it_is_the_verbs_json_a_line_a_page_and_a_corrected_ship(healthy, write_csv):
+    """Test: a late compass, rudder and shaft not recorded. Expected: every key of the table, and no other."""
+    path, ship = write_csv(late(healthy, HEADING, 2.0)), load("kvlcc2")
+    with pytest.raises(DataError, match="needs rudder_angle_deg"):
+        twin.read_voyage(path)
+    found = twin.instruments(ship, twin.read_voyage(path, controls=False))
+    assert unknown_paths(KEYS["instruments"], found.to_dict()) == []
+    assert absent_keys(KEYS["instruments"], found.to_dict()) == []
+    assert found.faults == ["heading_delay"] and found.effects == ["HeadingLag"]
+    assert repr(found) == "<InstrumentCheck of voyage: heading_delay>"
+    assert "heading late (HeadingLag)" in found.page()
+    lag = next(e for e in found.corrected(ship).effects if type(e).__name__ == "HeadingLag")
+    assert lag.lag == pytest.approx(2.0, abs=0.2)
+
+
+def test_another_word_for_what_turned_the_velocity_is_refused_in_one_line(healthy):
+    with pytest.raises(UsageError, match="velocity_by='gyro': give 'compass' or 'receiver'"):
+        twin.instruments(None, voyage(healthy), velocity_by="gyro")
+
+
+def test_a_map_takes_off_what_a_map_can(healthy, write_csv, tmp_path, capsys):
+    path, out = write_csv(compass(healthy, lambda psi: 0.1)), tmp_path / "map.toml"
+    assert main(["instruments", str(path), "-o", str(out)]) == 0
+    line = next(x for x in out.read_text().splitlines() if x.startswith(HEADING))
+    assert float(line.split("offset = ")[1].split()[0]) == pytest.approx(-np.degrees(0.1), abs=0.3)
+
+
+def test_nothing_to_write_is_one_line_and_exit_code_5(healthy, write_csv, tmp_path, capsys):
+    out = tmp_path / "map.toml"
+    assert main(["instruments", str(write_csv(healthy)), "-o", str(out)]) == 5
+    assert not out.exists() and "nothing was found" in capsys.readouterr().err.splitlines()[-1]
+
+
+def test_a_splines_slopes_are_those_of_its_values():
+    path, t = Spline.over(0.0, 10.0, 0.7), np.linspace(1.0, 9.0, 40)
+    c = np.random.default_rng(0).normal(size=(path.size, 2))
+    for k in (0, 1):
+        up, down = (path.value(c, path.weights(t + s * 1e-5, k)) for s in (1, -1))
+        np.testing.assert_allclose(path.value(c, path.weights(t, k + 1)), (up - down) / 2e-5, atol=1e-5)
+
+
+def test_states_eliminated_is_what_the_whole_matrix_says():
+    from scipy.sparse import csr_array
+
+    rng = np.random.default_rng(1)
+    J, G, r = rng.normal(size=(30, 8)), rng.normal(size=(30, 3)), rng.normal(size=30)
+    found = reduce([Block("a", r, csr_array(J), G, np.ones(30))], {"a": 0.5}, 6)
+    whole = np.linalg.lstsq(np.hstack([J, G]), r, rcond=None)[0]
+    shared = np.linalg.solve(found.A, found.g)
+    np.testing.assert_allclose(shared, whole[8:], rtol=1e-6)
+    np.testing.assert_allclose(found.states(shared), whole[:8], rtol=1e-6)

@@ -1,0 +1,153 @@
+"""The live bound of an observer that corrects at a sample's own time: it goes the very way the estimate went.
+
+Each inner step x <= M x + d, each sample x_i <= (1 - a) x_i + a n_i (one that does not count: x_i + what it
+moved), from the moment that no sample of the tick changes; so it holds whatever the ages of the samples are.
+"""
+
+from collections import deque
+from math import ceil
+from typing import TYPE_CHECKING, NamedTuple
+
+from twin.live.certificate.comparison import add, scaled_row
+from twin.live.certificate.periods import of_certificate
+from twin.live.certificate.rolled import Step, inner, way
+from twin.live.certificate.tube import NOTHING, Three, Tube
+from twin.live.observer.operating import NU, WORDS
+from twin.live.observer.rollback import KEPT_S, Path, State
+from twin.physics.state import Situation
+
+if TYPE_CHECKING:
+    from twin.live.certificate.certificate import Certificate
+
+Four = tuple[float, float, float, float]
+PSI = 2  # place of the heading among the observer's states; u, v, r follow
+
+
+class Node(NamedTuple):
+    """A moment of the estimate (u, v, r, psi) and the bound of its error."""
+
+    time_s: float
+    bound: Four
+    estimate: Four
+
+
+class RolledTube(Tube):
+    """As Tube; `follow` in the place of `step`. Whether it was inside the set is asked of every inner step
+    of the way."""
+
+    def __init__(self, certificate: "Certificate", start: Three | None = None) -> None:
+        self.certificate = certificate
+        # what a sample may look back on is inside, before anything is promised
+        self.window = ceil(KEPT_S / certificate.h) + 1
+        self.periods = of_certificate(certificate)
+        self.oldest_s = KEPT_S
+        self.beta = certificate.noise if start is None else start
+        self.psi = certificate.heading_noise
+        self._one = Step(inner(certificate.plant, certificate.inner))
+        self._length = certificate.h / certificate.inner
+        self._share = certificate.K[0] * certificate.h
+        self._limits = [certificate.operating.ranges[name] for name in NU]
+        self._nodes: deque[Node] = deque()
+        self._left: str | None = None  # what left the set on the way, or may have
+        self._sea = (-1.0, -1.0)
+        self._look(0.0, True)
+
+    @property
+    def widest(self) -> Three:
+        """The greatest bound of the kept time."""
+        kept = [node.bound for node in self._nodes] or [(*self.beta, self.psi)]
+        return max(x[0] for x in kept), max(x[1] for x in kept), max(x[2] for x in kept)
+
+    def reset(self, start: Three | None = None, psi: float | None = None) -> None:
+        """Begin anew from what the instruments leave open; before now it was at most its way from there."""
+        self.beta = self.noise if start is None else start
+        self.psi = self.heading_noise if psi is None else psi
+        if not self._nodes:
+            return
+        bound, last = (*self.beta, self.psi), self._nodes[-1]
+        way = (*self.way, max(map(abs, self._limits[2])))
+        self._nodes = deque(
+            Node(
+                node.time_s,
+                tuple(  # type: ignore[arg-type]
+                    b + abs(then - now) + w * (last.time_s - node.time_s)
+                    for b, then, now, w in zip(bound, node.estimate, last.estimate, way, strict=True)
+                ),
+                node.estimate,
+            )
+            for node in self._nodes
+        )
+
+    def follow(self, path: Path, H_s: float = 0.0, acts: bool = True) -> Three:
+        """The bound at the end of that path."""
+        self._look(H_s, acts)
+        nodes, self._left = self._nodes, None
+        while nodes and nodes[-1].time_s > path.start_s:
+            nodes.pop()
+        x = nodes[-1].bound if nodes else (*self.beta, self.psi)
+        if not nodes:  # a new start
+            nodes.append(Node(path.start_s, x, of_state(path.start)))
+        for time_s, motions, pulls, after in path.stretches:
+            for motion in motions:
+                self._left = self._left or self._outside(motion, x)
+                x = self._on(x)
+            for state, full, moved in pulls:
+                if state >= PSI:
+                    x = self._pulled(x, 3 if state == PSI else state - 3, full, moved)
+            nodes.append(Node(time_s, x, of_state(after)))
+        while len(nodes) > 1 and nodes[1].time_s <= nodes[-1].time_s - KEPT_S:
+            nodes.popleft()
+        self.beta, self.psi = x[:3], x[3]
+        return self.beta
+
+    def outside(self, s: Situation, within: Three | None = None, dt: float = 0.0) -> str | None:
+        """What left the set on the way to now, or does now."""
+        return self._left or self.certificate.operating.outside(
+            s, add(within or self.beta, scaled_row(self._length, self.way))
+        )
+
+    def _outside(self, motion: Three, x: Four) -> str | None:
+        """What may be outside as an inner step begins, or within it."""
+        for name, value, b, w, (low, high) in zip(NU, motion, x, self.way, self._limits, strict=False):
+            most = b + self._length * w
+            if not low + most <= value <= high - most:
+                return f"{WORDS[name]} = {value:.3g} (+-{most:.3g}) outside [{low:.3g}, {high:.3g}]"
+        return None
+
+    def _on(self, x: Four) -> Four:
+        u, v, r, psi = x
+        a, b, c, e = [
+            min(m0 * u + m1 * v + m2 * r + m3 * psi + d, NOTHING) for m0, m1, m2, m3, d in self._rows
+        ]
+        return a, b, c, e
+
+    def _pulled(self, x: Four, i: int, full: bool, moved: float) -> Four:
+        bound = [*x]
+        bound[i] = (1.0 - self._share) * x[i] + self._share * self._noise[i] if full else x[i] + moved
+        return tuple(bound)  # type: ignore[return-value]
+
+    def _look(self, H_s: float, acts: bool) -> None:
+        """The rows of an inner step in this sea."""
+        if self._sea == (H_s, float(acts)):
+            return
+        self._sea = H_s, float(acts)
+        c = self.certificate
+        force = c.disturbance.at(H_s)
+        if not acts:
+            force = add(force, scaled_row(-1.0, c.saturation))
+        self.noise: Three = c.disturbance.noise(c.noise, H_s)
+        self.heading_noise = c.disturbance.heading_noise(c.heading_noise, H_s)
+        self._noise: Four = (*self.noise, self.heading_noise)
+        self.way: Three = way(c.plant, force)
+        d = self._one.pushes(force, self.way[2])
+        self._rows = tuple((*row, x) for row, x in zip(self._one.M, d, strict=True))
+
+
+def of_state(x: State) -> Four:
+    """(u, v, r, psi) of an estimate."""
+    return x[3], x[4], x[5], x[2]
+
+
+def tube_of(certificate: "Certificate") -> Tube:
+    """The tube that goes with the certificate's observer."""
+    return RolledTube(certificate) if certificate.inner > 1 else Tube(certificate)

@@ -1,0 +1,49 @@
+"""The compass is slow: it shows the heading of `lag` seconds ago (a filtered magnetic or satellite compass, a
+slow message).
+
+    psi_m = psi - lag r
+    u_m = u cos(turned r) - v sin(turned r),   v_m = v cos(turned r) + u sin(turned r)      (over ground)
+`turned` = lag where the velocity over ground is turned into body axes by this compass, and 0 where the
+receiver has an attitude of its own. First order in the lag: good while the rate of turn changes little
+within it.
+"""
+
+from dataclasses import replace
+
+from twin.physics.effect import SensorFault, param
+from twin.physics.maths import cos, sin
+from twin.physics.particulars import Ship
+from twin.physics.state import Situation
+
+
+class HeadingLag(SensorFault):
+    """The compass shows the heading of some seconds ago, so while turning the ship seems to drift, and on a
+    straight course all is well."""
+
+    attitude = True
+    kinematic = True
+    source = (
+        "ISO 11606 and ISO 22090-3 (follow-up error of heading devices); Skog & Haendel (2011) IEEE "
+        "Trans. ITS 12, 1014-1023"
+    )
+
+    lag: float = param(
+        0.5,
+        unit="s",
+        lo=-1.0,
+        hi=10.0,
+        sd=0.5,
+        doc="age of the shown heading; below zero: it runs ahead of the other instruments",
+    )
+    turned: float = param(
+        0.0,
+        unit="s",
+        lo=-1.0,
+        hi=10.0,
+        sd=0.5,
+        doc="age of that by which speed over ground is turned: lag, or 0 (see above)",
+    )
+
+    def read(self, s: Situation, ship: Ship) -> Situation:
+        c, si = cos(self.turned * s.r), sin(self.turned * s.r)
+        return replace(s, psi=s.psi - self.lag * s.r, u=s.u * c - s.v * si, v=s.v * c + s.u * si)

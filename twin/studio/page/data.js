@@ -1,0 +1,126 @@
+// Data: files in, recognised, mapped, every channel seen, what the checks doubt mended by a button.
+
+import { address, ask, files, found, over, samples, start, state } from "/app/api.js";
+import { again, doing } from "/app/main.js";
+import { boxes, button, card, choose, command, el, field, named, num, table } from "/app/dom.js";
+import { timePlot, timeView, zoomer } from "/app/plot.js";
+import { TAGS, answerOf, go, kept, stateWord } from "/app/shared.js";
+import { kept as saved } from "/app/save.js";
+
+export async function data(r) {
+  return r.item ? looked(r.item) : overview();
+}
+
+function overview() {
+  const rows = state.project.files.map((f) => [
+    ["voyage", "data"].includes(f.kind) ? el("a", { href: address("data", f.name) }, f.name) : f.kind === "ship" ? el("a", { href: address("ship", f.name) }, f.name) : f.name,
+    f.kind === "data" ? "to be imported" : f.kind, size(f.bytes),
+    f.kind === "voyage" ? tagger(f) : "", el("a", { href: `/api/files/${encodeURIComponent(f.name)}`, download: f.name, "aria-label": `Save ${f.name}` }, "save")]);
+  return [el("h1", null, "Data"), dropper(),
+    rows.length ? card("Files of this project", table("Plain files in the project's folder; the command line reads and writes the same", ["file", "what it is", ["size"], "kept for", "copy"], rows))
+      : card("Nothing here yet", el("p", null, "Drop a log or a table above, or begin with the tanker that comes with the twin: calibrated on calm voyages, it sails badly on Monday."), button("Copy the demo voyages here", doing(async () => { await ask("/api/demo", {}); await again(); }), { class: "main", id: "demo", disabled: state.project.read_only }))];
+}
+
+const size = (n) => (n > 1e6 ? `${(n / 1e6).toFixed(1)} MB` : `${Math.max(1, Math.round(n / 1e3))} kB`);
+
+function tagger(f) {
+  const select = choose(`tag-${f.name}`, TAGS, f.tag, doing(async (e) => { await ask("/api/tags", { file: f.name, tag: e }); await again(); }));
+  select.setAttribute("aria-label", `What ${f.name} is kept for`);
+  select.disabled = state.project.read_only;
+  return select;
+}
+
+function dropper() {
+  const input = el("input", { type: "file", multiple: true, id: "files", "aria-label": "Files to add", disabled: state.project.read_only });
+  const box = el("div", { id: "drop" }, el("p", null, "Drop logs, tables, maps or ship files here, or choose them: ", input), el("p.note", null, "CSV, Excel, Parquet, NMEA 0183 and 2000, Signal K, AIS, ROS bags, ArduPilot and PX4 logs, MCAP. They are copied into the folder and nowhere else."));
+  const take = doing(async (list) => {
+    for (const file of list) await ask(`/api/files/${encodeURIComponent(file.name)}`, file);
+    await again();
+    const first = [...list].find((f) => !f.name.endsWith(".toml"));
+    if (first) location.hash = address("data", first.name);
+  });
+  input.addEventListener("change", () => take(input.files));
+  box.addEventListener("dragover", (e) => { e.preventDefault(); box.classList.add("over"); });
+  box.addEventListener("dragleave", () => box.classList.remove("over"));
+  box.addEventListener("drop", (e) => { e.preventDefault(); box.classList.remove("over"); if (!state.project.read_only) take(e.dataTransfer.files); });
+  return el("section.card", { "aria-label": "Add files" }, box);
+}
+
+const mapOf = (file) => `${file.replace(/\.[^.]+$/, "")}-map.toml`;
+
+/** One file: looked at by a worker, once for each of its versions. */
+async function looked(name) {
+  const file = state.project.files.find((f) => f.name === name), title = el("h1", null, name);
+  if (!file) return [title, el("p", null, "This file is not in the project (any more).")];
+  const map = files("map").find((f) => f.name === mapOf(name)), since = Math.max(file.changed_s, map?.changed_s || 0);
+  const fresh = state.jobs.filter((j) => j.verb === "look" && j.asked.file === name && (j.asked.map || "") === (map?.name || "") && j.created_s >= since - 0.05).at(-1);
+  if (!fresh) {
+    if (state.project.read_only) return [title, el("p", null, "It was not looked at before, and this project is open for reading only.")];
+    await ask("/api/jobs", { verb: "look", file: name, map: map?.name, ship: files("ship").at(-1)?.name });
+    await again();
+    return [title, el("p", { role: "status" }, "Looking at it ...")];
+  }
+  const { job, waiting, result } = await answerOf(fresh.name);
+  if (waiting) return [title, waiting];
+  const view = timeView(), x = result.samples ? await samples(job.name, result) : null;
+  return [title, head(file, result), result.problem ? problem(result) : null, x ? checks(result, x, view, name) : null, mapCard(result, x, name), x ? channels(result, x, view) : null, file.kind === "voyage" ? null : importer(name, result, map)];
+}
+
+function head(file, k) {
+  return el("section.card", { "aria-label": "What it is" }, el("p.big", null, `Recognised as ${k.format}. `, k.samples ? `${k.rows} rows, ${num(k.duration_s, 5)} s, a sample every ${num(k.step_s)} s, ${k.columns.length} channels.` : ""),
+    k.every > 1 ? el("p.note", null, `Every ${k.every}th sample is drawn.`) : null, (k.notes || []).map((n) => el("p.note", null, n)),
+    k.absent?.length ? el("details", null, el("summary", null, `${k.absent.length} channels are absent`), el("p.note", null, k.absent.map((c) => named(c)[0]).join(", "))) : null);
+}
+
+const problem = (k) => card("It cannot be read by this map yet", el("p.big.bad", null, k.problem), el("p.note", null, "Correct the map below and save it; the file is then read again."));
+
+/** What the checks doubt, beside the channels it is about, with the remedies. */
+function checks(k, x, view, name) {
+  const bad = k.checks.filter((c) => !c.ok).sort((a, b) => b.proved - a.proved), good = k.checks.filter((c) => c.ok);
+  const one = (c) => el("article.card", { "aria-label": c.check }, el(".head", null, el("h3", null, c.check.replaceAll("_", " ")), el(`span.badge.${c.proved ? "bad" : "fair"}`, null, c.proved ? "wrong" : "look")), el("p", null, c.text),
+    el(".tools", null, c.remedies.map((m, i) => button(`Write into the map: ${m.says}`, doing(async () => { await ask("/api/remedy", { name: mapOf(name), text: k.map_text, edit: m.edit }); await again(); }), { class: i ? "" : "main", id: `remedy-${c.check}-${i}`, disabled: state.project.read_only || !k.map_text }))),
+    el(".two", null, c.channels.slice(0, 2).map((channel) => channelPlot(channel, x, view))));
+  return el("section.card", { "aria-label": "Checks" }, el(".head", null, el("h2", null, "Checks"), el(`span.badge.${bad.length ? "bad" : "good"}`, null, bad.length ? `${bad.length} of ${k.checks.length} speak against it` : `${k.checks.length} have nothing against it`)), bad.map(one),
+    el("details", null, el("summary", null, "What the other checks saw"), table("Checks that have nothing against it", ["check", "what it saw"], good.map((c) => [c.check.replaceAll("_", " "), c.text]))));
+}
+
+const channelPlot = (name, x, view, height) => { const [title, unit] = named(name); return timePlot(title, [{ name: "recorded", t: x.time_s, y: x[name], look: "c-model" }], { unit, view, height }); };
+
+function channels(k, x, view) {
+  const rows = k.columns.map((c) => [named(c.name)[0], named(c.name)[1], num(c.low, 5), num(c.high, 5), `${num(100 * c.there)} %`, c.derived || ""]);
+  const heads = ["channel", "unit", ["least"], ["most"], ["there"], "derived"];
+  return el("section.card", { "aria-label": "Channels" }, el("h2", null, "Channels"), zoomer(view), el(".three", null, k.columns.map((c) => channelPlot(c.name, x, view, 120))), el("details", null, el("summary", null, "As numbers"), saved("Channels", heads, rows, table("Channels", heads, rows))));
+}
+
+function mapCard(k, x, name) {
+  if (!k.map_text) return null;
+  const text = el("textarea", { id: "map-text", rows: Math.min(24, k.map_text.split("\n").length + 1), "aria-label": "The map as text", spellcheck: "false" });
+  text.value = k.map_text;
+  const seen = (c) => { const s = k.columns.find((o) => o.name === c); return s ? `${num(s.low, 4)} to ${num(s.high, 4)} ${named(c)[1]}` : ""; };
+  const rows = (k.entries || []).map((e) => [named(e.channel)[0], e.column, [e.unit, e.sign < 0 ? "other sign" : "", e.offset ? `offset ${num(e.offset)}` : "", e.frame].filter(Boolean).join(", ") || "as it is", seen(e.channel)]);
+  return card("The map: which column is what", rows.length ? table(k.map ? `As ${k.map} says` : "Proposed from names, units, ranges and motion; nothing is written yet", ["channel", "column of the file", "read as", "values"], rows) : null,
+    el("details", { open: !!k.problem }, el("summary", null, "The map as text"), text, el(".tools", null, button(`Save as ${mapOf(name)}`, doing(async () => { await ask("/api/maps", { name: mapOf(name), text: text.value }); await again(); }), { id: "save-map", disabled: state.project.read_only }))));
+}
+
+function importer(name, k, map) {
+  const key = `import.${name}`, output = el("input", { type: "text", id: "import-output", value: kept(key, () => `${name.replace(/\.[^.]+$/, "")}.mcap`), oninput: (e) => { state.kept[key] = e.target.value; } });
+  const accept = kept(`accept.${name}`, () => new Set()), refused = k.refused || [];
+  const asked = () => ({ verb: "import", file: name, map: mapOf(name), output: output.value, ship: files("ship").at(-1)?.name, accept: [...accept] });
+  const run = async () => {
+    if (!map) await ask("/api/maps", { name: mapOf(name), text: k.map_text });
+    await start(asked(), "data");
+    location.hash = address("data");
+  };
+  return card("Import", refused.length ? el("p.bad", null, `Refused while ${refused.join(", ")} ${refused.length > 1 ? "prove" : "proves"} a mistake: apply the remedy, or accept it.`) : el("p", null, "Checked and written as a voyage that every verb reads."),
+    el("form", null, field("voyage file", output), refused.length ? boxes("import although it says otherwise", "accept", refused.map((c) => [c, c.replaceAll("_", " ")]), accept, () => { button_.disabled = refused.some((c) => !accept.has(c)); }) : null, (button_ = go("Import", run, !!k.problem || refused.some((c) => !accept.has(c))))),
+    command(`twin import ${name} --map ${mapOf(name)} -o ${output.value}`), imports(name));
+}
+
+let button_ = null;
+
+function imports(name) {
+  const jobs = state.jobs.filter((j) => j.verb === "import" && j.asked.file === name);
+  return jobs.length ? el("p.note", null, "Done before: ", jobs.map((j) => [`${j.name} `, stateWord(j), j.said ? ` ${j.said} ` : " "])) : null;
+}
+
+export { found, over };

@@ -1,0 +1,116 @@
+"""The rows that are solved: every reading and every prior about the states as they are, with their slopes."""
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy.sparse import diags_array
+
+from twin.study.instruments.arrow import Block
+from twin.study.instruments.here import Theta
+from twin.study.instruments.problem import OUTLIER, Problem, Rows
+from twin.study.instruments.sense import drift, heading, log, log_aside, place, rate, velocity, wind
+from twin.study.instruments.unknowns import INDEX, UNKNOWNS
+
+AFFECT = {
+    "place": ("gnss_delay", "antenna_ahead", "antenna_starboard", "antenna_above"),
+    "velocity": ("gnss_delay", "smoothing", "antenna_ahead", "antenna_starboard"),
+    "heading": ("heading_delay", "A", "B", "C", "D", "E"),
+    "rate": ("rate_delay", "gyro_bias"),
+    "log": ("log_delay", "log_scale", "log_bias", "log_angle", "current_north", "current_east"),
+    "log aside": ("log_delay", "log_scale", "log_angle", "current_north", "current_east"),
+    "wind": ("vane", "wind_scale"),
+    "drift": ("current_north", "current_east", "drift_r", "drift_rr", "drift_r_r", "leeway"),
+}
+# without which (or a log of two axes) only how the ship drifts in a turn would tell it, and that is no
+# instrument's business
+WANTS = {"antenna_ahead": ("log aside",), "antenna_starboard": ("log aside",), "gnss_delay": ("own",)}
+STEP = 1e-5  # of a prior width, for slopes
+SENSES: dict[str, Callable[[Problem, Theta, Rows | None], np.ndarray]] = {
+    "place": place,
+    "velocity": velocity,
+    "heading": heading,
+    "rate": rate,
+    "log": log,
+    "log aside": log_aside,
+    "wind": wind,
+}
+
+
+def blocks(p: Problem, theta: Theta) -> list[Block]:
+    """All readings and priors about the states as they are."""
+    out = []
+    for name, sense in SENSES.items():
+        if name in p.by:
+            out.append(_block(p, theta, name, sense, p.by[name].y.T.ravel()))
+    out.append(_whitened(p, _block(p, theta, "drift", drift, np.zeros(p.grid.size))))
+    return out + _priors(p)
+
+
+def _whitened(p: Problem, b: Block) -> Block:
+    """What drift does beside its formula lasts: each row less `memory` times the one before it, at the same
+    scatter."""
+    p.beside = b.r
+    n, k = b.r.size, 1.0 / np.sqrt(1.0 - p.memory**2)
+    main = np.r_[1.0, np.full(n - 1, k)]
+    L = diags_array([main, np.full(n - 1, -k * p.memory)], offsets=[0, -1]).tocsr()
+    return Block(b.name, L @ b.r, (L @ b.J).tocsr(), L @ b.G, np.ones(n))
+
+
+def _block(
+    p: Problem,
+    theta: Theta,
+    name: str,
+    sense: Callable[[Problem, Theta, Rows | None], np.ndarray],
+    y: np.ndarray,
+) -> Block:
+    rows = Rows(y.size)
+    here = sense(p, theta, rows)
+    r = y - here
+    G = np.zeros((y.size, len(UNKNOWNS)))
+    for unknown in AFFECT[name]:
+        wanted = set(WANTS.get(unknown, ()))
+        if not wanted <= {*p.by, *(["own"] if p.own else [])} and "log aside" not in p.by:
+            continue
+        step = STEP * float(p.widths[INDEX[unknown]])
+        G[:, INDEX[unknown]] = (sense(p, _with(theta, unknown, step), None) - here) / step
+    scatter = max(p.sd[name], 1.4826 * float(np.median(np.abs(r))))
+    return Block(name, r, rows.matrix(p.size), G, (np.abs(r) < OUTLIER * scatter).astype(float))
+
+
+def _with(theta: Theta, name: str, step: float) -> Theta:
+    out = theta.copy()
+    out[INDEX[name]] += step
+    return out
+
+
+def _priors(p: Problem) -> list[Block]:
+    """Third slopes of the path, steps of stream and wind; the stream's walk is nothing in the middle of the
+    voyage."""
+    out = []
+    third = np.array([-1.0, 3.0, -3.0, 1.0]) / p.path.h**3
+    out.append(_smooth(p, "jerk", p.at[0][:, :2], third))
+    out.append(_smooth(p, "twist", p.at[0][:, 2:], third))
+    out.append(_smooth(p, "stream", p.at[1], np.array([-1.0, 1.0])))
+    middle = p.at[1][p.stream.size // 2]
+    rows = Rows(2)
+    for j in (0, 1):
+        rows.add(j, middle[j : j + 1], (np.zeros(1, int), np.ones((1, 1))))
+    out.append(Block("tie", -p.x[middle], rows.matrix(p.size), np.zeros((2, len(UNKNOWNS))), np.ones(2)))
+    if p.wind is not None:
+        out.append(_smooth(p, "air", p.at[2], np.array([-1.0, 1.0])))
+    return out
+
+
+def _smooth(p: Problem, name: str, columns: np.ndarray, difference: np.ndarray) -> Block:
+    n = columns.shape[0] - difference.size + 1
+    rows, r = Rows(n * columns.shape[1]), []
+    for j, column in enumerate(columns.T):
+        rows.add(j * n, column, (np.arange(n), np.broadcast_to(difference, (n, difference.size))))
+        r.append(-sum(d * p.x[column[i : i + n]] for i, d in enumerate(difference)))
+    return Block(
+        name,
+        np.concatenate(r),
+        rows.matrix(p.size),
+        np.zeros((n * columns.shape[1], len(UNKNOWNS))),
+        np.ones(n * columns.shape[1]),
+    )

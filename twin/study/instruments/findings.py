@@ -1,0 +1,191 @@
+"""What a fit says, number by number and fault by fault: sizes, what is seen, what cannot be told, and which
+residuals show it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.study.instruments.fit import Fit, columns
+from twin.study.instruments.problem import Problem
+from twin.study.instruments.readings import Readings
+from twin.study.instruments.select import Book, Weighed
+from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, Unknown
+
+SEEN = 5.0  # log Bayes factor from which a fault is said to be seen (150 to 1)
+BLURRED = 0.5  # of a prior width: a number that the readings leave wider is not known
+ALIKE = 0.8  # correlation from which two numbers are said to be hard to tell apart
+P95 = 1.96
+CLOCKS = {
+    "gnss_delay": ("place", "velocity"),
+    "heading_delay": ("heading",),
+    "rate_delay": ("rate",),
+    "log_delay": ("log",),
+}
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One number. `sd`: the Cramer-Rao bound where the readings put it; `limit`: 95 % of what may be there
+    unseen; `known`: whether the readings say it beside all others; `unlike`: the number that it is hardest to
+    tell from."""
+
+    unknown: Unknown
+    value: float
+    sd: float
+    seen: bool
+    log_bayes_factor: float
+    limit: float
+    known: bool
+    unlike: str | None
+    voyage: str | None = None
+
+    @property
+    def interval(self) -> tuple[float, float]:
+        """95 %."""
+        return self.value - P95 * self.sd, self.value + P95 * self.sd
+
+
+@dataclass(frozen=True)
+class Instruments:
+    """What kinematics says of the instruments of these voyages."""
+
+    readings: tuple[Readings, ...]
+    own: tuple[bool, ...]  # whether the velocity was turned by an attitude of the receiver's own
+    estimates: tuple[Estimate, ...]
+    faults: tuple[str, ...]  # those seen
+    # fault -> kind of reading -> its scatter without and with the fault
+    falls: dict[str, dict[str, tuple[float, float]]]
+    scatter: tuple[dict[str, float], ...]  # of each voyage's readings about the fit
+    # from which instrument ages count; another -> how much later it is, and sd [s]
+    relative: tuple[str, dict[str, tuple[float, float]]]
+    log_bayes_factors: dict[str, float]
+    # fault seen -> what may be there in its place: the readings ask for one of them
+    instead: dict[str, tuple[str, ...]]
+    stream: tuple[dict[str, np.ndarray], ...]
+    clock: str  # the age that is none by definition
+    fit: Fit
+
+    def of(self, name: str) -> Estimate | None:
+        """The estimate of that number (of the first voyage); None where the readings say nothing of it."""
+        return next((e for e in self.estimates if e.unknown.name == name), None)
+
+
+def said(readings: Sequence[Readings], problems: Sequence[Problem], found: Fit, clock: str) -> Instruments:
+    book = Book(found, clock)
+    best = book.likeliest()
+    factor = {f: book.bayes_factor(f, best) for f in book.tellable}
+    everything = book.weigh(book.tellable)
+    instead = {f: book.instead(f, best) for f in best.faults if factor[f] <= SEEN}
+    faults = tuple(
+        f for f in best.faults if factor[f] > SEEN or book.bayes_factor(f, best, instead[f]) > SEEN
+    )
+    estimates = tuple(
+        e for i in range(found.at.size) if (e := _one(i, readings, book, best, faults, factor, everything))
+    )
+    aged = book.weigh({*best.faults, *CLOCKS, "smoothing"}.intersection(book.tellable))
+    return Instruments(
+        tuple(readings),
+        tuple(p.own for p in problems),
+        estimates,
+        faults,
+        {f: _falls(problems, found, book, f) for f in faults},
+        tuple({k: p.sd[k] for k in (*p.by, "drift") if k in p.sd} for p in problems),
+        _relative(book, aged, problems),
+        factor,
+        {f: instead.get(f, ()) for f in faults},
+        tuple(_stream(p, t) for p, t in zip(problems, found.theta, strict=True)),
+        clock,
+        found,
+    )
+
+
+def _one(
+    i: int,
+    readings: Sequence[Readings],
+    book: Book,
+    best: Weighed,
+    faults: Sequence[str],
+    factor: dict[str, float],
+    everything: Weighed,
+) -> Estimate | None:
+    name, fault = book.names[i], str(book.fault[i])
+    if fault == "drift" or (fault not in book.tellable and fault not in ALWAYS):
+        return None
+    about = best if i in best.at else book.weigh([*best.faults, fault])
+    k = int(np.flatnonzero(about.at == i)[0])
+    sd, value = float(np.sqrt(about.covariance[k, k])), float(about.mean[k])
+    at = int(np.flatnonzero(everything.at == i)[0])
+    wide = np.sqrt(np.diag(everything.covariance))
+    alike = np.abs(everything.covariance[at]) / (wide[at] * wide)
+    alike[at] = 0.0
+    j = int(np.argmax(alike))
+    own = (i - len(UNKNOWNS) + 2) // 2 if fault == "current" else None
+    lbf = factor.get(fault, np.inf)
+    return Estimate(
+        UNKNOWNS[INDEX[name]],
+        value,
+        sd,
+        fault in ALWAYS or fault in faults,
+        lbf,
+        abs(value) + P95 * sd,
+        bool(wide[at] < BLURRED * book.fit.width[i]),
+        book.names[everything.at[j]] if alike[j] > ALIKE else None,
+        None if own is None else readings[own].name,
+    )
+
+
+def _falls(problems: Sequence[Problem], found: Fit, book: Book, fault: str) -> dict[str, tuple[float, float]]:
+    """Scatter of each kind of reading without this fault (all else, the paths too, made to fit) and with it,
+    where it changed by a tenth."""
+    best = book.likeliest()
+    without = book.weigh([f for f in best.faults if f != fault])
+    row = np.zeros(found.at.size)
+    row[without.at] = without.mean
+    out: dict[str, tuple[float, float]] = {}
+    for v, (bs, red) in enumerate(zip(found.blocks, found.reduced, strict=True)):
+        step = row[columns(v)] - found.theta[v]
+        states = red.states(step)
+        for b in bs:
+            if b.name in problems[v].by or b.name == "drift":
+                r = b.r - b.J @ states - b.G @ step
+                before, after = (float(np.sqrt(np.mean(b.weight * x**2))) for x in (r, b.r))
+                if (
+                    before > 1.1 * after
+                    and before / after > out.get(b.name, (0.0, 1.0))[0] / out.get(b.name, (0.0, 1.0))[1]
+                ):
+                    out[b.name] = before, after
+    return out
+
+
+AGES = {"velocity": "smoothing", "heading": "heading_delay", "rate": "rate_delay", "log": "log_delay"}
+
+
+def _relative(
+    book: Book, aged: Weighed, problems: Sequence[Problem]
+) -> tuple[str, dict[str, tuple[float, float]]]:
+    """What the others' ages are counted from (the position where its own can be told, else the prompt
+    instrument), and how much later each is [s] with its sd; of the velocity: than the position."""
+    reference = "gnss_delay" if "gnss_delay" in (book.clock, *aged.faults) else book.clock
+    out = {}
+    for name, age in AGES.items():
+        if name not in problems[0].by or age == reference or (age not in aged.faults and age != book.clock):
+            continue
+        row = np.zeros(len(book.names))
+        row[book.names.index(age)] = 1.0
+        if name != "velocity":
+            row[book.names.index(reference)] -= 1.0
+        row = row[aged.at]  # the clock's own age is none
+        out[name] = float(row @ aged.mean), float(np.sqrt(max(row @ aged.covariance @ row, 0.0)))
+    return {"gnss_delay": "position"}.get(reference, reference.removesuffix("_delay")), out
+
+
+def _stream(p: Problem, theta: np.ndarray) -> dict[str, np.ndarray]:
+    """Toward north and east at the stream's own times."""
+    t = p.stream.start + p.stream.h * np.arange(p.stream.size)
+    c = p.coefficients()[1]
+    return {
+        "time_s": t,
+        "north_mps": c[:, 0] + theta[INDEX["current_north"]],
+        "east_mps": c[:, 1] + theta[INDEX["current_east"]],
+    }

@@ -1,0 +1,207 @@
+"""The fit: Gauss-Newton over all voyages at once, and every scatter as large as what is left says (restricted
+likelihood).
+
+    sd^2 = sum r^2 / (n - what the block was bent to)
+        [MacKay (1992) Neural Computation 4; Patterson & Thompson (1971)]
+Numbers of the instruments are the ship's; the stream in the middle of a voyage is that voyage's own.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.study.instruments import arrow
+from twin.study.instruments.blocks import blocks
+from twin.study.instruments.problem import Problem
+from twin.study.instruments.unknowns import INDEX, OWN, UNKNOWNS
+
+PAIRS = ("place", "velocity", "wind")  # readings of two components
+CLEAR_SHARE = 0.1  # an autocorrelation below this is taken for chance
+ROUNDS, CLOSE = 9, 0.03  # Gauss-Newton rounds at most; steps in scatters of the numbers at which it is done
+# readings that the usual size of a stream's changes, and of what drift does beside its formula, is worth
+BELIEVED = 20.0
+P = len(UNKNOWNS)
+MINE = [INDEX[name] for name in OWN]
+SHARED = [i for i in range(P) if i not in MINE]
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Where the readings put the numbers. `theta` (V, P): of each voyage (the shared ones alike). `A`, `g`
+    over the numbers of all voyages (SHARED, then each voyage's own): log likelihood = g d - d A d/2 for a
+    step d from theta, the paths following."""
+
+    theta: np.ndarray
+    open: np.ndarray  # (Q,) bool: which were free
+    A: np.ndarray
+    g: np.ndarray
+    width: np.ndarray  # (Q,) prior scatters
+    blocks: tuple[tuple[arrow.Block, ...], ...]
+    reduced: tuple[arrow.Reduced, ...]
+    log_likelihood: float
+    rounds: int
+
+    @property
+    def at(self) -> np.ndarray:
+        """(Q,) theta as one row."""
+        return np.concatenate([self.theta[0, SHARED], self.theta[:, MINE].ravel()])
+
+    def sd(self) -> np.ndarray:
+        """(Q,) scatter of each free number, with the others free; 0 of one that was held."""
+        return np.sqrt(np.diag(_step(self.A, self.g, self.width, self.open, self.at)[0]))
+
+
+def columns(voyage: int) -> np.ndarray:
+    """(P,) where the numbers of this voyage stand among those of all."""
+    out = np.empty(P, int)
+    out[SHARED] = np.arange(len(SHARED))
+    out[MINE] = len(SHARED) + len(MINE) * voyage + np.arange(len(MINE))
+    return out
+
+
+def opened(names: Sequence[str], voyages: int) -> np.ndarray:
+    """(Q,) bool: these numbers free, on every voyage."""
+    free = np.array([u.name in names for u in UNKNOWNS])
+    return np.concatenate([free[SHARED], np.tile(free[MINE], voyages)])
+
+
+def fit(
+    problems: Sequence[Problem], names: Sequence[str], theta: np.ndarray | None = None, rounds: int = ROUNDS
+) -> Fit:
+    """All voyages with these numbers free and the others at nothing. The problems' states and scatters are
+    left where they end."""
+    V = len(problems)
+    free = opened(names, V)
+    at = np.zeros((V, P)) if theta is None else theta.copy()
+    for v in range(V):
+        at[v, ~free[columns(v)]] = 0.0
+    width = _widths(problems)
+    rng, done = np.random.default_rng(1), 0
+    for done in range(1, rounds + 1):
+        A, g, found, every = _normal(problems, at)
+        covariance, step = _step(A, g, width, free, _row(at))
+        _move(problems, found, at, step)
+        _scatters(problems, every, found, covariance, rng)
+        for p in problems:
+            p.remember()
+        if done > 3 and np.all(np.abs(step[free]) < CLOSE * np.sqrt(np.diag(covariance)[free])):
+            break
+    A, g, found, every = _normal(problems, at, True)
+    score = _score(problems, every, found, A, width, free, _row(at))
+    return Fit(at, free, A, g, width, tuple(map(tuple, every)), tuple(found), score, done)
+
+
+def _widths(problems: Sequence[Problem]) -> np.ndarray:
+    each = [p.widths for p in problems]
+    return np.concatenate([np.max(each, axis=0)[SHARED], *(w[MINE] for w in each)])
+
+
+def _row(theta: np.ndarray) -> np.ndarray:
+    return np.concatenate([theta[0, SHARED], theta[:, MINE].ravel()])
+
+
+def _normal(
+    problems: Sequence[Problem], theta: np.ndarray, sober: bool = False
+) -> tuple[np.ndarray, np.ndarray, list[arrow.Reduced], list[list[arrow.Block]]]:
+    """The normal equations of all voyages; `sober`: with readings that err together told for what they are
+    worth (the paths are fitted without: a bad fit errs together too, and would be believed)."""
+    Q = len(SHARED) + len(MINE) * len(problems)
+    A, g, found, every = np.zeros((Q, Q)), np.zeros(Q), [], []
+    for v, p in enumerate(problems):
+        bs = blocks(p, theta[v])
+        red = arrow.reduce(bs, p.worth() if sober else p.sd, p.fast)
+        at = columns(v)
+        A[np.ix_(at, at)] += red.A
+        g[at] += red.g
+        found.append(red)
+        every.append(bs)
+    return _positive(A, _widths(problems)), g, found, every
+
+
+def _positive(A: np.ndarray, width: np.ndarray) -> np.ndarray:
+    """A without what rounding made negative, in prior widths."""
+    size, axes = np.linalg.eigh(A * np.outer(width, width))
+    return np.asarray((axes * np.maximum(size, 0.0)) @ axes.T / np.outer(width, width))
+
+
+def _step(
+    A: np.ndarray, g: np.ndarray, width: np.ndarray, free: np.ndarray, at: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Covariance of the free numbers (zero elsewhere), and the step to where readings and priors agree."""
+    covariance, k = np.zeros_like(A), np.flatnonzero(free)
+    covariance[np.ix_(k, k)] = np.linalg.inv(A[np.ix_(k, k)] + np.diag(width[k] ** -2.0))
+    return covariance, covariance @ (g - at / width**2)
+
+
+def _move(
+    problems: Sequence[Problem], found: Sequence[arrow.Reduced], theta: np.ndarray, step: np.ndarray
+) -> None:
+    for v, (p, red) in enumerate(zip(problems, found, strict=True)):
+        mine = step[columns(v)]
+        p.x += red.states(mine)
+        theta[v] += mine
+
+
+def _scatters(
+    problems: Sequence[Problem],
+    every: Sequence[Sequence[arrow.Block]],
+    found: Sequence[arrow.Reduced],
+    covariance: np.ndarray,
+    rng: np.random.Generator,
+) -> None:
+    """Each block's scatter, from what is left once the states have moved (to first order)."""
+    for v, (p, bs, red) in enumerate(zip(problems, every, found, strict=True)):
+        at = columns(v)
+        bent = arrow.freedom(bs, p.sd, red, covariance[np.ix_(at, at)], rng)
+        left = {b.name: b for b in bs}
+        for name, b in left.items():
+            if name == "tie":
+                continue
+            n = float(b.weight.sum())
+            r = b.r - b.J @ red.mean - (b.G - b.J @ red.cross) @ covariance[np.ix_(at, at)] @ _pull(red)
+            more, usual = (BELIEVED, p.usual[name]) if name in p.usual else (0.0, 0.0)
+            free = max(n - bent[name], 0.02 * n, 1.0)
+            size = ((b.weight * r**2).sum() + more * usual**2) / (free + more)
+            p.sd[name] = max(float(np.sqrt(size)), p.least[name])
+            p.lasts[name] = _lasting(r * b.weight, 1 + (name in PAIRS)) if name in p.by else 1.0
+
+
+def _lasting(r: np.ndarray, parts: int) -> float:
+    """How many readings in a row err together: 1 + 2 sum of the autocorrelations, as far as they are clear
+    (Geyer 1992). So much less do all of them tell than if each erred by itself."""
+    found = []
+    for x in np.split(r, parts):
+        total, power = 1.0, max(float(x @ x), 1e-30)
+        for k in range(1, x.size // 8):
+            share = float(x[k:] @ x[:-k]) / power
+            if share < CLEAR_SHARE:
+                break
+            total += 2.0 * share
+        found.append(total)
+    return float(np.mean(found))
+
+
+def _pull(red: arrow.Reduced) -> np.ndarray:
+    return red.g
+
+
+def _score(
+    problems: Sequence[Problem],
+    every: Sequence[Sequence[arrow.Block]],
+    found: Sequence[arrow.Reduced],
+    A: np.ndarray,
+    width: np.ndarray,
+    free: np.ndarray,
+    at: np.ndarray,
+) -> float:
+    """Log evidence of these free numbers, up to a constant of the readings (Laplace)."""
+    total = 0.0
+    for p, bs, red in zip(problems, every, found, strict=True):
+        total, sd = total - 0.5 * red.log_det, p.worth()
+        for b in bs:
+            n = float(b.weight.sum())
+            total -= 0.5 * float((b.weight * (b.r / sd[b.name]) ** 2).sum()) + n * float(np.log(sd[b.name]))
+    k = np.flatnonzero(free)
+    precision = A[np.ix_(k, k)] * np.outer(width[k], width[k]) + np.eye(k.size)
+    return total - 0.5 * float(np.linalg.slogdet(precision)[1]) - 0.5 * float(((at[k] / width[k]) ** 2).sum())

@@ -1,0 +1,191 @@
+"""One voyage as a batch problem in continuous time: a smooth path, a slow stream and a wandering wind, and
+what each instrument says of them.
+
+The path (north, east, heading) is a cubic B-spline, so that a reading may be compared at any time, its
+latency included [Furgale, Rehder & Siegwart (2013) Unified temporal and spatial calibration for multi-sensor
+systems, IROS]. Priors, each with a size that the data choose: third derivative of the path, steps of stream
+and wind, and the ship's speed aside through the water, which follows its rate of turn and is else a scatter
+about nothing."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.sparse import coo_array
+
+from twin.study.instruments.readings import PER_MOTION, Readings, Samples
+from twin.study.instruments.spline import Spline, Weights
+from twin.study.instruments.unknowns import UNKNOWNS, widths
+
+MARGIN_S = 5.0  # the path goes on so long before and behind the readings, for what is late
+STREAM_S = 60.0  # between two numbers of the stream, at least
+WIND_S = 20.0  # and of the wind
+TAIL = 6.0  # time constants of a smoothing that are integrated; what is older counts at its mean age
+
+
+def _memory() -> tuple[np.ndarray, np.ndarray]:
+    """Ages (in time constants) and weights by which int exp(-q) f(q) dq is a sum (Gauss-Legendre, and one
+    point for the tail)."""
+    x, w = np.polynomial.legendre.leggauss(9)
+    q = 0.5 * TAIL * (x + 1.0)
+    ages, shares = np.r_[q, TAIL + 1.0], np.r_[0.5 * TAIL * w * np.exp(-q), np.exp(-TAIL)]
+    return ages, shares / shares.sum()
+
+
+NODES, SHARES = _memory()
+OUTLIER = 5.0  # scatters
+MOST_MEMORY = 0.95
+MOST_KNOTS = 2000.0  # of a voyage's path
+KNOTS = 16.0  # of the path in the time in which the rate of turn changes
+
+
+class Rows:
+    """Rows of a sparse matrix, gathered piece by piece."""
+
+    def __init__(self, n: int) -> None:
+        self.n, self.row, self.col, self.data = n, [], [], []  # type: ignore[var-annotated]
+
+    def add(self, first_row: int, columns: np.ndarray, w: Weights, factor: np.ndarray | float = 1.0) -> None:
+        """From `first_row` on: weights w of the coefficients whose columns these are, times a factor for each
+        row."""
+        first, share = w
+        n, m = share.shape
+        self.row.append(np.repeat(np.arange(first_row, first_row + n), m))
+        self.col.append(columns[first[:, None] + np.arange(m)].ravel())
+        self.data.append((share * np.broadcast_to(np.asarray(factor, float), n)[:, None]).ravel())
+
+    def matrix(self, size: int):  # type: ignore[no-untyped-def]
+        at = (np.concatenate(self.row), np.concatenate(self.col))
+        return coo_array((np.concatenate(self.data), at), shape=(self.n, size)).tocsr()
+
+
+@dataclass
+class Problem:
+    """A voyage's readings, its states as they are now, and the scatter of each kind of reading and prior."""
+
+    readings: Readings
+    length: float
+    own: bool
+    by: dict[str, Samples] = field(init=False)
+    sd: dict[str, float] = field(init=False, default_factory=dict)
+    # how many readings in a row err together
+    lasts: dict[str, float] = field(init=False, default_factory=dict)
+    # share of what drift does beside its formula that is there a grid step later
+    memory: float = field(init=False, default=0.5)
+    beside: np.ndarray = field(init=False, repr=False)  # and that itself, as last worked out [m/s]
+
+    def __post_init__(self) -> None:
+        read = self.readings
+        start, end = read.span
+        width = read.time / PER_MOTION
+        self.by = {
+            k: s.thinned(width) for k, s in read.by.items() if k not in ("velocity", "heading at velocity")
+        }
+        if "velocity" in read.by:
+            self.by["velocity"] = self._velocity(read).thinned(width)
+        h = max(
+            read.time / KNOTS, (end - start) / MOST_KNOTS, float(np.median(np.diff(self.by["heading"].t)))
+        )
+        slow = max(STREAM_S, 4.0 * read.time)
+        self.path = Spline.over(start - MARGIN_S, end + MARGIN_S, h)
+        self.stream = Spline.over(start, end, slow, 1)
+        self.wind = Spline.over(start, end, max(WIND_S, read.time), 1) if "wind" in self.by else None
+        self.grid = np.arange(start, end, max(read.time / 3.0, 2.0 * h, 0.3 * self.length / read.speed))
+        self._columns()
+        self._begin()
+
+    def _velocity(self, read: Readings) -> Samples:
+        s = read.by["velocity"]
+        if self.own:
+            return s
+        psi = read.by["heading at velocity"].y[:, 0]
+        c, si = np.cos(psi), np.sin(psi)
+        return Samples(s.t, np.column_stack([s.y[:, 0] * c - s.y[:, 1] * si, s.y[:, 0] * si + s.y[:, 1] * c]))
+
+    def _columns(self) -> None:
+        """Every state's column: the path's, knot by knot, then the few of stream and wind."""
+        grids = [(self.path, 3), (self.stream, 2), *([(self.wind, 2)] if self.wind else [])]
+        ends = np.cumsum([s.size * d for s, d in grids])
+        self.at = [
+            part.reshape(-1, d)
+            for part, (_, d) in zip(np.split(np.arange(ends[-1]), ends[:-1]), grids, strict=True)
+        ]
+        self.size, self.fast = int(ends[-1]), int(ends[0])
+
+    def _begin(self) -> None:
+        """States near the readings, and a first guess of every scatter."""
+        read, x = self.readings, np.zeros(self.size)
+        heading, t = self.by["heading"], self.path.times
+        inside = np.clip(t, *read.span)
+        x[self.at[0][:, 2]] = np.interp(inside, heading.t, heading.y[:, 0])
+        place = (self.by["place"].t, self.by["place"].y) if "place" in self.by else self._reckoned()
+        for j in (0, 1):
+            x[self.at[0][:, j]] = (
+                np.interp(inside, place[0], place[1][:, j])
+                + (t - inside) * np.gradient(place[1][:, j], place[0])[np.where(t < inside, 0, -1)]
+            )
+        if self.wind is not None:
+            wind = self.by["wind"]
+            psi = np.interp(wind.t, heading.t, heading.y[:, 0])
+            c, s = np.cos(psi), np.sin(psi)
+            from_n, from_e = wind.y[:, 0] * c - wind.y[:, 1] * s, wind.y[:, 0] * s + wind.y[:, 1] * c
+            x[self.at[2]] = -np.array([from_n.mean(), from_e.mean()]) + np.array(
+                [np.gradient(p, place[0]).mean() for p in place[1].T]
+            )
+        self.x = x
+        U, T = read.speed, read.time
+        first = {
+            "place": 1.0,
+            "velocity": 0.05 * U,
+            "heading": 0.005,
+            "rate": 0.1 / T,
+            "log": 0.05 * U,
+            "log aside": 0.05 * U,
+            "wind": 1.0,
+        }
+        self.sd = {k: v for k, v in first.items() if k in self.by}
+        self.sd |= {
+            "drift": 0.05 * U,
+            "jerk": U / T**2,
+            "twist": 0.3 / T**3,
+            "stream": 0.003 * U,
+            "tie": 1e-4 * U,
+        }
+        self.sd |= {"air": 0.1 * U} if self.wind is not None else {}
+        self.usual = {"stream": 0.003 * U, "drift": 0.02 * U}
+        self.least = {k: 1e-4 * v for k, v in self.sd.items()} | {
+            "stream": 5e-4 * U,
+            "drift": 1e-2 * U,
+            "heading": 5e-5,
+            "rate": 1e-4 / T,
+        }
+        self.least |= {"twist": 3e-3 / T**3, "jerk": 1e-2 * U / T**2}
+        self.widths = widths(U, self.length, T)
+
+    def worth(self) -> dict[str, float]:
+        """Each scatter as large as the readings' own errors, that err together, make it."""
+        return {name: sd * float(np.sqrt(self.lasts.get(name, 1.0))) for name, sd in self.sd.items()}
+
+    def remember(self) -> None:
+        """`memory` as what drift does beside its formula shows it."""
+        x = self.beside
+        share = float(x[1:] @ x[:-1]) / max(float(x @ x), 1e-12)
+        self.memory = float(np.clip(share, 0.0, MOST_MEMORY))
+
+    def _reckoned(self) -> tuple[np.ndarray, np.ndarray]:
+        v = self.by["velocity"]
+        y = v.y
+        if self.own:
+            psi = np.interp(v.t, self.by["heading"].t, self.by["heading"].y[:, 0])
+            c, s = np.cos(psi), np.sin(psi)
+            y = np.column_stack([y[:, 0] * c - y[:, 1] * s, y[:, 0] * s + y[:, 1] * c])
+        steps = np.diff(v.t)[:, None] * 0.5 * (y[1:] + y[:-1])
+        return v.t, np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
+
+    @property
+    def places(self) -> int:
+        """The number of shared numbers."""
+        return len(UNKNOWNS)
+
+    def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
+        """(K, 3) of the path, (M, 2) of the stream."""
+        return self.x[self.at[0]], self.x[self.at[1]]

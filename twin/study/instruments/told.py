@@ -1,0 +1,168 @@
+"""What was found of the instruments: as JSON, and as lines on a terminal, what is wrong first."""
+
+import math
+import textwrap
+from typing import Any
+
+from twin.num import num
+from twin.study.instruments.findings import Estimate, Instruments
+from twin.study.instruments.unknowns import ALWAYS, FAULTS
+
+SHOWN = {"rad": ("deg", 180.0 / math.pi), "rad/s": ("deg/min", 180.0 / math.pi * 60.0), "-": ("%", 100.0)}
+PLAIN = ("leeway",)  # no percentage
+READ = {
+    "place": "m",
+    "velocity": "m/s",
+    "heading": "rad",
+    "rate": "rad/s",
+    "log": "m/s",
+    "log aside": "m/s",
+    "wind": "m/s",
+    "drift": "m/s",
+}
+
+
+def as_json(found: Instruments) -> dict[str, Any]:
+    """What was found, in SI units and radians (docs/json.md)."""
+    return {
+        "voyages": [
+            {
+                "name": r.name,
+                "velocity_turned_by": "the receiver" if own else "the compass",
+                "instruments": sorted(k for k in r.by if k != "heading at velocity"),
+                "scatter": {k: {"value": v, "unit": READ[k]} for k, v in scatter.items()},
+                "stream": {k: v.tolist() for k, v in stream.items()},
+            }
+            for r, own, scatter, stream in zip(
+                found.readings, found.own, found.scatter, found.stream, strict=True
+            )
+        ],
+        "faults": [
+            {
+                "fault": f,
+                "effect": FAULTS[f].effect,
+                "words": FAULTS[f].words,
+                "log_bayes_factor": found.log_bayes_factors[f],
+                "or_instead": list(found.instead[f]),
+                "residuals": {
+                    k: {"without": a, "with": b, "unit": READ[k]} for k, (a, b) in found.falls[f].items()
+                },
+            }
+            for f in found.faults
+        ],
+        "numbers": [_number(e) for e in found.estimates],
+        "ages": {
+            "prompt": found.clock.removesuffix("_delay"),
+            "reference": found.relative[0],
+            "later_s": {k: {"value": v, "sd": sd} for k, (v, sd) in found.relative[1].items()},
+        },
+    }
+
+
+def _number(e: Estimate) -> dict[str, Any]:
+    lo, hi = e.interval
+    return {
+        "name": e.unknown.name,
+        "fault": e.unknown.fault,
+        "effect": FAULTS[e.unknown.fault].effect,
+        "unit": e.unknown.unit,
+        "meaning": e.unknown.meaning,
+        "seen": e.seen,
+        "value": e.value,
+        "lo": lo,
+        "hi": hi,
+        "cramer_rao_sd": e.sd,
+        "log_bayes_factor": e.log_bayes_factor if math.isfinite(e.log_bayes_factor) else None,
+        "unseen_below": None if e.seen else e.limit,
+        "known": e.known,
+        "hard_to_tell_from": e.unlike,
+        "voyage": e.voyage,
+    }
+
+
+def told(found: Instruments) -> list[str]:
+    """The whole answer, a line each."""
+    out = []
+    for fault in found.faults:
+        out += _fault(found, fault)
+    if not found.faults:
+        out.append("No instrument disagrees with the others beyond its noise.")
+    out += ["", "stream, in the middle of each voyage"]
+    out += [
+        f"  {e.voyage}: {e.unknown.name.removeprefix('current_')} {_sized(e)}"
+        for e in found.estimates
+        if e.unknown.fault == "current"
+    ]
+    unseen = [
+        e for e in found.estimates if e.unknown.fault not in found.faults and e.unknown.fault not in ALWAYS
+    ]
+    out += ["", "not seen (95 %: less than)"] + [
+        f"  {e.unknown.meaning}: {_limit(e)}" for e in unseen if e.known
+    ]
+    out += _unknown(found, [e for e in found.estimates if not e.known])
+    untold = [
+        f.words for name, f in FAULTS.items() if name not in (*ALWAYS, found.clock, *found.log_bayes_factors)
+    ]
+    out += textwrap.wrap(f"no reading tells of: {'; '.join(untold)}", 110) if untold else []
+    reference, later = found.relative
+    out += [
+        "",
+        f"later than {reference} (velocity: than position); none is early, so the earliest is taken "
+        "for prompt",
+    ]
+    out += [f"  {k}: {v:.2f} s (+- {1.96 * sd:.2f})" for k, (v, sd) in later.items()]
+    for r, own in zip(found.readings, found.own, strict=True):
+        out.append(
+            f"{r.name}: velocity over ground was turned by "
+            f"{'an attitude of the receiver' if own else 'the compass'}"
+        )
+    return out
+
+
+def _fault(found: Instruments, fault: str) -> list[str]:
+    f, numbers = FAULTS[fault], [e for e in found.estimates if e.unknown.fault == fault]
+    head = (
+        f"{f.words}"
+        + (f" ({f.effect})" if f.effect else "")
+        + (f": log Bayes factor {found.log_bayes_factors[fault]:.0f}")
+    )
+    out = [head] + [f"  {e.unknown.name:<18}{_sized(e)}   {e.unknown.meaning}" for e in numbers]
+    if found.instead[fault]:
+        out.append(
+            f"  or, in its place: {', '.join(FAULTS[x].words for x in found.instead[fault])} (these "
+            "voyages do not tell which)"
+        )
+    falls = [f"{k} {amount(a, READ[k])} -> {amount(b, READ[k])}" for k, (a, b) in found.falls[fault].items()]
+    return out + ([f"  shown by the residuals of {', '.join(falls)}"] if falls else [])
+
+
+def amount(value: float, unit: str) -> str:
+    """A number of this SI unit as it is told: angles in degrees, shares in percent."""
+    name, k = SHOWN.get(unit, (unit, 1.0))
+    return f"{num(value * k, 3)} {name}"
+
+
+def _sized(e: Estimate) -> str:
+    name, k = ("", 1.0) if e.unknown.name in PLAIN else SHOWN.get(e.unknown.unit, (e.unknown.unit, 1.0))
+    lo, hi = e.interval
+    return f"{num(e.value * k, 3)} {name} (95 %: {num(lo * k, 3)} to {num(hi * k, 3)})"
+
+
+def _limit(e: Estimate) -> str:
+    name, k = ("", 1.0) if e.unknown.name in PLAIN else SHOWN.get(e.unknown.unit, (e.unknown.unit, 1.0))
+    return f"{num(e.limit * k)} {name}"
+
+
+def _unknown(found: Instruments, numbers: list[Estimate]) -> list[str]:
+    """What these voyages cannot say beside all else, what it is hard to tell from, and what would show it."""
+    if not numbers:
+        return []
+    out = ["", "not known beside all others from these voyages"]
+    for e in numbers:
+        beside = f", hard to tell from {e.unlike}" if e.unlike else ""
+        out += textwrap.wrap(
+            f"  {e.unknown.meaning}{beside}; sail {FAULTS[e.unknown.fault].turn}",
+            110,
+            subsequent_indent="    ",
+        )
+    return out
