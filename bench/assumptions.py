@@ -29,7 +29,7 @@ WAVES = ("wave_height_significant_m", "wave_period_peak_s", "wave_direction_deg"
 Lie = Callable[[float], dict[str, float]]  # time [s] -> what is added to channels
 
 
-class Scenario(NamedTuple):
+class BrokenAssumption(NamedTuple):
     """One line of the table: a voyage, what its instruments do not say or say wrongly."""
 
     name: str
@@ -39,7 +39,7 @@ class Scenario(NamedTuple):
     lie: Lie = lambda t: {}
 
 
-class Kept(NamedTuple):
+class KeptPromise(NamedTuple):
     """Share of ticks with a promise, share of those that are wrong, the greatest error over its bound, and
     what was said."""
 
@@ -59,25 +59,25 @@ def ramp(**most: float) -> Lie:
 
 
 SCENARIOS = (
-    Scenario("nothing wrong, TS-01", "mixed", "TS-01"),
-    Scenario("nothing wrong, no waves reported, TS-01", "mixed", "TS-01", WAVES),
-    Scenario("TS-02, reported", "mixed", "TS-02"),
-    Scenario("TS-02, not reported", "mixed", "TS-02", WAVES),
-    Scenario("TS-03, reported", "mixed", "TS-03"),
-    Scenario("TS-03, not reported", "mixed", "TS-03", WAVES),
-    Scenario("TS-03 zigzag, not reported", "zigzag_20", "TS-03", WAVES),
-    Scenario("surge +1.0 m/s in 60 s", "mixed", "TS-01", (), ramp(surge_velocity_mps=1.0)),
-    Scenario(
+    BrokenAssumption("nothing wrong, TS-01", "mixed", "TS-01"),
+    BrokenAssumption("nothing wrong, no waves reported, TS-01", "mixed", "TS-01", WAVES),
+    BrokenAssumption("TS-02, reported", "mixed", "TS-02"),
+    BrokenAssumption("TS-02, not reported", "mixed", "TS-02", WAVES),
+    BrokenAssumption("TS-03, reported", "mixed", "TS-03"),
+    BrokenAssumption("TS-03, not reported", "mixed", "TS-03", WAVES),
+    BrokenAssumption("TS-03 zigzag, not reported", "zigzag_20", "TS-03", WAVES),
+    BrokenAssumption("surge +1.0 m/s in 60 s", "mixed", "TS-01", (), ramp(surge_velocity_mps=1.0)),
+    BrokenAssumption(
         "surge +1.0 m/s, ground and water",
         "mixed",
         "TS-01",
         (),
         ramp(surge_velocity_mps=1.0, surge_velocity_through_water_mps=1.0),
     ),
-    Scenario("sway +0.5 m/s", "mixed", "TS-01", (), ramp(sway_velocity_mps=0.5)),
-    Scenario("sway +1.0 m/s", "mixed", "TS-01", (), ramp(sway_velocity_mps=1.0)),
-    Scenario("yaw rate +0.2 deg/s", "mixed", "TS-01", (), ramp(yaw_rate_degps=0.2)),
-    Scenario("yaw rate +0.5 deg/s", "mixed", "TS-01", (), ramp(yaw_rate_degps=0.5)),
+    BrokenAssumption("sway +0.5 m/s", "mixed", "TS-01", (), ramp(sway_velocity_mps=0.5)),
+    BrokenAssumption("sway +1.0 m/s", "mixed", "TS-01", (), ramp(sway_velocity_mps=1.0)),
+    BrokenAssumption("yaw rate +0.2 deg/s", "mixed", "TS-01", (), ramp(yaw_rate_degps=0.2)),
+    BrokenAssumption("yaw rate +0.5 deg/s", "mixed", "TS-01", (), ramp(yaw_rate_degps=0.5)),
 )
 LATE = (1, 2, 3, 5, 10)  # certified periods between two ticks
 
@@ -96,7 +96,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def voyages(seconds: float, scenarios: Sequence[Scenario] = SCENARIOS) -> list[Kept]:
+def voyages(seconds: float, scenarios: Sequence[BrokenAssumption] = SCENARIOS) -> list[KeptPromise]:
     """Every scenario on the reference sea."""
     wanted = sorted({(s.manoeuvre, s.weather) for s in scenarios})
     sailed = dict(
@@ -113,7 +113,7 @@ def voyages(seconds: float, scenarios: Sequence[Scenario] = SCENARIOS) -> list[K
     return kept
 
 
-def judged(scenario: Scenario, recording) -> Kept:
+def judged(scenario: BrokenAssumption, recording) -> KeptPromise:
     """One voyage through the loop."""
     ears = Played([])
     loop = loop_of(Settings({"ship.file": SHIP}), ears, Outbox(Publisher(), "twin", "ship"), None)
@@ -141,7 +141,7 @@ def judged(scenario: Scenario, recording) -> Kept:
     return score.kept(scenario.name, max(said, key=said.get) if any(said.values()) else "")
 
 
-def late(every: int, runs: int, seconds: float) -> Kept:
+def late(every: int, runs: int, seconds: float) -> KeptPromise:
     """Hostile ships of one certificate, each tick so many of its periods after the last."""
     answer.tell(f"a tick every {every} periods")
     loops, score = Loops(LoopCase(SHIP, 10.0, runs), runs, 11), Score()
@@ -167,13 +167,13 @@ class Score:
             self.wrong += bool(np.any(of_tube > 1.0))
             self.worst = max(self.worst, float(np.max(of_tube)))
 
-    def kept(self, name: str, said: str) -> Kept:
-        return Kept(
+    def kept(self, name: str, said: str) -> KeptPromise:
+        return KeptPromise(
             name, self.ticks, self.inside / self.ticks, self.wrong / max(self.inside, 1), self.worst, said
         )
 
 
-def told(rows: Sequence[Kept]) -> str:
+def told(rows: Sequence[KeptPromise]) -> str:
     """The table."""
     lines = [
         "| scenario | promised | of these wrong | greatest error / bound | most often said |",

@@ -14,7 +14,7 @@ import numpy as np
 from twin.recording.map_file import parse_map
 from twin.recording.read import finished, through
 from twin.recording.table import Table
-from twin.recording.timebase import Clock
+from twin.recording.timebase import TimeAxis
 from twin.recording.voyage import Voyage
 
 KNOT = 1852.0 / 3600.0
@@ -159,7 +159,7 @@ def voyage_of(table: Export, columns: Mapping[str, Any]) -> Voyage:
         {n: np.array(table[n], float) for n in names},
         {},
     )
-    return finished(through(rows.path, rows, Clock(np.array(table["t"], float)), by, [], {}))
+    return finished(through(rows.path, rows, TimeAxis(np.array(table["t"], float)), by, [], {}))
 
 
 @dataclass(frozen=True)

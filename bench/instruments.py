@@ -32,7 +32,7 @@ TRUE = ("gnss_delay", "log_delay", "leeway")
 
 
 @dataclass
-class Row:
+class ResultRow:
     """One set of faults: how often each was named, what else was, and errors over the bound."""
 
     faults: tuple[str, ...]
@@ -110,8 +110,8 @@ def _case(hull: str, seed: int, minutes: float) -> Case:
     )
 
 
-def measured(voyages: Sequence[Recording], bridge: bool) -> list[Row]:
-    rows = [Row((name,)) for name in SIZES] + [Row(pair) for pair in PAIRS]
+def measured(voyages: Sequence[Recording], bridge: bool) -> list[ResultRow]:
+    rows = [ResultRow((name,)) for name in SIZES] + [ResultRow(pair) for pair in PAIRS]
     for row in rows:
         for recording in voyages:
             found, truth = asked(recording, row.faults, bridge)
@@ -138,7 +138,7 @@ def asked(
     return estimate([finished(raw, controls=False)], hull.L), truth
 
 
-def _plain(row: Row) -> dict[str, Any]:
+def _plain(row: ResultRow) -> dict[str, Any]:
     return {
         "faults": list(row.faults),
         "cases": row.cases,
@@ -150,7 +150,7 @@ def _plain(row: Row) -> dict[str, Any]:
     }
 
 
-def page(rows: Sequence[Row], hulls: Sequence[str], args: argparse.Namespace) -> list[str]:
+def page(rows: Sequence[ResultRow], hulls: Sequence[str], args: argparse.Namespace) -> list[str]:
     """Markdown."""
     every = [np.array(e) / np.array(r.bounds[n]) for r in rows for n, e in r.errors.items()]
     told = np.concatenate(every)
@@ -174,7 +174,7 @@ def page(rows: Sequence[Row], hulls: Sequence[str], args: argparse.Namespace) ->
     ]
 
 
-def _line(r: Row) -> str:
+def _line(r: ResultRow) -> str:
     ratios = ", ".join(f"{n} {x:.2f}" for n, x in r.ratio().items())
     return f"| {' + '.join(r.faults)} | {r.named}/{r.cases} | {_counted(r.more)} | {ratios} |"
 

@@ -22,7 +22,7 @@ from twin.live.certificate.certificate import usual_disturbance
 from twin.physics import ship as ships
 from twin.physics.model import Model
 from twin.recording.jsonable import plain
-from twin.study.reference.split import PERIODS, Sailed, low_frequency, scores, section, window
+from twin.study.reference.split import PERIODS, SplitVoyage, low_frequency, scores, section, window
 
 LEVEL = 0.95
 STEP_S = 0.1
@@ -91,7 +91,7 @@ def case(hull: str, k: int, count: int, seconds: float, first_seed: int) -> Case
     return Case(hull, MANOEUVRES[k % 3], weather, seed=first_seed + k, duration_s=seconds)
 
 
-def sailed(r: Recording) -> Sailed:
+def sailed(r: Recording) -> SplitVoyage:
     """The truth of a reference voyage, in the terms of the split; wave height and period as reported."""
     t, of = r.truth, r.columns
     inputs = {
@@ -101,7 +101,7 @@ def sailed(r: Recording) -> Sailed:
         "wind_to": t["wind_from"] + np.pi,
     }
     H_s, T_p = (float(np.nanmean(of[f"wave_{name}"])) for name in ("height_significant_m", "period_peak_s"))
-    return Sailed(
+    return SplitVoyage(
         STEP_S,
         np.array([t["u"], t["v"], t["r"]]),
         t["psi"],

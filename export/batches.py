@@ -6,9 +6,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 
-from export.data import Leg
+from export.data import TrainingLeg
 from export.loss import Inputs, left_over, span
-from export.network import Residual
+from export.network import ResidualNetwork
 from twin.live.learning.learned import scale_of
 from twin.physics.model import Model
 from twin.physics.state import Situation
@@ -19,7 +19,7 @@ BLOCKS = 1000  # numbers of blocks kept for each voyage
 
 
 @dataclass(frozen=True)
-class Samples:
+class TrainingSamples:
     """Single moments (N, ...): `d` is what physics leaves, `columns` the core's forces, both in units of the
     force scale; `voyage` (N,) is where each comes from."""
 
@@ -36,7 +36,7 @@ class Samples:
     def situation(self, k: torch.Tensor) -> Situation:
         return Situation(**{name: x[k] for name, x in self.fields.items()})
 
-    def on(self, device: torch.device) -> "Samples":
+    def on(self, device: torch.device) -> "TrainingSamples":
         """The same where they are computed with; indices stay with the processor."""
         fields = {name: x.to(device) for name, x in self.fields.items()}
         rest = {name: getattr(self, name).to(device) for name in ("ahead", "h", "d", "columns")}
@@ -44,7 +44,7 @@ class Samples:
 
 
 @dataclass(frozen=True)
-class Windows:
+class TrainingWindows:
     """Free runs side by side: start (W, 6), inputs (T + 1, W), wanted (T, W, 6); `group` (W,) is the block
     each comes from."""
 
@@ -62,17 +62,19 @@ class Windows:
         """(W,) where each comes from."""
         return torch.tensor(self.group // BLOCKS)
 
-    def on(self, device: torch.device) -> "Windows":
+    def on(self, device: torch.device) -> "TrainingWindows":
         """The same where they are computed with; indices stay with the processor."""
         inputs = {name: x.to(device) for name, x in self.inputs.items()}
-        return Windows(self.start.to(device), inputs, self.wanted.to(device), self.h.to(device), self.group)
+        return TrainingWindows(
+            self.start.to(device), inputs, self.wanted.to(device), self.h.to(device), self.group
+        )
 
-    def some(self, k: torch.Tensor) -> "Windows":
+    def some(self, k: torch.Tensor) -> "TrainingWindows":
         inputs = {name: x[:, k] for name, x in self.inputs.items()}
-        return Windows(self.start[k], inputs, self.wanted[:, k], self.h[k], self.group[k.numpy()])
+        return TrainingWindows(self.start[k], inputs, self.wanted[:, k], self.h[k], self.group[k.numpy()])
 
 
-def samples(legs: Sequence[Leg], model: Model, names: Sequence[str]) -> Samples:
+def samples(legs: Sequence[TrainingLeg], model: Model, names: Sequence[str]) -> TrainingSamples:
     """Every grid step with known controls and a step after it."""
     kept = [(leg, leg.starts(1, 1)) for leg in legs]
     fields = (
@@ -91,7 +93,7 @@ def samples(legs: Sequence[Leg], model: Model, names: Sequence[str]) -> Samples:
     h = _tensor([np.full(k.size, leg.h) for leg, k in kept])
     fields |= {"u_r": exact.u_r, "v_r": exact.v_r}
     voyage = torch.tensor(np.concatenate([np.full(k.size, i) for i, (_, k) in enumerate(kept)]))
-    return Samples(
+    return TrainingSamples(
         {n: x.float() for n, x in fields.items()},
         ahead.float(),
         h.float(),
@@ -102,8 +104,12 @@ def samples(legs: Sequence[Leg], model: Model, names: Sequence[str]) -> Samples:
 
 
 def windows(
-    legs: Sequence[Leg], names: Sequence[str], horizon_s: float, stride_s: float, block_s: float = 300.0
-) -> Windows:
+    legs: Sequence[TrainingLeg],
+    names: Sequence[str],
+    horizon_s: float,
+    stride_s: float,
+    block_s: float = 300.0,
+) -> TrainingWindows:
     """Free runs of `horizon_s` that begin every `stride_s`."""
     starts, wanted, h, group = [], [], [], []
     inputs: dict[str, list[np.ndarray]] = {name: [] for name in (*names, "t")}
@@ -117,18 +123,18 @@ def windows(
         for name in names:
             inputs[name].append(leg.inputs[name][at])
         inputs["t"].append(leg.t[at])
-    return Windows(
+    return TrainingWindows(
         _tensor(starts).float(), {n: torch.tensor(np.concatenate(x, 1)).float() for n, x in inputs.items()},
         torch.tensor(np.concatenate(wanted, 1)).float(), _tensor(h).float(), np.concatenate(group),
     )  # fmt: skip
 
 
-def input_names(legs: Sequence[Leg]) -> tuple[str, ...]:
+def input_names(legs: Sequence[TrainingLeg]) -> tuple[str, ...]:
     """Controls and the weather that every leg knows."""
     return tuple(sorted(set.intersection(*(set(leg.inputs) for leg in legs))))
 
 
-def zeta_of(network: Residual, data: Samples) -> torch.Tensor:
+def zeta_of(network: ResidualNetwork, data: TrainingSamples) -> torch.Tensor:
     return network.zeta(Situation(**data.fields))
 
 

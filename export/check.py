@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from export.network import Residual
+from export.network import ResidualNetwork
 from twin.cli import guarded
 from twin.errors import TwinError
 from twin.live.learning.residual import load as load_residual
@@ -31,7 +31,7 @@ def answers(model: bytes, x: np.ndarray) -> np.ndarray:
     return np.concatenate([session.run(None, {name: row[None]})[0] for row in x.astype(np.float32)])
 
 
-def disagreement(network: Residual, model: bytes, count: int = 256, seed: int = 0) -> float:
+def disagreement(network: ResidualNetwork, model: bytes, count: int = 256, seed: int = 0) -> float:
     """The greatest difference over inputs drawn from the whole envelope, relative to the larger of 1 and
     |phi|."""
     rng = np.random.default_rng(seed)
@@ -43,7 +43,7 @@ def disagreement(network: Residual, model: bytes, count: int = 256, seed: int = 
     return float((np.abs(answers(model, x) - wanted) / np.maximum(1.0, np.abs(wanted))).max())
 
 
-def agree(network: Residual, model: bytes) -> float:
+def agree(network: ResidualNetwork, model: bytes) -> float:
     """The disagreement; TwinError when it is more than AGREE."""
     worst = disagreement(network, model)
     if not worst <= AGREE:

@@ -28,7 +28,7 @@ LOG = {"u_r": len(STATE), "v_r": len(STATE) + 1}  # columns of Track.measured
 
 
 @dataclass(frozen=True)
-class Leg:
+class TrainingLeg:
     """A stretch of one voyage; arrays (N,) at `t` [s], every h seconds; `state` (N, 6) and `rate` (N, 3) seen
     from the water."""
 
@@ -44,7 +44,7 @@ class Leg:
     def __len__(self) -> int:
         return self.t.size
 
-    def part(self, first: int, last: int) -> "Leg":
+    def part(self, first: int, last: int) -> "TrainingLeg":
         """Grid steps first <= k < last."""
         cut = slice(first, last)
         return replace(
@@ -75,7 +75,7 @@ def model_of(ship: Ship, tracks: Sequence[Track]) -> Model:
     return model
 
 
-def leg(track: Track, model: Model) -> Leg:
+def leg(track: Track, model: Model) -> TrainingLeg:
     """The whole track, seen from the water, with the instruments' known faults undone."""
     state, wind_to = true_motion(track, model)
     inputs = dict(track.weather) | {"delta": lagged(track, model), "n": track.n}
@@ -88,7 +88,7 @@ def leg(track: Track, model: Model) -> Leg:
         inputs["wind_speed"], inputs["wind_to"] = np.hypot(north, east), np.arctan2(east, north)
     state = afloat(state, water, track.h)
     rate = np.gradient(state[:, 3:], track.h, axis=0)
-    return Leg(track.name, track.t, track.h, state, rate, inputs, water, track.whole)
+    return TrainingLeg(track.name, track.t, track.h, state, rate, inputs, water, track.whole)
 
 
 def afloat(state: np.ndarray, water: np.ndarray, h: float) -> np.ndarray:
@@ -125,12 +125,12 @@ def _logged(track: Track) -> bool:
     return bool(np.isfinite(track.measured[:, list(LOG.values())]).any(0).all())
 
 
-def split(legs: Sequence[Leg], block_s: float = BLOCK_S) -> dict[str, list[Leg]]:
+def split(legs: Sequence[TrainingLeg], block_s: float = BLOCK_S) -> dict[str, list[TrainingLeg]]:
     """Train, validation and test, in this order of time.
 
     Whole voyages where there are five or more; else each voyage is cut at two borders of blocks and the block
     at each border goes to nobody: neighbouring blocks of one manoeuvre are never on both sides."""
-    parts: dict[str, list[Leg]] = {name: [] for name in PARTS}
+    parts: dict[str, list[TrainingLeg]] = {name: [] for name in PARTS}
     if len(legs) >= 5:
         for name, chosen in zip(PARTS, np.split(np.arange(len(legs)), _borders(len(legs))), strict=True):
             parts[name] = [legs[i] for i in chosen]

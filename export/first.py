@@ -25,7 +25,7 @@ from twin.live.learning.learned import scale_of
 from twin.live.learning.manifest import SCHEMA_VERSION, hashed
 from twin.live.learning.residual import ship_hash
 from twin.live.log.rows import read_rows
-from twin.live.observer.dynamics import Known
+from twin.live.observer.dynamics import KnownDynamics
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.physics.state import Force, Situation
@@ -79,7 +79,7 @@ def read(path: Path, ship: Ship) -> Run:
     si = {name: _on(grid, time_s, columns[column]) for name, column in COLUMNS.items()}
     psi, r, delta = (np.radians(si[name]) for name in ("psi", "r", "delta"))
     s = Situation(0.0, 0.0, psi, si["u"], si["v"], r, delta=delta, n=si["n"] / 60.0)
-    known = Known(Model.of(ship))
+    known = KnownDynamics(Model.of(ship))
     rates = np.stack(known.rates(s, Force(0.0, 0.0, 0.0)), axis=1)
     nu = np.stack([s.u, s.v, s.r], axis=1)
     left = np.diff(nu, axis=0) / STEP_S - 0.5 * (rates[1:] + rates[:-1])

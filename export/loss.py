@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import torch
 
-from export.network import Residual
+from export.network import ResidualNetwork
 from twin.physics import core
 from twin.physics.model import CORE, Model
 from twin.physics.state import LIGHT, Force, Growth, Situation
@@ -23,7 +23,7 @@ ODD = ("sway", "yaw", "rudder", "air_starboard", "wave_starboard", "roll")
 Inputs = dict[str, torch.Tensor]  # fields of Situation, each (..., B)
 
 
-class Held:
+class HeldOutLoss:
     """A learned force that is the same in the whole of a step."""
 
     force = Force()
@@ -49,13 +49,16 @@ def left_over(model: Model, s: Situation, rate: torch.Tensor, scale: torch.Tenso
     return (needed(model, rate, s.grown) - forces) / scale
 
 
-def acceleration(network: Residual, zeta: torch.Tensor, d: torch.Tensor, size: torch.Tensor) -> torch.Tensor:
+def acceleration(
+    network: ResidualNetwork, zeta: torch.Tensor, d: torch.Tensor, size: torch.Tensor
+) -> torch.Tensor:
     """(B,) of each moment."""
     return (((network.f(zeta) - d) / size) ** 2).mean(-1)
 
 
 def paper(
-    network: Residual, model: Model, s: Situation, ahead: torch.Tensor, h: torch.Tensor, size: torch.Tensor,
+    network: ResidualNetwork, model: Model, s: Situation, ahead: torch.Tensor, h: torch.Tensor,
+    size: torch.Tensor,
     lambda_data: float = 1.0, lambda_phys: float = 0.1,
 ) -> tuple[torch.Tensor, dict[str, float]]:  # fmt: skip
     """The literal loss of one step; `ahead` (B, 3) the measured speeds h later, `size` (3,) of one step's
@@ -79,12 +82,12 @@ def _rms(x: torch.Tensor) -> float:
 
 
 def free_run(
-    network: Residual | None, model: Model, start: torch.Tensor, inputs: Inputs, h: torch.Tensor
+    network: ResidualNetwork | None, model: Model, start: torch.Tensor, inputs: Inputs, h: torch.Tensor
 ) -> torch.Tensor:
     """(T, B, 6) states after each step; `start` (B, 6), inputs (T + 1, B). The learned force of a step is
     that of its middle, by a line through this step's and the last one's beginnings (Adams-Bashforth): as good
     as asking the network twice."""
-    held = Held()
+    held = HeldOutLoss()
     moving = replace(model, residual=held) if network is not None else model
     state, kept, last = tuple(start.unbind(-1)), [], None
     for k in range(next(iter(inputs.values())).shape[0] - 1):
@@ -120,7 +123,7 @@ def allowed(model: Model) -> torch.Tensor:
 
 
 def rollout(
-    network: Residual,
+    network: ResidualNetwork,
     model: Model,
     start: torch.Tensor,
     inputs: Inputs,
@@ -156,7 +159,7 @@ def span(model: Model, s: Situation) -> torch.Tensor:
     )
 
 
-def mirror(network: Residual, zeta: torch.Tensor) -> torch.Tensor:
+def mirror(network: ResidualNetwork, zeta: torch.Tensor) -> torch.Tensor:
     """How far f is from that of the mirrored ship, mirrored."""
     sign = zeta.new_tensor([-1.0 if name in ODD else 1.0 for name in network.names])
     return ((network.f(zeta) - network.f(zeta * sign) * zeta.new_tensor([1.0, -1.0, -1.0])) ** 2).mean()

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 import torch
 
-from export.data import Leg
+from export.data import TrainingLeg
 from twin.live.learning.learned import scale_of
 from twin.live.learning.residual import MARGIN
 from twin.physics.effects.wind import Wind
@@ -27,7 +27,7 @@ CALM = ("surge", "sway", "yaw", "rudder", "propeller")
 AIR = ("air_ahead", "air_starboard")
 
 
-class Residual(torch.nn.Module):
+class ResidualNetwork(torch.nn.Module):
     """zeta -> f; called with a Situation of tensors it gives the force in newtons."""
 
     def __init__(self, ship: Ship, names: Sequence[str], zeta: np.ndarray):
@@ -89,7 +89,7 @@ class Residual(torch.nn.Module):
             self.bound.fill_(1.2 * float(torch.quantile(self.f(zeta).norm(dim=-1), 0.999)) + 1e-3)
 
 
-def names_for(legs: Sequence[Leg], model: Model) -> tuple[str, ...]:
+def names_for(legs: Sequence[TrainingLeg], model: Model) -> tuple[str, ...]:
     """Which inputs the voyages can feed: its motion and controls; the air too where every voyage measured it,
     unless the wind has its name in the model already (few voyages would teach the network their weathers by
     heart)."""

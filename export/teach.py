@@ -15,9 +15,9 @@ import torch
 from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from export import loss as losses
-from export.batches import Samples, Windows, input_names, samples, shuffled, windows, zeta_of
-from export.data import Leg
-from export.network import Residual, names_for
+from export.batches import TrainingSamples, TrainingWindows, input_names, samples, shuffled, windows, zeta_of
+from export.data import TrainingLeg
+from export.network import ResidualNetwork, names_for
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.physics.zeta import inputs
@@ -26,7 +26,7 @@ Progress = Callable[[str, int, int, float, float], None]  # stage, epoch, epochs
 
 
 @dataclass(frozen=True)
-class Settings:
+class TrainingSettings:
     """Table 1 of the paper, and what it leaves open; horizons in ship lengths sailed (1.5 lengths of KVLCC2
     are 60 s)."""
 
@@ -64,8 +64,8 @@ FEWEST = 5
 class Set:
     """One part of the data as tensors."""
 
-    samples: Samples
-    windows: Windows
+    samples: TrainingSamples
+    windows: TrainingWindows
 
     def on(self, device: torch.device) -> "Set":
         return Set(self.samples.on(device), self.windows.on(device))
@@ -80,15 +80,15 @@ def device() -> torch.device:
 class Taught:
     """The network and how its training went: (stage, epoch, loss, validation loss) for each epoch."""
 
-    network: Residual
+    network: ResidualNetwork
     curve: list[tuple[str, int, float, float]]
     seconds: float
     diagnostics: dict[str, float]
-    samples: Samples  # what it was taught with
+    samples: TrainingSamples  # what it was taught with
     validation: float  # the best loss of the last stage on the validation part
 
 
-def prepared(parts: dict[str, list[Leg]], model: Model, settings: Settings) -> dict[str, Set]:
+def prepared(parts: dict[str, list[TrainingLeg]], model: Model, settings: TrainingSettings) -> dict[str, Set]:
     """Training and validation data as tensors."""
     names = input_names([leg for legs in parts.values() for leg in legs])
     length_s = float(model.ship.scale("time"))
@@ -100,9 +100,9 @@ def prepared(parts: dict[str, list[Leg]], model: Model, settings: Settings) -> d
 
 
 def teach(
-    parts: dict[str, list[Leg]],
+    parts: dict[str, list[TrainingLeg]],
     model: Model,
-    settings: Settings,
+    settings: TrainingSettings,
     progress: Progress | None = None,
     keep: Path | None = None,
 ) -> Taught:
@@ -115,10 +115,10 @@ def teach(
     names = names_for(legs, model)
     with torch.no_grad():
         probe = _probe(model, names, data["train"].samples)
-    network = Residual(model.ship, names, probe.numpy())
+    network = ResidualNetwork(model.ship, names, probe.numpy())
     there = device()  # it begins with the same weights anywhere: they are drawn before
     moved = {part: one.on(there) for part, one in data.items()}
-    course = Course(network.to(there), model, settings, moved, progress or (lambda *_: None), keep)
+    course = TrainingCourse(network.to(there), model, settings, moved, progress or (lambda *_: None), keep)
     began = time.monotonic()
     for stage in STAGES[settings.loss]:
         course.run(stage)
@@ -134,7 +134,7 @@ def teach(
     )
 
 
-def _probe(model: Model, names: tuple[str, ...], data: Samples) -> torch.Tensor:
+def _probe(model: Model, names: tuple[str, ...], data: TrainingSamples) -> torch.Tensor:
     """(N, inputs) the training data as the network will see them."""
     return torch.stack(torch.broadcast_tensors(*inputs(names, Situation(**data.fields), model.ship)), -1)
 
@@ -142,15 +142,15 @@ def _probe(model: Model, names: tuple[str, ...], data: Samples) -> torch.Tensor:
 STAGES = {"paper": ("paper",), "acceleration": ("acceleration",), "rollout": ("acceleration", "rollout")}
 
 
-class Course:
+class TrainingCourse:
     """One training: its network, the average of its weights over the last epochs, its optimiser, and where it
     stands."""
 
     def __init__(
         self,
-        network: Residual,
+        network: ResidualNetwork,
         model: Model,
-        settings: Settings,
+        settings: TrainingSettings,
         data: dict[str, Set],
         progress: Progress,
         keep: Path | None,
@@ -255,7 +255,7 @@ class Course:
         each = self._each(self.network, stage, part, k)
         return (self.weight[self._voyage(stage, part)[k]].to(each.device) * each).mean()
 
-    def _each(self, network: Residual, stage: str, part: str, k: torch.Tensor) -> torch.Tensor:
+    def _each(self, network: ResidualNetwork, stage: str, part: str, k: torch.Tensor) -> torch.Tensor:
         """(B,) the loss of each window or moment."""
         data = self.data[part]
         if stage == "rollout":
@@ -263,7 +263,7 @@ class Course:
             return losses.rollout(network, self.model, w.start, w.inputs, w.wanted, w.h)
         return losses.acceleration(network, self.zeta[part][k], data.samples.d[k], self.size)
 
-    def _literal(self, network: Residual, part: str, k: torch.Tensor) -> torch.Tensor:
+    def _literal(self, network: ResidualNetwork, part: str, k: torch.Tensor) -> torch.Tensor:
         one, c = self.data[part].samples, self.settings
         value, self.diagnostics = losses.paper(
             network,
@@ -280,7 +280,7 @@ class Course:
     def _voyage(self, stage: str, part: str) -> torch.Tensor:
         return self.data[part].windows.voyage if stage == "rollout" else self.data[part].samples.voyage
 
-    def _by_voyage(self, network: Residual, stage: str, part: str) -> torch.Tensor:
+    def _by_voyage(self, network: ResidualNetwork, stage: str, part: str) -> torch.Tensor:
         """The mean loss of every voyage of a part (over at most MOST windows or moments)."""
         voyage = self._voyage(stage, part)
         k = torch.arange(0, voyage.numel(), max(1, voyage.numel() // MOST))
@@ -360,7 +360,7 @@ class Course:
         os.replace(aside, self.keep)
 
 
-def _key(settings: Settings, data: dict[str, Set]) -> str:
+def _key(settings: TrainingSettings, data: dict[str, Set]) -> str:
     """Tells one training from another: its settings and its data."""
     digest = hashlib.sha256(json.dumps(asdict(settings)).encode())
     for part in data.values():

@@ -11,7 +11,7 @@ import numpy as np
 import torch
 from onnx import TensorProto, checker, helper, numpy_helper
 
-from export.network import WIDTH, Residual
+from export.network import WIDTH, ResidualNetwork
 from twin.live.learning.manifest import SCHEMA_VERSION, hashed
 from twin.live.learning.residual import ship_hash
 from twin.physics.zeta import ZETA
@@ -19,7 +19,7 @@ from twin.physics.zeta import ZETA
 OPSET, COMPONENTS, GOLDEN = 17, 4, 8
 
 
-def trunk(network: Residual) -> bytes:
+def trunk(network: ResidualNetwork) -> bytes:
     """zeta, already scaled, float32 (1, n) -> phi (1, 64)."""
     nodes, weights, source = [], [], "zeta"
     for i, layer in enumerate(network.layers):
@@ -46,7 +46,9 @@ def trunk(network: Residual) -> bytes:
     return bytes(model.SerializeToString())
 
 
-def manifest(network: Residual, model: bytes, zeta: torch.Tensor, training: dict[str, Any]) -> dict[str, Any]:
+def manifest(
+    network: ResidualNetwork, model: bytes, zeta: torch.Tensor, training: dict[str, Any]
+) -> dict[str, Any]:
     """The manifest; `zeta` (N, inputs) is the training data as the network saw it."""
     W = network.last.weight.detach().numpy().astype(float)
     with torch.no_grad():
@@ -76,7 +78,7 @@ def manifest(network: Residual, model: bytes, zeta: torch.Tensor, training: dict
     }
 
 
-def _inputs(network: Residual) -> list[dict[str, Any]]:
+def _inputs(network: ResidualNetwork) -> list[dict[str, Any]]:
     columns = zip(
         *(getattr(network, name).tolist() for name in ("scale", "offset", "low", "high")), strict=True
     )

@@ -119,10 +119,10 @@ def run(args: argparse.Namespace) -> int:
 
 def settings_of(args: argparse.Namespace) -> Any:
     """The training's settings, from the command line."""
-    from export.teach import Settings
+    from export.teach import TrainingSettings
 
-    named = {f.name for f in fields(Settings)}
-    return Settings(**{name: value for name, value in vars(args).items() if name in named})
+    named = {f.name for f in fields(TrainingSettings)}
+    return TrainingSettings(**{name: value for name, value in vars(args).items() if name in named})
 
 
 def learn(

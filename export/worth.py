@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import torch
 
-from export.batches import Windows, input_names, windows
-from export.data import Leg
+from export.batches import TrainingWindows, input_names, windows
+from export.data import TrainingLeg
 from export.loss import free_run
-from export.network import Residual
+from export.network import ResidualNetwork
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
@@ -60,7 +60,7 @@ class Worth:
         }
 
 
-def errors(network: Residual | None, model: Model, w: Windows) -> np.ndarray:
+def errors(network: ResidualNetwork | None, model: Model, w: TrainingWindows) -> np.ndarray:
     """(W, 2) mean position error [m] and heading error [deg] along each free run."""
     with torch.no_grad():
         off = torch.nan_to_num(
@@ -70,7 +70,7 @@ def errors(network: Residual | None, model: Model, w: Windows) -> np.ndarray:
     return torch.stack([place.mean(0), heading.mean(0)], -1).double().numpy()
 
 
-def worth(network: Residual, model: Model, legs: Sequence[Leg], seed: int = 0) -> Worth:
+def worth(network: ResidualNetwork, model: Model, legs: Sequence[TrainingLeg], seed: int = 0) -> Worth:
     """The verdict on these legs; whole blocks are resampled, because neighbouring windows are not
     independent."""
     length_s = float(model.ship.scale("time"))
@@ -93,7 +93,7 @@ def ratio(before: np.ndarray, after: np.ndarray, group: np.ndarray, seed: int) -
     return float(low), float(high)
 
 
-def share(network: Residual, model: Model, s: Situation) -> float:
+def share(network: ResidualNetwork, model: Model, s: Situation) -> float:
     """How much of the force the network gives: rms of f over rms of f and the known forces, in units of the
     force scale."""
     with torch.no_grad():

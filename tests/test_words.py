@@ -9,7 +9,27 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 NAMES = frozenset(
-    ["luxury", "led", "tossed", "unrest", "acquitted", "accused", "blamed", "nats", "leftover", "stranger", "strangers", "climb", "world", "worlds", "stirred", "spoils", "misled", "hers", "she"]
+    [
+        "luxury",
+        "led",
+        "tossed",
+        "unrest",
+        "acquitted",
+        "accused",
+        "blamed",
+        "nats",
+        "leftover",
+        "stranger",
+        "strangers",
+        "climb",
+        "world",
+        "worlds",
+        "stirred",
+        "spoils",
+        "misled",
+        "hers",
+        "she",
+    ]
 )
 READ = re.compile(
     r"\b(she|her|hers|herself|nats|luxury|acquitted|accused|blamed|leftover|tossed|unrest)\b", re.I
@@ -55,3 +75,15 @@ def test_no_page_of_the_documentation_says_one():
     read = [page for page in pages if not page.startswith(("docs/history/", "docs/results/", "CHANGELOG"))]
     wrong = {page: set(READ.findall((ROOT / page).read_text())) for page in read}
     assert read and not {page: words for page, words in wrong.items() if words}
+
+
+def test_a_class_of_the_twin_has_its_name_alone():
+    """Expected: within twin no class name twice, but for Force, the kind of effect, and Force, the vector it
+    returns: plug-ins import both."""
+    places = {}
+    for path in FILES:
+        if path.is_relative_to(ROOT / "twin"):
+            for node in ast.walk(ast.parse(path.read_text())):
+                if isinstance(node, ast.ClassDef):
+                    places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
+    assert not {name: where for name, where in places.items() if len(where) > 1 and name != "Force"}

@@ -12,7 +12,7 @@ import numpy as np
 from bench.adaptation.laws import Stream, Writes
 from bench.paper.adapted import Acting, Learning
 from bench.paper.filter import Tuning, from_states
-from bench.paper.lab import Course, course, judge
+from bench.paper.lab import LabCourse, course, judge
 from bench.paper.models import Workshop
 from bench.paper.sea import sail
 from export.batches import zeta_of
@@ -27,7 +27,7 @@ class Heard:
 
     model: Model
     acting: Acting
-    courses: Sequence[Course]
+    courses: Sequence[LabCourse]
     states: np.ndarray
     streams: Sequence[Stream]
 

@@ -119,7 +119,7 @@ def laws() -> dict[str, Any]:
 
 def midway_laws() -> dict[str, Any]:
     """Nothing, the law on board, and the same told of the change."""
-    return {"off": None, "on": Adaptation, "told": partial(peers.Told, at_s=CHANGE_S)}
+    return {"off": None, "on": Adaptation, "told": partial(peers.ToldLaw, at_s=CHANGE_S)}
 
 
 def ships(seeds: int) -> dict[str, list[Any]]:
@@ -145,9 +145,7 @@ def changes() -> dict[str, Any]:
     """What happens to it at CHANGE_S."""
     altered = hulls()
     became = {
-        name: Change(CHANGE_S, altered[name])
-        for name in altered
-        if name not in ("as it is", "windage +50 %")
+        name: Change(CHANGE_S, altered[name]) for name in altered if name not in ("as it is", "windage +50 %")
     }
     return {
         "as it is": None,

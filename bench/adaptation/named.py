@@ -89,7 +89,7 @@ def growing(growth: Growth, seeds: int) -> list[Any]:
 
 
 @dataclass(frozen=True)
-class Learned:
+class LearnedEffects:
     """By voyage and window: the rows' numbers (V, W, 3, width), the effects' that act and as published with
     sigma (V, W, P), the gate."""
 
@@ -100,13 +100,13 @@ class Learned:
     gate: np.ndarray
 
 
-def learned(made: Callable[..., Adaptation] | None, heard: Heard) -> Learned:
+def learned(made: Callable[..., Adaptation] | None, heard: Heard) -> LearnedEffects:
     """What a law has learned by each window's start."""
     voyages = [
         _of_voyage(made, heard, stream, c.starts)
         for stream, c in zip(heard.streams, heard.courses, strict=True)
     ]
-    return Learned(*(np.array([v[i] for v in voyages]) for i in range(5)))
+    return LearnedEffects(*(np.array([v[i] for v in voyages]) for i in range(5)))
 
 
 def _of_voyage(made: Any, heard: Heard, stream: Any, starts: np.ndarray) -> tuple[list[Any], ...]:
@@ -126,7 +126,7 @@ def _of_voyage(made: Any, heard: Heard, stream: Any, starts: np.ndarray) -> tupl
     return out
 
 
-def errors(heard: Heard, known: Learned) -> tuple[np.ndarray, np.ndarray]:
+def errors(heard: Heard, known: LearnedEffects) -> tuple[np.ndarray, np.ndarray]:
     """Heading deg and lateral m of the free runs (V, W)."""
     numbers = movable(heard.model.effects, heard.model.ship)
     flat = known.acting.reshape(-1, len(numbers))
@@ -172,7 +172,9 @@ def summary(heading: np.ndarray, lateral: np.ndarray, scenario: np.ndarray, seed
     }  # fmt: skip
 
 
-def arrival(growth: Growth, heard: Heard, known: Learned, scenario: np.ndarray) -> dict[str, Any] | None:
+def arrival(
+    growth: Growth, heard: Heard, known: LearnedEffects, scenario: np.ndarray
+) -> dict[str, Any] | None:
     """The number that grew, as published, beside the truth: by scenario mean over voyages at each window, and
     half its 95 % interval; and in which share of the late windows the interval holds the truth."""
     if not growth.grows:

@@ -12,14 +12,14 @@ from typing import Any
 import numpy as np
 
 import twin
-from bench.fleet.cases import Case, Sailed, generator, plan, references, sailed
+from bench.fleet.cases import FleetCase, SailedCase, generator, plan, references, sailed
 from bench.fleet.hidden import CATALOGUE
-from bench.fleet.ship import Ship, build
+from bench.fleet.ship import RandomShip, build
 from twin.physics.ship import Ship as Model
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.calibration.calibrate import calibrate
-from twin.study.diagnosis.diagnose import Diagnosis, diagnose
+from twin.study.diagnosis.diagnose import Diagnosed, diagnose
 from twin.study.diagnosis.open_loop_check import held_out_error
 from twin.study.diagnosis.refine import refine
 from twin.study.first_model.init import OPTIONS, first_model
@@ -47,11 +47,11 @@ KEPT_FACTS = (
 )
 
 
-def voyage(s: Sailed) -> Voyage:
+def voyage(s: SailedCase) -> Voyage:
     return Voyage(s.name, s.time_s, s.columns, {"source": "bench.fleet"})
 
 
-def calibrated(ship: Ship) -> tuple[Model, dict[str, Any]]:
+def calibrated(ship: RandomShip) -> tuple[Model, dict[str, Any]]:
     """The ship as its owner has it after `twin init` and `twin calibrate`; seconds and number of
     references."""
     began = time.process_time()
@@ -93,7 +93,7 @@ def rows(
             yield _asked(ship, case, model, facts)
 
 
-def _asked(ship: Ship, case: Case, model: Model, facts: dict[str, Any]) -> dict[str, Any]:
+def _asked(ship: RandomShip, case: FleetCase, model: Model, facts: dict[str, Any]) -> dict[str, Any]:
     one, began = sailed(ship, case), time.process_time()
     row: dict[str, Any] = {
         "key": case.key,
@@ -151,7 +151,7 @@ def _asked(ship: Ship, case: Case, model: Model, facts: dict[str, Any]) -> dict[
     return plain(row)
 
 
-def oracle(said: Diagnosis, case: Case) -> dict[str, Any] | None:
+def oracle(said: Diagnosed, case: FleetCase) -> dict[str, Any] | None:
     """Open-loop error with nothing but the day's weather, and with what is truly hidden beside it [m]."""
     c = said.case
     true = c.ordered([n for n in case.hidden if n in CATALOGUE])

@@ -8,7 +8,7 @@ import numpy as np
 from bench.fleet import hidden, instruments, sail, weather
 from bench.fleet.hulls import FAMILIES
 from bench.fleet.manoeuvres import PLANS
-from bench.fleet.ship import Ship
+from bench.fleet.ship import RandomShip
 
 SHARES = {"nothing": 0.32, "single": 0.38, "pair": 0.11, "triple": 0.05, "outside": 0.14}
 VOYAGES = 6  # asked of each ship
@@ -18,7 +18,7 @@ LENGTHS = (25.0, 75.0)  # times of L/U0 that a voyage lasts within these minutes
 
 
 @dataclass(frozen=True)
-class Case:
+class FleetCase:
     """One voyage of a ship and what is hidden in it: name -> strength."""
 
     family: str
@@ -33,17 +33,17 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Sailed:
+class SailedCase:
     """A voyage's columns, the weather that it had, and what was hidden, in numbers."""
 
     name: str
     time_s: np.ndarray
     columns: dict[str, np.ndarray]
-    weather: weather.Weather
+    weather: weather.FleetWeather
     flaws: dict[str, float]
 
 
-def generator(ship: Ship, *more: int) -> np.random.Generator:
+def generator(ship: RandomShip, *more: int) -> np.random.Generator:
     return np.random.default_rng([ship.seed, sorted(FAMILIES).index(ship.family), *more])
 
 
@@ -53,7 +53,7 @@ def practice(family: str, seed: int) -> tuple[int, bool, np.random.Generator]:
     return int(rng.choice(REFERENCES)), bool(rng.random() < 0.6), rng
 
 
-def references(ship: Ship) -> list[Sailed]:
+def references(ship: RandomShip) -> list[SailedCase]:
     """Two to six voyages of a healthy ship, on days that were chosen for it or not; one zigzag at least."""
     count, chosen, rng = practice(ship.family, ship.seed)
     plans = ["zigzag", *rng.choice(list(PLANS), count - 1)]
@@ -64,7 +64,7 @@ def references(ship: Ship) -> list[Sailed]:
     return out
 
 
-def plan(ship: Ship, voyages: int = VOYAGES) -> list[Case]:
+def plan(ship: RandomShip, voyages: int = VOYAGES) -> list[FleetCase]:
     """What is hidden on each of its voyages: effects that its instruments could show at all."""
     rng = generator(ship, 2)
     names = [n for n in hidden.CATALOGUE if can_show(ship, n)]
@@ -75,11 +75,13 @@ def plan(ship: Ship, voyages: int = VOYAGES) -> list[Case]:
         among = list(hidden.OUTSIDE) if kind == "outside" else names
         picked = sorted(str(n) for n in rng.choice(among, count, replace=False))
         low = -1.8 if kind == "single" else -0.7
-        out.append(Case(ship.family, ship.seed, i, kind, {n: exp(rng.uniform(low, 0.5)) for n in picked}))
+        out.append(
+            FleetCase(ship.family, ship.seed, i, kind, {n: exp(rng.uniform(low, 0.5)) for n in picked})
+        )
     return out
 
 
-def can_show(ship: Ship, name: str) -> bool:
+def can_show(ship: RandomShip, name: str) -> bool:
     """Whether a bridge with these instruments could ever name it."""
     kit = ship.kit
     return {
@@ -92,7 +94,7 @@ def can_show(ship: Ship, name: str) -> bool:
     }.get(name, kit.has_log if name.startswith("SpeedLog") else True)
 
 
-def sailed(ship: Ship, case: Case) -> Sailed:
+def sailed(ship: RandomShip, case: FleetCase) -> SailedCase:
     rng = generator(ship, 3, case.number)
     day, flaws = weather.draw(ship.p, rng, False), hidden.Flaws()
     for name, strength in case.hidden.items():
@@ -103,8 +105,13 @@ def sailed(ship: Ship, case: Case) -> Sailed:
 
 
 def _sailed(
-    ship: Ship, name: str, plan_name: str, day: weather.Weather, flaws: hidden.Flaws, rng: np.random.Generator
-) -> Sailed:
+    ship: RandomShip,
+    name: str,
+    plan_name: str,
+    day: weather.FleetWeather,
+    flaws: hidden.Flaws,
+    rng: np.random.Generator,
+) -> SailedCase:
     lasts = np.clip(ship.p.unit_s * rng.uniform(*LENGTHS), 60 * MINUTES[0], 60 * MINUTES[1])
     seed = int(rng.integers(2**31))
     true = sail.sail(ship, PLANS[plan_name](rng), day, float(lasts), seed, flaws)
@@ -112,4 +119,4 @@ def _sailed(
     true = {k: v[good] for k, v in true.items()}
     t, columns = instruments.record(ship, true, day, seed, flaws)
     told = {k: v for k, v in vars(flaws).items() if np.any(v)}
-    return Sailed(name, t, columns, day, told)
+    return SailedCase(name, t, columns, day, told)

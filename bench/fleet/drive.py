@@ -9,7 +9,7 @@ from bench.fleet.particulars import RHO, Particulars
 
 
 @dataclass
-class Drive:
+class Propulsion:
     """Numbers of propeller, engine and rudder of one ship (all random), and the forms that were drawn."""
 
     p: Particulars
@@ -34,10 +34,10 @@ class Drive:
     n0: float = 1.0  # service shaft speed [1/s]
 
     @staticmethod
-    def draw(p: Particulars, rng: np.random.Generator) -> "Drive":
+    def draw(p: Particulars, rng: np.random.Generator) -> "Propulsion":
         k0 = 0.30 * (p.pitch / 0.8) * rng.uniform(0.9, 1.1)
         boat = p.L < 30
-        d = Drive(
+        d = Propulsion(
             p,
             str(rng.choice(["linear", "quadratic", "quadrants"])),
             (
@@ -103,7 +103,7 @@ class Drive:
         )
         return 0.5 * RHO * self.p.A_R * self.lift * (u_R * u_R + v_R * v_R) * sin(eff)
 
-    def balance(self, resistance: float) -> "Drive":
+    def balance(self, resistance: float) -> "Propulsion":
         """The shaft speed that drives the ship at service speed."""
         lo, hi = 0.01, 200.0
         for _ in range(60):

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.fleet.drive import Drive
+from bench.fleet.drive import Propulsion
 from bench.fleet.particulars import RHO, G, Particulars
 
 Draw = np.random.Generator
@@ -68,57 +68,57 @@ class Flaws:
 
 
 @dataclass
-class Change:
+class HiddenChange:
     """What one hidden thing changes."""
 
     flaws: dict[str, Any] = field(default_factory=dict)
     weather: dict[str, float] = field(default_factory=dict)
 
 
-Entry = Callable[[Particulars, Drive, Draw, float], Change]
+Entry = Callable[[Particulars, Propulsion, Draw, float], HiddenChange]
 
 
 def side(rng: Draw) -> float:
     return float(rng.choice([-1.0, 1.0]))
 
 
-def drag0(p: Particulars, d: Drive) -> float:
+def drag0(p: Particulars, d: Propulsion) -> float:
     """Calm resistance at service speed [N], as the propeller balances it."""
     return (1 - d.t) * d.thrust(d.n0, p.U0, 0.0)[0]
 
 
-def _flaw(make: Callable[[Particulars, Drive, Draw, float], dict[str, Any]]) -> Entry:
-    return lambda p, d, rng, s: Change(make(p, d, rng, s))
+def _flaw(make: Callable[[Particulars, Propulsion, Draw, float], dict[str, Any]]) -> Entry:
+    return lambda p, d, rng, s: HiddenChange(make(p, d, rng, s))
 
 
-def _weather(make: Callable[[Particulars, Drive, Draw, float], dict[str, float]]) -> Entry:
-    return lambda p, d, rng, s: Change(weather=make(p, d, rng, s))
+def _weather(make: Callable[[Particulars, Propulsion, Draw, float], dict[str, float]]) -> Entry:
+    return lambda p, d, rng, s: HiddenChange(weather=make(p, d, rng, s))
 
 
-def shallow(p: Particulars, d: Drive, rng: Draw, s: float) -> Change:
+def shallow(p: Particulars, d: Propulsion, rng: Draw, s: float) -> HiddenChange:
     share = min(0.7 * s**0.5, 0.8)
-    return Change({"shallow": share}, {"depth": p.T / share})
+    return HiddenChange({"shallow": share}, {"depth": p.T / share})
 
 
-def bank(p: Particulars, d: Drive, rng: Draw, s: float) -> Change:
-    return Change(
+def bank(p: Particulars, d: Propulsion, rng: Draw, s: float) -> HiddenChange:
+    return HiddenChange(
         {"bank": 0.03 * s * rng.uniform(0.7, 1.3)}, {"bank": side(rng) * rng.uniform(1.2, 2.5) * p.B}
     )
 
 
-def big_wind(p: Particulars, d: Drive, rng: Draw, s: float) -> dict[str, float]:
+def big_wind(p: Particulars, d: Propulsion, rng: Draw, s: float) -> dict[str, float]:
     return {"wind": 15.0 * min(1.0, (p.L / 120) ** 0.4) * s**0.5, "wind_from": rng.uniform(0, 6.28)}
 
 
-def big_sea(p: Particulars, d: Drive, rng: Draw, s: float) -> dict[str, float]:
+def big_sea(p: Particulars, d: Propulsion, rng: Draw, s: float) -> dict[str, float]:
     return {"swell": 0.025 * p.L**0.85 * s**0.5, "swell_from": rng.uniform(0, 6.28)}
 
 
-def stream(p: Particulars, d: Drive, rng: Draw, s: float) -> dict[str, float]:
+def stream(p: Particulars, d: Propulsion, rng: Draw, s: float) -> dict[str, float]:
     return {"stream": 0.2 * p.U0 * s, "stream_to": rng.uniform(0, 6.28)}
 
 
-def tide(p: Particulars, d: Drive, rng: Draw, s: float) -> dict[str, float]:
+def tide(p: Particulars, d: Propulsion, rng: Draw, s: float) -> dict[str, float]:
     return {"tide": 0.15 * p.U0 * s, "tide_s": rng.uniform(60, 150) * p.unit_s, "eddy": 0.02 * p.U0 * s}
 
 

@@ -16,17 +16,17 @@ from math import atan2, exp, hypot, sin
 
 import numpy as np
 
-from bench.fleet.particulars import RHO, Linear, Particulars
+from bench.fleet.particulars import RHO, LinearHull, Particulars
 from bench.fleet.resistance import hump, power_law, waving
 
 Force = tuple[float, float, float]
 Draw = np.random.Generator
 
 
-class Hull:
+class FleetHull:
     """A hull of one family. `heel` [rad] is the ship's, where the family asks for it."""
 
-    def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float]) -> None:
+    def __init__(self, p: Particulars, a: LinearHull, resistance: Callable[[float], float]) -> None:
         self.p, self.a, self.resistance = p, a, resistance
         self.area = 0.5 * RHO * p.L * p.T
 
@@ -42,8 +42,10 @@ class Hull:
         return self.a.m_x * scale, self.a.m_y * scale, self.a.J_z * scale * self.p.L**2
 
 
-class Mmg(Hull):
-    def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
+class Mmg(FleetHull):
+    def __init__(
+        self, p: Particulars, a: LinearHull, resistance: Callable[[float], float], rng: Draw
+    ) -> None:
         super().__init__(p, a, resistance)
         b = 2 * p.C_b * p.B / p.L
         self.x = (
@@ -82,7 +84,9 @@ class Mmg(Hull):
 class Heeling(Mmg):
     """The same, and heel gives a side force and a moment, and more of both with drift and turn."""
 
-    def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
+    def __init__(
+        self, p: Particulars, a: LinearHull, resistance: Callable[[float], float], rng: Draw
+    ) -> None:
         super().__init__(p, a, resistance, rng)
         self.h = (
             rng.uniform(-0.02, 0.05),
@@ -101,10 +105,12 @@ class Heeling(Mmg):
         return q * X - self.resistance(u), q * Y, q * self.p.L * N
 
 
-class Abkowitz(Hull):
+class Abkowitz(FleetHull):
     """Derivatives at service speed, multiplied by products of (u - U0), v, r alone."""
 
-    def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
+    def __init__(
+        self, p: Particulars, a: LinearHull, resistance: Callable[[float], float], rng: Draw
+    ) -> None:
         super().__init__(p, a, resistance)
         self.y = (-rng.uniform(1.0, 2.5), -rng.uniform(0.2, 0.6), rng.uniform(-0.1, 0.3))
         self.n = (
@@ -130,8 +136,10 @@ class Abkowitz(Hull):
         return q * X - self.resistance(u), q * Y, q * p.L * N
 
 
-class Modulus(Hull):
-    def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
+class Modulus(FleetHull):
+    def __init__(
+        self, p: Particulars, a: LinearHull, resistance: Callable[[float], float], rng: Draw
+    ) -> None:
         super().__init__(p, a, resistance)
         self.y = (-rng.uniform(0.4, 1.0), -rng.uniform(0.0, 0.3), -rng.uniform(0.0, 0.06))
         self.n = (-rng.uniform(0.0, 0.06), -rng.uniform(0.1, 0.3), -rng.uniform(0.01, 0.04))
@@ -156,8 +164,10 @@ class Modulus(Hull):
         return self.area * X - self.resistance(u), self.area * Y, self.area * p.L * N
 
 
-class Strip(Hull):
-    def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
+class Strip(FleetHull):
+    def __init__(
+        self, p: Particulars, a: LinearHull, resistance: Callable[[float], float], rng: Draw
+    ) -> None:
         super().__init__(p, a, resistance)
         x = np.linspace(-0.45, 0.45, 10)
         drag = rng.uniform(0.5, 1.0) * (
@@ -184,10 +194,12 @@ class Strip(Hull):
         )
 
 
-class Surface(Hull):
+class Surface(FleetHull):
     """Linear near straight sailing; beyond it bumps of random place, width and height, mirrored."""
 
-    def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
+    def __init__(
+        self, p: Particulars, a: LinearHull, resistance: Callable[[float], float], rng: Draw
+    ) -> None:
         super().__init__(p, a, resistance)
         count = 6
         self.bumps = [
@@ -224,10 +236,12 @@ class Surface(Hull):
         return q * X - self.resistance(u), q * Y, q * p.L * N
 
 
-class Memory(Modulus):
+class MemoryHull(Modulus):
     """A share of the lift comes late by two lags."""
 
-    def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
+    def __init__(
+        self, p: Particulars, a: LinearHull, resistance: Callable[[float], float], rng: Draw
+    ) -> None:
         super().__init__(p, a, resistance, rng)
         self.lags = [
             (rng.uniform(0.10, 0.2), rng.uniform(0.15, 0.4)),
@@ -251,10 +265,12 @@ class Memory(Modulus):
         return X, Y, N
 
 
-class Planing(Hull):
+class Planing(FleetHull):
     """Trim by speed moves the centre of effort aft and lifts the keel."""
 
-    def __init__(self, p: Particulars, a: Linear, resistance: Callable[[float], float], rng: Draw) -> None:
+    def __init__(
+        self, p: Particulars, a: LinearHull, resistance: Callable[[float], float], rng: Draw
+    ) -> None:
         super().__init__(p, a, resistance)
         self.lifts, self.aft = rng.uniform(0.1, 0.35), rng.uniform(0.0, 0.05)
         self.y, self.n = (
@@ -278,7 +294,7 @@ FAMILIES = {  # what hulls, of what kinds of ship, with what resistance
     "modulus": (Modulus, ("tanker", "cargo", "ferry"), (power_law, waving)),
     "strip": (Strip, ("tanker", "cargo", "ferry"), (power_law, waving)),
     "surface": (Surface, ("tanker", "cargo", "container", "ferry"), (power_law, waving)),
-    "memory": (Memory, ("cargo", "container", "ferry"), (power_law, waving)),
+    "memory": (MemoryHull, ("cargo", "container", "ferry"), (power_law, waving)),
     "planing": (Planing, ("boat",), (hump,)),
     "heeling": (Heeling, ("container", "ferry"), (power_law, waving)),
 }

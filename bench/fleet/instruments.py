@@ -10,10 +10,10 @@ from scipy.signal import lfilter
 
 from bench.fleet.hidden import Flaws
 from bench.fleet.particulars import Particulars
-from bench.fleet.weather import Weather, apparent, wander
+from bench.fleet.weather import FleetWeather, apparent, wander
 
 if TYPE_CHECKING:
-    from bench.fleet.ship import Ship
+    from bench.fleet.ship import RandomShip
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,11 @@ class Kit:
 
 
 def record(
-    ship: "Ship", true: dict[str, np.ndarray], weather: Weather, seed: int, flaws: Flaws | None = None
+    ship: "RandomShip",
+    true: dict[str, np.ndarray],
+    weather: FleetWeather,
+    seed: int,
+    flaws: Flaws | None = None,
 ) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """Times and columns as the twin reads them."""
     f, k, p = flaws or Flaws(), ship.kit, ship.p

@@ -9,7 +9,7 @@ COURSE, ZIGZAG, RUDDER, STEPS = range(4)
 
 
 @dataclass
-class Leg:
+class FleetLeg:
     """COURSE: turn by `a` and hold; ZIGZAG: rudder +-a at heading +-b; RUDDER: hold; STEPS: random steps up
     to
     `a`."""
@@ -21,26 +21,26 @@ class Leg:
     rate: float = 1.0  # of the service shaft speed
 
 
-def zigzag(angle: float) -> list[Leg]:
-    return [Leg(COURSE, 3), Leg(ZIGZAG, 500, radians(angle), radians(angle))]
+def zigzag(angle: float) -> list[FleetLeg]:
+    return [FleetLeg(COURSE, 3), FleetLeg(ZIGZAG, 500, radians(angle), radians(angle))]
 
 
-def mixed(rng: np.random.Generator) -> list[Leg]:
+def mixed(rng: np.random.Generator) -> list[FleetLeg]:
     """Course changes, a few rudder steps, zigzags and turns at several speeds."""
-    out = [Leg(COURSE, 3)]
+    out = [FleetLeg(COURSE, 3)]
     for _ in range(80):
         rate = float(rng.choice([1.0, 1.0, 0.9, 0.75, 0.6]))
         mode = rng.choice([COURSE, COURSE, ZIGZAG, RUDDER, STEPS])
         turn = float(rng.choice([-1, 1]) * radians(rng.uniform(10, 70)))
         if mode == COURSE:
-            out.append(Leg(COURSE, rng.uniform(4, 9), turn, 0, rate))
+            out.append(FleetLeg(COURSE, rng.uniform(4, 9), turn, 0, rate))
         elif mode == ZIGZAG:
             out.append(
-                Leg(ZIGZAG, rng.uniform(9, 16), *(radians(float(rng.choice([10, 15, 20]))),) * 2, rate)
+                FleetLeg(ZIGZAG, rng.uniform(9, 16), *(radians(float(rng.choice([10, 15, 20]))),) * 2, rate)
             )
         elif mode == RUDDER:
             out.append(
-                Leg(
+                FleetLeg(
                     RUDDER,
                     rng.uniform(4, 12),
                     float(rng.choice([-1, 1])) * radians(rng.uniform(8, 30)),
@@ -49,20 +49,20 @@ def mixed(rng: np.random.Generator) -> list[Leg]:
                 )
             )
         else:
-            out.append(Leg(STEPS, rng.uniform(8, 14), radians(15), 0, rate))
+            out.append(FleetLeg(STEPS, rng.uniform(8, 14), radians(15), 0, rate))
     return out
 
 
-def courses(rng: np.random.Generator) -> list[Leg]:
-    return [Leg(COURSE, 4)] + [
-        Leg(COURSE, rng.uniform(5, 9), float(rng.choice([-1, 1])) * radians(rng.uniform(15, 80)))
+def courses(rng: np.random.Generator) -> list[FleetLeg]:
+    return [FleetLeg(COURSE, 4)] + [
+        FleetLeg(COURSE, rng.uniform(5, 9), float(rng.choice([-1, 1])) * radians(rng.uniform(15, 80)))
         for _ in range(80)
     ]
 
 
-def speeds(rng: np.random.Generator) -> list[Leg]:
-    return [Leg(COURSE, 4)] + [
-        Leg(
+def speeds(rng: np.random.Generator) -> list[FleetLeg]:
+    return [FleetLeg(COURSE, 4)] + [
+        FleetLeg(
             COURSE,
             rng.uniform(6, 9),
             float(rng.choice([-1, 0, 1])) * radians(rng.uniform(5, 25)),
@@ -73,14 +73,19 @@ def speeds(rng: np.random.Generator) -> list[Leg]:
     ]
 
 
-def circle(rng: np.random.Generator) -> list[Leg]:
+def circle(rng: np.random.Generator) -> list[FleetLeg]:
     a = radians(rng.uniform(15, 35))
     return [
-        Leg(COURSE, 3),
+        FleetLeg(COURSE, 3),
         *(
             leg
             for _ in range(10)
-            for leg in (Leg(RUDDER, 16, a), Leg(COURSE, 5), Leg(RUDDER, 16, -a), Leg(COURSE, 5))
+            for leg in (
+                FleetLeg(RUDDER, 16, a),
+                FleetLeg(COURSE, 5),
+                FleetLeg(RUDDER, 16, -a),
+                FleetLeg(COURSE, 5),
+            )
         ),
     ]
 
@@ -97,14 +102,14 @@ PLANS = {
 class Helmsman:
     """Orders of rudder [rad] and shaft (share of service) from heading and rate of turn."""
 
-    def __init__(self, legs: list[Leg], unit_s: float, heading: float, rng: np.random.Generator) -> None:
+    def __init__(self, legs: list[FleetLeg], unit_s: float, heading: float, rng: np.random.Generator) -> None:
         self.legs, self.unit, self.rng = iter(legs), unit_s, rng
         self.until, self.want, self.base, self.sign, self.held = 0.0, heading, heading, 1.0, 0.0
-        self.leg, self.next_step, self.wait = Leg(COURSE, 0), 0.0, 0.0
+        self.leg, self.next_step, self.wait = FleetLeg(COURSE, 0), 0.0, 0.0
 
     def order(self, t: float, psi: float, r: float, hard: float) -> tuple[float, float]:
         if t >= self.until:
-            self.leg = next(self.legs, Leg(COURSE, 10))
+            self.leg = next(self.legs, FleetLeg(COURSE, 10))
             self.until = t + self.leg.lengths * self.unit
             self.base, self.sign = psi, 1.0
             self.want = (self.want if self.leg.a == 0 else psi) + (

@@ -42,7 +42,7 @@ class Particulars:
 
 
 @dataclass(frozen=True)
-class Linear:
+class LinearHull:
     """Linear derivatives and added masses, without dimension."""
 
     Y_v: float
@@ -91,13 +91,13 @@ def draw(rng: np.random.Generator, kind: str) -> Particulars:
     )
 
 
-def linear(p: Particulars, rng: np.random.Generator) -> Linear:
+def linear(p: Particulars, rng: np.random.Generator) -> LinearHull:
     """Derivatives by regression, each with its published scatter."""
     k, m, block = 2 * p.T / p.L, 2 * p.C_b * p.B / p.L, p.C_b * p.B / p.L
     near = lambda sd=0.12: float(np.exp(sd * rng.standard_normal()))  # noqa: E731
     m_x = m * rng.uniform(0.04, 0.09)
     m_y = m * rng.uniform(0.65, 0.95)
-    return Linear(
+    return LinearHull(
         Y_v=-(0.5 * pi * k + 1.4 * block) * near(),
         Y_r=(m_x + 0.25 * m) * near(),
         N_v=-k * near(),

@@ -13,12 +13,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bench.fleet.hidden import Flaws
-from bench.fleet.manoeuvres import Helmsman, Leg
+from bench.fleet.manoeuvres import FleetLeg, Helmsman
 from bench.fleet.particulars import RHO
-from bench.fleet.weather import Surroundings, Weather
+from bench.fleet.weather import FleetWeather, Surroundings
 
 if TYPE_CHECKING:
-    from bench.fleet.ship import Ship
+    from bench.fleet.ship import RandomShip
 
 HARD = np.radians(35)
 KEPT = (
@@ -41,15 +41,15 @@ KEPT = (
 FINEST = 0.5  # [s] longest step
 
 
-def step_of(ship: "Ship") -> float:
+def step_of(ship: "RandomShip") -> float:
     """A step that the quickest motion needs, a whole part of a second [s]."""
     return 1.0 / np.ceil(1.0 / min(FINEST, ship.p.unit_s / 40))
 
 
 def sail(
-    ship: "Ship",
-    legs: list[Leg],
-    weather: Weather,
+    ship: "RandomShip",
+    legs: list[FleetLeg],
+    weather: FleetWeather,
     duration_s: float,
     seed: int,
     flaws: Flaws | None = None,

@@ -6,23 +6,23 @@ from dataclasses import dataclass
 import numpy as np
 
 from bench.fleet import instruments, sail, weather
-from bench.fleet.drive import Drive
-from bench.fleet.hulls import FAMILIES, Hull
-from bench.fleet.manoeuvres import COURSE, RUDDER, Leg, zigzag
+from bench.fleet.drive import Propulsion
+from bench.fleet.hulls import FAMILIES, FleetHull
+from bench.fleet.manoeuvres import COURSE, RUDDER, FleetLeg, zigzag
 from bench.fleet.particulars import Particulars, draw, linear
 
 TRIES = 60
 
 
 @dataclass
-class Ship:
+class RandomShip:
     """One random ship; `heels`: whether its heel acts on it and is recorded."""
 
     family: str
     seed: int
     p: Particulars
-    hull: Hull
-    drive: Drive
+    hull: FleetHull
+    drive: Propulsion
     windage: weather.Windage
     kit: instruments.Kit
     GM: float
@@ -47,7 +47,7 @@ class Ship:
         }
 
 
-def build(family: str, seed: int) -> Ship:
+def build(family: str, seed: int) -> RandomShip:
     """The first plausible ship of this seed: turning circle, zigzags and stopping as ships have them."""
     for k in range(TRIES):
         rng = np.random.default_rng([seed, sorted(FAMILIES).index(family), k])
@@ -55,9 +55,9 @@ def build(family: str, seed: int) -> Ship:
         p = draw(rng, str(rng.choice(kinds)))
         a = linear(p, rng)
         R = resistances[rng.integers(len(resistances))](p, a, rng)
-        drive = Drive.draw(p, rng)
+        drive = Propulsion.draw(p, rng)
         drive.balance(R(p.U0))
-        ship = Ship(
+        ship = RandomShip(
             family,
             seed,
             p,
@@ -72,15 +72,17 @@ def build(family: str, seed: int) -> Ship:
     raise RuntimeError(f"{family} {seed}: no plausible ship in {TRIES}")
 
 
-def plausible(ship: Ship) -> bool:
+def plausible(ship: RandomShip) -> bool:
     """IMO MSC.137(76) with a fifth of slack: advance and tactical diameter at 35 degrees, first overshoots;
-    and
-    half of the speed is lost in one to forty lengths when the shaft stops."""
+    and half of the speed is lost in one to forty lengths when the shaft stops."""
     p = ship.p
     if not 0.2 * ship.drive.n0 * p.D_P < p.U0 < 1.3 * ship.drive.n0 * p.D_P * p.pitch:
         return False
-    run = lambda legs, lengths: sail.sail(ship, legs, weather.Weather(), lengths * p.unit_s, 0, heading=0.0)  # noqa: E731
-    turn = run([Leg(COURSE, 1), Leg(RUDDER, 99, np.radians(35))], 16)
+
+    def run(legs: list[FleetLeg], lengths: float) -> dict[str, np.ndarray]:
+        return sail.sail(ship, legs, weather.FleetWeather(), lengths * p.unit_s, 0, heading=0.0)
+
+    turn = run([FleetLeg(COURSE, 1), FleetLeg(RUDDER, 99, np.radians(35))], 16)
     x, y, psi = turn["x"], turn["y"], turn["psi"]
     if not np.isfinite(psi).all() or psi.max() < np.pi or turn["u"].min() < 0.1 * p.U0:
         return False
@@ -94,6 +96,6 @@ def plausible(ship: Ship) -> bool:
         over = np.degrees(np.abs(z["psi"])).max() - angle
         if not 0.5 < over < 1.5 * most:
             return False
-    stop = run([Leg(COURSE, 1), Leg(COURSE, 99, rate=0.0)], 45)
+    stop = run([FleetLeg(COURSE, 1), FleetLeg(COURSE, 99, rate=0.0)], 45)
     slow = np.argmax(stop["u"] < 0.5 * p.U0)
     return bool(slow and 1.0 < (stop["t"][slow] / p.unit_s) < 42)

@@ -22,8 +22,8 @@ from twin.study.diagnosis.facts import Facts
 
 RIGHT = (
     "**Right**: every hidden cause of ship and instruments is named and no other; hidden weather is named or "
-    "told; no cause is named on a healthy ship. **Its oracle gains**: the truth, fitted by the twin's own form of "
-    "it, brings the open-loop error down by a tenth."
+    "told; no cause is named on a healthy ship. **Its oracle gains**: the truth, fitted by the twin's own "
+    "form of it, brings the open-loop error down by a tenth."
 )
 BY_HAND = "## What it says"  # from this title on
 BINS = (0.05, 0.2, 0.5, 0.8, 0.9, 0.95, 1.0)

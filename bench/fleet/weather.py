@@ -13,7 +13,7 @@ STEP_DEG = 10
 
 
 @dataclass(frozen=True)
-class Weather:
+class FleetWeather:
     """One voyage's: means, and how they wander."""
 
     wind: float = 0.0
@@ -34,13 +34,13 @@ class Weather:
     squall: float = 0.0  # [m/s] of gusts that no instrument sees
 
 
-def draw(p: Particulars, rng: np.random.Generator, calm: bool) -> Weather:
+def draw(p: Particulars, rng: np.random.Generator, calm: bool) -> FleetWeather:
     """An ordinary day; `calm`: one that was chosen for reference voyages."""
     big = min(1.0, (p.L / 120.0) ** 0.4)
     share = 0.5 if calm else 1.0
     stream = share * min(0.6, 0.08 * p.U0) * rng.weibull(1.5)
     high = share * rng.choice([0.0, 0.0, 1.0, 1.0, 2.0]) * 0.004 * p.L**0.75 * rng.uniform(0.3, 1.2)
-    return Weather(
+    return FleetWeather(
         wind=share * big * 7.0 * rng.weibull(2.0),
         wind_from=rng.uniform(0, tau),
         gust=rng.uniform(0.08, 0.2),
@@ -94,7 +94,13 @@ class Surroundings:
     """The weather as the ship meets it, step by step."""
 
     def __init__(
-        self, w: Weather, p: Particulars, windage: Windage, rng: np.random.Generator, dt: float, steps: int
+        self,
+        w: FleetWeather,
+        p: Particulars,
+        windage: Windage,
+        rng: np.random.Generator,
+        dt: float,
+        steps: int,
     ) -> None:
         self.w, self.p, self.windage, self.dt = w, p, windage, dt
         gust, veer, east, north, squall = (
@@ -172,7 +178,7 @@ def wander(rng: np.random.Generator, time_s: float, dt: float, steps: int) -> np
     return lfilter([1.0], [1.0, -k], e)
 
 
-def stronger(w: Weather, **changes: float) -> Weather:
+def stronger(w: FleetWeather, **changes: float) -> FleetWeather:
     return replace(w, **changes)
 
 

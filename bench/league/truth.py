@@ -6,7 +6,7 @@ from math import radians
 from typing import Any, NamedTuple
 
 
-class Compared(NamedTuple):
+class ComparedTruth(NamedTuple):
     """`of(truth)`: what the parameter should be; `size(truth)`: the effect's own size, by which its error is
     divided."""
 
@@ -16,23 +16,23 @@ class Compared(NamedTuple):
     size: Callable[[dict[str, Any]], float]
 
 
-def _same(effect: str, parameter: str, key: str, factor: float = 1.0) -> Compared:
+def _same(effect: str, parameter: str, key: str, factor: float = 1.0) -> ComparedTruth:
     def of(truth: dict[str, Any]) -> float:
         return factor * float(truth[key])
 
-    return Compared(effect, parameter, of, lambda truth: abs(of(truth)))
+    return ComparedTruth(effect, parameter, of, lambda truth: abs(of(truth)))
 
 
-def _vector(effect: str, names: dict[str, str]) -> list[Compared]:
+def _vector(effect: str, names: dict[str, str]) -> list[ComparedTruth]:
     """Components of one vector: errors are divided by its length."""
 
     def length(truth: dict[str, Any]) -> float:
         return float(sum(truth[key] ** 2 for key in names.values()) ** 0.5)
 
-    return [Compared(effect, p, lambda t, k=key: float(t[k]), length) for p, key in names.items()]  # type: ignore[misc]
+    return [ComparedTruth(effect, p, lambda t, k=key: float(t[k]), length) for p, key in names.items()]  # type: ignore[misc]
 
 
-TABLE: list[Compared] = [
+TABLE: list[ComparedTruth] = [
     *_vector("Current", {"north": "north_mps", "east": "east_mps"}),
     *_vector("ExternalForce", {"north": "north_N", "east": "east_N"}),
     *_vector("TowForce", {"ahead": "X_N", "starboard": "Y_N"}),
@@ -46,7 +46,7 @@ TABLE: list[Compared] = [
     _same("Loading", "mass", "mass_share"),
     _same("Loading", "draught", "draught_share"),
     _same("Loading", "x_G", "x_G_shift_m"),
-    Compared(
+    ComparedTruth(
         "SteeringLag", "travel_time", lambda t: 65.0 / t["rate_degps"], lambda t: 65.0 / t["rate_degps"]
     ),
     _same("SteeringLag", "delay", "delay_s"),

@@ -14,14 +14,14 @@ import numpy as np
 import torch
 
 from bench.paper.filter import EAST, NORTH, PSI, Filter, Tuning, from_states
-from bench.paper.lab import Course
+from bench.paper.lab import LabCourse
 from export.loss import known
-from export.network import Residual
+from export.network import ResidualNetwork
 from export.to_onnx import whitening
 from twin.live.learning.adapt import BESIDE, CORES, LARGEST, Adaptation
 from twin.live.learning.evidence import Evidence
 from twin.live.learning.movable import Columns, movable
-from twin.live.observer.dynamics import Known
+from twin.live.observer.dynamics import KnownDynamics
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Rates, Situation
@@ -35,7 +35,7 @@ class Acting:
     """The learned force of many ships at once: trained, and what each has learned on board (`A`, gates
     included)."""
 
-    def __init__(self, network: Residual, model: Model, zeta: torch.Tensor):
+    def __init__(self, network: ResidualNetwork, model: Model, zeta: torch.Tensor):
         self.network, self.model = network, model
         with torch.no_grad():
             table = whitening(network.phi(zeta).numpy().astype(float))
@@ -91,14 +91,19 @@ class Learning(Filter):
     """Filters whose ships learn; `frozen(k, i)` may say why voyage i must not learn at step k."""
 
     def __init__(
-        self, courses: Sequence[Course], model: Model, acting: Acting, tuning: Tuning, law: Law = Adaptation
+        self,
+        courses: Sequence[LabCourse],
+        model: Model,
+        acting: Acting,
+        tuning: Tuning,
+        law: Law = Adaptation,
     ):
         self.acting = acting
         super().__init__(courses, model, lambda s: self.acting(s), [tuning] * len(courses))
         ship, S, components = model.ship, acting.network.S, len(acting.rows)
         self.laws = [law(ship, S, components) for _ in courses]
         self.evidence = [Evidence(ship, S) for _ in courses]
-        self.physics = Known(model)
+        self.physics = KnownDynamics(model)
         self.probes = [probe for m in movable(model.effects, ship) if (probe := Columns.probe(model, m))]
         self.last: tuple[torch.Tensor, ...] | None = None
         self.numbers: list[np.ndarray] = []  # after each step, (V, 3, width)
@@ -186,7 +191,7 @@ def _accelerations(model: Model, forces: torch.Tensor) -> tuple[torch.Tensor, ..
 
 
 def predict(
-    courses: Sequence[Course], model: Model, acting: Acting, tuning: Tuning, law: Law = Adaptation
+    courses: Sequence[LabCourse], model: Model, acting: Acting, tuning: Tuning, law: Law = Adaptation
 ) -> list[np.ndarray]:
     """(T, W, 3) for each course: filtered and learning up to each start, then free with what was learned by
     then."""

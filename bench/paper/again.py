@@ -56,7 +56,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def compare(work: Path, plan: sea.Plan, times: int) -> dict[str, Any]:
+def compare(work: Path, plan: sea.PaperPlan, times: int) -> dict[str, Any]:
     """Sail, predict, count."""
     from bench.paper.filter import predict
     from bench.paper.gap import gap

@@ -9,14 +9,16 @@ from collections.abc import Sequence
 import numpy as np
 import torch
 
-from bench.paper.lab import Course
-from export.network import Residual
+from bench.paper.lab import LabCourse
+from export.network import ResidualNetwork
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.estimation.identifiability import Features, residual_angles
 
 
-def apart(courses: Sequence[Course], model: Model, network: Residual) -> dict[str, dict[str, float]]:
+def apart(
+    courses: Sequence[LabCourse], model: Model, network: ResidualNetwork
+) -> dict[str, dict[str, float]]:
     """By axis, medians over the voyages."""
     W = network.last.weight.detach().numpy().astype(float)
     found = [residual_angles(c.floating, model, _features(network), W) for c in courses]
@@ -28,7 +30,7 @@ def apart(courses: Sequence[Course], model: Model, network: Residual) -> dict[st
     }
 
 
-def _features(network: Residual) -> Features:
+def _features(network: ResidualNetwork) -> Features:
     def phi(s: Situation) -> np.ndarray:
         there = {
             n: torch.as_tensor(np.asarray(x), dtype=torch.float32)

@@ -17,7 +17,7 @@ import torch
 
 from bench.paper.sea import SCENARIOS
 from bench.reference import Case, Sea
-from export.network import Residual
+from export.network import ResidualNetwork
 from twin.physics import core
 from twin.physics.model import Model
 from twin.physics.state import Situation
@@ -35,7 +35,7 @@ SPEEDS = ("surge_velocity_through_water_mps", "sway_velocity_through_water_mps")
 class Steered(Sea):
     """The reference sea with another helmsman, and a gust from starboard abeam."""
 
-    def __init__(self, cases: Sequence[Case], helm: "Helm", tick_s: float):
+    def __init__(self, cases: Sequence[Case], helm: "ClosedLoopHelm", tick_s: float):
         self.helm = helm
         super().__init__(list(cases), tick_s)
 
@@ -55,11 +55,11 @@ class Steered(Sea):
         super()._controls(t)
 
 
-class Helm:
+class ClosedLoopHelm:
     """Every ship's controller; `mode` (B,) is an index of MODES. `order` is what the sea asks of a
     helmsman."""
 
-    def __init__(self, model: Model, network: Residual, mode: np.ndarray, seed: int = 1):
+    def __init__(self, model: Model, network: ResidualNetwork, mode: np.ndarray, seed: int = 1):
         self.model, self.network, self.mode = model, network, mode
         self.time = float(model.ship.scale("time"))
         rng = np.random.default_rng(seed)
@@ -215,7 +215,7 @@ class Closed:
     hard_over_deg: float
 
 
-def sail(model: Model, network: Residual, seeds: int, tick_s: float = 0.1) -> Closed:
+def sail(model: Model, network: ResidualNetwork, seeds: int, tick_s: float = 0.1) -> Closed:
     """Every scenario, mode and seed side by side; a seed's sea is the same in all modes."""
     cases = [
         Case("kvlcc2", "straight", ts, seed=70_000 + 10 * k + j, duration_s=None)
@@ -224,7 +224,7 @@ def sail(model: Model, network: Residual, seeds: int, tick_s: float = 0.1) -> Cl
         for k in range(seeds)
     ]
     mode = np.repeat(np.arange(len(MODES)), len(SCENARIOS) * seeds)
-    helm = Helm(model, network, mode)
+    helm = ClosedLoopHelm(model, network, mode)
     sea = Steered(cases, helm, tick_s)
     for _ in range(round((BEFORE + END) * float(sea.unit[0]) / tick_s)):
         sea.step()

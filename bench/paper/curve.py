@@ -10,7 +10,7 @@ from typing import Any
 
 from bench.paper import filter as paper_filter
 from bench.paper import lstm as paper_lstm
-from bench.paper.lab import Course, judge
+from bench.paper.lab import LabCourse, judge
 from bench.paper.models import Workshop, named
 from bench.paper.ship import nominal
 from bench.paper.stats import summary
@@ -20,7 +20,7 @@ from twin.physics.model import Model
 def curve(
     shop: Workshop,
     tuning: paper_filter.Tuning,
-    judged_on: Sequence[Course],
+    judged_on: Sequence[LabCourse],
     sizes: Sequence[int],
     epochs: int,
     seeds: Sequence[int],

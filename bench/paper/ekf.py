@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from bench.paper.lab import Course, grounded, judge
+from bench.paper.lab import LabCourse, grounded, judge
 from bench.tick.ekf import ShipFilter
 from export.batches import STRIDE
 from twin.physics import core
@@ -40,7 +40,7 @@ class Careful(ShipFilter):
         self.F[:6, :6] = (out[:, :6] - out[:, 6:]) / (2.0 * NUDGE)
 
 
-def filtered(c: Course, model: Model, walk: float) -> np.ndarray:
+def filtered(c: LabCourse, model: Model, walk: float) -> np.ndarray:
     """(W, 9) the filter's state at the starts of the windows."""
     view, measured = c.water, c.floating.measured[:, SEEN]
     inputs = {
@@ -63,18 +63,18 @@ def filtered(c: Course, model: Model, walk: float) -> np.ndarray:
     return np.stack([kept[int(k)] for k in c.starts])
 
 
-def predict(courses: Sequence[Course], model: Model, walk: float, keep: bool) -> list[np.ndarray]:
+def predict(courses: Sequence[LabCourse], model: Model, walk: float, keep: bool) -> list[np.ndarray]:
     """(T, W, 3) for each course from the filter's state, its disturbance kept or dropped."""
     return [_from(c, model, filtered(c, model, walk), keep) for c in courses]
 
 
-def _from(c: Course, model: Model, state: np.ndarray, keep: bool) -> np.ndarray:
+def _from(c: LabCourse, model: Model, state: np.ndarray, keep: bool) -> np.ndarray:
     run = _pushed(c, model, state if keep else np.concatenate([state[:, :6], 0.0 * state[:, 6:]], 1))
     run[..., :2] += state[:, :2] - c.water.state[c.starts, :2]
     return run
 
 
-def _pushed(c: Course, model: Model, state: np.ndarray) -> np.ndarray:
+def _pushed(c: LabCourse, model: Model, state: np.ndarray) -> np.ndarray:
     """The free run with the filter's accelerations held as forces."""
     view, at = c.water, c.at
     force = Force(*core.force_for(*state[:, 6:].T, model.c))
@@ -87,7 +87,7 @@ def _pushed(c: Course, model: Model, state: np.ndarray) -> np.ndarray:
     return grounded(np.stack(kept), c, view)
 
 
-def tuned(courses: Sequence[Course], model: Model) -> tuple[float, bool]:
+def tuned(courses: Sequence[LabCourse], model: Model) -> tuple[float, bool]:
     """The walk and the choice that predict validation voyages best (heading and lateral errors, each over its
     least)."""
     tried = {}

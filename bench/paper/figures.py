@@ -12,7 +12,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 from bench.paper.closed import GUST_AT, GUST_LONG, MODES, STEP_DEG, Closed
-from bench.paper.lab import Course, judge
+from bench.paper.lab import LabCourse, judge
 from bench.paper.models import Models
 from bench.tick.timing import hot_us
 
@@ -56,7 +56,7 @@ def learning(folder: Path, curves: dict[str, list[list[float]]]) -> None:
     save(folder, "fig-2-learning.png", fig)
 
 
-def zigzag(folder: Path, models: Models, c: Course, window: int = 2) -> None:
+def zigzag(folder: Path, models: Models, c: LabCourse, window: int = 2) -> None:
     """Fig. 3: one unseen window, heading and path."""
     fig, (left, right) = plt.subplots(1, 2, figsize=(9, 3.6))
     true = c.truth[c.at[:, window]]
@@ -73,7 +73,7 @@ def zigzag(folder: Path, models: Models, c: Course, window: int = 2) -> None:
     save(folder, "fig-3-zigzag.png", fig)
 
 
-def histogram(folder: Path, models: Models, courses: Sequence[Course]) -> None:
+def histogram(folder: Path, models: Models, courses: Sequence[LabCourse]) -> None:
     """Fig. 4: lateral errors at the end of all windows."""
     fig, ax = plt.subplots(figsize=(7, 3.5))
     for name, (words, colour) in SHOWN.items():
@@ -163,14 +163,18 @@ def _predictors() -> dict[str, Callable[[], object]]:
     from bench.tick import peers
     from twin.live.learning.learned import LearnedForce
     from twin.live.learning.residual import bundled, load
-    from twin.live.observer.dynamics import Known
+    from twin.live.observer.dynamics import KnownDynamics
     from twin.physics.model import Model
     from twin.physics.ship import load as ship_of
 
     ship = ship_of(peers.SHIP)
     path = bundled(ship)
     assert path is not None
-    learned, known, s = LearnedForce(ship, load(path, ship)), Known(Model.of(ship)), peers.situation(ship)
+    learned, known, s = (
+        LearnedForce(ship, load(path, ship)),
+        KnownDynamics(Model.of(ship)),
+        peers.situation(ship),
+    )
 
     def hybrid() -> object:
         forces = known.forces(s)

@@ -15,9 +15,9 @@ from itertools import product
 import numpy as np
 import torch
 
-from bench.paper.lab import Course, judge
+from bench.paper.lab import LabCourse, judge
 from export.batches import STRIDE
-from export.loss import Held, free_run
+from export.loss import HeldOutLoss, free_run
 from twin.physics.model import Model
 from twin.physics.state import Force, Situation
 from twin.study.track.track import READINGS
@@ -46,7 +46,9 @@ class Filter:
     """The filters of many voyages; `tick(k)` takes grid step k in, `x` (V, 11) and `P` (V, 11, 11) are where
     they stand."""
 
-    def __init__(self, courses: Sequence[Course], model: Model, push: Push | None, tunings: Sequence[Tuning]):
+    def __init__(
+        self, courses: Sequence[LabCourse], model: Model, push: Push | None, tunings: Sequence[Tuning]
+    ):
         self.courses, self.model, self.push, self.h = courses, model, push, courses[0].water.h
         ship = model.ship
         speed, time = float(ship.U_0), float(ship.scale("time"))
@@ -115,7 +117,7 @@ class Filter:
         if self.push is not None:
             s.x, s.y, s.psi, s.u, s.v, s.r = state
             self.model.forces(s, self.model.water(s))
-            held = Held()
+            held = HeldOutLoss()
             with torch.no_grad():
                 held.force = Force(*[f.double().numpy() for f in self.push(_tensors(s))])
             moving = Model(self.model.ship, self.model.effects, held)
@@ -159,20 +161,22 @@ def _tensors(s: Situation) -> Situation:
     )
 
 
-def predict(courses: Sequence[Course], model: Model, push: Push | None, tuning: Tuning) -> list[np.ndarray]:
+def predict(
+    courses: Sequence[LabCourse], model: Model, push: Push | None, tuning: Tuning
+) -> list[np.ndarray]:
     """(T, W, 3) for each course: filtered up to each start, then free."""
     return _predict(courses, model, push, [tuning] * len(courses))
 
 
 def _predict(
-    courses: Sequence[Course], model: Model, push: Push | None, tunings: Sequence[Tuning]
+    courses: Sequence[LabCourse], model: Model, push: Push | None, tunings: Sequence[Tuning]
 ) -> list[np.ndarray]:
     states = Filter(courses, model, push, tunings).run(int(max(c.starts[-1] for c in courses)))
     return from_states(courses, model, push, [states[c.starts, i] for i, c in enumerate(courses)])
 
 
 def from_states(
-    courses: Sequence[Course], model: Model, push: Push | None, states: Sequence[np.ndarray]
+    courses: Sequence[LabCourse], model: Model, push: Push | None, states: Sequence[np.ndarray]
 ) -> list[np.ndarray]:
     """(T, W, 3) north, east, psi over ground: free runs from filters' states (W, 11), their current kept."""
     local = torch.tensor(np.concatenate(states)[:, :6], dtype=torch.float32)
@@ -194,7 +198,7 @@ def _over_ground(run: np.ndarray, state: np.ndarray, h: float) -> np.ndarray:
     return np.concatenate([run[..., :2] + state[:, :2] + state[:, NORTH : EAST + 1] * lead, run[..., 2:]], -1)
 
 
-def tuned(courses: Sequence[Course], model: Model, push: Push | None) -> Tuning:
+def tuned(courses: Sequence[LabCourse], model: Model, push: Push | None) -> Tuning:
     """What predicts validation voyages best (heading and lateral errors, each over its least); all are tried
     side by side."""
     many = len(courses)

@@ -12,14 +12,17 @@ from typing import Any
 
 import numpy as np
 
-from bench.paper.lab import HORIZON_S, Course, Errors, judge
+from bench.paper.lab import HORIZON_S, Errors, LabCourse, judge
 
 EVERY_S = 60.0  # windows in the whole of every run, not only those of the tables
-Predict = Callable[[Sequence[Course]], list[np.ndarray]]
+Predict = Callable[[Sequence[LabCourse]], list[np.ndarray]]
 
 
 def gap(
-    models: dict[str, Predict], validation: Sequence[Course], test: Sequence[Course], resamples: int = 10_000
+    models: dict[str, Predict],
+    validation: Sequence[LabCourse],
+    test: Sequence[LabCourse],
+    resamples: int = 10_000,
 ) -> dict[str, Any]:
     """For every model the errors in both parts and the change in %, with its 95 % interval by voyage."""
     parts = {"validation": _everywhere(validation), "test": _everywhere(test)}
@@ -34,7 +37,7 @@ def gap(
     return out
 
 
-def _everywhere(courses: Sequence[Course]) -> list[Course]:
+def _everywhere(courses: Sequence[LabCourse]) -> list[LabCourse]:
     return [
         replace(c, starts_s=tuple(np.arange(c.starts_s[0], c.water.t[-1] - HORIZON_S - 5.0, EVERY_S)))
         for c in courses

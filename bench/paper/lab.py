@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 
-from bench.paper.sea import STARTS_S, Sailed
+from bench.paper.sea import STARTS_S, PaperVoyage
 from export.batches import STRIDE
-from export.data import LOG, Leg, afloat, current, leg
+from export.data import LOG, TrainingLeg, afloat, current, leg
 from export.loss import free_run
-from export.network import Residual
+from export.network import ResidualNetwork
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.study.track.track import READINGS, Track, track
@@ -23,7 +23,7 @@ HORIZON_S = 120.0
 
 
 @dataclass(frozen=True)
-class Course:
+class LabCourse:
     """A voyage for judging: as tracked, seen from the water, seen from the earth, and the truth (N, 3) north,
     east, psi on the grid."""
 
@@ -31,8 +31,8 @@ class Course:
     scenario: str
     track: Track
     floating: Track
-    water: Leg
-    earth: Leg
+    water: TrainingLeg
+    earth: TrainingLeg
     truth: np.ndarray
     starts_s: tuple[float, ...] = STARTS_S
 
@@ -50,14 +50,14 @@ class Course:
         return self.starts + STRIDE * np.arange(self.steps + 1)[:, None]
 
 
-def course(sailed: Sailed, ship: Ship, starts_s: tuple[float, ...] = STARTS_S) -> Course:
+def course(sailed: PaperVoyage, ship: Ship, starts_s: tuple[float, ...] = STARTS_S) -> LabCourse:
     t = track(sailed.voyage, ship)
     model = Model(ship)
     blind = t.measured.copy()
     blind[:, list(LOG.values())] = np.nan
     time_s = sailed.voyage.time_s - sailed.voyage.time_s[0]
     truth = np.column_stack([np.interp(t.t, time_s, column) for column in sailed.truth.T])
-    return Course(
+    return LabCourse(
         t.name,
         t.name.split()[0],
         t,
@@ -87,14 +87,14 @@ def floating(t: Track, ship: Ship) -> Track:
 
 def free(
     model: Model,
-    network: Residual | None,
-    courses: Sequence[Course],
+    network: ResidualNetwork | None,
+    courses: Sequence[LabCourse],
     view: str = "water",
     states: Sequence[np.ndarray] | None = None,
 ) -> list[np.ndarray]:
     """(T, W, 3) north, east, psi over ground for each course: free runs from the view's state (or from
     `states`), the water as it was."""
-    views: list[Leg] = [getattr(c, view) for c in courses]
+    views: list[TrainingLeg] = [getattr(c, view) for c in courses]
     begin = (
         [v.state[c.starts] for v, c in zip(views, courses, strict=True)] if states is None else list(states)
     )
@@ -111,7 +111,7 @@ def free(
     return [grounded(r, c, v) for r, c, v in zip(parts, courses, views, strict=True)]
 
 
-def grounded(run: np.ndarray, c: Course, view: Leg) -> np.ndarray:
+def grounded(run: np.ndarray, c: LabCourse, view: TrainingLeg) -> np.ndarray:
     """(T, W, 3) seen from the water -> over ground, from where the ship was measured at the start."""
     lead = STRIDE * view.h * np.arange(1, run.shape[0] + 1)[:, None, None]
     place = c.earth.state[c.starts, :2] + view.water[c.starts] * lead
@@ -140,7 +140,7 @@ class Errors:
         return np.abs(self.lateral).mean(1)
 
 
-def judge(runs: Sequence[np.ndarray], courses: Sequence[Course]) -> Errors:
+def judge(runs: Sequence[np.ndarray], courses: Sequence[LabCourse]) -> Errors:
     """The errors of predictions (T, W, 3), one array for each course."""
     columns: list[list[np.ndarray]] = [[] for _ in range(6)]
     for i, (run, c) in enumerate(zip(runs, courses, strict=True)):

@@ -47,7 +47,7 @@ def table(
 ) -> Any:
     """Lines of the table, as they are ready."""
     from export.data import leg, model_of, split
-    from export.teach import Settings, teach
+    from export.teach import TrainingSettings, teach
     from export.worth import share, worth
 
     ship = nominal()
@@ -64,7 +64,9 @@ def table(
     yield "|---|---|---|---|---|---|---|---|---|"
     for name in only:
         began = time.process_time()
-        taught = teach(parts, model, Settings(epochs=epochs, rollout_epochs=rollout_epochs, **VARIANTS[name]))
+        taught = teach(
+            parts, model, TrainingSettings(epochs=epochs, rollout_epochs=rollout_epochs, **VARIANTS[name])
+        )
         spent = time.process_time() - began
         zz, test = worth(taught.network, model, legs[runs:]), worth(taught.network, model, parts["test"])
         if name == only[0]:

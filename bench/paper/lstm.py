@@ -8,10 +8,10 @@ import numpy as np
 import torch
 from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
-from bench.paper.lab import Course, grounded
+from bench.paper.lab import LabCourse, grounded
 from export.batches import STRIDE, shuffled
-from export.data import Leg
-from export.teach import FEWEST, Settings
+from export.data import TrainingLeg
+from export.teach import FEWEST, TrainingSettings
 
 WARM, FREE, HIDDEN, BATCH = 12, 24, 64, 64  # steps of 2.5 s for KVLCC2: 30 s and 60 s
 # in an epoch at least, as the hybrid has them: batches are smaller where there is less to learn from
@@ -60,7 +60,7 @@ class Lstm(torch.nn.Module):
 
 
 def tensors(
-    leg: Leg, starts: np.ndarray, free: int
+    leg: TrainingLeg, starts: np.ndarray, free: int
 ) -> tuple[torch.Tensor, torch.Tensor, torch.Tensor, torch.Tensor]:
     """nu, psi, inputs, wanted (T, B, 4); the free run begins at `starts`."""
     warm = starts + STRIDE * np.arange(1 - WARM, 1)[:, None]
@@ -73,19 +73,19 @@ def tensors(
     return tuple(torch.tensor(x, dtype=torch.float32) for x in out)  # type: ignore[return-value]
 
 
-def _all(legs: Sequence[Leg]) -> tuple[torch.Tensor, ...]:
+def _all(legs: Sequence[TrainingLeg]) -> tuple[torch.Tensor, ...]:
     parts = [tensors(leg, _late(leg), FREE) for leg in legs]
     return tuple(torch.cat(x, 1 if x[0].ndim > 1 else 0) for x in zip(*parts, strict=True))
 
 
-def _late(leg: Leg) -> np.ndarray:
+def _late(leg: TrainingLeg) -> np.ndarray:
     k = leg.starts(STRIDE * FREE, 12)
     return k[k >= STRIDE * WARM]
 
 
 def train(
-    train_legs: Sequence[Leg],
-    validation: Sequence[Leg],
+    train_legs: Sequence[TrainingLeg],
+    validation: Sequence[TrainingLeg],
     epochs: int,
     seed: int = 42,
     patience: int = 20,
@@ -123,7 +123,10 @@ def train(
     many = data[1].numel()
     batch = max(1, min(BATCH, many // STEPS))
     mean = AveragedModel(
-        model, multi_avg_fn=get_ema_multi_avg_fn(1.0 - 1.0 / (1.0 + Settings.average * max(1, many // batch)))
+        model,
+        multi_avg_fn=get_ema_multi_avg_fn(
+            1.0 - 1.0 / (1.0 + TrainingSettings.average * max(1, many // batch))
+        ),
     )
     best, since, asked = (float("inf"), model.state_dict()), 0, len(validation) >= FEWEST
     for epoch in range(epochs):
@@ -156,7 +159,7 @@ def _loss(model: Lstm, data: Sequence[torch.Tensor], h: float, size: torch.Tenso
     return torch.nn.functional.huber_loss(off, torch.zeros_like(off), delta=2.0)
 
 
-def predict(model: Lstm, c: Course) -> np.ndarray:
+def predict(model: Lstm, c: LabCourse) -> np.ndarray:
     """(T, W, 3) over ground."""
     view, h = c.water, STRIDE * c.water.h
     nu, psi, more, _ = tensors(view, c.starts, c.steps)

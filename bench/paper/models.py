@@ -19,12 +19,12 @@ from bench.paper.adapted import Acting
 from bench.paper.apart import apart
 from bench.paper.filter import Push, Tuning
 from bench.paper.gap import gap
-from bench.paper.lab import Course, course, free
+from bench.paper.lab import LabCourse, course, free
 from bench.paper.ship import nominal
 from export.batches import zeta_of
-from export.data import Leg, split
-from export.network import Residual
-from export.teach import Settings, Taught, teach
+from export.data import TrainingLeg, split
+from export.network import ResidualNetwork
+from export.teach import Taught, TrainingSettings, teach
 from export.worth import share
 from twin.physics.effects import catalogue, find
 from twin.physics.model import Model
@@ -33,7 +33,7 @@ from twin.study.estimation.fit import fit
 from twin.study.estimation.innovations import Floor
 from twin.study.reference.nuisance import TEMPER
 
-Predict = Callable[[Sequence[Course]], list[np.ndarray]]  # (T, W, 3) for each course
+Predict = Callable[[Sequence[LabCourse]], list[np.ndarray]]  # (T, W, 3) for each course
 # what `twin add` would name on TS-02 and TS-03, the current being seen by the log
 NAMED = ("Wind", "WaveDrift")
 ROWS = {
@@ -71,20 +71,20 @@ class Models:
 class Workshop:
     """Where models are made: the voyages by parts, the settings, and where what is done is kept."""
 
-    parts: dict[str, list[Course]]
-    legs: dict[str, list[Leg]]
-    settings: Settings
+    parts: dict[str, list[LabCourse]]
+    legs: dict[str, list[TrainingLeg]]
+    settings: TrainingSettings
     work: Path
     tell: Callable[[str], None]
 
     @classmethod
     def of(
-        cls, lessons: Sequence[Course], settings: Settings, work: Path, tell: Callable[[str], None]
+        cls, lessons: Sequence[LabCourse], settings: TrainingSettings, work: Path, tell: Callable[[str], None]
     ) -> "Workshop":
         return cls(split(lessons), split([c.water for c in lessons]), settings, work, tell)  # type: ignore[type-var,arg-type]
 
     @classmethod
-    def planned(cls, plan: sea.Plan, work: Path, tell: Callable[[str], None]) -> "Workshop":
+    def planned(cls, plan: sea.PaperPlan, work: Path, tell: Callable[[str], None]) -> "Workshop":
         """Of a plan whose lessons are not yet sailed."""
         lessons = [
             course(one, nominal()) for one in sea.sail(sea.lessons(plan), work / "voyages", tell, plan.tick_s)
@@ -107,14 +107,16 @@ class Workshop:
         return paper_filter.tuned(self.parts["validation"], model, push)
 
 
-def settings_for(plan: sea.Plan) -> Settings:
+def settings_for(plan: sea.PaperPlan) -> TrainingSettings:
     """Of the training."""
-    return Settings(epochs=plan.epochs, rollout_epochs=plan.rollout_epochs, rollout_batch=plan.rollout_batch)
+    return TrainingSettings(
+        epochs=plan.epochs, rollout_epochs=plan.rollout_epochs, rollout_batch=plan.rollout_batch
+    )
 
 
 def build(
-    lessons: Sequence[Course],
-    settings: Settings,
+    lessons: Sequence[LabCourse],
+    settings: TrainingSettings,
     lstm_epochs: int,
     seeds: Sequence[int],
     work: Path,
@@ -194,7 +196,7 @@ def _named(out: Models, shop: Workshop, plain: Model, seeds: Sequence[int]) -> N
     out.predict[both] = out.seeds[both][seeds[0]]
 
 
-def named(train: Sequence[Course], plain: Model) -> tuple[Model, Model]:
+def named(train: Sequence[LabCourse], plain: Model) -> tuple[Model, Model]:
     """The core calibrated on the calm runs, then with what `twin add` would name on the others; as far as
     there are such runs."""
     calm, windy = ([c for c in train if (c.scenario == "TS-01") is still] for still in (True, False))
@@ -202,7 +204,7 @@ def named(train: Sequence[Course], plain: Model) -> tuple[Model, Model]:
     return core, _fitted(core, windy, NAMED) if windy else core
 
 
-def _started(model: Model, network: Residual | None, tuning: Tuning) -> Predict:
+def _started(model: Model, network: ResidualNetwork | None, tuning: Tuning) -> Predict:
     return lambda cs: paper_filter.predict(cs, model, network, tuning)
 
 
@@ -218,7 +220,7 @@ def _about(model: Model, taught: Taught) -> dict[str, object]:
     }
 
 
-def _fitted(model: Model, courses: Sequence[Course], effects: Sequence[str]) -> Model:
+def _fitted(model: Model, courses: Sequence[LabCourse], effects: Sequence[str]) -> Model:
     """The study's own fit, of the core or of named effects, on tracks in which no current is left."""
     unknowns = (
         [u for name in effects for u in effect_unknowns(find(name), model)]

@@ -51,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def reproduce(plan: sea.Plan, work: Path, quick: bool, figures: Path | None = None) -> dict[str, Any]:
+def reproduce(plan: sea.PaperPlan, work: Path, quick: bool, figures: Path | None = None) -> dict[str, Any]:
     """Sail, train, tune, predict, and count."""
     from bench.paper import closed as paper_closed
     from bench.paper import models as paper_models

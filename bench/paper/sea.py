@@ -25,7 +25,7 @@ TRUE = ("north", "east", "psi")
 
 
 @dataclass(frozen=True)
-class Plan:
+class PaperPlan:
     """How much is sailed: runs to learn from, zigzags for each scenario and angle, for each changed ship, for
     each speed."""
 
@@ -47,8 +47,8 @@ class Plan:
     starts_s: tuple[float, ...] = STARTS_S
 
 
-QUICK = Plan(15, 2, 1, 1, (20,), (3,), 2, (42,), 25, 12, 64, 30)
-FULL = Plan(72, 15, 5, 5)
+QUICK = PaperPlan(15, 2, 1, 1, (20,), (3,), 2, (42,), 25, 12, 64, 30)
+FULL = PaperPlan(72, 15, 5, 5)
 SPEEDS = {
     "Maneuvering": 0.333,
     "Cruising": 0.677,
@@ -57,14 +57,14 @@ SPEEDS = {
 
 
 @dataclass(frozen=True)
-class Sailed:
+class PaperVoyage:
     """A voyage as measured, and where it truly was (N, 3) at its samples."""
 
     voyage: Voyage
     truth: np.ndarray
 
 
-def lessons(plan: Plan) -> list[Case]:
+def lessons(plan: PaperPlan) -> list[Case]:
     """What is learned from, in the order of time. Any 15 in a row hold the same manoeuvres in the same seas,
     so that training, validation and test are alike; speeds take turns with them. It is driven harder than
     its service speed and slower than half of
@@ -102,12 +102,12 @@ def zigzags(
     ]
 
 
-def unseen(plan: Plan) -> list[Case]:
+def unseen(plan: PaperPlan) -> list[Case]:
     """The zigzags of Tables 3 to 6."""
     return zigzags(plan.zigzags, 9001, duration_s=plan.run_s)
 
 
-def changed(plan: Plan) -> dict[str, list[Case]]:
+def changed(plan: PaperPlan) -> dict[str, list[Case]]:
     """Table 7: the ship as the models know it, and two that are not."""
     hull = HULLS["kvlcc2"]
     heavy = replace(hull, name="kvlcc2", m=1.05 * hull.m)
@@ -127,7 +127,7 @@ def _more(derivatives: tuple[float, ...], by: float) -> tuple[float, ...]:
     return tuple(by * d for d in derivatives)
 
 
-def without_gnss_noise(sailed: Sailed) -> Sailed:
+def without_gnss_noise(sailed: PaperVoyage) -> PaperVoyage:
     """The same voyage with places as they were, 0.1 s late as the receiver is."""
     v = sailed.voyage
     exact = {
@@ -135,10 +135,10 @@ def without_gnss_noise(sailed: Sailed) -> Sailed:
         for i, name in enumerate(("north_m", "east_m"))
     }
     seen = {name: np.where(np.isfinite(v.columns[name]), x, np.nan) for name, x in exact.items()}
-    return Sailed(v.with_rows(v.time_s, dict(v.columns) | seen), sailed.truth)
+    return PaperVoyage(v.with_rows(v.time_s, dict(v.columns) | seen), sailed.truth)
 
 
-def by_speed(plan: Plan) -> dict[str, list[Case]]:
+def by_speed(plan: PaperPlan) -> dict[str, list[Case]]:
     """Table 8."""
     return {
         name: zigzags(plan.speeds, 60_000, angles=plan.angles, duration_s=plan.run_s, speed_fraction=share)
@@ -148,7 +148,7 @@ def by_speed(plan: Plan) -> dict[str, list[Case]]:
 
 def sail(
     cases: Sequence[Case], folder: Path, tell: Callable[[str], None], tick_s: float = 0.1
-) -> list[Sailed]:
+) -> list[PaperVoyage]:
     """These voyages, from the folder where they were sailed before."""
     folder.mkdir(parents=True, exist_ok=True)
     paths = [folder / f"{_key(case)}.npz" for case in cases]
@@ -175,10 +175,10 @@ def _write(recording: Recording, path: Path) -> None:
     os.replace(aside, path)
 
 
-def _read(case: Case, path: Path) -> Sailed:
+def _read(case: Case, path: Path) -> PaperVoyage:
     with np.load(path) as held:
         columns = {name: held[name].astype(float) for name in held.files}
     truth = columns.pop("truth")
-    return Sailed(
+    return PaperVoyage(
         Voyage(f"{case.weather} {case.manoeuvre} {case.seed}", columns.pop("time_s"), columns), truth
     )

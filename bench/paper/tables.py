@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bench.paper import stats
-from bench.paper.lab import Course, Errors, judge
+from bench.paper.lab import Errors, LabCourse, judge
 from bench.paper.models import Models, Predict
 
 PAPER_3 = {
@@ -32,7 +32,7 @@ PAPER_8 = {"Maneuvering": [32.4, 8.2], "Cruising": [18.1, 4.5], "Full speed": [2
 
 def all_tables(
     models: Models,
-    courses: dict[str, list[Course]],
+    courses: dict[str, list[LabCourse]],
     changed: Sequence[str],
     speeds: Sequence[str],
     resamples: int,
@@ -72,7 +72,7 @@ def _also(model: str, changed: Sequence[str], speeds: Sequence[str]) -> list[str
     return [*([*changed, EXACT] if model in COMPARED else []), *(speeds if model in BY_SPEED else [])]
 
 
-def by_group(predict: Predict, groups: dict[str, list[Course]]) -> dict[str, Errors]:
+def by_group(predict: Predict, groups: dict[str, list[LabCourse]]) -> dict[str, Errors]:
     """One model's errors on every group, predicted side by side."""
     runs = iter(predict([c for some in groups.values() for c in some]))
     return {name: judge([next(runs) for _ in some], some) for name, some in groups.items()}

@@ -18,7 +18,7 @@ from twin.study.diagnosis.diagnose import diagnose
 
 
 @dataclass(frozen=True)
-class Readings:
+class PlantedReadings:
     """A voyage's readings [SI, rad]: place and velocity over ground along earth axes, heading, yaw rate."""
 
     x: np.ndarray
@@ -29,7 +29,7 @@ class Readings:
     r: np.ndarray
 
     @classmethod
-    def of(cls, v: Voyage) -> "Readings":
+    def of(cls, v: Voyage) -> "PlantedReadings":
         psi, u, w = np.radians(v["heading_true_north_deg"]), v["surge_velocity_mps"], v["sway_velocity_mps"]
         c, s = np.cos(psi), np.sin(psi)
         return cls(
@@ -52,12 +52,12 @@ class Readings:
 
 
 def turned_compass(v: Voyage, bias: float) -> Voyage:
-    q = Readings.of(v)
+    q = PlantedReadings.of(v)
     return replace(q, psi=q.psi + bias).into(v)
 
 
 def antenna_elsewhere(v: Voyage, ahead: float) -> Voyage:
-    q = Readings.of(v)
+    q = PlantedReadings.of(v)
     c, s = np.cos(q.psi), np.sin(q.psi)
     return replace(
         q,
@@ -69,13 +69,13 @@ def antenna_elsewhere(v: Voyage, ahead: float) -> Voyage:
 
 
 def in_a_stream(v: Voyage, north: float, east: float) -> Voyage:
-    q, t = Readings.of(v), v.time_s - v.time_s[0]
+    q, t = PlantedReadings.of(v), v.time_s - v.time_s[0]
     return replace(q, x=q.x + north * t, y=q.y + east * t, north=q.north + north, east=q.east + east).into(v)
 
 
 def late_receiver(v: Voyage, delay: float) -> Voyage:
     """Begun when the first late reading has come."""
-    q = Readings.of(v)
+    q = PlantedReadings.of(v)
     late = {
         name: np.interp(v.time_s - delay, v.time_s, getattr(q, name)) for name in ("x", "y", "north", "east")
     }
@@ -98,7 +98,7 @@ def early_rudder(v: Voyage, lead: float) -> Voyage:
     )
 
 
-class Fault(NamedTuple):
+class PlantedFault(NamedTuple):
     """What is put into the readings; `effects` by which the catalogue would name it, none when nothing is
     wrong."""
 
@@ -108,39 +108,43 @@ class Fault(NamedTuple):
 
 
 FAULTS = (
-    Fault("nothing", (), lambda v, L, U: v),
-    Fault(
+    PlantedFault("nothing", (), lambda v, L, U: v),
+    PlantedFault(
         "compass 2.5 deg to starboard", ("HeadingBias",), lambda v, L, U: turned_compass(v, np.radians(2.5))
     ),
-    Fault("antenna 15 % of L ahead", ("AntennaOffset",), lambda v, L, U: antenna_elsewhere(v, 0.15 * L)),
-    Fault("receiver 0.08 L/U_0 late", ("SensorDelay",), lambda v, L, U: late_receiver(v, 0.08 * L / U)),
-    Fault(
+    PlantedFault(
+        "antenna 15 % of L ahead", ("AntennaOffset",), lambda v, L, U: antenna_elsewhere(v, 0.15 * L)
+    ),
+    PlantedFault(
+        "receiver 0.08 L/U_0 late", ("SensorDelay",), lambda v, L, U: late_receiver(v, 0.08 * L / U)
+    ),
+    PlantedFault(
         "rate gyro off by 0.02 U_0/L",
         ("GyroBias",),
         lambda v, L, U: shown(v, "yaw_rate_degps", offset=np.degrees(0.02 * U / L)),
     ),
-    Fault("a stream of 8 % of U_0", ("Current",), lambda v, L, U: in_a_stream(v, 0.06 * U, -0.05 * U)),
-    Fault(
+    PlantedFault("a stream of 8 % of U_0", ("Current",), lambda v, L, U: in_a_stream(v, 0.06 * U, -0.05 * U)),
+    PlantedFault(
         "rudder shown 2 deg to starboard of where it is",
         ("RudderOffset",),
         lambda v, L, U: shown(v, "rudder_angle_deg", offset=2.0),
     ),
-    Fault(
+    PlantedFault(
         "rudder shown a quarter larger than it is",
         ("RudderWear",),
         lambda v, L, U: shown(v, "rudder_angle_deg", 1.25),
     ),
-    Fault(
+    PlantedFault(
         "rudder 0.35 L/U_0 later than recorded",
         ("SteeringLag",),
         lambda v, L, U: early_rudder(v, 0.35 * L / U),
     ),
-    Fault(
+    PlantedFault(
         "screw shown 6 % faster than it turns",
         ("PropellerWear",),
         lambda v, L, U: shown(v, "propeller_rate_rpm", 1.06),
     ),
-    Fault(
+    PlantedFault(
         "compass and stream together",
         ("HeadingBias", "Current"),
         lambda v, L, U: turned_compass(in_a_stream(v, 0.06 * U, -0.05 * U), np.radians(2.5)),
@@ -148,7 +152,7 @@ FAULTS = (
 )
 
 
-def asked(fault: Fault, voyages: Sequence[Voyage], ship: Ship) -> dict[str, Any]:
+def asked(fault: PlantedFault, voyages: Sequence[Voyage], ship: Ship) -> dict[str, Any]:
     """What the diagnosis of these voyages says when the fault is in their readings."""
     L, U = float(ship.L_pp), float(ship.scale("speed"))
     found = diagnose([fault.put(v, L, U) for v in voyages], ship).result

@@ -160,7 +160,7 @@ def asked(name: str, fitted: Sequence[Sailed], others: Sequence[Sailed], ship: S
     }
 
 
-def faulty(fault: real_faults.Fault, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
+def faulty(fault: real_faults.PlantedFault, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
     answer.tell(f"putting into the readings: {fault.words}")
     return real_faults.asked(fault, [s.voyage for s in runs], ship)
 

@@ -12,7 +12,7 @@ from bench.reference.fleet import limit, stack
 from bench.reference.hidden import prepare, stack_flaws
 from bench.reference.hulls import HULLS, Hull
 from bench.reference.manoeuvres import legs
-from bench.reference.sensors import COLUMNS, Instruments, compass_error
+from bench.reference.sensors import COLUMNS, SensorSuite, compass_error
 from bench.reference.weather import WEATHERS, Weather, rotated
 
 ORIGINS = ("hull", "propeller", "rudder", "wind", "waves", "hidden", "known")
@@ -120,7 +120,7 @@ class Sea:
         ]
         self.pilot = Autopilot(plans, self.h, n_start, self.heading)
         perfect = [c.sensors == "perfect" for c in cases]
-        self.instruments = Instruments(
+        self.instruments = SensorSuite(
             self.h, self.f, np.array([x.d for x in calm]), self.weathers, seeds, self.dt, perfect
         )
         self._plan_changes(turned)

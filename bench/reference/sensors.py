@@ -64,7 +64,7 @@ DEEP, OPEN = (
 )  # reported depth / draught and bank distance / beam where there is neither bottom nor bank
 
 
-class Instruments:
+class SensorSuite:
     """Turns the truth of each tick into measured columns (B,), NaN where an instrument has no sample."""
 
     def __init__(self, h, f, draught, weathers, seeds, dt, perfect):

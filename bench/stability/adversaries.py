@@ -38,7 +38,7 @@ NOISE = {
 HEADING_NOISE = 0.005  # rad
 
 
-class Case(NamedTuple):
+class AdversaryCase(NamedTuple):
     """One line of the table: which ship, how often, how late, in what sea, how many runs."""
 
     ship: str
@@ -53,23 +53,23 @@ class Case(NamedTuple):
 
 
 CASES = (
-    Case("kvlcc2", 10.0, (1, 1, 1), 3000),
-    Case("kvlcc2", 10.0, (1, 1, 1), 1000, H_s=2.0),
-    Case("kvlcc2", 10.0, (1, 1, 1), 1500, dropouts=True),
-    Case("kvlcc2", 10.0, (12, 12, 1), 500),
-    Case("kvlcc2", 50.0, (1, 1, 1), 500),
-    Case("container", 10.0, (1, 1, 1), 1500),
-    Case("container", 10.0, (1, 1, 1), 500, dropouts=True),
-    Case("usv", 50.0, (1, 1, 1), 500),
-    Case("usv", 50.0, (0, 0, 0), 500, dropouts=True),
-    Case("usv", 10.0, (0, 0, 0), 500),
-    Case("kvlcc2", 10.0, (1, 1, 1), 1000, moving=("RudderWear", "HullFouling")),
-    Case("container", 10.0, (1, 1, 1), 500, moving=("RudderWear", "Loading")),
+    AdversaryCase("kvlcc2", 10.0, (1, 1, 1), 3000),
+    AdversaryCase("kvlcc2", 10.0, (1, 1, 1), 1000, H_s=2.0),
+    AdversaryCase("kvlcc2", 10.0, (1, 1, 1), 1500, dropouts=True),
+    AdversaryCase("kvlcc2", 10.0, (12, 12, 1), 500),
+    AdversaryCase("kvlcc2", 50.0, (1, 1, 1), 500),
+    AdversaryCase("container", 10.0, (1, 1, 1), 1500),
+    AdversaryCase("container", 10.0, (1, 1, 1), 500, dropouts=True),
+    AdversaryCase("usv", 50.0, (1, 1, 1), 500),
+    AdversaryCase("usv", 50.0, (0, 0, 0), 500, dropouts=True),
+    AdversaryCase("usv", 10.0, (0, 0, 0), 500),
+    AdversaryCase("kvlcc2", 10.0, (1, 1, 1), 1000, moving=("RudderWear", "HullFouling")),
+    AdversaryCase("container", 10.0, (1, 1, 1), 500, moving=("RudderWear", "Loading")),
 )
 
 
 @dataclass(frozen=True)
-class Outcome:
+class AdversaryOutcome:
     """What became of the runs of a case; ratios are error over bound, by axis (surge, sway, yaw)."""
 
     runs: int
@@ -83,7 +83,7 @@ class Outcome:
     seconds: float
 
 
-def certified(case: Case) -> tuple[Model, Certificate]:
+def certified(case: AdversaryCase) -> tuple[Model, Certificate]:
     """The model of a case, with wind and a current, and its certificate."""
     model = Model.of(load(case.ship))
     U = model.ship.U_0
@@ -103,7 +103,7 @@ def certified(case: Case) -> tuple[Model, Certificate]:
     )
 
 
-class Fleet:
+class AdversaryFleet:
     """Many ships of one kind at once, each with an observer and an adversary of its own."""
 
     def __init__(
@@ -263,7 +263,7 @@ class Fleet:
         self.after.append(self.tube)
 
 
-def trial(fleet: Fleet, seconds: float | None = None) -> Outcome:
+def trial(fleet: AdversaryFleet, seconds: float | None = None) -> AdversaryOutcome:
     """Let a fleet sail until old errors have faded five times over, at least two ship lengths (at most 1500
     samples).
     """
@@ -284,7 +284,7 @@ def trial(fleet: Fleet, seconds: float | None = None) -> Outcome:
         error = np.maximum(error, e[:, inside].max(axis=1))
     took = time.perf_counter() - begin
     ratios = (tuple(x.tolist()) for x in (of_tube, of_bound, error))
-    return Outcome(fleet.runs, int((~fleet.alive).sum()), steps, samples, violations, *ratios, took)
+    return AdversaryOutcome(fleet.runs, int((~fleet.alive).sum()), steps, samples, violations, *ratios, took)
 
 
 def _inner(span: tuple[float, float], share: float) -> tuple[float, float]:
@@ -310,7 +310,7 @@ def run(args: argparse.Namespace) -> int:
     rows, loops = [], []
     for i, case in enumerate(CASES):
         model, c = certified(case)
-        fleet = Fleet(
+        fleet = AdversaryFleet(
             model,
             c,
             max(1, round(case.runs * share)),
@@ -338,6 +338,6 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _told(what: str, o: Outcome) -> Outcome:
+def _told(what: str, o: AdversaryOutcome) -> AdversaryOutcome:
     answer.tell(f"{what}: {o.violations} violations in {o.runs} runs")
     return o

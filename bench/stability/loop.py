@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.stability.adversaries import HEADING_NOISE, Fleet
+from bench.stability.adversaries import HEADING_NOISE, AdversaryFleet
 from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.inbox import Played
@@ -55,7 +55,7 @@ CASES = (
 )
 
 
-class Loops(Fleet):
+class Loops(AdversaryFleet):
     """Ships as in a Fleet; estimate, bound and whether it holds (`alive`) are each one's own loop's."""
 
     def __init__(self, case: LoopCase, runs: int, seed: int) -> None:

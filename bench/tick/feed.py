@@ -25,7 +25,7 @@ LATITUDE_DEG, LONGITUDE_DEG = 57.62, 11.58
 HZ = 10.0  # of the reference sea
 
 
-class Row(NamedTuple):
+class FedRow(NamedTuple):
     """What is said at one instant: seconds since the start, and (subject, value or (north, east))."""
 
     time_s: float
@@ -44,19 +44,19 @@ def prepare(path: Path, seconds: float, hull: str) -> None:
     path.write_bytes(pickle.dumps(rows))
 
 
-def _row(readings: dict[str, float]) -> Row:
+def _row(readings: dict[str, float]) -> FedRow:
     said: list[tuple[str, float | tuple[float, float]]] = []
     for topic in INPUTS:
         values = tuple(readings.get(channel, float("nan")) for channel in topic.channels)
         if topic.factor == 1.0 and all(v == v for v in values):
             said.append((topic.subject, values[0] if len(values) == 1 else values))  # type: ignore[arg-type]
-    return Row(readings["time_s"], said)
+    return FedRow(readings["time_s"], said)
 
 
-class Feed:
+class TickFeed:
     """`follow(wall_s)` says what is due."""
 
-    def __init__(self, session, base: str, entity: str, rows: Sequence[Row]):
+    def __init__(self, session, base: str, entity: str, rows: Sequence[FedRow]):
         self.put = {s: session.declare_publisher(key(base, entity, s, "sea")).put for s in BY_SUBJECT}
         self.datum = geodesy.datum(LATITUDE_DEG, LONGITUDE_DEG)
         self.rows, self.next, self.start_s = rows, 0, None
@@ -68,7 +68,7 @@ class Feed:
             self._say(self.rows[self.next])
             self.next += 1
 
-    def _say(self, row: Row) -> None:
+    def _say(self, row: FedRow) -> None:
         wall_ns = int((self.start_s + row.time_s) * 1e9)
         for subject, value in row.said:
             place = isinstance(value, tuple)
@@ -88,7 +88,7 @@ def main(rows: str, endpoint: str, base: str, entity: str) -> None:
     voyage = pickle.loads(Path(rows).read_bytes())
     session = zenoh.open(configuration(BusSettings(base, entity, "", (endpoint,))))
     newest = session.declare_subscriber(key(base, entity, "twin_tick", "twin"), zenoh.handlers.RingChannel(1))
-    feed, parent = Feed(session, base, entity, voyage), os.getppid()
+    feed, parent = TickFeed(session, base, entity, voyage), os.getppid()
     mark = Mark(Path(rows).with_suffix(".mark"))
     while os.getppid() == parent:
         sample = newest.try_recv()

@@ -8,7 +8,7 @@ from twin.errors import TwinError
 KIB = 1024 / 1e6
 
 
-class Memory(NamedTuple):
+class ProcessMemory(NamedTuple):
     """Resident memory. `peak` is VmHWM, the most it ever was; `anon` + `file` is what it is now."""
 
     peak_mb: float
@@ -17,7 +17,7 @@ class Memory(NamedTuple):
     file_mb: float
 
 
-def memory(pid: int | str = "self") -> Memory:
+def memory(pid: int | str = "self") -> ProcessMemory:
     """Read from /proc, which only Linux has."""
     try:
         text = Path(f"/proc/{pid}/status").read_text()
@@ -26,4 +26,4 @@ def memory(pid: int | str = "self") -> Memory:
     lines = (line.partition(":") for line in text.splitlines())
     kib = {name: int(rest.split()[0]) for name, _, rest in lines if rest.endswith("kB")}
     file = kib["RssFile"] + kib["RssShmem"]
-    return Memory(*(round(k * KIB, 2) for k in (kib["VmHWM"], kib["VmRSS"], kib["RssAnon"], file)))
+    return ProcessMemory(*(round(k * KIB, 2) for k in (kib["VmHWM"], kib["VmRSS"], kib["RssAnon"], file)))

@@ -22,7 +22,7 @@ from bench.tick.ekf import ShipFilter
 from bench.tick.lstm import HIDDEN, INPUTS, LAYERS, lstm_bytes
 from bench.tick.ort import session
 from bench.tick.timing import hot_us, quantiles
-from twin.live.observer.dynamics import NONE, Known
+from twin.live.observer.dynamics import NONE, KnownDynamics
 from twin.live.observer.predict import ensemble
 from twin.physics.model import Model
 from twin.physics.ship import load
@@ -86,7 +86,7 @@ def look_ahead(ship: Any, members: int, step_s: float) -> Callable[[], Situation
     """120 s open loop by the equations; for an ensemble every number is an array over its members."""
     spread = np.linspace(-1.0, 1.0, members) if members > 1 else 0.0
     speeds = {"u": ship.U_0 + 0.1 * spread, "v": 0.1 + 0.0 * spread, "r": 0.002 + 0.0 * spread}
-    s, physics = situation(ship, wind_speed=8.0 + 2.0 * spread, **speeds), Known(Model.of(ship))
+    s, physics = situation(ship, wind_speed=8.0 + 2.0 * spread, **speeds), KnownDynamics(Model.of(ship))
     return lambda: ensemble(s, physics, lambda s, forces: NONE, AHEAD_S, step_s)
 
 

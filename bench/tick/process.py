@@ -17,7 +17,7 @@ from collections.abc import Callable
 from typing import Any
 
 from bench.tick.mark import Mark
-from bench.tick.memory import Memory, memory
+from bench.tick.memory import ProcessMemory, memory
 from bench.tick.timing import quantiles
 from twin.live import run
 from twin.live.clock import Clock, Instant, MonotonicClock
@@ -103,14 +103,16 @@ class StopWatch:
         return self.clock.slack_s()  # type: ignore[no-any-return]
 
 
-class Measured:
+class MeasuredLoop:
     """One service, and what was seen of it."""
 
     def __init__(self, path: str, mark: str, steps: int, parts: int, paced: bool):
         self.settings, self.mark = config.load(path), Mark(mark)
         self.modes: dict[str, int] = {}
         self.steps, self.parts, self.paced = steps, parts, paced
-        self.seen: list[tuple[Memory, int, int, float]] = []  # memory, messages, overruns, processor time
+        self.seen: list[
+            tuple[ProcessMemory, int, int, float]
+        ] = []  # memory, messages, overruns, processor time
         self.watches: Any = None
         self.last: Any = None
 
@@ -192,7 +194,7 @@ if __name__ == "__main__":
     code = 1
     try:
         _, settings, mark, steps, parts, pace = sys.argv
-        print(json.dumps(Measured(settings, mark, int(steps), int(parts), pace == "paced").run()))
+        print(json.dumps(MeasuredLoop(settings, mark, int(steps), int(parts), pace == "paced").run()))
         code = 0
     except BaseException:
         traceback.print_exc()

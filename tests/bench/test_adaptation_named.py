@@ -12,7 +12,7 @@ from bench.adaptation.named import (
     RUN_S,
     STARTS_S,
     Growth,
-    Learned,
+    LearnedEffects,
     RowsAlone,
     arrival,
     growing,
@@ -116,7 +116,7 @@ def test_the_interval_that_holds_the_truth_is_counted(worn):
     many, (number,) = len(STARTS_S), movable(worn.model.effects, worn.model.ship)
     value = np.full((2, many, 1), 0.30)
     value[1] += 2.5 * 0.1 * number.sd
-    known = Learned(*[np.zeros((2, many))] * 2, value, np.full((2, many, 1), 0.1), np.zeros((2, many)))
+    known = LearnedEffects(*[np.zeros((2, many))] * 2, value, np.full((2, many, 1), 0.1), np.zeros((2, many)))
     said = arrival(growth, worn, known, np.array(["TS-01", "TS-02"]))
     assert (
         said["held"] == 0.5

@@ -38,7 +38,7 @@ def test_port_and_starboard_are_alike(ships, family):
 def test_a_ship_goes_as_fast_as_its_shaft_was_balanced_for(ships, family):
     """Test: straight ahead in calm water, from service speed. Expected: it stays there within a tenth."""
     ship = ships[family]
-    true = sail.sail(ship, [], weather.Weather(), 20 * ship.p.unit_s, 1)
+    true = sail.sail(ship, [], weather.FleetWeather(), 20 * ship.p.unit_s, 1)
     assert true["u"][-1] == pytest.approx(ship.p.U0, rel=0.1)
 
 
@@ -53,8 +53,10 @@ def test_what_is_hidden_shows_at_a_plain_size(ships, name):
     flaws = hidden.Flaws(**change.flaws)
     read = []
     for f, w in ((hidden.Flaws(), {}), (flaws, change.weather)):
-        true = sail.sail(ship, zigzag(20), weather.stronger(weather.Weather(), **w), 40 * ship.p.unit_s, 7, f)
-        read.append(instruments.record(ship, true, weather.Weather(), 7, f)[1])
+        true = sail.sail(
+            ship, zigzag(20), weather.stronger(weather.FleetWeather(), **w), 40 * ship.p.unit_s, 7, f
+        )
+        read.append(instruments.record(ship, true, weather.FleetWeather(), 7, f)[1])
     most = max(
         float(np.nanmax(np.abs(read[0][c] - read[1][c])) / (np.nanstd(read[0][c]) + 1e-9))
         for c in read[0]

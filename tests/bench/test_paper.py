@@ -159,7 +159,7 @@ def test_a_gap_between_equal_parts_is_nothing(calm):
 @pytest.fixture(scope="module")
 def tiny(tmp_path_factory):
     """The whole bench with the least of everything: it learns next to nothing, but every table is made."""
-    plan = paper_sea.Plan(
+    plan = paper_sea.PaperPlan(
         5, 1, 1, 1, (20,), (1,), 1, (42, 123), 2, 1, 64, 1, 200, 0.5, 320.0, (110.0, 150.0, 190.0)
     )
     folder = tmp_path_factory.mktemp("tiny")

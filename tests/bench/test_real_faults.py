@@ -6,7 +6,7 @@ import pytest
 from bench.real import faults as real_faults
 from bench.real.faults import (
     FAULTS,
-    Readings,
+    PlantedReadings,
     antenna_elsewhere,
     asked,
     early_rudder,
@@ -41,13 +41,13 @@ def voyage():
 
 def moves_as_it_says(v):
     """Place and velocity over ground of a voyage whose compass is right must agree."""
-    q = Readings.of(v)
+    q = PlantedReadings.of(v)
     assert np.gradient(q.x, v.time_s)[2:-2] == pytest.approx(q.north[2:-2], abs=2e-3)
     assert np.gradient(q.y, v.time_s)[2:-2] == pytest.approx(q.east[2:-2], abs=2e-3)
 
 
 def test_the_readings_of_a_voyage_come_back_as_they_were(voyage):
-    back = Readings.of(voyage).into(voyage)
+    back = PlantedReadings.of(voyage).into(voyage)
     for name, values in voyage.columns.items():
         assert back[name] == pytest.approx(values, abs=1e-9)
 

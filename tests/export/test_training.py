@@ -14,8 +14,8 @@ pytest.importorskip("onnx", reason="onnx is not installed: pip install 'shiptwin
 from export import loss, to_onnx, train  # noqa: E402
 from export.batches import input_names, samples, shuffled, zeta_of  # noqa: E402
 from export.data import leg, model_of, split  # noqa: E402
-from export.network import Residual  # noqa: E402
-from export.teach import Course, Settings, device, prepared, teach  # noqa: E402
+from export.network import ResidualNetwork  # noqa: E402
+from export.teach import TrainingCourse, TrainingSettings, device, prepared, teach  # noqa: E402
 from twin.cli import main  # noqa: E402
 from twin.errors import ThresholdError  # noqa: E402
 from twin.live.learning import residual as live  # noqa: E402
@@ -25,7 +25,7 @@ from twin.physics.state import Force, Situation  # noqa: E402
 from twin.study.reference.sailed import Sailed  # noqa: E402
 from twin.study.track.track import track  # noqa: E402
 
-FEW = Settings(epochs=3, rollout_epochs=2, rollout_lengths=0.75)
+FEW = TrainingSettings(epochs=3, rollout_epochs=2, rollout_lengths=0.75)
 
 
 @pytest.fixture(scope="module")
@@ -69,7 +69,7 @@ def test_the_twin_says_what_the_training_says(learned, ship, parts):
     """Test: a situation in the middle of the data, through both. Expected: the same f."""
     model = parts[1]
     table = json.loads(learned[0].with_suffix(".json").read_text())
-    again = Residual(ship, table["training"]["inputs"], parts[0]["train"][0].state[:, :5])
+    again = ResidualNetwork(ship, table["training"]["inputs"], parts[0]["train"][0].state[:, :5])
     again.load_state_dict(learned[2])
     s = Situation(psi=0.5, u=6.5, v=0.1, r=0.001, delta=0.1, n=1.6)
     model.forces(s, model.water(s))
@@ -113,12 +113,12 @@ def test_a_training_moves_to_the_chosen_device_and_comes_back(parts, monkeypatch
     monkeypatch.setattr("export.teach.device", lambda: torch.device("meta"))
     monkeypatch.setattr("export.teach._key", lambda settings, data: "")
     monkeypatch.setattr(
-        Course, "run", lambda course, stage: seen.append((course.network, course.data["train"]))
+        TrainingCourse, "run", lambda course, stage: seen.append((course.network, course.data["train"]))
     )
     monkeypatch.setattr(
-        Residual, "cpu", lambda network: seen.append({p.device.type for p in network.parameters()})
+        ResidualNetwork, "cpu", lambda network: seen.append({p.device.type for p in network.parameters()})
     )
-    monkeypatch.setattr(Residual, "bind", lambda network, zeta: None)
+    monkeypatch.setattr(ResidualNetwork, "bind", lambda network, zeta: None)
     monkeypatch.setattr("export.teach.zeta_of", lambda network, data: data.d)
     taught = teach(*parts, replace(FEW, loss="acceleration"))
     network, data = seen[0]
@@ -132,13 +132,13 @@ def test_a_batch_does_not_mix_two_devices(parts, stage):
     device."""
     away, settings = torch.device("meta"), replace(FEW, mirror=0.1)
     data = prepared(*parts, settings)
-    probe = Residual(
+    probe = ResidualNetwork(
         parts[1].ship,
         ("surge", "sway", "yaw", "rudder", "propeller"),
         np.ones((3, 5)) * [[0.0], [0.5], [1.0]],
     ).to(away)
     probe.bound = torch.tensor(float("inf"))  # asked for its value, which nothing on "meta" has
-    course = object.__new__(Course)
+    course = object.__new__(TrainingCourse)
     course.network, course.model, course.settings, course.weight = probe, parts[1], settings, torch.ones(8)
     course.data = {part: one.on(away) for part, one in data.items()}
     course.zeta = {part: zeta_of(probe, one.samples) for part, one in course.data.items()}
@@ -269,12 +269,12 @@ def test_a_voyage_in_heavy_sea_counts_no_more_than_a_calm_one(parts):
     def weights(legs):
         data = prepared({"train": legs, "validation": split_parts["validation"]}, model, FEW)
         torch.manual_seed(1)
-        probe = Residual(
+        probe = ResidualNetwork(
             model.ship,
             ("surge", "sway", "yaw", "rudder", "propeller"),
             np.ones((3, 5)) * [[0.0], [0.5], [1.0]],
         )
-        return Course(probe, model, FEW, data, lambda *_: None, None)._weights("acceleration")
+        return TrainingCourse(probe, model, FEW, data, lambda *_: None, None)._weights("acceleration")
 
     calm, rough = weights([first, *others]), weights([shaken, *others])
     assert float(rough.mean()) == pytest.approx(1.0, abs=1e-5)
@@ -286,12 +286,12 @@ def test_little_data_is_taught_in_smaller_batches_and_not_in_fewer_steps(parts):
     split_parts, model = parts
     for legs in (split_parts["train"], split_parts["train"][:1]):
         data = prepared({"train": legs, "validation": split_parts["validation"]}, model, FEW)
-        network = Residual(
+        network = ResidualNetwork(
             model.ship,
             ("surge", "sway", "yaw", "rudder", "propeller"),
             np.ones((3, 5)) * [[0.0], [0.5], [1.0]],
         )
-        course = Course(network, model, FEW, data, lambda *_: None, None)
+        course = TrainingCourse(network, model, FEW, data, lambda *_: None, None)
         many, batch = course._amount("acceleration")
         assert many == len(data["train"].samples) and batch <= FEW.batch
         assert len(list(shuffled(many, batch, 1))) >= 50

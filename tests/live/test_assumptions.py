@@ -113,8 +113,8 @@ def test_A3_without_a_wave_height_there_is_no_promise_and_the_reason_says_so(mak
 
 def test_A4_a_speed_that_is_off_for_good_is_found_by_the_positions(make_service):
     """Test: the log walks off by 1 m/s and stays there, in small steps, so that no gate sees it. Expected:
-    innovations say nothing; within two minutes of being off by more than the bound the promise is back, with
-    both numbers in the reason."""
+    innovations say nothing; within two minutes of being off by more than the bound the promise is taken back,
+    and the positions are the reason."""
     bridge, wrong = make_service(), 0
     assert bridge.run(120.0)[-1].certificate.inside
     for k in range(3000):

@@ -12,7 +12,7 @@ import pytest
 
 from twin import cli, voyages
 from twin.live.faulty import SHORT, Faulty, Sample, channels_of
-from twin.live.inject import KINDS, Fault, Injector
+from twin.live.inject import KINDS, InjectedFault, Injector
 from twin.live.keelson import messages
 from twin.live.keelson.topics import key
 from twin.live.log.logfile import LogFile, read, read_rows
@@ -23,7 +23,7 @@ BY = {"wrong": 7.0, "drift": 0.1, "noise": 2.0}
 
 def said(kind, by=None, n=200, start_s=5.0, seconds=10.0):
     """[(arrival, stamp, values)] of a channel that says its own time, 10 times a second for 20 s."""
-    injector = Injector(Fault(kind, KINDS[kind].by if by is None else by, start_s, seconds))
+    injector = Injector(InjectedFault(kind, KINDS[kind].by if by is None else by, start_s, seconds))
     return [report for i in range(n) for report in injector.feed(0.1 * i, 0.1 * i, (0.1 * i,))]
 
 
@@ -72,7 +72,7 @@ def scalar(subject, value, at_s=1.7e9):
 
 
 def test_a_fault_of_the_rudder_touches_nothing_but_the_rudder():
-    faulty = Faulty("rudder", Fault("wrong", 5.0))
+    faulty = Faulty("rudder", InjectedFault("wrong", 5.0))
     heading = scalar("heading_true_north_deg", 12.0)
     assert faulty.feed(heading) == [heading] and faulty.changed == 0
     (rudder,) = faulty.feed(scalar("rudder_angle_deg", 3.0))
@@ -84,7 +84,7 @@ def test_a_fault_of_the_rudder_touches_nothing_but_the_rudder():
 
 def test_a_position_is_wrong_by_metres():
     fix = messages.encode_fix(57.5, 11.75, 1_700_000_000_000_000_000)
-    (moved,) = Faulty("gps", Fault("wrong", 100.0)).feed(
+    (moved,) = Faulty("gps", InjectedFault("wrong", 100.0)).feed(
         Sample(1.7e9, key("twin", "ship", "location_fix", "s"), "foxglove.LocationFix", fix)
     )
     found = messages.LocationFix.FromString(moved.payload)
@@ -93,9 +93,9 @@ def test_a_position_is_wrong_by_metres():
 
 
 def test_every_sources_clock_is_off_and_the_bus_is_dead():
-    (late,) = Faulty("clock", Fault("wrong", -1.5)).feed(scalar("yaw_rate_degps", 1.0))
+    (late,) = Faulty("clock", InjectedFault("wrong", -1.5)).feed(scalar("yaw_rate_degps", 1.0))
     assert messages.Float.FromString(late.payload).timestamp.seconds == 1_699_999_998
-    assert Faulty("bus", Fault("off")).feed(scalar("yaw_rate_degps", 1.0)) == []
+    assert Faulty("bus", InjectedFault("off")).feed(scalar("yaw_rate_degps", 1.0)) == []
 
 
 def fault(*words):

@@ -10,7 +10,7 @@ from twin.recording.checks import run_checks
 from twin.recording.map_file import parse_map
 from twin.recording.read import Raw, finished, through
 from twin.recording.table import Table
-from twin.recording.timebase import Clock
+from twin.recording.timebase import TimeAxis
 
 KNOT = 1852.0 / 3600.0
 H, R, D, N = "heading_true_north_deg", "yaw_rate_degps", "rudder_angle_deg", "propeller_rate_rpm"
@@ -53,7 +53,7 @@ def voyage(d, entries=BRIDGE):
     table = Table(Path("b.csv"), np.arange(2, d["t"].size + 2), {n: np.array(d[n], float) for n in names}, {})
     return finished(
         through(
-            table.path, table, Clock(np.array(d["t"], float)), parse_map({"columns": entries}, "b"), [], {}
+            table.path, table, TimeAxis(np.array(d["t"], float)), parse_map({"columns": entries}, "b"), [], {}
         )
     )
 
@@ -216,5 +216,5 @@ def test_a_constant_of_the_map_is_no_instrument_that_repeats_its_stamps(sail):
         {},
     )
     by = parse_map({"columns": entries, "constant": {N: 77}}, "b")
-    v = finished(through(table.path, table, Clock(rows["t"]), by, [], {}))
+    v = finished(through(table.path, table, TimeAxis(rows["t"]), by, [], {}))
     assert {c.name: c for c in run_checks(v)}["time_stamps"].ok

@@ -10,7 +10,7 @@ from twin.num import num
 from twin.physics.model import Model
 from twin.physics.particulars import Ship
 from twin.recording.voyage import Voyage
-from twin.study.prediction.compare import Compared
+from twin.study.prediction.compare import ComparedVoyages
 from twin.study.prediction.compare import compare as judged
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.reference.sailed import Sailed, sailed
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 class Comparison(Result):
     """How far the model is off, and where. Its rows are the horizons."""
 
-    found: Compared = field(repr=False)
+    found: ComparedVoyages = field(repr=False)
     model: Model = field(repr=False)
 
     @property

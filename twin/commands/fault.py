@@ -21,7 +21,7 @@ from google.protobuf.message import DecodeError
 from twin.cli import guarded
 from twin.errors import DataError, UsageError
 from twin.live.faulty import EVERYTHING, Faulty, Sample
-from twin.live.inject import KINDS, Fault
+from twin.live.inject import KINDS, InjectedFault
 from twin.live.keelson import messages
 from twin.live.keelson.bus import Bus
 from twin.live.keelson.topics import BY_SUBJECT, address, is_own
@@ -105,11 +105,11 @@ def run(args: argparse.Namespace) -> int:
     return live(args, fault)
 
 
-def asked(args: argparse.Namespace) -> Fault:
+def asked(args: argparse.Namespace) -> InjectedFault:
     """The fault of these words, checked; its times are still counted from the start."""
     kind = args.kind or ("off" if args.what == "bus" else "wrong" if args.what == "clock" else "")
     usual = KINDS[kind].by if kind in KINDS else 0.0
-    fault = Fault(kind, usual if args.by is None else args.by, args.start, args.seconds, args.seed)
+    fault = InjectedFault(kind, usual if args.by is None else args.by, args.start, args.seconds, args.seed)
     if not isfinite(fault.by):
         raise UsageError(f"--by {args.by}: a finite number is needed.")
     if args.what == "clock" and not fault.by:
@@ -120,7 +120,7 @@ def asked(args: argparse.Namespace) -> Fault:
     return fault
 
 
-def in_a_log(path: str, output: str, what: str, fault: Fault) -> int:
+def in_a_log(path: str, output: str, what: str, fault: InjectedFault) -> int:
     """A copy of a log with the fault in it, whole or not at all."""
     if os.path.realpath(path) == os.path.realpath(output):
         raise UsageError(f"-o {output}: is the log itself. Give another name.")
@@ -161,7 +161,7 @@ def _at_s(type_name: str, payload: bytes, log_ns: int) -> float:
     return log_ns * 1e-9
 
 
-def live(args: argparse.Namespace, fault: Fault) -> int:
+def live(args: argparse.Namespace, fault: InjectedFault) -> int:
     """Between the sensors and the twin until it is told to stop; ends the process itself (an open Zenoh
     session may not)."""
     code = 1
@@ -173,7 +173,7 @@ def live(args: argparse.Namespace, fault: Fault) -> int:
         os._exit(code)
 
 
-def proxy(args: argparse.Namespace, fault: Fault) -> int:
+def proxy(args: argparse.Namespace, fault: InjectedFault) -> int:
     """Hear at one place, say at the other, with the fault in between."""
     from twin.live.keelson.zenoh_bus import ZenohBus
     from twin.live.keelson.zenoh_config import BusSettings

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from google.protobuf.message import DecodeError
 
 from twin.errors import UsageError, did_you_mean
-from twin.live.inject import KINDS, NEEDS_AMOUNT, Fault, Injector, Report
+from twin.live.inject import KINDS, NEEDS_AMOUNT, InjectedFault, Injector, Report
 from twin.live.keelson import messages
 from twin.live.keelson.topics import BY_SUBJECT, FIX, POSITION, Topic, address, is_own
 from twin.live.signals.channels import BY_NAME
@@ -56,7 +56,7 @@ class Faulty:
     """A stream of messages in, the stream with the fault out; everything that is not the channel's passes as
     it is."""
 
-    def __init__(self, what: str, fault: Fault):
+    def __init__(self, what: str, fault: InjectedFault):
         if what not in EVERYTHING:
             if fault.kind not in KINDS:
                 raise UsageError(f"no fault is called {fault.kind!r}.{did_you_mean(fault.kind, KINDS)}")

@@ -13,7 +13,7 @@ from math import ceil, degrees, hypot
 from typing import NamedTuple
 
 from twin.live.loop import Loop
-from twin.live.observer.dynamics import INPUTS, Known, Steering
+from twin.live.observer.dynamics import INPUTS, KnownDynamics, Steering
 from twin.live.observer.predict import STEP, LearnedAt, Middle, carry
 from twin.live.signals.derive import turn
 from twin.physics.maths import total
@@ -32,7 +32,7 @@ class Sight(NamedTuple):
 class Start(NamedTuple):
     time_s: float
     situation: Situation
-    physics: Known
+    physics: KnownDynamics
     learned: LearnedAt
     steering: Steering | None
 

@@ -37,7 +37,7 @@ class Verdict(NamedTuple):
     odd: str = ""
 
 
-class Held:
+class HeldControl:
     """A fault counts at once, and until it was gone for `hold_s`."""
 
     def __init__(self, hold_s: float):
@@ -63,11 +63,11 @@ class Guard:
         self.learned = learned
         self.plausible = Plausibility(ship)
         hold_s = hold_s or 3.0 * T
-        self._worse = Held(hold_s)
-        self._broken = Held(hold_s)
-        self._bound = Held(hold_s)
-        self._clipped = Held(hold_s)
-        self._doubted = Held(hold_s)
+        self._worse = HeldControl(hold_s)
+        self._broken = HeldControl(hold_s)
+        self._bound = HeldControl(hold_s)
+        self._clipped = HeldControl(hold_s)
+        self._doubted = HeldControl(hold_s)
         self._clipped_share = 0.0
         self._bad = self._outside = self._unproved = ""
         self._reckoning_since: float | None = None

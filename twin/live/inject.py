@@ -12,7 +12,7 @@ from math import inf
 from typing import NamedTuple
 
 
-class Kind(NamedTuple):
+class FaultKind(NamedTuple):
     """One way to go wrong: what happens, what `by` means and is unless it is given."""
 
     doc: str
@@ -20,21 +20,21 @@ class Kind(NamedTuple):
     by: float = 0.0
 
 
-KINDS: dict[str, Kind] = {
-    "off": Kind("nothing comes any more"),
-    "stuck": Kind("the last value comes again and again, with fresh stamps"),
-    "garbage": Kind("random bytes (in a voyage's rows: random numbers)"),
-    "wrong": Kind("every value is off by so much", "channel"),
-    "slow": Kind("only one sample in so many comes", "samples", 10.0),
-    "delayed": Kind("every sample comes so much later, with its own stamp", "s", 3.0),
-    "intermittent": Kind("so large a share of the samples is lost, at random", "0 to 1", 0.5),
-    "drift": Kind("every value walks off so fast", "channel per s"),
-    "noise": Kind("random numbers of this deviation are added", "channel"),
+KINDS: dict[str, FaultKind] = {
+    "off": FaultKind("nothing comes any more"),
+    "stuck": FaultKind("the last value comes again and again, with fresh stamps"),
+    "garbage": FaultKind("random bytes (in a voyage's rows: random numbers)"),
+    "wrong": FaultKind("every value is off by so much", "channel"),
+    "slow": FaultKind("only one sample in so many comes", "samples", 10.0),
+    "delayed": FaultKind("every sample comes so much later, with its own stamp", "s", 3.0),
+    "intermittent": FaultKind("so large a share of the samples is lost, at random", "0 to 1", 0.5),
+    "drift": FaultKind("every value walks off so fast", "channel per s"),
+    "noise": FaultKind("random numbers of this deviation are added", "channel"),
 }
 NEEDS_AMOUNT = tuple(name for name, kind in KINDS.items() if kind.unit.startswith("channel"))
 
 
-class Fault(NamedTuple):
+class InjectedFault(NamedTuple):
     """A fault of one channel, from `start_s` on for `seconds`, both by the clock that arrivals are told
     by."""
 
@@ -57,7 +57,7 @@ class Injector:
     """One channel with its fault. `feed` takes what the instrument said and gives what arrives by then; the
     same samples and the same seed give the same reports."""
 
-    def __init__(self, fault: Fault):
+    def __init__(self, fault: InjectedFault):
         self.fault = fault
         self._random = random.Random(fault.seed)
         self._held: deque[Report] = deque()

@@ -7,7 +7,7 @@ from twin.live.clock import Instant
 from twin.live.guard import Verdict
 from twin.live.learning.adapt import Parameter
 from twin.live.learning.learned import Learned
-from twin.live.observer.dynamics import Known
+from twin.live.observer.dynamics import KnownDynamics
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction
 from twin.live.signals.measured import Measured
@@ -34,7 +34,7 @@ class Seen(NamedTuple):
     measured: Measured
     estimate: Estimate
     situation: Situation
-    physics: Known
+    physics: KnownDynamics
     forces: Sequence[Tau]  # known ones, in the order of physics.names
     verdict: Verdict
     learned: Learned

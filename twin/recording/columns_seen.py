@@ -20,7 +20,7 @@ HEAD_LINES = 30  # lines above the column names at most
 
 
 @dataclass
-class Seen:
+class SeenColumns:
     """`cells` by column name, as text or as numbers; `layout`: the [file] table that reads it, where it needs
     one."""
 
@@ -54,13 +54,13 @@ class Seen:
         ) > 0.5 * len(filled)
 
 
-def columns_seen(path: Path) -> Seen:
+def columns_seen(path: Path) -> SeenColumns:
     """The first rows of a table of any kind."""
     kind = recognised(path)
     if kind is not None and kind.table is not None:
         packed = kind.table(path, kind.says)
         names = [n for n in packed.names if n]
-        return Seen(path, names, first_pieces(packed.pieces(names), names))
+        return SeenColumns(path, names, first_pieces(packed.pieces(names), names))
     if kind is not None:
         raise DataError(f"{path}: this is {kind.says}; give it by itself.")
     return of_text(path)
@@ -73,7 +73,7 @@ def first_pieces(pieces: Any, names: list[str]) -> dict[str, Any]:
     return {n: first[n][:ROWS] for n in names}
 
 
-def of_text(path: Path) -> Seen:
+def of_text(path: Path) -> SeenColumns:
     """A text table: lines above the column names are skipped, a line of units under them too."""
     skip = lines_above(path)
     with open_text(path, None) as stream:
@@ -85,7 +85,7 @@ def of_text(path: Path) -> Seen:
         layout["skip_after_header"] = 1
         del rows[0]
     cells = {name: [row[i].strip() for row in rows] for i, name in enumerate(names) if name}
-    return Seen(path, [n for n in names if n], cells, layout)
+    return SeenColumns(path, [n for n in names if n], cells, layout)
 
 
 def lines_above(path: Path) -> int:

@@ -27,7 +27,7 @@ from twin.recording.place import CHART, FRAMED, derive, placed, present, scaled
 from twin.recording.samples import plausible
 from twin.recording.table import Table, read_packed, read_table
 from twin.recording.timebase import (
-    Clock,
+    TimeAxis,
     clock_from_numbers,
     clock_from_text,
     rebuilt,
@@ -241,7 +241,9 @@ def beside_map(own: dict[str, Any], given: Map) -> dict[str, Any]:
     return {name: c for name, c in own.items() if name not in taken}
 
 
-def through(path: Path, table: Table, clock: Clock, by: Map, notes: list[str], facts: dict[str, Any]) -> Raw:
+def through(
+    path: Path, table: Table, clock: TimeAxis, by: Map, notes: list[str], facts: dict[str, Any]
+) -> Raw:
     """A table through a map: every channel in its unit, then places and velocities in their frames."""
     columns = {
         name: converted(name, table, c, by.name, notes) for name, c in by.columns.items() if there(table, c)
@@ -268,11 +270,11 @@ def through(path: Path, table: Table, clock: Clock, by: Map, notes: list[str], f
     return Raw(path, table.lines, clock.time_s * slower, columns, meta, notes + said, step, list(table.lost))
 
 
-def about(path: Path, clock: Clock) -> dict[str, Any]:
+def about(path: Path, clock: TimeAxis) -> dict[str, Any]:
     return {"source": str(path), "start_time_utc": clock.start_time_utc}
 
 
-def read_clock(path: Path, table: Table, stamps: tuple[Key, ...], spec: TimeColumn) -> Clock:
+def read_clock(path: Path, table: Table, stamps: tuple[Key, ...], spec: TimeColumn) -> TimeAxis:
     """The clock of a table: numbers (several are added up by `factors`), moments that a packed table keeps,
     or text."""
     if all(s in table.numbers for s in stamps):

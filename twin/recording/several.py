@@ -20,7 +20,7 @@ from twin.recording.headers import column_names, own_names
 from twin.recording.mapping import Column, Map, TimeColumn
 from twin.recording.read import Raw, opened_table, read_clock, stamps_of, table_of, through
 from twin.recording.table import Table
-from twin.recording.timebase import Clock, clock_from_numbers, moment_of
+from twin.recording.timebase import TimeAxis, clock_from_numbers, moment_of
 
 ENDINGS = (".csv", ".txt", ".tsv", ".dat", ".gz", ".parquet", ".feather", ".arrow", ".xlsx")
 SAYS = "several tables"
@@ -71,7 +71,7 @@ def joined(paths: Sequence[Path], by: Map | None) -> Raw:
     table = Table(paths[0], np.arange(1, time_s.size + 1), dict(columns.items()), {})
     frames = {name: c for _, own in maps for name, c in own.columns.items()}
     whole = replace(by or Map(), columns={n: Column(n, frame=frames[n].frame) for n in columns}, time=None)
-    clock = clock_from_numbers(paths[0], time_s, TimeColumn()) if starts > 1e8 else Clock(time_s)
+    clock = clock_from_numbers(paths[0], time_s, TimeColumn()) if starts > 1e8 else TimeAxis(time_s)
     return through(paths[0], table, clock, whole, notes, {"files": [str(p.path) for p, _ in maps]})
 
 

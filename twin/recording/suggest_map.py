@@ -13,7 +13,7 @@ import numpy as np
 
 from twin.errors import DataError, TwinError
 from twin.num import num
-from twin.recording.columns_seen import Seen, columns_seen
+from twin.recording.columns_seen import SeenColumns, columns_seen
 from twin.recording.formats import recognised
 from twin.recording.formats.choose import Sources, chosen
 from twin.recording.formats.guess import Guess, guess
@@ -71,7 +71,7 @@ def of_signals(signals: Signals, sources: Sources) -> str:
     return "\n".join(lines + lacking(choice.columns)) + "\n"
 
 
-def of_tables(files: Sequence[Seen], paths: Sequence[Path]) -> str:
+def of_tables(files: Sequence[SeenColumns], paths: Sequence[Path]) -> str:
     """The map of one table, or of several that are joined."""
     taken = best_guesses(files)
     time = time_entry([f for f in files if any(f is g for g, _, _ in taken.values())] or files)
@@ -91,9 +91,9 @@ def of_tables(files: Sequence[Seen], paths: Sequence[Path]) -> str:
     return with_verdict(text, paths) + unused_columns(files, columns, time)
 
 
-def best_guesses(files: Sequence[Seen]) -> dict[str, tuple[Seen, str, Guess]]:
+def best_guesses(files: Sequence[SeenColumns]) -> dict[str, tuple[SeenColumns, str, Guess]]:
     """For each channel the column whose name says it most plainly; of two alike the one with more samples."""
-    out: dict[str, tuple[Seen, str, Guess]] = {}
+    out: dict[str, tuple[SeenColumns, str, Guess]] = {}
     for seen in files:
         for name in seen.names:
             found = guess(name)
@@ -111,7 +111,7 @@ def best_guesses(files: Sequence[Seen]) -> dict[str, tuple[Seen, str, Guess]]:
     return out
 
 
-def quaternion(files: Sequence[Seen], out: dict[str, tuple[Seen, str, Guess]]) -> None:
+def quaternion(files: Sequence[SeenColumns], out: dict[str, tuple[SeenColumns, str, Guess]]) -> None:
     """Without a heading by name: the four parts of an orientation."""
     if HEADING in out:
         return
@@ -122,7 +122,7 @@ def quaternion(files: Sequence[Seen], out: dict[str, tuple[Seen, str, Guess]]) -
                 return
 
 
-def describe(entry: Entry, channel: str, seen: Seen, name: str, how: Guess) -> None:
+def describe(entry: Entry, channel: str, seen: SeenColumns, name: str, how: Guess) -> None:
     """Unit and why, from the name and the range."""
     values = seen.numbers(name)
     low, high = (
@@ -144,7 +144,7 @@ def describe(entry: Entry, channel: str, seen: Seen, name: str, how: Guess) -> N
 
 
 def by_motion(
-    entries: dict[str, Entry], taken: dict[str, tuple[Seen, str, Guess]], time: dict[str, Any]
+    entries: dict[str, Entry], taken: dict[str, tuple[SeenColumns, str, Guess]], time: dict[str, Any]
 ) -> None:
     """Units that the name does not state, from how position, speed, heading and turning go together."""
     speed_unit(entries, taken, time)
@@ -172,7 +172,7 @@ def framed(entries: dict[str, Entry]) -> dict[str, Entry]:
     return out
 
 
-def written(files: Sequence[Seen], time: dict[str, Any], columns: dict[str, Entry]) -> str:
+def written(files: Sequence[SeenColumns], time: dict[str, Any], columns: dict[str, Entry]) -> str:
     lines = [
         f"# proposed for {', '.join(f.path.name for f in files[:4])}: read every line, then import with it."
     ]
@@ -197,7 +197,7 @@ def lacking(columns: Any) -> list[str]:
     return ["", f"# NOT FOUND, and needed: {', '.join(missing)}"] if missing else []
 
 
-def unused_columns(files: Sequence[Seen], columns: dict[str, Entry], time: dict[str, Any]) -> str:
+def unused_columns(files: Sequence[SeenColumns], columns: dict[str, Entry], time: dict[str, Any]) -> str:
     used = {
         n
         for e in columns.values()

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from twin.num import num
-from twin.recording.columns_seen import Seen
+from twin.recording.columns_seen import SeenColumns
 from twin.recording.formats.guess import Guess, guess
 from twin.recording.resample import continuous
 from twin.recording.units import DEG_PER_RAD, KNOT_MPS, UNITS
@@ -27,12 +27,12 @@ FORMATS = (
     "%H:%M:%S",
 )
 EPOCHS = ((1e17, "ns"), (1e14, "us"), (1e11, "ms"), (1e8, "s"))
-Taken = dict[str, tuple[Seen, str, Guess]]
+Taken = dict[str, tuple[SeenColumns, str, Guess]]
 RADIANS = 2.0 * np.pi + 1e-3
 SPEEDS = ("speed_over_ground_mps", "surge_velocity_mps", "velocity_north_mps")
 
 
-def time_entry(files: Sequence[Seen]) -> dict[str, Any]:
+def time_entry(files: Sequence[SeenColumns]) -> dict[str, Any]:
     """The [time] table: a column that every file has, its unit by name, size or form."""
     common = [n for n in files[0].names if all(n in f.names for f in files)]
     times = [n for n in common if (g := guess(n)) and g.channel == "time"]
@@ -101,7 +101,9 @@ def cut(stamp: str) -> str:
     return f"{head}.{part[:6]}" if point and part.isdigit() and len(part) > 4 else stamp.replace(",", ".")
 
 
-def place_format(keys: dict[str, Any], why: list[str], seen: Seen, name: str, values: np.ndarray) -> None:
+def place_format(
+    keys: dict[str, Any], why: list[str], seen: SeenColumns, name: str, values: np.ndarray
+) -> None:
     """Degrees, NMEA's ddmm.mmm, 1e-7 deg, or text; a column of letters beside it."""
     if not np.isfinite(values).any():
         keys["unit"] = "dms"
@@ -149,7 +151,7 @@ def unit_of_angle(
             why.append("below one: radians? CONFIRM")
 
 
-def seconds_of(seen: Seen, time: dict[str, Any]) -> np.ndarray | None:
+def seconds_of(seen: SeenColumns, time: dict[str, Any]) -> np.ndarray | None:
     """The clock of a file [s], where it is a number."""
     name = time["column"]
     if (
@@ -198,7 +200,7 @@ def speed_unit(entries: dict[str, Any], taken: Taken, time: dict[str, Any]) -> N
         )
 
 
-def distance(seen: Seen, taken: Taken, entries: dict[str, Any]) -> float | None:
+def distance(seen: SeenColumns, taken: Taken, entries: dict[str, Any]) -> float | None:
     """Way made good between positions ten rows apart, summed [m]."""
     for first, second in (("latitude_deg", "longitude_deg"), ("north_m", "east_m")):
         if (

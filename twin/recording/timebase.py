@@ -21,7 +21,7 @@ FRACTION = re.compile(r"^(.*:\d\d)[.,](\d{1,9})(\D.*)?$")  # up to the seconds, 
 
 
 @dataclass(frozen=True)
-class Clock:
+class TimeAxis:
     """(N,) seconds, the UTC time of zero when the file knows it, and what was assumed."""
 
     time_s: np.ndarray
@@ -29,7 +29,7 @@ class Clock:
     notes: tuple[str, ...] = ()
 
 
-def clock_from_numbers(path: Path, stamps: np.ndarray, spec: TimeColumn) -> Clock:
+def clock_from_numbers(path: Path, stamps: np.ndarray, spec: TimeColumn) -> TimeAxis:
     """Numbers in the map's unit; seconds since 1970 become seconds since the first sample.
 
     A number of seconds that only fits our century as milliseconds, microseconds or nanoseconds since 1970 is
@@ -37,9 +37,9 @@ def clock_from_numbers(path: Path, stamps: np.ndarray, spec: TimeColumn) -> Cloc
     time_s = stamps * UNITS["s"][spec.unit]
     finite = time_s[np.isfinite(time_s)]
     if not finite.size or abs(finite[0]) <= EPOCH_S:
-        return Clock(time_s)
+        return TimeAxis(time_s)
     if EPOCH_S < finite[0] <= LATEST_S:
-        return Clock(time_s - finite[0], utc(finite[0]))
+        return TimeAxis(time_s - finite[0], utc(finite[0]))
     unit = (
         next((u for u in FINER if EPOCH_S < finite[0] * UNITS["s"][u] <= LATEST_S), None)
         if spec.unit == "s"
@@ -57,17 +57,17 @@ def clock_from_numbers(path: Path, stamps: np.ndarray, spec: TimeColumn) -> Cloc
         "no date) and was "
         f'read so, from {utc(first)}; in a map: [time] unit = "{unit}"'
     )
-    return Clock((time_s - finite[0]) * UNITS["s"][unit], utc(first), (said,))
+    return TimeAxis((time_s - finite[0]) * UNITS["s"][unit], utc(first), (said,))
 
 
-def clock_from_text(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: TimeColumn) -> Clock:
+def clock_from_text(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: TimeColumn) -> TimeAxis:
     """ISO-8601 or strptime stamps; without a zone they are taken as UTC."""
     seconds = moments(path, lines, stamps, spec)
     finite = seconds[np.isfinite(seconds)]
     if finite.size and finite[0] > LATEST_S:
         first = stamps[int(np.flatnonzero(np.isfinite(seconds))[0])]
         raise DataError(f"{path}: its first time stamp, {first!r}, lies after 2100. Correct the stamps.")
-    return Clock(seconds - finite[0], utc(finite[0])) if finite.size else Clock(seconds)
+    return TimeAxis(seconds - finite[0], utc(finite[0])) if finite.size else TimeAxis(seconds)
 
 
 def moments(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: TimeColumn) -> np.ndarray:

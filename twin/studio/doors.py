@@ -21,7 +21,7 @@ ELSEWHERE = "Sent to another name, or by another page: refused.\n"
 READS = ("GET", "HEAD")
 
 
-class Guard:
+class DoorGuard:
     """Asks every request for the name it was sent to, the page that sent it, and the cookie."""
 
     def __init__(self, app: ASGIApp, doors: Doors, port: int):

@@ -10,9 +10,9 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response, StreamingResponse
 
 from twin.errors import UsageError
-from twin.live.bridge.feed import BusFeed, Feed, LogFeed
+from twin.live.bridge.feed import BridgeFeed, BusFeed, LogFeed
 from twin.live.bridge.server import MAX_BODY, pages
-from twin.live.bridge.watch import Watch
+from twin.live.bridge.watch import BridgeWatch
 from twin.live.signals import config
 
 WAIT_S = 2.0  # for a frame, before it is asked whether the viewer is still there
@@ -23,14 +23,14 @@ class Live:
     """At most one twin is looked at; its frames are made by a thread of their own, ten a second."""
 
     def __init__(self) -> None:
-        self.watch: Watch | None = None
+        self.watch: BridgeWatch | None = None
         self._viewers = 0
         self.pages = pages()
 
     def attach(self, connect: str | None, log: str | None, speed: float = 1.0) -> str:
         """Looks at the twin at `connect` (default: on this computer), or at a log; the feed's name."""
         self.leave()
-        feed: Feed
+        feed: BridgeFeed
         if log:
             feed = LogFeed(log, speed)
         else:
@@ -41,7 +41,7 @@ class Live:
                 for name, value in (("listen", ""), ("router", ""), ("connect", [connect])):
                     settings = settings.but(f"bus.{name}", value)
             feed = BusFeed(settings)
-        watch = self.watch = Watch(feed)
+        watch = self.watch = BridgeWatch(feed)
         watch.step(time.monotonic())
         Thread(target=watch.run, args=(lambda: self.watch is watch,), name="live", daemon=True).start()
         return feed.name
@@ -68,7 +68,7 @@ class Live:
             return PlainTextResponse(f"{MOST_VIEWERS} pages are open already.\n", 503)
         return StreamingResponse(self._frames(watch, request), media_type="text/event-stream")
 
-    async def _frames(self, watch: Watch, request: Request) -> Any:
+    async def _frames(self, watch: BridgeWatch, request: Request) -> Any:
         self._viewers += 1
         try:
             number, trail = 0, -1

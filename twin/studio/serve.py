@@ -11,7 +11,7 @@ import uvicorn
 from twin.errors import TwinError, UsageError
 from twin.live.bridge.server import HOST, Doors
 from twin.studio.app import Studio
-from twin.studio.doors import Guard
+from twin.studio.doors import DoorGuard
 
 STOP_S = 2  # for pages that are open when it ends
 
@@ -38,7 +38,7 @@ def served(args: argparse.Namespace) -> int:
 
         doors = Doors(said)
         doors.new_link(port)
-        app = Guard(studio.app(), doors, port)
+        app = DoorGuard(studio.app(), doors, port)
         print(f"project {studio.project.folder}; Ctrl-C ends it, work goes on", file=sys.stderr, flush=True)
         if not args.no_browser:
             webbrowser.open(links[0])

@@ -9,7 +9,7 @@ from twin.errors import UsageError
 Asked = Mapping[str, Any]
 
 
-class Verb(NamedTuple):
+class StudioVerb(NamedTuple):
     """`needs` and `may`: keys of what is asked (lists end in s); `typed`: the words of its command."""
 
     needs: tuple[str, ...]
@@ -51,13 +51,13 @@ def _several(option: str, names: Any) -> list[str]:
     return [option, *names] if names else []
 
 
-VERBS: dict[str, Verb] = {
-    "look": Verb(("file",), ("map", "ship"), _look),
-    "import": Verb(("file", "output"), ("map", "ship", "accept"), _import),
-    "compare": Verb(("ship", "voyages"), (), _compare),
-    "diagnose": Verb(("ship", "voyages"), ("references",), _diagnose),
-    "calibrate": Verb(("ship", "voyages", "output"), ("held_outs",), _calibrate),
-    "add": Verb(("ship", "voyages", "effects", "output"), ("held_outs", "force"), _add),
+VERBS: dict[str, StudioVerb] = {
+    "look": StudioVerb(("file",), ("map", "ship"), _look),
+    "import": StudioVerb(("file", "output"), ("map", "ship", "accept"), _import),
+    "compare": StudioVerb(("ship", "voyages"), (), _compare),
+    "diagnose": StudioVerb(("ship", "voyages"), ("references",), _diagnose),
+    "calibrate": StudioVerb(("ship", "voyages", "output"), ("held_outs",), _calibrate),
+    "add": StudioVerb(("ship", "voyages", "effects", "output"), ("held_outs", "force"), _add),
 }
 LISTS = ("voyages", "held_outs", "references", "effects", "accept")
 READ = ("file", "map", "ship", "voyages", "held_outs", "references")  # names of files that must be there

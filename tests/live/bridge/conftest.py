@@ -6,7 +6,7 @@ import pytest
 
 from twin.live.bridge.feed import About
 from twin.live.bridge.server import Server
-from twin.live.bridge.watch import Watch
+from twin.live.bridge.watch import BridgeWatch
 from twin.live.log.logfile import LogFile
 from twin.live.log.mcap_index import PROVENANCE
 from twin.live.provenance import provenance
@@ -43,7 +43,7 @@ def feed(kvlcc2):
 
 @pytest.fixture
 def watch(feed):
-    return Watch(feed)
+    return BridgeWatch(feed)
 
 
 @pytest.fixture

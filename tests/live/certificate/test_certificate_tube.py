@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.stability.adversaries import Case, Fleet, certified, trial
+from bench.stability.adversaries import AdversaryCase, AdversaryFleet, certified, trial
 from bench.stability.loop import LoopCase, Loops
 from twin.live.certificate.certificate import Tube, certify
 from twin.live.certificate.tube import Highest
@@ -95,8 +95,8 @@ def test_a_bound_as_wide_as_the_operating_set_says_nothing(certificate):
 
 def test_the_fleets_tube_is_the_tube_of_the_loop():
     """Test: one ship of the bench, drop-outs and all. Expected: the same bound as Tube, tick by tick."""
-    model, c = certified(Case("kvlcc2", 10.0, (3, 2, 1), 1))
-    fleet = Fleet(model, c, 1, seed=4, H_s=1.0, dropouts=True)
+    model, c = certified(AdversaryCase("kvlcc2", 10.0, (3, 2, 1), 1))
+    fleet = AdversaryFleet(model, c, 1, seed=4, H_s=1.0, dropouts=True)
     tube = Tube(c, fleet.stated)
     for k in range(400):
         fleet.step(k)
@@ -107,10 +107,10 @@ def test_the_fleets_tube_is_the_tube_of_the_loop():
 @pytest.mark.parametrize(
     ("case", "runs", "seconds"),
     [
-        (Case("kvlcc2", 10.0, (1, 1, 1), 0), 80, 25.0),
-        (Case("kvlcc2", 10.0, (1, 1, 1), 0, dropouts=True), 60, 25.0),
-        (Case("container", 10.0, (1, 1, 1), 0, H_s=0.5), 30, 15.0),
-        (Case("usv", 50.0, (0, 0, 0), 0, dropouts=True), 30, 2.0),
+        (AdversaryCase("kvlcc2", 10.0, (1, 1, 1), 0), 80, 25.0),
+        (AdversaryCase("kvlcc2", 10.0, (1, 1, 1), 0, dropouts=True), 60, 25.0),
+        (AdversaryCase("container", 10.0, (1, 1, 1), 0, H_s=0.5), 30, 15.0),
+        (AdversaryCase("usv", 50.0, (0, 0, 0), 0, dropouts=True), 30, 2.0),
     ],
     ids=["calm", "drop-outs", "waves", "usv"],
 )
@@ -120,7 +120,7 @@ def test_two_hundred_hostile_runs_never_break_the_bound(case, runs, seconds):
     """
     model, c = certified(case)
     assert c.ok
-    outcome = trial(Fleet(model, c, runs, 11, case.H_s, case.dropouts), seconds)
+    outcome = trial(AdversaryFleet(model, c, runs, 11, case.H_s, case.dropouts), seconds)
     assert outcome.violations == 0
     assert outcome.left < runs
     assert max(outcome.of_tube) > 0.7
@@ -153,8 +153,8 @@ def test_with_the_stated_noise_exceeded_the_bound_can_be_broken():
     """The oracle of the test above: the same fleet, three times the promised noise. Expected: violations are
     seen.
     """
-    model, c = certified(Case("kvlcc2", 10.0, (1, 1, 1), 0))
-    fleet = Fleet(model, c, 60, seed=5)
+    model, c = certified(AdversaryCase("kvlcc2", 10.0, (1, 1, 1), 0))
+    fleet = AdversaryFleet(model, c, 60, seed=5)
     fleet.noise = 3.0 * fleet.noise
     broken = sum(bool(np.any(np.abs(fleet.step(k)) > fleet.tube)) for k in range(150))
     assert broken > 0

@@ -6,7 +6,7 @@ import pytest
 
 from twin.live.learning.evidence import Evidence
 from twin.live.learning.learned import scale_of
-from twin.live.observer.dynamics import Known
+from twin.live.observer.dynamics import KnownDynamics
 from twin.physics.model import Model
 from twin.physics.state import Rates
 
@@ -16,7 +16,7 @@ DT = 0.1
 def heard(ship, force, seconds=900.0):
     """(d, regressor) in sway after each step, of a ship that only force(t), in units of the force scale,
     pushes aside; force is the regressor too."""
-    physics, scale = Known(Model(ship)), scale_of(ship)
+    physics, scale = KnownDynamics(Model(ship)), scale_of(ship)
     evidence, v, r, out = Evidence(ship, scale), 0.0, 0.0, []
     for k in range(int(seconds / DT)):
         q = force(DT * k)

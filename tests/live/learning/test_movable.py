@@ -7,7 +7,7 @@ import pytest
 from twin.live.learning.learned import scale_of
 from twin.live.learning.movable import Columns, movable, moved
 from twin.live.learning.ridge import LARGEST
-from twin.live.observer.dynamics import Known
+from twin.live.observer.dynamics import KnownDynamics
 from twin.physics import core
 from twin.physics.effects import BUILT_IN, find
 from twin.physics.model import Model
@@ -45,7 +45,7 @@ def turning(**more):
 def columns(ship, *effects, without=()):
     ship = ship.with_effects(*effects)
     model, _ = Model.of(ship).without_inputs(set(without))
-    s, known = turning(), Known(model)
+    s, known = turning(), KnownDynamics(model)
     numbers = movable(ship.effects, ship)
     return numbers, Columns(numbers, scale_of(ship)).at(s, known.forces(s), known, Force()), s
 
@@ -70,7 +70,9 @@ def test_a_heavier_ships_column_holds_her_inertia(kvlcc2):
     loaded = find("Loading")(mass=0.02, draught=0.0, x_G=0.0)
     numbers, found, s = columns(kvlcc2, loaded)
     j = [n.label for n in numbers].index("Loading.mass")
-    before, after = (Known(Model.of(kvlcc2.with_effects(e))) for e in (loaded, loaded.but(mass=0.021)))
+    before, after = (
+        KnownDynamics(Model.of(kvlcc2.with_effects(e))) for e in (loaded, loaded.but(mass=0.021))
+    )
     change = [b - a for a, b in zip(before.rates(s, Force()), after.rates(s, Force()), strict=True)]
     push = [
         x * numbers[j].sd / 0.001 / size
@@ -87,7 +89,7 @@ def test_what_is_switched_off_for_want_of_its_input_has_no_column(kvlcc2):
 
 def test_asking_leaves_the_situation_as_it_was(kvlcc2):
     ship = kvlcc2.with_effects(find("ShallowWater").plausible(kvlcc2))
-    s, known, numbers = turning(), Known(Model.of(ship)), movable(ship.effects, ship)
+    s, known, numbers = turning(), KnownDynamics(Model.of(ship)), movable(ship.effects, ship)
     forces = known.forces(s)
     before = replace(s)
     Columns(numbers, scale_of(ship)).at(s, forces, known, Force())
@@ -97,7 +99,7 @@ def test_asking_leaves_the_situation_as_it_was(kvlcc2):
 @pytest.mark.parametrize("speed", (1e30, 1e200, float("nan")))
 def test_a_situation_that_cannot_be_has_columns_of_a_usual_size(kvlcc2, speed):
     ship = kvlcc2.with_effects(find("RudderWear")(loss=0.2), find("HullFouling")(extra=0.2))
-    s, known = replace(turning(), u=speed), Known(Model.of(ship))
+    s, known = replace(turning(), u=speed), KnownDynamics(Model.of(ship))
     found = Columns(movable(ship.effects, ship), scale_of(ship)).at(s, known.forces(s), known, Force())
     assert len(found) == 6 and all(abs(x) <= LARGEST for x in found)
 

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from twin.live.observer.dynamics import Dynamics, Known
+from twin.live.observer.dynamics import Dynamics, KnownDynamics
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import LEARNED, Middle, Predictor, Sureness, carry, ensemble
 from twin.physics.effects import find
@@ -36,7 +36,7 @@ def test_the_coarse_steps_of_a_prediction_agree_with_fine_ones(name):
     predictor.lead_s = 0.0
     done = []
     while not done:
-        done = predictor.advance(0.0, e, s, Known(Model.of(ship)), nothing, True)
+        done = predictor.advance(0.0, e, s, KnownDynamics(Model.of(ship)), nothing, True)
     state = (s.x, s.y, s.psi, s.u, s.v, s.r)
     for k in range(12000):
         state = Model.of(ship).step(state, s, 0.01)
@@ -50,7 +50,8 @@ def test_a_round_is_spread_over_ticks(kvlcc2):
     e, s = start(kvlcc2)
     predictor = Predictor(kvlcc2, refresh_s=2.0, rate_hz=10.0)
     rounds = [
-        bool(predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, True)) for k in range(60)
+        bool(predictor.advance(0.1 * k, e, s, KnownDynamics(Model.of(kvlcc2)), nothing, True))
+        for k in range(60)
     ]
     assert 2 <= sum(rounds) <= 4 and predictor.steps_a_tick <= 4
 
@@ -104,7 +105,8 @@ def test_without_a_good_estimate_nothing_is_foretold(kvlcc2):
     e, s = start(kvlcc2)
     predictor = Predictor(kvlcc2)
     assert all(
-        not predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, False) for k in range(100)
+        not predictor.advance(0.1 * k, e, s, KnownDynamics(Model.of(kvlcc2)), nothing, False)
+        for k in range(100)
     )
 
 
@@ -114,7 +116,8 @@ def test_a_model_that_runs_away_foretells_nothing_and_does_no_harm(kvlcc2):
     s.n = 100.0
     predictor = Predictor(kvlcc2)
     assert all(
-        not predictor.advance(0.1 * k, e, s, Known(Model.of(kvlcc2)), nothing, True) for k in range(100)
+        not predictor.advance(0.1 * k, e, s, KnownDynamics(Model.of(kvlcc2)), nothing, True)
+        for k in range(100)
     )
 
 
@@ -125,7 +128,7 @@ def test_an_ensemble_of_64_ships_sails_as_64_single_ones(kvlcc2):
     rudders = np.linspace(-0.3, 0.3, 64)
     many = ensemble(
         Situation(0.0, 0.0, s.psi, s.u, np.zeros(64), 0.0, delta=rudders, n=s.n),
-        Known(Model.of(kvlcc2)),
+        KnownDynamics(Model.of(kvlcc2)),
         nothing,
         120.0,
         1.0,
@@ -133,7 +136,7 @@ def test_an_ensemble_of_64_ships_sails_as_64_single_ones(kvlcc2):
     for k in (0, 31, 63):
         one = ensemble(
             Situation(0.0, 0.0, s.psi, s.u, 0.0, 0.0, delta=float(rudders[k]), n=s.n),
-            Known(Model.of(kvlcc2)),
+            KnownDynamics(Model.of(kvlcc2)),
             nothing,
             120.0,
             1.0,

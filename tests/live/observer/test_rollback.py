@@ -8,7 +8,7 @@ import pytest
 from twin.live.certificate.certificate import Certificate, certify, on_board
 from twin.live.certificate.rolled import radius
 from twin.live.certificate.rolled_tube import RolledTube
-from twin.live.observer.dynamics import Known
+from twin.live.observer.dynamics import KnownDynamics
 from twin.live.observer.estimate import Observer
 from twin.live.observer.rollback import FULL, Path, Pull, RollBack, Stretch, inner_steps
 from twin.live.signals.measured import Measured
@@ -37,7 +37,7 @@ def fed(observer, boat, at, samples):
         m.heard[name], m.hold_s[name] = at, 0.12
     estimate = observer.correct(m)
     s = Situation(*estimate.state(), t=at, **INPUTS)
-    observer.remember(Known(Model.of(boat)), s, NONE)
+    observer.remember(KnownDynamics(Model.of(boat)), s, NONE)
     return estimate
 
 
@@ -84,7 +84,7 @@ def test_without_samples_the_inner_steps_follow_the_true_boat_closer_than_one_st
         for k in range(1, 11):
             e = observer.estimate
             s = Situation(*e.state(), **INPUTS)
-            physics = Known(Model.of(boat))
+            physics = KnownDynamics(Model.of(boat))
             observer.steer(physics.mean_rates(s, physics.forces(s), NONE, 0.1))
             fed(observer, boat, 0.1 * k, {})
         off.append(abs(observer.estimate.r - sailed[5]))

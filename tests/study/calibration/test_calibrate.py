@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bench.bundled import recorded
-from bench.real.faults import Readings, antenna_elsewhere
+from bench.real.faults import PlantedReadings, antenna_elsewhere
 from bench.reference import Case, simulate
 from twin import cli
 from twin.api.json_key import absent_keys, unknown_paths
@@ -170,7 +170,7 @@ def test_an_antenna_that_stands_elsewhere_on_the_references_becomes_a_part_of_th
 
 def on_a_mast(v, height):
     """The voyage as an antenna so high above the axis of roll shows it: heel carries it aside."""
-    q = Readings.of(v)
+    q = PlantedReadings.of(v)
     aside = height * np.sin(v.si("roll_deg"))
     swing = np.gradient(aside, v.time_s)
     c, s = np.cos(q.psi), np.sin(q.psi)

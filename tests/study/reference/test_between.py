@@ -5,7 +5,7 @@ import pytest
 
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.innovations import Normal
-from twin.study.reference.between import Told, scattered, ship_of
+from twin.study.reference.between import BetweenVoyages, scattered, ship_of
 from twin.study.reference.nuisance import of_any_day, temper_of
 
 P, SAID = 6, 400.0  # numbers, and how much a voyage says of each (in priors)
@@ -18,7 +18,7 @@ def fleet(scatter, voyages, seed):
     for _ in range(voyages):
         root = rng.standard_normal((3 * P, P)) * np.sqrt(SAID / (3 * P))
         e = root @ (lasting_ones + scatter * rng.standard_normal(P)) + rng.standard_normal(3 * P)
-        out.append(Told(root.T @ root, root.T @ e, float(e @ e)))
+        out.append(BetweenVoyages(root.T @ root, root.T @ e, float(e @ e)))
     return lasting_ones, out
 
 
@@ -59,16 +59,16 @@ def test_log_probability_is_that_of_the_readings_with_the_numbers_integrated_out
     spread = root @ covariance @ root.T + np.eye(9)
     off = e - root @ mean
     straight = -0.5 * (off @ np.linalg.solve(spread, off) + np.linalg.slogdet(spread)[1])
-    assert Told(root.T @ root, root.T @ e, float(e @ e)).log_probability(mean, covariance) == pytest.approx(
-        straight
-    )
+    assert BetweenVoyages(root.T @ root, root.T @ e, float(e @ e)).log_probability(
+        mean, covariance
+    ) == pytest.approx(straight)
 
 
 def test_its_slope_by_each_variance_is_the_difference_quotient():
     rng = np.random.default_rng(4)
     root, e = rng.standard_normal((9, P)), rng.standard_normal(9)
     told, mean, covariance = (
-        Told(root.T @ root, root.T @ e, float(e @ e)),
+        BetweenVoyages(root.T @ root, root.T @ e, float(e @ e)),
         rng.standard_normal(P),
         0.3 * np.eye(P),
     )

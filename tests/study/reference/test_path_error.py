@@ -15,7 +15,7 @@ from twin.study.prediction.left_out import horizons, path_error
 from twin.study.prediction.openloop import MODEL, predict
 from twin.study.prediction.own_water import settled
 from twin.study.prediction.path_prior import errors_of, prior
-from twin.study.reference.between import Told
+from twin.study.reference.between import BetweenVoyages
 from twin.study.reference.derivatives import noted
 from twin.study.reference.path_error import CHANNELS, PathError, of_ship, tail
 from twin.study.reference.structure import once_off
@@ -163,7 +163,7 @@ def test_the_record_is_of_voyages_that_a_model_was_not_fitted_to(kvlcc2, make):
 def test_what_one_voyage_says_is_taken_back_when_it_is_left_out():
     from twin.study.reference.between import ship_of
 
-    told = [Told(np.array([[4.0]]), np.array([4.0 * z]), 0.0) for z in (1.0, 1.0, -3.0)]
+    told = [BetweenVoyages(np.array([[4.0]]), np.array([4.0 * z]), 0.0) for z in (1.0, 1.0, -3.0)]
     whole = ship_of(told, np.zeros(1), np.zeros(1))[0]
     without = ship_of(told[:2], np.zeros(1), np.zeros(1))[0]
     assert whole == pytest.approx([-4.0 / 13.0]) and without == pytest.approx([8.0 / 9.0])

@@ -11,7 +11,7 @@ from twin.physics import ship as ships
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.reference.hierarchical import hierarchical_quantile
-from twin.study.reference.split import Sailed, low_frequency, scores, section, window
+from twin.study.reference.split import SplitVoyage, low_frequency, scores, section, window
 
 STEP_S = 0.1
 
@@ -32,7 +32,7 @@ def voyage(model, amplitude, seconds=240.0, T_p=8.0):
     x = np.array(sailed).T
     wave = amplitude * np.sin(2.0 * np.pi * np.arange(n) * STEP_S / T_p)
     nu = x[3:] + np.array([0.0 * wave, wave, 0.0 * wave])
-    return Sailed(STEP_S, nu, x[2], {"delta": delta, "n": np.full(n, 1.2)}, np.zeros((2, n)), 2.0, T_p)
+    return SplitVoyage(STEP_S, nu, x[2], {"delta": delta, "n": np.full(n, 1.2)}, np.zeros((2, n)), 2.0, T_p)
 
 
 def test_a_sine_of_the_waves_period_is_found_as_motion_and_not_as_force(model):

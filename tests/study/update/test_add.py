@@ -20,7 +20,7 @@ from twin.study.prediction.path_prior import prior
 from twin.study.track.track import track
 from twin.study.update.add import add
 from twin.study.update.adding import fitted
-from twin.study.update.proof import Proof, block_interval, prove
+from twin.study.update.proof import HeldOutProof, block_interval, prove
 
 TIME_S = 320.0 / 7.97388  # L/U_0 of the bundled tanker
 
@@ -188,12 +188,12 @@ def test_five_minutes_are_too_short_to_prove_anything(verb, on_disk, make, tmp_p
 def test_what_was_not_proved_says_how_much_more_would_do():
     """A ratio of 1.5 needs twice the sailing to reach log 20; with an interval three times as wide as itself,
     nine times."""
-    made = Proof(1.5, 0.5, 2.5, (), 600.0, False)
+    made = HeldOutProof(1.5, 0.5, 2.5, (), 600.0, False)
     assert made.more_s == pytest.approx(600.0 * (np.log(20.0) / 1.5 - 1.0))
-    assert Proof(1.5, -3.0, 6.0, (), 600.0, False).more_s == pytest.approx(600.0 * 8.0)
+    assert HeldOutProof(1.5, -3.0, 6.0, (), 600.0, False).more_s == pytest.approx(600.0 * 8.0)
     assert (
-        Proof(-1.0, -3.0, 1.0, (), 600.0, False).more_s is None
-        and Proof(9.0, 4.0, 14.0, (), 600.0, False).more_s is None
+        HeldOutProof(-1.0, -3.0, 1.0, (), 600.0, False).more_s is None
+        and HeldOutProof(9.0, 4.0, 14.0, (), 600.0, False).more_s is None
     )
 
 

@@ -64,7 +64,7 @@ def sound(message: Any) -> bool:
     return True
 
 
-class Feed(Protocol):
+class BridgeFeed(Protocol):
     """The face every source has."""
 
     name: str

@@ -6,24 +6,24 @@ import time
 from threading import Thread
 
 from twin.errors import UsageError
-from twin.live.bridge.feed import About, BusFeed, Feed, LogFeed
+from twin.live.bridge.feed import About, BridgeFeed, BusFeed, LogFeed
 from twin.live.bridge.server import Server
 from twin.live.bridge.text import Text
-from twin.live.bridge.watch import RATE_HZ, Watch
+from twin.live.bridge.watch import RATE_HZ, BridgeWatch
 from twin.live.signals import config
 from twin.physics.ship import load
 
 
 def viewed(args: argparse.Namespace) -> int:
     """Shows it until it is told to stop; the exit code."""
-    watch = Watch(_feed(args), _ship(args.ship))
+    watch = BridgeWatch(_feed(args), _ship(args.ship))
     try:
         return _in_terminal(watch, args) if args.text else _on_page(watch, args)
     except KeyboardInterrupt:
         return 0
 
 
-def _feed(args: argparse.Namespace) -> Feed:
+def _feed(args: argparse.Namespace) -> BridgeFeed:
     if args.log:
         if args.connect or args.config:
             raise UsageError(
@@ -47,7 +47,7 @@ def _ship(file: str | None) -> About | None:
     return About(ship.name, ship.L_pp, ship.B)
 
 
-def _on_page(watch: Watch, args: argparse.Namespace) -> int:
+def _on_page(watch: BridgeWatch, args: argparse.Namespace) -> int:
     if not 0 <= args.port <= 65535:
         raise UsageError(f"--port {args.port}: 0 (any free one) to 65535.")
     watch.step(time.monotonic())
@@ -62,7 +62,7 @@ def _on_page(watch: Watch, args: argparse.Namespace) -> int:
     return 0
 
 
-def _in_terminal(watch: Watch, args: argparse.Namespace) -> int:
+def _in_terminal(watch: BridgeWatch, args: argparse.Namespace) -> int:
     text = Text(sys.stdout)
     while True:
         now_s = time.monotonic()

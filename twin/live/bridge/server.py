@@ -15,7 +15,7 @@ from threading import BoundedSemaphore, Lock
 from urllib.parse import parse_qs, urlsplit
 
 from twin.errors import TwinError
-from twin.live.bridge.watch import Watch
+from twin.live.bridge.watch import BridgeWatch
 
 HOST = "127.0.0.1"
 MOST_VIEWERS = 16  # event streams at a time
@@ -69,7 +69,7 @@ class Server(ThreadingHTTPServer):
     daemon_threads = True
     allow_reuse_address = True
 
-    def __init__(self, watch: Watch, port: int, said: Callable[[str], None]):
+    def __init__(self, watch: BridgeWatch, port: int, said: Callable[[str], None]):
         try:
             super().__init__((HOST, port), Handler)
         except (OSError, OverflowError) as failure:

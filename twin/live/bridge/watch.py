@@ -9,17 +9,17 @@ from threading import Condition
 from typing import Any
 
 from twin.live.bridge.alarms import Alarms
-from twin.live.bridge.feed import About, Feed
+from twin.live.bridge.feed import About, BridgeFeed
 from twin.live.bridge.scene import SILENT_S, Ahead, largest_of, scene
 
 RATE_HZ = 10.0
 TRAIL_S, TRAIL_POINTS = 5.0, 120  # between two points of the way behind, and how many
 
 
-class Watch:
+class BridgeWatch:
     """`step` each tenth of a second; `frame` is the newest picture, `trail` the way behind."""
 
-    def __init__(self, feed: Feed, fallback: About | None = None):
+    def __init__(self, feed: BridgeFeed, fallback: About | None = None):
         self.feed, self.fallback = feed, fallback or About()
         self.alarms = Alarms()
         self.frame: dict[str, Any] = {}

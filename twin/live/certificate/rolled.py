@@ -22,7 +22,7 @@ Square = tuple[Vector, ...]
 FOUR = range(4)
 
 
-class Step:
+class InnerStep:
     """One inner step of the errors of (u, v, r, psi): M, what a force does, what the step itself costs."""
 
     def __init__(self, plant: Plant) -> None:
@@ -60,7 +60,7 @@ def assess_rolled(
 ) -> Promise:
     """What holds where every sample takes away h K of the error of its own time, and q steps lead from there
     to the next."""
-    step, a = Step(inner(plant, q)), plant.h * K[0]
+    step, a = InnerStep(inner(plant, q)), plant.h * K[0]
     runs, on = _sum_and_power(step.M, q)
     G = tuple(tuple((1.0 - a) * x for x in row) for row in on)
     worst = ratio(plant, K, None)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from twin.live.certificate.comparison import add, scaled_row
 from twin.live.certificate.periods import of_certificate
-from twin.live.certificate.rolled import Step, inner, way
+from twin.live.certificate.rolled import InnerStep, inner, way
 from twin.live.certificate.tube import NOTHING, Three, Tube
 from twin.live.observer.operating import NU, WORDS
 from twin.live.observer.rollback import KEPT_S, Path, State
@@ -43,7 +43,7 @@ class RolledTube(Tube):
         self.oldest_s = KEPT_S
         self.beta = certificate.noise if start is None else start
         self.psi = certificate.heading_noise
-        self._one = Step(inner(certificate.plant, certificate.inner))
+        self._one = InnerStep(inner(certificate.plant, certificate.inner))
         self._length = certificate.h / certificate.inner
         self._share = certificate.K[0] * certificate.h
         self._limits = [certificate.operating.ranges[name] for name in NU]

@@ -15,7 +15,7 @@ from math import cos, hypot, sin
 
 from twin.live.gates.cusum import Cusum
 from twin.live.gates.lacking import FAST, SLOW, Lacking
-from twin.live.observer.dynamics import Forces, Known
+from twin.live.observer.dynamics import Forces, KnownDynamics
 from twin.live.observer.estimate import Observer
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
@@ -47,7 +47,13 @@ class CrossChecks:
         return self.reasons[0] if self.reasons else ""
 
     def feed(
-        self, measured: Measured, observer: Observer, s: Situation, physics: Known, forces: Forces, dt: float
+        self,
+        measured: Measured,
+        observer: Observer,
+        s: Situation,
+        physics: KnownDynamics,
+        forces: Forces,
+        dt: float,
     ) -> None:
         """One tick: what is measured, the corrected estimate, and the known forces in it."""
         if not 0.0 < dt <= GAP_S:

@@ -11,7 +11,7 @@ from math import inf, radians
 
 from twin.live.gates.cusum import Cusum
 from twin.live.gates.helm import HULL, RUDDER, Helm
-from twin.live.observer.dynamics import Forces, Known
+from twin.live.observer.dynamics import Forces, KnownDynamics
 from twin.live.observer.estimate import Observer
 from twin.live.observer.operating import propeller_rate
 from twin.live.signals.measured import Measured
@@ -55,7 +55,13 @@ class Lacking:
         self._start = None
 
     def feed(
-        self, measured: Measured, observer: Observer, s: Situation, physics: Known, forces: Forces, dt: float
+        self,
+        measured: Measured,
+        observer: Observer,
+        s: Situation,
+        physics: KnownDynamics,
+        forces: Forces,
+        dt: float,
     ) -> None:
         """One tick; `observer.rates` are those that carried the estimate to now."""
         e = observer.estimate
@@ -83,7 +89,7 @@ class Lacking:
     def _begin(self, u: float, v: float, r: float, restarts: int) -> None:
         self._start, self._sums, self._restarts = (u, v, r), [0.0] * 8, restarts
 
-    def _judge(self, nu: tuple[float, float, float], s: Situation, physics: Known) -> None:
+    def _judge(self, nu: tuple[float, float, float], s: Situation, physics: KnownDynamics) -> None:
         assert self._start is not None
         span = self._sums[6]
         u_dot, v_dot, r_dot = (

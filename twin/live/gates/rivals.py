@@ -22,7 +22,7 @@ class Rivals:
     """`compare` is asked for each sample that a second source gave; `reasons` say which sources part."""
 
     def __init__(self) -> None:
-        self._pairs: dict[tuple[str, str, str], Pair] = {}
+        self._pairs: dict[tuple[str, str, str], RivalPair] = {}
         self._now_s = 0.0
 
     @property
@@ -50,11 +50,11 @@ class Rivals:
                 self._pairs = {k: p for k, p in self._pairs.items() if self._now_s - p.heard_s < FORGET_S}
             if len(self._pairs) >= PAIRS:
                 return
-            pair = self._pairs[key] = Pair(gate)
+            pair = self._pairs[key] = RivalPair(gate)
         pair.feed(gate.difference(reading.value, gate.value) - motion * (t - gate.time_s), reading.received_s)
 
 
-class Pair:
+class RivalPair:
     """The mean difference of two sources over blocks of time."""
 
     def __init__(self, gate: Gate):

@@ -11,7 +11,7 @@ filter they are most of d in a sea way, behind two little of it."""
 
 from collections.abc import Sequence
 
-from twin.live.observer.dynamics import Known
+from twin.live.observer.dynamics import KnownDynamics
 from twin.physics.ship import Ship
 from twin.physics.state import LIGHT, Force, Growth, Rates
 
@@ -55,7 +55,7 @@ class Evidence:
         learned: Three,
         trained: Three,
         regressors: Sequence[float],
-        physics: Known,
+        physics: KnownDynamics,
         dt: float,
         grown: Growth = LIGHT,
     ) -> None:

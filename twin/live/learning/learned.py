@@ -15,7 +15,7 @@ from twin.live.learning.adapt import Adaptation
 from twin.live.learning.evidence import Evidence, Three
 from twin.live.learning.movable import movable
 from twin.live.learning.residual import Residual
-from twin.live.observer.dynamics import Forces, Known
+from twin.live.observer.dynamics import Forces, KnownDynamics
 from twin.physics.effect import Effect
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
@@ -116,7 +116,7 @@ class LearnedForce:
         s: Situation,
         forces: Forces,
         learned: Learned,
-        physics: Known,
+        physics: KnownDynamics,
         dt: float,
         frozen: str,
     ) -> None:

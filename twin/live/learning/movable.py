@@ -11,7 +11,7 @@ from copy import copy
 from typing import NamedTuple
 
 from twin.live.learning.ridge import LARGEST
-from twin.live.observer.dynamics import Forces, Known
+from twin.live.observer.dynamics import Forces, KnownDynamics
 from twin.physics.effect import Effect, Flow
 from twin.physics.effect import Force as ForceEffect
 from twin.physics.model import Model
@@ -91,7 +91,7 @@ class Columns:
         self._model: Model | None = None
         self._probes: list[tuple[Model, float] | None] = []
 
-    def at(self, s: Situation, forces: Forces, physics: Known, learned: Force) -> list[float]:
+    def at(self, s: Situation, forces: Forces, physics: KnownDynamics, learned: Force) -> list[float]:
         """(surge, sway, yaw) of the first number, of the second, ...; nothing from effects that are switched
         off."""
         if physics.model is not self._model:
@@ -103,7 +103,7 @@ class Columns:
                 out += [0.0, 0.0, 0.0]
                 continue
             model, share = probe
-            rates = Known(model, physics.current).rates(s, learned)
+            rates = KnownDynamics(model, physics.current).rates(s, learned)
             push = physics.force_for(rates.u - u, rates.v - v, rates.r - r, grown)
             out += [_cut(x / size / share) for x, size in zip(push, self.scale, strict=True)]
         return out

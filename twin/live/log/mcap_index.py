@@ -49,7 +49,7 @@ class ChunkInfo(NamedTuple):
     uncompressed: int
 
 
-class Summary:
+class IndexSummary:
     """What a finished file says at its end; built while writing, or when a crashed file is repaired."""
 
     def __init__(self) -> None:

@@ -19,7 +19,7 @@ from twin.live.log.mcap_index import (
     METADATA,
     SCHEMA,
     ChunkInfo,
-    Summary,
+    IndexSummary,
     message_indexes,
     record,
     text,
@@ -61,7 +61,7 @@ class McapWriter:
         self._sink = sink
         self._compress = compress or zstd()
         self.offset = 0
-        self.summary = Summary()
+        self.summary = IndexSummary()
         self._chunk = OpenChunk()
         self._channel_ids: dict[tuple[str, str], int] = {}
         self._schema_ids: dict[str, int] = {}

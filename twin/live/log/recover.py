@@ -22,7 +22,7 @@ from twin.live.log.mcap_index import (
     METADATA,
     SCHEMA,
     ChunkInfo,
-    Summary,
+    IndexSummary,
     message_indexes,
     record,
     text,
@@ -40,7 +40,7 @@ class Scan(NamedTuple):
 
     cut: int
     missing: bytes
-    summary: Summary
+    summary: IndexSummary
     ended: bool = False  # whether all data is there, and only the index was cut
 
 
@@ -84,7 +84,7 @@ def _recover(path: Path, stream: IO[bytes]) -> str:
 
 def scan(path: Path) -> Scan:
     """Walks a file chunk by chunk as far as it is good; TooLarge when it was not written by a twin."""
-    summary, ended = Summary(), False
+    summary, ended = IndexSummary(), False
     with open_log(path) as stream:
         cut = stream.tell()
         try:
@@ -116,7 +116,7 @@ def scan(path: Path) -> Scan:
     return Scan(cut, b"", summary, ended)
 
 
-def _chunk(summary: Summary, offset: int, content: bytes) -> bytes:
+def _chunk(summary: IndexSummary, offset: int, content: bytes) -> bytes:
     """Adds a verified chunk to the summary; returns the index records that belong behind it."""
     raw = unpacked(content, MAX_BYTES)
     rows: dict[int, list[tuple[int, int]]] = {}
@@ -139,7 +139,7 @@ def _chunk(summary: Summary, offset: int, content: bytes) -> bytes:
     return indexes
 
 
-def _describe(summary: Summary, opcode: int, whole: bytes) -> None:
+def _describe(summary: IndexSummary, opcode: int, whole: bytes) -> None:
     group = summary.schemas if opcode == SCHEMA else summary.channels
     group[unpack_from("<H", whole, 9)[0]] = whole
 

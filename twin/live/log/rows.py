@@ -35,7 +35,7 @@ def read_rows(
     refused or absent is said in `notes`, what was damaged in `lost` (in `notes`, too, when that is not
     given)."""
     reader = McapReader(path)
-    found = Found(reader)
+    found = LogRows(reader)
     for topic, type_name, data, _, _ in reader.messages():
         found.take(topic, type_name, data)
     time_s, columns = found.columns()
@@ -49,7 +49,7 @@ def read_rows(
     return time_s, columns
 
 
-class Found:
+class LogRows:
     """What a log holds: wide records as bytes, scalars by channel, and what was refused."""
 
     def __init__(self, reader: McapReader):

@@ -23,7 +23,7 @@ CONTROLS = ("delta", "n")
 INPUTS = (*CONTROLS, *WEATHER)
 
 
-class Known:
+class KnownDynamics:
     """The known physics of one moment: a model and the current; the predictor carries it ahead while the
     loop goes on."""
 
@@ -116,7 +116,7 @@ class Dynamics:
         self.off: tuple[Effect, ...] = ()  # effects without their inputs
         self.held: dict[str, float] = {}  # controls whose feedback is lost, at their last value [SI]
         self._controls: dict[str, float] = {}  # the last that was measured of each
-        self.now = Known(self.full, self.first_current)
+        self.now = KnownDynamics(self.full, self.first_current)
         self._needed = sorted({need for e in self.full.effects for need in e.needs if need in WEATHER})
         self._models: dict[tuple[str, ...], tuple[Model, tuple[Effect, ...]]] = {}
         self._adopted: Sequence[Effect] = ship.effects
@@ -129,7 +129,7 @@ class Dynamics:
             self.full = Model(self.ship, tuple([new[type(e)] for e in self.full.effects]))
             self._models.clear()
 
-    def known(self, e: Estimate, measured: Measured) -> tuple[Situation, Known, Forces]:
+    def known(self, e: Estimate, measured: Measured) -> tuple[Situation, KnownDynamics, Forces]:
         """The ship's situation, the physics that holds in it, and every known force."""
         s = self.situation(e, measured)
         return s, self.now, self.now.forces(s)
@@ -159,7 +159,7 @@ class Dynamics:
         if missing not in self._models:
             self._models[missing] = self.full.without_inputs(set(missing))
         model, self.off = self._models[missing]
-        self.now = Known(model, (e.current_north, e.current_east))
+        self.now = KnownDynamics(model, (e.current_north, e.current_east))
         return s
 
     def _hold(self, si: dict[str, float]) -> None:

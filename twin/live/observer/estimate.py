@@ -20,7 +20,7 @@ from twin.physics.ship import Ship
 from twin.physics.state import Force, Rates, Situation
 
 if TYPE_CHECKING:
-    from twin.live.observer.dynamics import Known
+    from twin.live.observer.dynamics import KnownDynamics
 
 STATES = ("x", "y", "psi", "u", "v", "r")
 WATER = {"u": "u_r", "v": "v_r"}  # what stands in for a speed over ground
@@ -85,7 +85,7 @@ class Observer:
         """The model's accelerations from now on."""
         self.rates = rates
 
-    def remember(self, physics: "Known", s: Situation, learned: Force) -> None:
+    def remember(self, physics: "KnownDynamics", s: Situation, learned: Force) -> None:
         """What drives the model until the next tick, for an observer that goes back to it (`RollBack`)."""
 
     def correct(self, measured: Measured) -> Estimate:

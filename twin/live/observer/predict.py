@@ -12,7 +12,7 @@ from dataclasses import replace
 from math import ceil, exp, hypot, log, pi
 from typing import NamedTuple
 
-from twin.live.observer.dynamics import Forces, Known, Steering
+from twin.live.observer.dynamics import Forces, KnownDynamics, Steering
 from twin.live.observer.estimate import MAX_GAP_S, Estimate
 from twin.live.signals.derive import turn
 from twin.physics.maths import cos, sin
@@ -67,7 +67,7 @@ class Predictor:
         }
 
     def advance(
-        self, now_s: float, e: Estimate, s: Situation, physics: Known, learned: LearnedAt, good: bool,
+        self, now_s: float, e: Estimate, s: Situation, physics: KnownDynamics, learned: LearnedAt, good: bool,
         steering: Callable[[], Steering | None] = lambda: None,
     ) -> list[Prediction]:  # fmt: skip
         """Check what fell due, then carry the present round on by a few steps; `steering` gives the gear as a
@@ -139,7 +139,7 @@ class Round:
         start_s: float,
         e: Estimate,
         s: Situation,
-        physics: Known,
+        physics: KnownDynamics,
         step_s: float,
         moments_s: list[float],
         steering: Steering | None = None,
@@ -183,7 +183,7 @@ class Middle:
 
 def carry(
     s: Situation,
-    physics: Known,
+    physics: KnownDynamics,
     learned: LearnedAt,
     h: float,
     middle: Middle,
@@ -241,7 +241,9 @@ class Sureness:
         return tuple([max(q, s) for q, s in zip((place, place, *rest), start, strict=True)])
 
 
-def ensemble(s: Situation, physics: Known, learned: LearnedAt, horizon_s: float, step_s: float) -> Situation:
+def ensemble(
+    s: Situation, physics: KnownDynamics, learned: LearnedAt, horizon_s: float, step_s: float
+) -> Situation:
     """Many ships at once (fields of s may be arrays), `horizon_s` ahead."""
     s, steps, middle = replace(s), ceil(horizon_s / step_s), Middle()
     for _ in range(steps):

@@ -12,7 +12,7 @@ from copy import copy
 from math import ceil, cos, pi, sin
 from typing import NamedTuple
 
-from twin.live.observer.dynamics import Known
+from twin.live.observer.dynamics import KnownDynamics
 from twin.live.observer.estimate import (
     A_MAX,
     DELAYED,
@@ -44,7 +44,7 @@ def inner_steps(ship: Ship, period_s: float) -> int:
     return ceil(share / LENGTH - ROUNDING) if share > FROM else 1
 
 
-class Sample(NamedTuple):
+class LateSample(NamedTuple):
     """A measurement of one state at its own time; beyond `limit` it pulls no further. `counts`: measured by
     its own instrument."""
 
@@ -82,11 +82,11 @@ class Path(NamedTuple):
     stretches: list[Stretch]
 
 
-class Drive(NamedTuple):
+class Inputs(NamedTuple):
     """What moves the model from a tick to the next."""
 
     time_s: float
-    physics: Known
+    physics: KnownDynamics
     situation: Situation
     learned: Force
 
@@ -102,11 +102,11 @@ class RollBack(Observer):
         self.inner_s = inner_s
         self.path = Path(0.0, self.estimate.state(), [])
         self._nodes: deque[tuple[float, State]] = deque()
-        self._drives: deque[Drive] = deque()
-        self._samples: list[Sample] = []  # by time
+        self._drives: deque[Inputs] = deque()
+        self._samples: list[LateSample] = []  # by time
 
-    def remember(self, physics: Known, s: Situation, learned: Force) -> None:
-        self._drives.append(Drive(s.t, physics, copy(s), learned))  # type: ignore[arg-type]
+    def remember(self, physics: KnownDynamics, s: Situation, learned: Force) -> None:
+        self._drives.append(Inputs(s.t, physics, copy(s), learned))  # type: ignore[arg-type]
 
     def correct(self, measured: Measured) -> Estimate:
         """What is fresh corrects its own time, and the model runs on to now."""
@@ -136,7 +136,7 @@ class RollBack(Observer):
                 kept.popleft()
         self._samples = [s for s in self._samples if s.time_s > self._nodes[0][0]]
 
-    def _heard(self, measured: Measured) -> list[Sample]:
+    def _heard(self, measured: Measured) -> list[LateSample]:
         """This tick's samples; a step that lasted is taken over by the whole past."""
         si, fresh, heard = measured.si, measured.fresh, []
         for i, state in enumerate(STATES):
@@ -151,7 +151,7 @@ class RollBack(Observer):
             counts = source == state and state not in measured.derived and taken_s == measured.time[source]
             share = PLACE if i < 2 else FULL
             limit = self.sigma.of[state].limit()
-            heard.append(Sample(taken_s, i, si[source] + drift, limit, share, counts))
+            heard.append(LateSample(taken_s, i, si[source] + drift, limit, share, counts))
         return heard
 
     def _leap(self, i: int, state: str, value: float) -> None:
@@ -161,7 +161,7 @@ class RollBack(Observer):
         self.innovation[state] = 0.0
         self.sigma.begin_one(state)
 
-    def _again(self, now_s: float, new: list[Sample]) -> None:
+    def _again(self, now_s: float, new: list[LateSample]) -> None:
         """From the last estimate that no new sample changes, through every sample since, to now."""
         nodes, back_s = self._nodes, min((s.time_s for s in new), default=now_s)
         while len(nodes) > 1 and nodes[-1][0] > back_s:
@@ -189,7 +189,7 @@ class RollBack(Observer):
         e.x, e.y, e.psi, e.u, e.v, e.r = x
         self.path = Path(start_s, start, stretches)
 
-    def _pulled(self, x: State, sample: Sample) -> tuple[State, Pull]:
+    def _pulled(self, x: State, sample: LateSample) -> tuple[State, Pull]:
         i = sample.state
         gap = sample.value - x[i]
         gap = self._gap = turn(gap) if i == 2 else gap
@@ -199,7 +199,7 @@ class RollBack(Observer):
         full = usual and sample.counts
         return (*x[:i], x[i] + moved, *x[i + 1 :]), Pull(i, full, abs(moved))
 
-    def _learn(self, sample: Sample, pull: Pull) -> None:
+    def _learn(self, sample: LateSample, pull: Pull) -> None:
         """A new sample tells how far off samples usually are."""
         state = STATES[sample.state]
         self.innovation[state], self.received[state] = self._gap, pull.full
@@ -224,7 +224,7 @@ class RollBack(Observer):
                 t = until_s
         return x, motions
 
-    def _one(self, x: State, drive: Drive, h: float) -> State:
+    def _one(self, x: State, drive: Inputs, h: float) -> State:
         """One inner step."""
         north, east, psi, u0, v0, r0 = x
         s = drive.situation

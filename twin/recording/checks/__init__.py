@@ -22,14 +22,14 @@ from twin.recording.checks.samples import frozen, missing_samples, plausible_val
 from twin.recording.checks.size import duration, ship_size
 from twin.recording.checks.steps import heading_steps
 from twin.recording.checks.turning import yaw_rate
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 from twin.recording.checks.water import speed_log
 from twin.recording.checks.wind import wind
 from twin.recording.voyage import Voyage
 
 __all__ = ["CHECKS", "Check", "run_checks"]
 
-CHECKS: tuple[Callable[[View], Check], ...] = (
+CHECKS: tuple[Callable[[VoyageView], Check], ...] = (
     whole_file,
     time_stamps,
     time_gaps,
@@ -74,4 +74,4 @@ def run_checks(voyage: Voyage, ship: Ship | None = None) -> list[Check]:
 
     When what disagrees has one explanation, it is the answer of the check that it belongs to, and the others
     are asked again on the voyage without that mistake."""
-    return judged(View(voyage, ship), CHECKS)
+    return judged(VoyageView(voyage, ship), CHECKS)

@@ -5,7 +5,7 @@ import numpy as np
 from twin.live.signals.channels import of_actuators
 from twin.num import num
 from twin.recording.checks.answer import Check, doubtful, good, wrong
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 from twin.recording.unknown_controls import CONTROLS, gaps
 from twin.recording.voyage import Voyage
 
@@ -14,7 +14,7 @@ UNEVEN = 0.35  # scatter of the steps, in usual steps
 GAP_STEPS, GAP_S = 5.0, 5.0
 
 
-def whole_file(view: View) -> Check:
+def whole_file(view: VoyageView) -> Check:
     """What of the file was damaged: a log that was cut off or repaired, a part whose checksum does not fit, a
     last line that is torn."""
     lost = view.voyage.meta.get("lost", ())
@@ -34,7 +34,7 @@ def beats(voyage: Voyage) -> np.ndarray:
     return voyage.time_s[often] if np.count_nonzero(often) > 1 else voyage.time_s
 
 
-def time_stamps(view: View) -> Check:
+def time_stamps(view: VoyageView) -> Check:
     """Repeated (rounded) stamps, and uneven steps."""
     name, t = "time_stamps", beats(view.voyage)
     steps = np.diff(t)
@@ -66,7 +66,7 @@ def time_stamps(view: View) -> Check:
     return good(name, f"a sample every {usual:.6g} s, scatter {100 * scatter:.1f} % of a step.")
 
 
-def time_gaps(view: View) -> Check:
+def time_gaps(view: VoyageView) -> Check:
     """Stretches without any row."""
     name, t = "time_gaps", beats(view.voyage)
     steps = np.diff(t)
@@ -83,7 +83,7 @@ def time_gaps(view: View) -> Check:
     )
 
 
-def control_gaps(view: View) -> Check:
+def control_gaps(view: VoyageView) -> Check:
     """Gaps of rudder and shaft in which these changed."""
     parts = of_actuators(view.voyage.columns)
     found = {name: gaps(view.voyage, name) for name in (*CONTROLS, *parts)}
@@ -113,7 +113,7 @@ NEAR_S = 5.0  # of such a step
 WENT_ON = 10.0  # usual ways between two rows: a ship that went no farther did not wait so long
 
 
-def clock_steps(view: View) -> Check:
+def clock_steps(view: VoyageView) -> Check:
     """A gap of an hour, a day or a week over which the ship went no farther than in a step: the clock was
     set."""
     name, t = "clock_steps", view.voyage.time_s

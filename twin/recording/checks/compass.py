@@ -16,7 +16,7 @@ from twin.recording.checks.answer import Check, cannot_tell, doubtful, good
 from twin.recording.checks.offset import by_course
 from twin.recording.checks.single_table import Single
 from twin.recording.checks.undo import HEADING, undone
-from twin.recording.checks.view import View, fit, rms
+from twin.recording.checks.view import VoyageView, fit, rms
 
 NAME = "compass"
 LATE_S = np.arange(-10.0, 10.01, 0.25)
@@ -28,7 +28,7 @@ MOST_DEVIATION, MOST_SCALE = 0.7, 0.05  # [rad]; of a rate of turn
 
 
 @dataclass(frozen=True)
-class Cause:
+class CompassCause:
     """One way in which the heading may differ from the summed rate: words, size [deg rms], what is left,
     parameters."""
 
@@ -40,10 +40,10 @@ class Cause:
 
 
 @dataclass(frozen=True)
-class Windows:
+class CompassWindows:
     """Changes over windows: heading, summed rate [rad], and how many are independent."""
 
-    view: View
+    view: VoyageView
     first: np.ndarray
     last: np.ndarray
 
@@ -58,17 +58,17 @@ class Windows:
         return self.view.summed(x, self.first, self.last)
 
 
-def windows(view: View) -> Windows | None:
+def windows(view: VoyageView) -> CompassWindows | None:
     """As long as the ship takes to turn ten degrees; None where it hardly turns."""
     r = rms(view.si("yaw_rate_degps"))
     if not r > 1e-5:
         return None
     seconds = float(np.clip(TURNED / r, max(4.0 * view.step_s, 2.0), max(60.0, 8.0 * view.step_s)))
-    w = Windows(view, *view.windows(seconds))
+    w = CompassWindows(view, *view.windows(seconds))
     return w if w.first.size >= 12 else None
 
 
-def compass(view: View) -> Check:
+def compass(view: VoyageView) -> Check:
     told = by_rate(view)
     offset = by_course(told[1] if told else view)
     if told is None and offset is None:
@@ -102,7 +102,7 @@ def compass(view: View) -> Check:
     )
 
 
-def by_rate(view: View) -> tuple[Cause | None, View] | None:
+def by_rate(view: VoyageView) -> tuple[CompassCause | None, VoyageView] | None:
     """(what is wrong with the heading beside the rate of turn, the view without it); None where it cannot be
     told."""
     if view.derived("yaw_rate_degps"):
@@ -133,7 +133,7 @@ def by_rate(view: View) -> tuple[Cause | None, View] | None:
     return best, without(view, best)
 
 
-def late(w: Windows, r: np.ndarray, psi: np.ndarray, base: float) -> Cause | None:
+def late(w: CompassWindows, r: np.ndarray, psi: np.ndarray, base: float) -> CompassCause | None:
     """The heading a constant time behind the rate (or ahead of it)."""
     t, swung = w.view.even.time_s, w.change(psi)
     whole = np.r_[0.0, np.cumsum(np.nan_to_num((r[1:] + r[:-1]) / 2.0) * np.diff(t))]
@@ -150,7 +150,7 @@ def late(w: Windows, r: np.ndarray, psi: np.ndarray, base: float) -> Cause | Non
     if abs(by) >= LATE_S[-1] - 0.3:
         return None
     words = f"the heading is {by:.1f} s late" if by > 0 else f"the heading is {-by:.1f} s early"
-    return Cause(words, f"late_s = {by:.1f}", float(np.degrees(rms(r) * abs(by))), left, (by,))
+    return CompassCause(words, f"late_s = {by:.1f}", float(np.degrees(rms(r) * abs(by))), left, (by,))
 
 
 def best_between(tried: list[tuple[float, float]]) -> tuple[float, float]:
@@ -177,7 +177,7 @@ def curve(x: np.ndarray) -> list[np.ndarray]:
 FORMS = ((0,), (1,), (0, 1), (0, 1, 2, 3))  # which of B, C, D, E: the fewest that tell
 
 
-def deviation(w: Windows, r: np.ndarray, psi: np.ndarray, base: float) -> Cause | None:
+def deviation(w: CompassWindows, r: np.ndarray, psi: np.ndarray, base: float) -> CompassCause | None:
     """Coefficients B to E of the compass, as functions of the true heading; as many as the voyage's headings
     can tell apart."""
     tried = [c for form in FORMS if (c := curve_of(w, r, psi, base, form)) is not None]
@@ -187,7 +187,9 @@ def deviation(w: Windows, r: np.ndarray, psi: np.ndarray, base: float) -> Cause 
     return min(tried, key=lambda c: n * np.log(max(c.left, 1e-9)) + np.log(n) * np.count_nonzero(c.value))
 
 
-def curve_of(w: Windows, r: np.ndarray, psi: np.ndarray, base: float, form: tuple[int, ...]) -> Cause | None:
+def curve_of(
+    w: CompassWindows, r: np.ndarray, psi: np.ndarray, base: float, form: tuple[int, ...]
+) -> CompassCause | None:
     """The coefficients of one form, found again after each undoing."""
     odd, true, full = w.change(psi) - w.summed(r), psi, np.zeros(4)
     for _ in range(5):
@@ -204,7 +206,7 @@ def curve_of(w: Windows, r: np.ndarray, psi: np.ndarray, base: float, form: tupl
     ):
         return None
     size = rms(sum((a * c for a, c in zip(full, curve(true), strict=True)), np.zeros(true.size)))
-    return Cause(
+    return CompassCause(
         "deviation",
         "",
         float(np.degrees(size)),
@@ -213,17 +215,17 @@ def curve_of(w: Windows, r: np.ndarray, psi: np.ndarray, base: float, form: tupl
     )
 
 
-def scale(w: Windows, r: np.ndarray, psi: np.ndarray, base: float) -> Cause | None:
+def scale(w: CompassWindows, r: np.ndarray, psi: np.ndarray, base: float) -> CompassCause | None:
     """The rate of turn by a factor: no matter of the compass, only a rival explanation."""
     summed = w.summed(r)
     odd = w.change(psi) - summed
     k = fit([np.ones(odd.size), summed], odd)[0][1]
     if not np.isfinite(k) or abs(k) > MOST_SCALE:
         return None  # no gyro is so far off; a unit that is has its own check
-    return Cause("", "", 0.0, left_over(odd, [summed], base), ())
+    return CompassCause("", "", 0.0, left_over(odd, [summed], base), ())
 
 
-def heading_without(view: View, cause: Cause) -> np.ndarray:
+def heading_without(view: VoyageView, cause: CompassCause) -> np.ndarray:
     """The heading [deg] as it would be, were this undone."""
     t, psi = view.even.time_s, np.degrees(view.psi)
     if "deviation" in cause.text:
@@ -232,13 +234,13 @@ def heading_without(view: View, cause: Cause) -> np.ndarray:
     return np.mod(np.interp(t + cause.value[0], t[there], psi[there]), 360.0)
 
 
-def without(view: View, cause: Cause) -> View:
+def without(view: VoyageView, cause: CompassCause) -> VoyageView:
     """The view with that heading."""
     psi = heading_without(view, cause)
     return undone(view, lambda c: {HEADING: psi})
 
 
-def fitted(view: View) -> list[Single]:
+def fitted(view: VoyageView) -> list[Single]:
     """What `by_rate` finds, as one of the mistakes that are tried against each other."""
     found = by_rate(view)
     if found is None or found[0] is None:

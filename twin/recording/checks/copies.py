@@ -7,7 +7,7 @@ import numpy as np
 from twin.live.signals.channels import BY_NAME
 from twin.recording.checks.answer import Check, doubtful, good, wrong
 from twin.recording.checks.undo import by_heading
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 from twin.recording.units import unit_of
 
 NAME = "copies"
@@ -18,7 +18,7 @@ SAME_DEG = 0.03  # course and heading that were rounded apart
 MAY_BE = frozenset(("bank_distance_port_m", "bank_distance_starboard_m"))
 
 
-def copies(view: View) -> Check:
+def copies(view: VoyageView) -> Check:
     if text := course_as_heading(view):
         return wrong(NAME, text)
     found = [pair for pair in pairs(view) if identical(view, *pair)]
@@ -33,7 +33,7 @@ def copies(view: View) -> Check:
     return doubtful(NAME, text) if calm else wrong(NAME, text)
 
 
-def pairs(view: View) -> list[tuple[str, str]]:
+def pairs(view: VoyageView) -> list[tuple[str, str]]:
     derived = view.voyage.meta.get("derived", {})
     constant = view.voyage.meta.get("constant", ())
     names = [
@@ -44,7 +44,7 @@ def pairs(view: View) -> list[tuple[str, str]]:
     return [(a, b) for a, b in combinations(names, 2) if unit_of(a) == unit_of(b)]
 
 
-def identical(view: View, a: str, b: str) -> bool:
+def identical(view: VoyageView, a: str, b: str) -> bool:
     """Whether two channels are alike to the last digit wherever both were read, and both vary."""
     x, y = view.voyage[a], view.voyage[b]
     both = np.isfinite(x) & np.isfinite(y)
@@ -55,7 +55,7 @@ def identical(view: View, a: str, b: str) -> bool:
     return float(np.mean(apart <= 1e-9 * np.maximum(np.abs(x[both]), 1e-9))) > SAME
 
 
-def course_as_heading(view: View) -> str:
+def course_as_heading(view: VoyageView) -> str:
     """Under way and turning the heading is the course over ground to the last digit: no ship turns without
     drift."""
     v = view.voyage

@@ -4,13 +4,13 @@ import numpy as np
 
 from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, wrong
-from twin.recording.checks.view import View, rms
+from twin.recording.checks.view import VoyageView, rms
 
 FASTEST_MPS = 40.0
 LARGE_DRIFT_DEG = 8.0
 
 
-def course_against_heading(name: str, view: View) -> Check:
+def course_against_heading(name: str, view: VoyageView) -> Check:
     """The drift angle, as the columns stand and as if the velocities were earth-fixed."""
     w = view.velocity[np.abs(view.velocity) > 0.3 * view.speed]
     psi = view.psi[np.abs(view.velocity) > 0.3 * view.speed]

@@ -8,7 +8,7 @@ from twin.recording.checks.relations import offs
 from twin.recording.checks.single import BROKEN, Explained, coarse, explain
 from twin.recording.checks.steps import without_steps
 from twin.recording.checks.undo import HEADING, measured, remade
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 from twin.recording.voyage import Voyage
 
 MOST = 3  # mistakes that are told one after the other
@@ -32,10 +32,10 @@ WITNESSES: dict[str, tuple[str, ...]] = {
     "wind": ("turning", "course"),
     "rudder_unit": ("turning",),
 }
-Checks = Sequence[Callable[[View], Check]]
+Checks = Sequence[Callable[[VoyageView], Check]]
 
 
-def judged(view: View, checks: Checks) -> list[Check]:
+def judged(view: VoyageView, checks: Checks) -> list[Check]:
     """The answers in the table's order."""
     answers = {check.__name__: check(view) for check in checks}
     named, without = named_mistakes(view, answers)
@@ -47,7 +47,7 @@ def judged(view: View, checks: Checks) -> list[Check]:
     return [no_witness(a, broken) if name not in named else a for name, a in answers.items()]
 
 
-def named_mistakes(view: View, answers: dict[str, Check]) -> tuple[dict[str, Check], View]:
+def named_mistakes(view: VoyageView, answers: dict[str, Check]) -> tuple[dict[str, Check], VoyageView]:
     """(the mistakes that explain what disagrees, by the check they belong to; the view without them)."""
     named: dict[str, Check] = {}
     here = view
@@ -56,7 +56,7 @@ def named_mistakes(view: View, answers: dict[str, Check]) -> tuple[dict[str, Che
         if psi is not None:
             voyage = view.voyage
             changed = replace(voyage, columns={**voyage.columns, HEADING: psi})
-            here = View(remade_by(voyage, changed), view.ship)
+            here = VoyageView(remade_by(voyage, changed), view.ship)
     for _ in range(MOST):
         found: Explained | None = explain(here)
         if found is None or (found.check.name in named and named[found.check.name].unusable):

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 from twin.recording.units import DEG_PER_RAD, KNOT_MPS
 
-Flow = Callable[[View], np.ndarray]
+Flow = Callable[[VoyageView], np.ndarray]
 
 
 @dataclass(frozen=True)

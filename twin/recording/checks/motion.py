@@ -14,7 +14,7 @@ from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.course import course_against_heading
 from twin.recording.checks.mistakes import AS_THEY_ARE, GEOMETRY, SCALES, Mistake, turned
-from twin.recording.checks.view import View, fit, rms
+from twin.recording.checks.view import VoyageView, fit, rms
 
 NAME = "velocity_frame"
 AGREES = 0.12  # share of the distance by which position and velocities may differ
@@ -26,7 +26,7 @@ EXPLAINS = 0.35  # a mistake is believed when the difference falls below this sh
 class Legs:
     """The voyage in windows of (first, last) rows; `moved` [m] in each, and the position's `noise` [m]."""
 
-    view: View
+    view: VoyageView
     first: np.ndarray
     last: np.ndarray
     moved: np.ndarray
@@ -50,7 +50,7 @@ class Legs:
         return rms((self.moved - summed)[both]) / max(rms(self.moved[both]), 1e-12) if both.any() else 0.0
 
 
-def velocity_frame(view: View) -> Check:
+def velocity_frame(view: VoyageView) -> Check:
     """Position against surge, sway and heading."""
     if view.derived("north_m", "surge_velocity_mps"):
         return course_against_heading(NAME, view)
@@ -73,7 +73,7 @@ def enough_way(legs: Legs) -> bool:
     return bool(np.isfinite(legs.moved).any()) and rms(legs.moved) >= 5.0 * legs.noise + 1e-9
 
 
-def cut(view: View) -> Legs:
+def cut(view: VoyageView) -> Legs:
     """Windows of a twentieth of the voyage, a minute at most, and of five samples or more."""
     longest = max(60.0, 50.0 * view.step_s)
     first, last = view.windows(np.clip(view.voyage.duration_s / 20.0, 5.0 * view.step_s, longest))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.recording.checks.relations import over_ground
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 
 LEAST_OFFSET_DEG, LEAST_SPREAD_DEG, ALIKE_S = 4.0, 60.0, 30.0
 STREAM_MPS, LEEWAY, SIGMAS = 0.5, 0.015, 3.0  # an expected stream; leeway in parts of the speed
@@ -39,7 +39,7 @@ class Offset:
         )
 
 
-def by_course(view: View) -> Offset | None:
+def by_course(view: VoyageView) -> Offset | None:
     """The constant part, on straight stretches, where a ship goes where it points but for a stream and its
     leeway.
 

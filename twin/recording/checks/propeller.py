@@ -4,7 +4,7 @@ import numpy as np
 
 from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 
 SLOWEST_RPM = 20.0  # no propeller drives a ship with fewer turns
 ADVANCE = (0.08, 2.0)  # plausible J = U / (n D) of a ship under way
@@ -16,7 +16,7 @@ ADVANCE_MISTAKES = (
 )
 
 
-def propeller_rate(view: View) -> Check:
+def propeller_rate(view: VoyageView) -> Check:
     """Turns against speed: by the advance ratio of a known ship, else by what any propeller does."""
     name = "propeller_rate"
     n, speed = np.abs(view.si("propeller_rate_rpm")), np.abs(view.velocity)
@@ -45,7 +45,7 @@ def propeller_rate(view: View) -> Check:
     )
 
 
-def thrust_on(view: View, n: np.ndarray) -> np.ndarray:
+def thrust_on(view: VoyageView, n: np.ndarray) -> np.ndarray:
     """Where the shaft turns and the ship keeps its speed: one that runs out with its shaft stopped says
     nothing of its unit."""
     usual = float(np.nanquantile(n, 0.9))

@@ -18,7 +18,7 @@ from twin.recording.checks.motion import cut, enough_way
 from twin.recording.checks.rudder import RUDDER_SHARE, seen_gain
 from twin.recording.checks.turning import turning_ratio
 from twin.recording.checks.undo import by_heading
-from twin.recording.checks.view import View, rms
+from twin.recording.checks.view import VoyageView, rms
 
 MEAN_DRIFT, USUAL_DRIFT = np.radians(45.0), np.radians(40.0)  # more is no drift of a ship under way
 ASTERN = 0.25  # share of the time under way, steady, that may go against the shaft
@@ -34,18 +34,18 @@ class Relation:
     voyage shows."""
 
     name: str
-    off: Callable[[View], float | None]
+    off: Callable[[VoyageView], float | None]
     usual: float
 
 
-def place(view: View) -> float | None:
+def place(view: VoyageView) -> float | None:
     if view.derived("north_m", "surge_velocity_mps"):
         return None
     legs = cut(view)
     return legs.miss(AS_THEY_ARE) / legs.allowed if enough_way(legs) else None
 
 
-def turning(view: View) -> float | None:
+def turning(view: VoyageView) -> float | None:
     seen = turning_ratio(view)
     if view.derived("yaw_rate_degps") or seen is None:
         return None
@@ -53,7 +53,7 @@ def turning(view: View) -> float | None:
     return max(WORST if k <= 0.0 else abs(np.log(k)) / np.log(1.33), left / 0.5)
 
 
-def over_ground(view: View) -> np.ndarray | None:
+def over_ground(view: VoyageView) -> np.ndarray | None:
     """Velocity over the earth [m/s] that the heading had no part in; None where there is none."""
     if by_heading(view.voyage) and not view.derived("surge_velocity_mps"):
         return view.velocity * np.exp(1j * view.psi)
@@ -66,7 +66,7 @@ def over_ground(view: View) -> np.ndarray | None:
     return np.r_[rate, rate[-1:]]
 
 
-def drift(view: View) -> np.ndarray | None:
+def drift(view: VoyageView) -> np.ndarray | None:
     """The angle from the heading to the way over ground [rad], where it has way on; None where there is
     none."""
     way = over_ground(view)
@@ -83,7 +83,7 @@ def drift(view: View) -> np.ndarray | None:
     )
 
 
-def course(view: View) -> float | None:
+def course(view: VoyageView) -> float | None:
     beta = drift(view)
     if beta is None:
         return None
@@ -91,7 +91,7 @@ def course(view: View) -> float | None:
     return float(max(mean / MEAN_DRIFT, rms(beta) / USUAL_DRIFT))
 
 
-def rudder(view: View) -> float | None:
+def rudder(view: VoyageView) -> float | None:
     seen = seen_gain(view)
     if seen is None or seen[0] < RUDDER_SHARE:
         return None
@@ -99,7 +99,7 @@ def rudder(view: View) -> float | None:
     return 0.0 if to_own_side else 1.0 + 4.0 * share
 
 
-def thrust(view: View) -> float | None:
+def thrust(view: VoyageView) -> float | None:
     n, u = view.si("propeller_rate_rpm"), view.velocity.real
     if not np.isfinite(n).any() or not view.way_on:
         return None
@@ -125,7 +125,7 @@ RELATIONS: tuple[Relation, ...] = (
 USUAL = {relation.name: relation.usual for relation in RELATIONS}
 
 
-def offs(view: View) -> dict[str, float | None]:
+def offs(view: VoyageView) -> dict[str, float | None]:
     """Every relation of a voyage."""
     out: dict[str, float | None] = {}
     for relation in RELATIONS:

@@ -9,7 +9,7 @@ import numpy as np
 
 from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.recording.checks.view import View, fit
+from twin.recording.checks.view import VoyageView, fit
 
 RUDDER_SHARE = 0.15  # the rudder must explain this share of the changes of yaw rate to be asked for its sign
 HELD_RUDDER_DEG, HELD_TURN_DEG = 5.0, 30.0
@@ -17,7 +17,7 @@ PROOF_SHARE = 0.5  # and this share to prove it
 LEAST_RUDDER_DEG = 0.7  # a ship that manoeuvres with less than this has it in radians
 
 
-def rudder_sign(view: View) -> Check:
+def rudder_sign(view: VoyageView) -> Check:
     """Which way the rudder turns the ship: where it is held over, or by its share in changes of yaw rate."""
     name = "rudder_sign"
     if not view.voyage.has("rudder_angle_deg"):
@@ -40,7 +40,7 @@ def rudder_sign(view: View) -> Check:
     return sign_seen(name, saw, b > 0.0, share > PROOF_SHARE)
 
 
-def seen_gain(view: View) -> tuple[float, bool] | None:
+def seen_gain(view: VoyageView) -> tuple[float, bool] | None:
     """(share that the rudder explains, whether it turns it to its own side); None where it cannot show."""
     if not view.voyage.has("rudder_angle_deg") or not view.way_on:
         return None
@@ -59,7 +59,7 @@ def sign_seen(name: str, saw: str, to_own_side: bool, proved: bool) -> Check:
     return wrong(name, text) if proved else doubtful(name, text)
 
 
-def held_turns(view: View) -> tuple[int, int]:
+def held_turns(view: VoyageView) -> tuple[int, int]:
     """How often a rudder held over turned the ship by HELD_TURN_DEG: (to its own side, to the other)."""
     rudder = view.even["rudder_angle_deg"]
     most = float(np.nanmax(np.abs(rudder)))
@@ -73,7 +73,7 @@ def held_turns(view: View) -> tuple[int, int]:
     return int(np.sum(turned > HELD_TURN_DEG)), int(np.sum(turned < -HELD_TURN_DEG))
 
 
-def best_gain(view: View) -> tuple[float, float]:
+def best_gain(view: VoyageView) -> tuple[float, float]:
     """`rudder_gain` over the window length at which the rudder explains most."""
     rudder, r = view.si("rudder_angle_deg"), view.si("yaw_rate_degps")
     r = np.where(view.velocity.real > 0.2 * view.speed, r, np.nan)  # astern the rudder works the other way
@@ -82,7 +82,7 @@ def best_gain(view: View) -> tuple[float, float]:
     return max((rudder_gain(view, rudder, r, w) for w in usable), default=(0.0, 0.0))
 
 
-def rudder_gain(view: View, rudder: np.ndarray, r: np.ndarray, seconds: float) -> tuple[float, float]:
+def rudder_gain(view: VoyageView, rudder: np.ndarray, r: np.ndarray, seconds: float) -> tuple[float, float]:
     """(share of the changes of r that the rudder explains beside r itself, b)."""
     first, last = view.windows(seconds)
     change, speed = r[last] - r[first], np.abs(view.velocity)
@@ -103,7 +103,7 @@ def rudder_gain(view: View, rudder: np.ndarray, r: np.ndarray, seconds: float) -
     return float(1.0 - left / without), float(x[0])
 
 
-def rudder_unit(view: View) -> Check:
+def rudder_unit(view: VoyageView) -> Check:
     """A ship that turns far with a rudder of less than a degree has it in radians."""
     name = "rudder_unit"
     if not view.voyage.has("rudder_angle_deg"):

@@ -5,7 +5,7 @@ import numpy as np
 from twin.live.signals.channels import BY_NAME
 from twin.num import num
 from twin.recording.checks.answer import Check, doubtful, good
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 from twin.recording.samples import spikes as spike_rows
 from twin.recording.voyage import Voyage
 
@@ -15,7 +15,7 @@ JUMPY = frozenset(
 # orders jump, and a light wind comes from anywhere: a lonely sample of these is no sign of a bad sensor
 
 
-def missing_samples(view: View) -> Check:
+def missing_samples(view: VoyageView) -> Check:
     """Holes and tails longer than a channel may be old."""
     v = view.voyage
     found = [text for name in v.columns if (text := hole(v, name))]
@@ -55,7 +55,7 @@ def hole(v: Voyage, name: str) -> str:
     return f"{name} {where} {num(gaps[i], 4)} s from {edges[i]:g} s"
 
 
-def plausible_values(view: View) -> Check:
+def plausible_values(view: VoyageView) -> Check:
     """What reading blanked because no ship measures it."""
     notes = [n for n in view.voyage.meta.get("notes", ()) if "blanked" in n]
     if any("outside" in n for n in notes):
@@ -65,7 +65,7 @@ def plausible_values(view: View) -> Check:
     return good("plausible_values", "; ".join(notes) or "every sample is one that a ship can have.")
 
 
-def spikes(view: View) -> Check:
+def spikes(view: VoyageView) -> Check:
     """One or two samples that leave the line and come back."""
     found = []
     for name in (n for n in view.voyage.columns if n not in JUMPY):
@@ -81,7 +81,7 @@ def spikes(view: View) -> Check:
     return good("spikes", "no lonely samples.")
 
 
-def frozen(view: View) -> Check:
+def frozen(view: VoyageView) -> Check:
     """Channels that stand still, to the last digit, while another one says that they cannot."""
     found = [
         text for f in (frozen_heading, frozen_position, frozen_speed, frozen_yaw_rate) if (text := f(view))
@@ -93,14 +93,14 @@ def frozen(view: View) -> Check:
     return good("frozen", "nothing stands still that should move.")
 
 
-def frozen_heading(view: View) -> str:
+def frozen_heading(view: VoyageView) -> str:
     turned = running(view, view.si("yaw_rate_degps")) if not view.derived("yaw_rate_degps") else None
     return standing(
         view, "heading_true_north_deg", turned, np.radians(5.0), "the yaw rate turns {:.0f} deg", 180 / np.pi
     )
 
 
-def frozen_yaw_rate(view: View) -> str:
+def frozen_yaw_rate(view: VoyageView) -> str:
     r = view.si("yaw_rate_degps")
     rest = view.psi - running(view, r)
     return standing(
@@ -108,7 +108,7 @@ def frozen_yaw_rate(view: View) -> str:
     )
 
 
-def frozen_position(view: View) -> str:
+def frozen_position(view: VoyageView) -> str:
     if view.derived("north_m", "surge_velocity_mps"):
         return ""
     w = view.velocity * np.exp(1j * view.psi)
@@ -119,7 +119,7 @@ def frozen_position(view: View) -> str:
     )
 
 
-def frozen_speed(view: View) -> str:
+def frozen_speed(view: VoyageView) -> str:
     if view.derived("north_m", "surge_velocity_mps"):
         return ""
     rest = view.place - running(view, view.velocity * np.exp(1j * view.psi))
@@ -129,13 +129,13 @@ def frozen_speed(view: View) -> str:
     )
 
 
-def running(view: View, rate: np.ndarray) -> np.ndarray:
+def running(view: VoyageView, rate: np.ndarray) -> np.ndarray:
     """The rate summed from the start, missing samples as zero."""
     return np.cumsum(np.where(np.isfinite(rate), rate, 0.0)) * view.step_s
 
 
 def standing(
-    view: View, name: str, other: np.ndarray | None, far: float, text: str, unit: float = 1.0
+    view: VoyageView, name: str, other: np.ndarray | None, far: float, text: str, unit: float = 1.0
 ) -> str:
     """The longest stretch of one same value of `name` in which `other` changes by more than `far`."""
     x = view.even[name]

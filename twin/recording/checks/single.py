@@ -14,7 +14,7 @@ from twin.recording.checks.compass import fitted
 from twin.recording.checks.relations import USUAL, offs
 from twin.recording.checks.single_table import Single, singles
 from twin.recording.checks.undo import measured, undone
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 
 BROKEN = 1.5  # a relation this far off asks for an explanation
 MENDED = 1.0
@@ -27,7 +27,7 @@ class Tried:
     """One mistake undone: what it leaves, and how much of the cost it takes away."""
 
     single: Single
-    view: View
+    view: VoyageView
     after: dict[str, float | None]
     gain: float
     mended: frozenset[str]
@@ -39,7 +39,7 @@ class Explained:
     """The answer of the mistake's own check, and the voyage without it."""
 
     check: Check
-    view: View | None
+    view: VoyageView | None
     uses: frozenset[str]
 
 
@@ -47,7 +47,7 @@ def cost(off: dict[str, float | None]) -> float:
     return sum(float(np.log1p((x / USUAL[name]) ** 2)) for name, x in off.items() if x is not None)
 
 
-def explain(view: View) -> Explained | None:
+def explain(view: VoyageView) -> Explained | None:
     """The one mistake that explains what disagrees; None when nothing does, or nothing explains it."""
     view = coarse(view)
     before = offs(view)
@@ -97,12 +97,12 @@ def explain(view: View) -> Explained | None:
     )
 
 
-def coarse(view: View) -> View:
+def coarse(view: VoyageView) -> VoyageView:
     """The voyage on a grid of at most ROWS rows, for it is looked at once for each mistake."""
     voyage = view.even
     if len(voyage) <= ROWS:
-        return View(voyage, view.ship)
-    return View(voyage.on_grid(view.step_s * np.ceil(len(voyage) / ROWS)), view.ship)
+        return VoyageView(voyage, view.ship)
+    return VoyageView(voyage.on_grid(view.step_s * np.ceil(len(voyage) / ROWS)), view.ship)
 
 
 SAYS = {
@@ -114,7 +114,7 @@ SAYS = {
 }
 
 
-def attempt(view: View, single: Single, before: dict[str, float | None]) -> Tried:
+def attempt(view: VoyageView, single: Single, before: dict[str, float | None]) -> Tried:
     """The mistake undone. A relation that the voyage could tell before and cannot tell after counts as it
     was."""
     without = undone(view, single.undo(view))

@@ -19,10 +19,10 @@ from twin.recording.checks.undo import (
     as_velocity,
     velocity,
 )
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 from twin.recording.units import DEG_PER_RAD, UNITS
 
-Words = Callable[[View], str]
+Words = Callable[[VoyageView], str]
 HEADINGS: tuple[tuple[str, Callable[[np.ndarray], np.ndarray], str], ...] = (
     ("the heading counts from east, anticlockwise", lambda x: 90.0 - x, "sign = -1 and offset = 90"),
     ("the heading counts anticlockwise from north", lambda x: -x, "sign = -1"),
@@ -85,14 +85,14 @@ class Single:
     cannot be."""
 
     text: Words
-    undo: Callable[[View], Undo]
+    undo: Callable[[VoyageView], Undo]
     fix: Words
     check: str
     needs: tuple[str, ...]
     uses: frozenset[str]
     frame: str = ""
 
-    def possible(self, view: View, given: frozenset[str]) -> bool:
+    def possible(self, view: VoyageView, given: frozenset[str]) -> bool:
         frame = view.voyage.meta.get("velocity_frame") or "body"
         return set(self.needs) <= given and self.frame in ("", frame)
 
@@ -101,7 +101,7 @@ def said(text: str) -> Words:
     return lambda view: text
 
 
-def changes(undo: Undo) -> Callable[[View], Undo]:
+def changes(undo: Undo) -> Callable[[VoyageView], Undo]:
     return lambda view: undo
 
 
@@ -113,12 +113,12 @@ def headed(turn: Callable[[np.ndarray], np.ndarray], mirrored: bool) -> Undo:
     return lambda c: {HEADING: turn(c[HEADING])} | ({RATE: -c[RATE]} if mirrored and RATE in c else {})
 
 
-def sign_of_east(view: View) -> str:
+def sign_of_east(view: VoyageView) -> str:
     given = view.voyage.meta.get("given", ())
     return f"sign = -1 for {'longitude_deg' if 'longitude_deg' in given else 'east_m'}"
 
 
-def sign_of_north(view: View) -> str:
+def sign_of_north(view: VoyageView) -> str:
     given = view.voyage.meta.get("given", ())
     return f"sign = -1 for {'latitude_deg' if 'latitude_deg' in given else 'north_m'}"
 
@@ -127,12 +127,12 @@ def west(c: Columns) -> dict[str, np.ndarray]:
     return {EAST: -c[EAST]}
 
 
-def read_unit(view: View, channel: str, standard: str) -> str:
+def read_unit(view: VoyageView, channel: str, standard: str) -> str:
     """The unit that the map gave a channel."""
     return view.voyage.meta.get("units", {}).get(channel) or standard
 
 
-def of_rate(view: View) -> list[Single]:
+def of_rate(view: VoyageView) -> list[Single]:
     """The rate of turn in another unit than it was read in, or positive to port, or both."""
     read, out = read_unit(view, RATE, "deg/s"), []
     for unit, size in UNITS["degps"].items():
@@ -158,7 +158,7 @@ def of_rate(view: View) -> list[Single]:
     return out
 
 
-def of_speed(view: View) -> list[Single]:
+def of_speed(view: VoyageView) -> list[Single]:
     """The speeds in another unit than they were read in."""
     read, out = read_unit(view, AHEAD, "m/s"), []
     for unit, size in UNITS["mps"].items():
@@ -181,7 +181,7 @@ def of_speed(view: View) -> list[Single]:
     return out
 
 
-def singles(view: View) -> tuple[Single, ...]:
+def singles(view: VoyageView) -> tuple[Single, ...]:
     """All mistakes that this voyage may hold."""
     out: list[Single] = []
     for text, turn, fix in HEADINGS:

@@ -4,7 +4,7 @@ import numpy as np
 
 from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 
 G = 9.81  # [m/s2]
 FASTEST_FROUDE = 0.7  # U / sqrt(g L); a displacement hull stays below 0.5
@@ -15,7 +15,7 @@ SHORT_LENGTHS = 10.0  # ship lengths sailed
 STEADY_RUDDER_DEG = 1.0
 
 
-def ship_size(view: View) -> Check:
+def ship_size(view: VoyageView) -> Check:
     """Speed and turning against the length of the ship, and its draught."""
     name = "ship_size"
     if view.ship is None:
@@ -41,7 +41,7 @@ def ship_size(view: View) -> Check:
     return good(name, f"{saw}: possible for {view.ship.name}.")
 
 
-def tightest(view: View, length: float) -> float:
+def tightest(view: VoyageView, length: float) -> float:
     """The 99 % quantile of |r| L / U under way, means over a quarter of L / U (WAVE_S [s] at least)."""
     if not view.speed > 0.02:
         return 0.0
@@ -52,7 +52,7 @@ def tightest(view: View, length: float) -> float:
     return float(np.nanquantile(ratio, 0.99)) if np.isfinite(ratio).any() else 0.0
 
 
-def duration(view: View) -> Check:
+def duration(view: VoyageView) -> Check:
     """Long enough, and with enough going on, to judge a model by."""
     name, seconds = "duration", view.voyage.duration_s
     sailed = float(np.nansum(np.abs(view.velocity)) * view.step_s)

@@ -11,7 +11,7 @@ import numpy as np
 from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.relations import over_ground
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 from twin.recording.resample import continuous
 
 NAME = "heading_steps"
@@ -26,7 +26,7 @@ JUMP_DEG = 8.0
 
 
 @dataclass(frozen=True)
-class Samples:
+class StepSamples:
     """Single headings [deg, unwrapped by the steps expected], and the part of each step that nothing
     explains."""
 
@@ -41,7 +41,7 @@ class Samples:
         return np.flatnonzero(np.abs(self.odd) > max(LEAST_DEG, SIGMAS * self.noise))
 
 
-def samples_of(view: View) -> Samples | None:
+def samples_of(view: VoyageView) -> StepSamples | None:
     """The headings as they were recorded, with what the rate of turn expects between them."""
     v = view.voyage
     psi = v["heading_true_north_deg"]
@@ -54,10 +54,10 @@ def samples_of(view: View) -> Samples | None:
     expected = expected_steps(view, t)
     odd = np.mod(np.diff(x) - expected + 180.0, 360.0) - 180.0
     odd = np.where((steps > 3.0 * usual) | ~np.isfinite(odd), 0.0, odd)
-    return Samples(t, x, odd, noise_of(odd))
+    return StepSamples(t, x, odd, noise_of(odd))
 
 
-def expected_steps(view: View, t: np.ndarray) -> np.ndarray:
+def expected_steps(view: VoyageView, t: np.ndarray) -> np.ndarray:
     """How far it turns from one sample to the next [deg]: by the rate of turn, else by the course over
     ground, else not."""
     v = view.voyage
@@ -83,7 +83,7 @@ def noise_of(odd: np.ndarray) -> float:
     return min((1.4826 * float(np.median(np.abs(path[k:] - path[:-k]))) for k in lags), default=0.0)
 
 
-def heading_steps(view: View) -> Check:
+def heading_steps(view: VoyageView) -> Check:
     s = samples_of(view)
     if s is None:
         return cannot_tell(NAME, "there are too few headings.")
@@ -97,7 +97,7 @@ def heading_steps(view: View) -> Check:
     )
 
 
-def in_turn(view: View, s: Samples) -> Check | None:
+def in_turn(view: VoyageView, s: StepSamples) -> Check | None:
     """Two headings that take turns: steps all of one size, to and fro."""
     big = s.big
     if big.size < FEWEST:
@@ -119,7 +119,7 @@ def in_turn(view: View, s: Samples) -> Check | None:
     )
 
 
-def upper_rows(s: Samples, big: np.ndarray) -> np.ndarray:
+def upper_rows(s: StepSamples, big: np.ndarray) -> np.ndarray:
     """Which samples stand on the larger of the two headings."""
     state = np.zeros(s.t.size, bool)
     here = bool(s.odd[big[0]] < 0.0)
@@ -131,13 +131,13 @@ def upper_rows(s: Samples, big: np.ndarray) -> np.ndarray:
     return state
 
 
-def nearer_course(view: View, s: Samples, upper: np.ndarray) -> str:
+def nearer_course(view: VoyageView, s: StepSamples, upper: np.ndarray) -> str:
     """What to say of how far each of the two is from the course over ground."""
     off = off_course(view, s, upper)
     return f" (off the course over ground: {off[0]:+.1f} and {off[1]:+.1f} deg)" if off else ""
 
 
-def off_course(view: View, s: Samples, upper: np.ndarray) -> list[float]:
+def off_course(view: VoyageView, s: StepSamples, upper: np.ndarray) -> list[float]:
     """How far the larger and the smaller heading are from the course over ground [deg]; empty where there is
     none."""
     way = over_ground(view)
@@ -151,7 +151,7 @@ def off_course(view: View, s: Samples, upper: np.ndarray) -> list[float]:
     ]
 
 
-def references(view: View, s: Samples) -> list[np.ndarray]:
+def references(view: VoyageView, s: StepSamples) -> list[np.ndarray]:
     """The heading [deg] as the course over ground has it, and as the summed rate of turn has it beside a slow
     drift."""
     out = []
@@ -177,7 +177,7 @@ def turned_off(angle_deg: np.ndarray) -> np.ndarray:
     return np.mod(angle_deg + 180.0, 360.0) - 180.0
 
 
-def north_rows(view: View, s: Samples) -> np.ndarray:
+def north_rows(view: VoyageView, s: StepSamples) -> np.ndarray:
     """Samples far off a reference, which stood near north."""
     for by in references(view, s):
         off = turned_off(s.psi - by)
@@ -200,7 +200,7 @@ def north_rows(view: View, s: Samples) -> np.ndarray:
     return np.zeros(0, int)
 
 
-def across_north(view: View, s: Samples) -> Check | None:
+def across_north(view: VoyageView, s: StepSamples) -> Check | None:
     """Means of 359 and 1 that are 180: only near north the heading is far off."""
     rows = north_rows(view, s)
     if not rows.size:
@@ -215,7 +215,7 @@ def across_north(view: View, s: Samples) -> Check | None:
     )
 
 
-def jump(view: View, s: Samples) -> Check | None:
+def jump(view: VoyageView, s: StepSamples) -> Check | None:
     """One step or a few that stay, which neither the rate of turn nor the course made."""
     big = np.array([i for i in s.big if np.abs(s.odd[i]) > JUMP_DEG and stays(s, i)], int)
     if not big.size or big.size > 5:
@@ -238,7 +238,7 @@ def jump(view: View, s: Samples) -> Check | None:
     )
 
 
-def stays(s: Samples, i: int) -> bool:
+def stays(s: StepSamples, i: int) -> bool:
     """Whether the heading after a step stays where it went."""
     path = np.r_[0.0, np.cumsum(s.odd)]
     after, before = path[i + 1 : i + 1 + STAYS], path[max(i + 1 - STAYS, 0) : i + 1]
@@ -247,7 +247,7 @@ def stays(s: Samples, i: int) -> bool:
     return bool(abs(np.median(after) - np.median(before) - s.odd[i]) < 0.3 * abs(s.odd[i]))
 
 
-def without_steps(view: View) -> np.ndarray | None:
+def without_steps(view: VoyageView) -> np.ndarray | None:
     """The heading [deg] of the voyage's rows with two headings made one and means across north left out; None
     when neither is there."""
     s = samples_of(view)

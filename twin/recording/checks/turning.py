@@ -4,7 +4,7 @@ import numpy as np
 
 from twin.num import num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.recording.checks.view import View, fit, rms
+from twin.recording.checks.view import VoyageView, fit, rms
 from twin.recording.units import DEG_PER_RAD
 
 RATES = (
@@ -21,17 +21,17 @@ RATES = (
 )
 
 
-def window_s(view: View) -> float:
+def window_s(view: VoyageView) -> float:
     return float(np.clip(view.voyage.duration_s / 50.0, 5.0 * view.step_s, 30.0))
 
 
-def turned(view: View) -> tuple[np.ndarray, np.ndarray]:
+def turned(view: VoyageView) -> tuple[np.ndarray, np.ndarray]:
     """(change of the heading, summed rate) [rad] in each window."""
     first, last = view.windows(window_s(view))
     return view.psi[last] - view.psi[first], view.summed(view.si("yaw_rate_degps"), first, last)
 
 
-def turning_ratio(view: View) -> tuple[float, float] | None:
+def turning_ratio(view: VoyageView) -> tuple[float, float] | None:
     """(how much the heading turns for one radian of summed rate, share of its turning left over); None: too
     little turning."""
     swung, summed = turned(view)
@@ -44,7 +44,7 @@ def turning_ratio(view: View) -> tuple[float, float] | None:
     return float(k), float(left)
 
 
-def yaw_rate(view: View) -> Check:
+def yaw_rate(view: VoyageView) -> Check:
     """The heading's change against the summed yaw rate."""
     name = "yaw_rate"
     if view.derived("yaw_rate_degps"):

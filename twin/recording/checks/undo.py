@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from twin.recording.checks.view import View
+from twin.recording.checks.view import VoyageView
 from twin.recording.place import derive
 from twin.recording.voyage import Voyage
 
@@ -52,11 +52,11 @@ def remade(voyage: Voyage, columns: Columns) -> Voyage:
     return replace(voyage, time_s=time_s, columns=full)
 
 
-def undone(view: View, undo: Undo) -> View:
+def undone(view: VoyageView, undo: Undo) -> VoyageView:
     """The view without the mistake."""
     voyage = view.even
     seen = measured(voyage)
-    return View(remade(voyage, {**seen, **undo(seen)}), view.ship)
+    return VoyageView(remade(voyage, {**seen, **undo(seen)}), view.ship)
 
 
 def velocity(c: Columns) -> np.ndarray:

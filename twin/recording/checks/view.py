@@ -13,7 +13,7 @@ LEAST_WAY_MPS = 0.1  # less is a mooring's swing
 
 
 @dataclass(frozen=True)
-class View:
+class VoyageView:
     """A voyage and, if known, its ship."""
 
     voyage: Voyage

@@ -6,14 +6,14 @@ u_w = k (u - c_north cos psi - c_east sin psi)
 import numpy as np
 
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.recording.checks.view import View, fit
+from twin.recording.checks.view import VoyageView, fit
 
 FASTEST_CURRENT_MPS = 4.0
 ALIKE_S = 30.0  # neighbours within this time carry the same wave and the same gust
 SCALES = ((1.0 / (1852.0 / 3600.0), "kn"), (3.6, "km/h"), (1.0 / 0.3048, "ft/s"))
 
 
-def speed_log(view: View) -> Check:
+def speed_log(view: VoyageView) -> Check:
     """The factor k, where turning or changing speed lets it be told from the current."""
     name = "speed_log"
     water = view.si("surge_velocity_through_water_mps")

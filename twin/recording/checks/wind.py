@@ -9,7 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.recording.checks.view import View, fit, rms
+from twin.recording.checks.view import VoyageView, fit, rms
 from twin.recording.units import DEG_PER_RAD, KNOT_MPS
 
 # share of the wind by which the triangle may stay open (gusts, mast height, flow around the ship)
@@ -55,7 +55,7 @@ MISTAKES: tuple[tuple[str, str, Callable[..., tuple[np.ndarray, np.ndarray]]], .
 )  # fmt: skip
 
 
-def wind(view: View) -> Check:
+def wind(view: VoyageView) -> Check:
     """The triangle, when both winds were recorded; else what one of them says alone."""
     name = "wind"
     true = view.voyage.has("true_wind_speed_mps", "true_wind_direction_deg")
@@ -65,7 +65,7 @@ def wind(view: View) -> Check:
     return triangle(name, view) if true and apparent else alone(name, view, true)
 
 
-def triangle(name: str, view: View) -> Check:
+def triangle(name: str, view: VoyageView) -> Check:
     t, h, a, b = (
         view.si(c)
         for c in (
@@ -98,14 +98,16 @@ def triangle(name: str, view: View) -> Check:
     )
 
 
-def relative_taken_as_true(t: np.ndarray, h: np.ndarray, a: np.ndarray, b: np.ndarray, view: View) -> bool:
+def relative_taken_as_true(
+    t: np.ndarray, h: np.ndarray, a: np.ndarray, b: np.ndarray, view: VoyageView
+) -> bool:
     """Both columns hold the same wind (as it is, or turned by the heading) though the ship makes way."""
     size = max(rms(a), 1e-9)
     same = min(rms(turn(a, b) - turn(t, h)), rms(turn(a, b) - turn(t, h - view.psi))) / size
     return same < 0.1 and view.speed > 0.3 * size
 
 
-def alone(name: str, view: View, true: bool) -> Check:
+def alone(name: str, view: VoyageView, true: bool) -> Check:
     """One wind only: a true direction that turns with the bow was measured from it; radians stay small."""
     column = "true_wind_direction_deg" if true else "apparent_wind_angle_deg"
     raw = view.voyage[column]

@@ -20,7 +20,7 @@ MADE_TRUE = "heading_magnetic_deg + magnetic_variation_deg"
 Sources = Mapping[str, str]  # quantity or "" for all: the source to take
 
 
-class Choice(NamedTuple):
+class SourceChoice(NamedTuple):
     """`columns` of a map by channel, and sentences: what was taken where there was a choice, what was not
     used."""
 
@@ -65,7 +65,7 @@ def best(signals: Signals, quantity: str, sources: Sources, notes: list[str]) ->
     return taken
 
 
-def chosen(signals: Signals, sources: Sources) -> Choice:
+def chosen(signals: Signals, sources: Sources) -> SourceChoice:
     """The columns of the log's own map; every series that no channel takes is named in one sentence."""
     known = {s.source for s in signals.series.values()}
     if sources.get("") and sources[""] not in known:
@@ -85,7 +85,7 @@ def chosen(signals: Signals, sources: Sources) -> Choice:
         columns |= pair(
             signals, BODY, quantities, sources, notes, {"frame": frame} if frame != "body" else {}
         )
-    return Choice(columns, notes + unused(signals, columns))
+    return SourceChoice(columns, notes + unused(signals, columns))
 
 
 def pair(

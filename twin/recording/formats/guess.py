@@ -80,7 +80,7 @@ RATE = frozenset(("rate", "velo", "vel", "velocity", "angvelo", "angular", "spee
 WIND = frozenset(("wind", "tws", "twd", "aws", "awa"))
 
 
-class Rule(NamedTuple):
+class GuessRule(NamedTuple):
     """A name with all of `words` and none of `without` may be `channel`."""
 
     channel: str
@@ -88,14 +88,14 @@ class Rule(NamedTuple):
     without: frozenset[str] = frozenset()
 
 
-def _rules(channel: str, names: str, without: frozenset[str] | str = "") -> list[Rule]:
+def _rules(channel: str, names: str, without: frozenset[str] | str = "") -> list[GuessRule]:
     """Rules of one channel: alternatives by comma, words by blank."""
     no = frozenset(without.split()) if isinstance(without, str) else without
-    return [Rule(channel, frozenset(n.split()), no) for n in names.split(",")]
+    return [GuessRule(channel, frozenset(n.split()), no) for n in names.split(",")]
 
 
 SOG, COG = "speed_over_ground_mps", "course_over_ground_deg"
-RULES: tuple[Rule, ...] = (
+RULES: tuple[GuessRule, ...] = (
     *_rules(
         "time",
         "time,timestamp,utc,t,clock,date,datetime,epoch,stamp,seconds,secs,basedatetime,original timestamp",

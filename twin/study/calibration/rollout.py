@@ -28,7 +28,7 @@ LEAST = 0.02  # share by which the cost must fall for another round
 
 
 @dataclass
-class _Problem:
+class _PathProblem:
     """The unknowns in prior widths from their centres, and what the tracks say of them."""
 
     tracks: Sequence[Track]
@@ -76,7 +76,7 @@ def rolled_out(
 ) -> Model:
     """The model whose core leads the ship most nearly where it went, begun from `model` or from the
     unknowns' centres."""
-    problem = _Problem(tracks, model, unknowns, catalogue)
+    problem = _PathProblem(tracks, model, unknowns, catalogue)
     here = (np.array([float(model.ship.derivative(u.name)) for u in unknowns]) - problem.centre) / problem.sd
     starts = [here, np.zeros_like(here)]
     problem.weigh(starts[0])
@@ -90,7 +90,7 @@ def rolled_out(
     return with_values(model, unknowns, problem.values(z), catalogue)
 
 
-def _descend(problem: _Problem, z: np.ndarray) -> tuple[np.ndarray, float]:
+def _descend(problem: _PathProblem, z: np.ndarray) -> tuple[np.ndarray, float]:
     """One step of Levenberg and Marquardt, inside the boxes; z itself when no step is better."""
     r = problem.residual(z)
     best = problem.cost(r, z)

@@ -42,7 +42,7 @@ SOME = 0.5  # probability from which a kind of weather is told
 
 
 @dataclass(frozen=True)
-class Diagnosis:
+class Diagnosed:
     """The contract's JSON, and what a report draws it from."""
 
     result: dict[str, Any]
@@ -55,7 +55,7 @@ def diagnose(
     ship: Ship,
     references: Sequence[Voyage] = (),
     progress: Callable[[str], None] = lambda text: None,
-) -> Diagnosis:
+) -> Diagnosed:
     """Judge all candidates jointly on these voyages."""
     case = assemble(voyages, ship, references, progress)
     weighed, found, seen = search(case, progress)
@@ -129,7 +129,7 @@ def diagnose(
         "facts": facts.told(),
     }
     result["sentence"] = decision.sentence(result)
-    return Diagnosis(plain(result), case, found)
+    return Diagnosed(plain(result), case, found)
 
 
 def _healthy(found: Healthy | None) -> dict[str, Any]:

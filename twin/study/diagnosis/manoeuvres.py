@@ -22,7 +22,7 @@ DEG = pi / 180.0
 
 
 @dataclass
-class Helm:
+class HelmOrder:
     """What the helmsman sees and remembers: lengths sailed, heading change [rad], his last order."""
 
     lengths: float = 0.0
@@ -31,11 +31,11 @@ class Helm:
     side: float = 1.0
 
 
-Order = Callable[[Helm], tuple[float, float]]  # rudder [rad], shaft speed as a share of the usual
+Order = Callable[[HelmOrder], tuple[float, float]]  # rudder [rad], shaft speed as a share of the usual
 
 
 def _zigzag(angle: float) -> Order:
-    def order(helm: Helm) -> tuple[float, float]:
+    def order(helm: HelmOrder) -> tuple[float, float]:
         if helm.side * helm.turned > angle:
             helm.side = -helm.side
         return helm.side * angle, 1.0
@@ -46,7 +46,7 @@ def _zigzag(angle: float) -> Order:
 def _steer(course: Callable[[float], float], power: Callable[[float], float]) -> Order:
     """Hold a course (of lengths sailed) by proportional and rate action."""
 
-    def order(helm: Helm) -> tuple[float, float]:
+    def order(helm: HelmOrder) -> tuple[float, float]:
         error = course(helm.lengths) - helm.turned
         return float(np.clip(1.5 * error - 1.0 * helm.rate, -25 * DEG, 25 * DEG)), power(helm.lengths)
 
@@ -95,7 +95,7 @@ def sail(case: Case, model: Model, order: Order) -> Track:
     usual = 0.5 if parts else float(np.median(like.n[like.whole]))
     weather = {name: float(np.median(values)) for name, values in like.weather.items()}
     state = (0.0, 0.0, 0.0, float(np.median(like.state[:, 3])), 0.0, 0.0)
-    helm, L = Helm(), float(model.ship.L_pp)
+    helm, L = HelmOrder(), float(model.ship.L_pp)
     states, orders = np.full((steps, 6), np.nan), np.zeros((steps, 2))
     for k in range(steps):
         if not np.isfinite(state).all():

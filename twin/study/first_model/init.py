@@ -65,7 +65,7 @@ def first_model(name: str, given: Given, actuators: tuple[Actuator, ...] = ()) -
         raise SettingsError("NAME is empty. Give the ship a name.")
     _check(given)
     p = _particulars(given, LEAST_FULL if actuators else 0.2)
-    h = reg.Hull(*(p[k][0] for k in ("L_pp", "B", "T", "C_b", "U_0", "x_G", "rho")))
+    h = reg.HullForm(*(p[k][0] for k in ("L_pp", "B", "T", "C_b", "U_0", "x_G", "rho")))
     d = _derivatives(reg.nearest(h), p, given)
     notes: dict[str, Any] = {
         "particulars": {k: {"value": v, "source": s} for k, (v, s) in p.items()},
@@ -163,7 +163,7 @@ def _particulars(given: Given, least: float = 0.2) -> Numbers:
     return {k: (float(f"{v:.6g}"), s) for k, (v, s) in p.items()}
 
 
-def _derivatives(h: reg.Hull, p: Numbers, given: Given) -> Numbers:
+def _derivatives(h: reg.HullForm, p: Numbers, given: Given) -> Numbers:
     """Derivatives with their sources; sets the propeller's diameter in p where only its shaft speed is
     known."""
     out: Numbers = {f.name: (0.0, "ZERO") for f in DERIVATIVES}
@@ -197,14 +197,14 @@ def _propellers(given: Given) -> float:
     return count
 
 
-def _all_screws(h: reg.Hull, pitch: float, count: float) -> Numbers:
+def _all_screws(h: reg.HullForm, pitch: float, count: float) -> Numbers:
     """One propeller in the place of all: of the same diameter, with the thrust of all of them. What a rudder
     feels is one slipstream, so kappa is divided by their number."""
     out = reg.propulsion(h, pitch, count)
     return out | {name: (count * out[name][0], out[name][1]) for name in ("K_T0", "K_T1")}
 
 
-def _pitch_ratio(h: reg.Hull, p: Numbers, given: Given, d: Numbers) -> float:
+def _pitch_ratio(h: reg.HullForm, p: Numbers, given: Given, d: Numbers) -> float:
     """Given, or usual for a hull as full as this, or such that the shaft speed given drives it at service
     speed."""
     usual, count = given["pitch-ratio"] or min(1.2, max(0.6, 1.7 - 1.2 * h.C_b)), _propellers(given)

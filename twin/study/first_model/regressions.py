@@ -55,7 +55,7 @@ VALIDITY: tuple[tuple[str, str, float, float], ...] = (
 )
 
 
-class Hull(NamedTuple):
+class HullForm(NamedTuple):
     """What the regressions start from, SI."""
 
     L: float
@@ -80,7 +80,7 @@ class Hull(NamedTuple):
         }
 
 
-def outside(h: Hull) -> list[str]:
+def outside(h: HullForm) -> list[str]:
     """In words, where this hull lies outside what a regression was made from."""
     found: dict[str, list[str]] = {}
     for source, name, lo, hi in VALIDITY:
@@ -93,7 +93,7 @@ def outside(h: Hull) -> list[str]:
     ]
 
 
-def nearest(h: Hull) -> Hull:
+def nearest(h: HullForm) -> HullForm:
     """The hull of usual proportions that is nearest to this one: a regression is never asked far outside its
     hulls.
 
@@ -116,7 +116,7 @@ def service_speed(L: float, C_b: float) -> float:
     return min(0.34, max(0.13, (1.08 - C_b) / 1.68)) * (9.80665 * L) ** 0.5
 
 
-def added_masses(h: Hull) -> Estimates:
+def added_masses(h: HullForm) -> Estimates:
     """Added masses in prime form; the two couplings of sway and yaw are made equal (their mean), as potential
     flow has them."""
     aspect = pi * h.T / h.L  # pi (T/L)^2 over T/L, since we divide by T instead of L
@@ -131,7 +131,7 @@ def added_masses(h: Hull) -> Estimates:
     }
 
 
-def hull_polynomial(h: Hull, m_y: float) -> dict[str, float]:
+def hull_polynomial(h: HullForm, m_y: float) -> dict[str, float]:
     """The hull in v' = -beta and r'; vv stands for |v| v.
 
     Linear part by CGH83. Beyond it the regressions disagree, KIJ90 turning wide and YM12 tight, with the
@@ -174,7 +174,7 @@ def hull_polynomial(h: Hull, m_y: float) -> dict[str, float]:
     return surge | linear | mean
 
 
-def resistance(h: Hull) -> float:
+def resistance(h: HullForm) -> float:
     """R / (1/2 rho L T U^2) at service speed."""
     surface = 1.7 * h.L * h.T + h.volume / h.T
     reynolds = max(1e5, h.U * h.L / 1.19e-6)
@@ -187,7 +187,7 @@ def resistance(h: Hull) -> float:
     return 1.05 * (friction * (1.0 + form) + roughness + residual) * surface / (h.L * h.T)
 
 
-def propulsion(h: Hull, pitch_ratio: float, screws: float = 1.0) -> Estimates:
+def propulsion(h: HullForm, pitch_ratio: float, screws: float = 1.0) -> Estimates:
     """Thrust of one screw; wake and thrust deduction of a ship that has one, or more."""
     K_T0 = 0.43 * pitch_ratio - 0.02
     wake = 0.5 * h.C_b - 0.05 if screws == 1.0 else 0.55 * h.C_b - 0.2
@@ -197,7 +197,7 @@ def propulsion(h: Hull, pitch_ratio: float, screws: float = 1.0) -> Estimates:
     }  # fmt: skip
 
 
-def steering(h: Hull, aspect: float) -> Estimates:
+def steering(h: HullForm, aspect: float) -> Estimates:
     """Rudder force and what hull and propeller do to it, but for the slipstream."""
     s = h.C_b * h.B / h.L
     gamma, l_R = 2.06 * s + 0.14, 1.7 * s - 1.0

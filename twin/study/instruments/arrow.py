@@ -29,7 +29,7 @@ class Block:
 
 
 @dataclass(frozen=True)
-class Reduced:
+class ArrowReduced:
     """The states eliminated: A (P, P), g (P,), and what finds them again. Fast states (a band) come first,
     the few slow ones behind them."""
 
@@ -45,7 +45,7 @@ class Reduced:
         return self.mean - self.cross @ step
 
 
-def reduce(blocks: Sequence[Block], sd: dict[str, float], fast: int) -> Reduced:
+def reduce(blocks: Sequence[Block], sd: dict[str, float], fast: int) -> ArrowReduced:
     """Normal equations of all blocks, each with its scatter, and the states (`fast` of them in a band) taken
     out of them."""
     S, P = blocks[0].J.shape[1], blocks[0].G.shape[1]
@@ -63,7 +63,7 @@ def reduce(blocks: Sequence[Block], sd: dict[str, float], fast: int) -> Reduced:
     solved = solve(np.column_stack([cross, g_s]))
     inner, mean = solved[:, :P], solved[:, P]
     A = H_pp - cross.T @ inner
-    return Reduced(0.5 * (A + A.T), g_p - cross.T @ mean, log_det, solve, inner, mean)
+    return ArrowReduced(0.5 * (A + A.T), g_p - cross.T @ mean, log_det, solve, inner, mean)
 
 
 def _solver(H: csr_array, fast: int) -> tuple[Callable[[np.ndarray], np.ndarray], float]:
@@ -100,7 +100,7 @@ def _cholesky(H: object) -> np.ndarray:
 def freedom(
     blocks: Sequence[Block],
     sd: dict[str, float],
-    found: Reduced,
+    found: ArrowReduced,
     covariance: np.ndarray,
     rng: np.random.Generator,
 ) -> dict[str, float]:

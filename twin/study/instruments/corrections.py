@@ -9,7 +9,7 @@ from twin.errors import SettingsError
 from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.ship import Ship
-from twin.study.instruments.findings import Estimate, Instruments
+from twin.study.instruments.findings import InstrumentEstimate, Instruments
 from twin.study.reference.derivatives import noted
 
 PARAMETERS = {  # number -> effect, parameter, and the one that says by what the velocity was turned
@@ -36,12 +36,12 @@ OFFSETS = {
 }
 
 
-def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[Estimate]]:
+def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[InstrumentEstimate]]:
     """The ship with the faults that were seen as effects of its own; and the seen numbers that no effect of
     the catalogue holds."""
     effects: dict[str, Effect] = {type(e).__name__: e for e in ship.effects}
     entries: dict[str, Any] = {}
-    left: list[Estimate] = []
+    left: list[InstrumentEstimate] = []
     for e in _seen(found):
         if e.unknown.name not in PARAMETERS:
             left.append(e)
@@ -65,7 +65,7 @@ def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[Estimate]]:
     return noted(replace(ship, effects=tuple(effects.values())), "effects", entries), left
 
 
-def _seen(found: Instruments) -> list[Estimate]:
+def _seen(found: Instruments) -> list[InstrumentEstimate]:
     return [e for e in found.estimates if e.seen and e.unknown.fault in found.faults]
 
 

@@ -6,15 +6,15 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from twin.recording.voyage import Voyage
-from twin.study.instruments.findings import CLOCKS, Estimate, Instruments, said
-from twin.study.instruments.fit import Fit, columns, fit
+from twin.study.instruments.findings import CLOCKS, InstrumentEstimate, Instruments, said
+from twin.study.instruments.fit import KinematicFit, columns, fit
 from twin.study.instruments.problem import Problem
 from twin.study.instruments.readings import Readings, of_track, of_voyage
 from twin.study.instruments.select import Book, Weighed
 from twin.study.instruments.unknowns import ALWAYS, FAULTS, INDEX, UNKNOWNS
 from twin.study.track.track import Track
 
-__all__ = ["Estimate", "Instruments", "estimate", "evidence"]
+__all__ = ["InstrumentEstimate", "Instruments", "estimate", "evidence"]
 ROUNDS = 4  # selections, each about a new fit
 CLEARLY = 30.0  # log evidence from which a receiver is said to have turned its velocity itself
 Progress = Callable[[str], None]
@@ -61,7 +61,7 @@ def _problem(r: Readings, length: float, progress: Progress) -> Problem:
     return Problem(r, length, told[1] > told[0] + CLEARLY)
 
 
-def _whole(problems: Sequence[Problem]) -> tuple[Fit, str]:
+def _whole(problems: Sequence[Problem]) -> tuple[KinematicFit, str]:
     """All numbers at once but for one age, and which: a clock of all instruments together shows nowhere; none
     is early, so the earliest is prompt."""
     names = [u.name for u in UNKNOWNS]
@@ -75,7 +75,7 @@ def _whole(problems: Sequence[Problem]) -> tuple[Fit, str]:
     return fit(problems, [n for n in names if n != earliest], theta), earliest
 
 
-def _start(found: Fit, book: Book, best: Weighed) -> np.ndarray:
+def _start(found: KinematicFit, book: Book, best: Weighed) -> np.ndarray:
     """(V, P) where the set of faults is expected to stand."""
     row = np.zeros(found.at.size)
     row[best.at] = best.mean

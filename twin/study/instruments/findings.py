@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.study.instruments.fit import Fit, columns
+from twin.study.instruments.fit import KinematicFit, columns
 from twin.study.instruments.problem import Problem
 from twin.study.instruments.readings import Readings
 from twin.study.instruments.select import Book, Weighed
-from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, Unknown
+from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, InstrumentUnknown
 
 SEEN = 5.0  # log Bayes factor from which a fault is said to be seen (150 to 1)
 BLURRED = 0.5  # of a prior width: a number that the readings leave wider is not known
@@ -25,12 +25,12 @@ CLOCKS = {
 
 
 @dataclass(frozen=True)
-class Estimate:
+class InstrumentEstimate:
     """One number. `sd`: the Cramer-Rao bound where the readings put it; `limit`: 95 % of what may be there
     unseen; `known`: whether the readings say it beside all others; `unlike`: the number that it is hardest to
     tell from."""
 
-    unknown: Unknown
+    unknown: InstrumentUnknown
     value: float
     sd: float
     seen: bool
@@ -52,7 +52,7 @@ class Instruments:
 
     readings: tuple[Readings, ...]
     own: tuple[bool, ...]  # whether the velocity was turned by an attitude of the receiver's own
-    estimates: tuple[Estimate, ...]
+    estimates: tuple[InstrumentEstimate, ...]
     faults: tuple[str, ...]  # those seen
     # fault -> kind of reading -> its scatter without and with the fault
     falls: dict[str, dict[str, tuple[float, float]]]
@@ -64,14 +64,16 @@ class Instruments:
     instead: dict[str, tuple[str, ...]]
     stream: tuple[dict[str, np.ndarray], ...]
     clock: str  # the age that is none by definition
-    fit: Fit
+    fit: KinematicFit
 
-    def of(self, name: str) -> Estimate | None:
+    def of(self, name: str) -> InstrumentEstimate | None:
         """The estimate of that number (of the first voyage); None where the readings say nothing of it."""
         return next((e for e in self.estimates if e.unknown.name == name), None)
 
 
-def said(readings: Sequence[Readings], problems: Sequence[Problem], found: Fit, clock: str) -> Instruments:
+def said(
+    readings: Sequence[Readings], problems: Sequence[Problem], found: KinematicFit, clock: str
+) -> Instruments:
     book = Book(found, clock)
     best = book.likeliest()
     factor = {f: book.bayes_factor(f, best) for f in book.tellable}
@@ -108,7 +110,7 @@ def _one(
     faults: Sequence[str],
     factor: dict[str, float],
     everything: Weighed,
-) -> Estimate | None:
+) -> InstrumentEstimate | None:
     name, fault = book.names[i], str(book.fault[i])
     if fault == "drift" or (fault not in book.tellable and fault not in ALWAYS):
         return None
@@ -122,7 +124,7 @@ def _one(
     j = int(np.argmax(alike))
     own = (i - len(UNKNOWNS) + 2) // 2 if fault == "current" else None
     lbf = factor.get(fault, np.inf)
-    return Estimate(
+    return InstrumentEstimate(
         UNKNOWNS[INDEX[name]],
         value,
         sd,
@@ -135,7 +137,9 @@ def _one(
     )
 
 
-def _falls(problems: Sequence[Problem], found: Fit, book: Book, fault: str) -> dict[str, tuple[float, float]]:
+def _falls(
+    problems: Sequence[Problem], found: KinematicFit, book: Book, fault: str
+) -> dict[str, tuple[float, float]]:
     """Scatter of each kind of reading without this fault (all else, the paths too, made to fit) and with it,
     where it changed by a tenth."""
     best = book.likeliest()

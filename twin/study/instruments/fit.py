@@ -27,7 +27,7 @@ SHARED = [i for i in range(P) if i not in MINE]
 
 
 @dataclass(frozen=True)
-class Fit:
+class KinematicFit:
     """Where the readings put the numbers. `theta` (V, P): of each voyage (the shared ones alike). `A`, `g`
     over the numbers of all voyages (SHARED, then each voyage's own): log likelihood = g d - d A d/2 for a
     step d from theta, the paths following."""
@@ -38,7 +38,7 @@ class Fit:
     g: np.ndarray
     width: np.ndarray  # (Q,) prior scatters
     blocks: tuple[tuple[arrow.Block, ...], ...]
-    reduced: tuple[arrow.Reduced, ...]
+    reduced: tuple[arrow.ArrowReduced, ...]
     log_likelihood: float
     rounds: int
 
@@ -68,7 +68,7 @@ def opened(names: Sequence[str], voyages: int) -> np.ndarray:
 
 def fit(
     problems: Sequence[Problem], names: Sequence[str], theta: np.ndarray | None = None, rounds: int = ROUNDS
-) -> Fit:
+) -> KinematicFit:
     """All voyages with these numbers free and the others at nothing. The problems' states and scatters are
     left where they end."""
     V = len(problems)
@@ -89,7 +89,7 @@ def fit(
             break
     A, g, found, every = _normal(problems, at, True)
     score = _score(problems, every, found, A, width, free, _row(at))
-    return Fit(at, free, A, g, width, tuple(map(tuple, every)), tuple(found), score, done)
+    return KinematicFit(at, free, A, g, width, tuple(map(tuple, every)), tuple(found), score, done)
 
 
 def _widths(problems: Sequence[Problem]) -> np.ndarray:
@@ -103,7 +103,7 @@ def _row(theta: np.ndarray) -> np.ndarray:
 
 def _normal(
     problems: Sequence[Problem], theta: np.ndarray, sober: bool = False
-) -> tuple[np.ndarray, np.ndarray, list[arrow.Reduced], list[list[arrow.Block]]]:
+) -> tuple[np.ndarray, np.ndarray, list[arrow.ArrowReduced], list[list[arrow.Block]]]:
     """The normal equations of all voyages; `sober`: with readings that err together told for what they are
     worth (the paths are fitted without: a bad fit errs together too, and would be believed)."""
     Q = len(SHARED) + len(MINE) * len(problems)
@@ -135,7 +135,7 @@ def _step(
 
 
 def _move(
-    problems: Sequence[Problem], found: Sequence[arrow.Reduced], theta: np.ndarray, step: np.ndarray
+    problems: Sequence[Problem], found: Sequence[arrow.ArrowReduced], theta: np.ndarray, step: np.ndarray
 ) -> None:
     for v, (p, red) in enumerate(zip(problems, found, strict=True)):
         mine = step[columns(v)]
@@ -146,7 +146,7 @@ def _move(
 def _scatters(
     problems: Sequence[Problem],
     every: Sequence[Sequence[arrow.Block]],
-    found: Sequence[arrow.Reduced],
+    found: Sequence[arrow.ArrowReduced],
     covariance: np.ndarray,
     rng: np.random.Generator,
 ) -> None:
@@ -182,14 +182,14 @@ def _lasting(r: np.ndarray, parts: int) -> float:
     return float(np.mean(found))
 
 
-def _pull(red: arrow.Reduced) -> np.ndarray:
+def _pull(red: arrow.ArrowReduced) -> np.ndarray:
     return red.g
 
 
 def _score(
     problems: Sequence[Problem],
     every: Sequence[Sequence[arrow.Block]],
-    found: Sequence[arrow.Reduced],
+    found: Sequence[arrow.ArrowReduced],
     A: np.ndarray,
     width: np.ndarray,
     free: np.ndarray,

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.sparse import coo_array
 
-from twin.study.instruments.readings import PER_MOTION, Readings, Samples
+from twin.study.instruments.readings import PER_MOTION, Readings, ReadingSamples
 from twin.study.instruments.spline import Spline, Weights
 from twin.study.instruments.unknowns import UNKNOWNS, widths
 
@@ -65,7 +65,7 @@ class Problem:
     readings: Readings
     length: float
     own: bool
-    by: dict[str, Samples] = field(init=False)
+    by: dict[str, ReadingSamples] = field(init=False)
     sd: dict[str, float] = field(init=False, default_factory=dict)
     # how many readings in a row err together
     lasts: dict[str, float] = field(init=False, default_factory=dict)
@@ -93,13 +93,15 @@ class Problem:
         self._columns()
         self._begin()
 
-    def _velocity(self, read: Readings) -> Samples:
+    def _velocity(self, read: Readings) -> ReadingSamples:
         s = read.by["velocity"]
         if self.own:
             return s
         psi = read.by["heading at velocity"].y[:, 0]
         c, si = np.cos(psi), np.sin(psi)
-        return Samples(s.t, np.column_stack([s.y[:, 0] * c - s.y[:, 1] * si, s.y[:, 0] * si + s.y[:, 1] * c]))
+        return ReadingSamples(
+            s.t, np.column_stack([s.y[:, 0] * c - s.y[:, 1] * si, s.y[:, 0] * si + s.y[:, 1] * c])
+        )
 
     def _columns(self) -> None:
         """Every state's column: the path's, knot by knot, then the few of stream and wind."""

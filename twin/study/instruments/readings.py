@@ -17,20 +17,20 @@ PER_MOTION = 20  # samples kept in the time in which the ship's turning changes;
 
 
 @dataclass(frozen=True)
-class Samples:
+class ReadingSamples:
     """One instrument: times (n,) [s] and values (n, d) in SI units."""
 
     t: np.ndarray
     y: np.ndarray
 
-    def thinned(self, width: float) -> "Samples":
+    def thinned(self, width: float) -> "ReadingSamples":
         """Means over so many seconds, at the mean of their times."""
         cell = np.floor((self.t - self.t[0]) / width).astype(int)
         first = np.flatnonzero(np.r_[True, np.diff(cell) != 0])
         count = np.diff(np.r_[first, self.t.size])
         if (count == 1).all():
             return self
-        return Samples(
+        return ReadingSamples(
             np.add.reduceat(self.t, first) / count, np.add.reduceat(self.y, first, axis=0) / count[:, None]
         )
 
@@ -42,7 +42,7 @@ class Readings:
     attitude of its own; None: the samples do not tell."""
 
     name: str
-    by: Mapping[str, Samples]
+    by: Mapping[str, ReadingSamples]
     own: bool | None
     speed: float  # usual speed [m/s]
     time: float  # in which the rate of turn changes [s]
@@ -66,12 +66,12 @@ def of_voyage(voyage: Voyage) -> Readings:
     place and velocity lack."""
     derived = voyage.meta.get("derived", {})
 
-    def samples(*channels: str) -> Samples | None:
+    def samples(*channels: str) -> ReadingSamples | None:
         if any(c in derived or not voyage.has(c) for c in channels):
             return None
         y = np.column_stack([voyage.si(c) for c in channels])
         ok = np.isfinite(y).all(axis=1)
-        return Samples(voyage.time_s[ok], y[ok]) if ok.sum() >= FEWEST else None
+        return ReadingSamples(voyage.time_s[ok], y[ok]) if ok.sum() >= FEWEST else None
 
     return _readings(
         voyage.name,
@@ -94,12 +94,14 @@ def of_track(track: Track) -> Readings:
     """The readings of a track, on its grid."""
     column = dict(zip(READINGS, track.measured.T, strict=True))
 
-    def samples(*names: str) -> Samples | None:
+    def samples(*names: str) -> ReadingSamples | None:
         y = np.column_stack([column[n] for n in names])
         ok = np.isfinite(y).all(axis=1)
-        return Samples(track.t[ok], y[ok]) if ok.sum() >= FEWEST else None
+        return ReadingSamples(track.t[ok], y[ok]) if ok.sum() >= FEWEST else None
 
-    roll = Samples(track.t, np.asarray(track.weather["phi"])[:, None]) if "phi" in track.weather else None
+    roll = (
+        ReadingSamples(track.t, np.asarray(track.weather["phi"])[:, None]) if "phi" in track.weather else None
+    )
     found = {
         "place": samples("x", "y"),
         "body": samples("u", "v", "psi"),
@@ -114,7 +116,7 @@ def of_track(track: Track) -> Readings:
     return _readings(track.name, found)
 
 
-def _readings(name: str, found: Mapping[str, Samples | None], own: bool | None = None) -> Readings:
+def _readings(name: str, found: Mapping[str, ReadingSamples | None], own: bool | None = None) -> Readings:
     by = {k: s for k, s in found.items() if s is not None}
     if "heading" not in by or ("place" not in by and "velocity" not in by):
         raise DataError(
@@ -129,22 +131,22 @@ def _readings(name: str, found: Mapping[str, Samples | None], own: bool | None =
     speed = _speed(by)
     if "air" in by:
         air = by.pop("air")
-        by["wind"] = Samples(
+        by["wind"] = ReadingSamples(
             air.t, air.y[:, :1] * np.column_stack([np.cos(air.y[:, 1]), np.sin(air.y[:, 1])])
         )
     if "velocity" in by:
-        by["heading at velocity"] = Samples(
+        by["heading at velocity"] = ReadingSamples(
             by["velocity"].t, np.interp(by["velocity"].t, by["heading"].t, by["heading"].y[:, 0])[:, None]
         )
         if body is not None and body.t.size > 0.8 * by["velocity"].t.size:
             by["velocity"], by["heading at velocity"] = (
-                Samples(body.t, body.y[:, :2]),
-                Samples(body.t, body.y[:, 2:]),
+                ReadingSamples(body.t, body.y[:, :2]),
+                ReadingSamples(body.t, body.y[:, 2:]),
             )
     return Readings(name, by, own, speed, time)
 
 
-def _time(heading: Samples) -> float:
+def _time(heading: ReadingSamples) -> float:
     """The time in which the rate of turn changes: its size over that of its slope, both smoothed alike
     [s]."""
     t = np.arange(heading.t[0], heading.t[-1], max(float(np.median(np.diff(heading.t))), 1e-3))
@@ -166,7 +168,7 @@ def _scatter(y: np.ndarray) -> float:
     return 1.4826 * float(np.median(np.abs(np.diff(y, 3)))) / np.sqrt(20.0) if y.size > 3 else 0.0
 
 
-def _own(body: Samples) -> bool | None:
+def _own(body: ReadingSamples) -> bool | None:
     """Whether the velocity scatters less in the ship's axes than by the earth: the compass that turned it is
     not this one."""
     u, v, psi = body.y.T
@@ -178,7 +180,7 @@ def _own(body: Samples) -> bool | None:
     return True if ship < CLEAR * earth else False if earth < CLEAR * ship else None
 
 
-def _speed(by: Mapping[str, Samples]) -> float:
+def _speed(by: Mapping[str, ReadingSamples]) -> float:
     if "velocity" in by:
         return max(float(np.median(np.hypot(*by["velocity"].y.T))), 1e-3)
     p = by["place"]

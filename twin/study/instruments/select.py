@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import log_ndtr
 
-from twin.study.instruments.fit import MINE, SHARED, Fit
+from twin.study.instruments.fit import MINE, SHARED, KinematicFit
 from twin.study.instruments.unknowns import ALWAYS, FAULTS, UNKNOWNS
 
 Sets = tuple[str, ...]
@@ -35,7 +35,7 @@ class Book:
     """The sets weighed so far about one fit. `clock`: the age that is none by definition, since a clock of
     all instruments shows nowhere."""
 
-    def __init__(self, found: Fit, clock: str) -> None:
+    def __init__(self, found: KinematicFit, clock: str) -> None:
         self.fit, self.clock = found, clock
         voyages = found.theta.shape[0]
         order = [UNKNOWNS[i] for i in SHARED] + [UNKNOWNS[i] for i in MINE] * voyages

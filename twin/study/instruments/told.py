@@ -5,7 +5,7 @@ import textwrap
 from typing import Any
 
 from twin.num import num
-from twin.study.instruments.findings import Estimate, Instruments
+from twin.study.instruments.findings import InstrumentEstimate, Instruments
 from twin.study.instruments.unknowns import ALWAYS, FAULTS
 
 SHOWN = {"rad": ("deg", 180.0 / math.pi), "rad/s": ("deg/min", 180.0 / math.pi * 60.0), "-": ("%", 100.0)}
@@ -59,7 +59,7 @@ def as_json(found: Instruments) -> dict[str, Any]:
     }
 
 
-def _number(e: Estimate) -> dict[str, Any]:
+def _number(e: InstrumentEstimate) -> dict[str, Any]:
     lo, hi = e.interval
     return {
         "name": e.unknown.name,
@@ -142,18 +142,18 @@ def amount(value: float, unit: str) -> str:
     return f"{num(value * k, 3)} {name}"
 
 
-def _sized(e: Estimate) -> str:
+def _sized(e: InstrumentEstimate) -> str:
     name, k = ("", 1.0) if e.unknown.name in PLAIN else SHOWN.get(e.unknown.unit, (e.unknown.unit, 1.0))
     lo, hi = e.interval
     return f"{num(e.value * k, 3)} {name} (95 %: {num(lo * k, 3)} to {num(hi * k, 3)})"
 
 
-def _limit(e: Estimate) -> str:
+def _limit(e: InstrumentEstimate) -> str:
     name, k = ("", 1.0) if e.unknown.name in PLAIN else SHOWN.get(e.unknown.unit, (e.unknown.unit, 1.0))
     return f"{num(e.limit * k)} {name}"
 
 
-def _unknown(found: Instruments, numbers: list[Estimate]) -> list[str]:
+def _unknown(found: Instruments, numbers: list[InstrumentEstimate]) -> list[str]:
     """What these voyages cannot say beside all else, what it is hard to tell from, and what would show it."""
     if not numbers:
         return []

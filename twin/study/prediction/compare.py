@@ -24,7 +24,7 @@ CLEARLY = 1.5
 
 
 @dataclass(frozen=True)
-class Compared:
+class ComparedVoyages:
     """What compare found (`result` is the contract's JSON), and what a report draws it from."""
 
     result: dict[str, Any]
@@ -33,7 +33,9 @@ class Compared:
     windows: tuple[Windows, ...]
 
 
-def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] = HORIZONS_S) -> Compared:
+def compare(
+    sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] = HORIZONS_S
+) -> ComparedVoyages:
     """Predict every voyage open loop and judge the errors together."""
     ship, floor = model.ship, floor_of(model.ship)
     models = [fed(model, s.track)[0] for s in sailed]
@@ -60,7 +62,7 @@ def compare(sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] 
         "waves": waves_on([s.track for s in sailed]),
     }
     result["verdict"] = verdict(result)
-    return Compared(plain(result), tuple(sailed), tuple(models), tuple(windows))
+    return ComparedVoyages(plain(result), tuple(sailed), tuple(models), tuple(windows))
 
 
 def _result(

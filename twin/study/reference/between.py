@@ -20,7 +20,7 @@ CLEAR = 5.0  # log probability by which voyages must differ
 
 
 @dataclass(frozen=True)
-class Told:
+class BetweenVoyages:
     """What one voyage says in prior widths, tempered: ee - 2 b'z + z'Az for a misfit, half of it a log
     probability."""
 
@@ -28,12 +28,12 @@ class Told:
     b: np.ndarray  # (P,)
     ee: float
 
-    def of_all(self, scatter: np.ndarray) -> "Told":
+    def of_all(self, scatter: np.ndarray) -> "BetweenVoyages":
         """The same of the ship's own numbers, when this voyage's are scattered about them (`scatter` (P,):
         variances)."""
         blur = np.eye(len(self.b)) + self.A * scatter
         both = np.linalg.solve(blur, np.column_stack([self.A, self.b]))
-        return Told(both[:, :-1], both[:, -1], self.ee)
+        return BetweenVoyages(both[:, :-1], both[:, -1], self.ee)
 
     def log_probability(self, mean: np.ndarray, covariance: np.ndarray) -> float:
         """Of the voyage, up to a constant, when its numbers are as likely as a normal distribution says."""
@@ -52,7 +52,7 @@ class Told:
         return 0.5 * (pull**2 - weight), 0.5 * weight**2
 
 
-def voyages(normal: Normal, sd: np.ndarray, temper: float) -> list[Told]:
+def voyages(normal: Normal, sd: np.ndarray, temper: float) -> list[BetweenVoyages]:
     """Each voyage by itself; a single one in two halves."""
     of = np.array([track for track, _, _ in normal.where])
     if np.unique(of).size == 1:
@@ -60,11 +60,13 @@ def voyages(normal: Normal, sd: np.ndarray, temper: float) -> list[Told]:
     out = []
     for voyage in np.unique(of):
         A, b, ee = normal.only(of == voyage).total()
-        out.append(Told(A * np.outer(sd, sd) / temper, b * sd / temper, ee / temper))
+        out.append(BetweenVoyages(A * np.outer(sd, sd) / temper, b * sd / temper, ee / temper))
     return out
 
 
-def ship_of(told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def ship_of(
+    told: Sequence[BetweenVoyages], scatter: np.ndarray, pull: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
     """Mean and covariance of the ship's own numbers, from voyages that are scattered about them, and of
     priors (precision one)."""
     confounded = [t.of_all(scatter) for t in told]
@@ -73,7 +75,7 @@ def ship_of(told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray) -> tupl
     return covariance @ (pull + sum(t.b for t in confounded)), covariance
 
 
-def scattered(told: Sequence[Told], pull: np.ndarray) -> np.ndarray:
+def scattered(told: Sequence[BetweenVoyages], pull: np.ndarray) -> np.ndarray:
     """(P,) variance of each number from voyage to voyage, in prior widths squared: zero for all but those
     that clearly differ."""
     scatter = np.zeros_like(pull)
@@ -95,8 +97,8 @@ def _with(scatter: np.ndarray, i: int, variance: float) -> np.ndarray:
 
 
 def _others(
-    told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray
-) -> list[tuple[Told, np.ndarray, np.ndarray]]:
+    told: Sequence[BetweenVoyages], scatter: np.ndarray, pull: np.ndarray
+) -> list[tuple[BetweenVoyages, np.ndarray, np.ndarray]]:
     """Every voyage with the mean and the covariance that the others foretell for its numbers."""
     out = []
     for i, voyage in enumerate(told):
@@ -105,14 +107,14 @@ def _others(
     return out
 
 
-def _foretold(told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray) -> float:
+def _foretold(told: Sequence[BetweenVoyages], scatter: np.ndarray, pull: np.ndarray) -> float:
     """Log probability of every voyage given the others."""
     return sum(
         voyage.log_probability(mean, covariance) for voyage, mean, covariance in _others(told, scatter, pull)
     )
 
 
-def _steepest(told: Sequence[Told], scatter: np.ndarray, pull: np.ndarray) -> np.ndarray:
+def _steepest(told: Sequence[BetweenVoyages], scatter: np.ndarray, pull: np.ndarray) -> np.ndarray:
     """The few numbers whose variance the voyages ask for most."""
     slope, chance = np.sum(
         [voyage.score(mean, covariance) for voyage, mean, covariance in _others(told, scatter, pull)], axis=0

@@ -18,7 +18,7 @@ from twin.study.estimation.columns import (
     sea_unknowns,
 )
 from twin.study.estimation.innovations import Floor, Linear, Normal, innovate
-from twin.study.reference.between import Told, scattered, ship_of, voyages
+from twin.study.reference.between import BetweenVoyages, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
 
 USUAL = 0.3  # how much of a lasting effect a healthy ship usually shows, in widths of the effect's prior
@@ -99,7 +99,7 @@ class Known:
     variances) numbers differ from one to another; `pull` (C,): of the priors' means."""
 
     unknowns: tuple[Unknown, ...]
-    told: tuple[Told, ...]
+    told: tuple[BetweenVoyages, ...]
     scatter: np.ndarray
     pull: np.ndarray
 

@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Sailed:
+class SplitVoyage:
     """What is known of a voyage, evenly sampled [SI]: nu over ground (3, N), psi (N,), inputs by attribute of
     Situation, current towards north and east (2, N)."""
 
@@ -51,7 +51,7 @@ def low_frequency(x: Array, samples: int) -> Array:
     return np.apply_along_axis(lambda row: np.convolve(row, kernel, mode="same"), -1, x)
 
 
-def scores(model: Model, voyage: Sailed, calm: Row) -> tuple[float, ...]:
+def scores(model: Model, voyage: SplitVoyage, calm: Row) -> tuple[float, ...]:
     """(drift X, Y, N, motion u, v, r, psi) of this voyage, each by metre of wave height."""
     n = window(voyage.T_p, voyage.step_s)
     used = slice(2 * n, -2 * n)
@@ -63,7 +63,7 @@ def scores(model: Model, voyage: Sailed, calm: Row) -> tuple[float, ...]:
     return tuple(float(x / voyage.H_s) for x in (*drift, *motion))
 
 
-def force(model: Model, nu: Array, psi: Array, voyage: Sailed) -> Array:
+def force(model: Model, nu: Array, psi: Array, voyage: SplitVoyage) -> Array:
     """(3, N) what the model's forces lack for this motion [N, N, N m]."""
     s = Situation(psi=psi, u=nu[0], v=nu[1], r=nu[2])  # type: ignore[arg-type]
     for name, x in voyage.inputs.items():

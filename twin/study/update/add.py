@@ -18,7 +18,7 @@ from twin.study.update.added import notes, verdict, written
 from twin.study.update.adding import can_be_judged, fitted, thirds
 from twin.study.update.fall import Fall, by_regime, fall, ladder
 from twin.study.update.held_parts import predicted
-from twin.study.update.proof import Proof, prove
+from twin.study.update.proof import HeldOutProof, prove
 
 SCHEMA_VERSION = 1
 # what a proof rests on
@@ -32,7 +32,7 @@ class Added:
 
     ship: Ship
     model: Model
-    proof: Proof
+    proof: HeldOutProof
     fall: Fall
     result: dict[str, Any]
     held: list[Track]

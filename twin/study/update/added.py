@@ -15,13 +15,13 @@ from twin.study.reference.sailed import Sailed
 from twin.study.reference.structure import floor_of
 from twin.study.update.adding import UNTOUCHED, Fitted
 from twin.study.update.fall import Fall
-from twin.study.update.proof import Proof
+from twin.study.update.proof import HeldOutProof
 
 FEW = 4  # numbers of an effect that are shown beside what was asked for
 FOREVER_S = 100.0 * 3600.0  # of sailing, beyond which no more of it is worth asking for
 
 
-def verdict(result: dict[str, Any], proof: Proof, shown: Fall) -> str:
+def verdict(result: dict[str, Any], proof: HeldOutProof, shown: Fall) -> str:
     """The first sentence: is what was held out likelier, and what that is in metres."""
     names = " and ".join(result["added"])
     if proof.idle:
@@ -35,7 +35,7 @@ def verdict(result: dict[str, Any], proof: Proof, shown: Fall) -> str:
     return f"With {names} measurements not used to fit it are not clearly likelier: {how}."
 
 
-def refused(proof: Proof, shown: Fall) -> str:
+def refused(proof: HeldOutProof, shown: Fall) -> str:
     """The reason, and what would tell."""
     if proof.idle:
         return "nothing changes: the effect was fitted to nothing;"
@@ -49,7 +49,7 @@ def refused(proof: Proof, shown: Fall) -> str:
     )
 
 
-def _ratio(proof: Proof) -> str:
+def _ratio(proof: HeldOutProof) -> str:
     sizes = f"{proof.log_ratio:+.3g} (95 %: {num(proof.low95, 3)} to {num(proof.high95, 3)})"
     return (
         f"log likelihood ratio {sizes}, from {num(proof.needed, 2)} and with its interval above zero a proof"

@@ -22,7 +22,7 @@ Judging = tuple[np.ndarray, float]  # covariance of the error so far ahead, by w
 
 
 @dataclass(frozen=True)
-class Held:
+class HeldParts:
     """Predictions of the held-out tracks: as they are shown, and as they are judged, with the stream that
     each voyage had shown by then."""
 
@@ -36,7 +36,7 @@ class Held:
 
 def predicted(
     made: Fitted, tracks: Sequence[Track], shown_s: Sequence[float], cross_validated: bool = False
-) -> Held:
+) -> HeldParts:
     """Of every track (`shown_s`: horizons of the table, beside those that are judged); `cross_validated`: the
     tracks are those of the fit.
 
@@ -50,13 +50,13 @@ def predicted(
     errors = errors_of(base.ship, tracks, asked)
     before, after = (_each(tracks, some, asked) for some in ([base] * len(models), models))
     if not lasting(made.names):
-        return Held(before, after, before, after, errors, judged_s)
+        return HeldParts(before, after, before, after, errors, judged_s)
     middle = min(judged_s, key=lambda h: abs(np.log(h / (LENGTHS * float(base.ship.scale("time"))))))
     own = [_lasting(base, m, made.names) for m in models]
     known_before, known_after = (
         _each(tracks, some, asked, (errors.at(middle), middle)) for some in ([base] * len(models), own)
     )
-    return Held(before, after, known_before, known_after, errors, judged_s)
+    return HeldParts(before, after, known_before, known_after, errors, judged_s)
 
 
 def part_of(step: float, steps: int) -> int:

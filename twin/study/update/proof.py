@@ -40,7 +40,7 @@ UNCHANGED = 1e-9  # log probability
 
 
 @dataclass(frozen=True)
-class Proof:
+class HeldOutProof:
     """The log likelihood ratio of held-out measurements, after over before, with its 95 % interval, and how
     it is made up."""
 
@@ -88,7 +88,7 @@ def prove(
     errors: PathError,
     horizons_s: Sequence[float],
     time_s: float,
-) -> Proof:
+) -> HeldOutProof:
     """Judge the change from one set of predictions to the other, of the same windows. DataError when they are
     too few to say anything.
 
@@ -121,7 +121,7 @@ def prove(
     total, length = float(sum(e.sum() for e in each)), sum(_length(w) for w in before)
     low, high = block_interval(each, before, max(asked))
     idle = all(np.abs(g).max(initial=0.0) < UNCHANGED for mine in gains for g in mine)
-    return Proof(total, low, high, rows, length, idle)
+    return HeldOutProof(total, low, high, rows, length, idle)
 
 
 def _gain(before: Windows, after: Windows, errors: PathError, horizon_s: float) -> np.ndarray:
