@@ -108,8 +108,8 @@ class Filters:
         growth = np.abs(np.linalg.eigvals(self.told.F[max(k - 1, 0)])).max()
         return RunsAway(
             f"the fitted model runs away: what it is off by grows up to {growth:.3g} times in a time step, "
-            "so nothing can be told from these voyages. Check mass, yaw inertia and actuators in the ship file "
-            "and what the recording says of them; give more voyages, or readings without long gaps."
+            "so nothing can be told from these voyages. Check mass, yaw inertia and actuators in the ship "
+            "file and what the recording says of them; give more voyages, or readings without long gaps."
         )
 
 
