@@ -146,7 +146,9 @@ def separation(case: Case, model: Model, track: Track, first: str, second: str, 
 def reason(scores: Mapping[str, float], best: str) -> str:
     """Why that manoeuvre, in words (`scores`: log odds of those that the model can be sailed through)."""
     rest = sorted((name for name in scores if name != best), key=lambda name: -scores[name])
-    other = f"next best: {rest[0]}, {_odds(scores[rest[0]])}" if rest else "in every other the model runs away"
+    other = (
+        f"next best: {rest[0]}, {_odds(scores[rest[0]])}" if rest else "in every other the model runs away"
+    )
     what = MANOEUVRES[best][1]
     return f"{what}: expected odds of {_odds(scores[best])} for the right one of the two ({other})"
 
