@@ -5,7 +5,8 @@
     r_dot = c1 u v + c2 r + c3 |r| r + c4 v + c5 (T_p - T_s) + c6
 The accelerations are slopes of the recorded speeds; no priors, no bounds, no filter.
 
-    python -m bench.real.fossen_fit FIT.mcap ... --on HELD.mcap ...
+    python -m bench.real.fossen_fit FIT.mcap ... --on HELD.mcap ... [--ship CALIBRATED.toml]
+With a ship file, the open-loop error of the twin's model stands beside it, in windows begun as often.
 """
 
 import argparse
@@ -14,8 +15,13 @@ from typing import Any
 
 import numpy as np
 
+from twin.physics.model import Model
+from twin.physics.ship import Ship, load
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
+from twin.study.prediction.openloop import predict
+from twin.study.reference.sailed import fed
+from twin.study.track.track import track
 
 STEP_S, SMOOTH_S = 0.1, 1.0
 STOP_US, SPAN_US, AHEAD_N, ASTERN_N = 1511.0, 400.0, 56.7, 26.9  # the thrusters' own curve
@@ -89,19 +95,40 @@ def errors(c: Columns, theta: list[np.ndarray], horizon_s: float) -> tuple[list[
     return place, turn
 
 
+def of_twin(voyage: Voyage, ship: Ship, horizon_s: float) -> tuple[list[float], list[float]]:
+    """The same errors of the twin's model."""
+    t = track(voyage, ship)
+    if t.t[-1] - t.t[0] <= horizon_s:
+        return [], []
+    windows = predict(t, fed(Model.of(ship), t)[0], (horizon_s,), stride_s=STRIDE_S)
+    off, valid = windows.errors(), windows.valid[windows.at(horizon_s)]
+    place, turn = (off[name][windows.at(horizon_s)][valid] for name in ("position", "heading"))
+    return place.tolist(), np.degrees(turn).tolist()
+
+
+def told(name: str, place: Sequence[float], turn: Sequence[float]) -> str:
+    """Medians; a run that went beyond numbers counts as the farthest."""
+    metres, degrees = (float(np.median(np.nan_to_num(x, nan=1e9))) for x in (place, turn))
+    return f"{name} {metres:.3g} m {degrees:.3g} deg ({len(place)})"
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("voyages", nargs="+")
     parser.add_argument("--on", nargs="+", required=True)
+    parser.add_argument("--ship")
     args = parser.parse_args()
     theta = fitted([columns(read_voyage(p)) for p in args.voyages])
     for path in args.on:
-        c = columns(read_voyage(path))
+        voyage = read_voyage(path)
+        c = columns(voyage)
         for horizon in HORIZONS_S:
-            place, turn = errors(c, theta, horizon)
-            metres = np.nanmedian(np.nan_to_num(place, nan=1e9))
-            degrees = np.nanmedian(turn)
-            print(f"{path}: {horizon:.0f} s  median {metres:.3g} m  {degrees:.3g} deg ({len(place)})")
+            with np.errstate(all="ignore"):  # a fit that runs away is as wrong as can be written down
+                off = {"least squares": errors(c, theta, horizon)}
+            if args.ship:
+                off["twin"] = of_twin(voyage, load(args.ship), horizon)
+            medians = [told(name, *x) for name, x in off.items() if x[0]]
+            print(f"{path}: {horizon:.0f} s  {'; '.join(medians) or 'too short'}", flush=True)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.diagnosis.assemble import assemble
-from twin.study.diagnosis.manoeuvres import MANOEUVRES, next_manoeuvre, sail
+from twin.study.diagnosis.manoeuvres import MANOEUVRES, next_manoeuvre, reason, sail
 
 
 @pytest.fixture(scope="module")
@@ -35,3 +35,10 @@ def test_fouling_and_a_worn_propeller_are_told_apart_by_changing_speed(case):
     assert advice["separates"] == ["HullFouling", "PropellerWear"]
     assert "speed" in advice["manoeuvre"] or "circle" in advice["manoeuvre"]
     assert "to 1" in advice["why"]
+
+
+def test_a_model_that_can_be_sailed_through_one_manoeuvre_alone_has_it_named_without_another():
+    alone = reason({"zigzag 10/10": 3.0}, "zigzag 10/10")
+    beside = reason({"zigzag 10/10": 3.0, "turning circles": 1.0}, "zigzag 10/10")
+    assert "runs away" in alone and "next best" not in alone
+    assert "next best: turning circles" in beside

@@ -3,7 +3,7 @@
 The one to sail is the one after which the wrong effect would explain least of what the right one does
 (expected information)."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi
 
@@ -143,6 +143,16 @@ def separation(case: Case, model: Model, track: Track, first: str, second: str, 
     return 0.5 * (alone - mimic)
 
 
+def reason(scores: Mapping[str, float], best: str) -> str:
+    """Why that manoeuvre, in words (`scores`: log odds of those that the model can be sailed through)."""
+    rest = sorted((name for name in scores if name != best), key=lambda name: -scores[name])
+    other = (
+        f"next best: {rest[0]}, {_odds(scores[rest[0]])}" if rest else "in every other the model runs away"
+    )
+    what = MANOEUVRES[best][1]
+    return f"{what}: expected odds of {_odds(scores[best])} for the right one of the two ({other})"
+
+
 def next_manoeuvre(
     case: Case, model: Model, first: str, second: str, z: np.ndarray
 ) -> dict[str, object] | None:
@@ -155,12 +165,7 @@ def next_manoeuvre(
     best = max(scores, key=lambda name: scores[name], default="")
     if not best or scores[best] < 1.0:
         return None
-    rest = sorted((name for name in scores if name != best), key=lambda name: -scores[name])
-    why = (
-        f"{MANOEUVRES[best][1]}: expected odds of {_odds(scores[best])} for the right one of the two"
-        f" (next best: {rest[0]}, {_odds(scores[rest[0]])})"
-    )
-    return {"separates": [first, second], "manoeuvre": best, "why": why}
+    return {"separates": [first, second], "manoeuvre": best, "why": reason(scores, best)}
 
 
 def _odds(log_odds: float) -> str:

@@ -9,6 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from twin.errors import DataError
+
 # places in the state
 MOTION, PLACE, SPEEDS, SLOW, FLOW = slice(0, 6), slice(0, 2), slice(3, 6), slice(6, 9), slice(9, 11)
 BENDS = [2, 3, 4, 5, 9, 10]  # what accelerations depend on: heading, velocities, the water's own
@@ -46,6 +48,11 @@ class Noise:
     waves: np.ndarray | None = None  # (T, S, 12, 12) of the waves' own, in one step
 
 
+class RunsAway(DataError, np.linalg.LinAlgError):
+    """Between two readings the model runs so far off that no covariance in double precision holds it: for a
+    search, no place to step to; for a user, unusable data."""
+
+
 class Filters:
     """A filter for every floor and segment, all at the same step; begun with the covariance C (W, S, n, n), n
     being 11, or 23 at sea."""
@@ -59,7 +66,7 @@ class Filters:
 
     def correct(self, k: int) -> tuple[np.ndarray, np.ndarray]:
         """By the readings of step k; gives the whitened innovations with their tangents (W, S, 8, 1 + P), and
-        the diagonal of the root of their covariance (W, S, 8)."""
+        the diagonal of the root of their covariance (W, S, 8). RunsAway where their covariance is none."""
         told, H = self.told, self.told.H[k]
         E = told.shown[k] - self.H[k] @ self.X[..., SHIP, :]
         for column, turn in told.turns.items():
@@ -67,7 +74,10 @@ class Filters:
         HC = H @ self.C[..., SHIP, :]
         S = HC[..., SHIP] @ H.swapaxes(-1, -2)
         _diagonal(S)[...] += self.unread[k]
-        L = np.linalg.cholesky(S)
+        try:
+            L = np.linalg.cholesky(S)
+        except np.linalg.LinAlgError:
+            raise self._runs_away(k) from None
         inverse = np.linalg.inv(L)
         white, V = inverse.astype(LIGHT) @ E, inverse @ HC
         self.X += V.swapaxes(-1, -2).astype(LIGHT) @ white
@@ -86,10 +96,21 @@ class Filters:
         self.X[..., MOTION, :] += told.pushed[k]
         if bent is not None:
             self.X[..., MOTION, 1:] += bent
-        self.C = self.on(k, self.on(k, self.C).swapaxes(-1, -2))
+        # No reading corrects what rounding makes asymmetric of a covariance, and it would grow as an unstable
+        # ship does. Source: Maybeck (1979) Stochastic models, estimation, and control, vol. 1, ch. 7.
+        C = self.on(k, self.on(k, self.C).swapaxes(-1, -2))
+        self.C = 0.5 * (C + C.swapaxes(-1, -2))
         _diagonal(self.C)[..., SHIP] += self.noise.new[k]
         if self.noise.waves is not None:
             self.C[..., WAVES, WAVES] += self.noise.waves[k]
+
+    def _runs_away(self, k: int) -> RunsAway:
+        growth = np.abs(np.linalg.eigvals(self.told.F[max(k - 1, 0)])).max()
+        return RunsAway(
+            f"the fitted model runs away: what it is off by grows up to {growth:.3g} times in a time step, "
+            "so nothing can be told from these voyages. Check mass, yaw inertia and actuators in the ship "
+            "file and what the recording says of them; give more voyages, or readings without long gaps."
+        )
 
 
 class _On:
