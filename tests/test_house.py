@@ -45,6 +45,7 @@ ORDER = (
     "twin.live.gates",
     "twin.live.learning",
     "twin.live.certificate",
+    "twin.live.injection",
     "twin.live",
     "twin.recording",
     "twin.study.track",

@@ -43,6 +43,14 @@ def not_over(output: str, kept: Sequence[str], force: bool) -> None:
             )
 
 
+def not_onto(output: str, sources: Sequence[str], what: str) -> None:
+    """Before any work is done: SettingsError when `output` is one of the files that are read; `what` it
+    is."""
+    for path in sources if os.path.exists(output) else ():
+        if os.path.exists(path) and os.path.samefile(path, output):
+            raise SettingsError(f"-o {output}: is {what}. Choose another name.")
+
+
 def _cannot(path: Path, why: str | None, option: str) -> TwinError:
     return TwinError(f"{path}: cannot be written ({why}). Choose another place with {option}.")
 
@@ -66,6 +74,14 @@ def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
         with suppress(OSError):
             os.unlink(aside)
         raise _cannot(path, error.strerror, option) from None
+
+
+def put(path: str, text: str, option: str) -> None:
+    """To standard output for '-', else into a file, with one end of line at its end."""
+    if path == "-":
+        print(text)
+        return
+    write(path, text.rstrip("\n") + "\n", option)
 
 
 def read(path: str | os.PathLike[str], most: int) -> bytes:

@@ -11,8 +11,8 @@ from math import isclose
 import pytest
 
 from twin import cli, voyages
-from twin.live.faulty import SHORT, Faulty, Sample, channels_of
-from twin.live.inject import KINDS, InjectedFault, Injector
+from twin.live.injection.faulty import SHORT, Faulty, Sample, channels_of
+from twin.live.injection.inject import KINDS, InjectedFault, Injector
 from twin.live.keelson import messages
 from twin.live.keelson.topics import key
 from twin.live.log.logfile import LogFile, read, read_rows

@@ -10,6 +10,7 @@ from twin.physics.particulars import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.voyage import Voyage
 from twin.study.calibration.calibrate import calibrate as fit_core
+from twin.study.calibration.calibrate import told
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.held_out import LAST, split
 from twin.study.reference.sailed import Sailed, sailed
@@ -35,6 +36,10 @@ class Calibration(Result):
         """What is doubtful about this calibration, in words an owner can act on."""
         return list(self.data["doubts"])
 
+    def text(self) -> list[str]:
+        """The lines of `twin calibrate`."""
+        return told(self.to_dict())
+
     def _rows(self) -> Any:
         return self.data["derivatives"]
 
@@ -47,9 +52,7 @@ class Calibration(Result):
         """The lines of the terminal as a page."""
         from html import escape
 
-        from twin.study.calibration.calibrate import told
-
-        return f"<!doctype html><meta charset=utf-8><pre>{escape(chr(10).join(told(dict(self.data))))}</pre>"
+        return f"<!doctype html><meta charset=utf-8><pre>{escape(chr(10).join(self.text()))}</pre>"
 
 
 def calibrate(

@@ -4,8 +4,8 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from twin.api.result import Progress, Result, frame, metres, quietly
-from twin.api.voyages import PathLike, several
+from twin.api.result import PathLike, Progress, Result, frame, metres, quietly
+from twin.api.voyages import several
 from twin.num import num
 from twin.physics.model import Model
 from twin.physics.particulars import Ship
@@ -13,6 +13,7 @@ from twin.recording.voyage import Voyage
 from twin.study.prediction.compare import ComparedVoyages
 from twin.study.prediction.compare import compare as judged
 from twin.study.prediction.openloop import HORIZONS_S
+from twin.study.prediction.tell import told
 from twin.study.reference.sailed import Sailed, sailed
 
 if TYPE_CHECKING:
@@ -42,6 +43,10 @@ class Comparison(Result):
     def verdict(self) -> str:
         """The sentence that an engineer reads first."""
         return str(self.data["verdict"])
+
+    def text(self) -> list[str]:
+        """The lines of `twin compare`."""
+        return told(self.to_dict())
 
     def _rows(self) -> Any:
         return self.data["horizons"]

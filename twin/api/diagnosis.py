@@ -5,12 +5,17 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from twin.api.result import Progress, Result, quietly
+from twin.api.result import PathLike, Progress, Result, quietly
 from twin.api.voyages import several
 from twin.physics.particulars import Ship
+from twin.recording.checks import losses
+from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.diagnose import diagnose as judged
+from twin.study.diagnosis.tell_diagnosis import told
+from twin.study.estimation import identifiability
+from twin.study.estimation.learned import features
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -45,12 +50,27 @@ class Diagnosis(Result):
             self.data["probabilities"]
         )
 
+    def text(self) -> list[str]:
+        """The lines of `twin diagnose`."""
+        lines = told(self.to_dict()) + losses(self.data["data_checks"])
+        if "identifiability" in self.data:
+            lines += ["", *identifiability.text(self.data["identifiability"])]
+        return lines
+
     def _rows(self) -> Any:
         return self.data["candidates"]
 
     def __repr__(self) -> str:
         named = f" {', '.join(self.effects)}" if self.effects else ""
         return f"<Diagnosis of {self.data['ship']!r}: {self.verdict}{named}. {self.reason}>"
+
+    def with_identifiability(self, residual: PathLike | None = None) -> "Diagnosis":
+        """Also what the first of the voyages can tell at all. `residual`: an ONNX file of what was learned,
+        and whether that stands apart from the core; SettingsError when it must not be used."""
+        model = self.case.model
+        learned = features(str(residual), model.ship) if residual is not None else ()
+        report = identifiability.report(self.voyages[0], model, *learned)
+        return self.with_keys(identifiability=plain(report))
 
     def plot(self) -> "matplotlib.axes.Axes":
         """The candidates' probabilities, likeliest on top."""

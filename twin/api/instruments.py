@@ -39,6 +39,10 @@ class InstrumentCheck(Result):
         lies outside its effect's box."""
         return corrected(ship, self.found)[0]
 
+    def text(self) -> list[str]:
+        """The lines of `twin instruments`."""
+        return told(self.found)
+
     def _rows(self) -> Any:
         return self.data["numbers"]
 
@@ -50,7 +54,7 @@ class InstrumentCheck(Result):
         """The lines of the terminal as a page."""
         from html import escape
 
-        return f"<!doctype html><meta charset=utf-8><pre>{escape(chr(10).join(told(self.found)))}</pre>"
+        return f"<!doctype html><meta charset=utf-8><pre>{escape(chr(10).join(self.text()))}</pre>"
 
 
 def instruments(

@@ -2,15 +2,18 @@
 
 import copy
 import logging
+import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any, Self
 
+from twin import whole
 from twin.num import num
 
 if TYPE_CHECKING:
     import pandas
 
+PathLike = str | os.PathLike[str]
 Progress = Callable[[str], None]
 LOG = logging.getLogger("twin")
 
@@ -41,6 +44,19 @@ class Result:
     def to_dict(self) -> dict[str, Any]:
         """The documented JSON, a copy of its own."""
         return copy.deepcopy(dict(self.data))
+
+    def with_keys(self, **keys: Any) -> Self:
+        """The same result with further keys in its JSON and on its page, such as the command that was
+        typed."""
+        return replace(self, data={**self.data, **keys})
+
+    def text(self) -> list[str]:
+        """The lines that its verb prints; one line where there is no such verb."""
+        return [repr(self)]
+
+    def write_page(self, path: PathLike) -> None:
+        """The page as a file, whole or not at all; TwinError where it cannot be written."""
+        whole.write(path, self.page(), "--report")
 
     def to_dataframe(self) -> "pandas.DataFrame":
         """The result's main table, one row an item; which one it is, the class says."""

@@ -7,13 +7,16 @@ from typing import TYPE_CHECKING, Any
 from twin.api.result import Progress, Result, frame, metres, quietly
 from twin.api.voyages import several
 from twin.errors import UsageError
+from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.particulars import Ship
+from twin.recording.checks import losses
 from twin.recording.voyage import Voyage
-from twin.study.reference.sailed import sailed
+from twin.study.reference.sailed import Sailed, sailed
 from twin.study.update.add import Added
 from twin.study.update.add import add as fitted
+from twin.study.update.added import refused, told
 from twin.study.update.remove import remove as taken_out
 
 if TYPE_CHECKING:
@@ -56,6 +59,15 @@ class Update(Result):
     def errors(self) -> "pandas.DataFrame":
         """One row a horizon: errors before and after, and what was expected."""
         return frame(self.data["horizons"])
+
+    @property
+    def refused(self) -> str:
+        """Why it is not proved, and what would prove it."""
+        return refused(self.made.proof, self.made.fall)
+
+    def text(self) -> list[str]:
+        """The lines of `twin add`."""
+        return [*told(self.to_dict()), *losses(self.data["data_checks"])]
 
     def _rows(self) -> Any:
         return [
@@ -101,19 +113,37 @@ def add(
     voyages: Voyage | Iterable[Voyage],
     *,
     held_out: Voyage | Iterable[Voyage] = (),
+    cross_validated: bool = False,
+    force: bool = False,
     progress: Progress | None = None,
 ) -> Update:
     """Fit named effects to the voyages and prove on held-out ones that the error falls.
 
-    `held_out`: voyages to judge by; without any the last third of every voyage. SettingsError when there is
-    no such effect, DataError when a voyage lacks what it needs, UsageError when no effect is named.
+    `held_out`: voyages to judge by; without any the last third of every voyage, or (`cross_validated`) every
+    third in turn. `force`: accepted although it is not proved. SettingsError when there is no such effect,
+    DataError when a voyage lacks what it needs, UsageError when no effect is named.
     """
     names = [effects] if isinstance(effects, str) else list(effects)
     if not names:
         raise UsageError("no effect to add. `twin.diagnose(...).effects` may be empty: look at its reason.")
-    quietly(progress)(f"fitting {', '.join(names)}")
+    chosen = [find(name) for name in dict.fromkeys(names)]
     used, kept = ([sailed(v, ship) for v in several(vs)] for vs in (voyages, held_out))
-    made = fitted(ship, [find(n) for n in dict.fromkeys(names)], used, kept)
+    return of_sailed(ship, chosen, used, kept, cross_validated, force, quietly(progress))
+
+
+def of_sailed(
+    ship: Ship,
+    effects: Sequence[type[Effect]],
+    used: Sequence[Sailed],
+    kept: Sequence[Sailed],
+    cross_validated: bool,
+    force: bool,
+    tell: Progress,
+) -> Update:
+    """The same of voyages that are read already."""
+    if kept and cross_validated:
+        raise UsageError("--held-out and --cross-validated: a proof rests on one of them. Leave one out.")
+    made = fitted(ship, effects, used, kept, force, cross_validated, tell)
     return Update(made.ship, ship, made, tuple(s.voyage for s in kept or used), data=made.result)
 
 

@@ -5,12 +5,11 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
+from twin.api.result import PathLike
 from twin.errors import DataError
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage as read
 from twin.recording.voyage import Voyage
-
-PathLike = str | os.PathLike[str]
 
 
 def read_voyage(path: PathLike, map: PathLike | None = None, *, controls: bool = True) -> Voyage:

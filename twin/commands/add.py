@@ -2,21 +2,16 @@
 with it."""
 
 import argparse
-import os
 import sys
-from collections.abc import Sequence
-from typing import Any
 
 from twin import whole
-from twin.errors import SettingsError, ThresholdError, UsageError
+from twin.api.update import of_sailed
+from twin.commands.answer import asked, lines_to, progress
+from twin.errors import ThresholdError, UsageError
 from twin.physics.effects import find
-from twin.physics.model import Model
-from twin.physics.ship import Ship, load, save
-from twin.recording.checks import losses
+from twin.physics.ship import load, save
 from twin.recording.import_voyage import write_json
-from twin.study.reference.sailed import Sailed, read_all
-from twin.study.update.add import Added, add
-from twin.study.update.added import refused, told
+from twin.study.reference.sailed import read_all
 
 EPILOG = """example:
   twin add Wind --ship alma2.toml --voyage monday.mcap --held-out tuesday.mcap -o alma3.toml --report add.html
@@ -58,63 +53,31 @@ def run(args: argparse.Namespace) -> int:
     whole.not_over(args.output, [args.ship], args.force)
     if args.held_out and args.cross_validated:
         raise UsageError("--held-out and --cross-validated: a proof rests on one of them. Leave one out.")
-    effects = [find(name) for name in dict.fromkeys(args.effects)]
-    ship = load(args.ship)
-    for path in (*args.voyage, *args.held_out):
-        if os.path.exists(args.output) and os.path.exists(path) and os.path.samefile(path, args.output):
-            raise SettingsError(f"-o {args.output}: is one of the voyages. Choose another name.")
-    every = read_all([*args.voyage, *args.held_out], ship)
-    sailed, held_out = every[: len(args.voyage)], every[len(args.voyage) :]
-    made = add(
-        ship,
-        effects,
-        sailed,
-        held_out,
-        args.force,
-        args.cross_validated,
-        lambda text: print(f"{text} ...", file=sys.stderr),
-    )
-    result = made.result | {
-        "command": _command(args),
-        "files": {"ship": args.ship, "voyages": args.voyage, "judged": args.held_out or args.voyage},
-        "output": args.output if made.result["accepted"] else None,
-    }
-    page = sys.stderr if args.json == "-" or not result["accepted"] else sys.stdout
-    print("\n".join([*told(result), *losses(result["data_checks"])]), file=page)
-    if result["accepted"]:
+    effects, ship, paths = [find(n) for n in dict.fromkeys(args.effects)], load(args.ship), args.voyage
+    whole.not_onto(args.output, [*paths, *args.held_out], "one of the voyages")
+    every = read_all([*paths, *args.held_out], ship)
+    voyages, held_out = every[: len(paths)], every[len(paths) :]
+    made = of_sailed(ship, effects, voyages, held_out, args.cross_validated, args.force, progress)
+    judged = args.held_out or paths
+    found = asked(made, _command(args), ship=args.ship, voyages=paths, judged=judged)
+    found = found.with_keys(output=args.output if made.accepted else None)
+    page = lines_to(args) if made.accepted else sys.stderr
+    print("\n".join(found.text()), file=page)
+    if made.accepted:
         save(made.ship, args.output)
         print(f"\nwrote {args.output}", file=page)
     if args.json:
-        write_json(result, args.json)
+        write_json(found.to_dict(), args.json)
     if args.report:
-        _report(args.report, made, ship, result, held_out or sailed)
+        found.write_page(args.report)
         print(f"wrote {args.report}", file=page)
-    if not result["accepted"]:
-        raise ThresholdError(
-            f"{refused(made.proof, made.fall)} {args.output} was not written. --force writes it."
-        )
-    print(f"next: twin compare {' '.join(args.held_out or args.voyage)} --ship {args.output}", file=page)
+    if not made.accepted:
+        raise ThresholdError(f"{made.refused} {args.output} was not written. --force writes it.")
+    print(f"next: twin compare {' '.join(judged)} --ship {args.output}", file=page)
     return 0
-
-
-def _report(path: str, made: Added, ship: Ship, result: dict[str, Any], shown: Sequence[Sailed]) -> None:
-    from twin import report
-
-    history = made.ship.notes["history"]
-    report.write(
-        path,
-        "add",
-        result | {"history": history},
-        made.held,
-        made.model,
-        before=Model.of(ship),
-        voyages=[s.voyage for s in shown],
-    )
 
 
 def _command(args: argparse.Namespace) -> str:
     command = f"twin add {' '.join(args.effects)} --ship {args.ship} --voyage {' '.join(args.voyage)}"
-    command += (f" --held-out {' '.join(args.held_out)}") * bool(
-        args.held_out
-    ) + " --cross-validated" * args.cross_validated
-    return f"{command} -o {args.output}"
+    held_out = f" --held-out {' '.join(args.held_out)}" * bool(args.held_out)
+    return f"{command}{held_out}{' --cross-validated' * args.cross_validated} -o {args.output}"

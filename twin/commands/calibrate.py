@@ -2,13 +2,12 @@
 unexplained."""
 
 import argparse
-import sys
 
 from twin import whole
 from twin.api.calibration import of_sailed
+from twin.commands.answer import lines_to, progress
 from twin.physics.ship import load, save
 from twin.recording.import_voyage import write_json
-from twin.study.calibration.calibrate import told
 from twin.study.reference.sailed import read_all
 
 EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weather or with the wind recorded:
@@ -48,16 +47,10 @@ def run(args: argparse.Namespace) -> int:
     whole.not_over(args.output, [args.ship, *args.voyages, *args.held_out], args.force)
     ship = load(args.ship)
     every = read_all(args.voyages, ship)
-    kept = read_all(args.held_out, ship)
-    done = of_sailed(ship, every, kept, lambda text: print(f"{text} ...", file=sys.stderr))
-    save(done.ship, args.output)
-    result = done.to_dict() | {"output": str(args.output)}
+    found = of_sailed(ship, every, read_all(args.held_out, ship), progress)
+    save(found.ship, args.output)
     if args.json:
-        write_json(result, args.json)
-    page = sys.stderr if args.json == "-" else sys.stdout
-    print("\n".join(told(result)), file=page)
-    print(
-        f"\nwrote {args.output}\nnext: twin compare VOYAGE.mcap --ship {args.output} --report compare.html",
-        file=page,
-    )
+        write_json(found.to_dict() | {"output": str(args.output)}, args.json)
+    compare = f"twin compare VOYAGE.mcap --ship {args.output} --report compare.html"
+    print("\n".join([*found.text(), "", f"wrote {args.output}", f"next: {compare}"]), file=lines_to(args))
     return 0

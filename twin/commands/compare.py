@@ -1,15 +1,13 @@
 """`twin compare`: model against measurement, open loop from the measured state: how wrong, and where."""
 
 import argparse
-import sys
-from typing import Any
 
-from twin.api.comparison import Comparison, of_sailed
+from twin.api.comparison import of_sailed
+from twin.commands.answer import answer, asked, lines_to, progress
+from twin.commands.next_command import after_compare
 from twin.errors import ThresholdError
 from twin.physics.ship import load
-from twin.recording.import_voyage import write_json
 from twin.study.prediction.openloop import HORIZONS_S
-from twin.study.prediction.tell import told
 from twin.study.prediction.thresholds import passed, positive, threshold
 from twin.study.reference.sailed import read_all
 
@@ -57,37 +55,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
-    sailed = read_all(args.voyages, ship)
-    print("predicting ...", file=sys.stderr)
-    found = of_sailed(ship, sailed, args.horizon or HORIZONS_S, args.residual)
-    result = found.to_dict() | {
-        "command": f"twin compare {' '.join(args.voyages)} --ship {args.ship}",
-        "files": {"ship": args.ship, "voyages": args.voyages},
-    }
-    if args.json:
-        write_json(result, args.json)
-    page = sys.stderr if args.json == "-" else sys.stdout
-    print("\n".join(told(result)), file=page)
-    if args.report:
-        _report(args.report, found, result)
-        print(f"\nwrote {args.report}", file=page)
-    print(f"\nnext: {_next(args, result)}", file=page)
-    if unmet := passed(result, args.fail_above):
+    voyages = read_all(args.voyages, ship)
+    progress("predicting")
+    found = of_sailed(ship, voyages, args.horizon or HORIZONS_S, args.residual)
+    command = f"twin compare {' '.join(args.voyages)} --ship {args.ship}"
+    answer(args, asked(found, command, ship=args.ship, voyages=args.voyages))
+    print(f"\nnext: {after_compare(args.voyages, args.ship, found.data)}", file=lines_to(args))
+    if unmet := passed(found.to_dict(), args.fail_above):
         raise ThresholdError(f"{'; '.join(unmet)}.")
     return 0
-
-
-def _report(path: str, found: Comparison, result: dict[str, Any]) -> None:
-    from twin import report
-
-    compared = found.found.sailed
-    tracks, voyages = [s.track for s in compared], [s.voyage for s in compared]
-    report.write(path, "compare", result, tracks, found.model, voyages=voyages)
-
-
-def _next(args: argparse.Namespace, result: dict[str, Any]) -> str:
-    rest = f"{' '.join(args.voyages)} --ship {args.ship}"
-    if result["horizons"][-1]["noise_floor"]["of"] == "sensors":
-        first = f"twin calibrate REFERENCE.mcap --ship {args.ship} -o calibrated.toml, or "
-        return f"{first}twin diagnose {rest} --report diagnose.html"
-    return f"twin diagnose {rest} --report diagnose.html"

@@ -2,17 +2,13 @@
 that is none."""
 
 import argparse
-import sys
-from typing import Any
 
-from twin.physics.ship import Ship, load
-from twin.recording.checks import losses
-from twin.recording.import_voyage import write_json
-from twin.recording.jsonable import plain
+from twin.api.diagnosis import diagnose
+from twin.commands.answer import answer, lines_to, progress
+from twin.commands.next_command import after_diagnose
+from twin.live.learning.residual import load as load_residual
+from twin.physics.ship import load
 from twin.recording.read import read_voyage
-from twin.study.diagnosis.diagnose import diagnose
-from twin.study.diagnosis.tell_diagnosis import told
-from twin.study.estimation import identifiability
 
 EPILOG = """Verdicts: missing (named, lasting causes first, with size and interval, and with what cannot be
 told from it), nothing_missing, unknown (something is there that no effect of the catalogue explains;
@@ -53,47 +49,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
-    learned = _features(args.residual, ship)
-    voyages, references = ([read_voyage(p) for p in paths] for paths in (args.voyages, args.reference))
-    done = diagnose(voyages, ship, references, lambda text: print(f"{text} ...", file=sys.stderr))
-    result = done.result | {
-        "command": f"twin diagnose {' '.join(args.voyages)} --ship {args.ship}",
-        "verdict_text": done.result["sentence"],
-        "files": {"ship": args.ship, "voyages": args.voyages},
-    }
-    page = sys.stderr if args.json == "-" else sys.stdout
-    page_lines = told(result) + losses(result["data_checks"])
-    if args.identifiability or learned:
-        result["identifiability"] = plain(identifiability.report(voyages[0], done.case.model, *learned))
-        page_lines += ["", *identifiability.text(result["identifiability"])]
-    if args.json:
-        write_json(result, args.json)
-    print("\n".join(page_lines), file=page)
-    if args.report:
-        from twin import report
-
-        report.write(
-            args.report, "diagnose", result, list(done.case.tracks), done.case.model, voyages=voyages
-        )
-        print(f"\nwrote {args.report}", file=page)
-    print(f"\nnext: {_next_command(args, result)}", file=page)
+    if args.residual:
+        load_residual(args.residual, ship)  # one that must not be used is refused before the work
+    voyages, reference = ([read_voyage(p) for p in paths] for paths in (args.voyages, args.reference))
+    found = diagnose(ship, voyages, reference=reference, progress=progress)
+    command = f"twin diagnose {' '.join(args.voyages)} --ship {args.ship}"
+    files = {"ship": args.ship, "voyages": args.voyages}
+    found = found.with_keys(command=command, verdict_text=found.reason, files=files)
+    if args.identifiability or args.residual:
+        found = found.with_identifiability(args.residual or None)
+    answer(args, found)
+    print(f"\nnext: {after_diagnose(args.voyages, args.ship, found.data)}", file=lines_to(args))
     return 0
-
-
-def _features(path: str | None, ship: Ship) -> tuple[Any, ...]:
-    """What the residual is made of (twin/study/estimation/learned.py)."""
-    if not path:
-        return ()
-    from twin.study.estimation.learned import features
-
-    return features(path, ship)
-
-
-def _next_command(args: argparse.Namespace, result: dict[str, Any]) -> str:
-    voyages, sail = " ".join(args.voyages), ""
-    if result["next_manoeuvre"]:
-        sail = f"sail {result['next_manoeuvre']['manoeuvre']}, then twin diagnose with that voyage too"
-    if lasting := result["answer"]["lasting"]:
-        add = f"twin add {' '.join(lasting)} --ship {args.ship} --voyage {voyages} -o better.toml"
-        return f"{sail}; or now: {add}" if sail else add
-    return sail or f"twin compare {voyages} --ship {args.ship} --report compare.html"

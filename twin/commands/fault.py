@@ -8,28 +8,15 @@ process.
 """
 
 import argparse
-import os
-import resource
-import signal
-import sys
-import time
-from contextlib import suppress
 from math import inf, isfinite
 
-from google.protobuf.message import DecodeError
-
 from twin.cli import guarded
-from twin.errors import DataError, UsageError
-from twin.live.faulty import EVERYTHING, Faulty, Sample
-from twin.live.inject import KINDS, InjectedFault
-from twin.live.keelson import messages
-from twin.live.keelson.bus import Bus
-from twin.live.keelson.topics import BY_SUBJECT, address, is_own
-from twin.live.log.logfile import LogFile
-from twin.live.log.mcap_read import McapReader
-
-OF_A_PROCESS = ("pause", "disk")
-STEP_S = 0.005  # how often the proxy looks for messages
+from twin.errors import UsageError
+from twin.live import ending
+from twin.live.injection.faulty import asked
+from twin.live.injection.in_log import in_a_log
+from twin.live.injection.inject import KINDS, InjectedFault
+from twin.live.injection.of_process import OF_A_PROCESS, of_a_process
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -93,157 +80,27 @@ def run(args: argparse.Namespace) -> int:
     ):
         raise UsageError("--from and --for take seconds, 0 or more.")
     if args.what in OF_A_PROCESS:
-        return of_a_process(args.what, args.pid, args.start, args.seconds)
-    fault = asked(args)
+        of_a_process(args.what, args.pid, args.start, args.seconds)
+        done = "stopped" if args.what == "pause" else "no write succeeded"
+        print(f"process {args.pid}: {done} for {args.seconds:g} s")
+        return 0
+    fault = asked(args.what, args.kind, args.by, args.start, args.seconds, args.seed)
     if args.log and args.output:
-        return in_a_log(args.log, args.output, args.what, fault)
+        changed, problems = in_a_log(args.log, args.output, args.what, fault)
+        print(f"{args.output}: {changed} messages with {args.what} {fault.kind}")
+        print("\n".join([*(f"note: {problem}" for problem in problems), f"next: twin replay {args.output}"]))
+        return 0
     if args.log or not args.listen:
         raise UsageError(
             "say where: --log LOG.mcap -o OUT.mcap for a copy with the fault, or --listen PLACE "
             "for a live bus."
         )
-    return live(args, fault)
+    ending.ends_the_process(lambda: guarded(lambda: _on_the_bus(args, fault)))
 
 
-def asked(args: argparse.Namespace) -> InjectedFault:
-    """The fault of these words, checked; its times are still counted from the start."""
-    kind = args.kind or ("off" if args.what == "bus" else "wrong" if args.what == "clock" else "")
-    usual = KINDS[kind].by if kind in KINDS else 0.0
-    fault = InjectedFault(kind, usual if args.by is None else args.by, args.start, args.seconds, args.seed)
-    if not isfinite(fault.by):
-        raise UsageError(f"--by {args.by}: a finite number is needed.")
-    if args.what == "clock" and not fault.by:
-        raise UsageError("clock: by how much? --by takes seconds.")
-    if args.what in EVERYTHING and args.kind not in (None, "off", "wrong"):
-        raise UsageError(f"{args.what} takes no kind {args.kind!r}.")
-    Faulty(args.what, fault)  # says what is wrong with it, before anything is opened
-    return fault
+def _on_the_bus(args: argparse.Namespace, fault: InjectedFault) -> int:
+    from twin.live.injection.on_bus import proxy
 
-
-def in_a_log(path: str, output: str, what: str, fault: InjectedFault) -> int:
-    """A copy of a log with the fault in it, whole or not at all."""
-    if os.path.realpath(path) == os.path.realpath(output):
-        raise UsageError(f"-o {output}: is the log itself. Give another name.")
-    reader, faulty = McapReader(path), None
-    with LogFile(output) as log:
-        for message in reader.messages():
-            at_s = _at_s(message.type_name, message.data, message.log_ns)
-            if faulty is None:
-                faulty = Faulty(what, fault._replace(start_s=at_s + fault.start_s))
-            for sample in faulty.feed(Sample(at_s, message.topic, message.type_name, message.data)):
-                shift_ns = round((sample.at_s - at_s) * 1e9) if sample.at_s > at_s else 0
-                log.add(
-                    sample.key,
-                    sample.type_name,
-                    sample.payload,
-                    message.log_ns + shift_ns,
-                    message.publish_ns + shift_ns,
-                )
-        for name, values in reader.metadata.items():
-            log.describe(name, values)
-        if faulty is None or not faulty.changed:
-            raise DataError(
-                f"{path}: nothing in it is changed by {what} {fault.kind}: the channel is not in "
-                "it, or not at that time."
-            )
-    print(f"{output}: {faulty.changed} messages with {what} {fault.kind}")
-    for problem in reader.problems:
-        print(f"note: {problem}")
-    print(f"next: twin replay {output}")
-    return 0
-
-
-def _at_s(type_name: str, payload: bytes, log_ns: int) -> float:
-    """When a logged message arrived: a row by its own time, which no logger's clock disturbs."""
-    if type_name == "shiptwin.Row":
-        with suppress(DecodeError):
-            return float(messages.Row.FromString(payload).time_s)
-    return log_ns * 1e-9
-
-
-def live(args: argparse.Namespace, fault: InjectedFault) -> int:
-    """Between the sensors and the twin until it is told to stop; ends the process itself (an open Zenoh
-    session may not)."""
-    code = 1
-    try:
-        code = guarded(lambda: proxy(args, fault))
-    finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(code)
-
-
-def proxy(args: argparse.Namespace, fault: InjectedFault) -> int:
-    """Hear at one place, say at the other, with the fault in between."""
-    from twin.live.keelson.zenoh_bus import ZenohBus
-    from twin.live.keelson.zenoh_config import BusSettings
-
-    stop: list[int] = []
-    for number in (signal.SIGTERM, signal.SIGINT):
-        signal.signal(number, lambda caught, _: stop.append(caught))
-    with ZenohBus(BusSettings(args.base, args.entity, args.listen, (args.connect,))) as bus:
-        print(f"{args.listen} -> {args.connect}: {args.what} {fault.kind}. Stop it with Ctrl-C.", flush=True)
-        began_s, faulty = time.monotonic(), None
-        while not stop and time.monotonic() - began_s < args.duration:
-            for key, envelope, now_s in bus.drain(time.monotonic()):
-                faulty = faulty or Faulty(args.what, fault._replace(start_s=now_s + fault.start_s))
-                _pass_on(bus, faulty, key, envelope, now_s)
-            time.sleep(STEP_S)
-        said = bus.state
-        print(
-            f"{said.received} messages heard, {said.published} passed on, "
-            f"{faulty.changed if faulty else 0} with the fault"
-        )
-    return 0
-
-
-def _pass_on(bus: Bus, faulty: Faulty, key: str, envelope: bytes, now_s: float) -> None:
-    place = address(key)
-    topic = BY_SUBJECT.get(place.subject) if place else None
-    if place is None or topic is None or is_own(place.source):
-        return
-    try:
-        wall_ns, payload = messages.unwrap(envelope)
-    except DecodeError:
-        bus.publish(key, envelope)
-        return
-    for sample in faulty.feed(Sample(now_s, key, topic.type_name, payload)):
-        bus.publish(sample.key, messages.wrap(sample.payload, wall_ns))
-
-
-def of_a_process(what: str, pid: int | None, start_s: float, seconds: float) -> int:
-    """Stop a process, or let none of its writes succeed, for a while; it is as before afterwards, also when
-    this is interrupted."""
-    if pid is None or seconds == inf:
-        raise UsageError(
-            f"{what}: which process, and how long? --pid PID --for S. The twin's: systemctl "
-            "show -p MainPID --value shiptwin"
-        )
-    try:
-        os.kill(pid, 0)
-    except (ProcessLookupError, OverflowError):
-        raise UsageError(f"--pid {pid}: there is no such process.") from None
-    except PermissionError:
-        raise UsageError(f"--pid {pid}: it is another user's. Use sudo.") from None
-    time.sleep(start_s)
-    (_pause if what == "pause" else _no_writes)(pid, seconds)
-    print(f"process {pid}: {'stopped' if what == 'pause' else 'no write succeeded'} for {seconds:g} s")
-    return 0
-
-
-def _pause(pid: int, seconds: float) -> None:
-    os.kill(pid, signal.SIGSTOP)
-    try:
-        time.sleep(seconds)
-    finally:
-        os.kill(pid, signal.SIGCONT)
-
-
-def _no_writes(pid: int, seconds: float) -> None:
-    """The kernel cuts every write to a file at no bytes: what a full disk does to this process alone."""
-    before = resource.prlimit(pid, resource.RLIMIT_FSIZE)
-    resource.prlimit(pid, resource.RLIMIT_FSIZE, (0, before[1]))
-    try:
-        time.sleep(seconds)
-    finally:
-        resource.prlimit(pid, resource.RLIMIT_FSIZE, before)
+    return proxy(
+        args.what, fault, args.listen, args.connect, args.base, args.entity, duration_s=args.duration
+    )

@@ -1,15 +1,13 @@
 """`twin import`: measurements in, checked; a file that a check proves wrong is refused."""
 
 import argparse
-import os
 import sys
-from collections.abc import Sequence
-from pathlib import Path
 
-from twin.errors import DataError, SettingsError, UsageError, did_you_mean
-from twin.physics.ship import load
-from twin.recording.checks import CHECKS
-from twin.recording.import_voyage import import_voyage, refusal, suggest, summary, write_json
+from twin import whole
+from twin.commands.answer import progress
+from twin.commands.next_command import after_import
+from twin.errors import DataError, UsageError
+from twin.recording.import_voyage import import_voyage, known_checks, refusal, suggest, summary, write_json
 from twin.recording.write import write_voyage
 
 EPILOG = """
@@ -55,9 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     known_checks(args.accept)
-    for path in args.file:
-        not_onto_itself(path, args.output or "")
-    print(f"reading {' '.join(args.file)} ...", file=sys.stderr)
+    whole.not_onto(args.output or "", args.file, "the file that is read")
+    progress(f"reading {' '.join(args.file)}")
     if args.suggest_map:
         return suggest(args)
     if not args.output:
@@ -72,31 +69,5 @@ def run(args: argparse.Namespace) -> int:
         write_json(found.as_json() | {"output": None if refused else str(args.output)}, args.json)
     if refused:
         raise DataError(refusal(args.file[0], refused, args.map))
-    print(f"wrote {args.output}\nnext: {_next(args.output, args.ship)}", file=page)
+    print(f"wrote {args.output}\nnext: {after_import(args.output, args.ship)}", file=page)
     return 0
-
-
-def _next(voyage: str, ship: str | None) -> str:
-    """A ship that was never calibrated is, on its reference voyages, before anything is compared with it;
-    whether this is one, nobody knows."""
-    if ship and "structural" not in load(ship).notes:
-        better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
-        return (
-            "its model was not calibrated yet. Import the voyages on which nothing was wrong (three or "
-            "more), then "
-            f"twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship} -o {better}; after that, twin diagnose "
-            f"LATER.mcap --ship {better}"
-        )
-    return f"twin compare {voyage} --ship {ship or 'SHIP.toml'}"
-
-
-def known_checks(names: Sequence[str]) -> None:
-    known = [check.__name__ for check in CHECKS]
-    for name in names:
-        if name not in known:
-            raise SettingsError(f"--accept: no check is called {name!r}.{did_you_mean(name, known)}")
-
-
-def not_onto_itself(source: str, output: str) -> None:
-    if os.path.exists(output) and os.path.exists(source) and os.path.samefile(source, output):
-        raise SettingsError(f"-o {output}: is the file that is read. Choose another name.")

@@ -9,7 +9,7 @@ from twin import whole
 from twin.cli import guarded
 from twin.errors import SettingsError, UsageError
 from twin.live import ending
-from twin.live.replay import SCHEMA_VERSION, Summary, replay, told
+from twin.live.replay import Summary, replay, told
 from twin.live.signals import config
 from twin.live.signals.config import Settings
 
@@ -50,42 +50,25 @@ def run(args: argparse.Namespace) -> int:
     if args.output and Path(args.output).resolve() == Path(args.log).resolve():
         raise SettingsError(f"-o {args.output}: is the log itself. Give another name.")
     if args.to_bus:
-        return run_on_the_bus(args, settings)
+        ending.ends_the_process(lambda: guarded(lambda: _on_the_bus(args, settings)))
     if args.speed is not None or args.listen:
         raise UsageError("--speed and --listen are for --to-bus; as fast as the voyage was: --realtime.")
-    return _told(replay(args.log, settings, args.output, args.realtime), args, settings)
+    return _answer(replay(args.log, settings, args.output, args.realtime), args, settings)
 
 
-def run_on_the_bus(args: argparse.Namespace, settings: Settings) -> int:
-    """Never returns: an interpreter that ends with an open Zenoh session may hang for ever."""
+def _on_the_bus(args: argparse.Namespace, settings: Settings) -> int:
     from twin.live.onto_bus import replay_onto_bus
 
     if args.listen:
         settings = settings.but("bus.listen", args.listen)
     speed = 1.0 if args.speed is None else args.speed
-
-    def on_the_bus() -> int:
-        return _told(replay_onto_bus(args.log, settings, args.output, speed), args, settings)
-
-    ending.ends_the_process(lambda: guarded(on_the_bus))
+    return _answer(replay_onto_bus(args.log, settings, args.output, speed), args, settings)
 
 
-def _told(summary: Summary, args: argparse.Namespace, settings: Settings) -> int:
+def _answer(summary: Summary, args: argparse.Namespace, settings: Settings) -> int:
     if args.json:
-        _write_json(summary, args.json)
+        whole.put(args.json, json.dumps(summary.as_json(), indent=2), "--json")
     if args.json != "-":
-        print("\n".join(told(summary, args, settings["ship.file"])))
+        compare = f"twin compare {args.output or args.log} --ship {settings['ship.file']}"
+        print("\n".join([*told(summary), f"next: {compare}"]))
     return 0
-
-
-def _write_json(summary: Summary, path: str) -> None:
-    table = {
-        "schema_version": SCHEMA_VERSION,
-        **summary._asdict(),
-        "foresight": [f._asdict() for f in summary.foresight],
-    }
-    text = json.dumps(table, indent=2)
-    if path == "-":
-        print(text)
-        return
-    whole.write(path, text + "\n", "--json")

@@ -1,7 +1,6 @@
 """`twin replay`: a recorded voyage through the same objects, under the log's own clock. Twice gives the
 same bytes."""
 
-import argparse
 import sys
 from collections import Counter
 from contextlib import ExitStack
@@ -43,6 +42,11 @@ class Summary(NamedTuple):
     withheld: int  # numbers that were not finite, and so were not said
     foresight: list[Sight]
     notes: list[str]
+
+    def as_json(self) -> dict[str, Any]:
+        """The same as plain types."""
+        sights = [f._asdict() for f in self.foresight]
+        return {"schema_version": SCHEMA_VERSION, **self._asdict(), "foresight": sights}
 
 
 def replay(
@@ -121,8 +125,8 @@ def _without_numbers(reason: str) -> str:
     return reason.partition(", for ")[0].partition(" = ")[0]
 
 
-def told(s: Summary, args: argparse.Namespace, ship: str) -> list[str]:
-    """The summary for people, with the next command; `ship`: the file that was used."""
+def told(s: Summary) -> list[str]:
+    """The summary for people."""
     lines = [
         f"{s.log}: {s.kind}, {s.duration_s:.0f} s, {s.ticks} ticks with {s.ship}; {s.rejected} samples "
         "refused"
@@ -138,5 +142,4 @@ def told(s: Summary, args: argparse.Namespace, ship: str) -> list[str]:
             f"({f.windows} starts)"
             for f in s.foresight
         ]
-    lines += [f"note: {note}" for note in s.notes]
-    return [*lines, f"next: twin compare {args.output or args.log} --ship {ship}"]
+    return lines + [f"note: {note}" for note in s.notes]

@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from twin import whole
+from twin.errors import SettingsError, did_you_mean
 from twin.physics.ship import load
-from twin.recording.checks import Check, run_checks
+from twin.recording.checks import CHECKS, Check, run_checks
 from twin.recording.formats.choose import sources_of
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
@@ -62,6 +63,14 @@ def import_voyage(
     if ship:
         voyage = voyage.with_meta(ship=ship.name)
     return Imported(voyage, run_checks(voyage, ship))
+
+
+def known_checks(names: Sequence[str]) -> None:
+    """SettingsError when one of the names is no check's."""
+    known = [check.__name__ for check in CHECKS]
+    for name in names:
+        if name not in known:
+            raise SettingsError(f"--accept: no check is called {name!r}.{did_you_mean(name, known)}")
 
 
 def suggest(args: argparse.Namespace) -> int:
@@ -129,8 +138,4 @@ def refusal(path: str, refused: Sequence[Check], map_path: str | None = None) ->
 
 def write_json(result: dict[str, Any], path: str) -> None:
     """To standard output for '-', else aside and renamed."""
-    text = json.dumps(result, indent=2)
-    if path == "-":
-        print(text)
-        return
-    whole.write(path, text + "\n", "--json")
+    whole.put(path, json.dumps(result, indent=2), "--json")

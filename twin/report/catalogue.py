@@ -5,13 +5,14 @@ import inspect
 import os
 import sys
 import textwrap
+from collections.abc import Sequence
 from typing import Any
 
 import numpy  # noqa: F401 (where it is loaded, an installed effect that does not work on arrays is left out)
 
 from twin.num import num
 from twin.physics.effect import FORM, Effect, Param
-from twin.physics.effects import UNNAMED
+from twin.physics.effects import OF_ACTUATORS, UNNAMED, catalogue, find, of_ship
 from twin.physics.ship import Ship
 from twin.recording.inputs import INPUTS
 
@@ -54,6 +55,18 @@ def _instead(effect: type[Effect]) -> str:
 def _attacks(effect: type[Effect]) -> str:
     """How well it is known where along the hull it attacks, in words."""
     return f"within {effect.lever:.0%} of its length of where the form has it (one standard deviation)"
+
+
+def chosen(name: str | None, ship: Ship | None = None) -> list[type[Effect]]:
+    """The effects of this name (a shape without a name and the families of actuators, too), or, without one,
+    the catalogue: with a ship, that ship's. SettingsError when there is none."""
+    named = [e for e in UNNAMED if e.__name__ == name] or [e for e in OF_ACTUATORS if e.__name__ == name]
+    return named or ([find(name)] if name else list((of_ship(ship) if ship else catalogue()).values()))
+
+
+def as_json(effects: Sequence[type[Effect]], ship: Ship | None = None) -> dict[str, Any]:
+    """What is declared of each, as plain types."""
+    return {"schema_version": 1, "effects": [as_table(e, ship) for e in effects]}
 
 
 def as_table(effect: type[Effect], ship: Ship | None = None) -> dict[str, Any]:

@@ -7,7 +7,7 @@ once."""
 import importlib.metadata
 import importlib.util
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import fields
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -109,6 +109,11 @@ def check(effect: type[Effect], ship: Ship | None = None) -> list[Answer]:
         Answer("declared in full", True, ""),
         *(_asked(words, question, effect, ship) for words, question in QUESTIONS.items()),
     ]
+
+
+def answers_as_json(effect: type[Effect], answers: Sequence[Answer]) -> dict[str, Any]:
+    """The answers as plain types."""
+    return {"schema_version": 1, "effect": effect.__name__, "answers": [a._asdict() for a in answers]}
 
 
 def _asked(

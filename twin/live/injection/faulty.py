@@ -3,13 +3,13 @@ row."""
 
 import random
 from collections.abc import Callable
-from math import cos, radians
+from math import cos, isfinite, radians
 from typing import Any, NamedTuple
 
 from google.protobuf.message import DecodeError
 
 from twin.errors import UsageError, did_you_mean
-from twin.live.inject import KINDS, NEEDS_AMOUNT, InjectedFault, Injector, Report
+from twin.live.injection.inject import KINDS, NEEDS_AMOUNT, InjectedFault, Injector, Report
 from twin.live.keelson import messages
 from twin.live.keelson.topics import BY_SUBJECT, FIX, POSITION, Topic, address, is_own
 from twin.live.signals.channels import BY_NAME
@@ -204,3 +204,21 @@ def _stamp_s(message: Any) -> float:
 
 def _ns(stamp_s: float) -> int:
     return max(round(stamp_s * 1e9), 0)
+
+
+def asked(
+    what: str, kind: str | None, by: float | None, start_s: float, seconds: float, seed: int
+) -> InjectedFault:
+    """The fault of these words, checked, its times counted from the start; UsageError where one does not
+    fit. `kind` None: the only one that there is of `what`; `by` None: the kind's own."""
+    chosen = kind or ("off" if what == "bus" else "wrong" if what == "clock" else "")
+    usual = KINDS[chosen].by if chosen in KINDS else 0.0
+    fault = InjectedFault(chosen, usual if by is None else by, start_s, seconds, seed)
+    if not isfinite(fault.by):
+        raise UsageError(f"--by {by}: a finite number is needed.")
+    if what == "clock" and not fault.by:
+        raise UsageError("clock: by how much? --by takes seconds.")
+    if what in EVERYTHING and kind not in (None, "off", "wrong"):
+        raise UsageError(f"{what} takes no kind {kind!r}.")
+    Faulty(what, fault)  # says what is wrong with it, before anything is opened
+    return fault

@@ -1,0 +1,33 @@
+"""What the verbs of the study answer alike: progress on standard error, lines, JSON and the page."""
+
+import argparse
+import sys
+from typing import Any, TextIO
+
+from twin.api.result import Result
+from twin.recording.import_voyage import write_json
+
+
+def progress(text: str) -> None:
+    """What is being done now."""
+    print(f"{text} ...", file=sys.stderr)
+
+
+def lines_to(args: argparse.Namespace) -> TextIO:
+    """Where the lines go: standard output, unless the JSON goes there."""
+    return sys.stderr if args.json == "-" else sys.stdout
+
+
+def asked(found: Result, command: str, **files: Any) -> Result:
+    """The result with what was typed and of which files it is."""
+    return found.with_keys(command=command, files=files)
+
+
+def answer(args: argparse.Namespace, found: Result) -> None:
+    """JSON, lines and page, as they were asked for."""
+    if args.json:
+        write_json(found.to_dict(), args.json)
+    print("\n".join(found.text()), file=lines_to(args))
+    if args.report:
+        found.write_page(args.report)
+        print(f"\nwrote {args.report}", file=lines_to(args))

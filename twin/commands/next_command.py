@@ -1,0 +1,39 @@
+"""What to type after a verb: its `next:` line."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from twin.physics.ship import load
+
+
+def after_import(voyage: str, ship: str | None) -> str:
+    """A ship that was never calibrated is, on its reference voyages, before anything is compared with it;
+    whether this is one, nobody knows."""
+    if ship and "structural" not in load(ship).notes:
+        better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
+        return (
+            "its model was not calibrated yet. Import the voyages on which nothing was wrong (three or "
+            f"more), then twin calibrate ref-1.mcap ref-2.mcap ... --ship {ship} -o {better}; after that, "
+            f"twin diagnose LATER.mcap --ship {better}"
+        )
+    return f"twin compare {voyage} --ship {ship or 'SHIP.toml'}"
+
+
+def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
+    """The diagnosis; before it a calibration, where the ship never had one."""
+    diagnose = f"twin diagnose {' '.join(voyages)} --ship {ship} --report diagnose.html"
+    if result["horizons"][-1]["noise_floor"]["of"] == "sensors":
+        return f"twin calibrate REFERENCE.mcap --ship {ship} -o calibrated.toml, or {diagnose}"
+    return diagnose
+
+
+def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
+    """What to sail where the voyages cannot tell, and what to add where a lasting cause was named."""
+    paths, sail = " ".join(voyages), ""
+    if result["next_manoeuvre"]:
+        sail = f"sail {result['next_manoeuvre']['manoeuvre']}, then twin diagnose with that voyage too"
+    if lasting := result["answer"]["lasting"]:
+        add = f"twin add {' '.join(lasting)} --ship {ship} --voyage {paths} -o better.toml"
+        return f"{sail}; or now: {add}" if sail else add
+    return sail or f"twin compare {paths} --ship {ship} --report compare.html"

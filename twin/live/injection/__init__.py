@@ -1,0 +1,1 @@
+"""Faults made on purpose: in a channel, in a log, on a bus, in a process."""
