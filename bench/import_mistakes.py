@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from bench.import_plant import FORMS, MISTAKES, Export, Planted, export, voyage_of
+from bench.import_forms import FORMS, Export, export, voyage_of
+from bench.import_plant import MISTAKES, Planted
 from bench.reference import Case, Recording, simulate
 from twin import whole
 from twin.recording.checks import Check, run_checks

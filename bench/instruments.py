@@ -17,7 +17,8 @@ from bench.instruments_plant import LATE, PAIRS, SIZES, planted
 from bench.options import positive
 from bench.reference.hulls import HULLS
 from bench.reference.voyage import Case, Recording, simulate
-from twin.recording.read import Raw, finished
+from twin.recording.finish import finished
+from twin.recording.raw import Raw
 from twin.study.instruments.estimate import Instruments, estimate
 
 EPILOG = """example: twin-bench instruments --seeds 2 --markdown docs/results/instruments.md

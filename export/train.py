@@ -119,7 +119,7 @@ def run(args: argparse.Namespace) -> int:
 
 def settings_of(args: argparse.Namespace) -> Any:
     """The training's settings, from the command line."""
-    from export.teach import TrainingSettings
+    from export.settings import TrainingSettings
 
     named = {f.name for f in fields(TrainingSettings)}
     return TrainingSettings(**{name: value for name, value in vars(args).items() if name in named})

@@ -14,7 +14,8 @@
 from math import sqrt
 from typing import Any
 
-from twin.live.learning.adapt import NOISE_S, Adaptation, Row
+from twin.live.learning.adapt import NOISE_S, Adaptation
+from twin.live.learning.adapted_row import Row
 from twin.live.learning.evidence import Three
 from twin.physics.maths import dot
 from twin.physics.ship import Ship

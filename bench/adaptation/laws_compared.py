@@ -22,7 +22,8 @@ from bench.adaptation.laws import Stream
 from bench.options import positive
 from bench.paper.sea import FULL, QUICK, changed, zigzags
 from bench.reference import HULLS, Change
-from twin.live.learning.adapt import BESIDE, Adaptation
+from twin.live.learning.adapt import Adaptation
+from twin.live.learning.adapted_row import BESIDE
 
 EPILOG = """example: twin-bench adaptation --work .paper --markdown docs/results/adaptation.md
 

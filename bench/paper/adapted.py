@@ -18,7 +18,8 @@ from bench.paper.lab import LabCourse
 from export.loss import known
 from export.network import ResidualNetwork
 from export.to_onnx import whitening
-from twin.live.learning.adapt import BESIDE, CORES, LARGEST, Adaptation
+from twin.live.learning.adapt import LARGEST, Adaptation
+from twin.live.learning.adapted_row import BESIDE, CORES
 from twin.live.learning.evidence import Evidence
 from twin.live.learning.movable import Columns, movable
 from twin.live.observer.dynamics import KnownDynamics

@@ -47,7 +47,8 @@ def table(
 ) -> Any:
     """Lines of the table, as they are ready."""
     from export.data import leg, model_of, split
-    from export.teach import TrainingSettings, teach
+    from export.settings import TrainingSettings
+    from export.teach import teach
     from export.worth import share, worth
 
     ship = nominal()

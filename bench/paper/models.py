@@ -24,7 +24,8 @@ from bench.paper.ship import nominal
 from export.batches import zeta_of
 from export.data import TrainingLeg, split
 from export.network import ResidualNetwork
-from export.teach import Taught, TrainingSettings, teach
+from export.settings import TrainingSettings
+from export.teach import Taught, teach
 from export.worth import share
 from twin.physics.effects import catalogue, find
 from twin.physics.model import Model

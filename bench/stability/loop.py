@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.stability.adversaries import HEADING_NOISE, AdversaryFleet
+from bench.stability.adversary_fleet import HEADING_NOISE, AdversaryFleet
 from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.inbox import Played

@@ -9,7 +9,8 @@ from bench import answer
 from bench.adaptation import laws
 from bench.adaptation.laws_compared import CHANGE_S, LIES, ROUND_S, changes
 from bench.adaptation.page import figure, page
-from twin.live.learning.adapt import A_MAX, SIZES, Adaptation
+from twin.live.learning.adapt import A_MAX, Adaptation
+from twin.live.learning.adapted_row import SIZES
 from twin.live.learning.learned import scale_of
 from twin.physics.ship import load
 

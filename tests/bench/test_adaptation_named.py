@@ -22,7 +22,7 @@ from bench.adaptation.named import (
 )
 from bench.adaptation.named_page import figure, page
 from bench.reference import HULLS
-from twin.live.learning.adapt import BESIDE, SIZES
+from twin.live.learning.adapted_row import BESIDE, SIZES
 from twin.live.learning.learned import scale_of
 from twin.live.learning.movable import movable
 from twin.physics.effects import find

@@ -67,3 +67,12 @@ def ship():
 def sailed(ship):
     weak = ship.with_derivatives(C_L=0.8 * ship.derivatives.C_L, Y_uv=1.2 * ship.derivatives.Y_uv)
     return [Sailed(v, track(v, ship), v.name) for v in voyages(weak, 6)]
+
+
+@pytest.fixture(scope="session")
+def parts(ship, sailed):
+    from export.data import leg, model_of, split
+
+    tracks = [s.track for s in sailed]
+    model = model_of(ship, tracks)
+    return split([leg(t, model) for t in tracks]), model

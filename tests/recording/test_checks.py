@@ -8,7 +8,8 @@ import pytest
 from twin.physics.ship import load
 from twin.recording.checks import CHECKS, run_checks
 from twin.recording.checks.water import factor
-from twin.recording.read import Raw, finished
+from twin.recording.finish import finished
+from twin.recording.raw import Raw
 
 SURGE, SWAY, HEADING = "surge_velocity_mps", "sway_velocity_mps", "heading_true_north_deg"
 RATE, RUDDER, TURNS = "yaw_rate_degps", "rudder_angle_deg", "propeller_rate_rpm"

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from twin.recording.checks import run_checks
+from twin.recording.finish import finished
 from twin.recording.map_file import parse_map
-from twin.recording.read import Raw, finished, through
+from twin.recording.raw import Raw, through
 from twin.recording.table import Table
 from twin.recording.timebase import TimeAxis
 

@@ -8,7 +8,8 @@ from pathlib import Path
 from twin import whole
 from twin.physics.ship import load_actuators, save
 from twin.recording.import_voyage import write_json
-from twin.study.first_model.init import OPTIONS, REQUIRED, doubts, first_model, sea_trial, summary
+from twin.study.first_model.first_trial import doubts, sea_trial, summary
+from twin.study.first_model.init import OPTIONS, REQUIRED, first_model
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 from twin.live.clock import Instant
 from twin.live.guard import Verdict
-from twin.live.learning.adapt import Parameter
+from twin.live.learning.adapted_row import Parameter
 from twin.live.learning.learned import Learned
 from twin.live.observer.dynamics import KnownDynamics
 from twin.live.observer.estimate import Estimate

@@ -5,7 +5,7 @@ What cannot be used is a DataError; what was blanked, assumed or derived stands 
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -13,8 +13,9 @@ from typing import Any
 import numpy as np
 
 from twin.errors import DataError, did_you_mean
-from twin.live.signals.channels import BY_NAME, of_actuators
-from twin.recording.cells import converted, earlier, number_keys, optional_keys, sum_of, text_keys, there
+from twin.live.signals.channels import BY_NAME
+from twin.recording.cells import number_keys, optional_keys, text_keys
+from twin.recording.finish import finished
 from twin.recording.formats import Format, recognised
 from twin.recording.formats.choose import Sources, chosen
 from twin.recording.formats.rows import as_columns
@@ -23,37 +24,15 @@ from twin.recording.formats.zipped import is_zip, unpacked
 from twin.recording.headers import column_names, own_names
 from twin.recording.map_file import parse_map
 from twin.recording.mapping import PLACES, Column, Key, Map, TimeColumn
-from twin.recording.place import CHART, FRAMED, derive, placed, present, scaled
-from twin.recording.samples import plausible
+from twin.recording.place import CHART, FRAMED
+from twin.recording.raw import Raw, about, read_clock, through
 from twin.recording.table import Table, read_packed, read_table
 from twin.recording.timebase import (
-    TimeAxis,
     clock_from_numbers,
-    clock_from_text,
-    rebuilt,
-    refuse_backwards,
-    refuse_leaps,
 )
-from twin.recording.units import froude
 from twin.recording.voyage import Voyage
 
-FEWEST_ROWS = 10
-CONTROLS = ("rudder_angle_deg", "propeller_rate_rpm")
 NO_SOURCES: Sources = {}
-
-
-@dataclass
-class Raw:
-    """A file's samples in border units, before anything is judged; `lines`: where each row stands in it."""
-
-    path: Path
-    lines: np.ndarray
-    time_s: np.ndarray
-    columns: dict[str, np.ndarray]
-    meta: dict[str, Any]
-    notes: list[str] = field(default_factory=list)
-    rebuild: bool | float = False  # see TimeColumn
-    lost: list[str] = field(default_factory=list)  # what of the file was damaged
 
 
 def read_voyage(
@@ -239,106 +218,3 @@ def beside_map(own: dict[str, Any], given: Map) -> dict[str, Any]:
         if taken & set(pair):
             taken |= {*pair, *((*PLACES, *CHART) if pair != FRAMED else ())}
     return {name: c for name, c in own.items() if name not in taken}
-
-
-def through(
-    path: Path, table: Table, clock: TimeAxis, by: Map, notes: list[str], facts: dict[str, Any]
-) -> Raw:
-    """A table through a map: every channel in its unit, then places and velocities in their frames."""
-    columns = {
-        name: converted(name, table, c, by.name, notes) for name, c in by.columns.items() if there(table, c)
-    }
-    for name, c in by.columns.items():
-        if c.late_s and name in columns:
-            ch = BY_NAME.get(name, BY_NAME["north_m"])
-            columns[name] = earlier(clock.time_s, columns[name], c.late_s, ch.wraps, ch.stale_s)
-    notes = [*notes, *clock.notes]
-    columns |= {name: np.full(table.lines.shape, x) for name, x in by.constant.items()}
-    given = sorted(columns)
-    columns, known, said = placed(clock.time_s, scaled(columns, by), by)
-    slower = froude("time_s", by.froude_scale)
-    step = by.time.rebuild if by.time else False
-    step = step if isinstance(step, bool) else step * slower
-    frame = by.columns[FRAMED[0]].frame if FRAMED[0] in by.columns else ""
-    meta = about(path, clock) | {
-        "map": by.name,
-        "given": given,
-        "constant": sorted(by.constant),
-        "velocity_frame": frame,
-    }
-    meta |= {"units": {name: c.unit for name, c in by.columns.items() if c.unit}} | facts | known
-    return Raw(path, table.lines, clock.time_s * slower, columns, meta, notes + said, step, list(table.lost))
-
-
-def about(path: Path, clock: TimeAxis) -> dict[str, Any]:
-    return {"source": str(path), "start_time_utc": clock.start_time_utc}
-
-
-def read_clock(path: Path, table: Table, stamps: tuple[Key, ...], spec: TimeColumn) -> TimeAxis:
-    """The clock of a table: numbers (several are added up by `factors`), moments that a packed table keeps,
-    or text."""
-    if all(s in table.numbers for s in stamps):
-        if spec.is_text:
-            spec = TimeColumn(spec.column)
-        return clock_from_numbers(path, sum_of([table.numbers[s] for s in stamps], spec.factors), spec)
-    joint = " " if spec.format else "T"
-    words = [joint.join(parts) for parts in zip(*(table.texts[s] for s in stamps), strict=True)]
-    return clock_from_text(path, table.lines, words, spec)
-
-
-def finished(raw: Raw, controls: bool = True) -> Voyage:
-    """The voyage: rows without a time left out, implausible samples blanked, what is absent derived."""
-    with_time(raw)
-    refuse_leaps(raw.path, raw.lines, raw.time_s)
-    refuse_backwards(raw.path, raw.lines, raw.time_s)
-    if raw.rebuild is not False:
-        raw.time_s, how = rebuilt(raw.path, raw.time_s, raw.rebuild)
-        raw.notes.append(how)
-    for name, values in raw.columns.items():
-        raw.columns[name], blanked = plausible(name, values, raw.lines)
-        raw.notes += blanked
-    require(raw, controls)
-    columns, derived = derive(raw.time_s, raw.columns)
-    meta = {k: v for k, v in raw.meta.items() if v}
-    meta["derived"] = meta.get("derived", {}) | derived
-    meta["notes"] = (*meta.get("notes", ()), *raw.notes)
-    meta["lost"] = (*meta.get("lost", ()), *raw.lost)
-    return Voyage(meta.pop("name", raw.path.stem), raw.time_s, columns, meta)
-
-
-def with_time(raw: Raw) -> None:
-    """Leaves out the rows without a time; DataError when too few are left."""
-    keep = np.isfinite(raw.time_s)
-    rows = int(np.count_nonzero(keep))
-    if rows < FEWEST_ROWS:
-        kind = f"this is {raw.meta['format']}; it " if "format" in raw.meta else ""
-        raise DataError(
-            f"{raw.path}: {kind}has {rows} rows with a time; at least {FEWEST_ROWS} are needed. "
-            "Is it the right time column?"
-        )
-    if rows < keep.size:
-        raw.notes.append(
-            f"{keep.size - rows} rows without a time left out (first in line {raw.lines[~keep][0]})"
-        )
-        raw.time_s, raw.lines = raw.time_s[keep], raw.lines[keep]
-        raw.columns = {name: x[keep] for name, x in raw.columns.items()}
-
-
-def require(raw: Raw, controls: bool = True) -> None:
-    """Heading, controls, and position or velocity must hold samples; DataError names all that do not."""
-    parts = any(present(raw.columns, name) for name in of_actuators(raw.columns))
-    needed = ("heading_true_north_deg", *(CONTROLS if controls and not parts else ()))
-    missing = [name for name in needed if not present(raw.columns, name)]
-    if not present(raw.columns, *CHART) and not present(raw.columns, *FRAMED):
-        missing.append(f"{' and '.join(CHART)} (or {' and '.join(PLACES)}, or {' and '.join(FRAMED)})")
-    if missing:
-        empty = [n for n in raw.columns if not present(raw.columns, n)]
-        said = [f"{', '.join(empty)}: no usable sample"] * bool(empty) + [n[:200] for n in raw.notes[:8]]
-        steady = " A shaft that kept one speed may stand under [constant]." * (CONTROLS[1] in missing)
-        kind = f"this is {raw.meta['format']}; a voyage " if "format" in raw.meta else ""
-        raise DataError(
-            f"{raw.path}: {kind}needs {', '.join(missing)}. {'; '.join(said)}{'. ' if said else ''}Add the "
-            f"column, or say in a map which one it is (--map).{steady}"
-            + " What is judged without the controls is imported with "
-            "--without-controls." * (set(missing) <= set(CONTROLS))
-        )

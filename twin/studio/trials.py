@@ -13,8 +13,9 @@ from twin.errors import SettingsError
 from twin.physics.particulars import Derivatives, Ship
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
-from twin.study.first_model.init import OPTIONS, REQUIRED, first_model, sea_trial
-from twin.study.first_model.init import doubts as careful
+from twin.study.first_model.first_trial import doubts as careful
+from twin.study.first_model.first_trial import sea_trial
+from twin.study.first_model.init import OPTIONS, REQUIRED, first_model
 from twin.study.update.history import ladder
 
 UNITS = ("kgm2", "kg-m3", "mps", "rpm", "m2", "kg", "m")  # that the name of an option ends in

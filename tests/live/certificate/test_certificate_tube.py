@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from bench.stability.adversaries import AdversaryCase, AdversaryFleet, certified, trial
+from bench.stability.adversaries import AdversaryCase, certified
+from bench.stability.adversary_fleet import AdversaryFleet, trial
 from bench.stability.loop import LoopCase, Loops
 from twin.live.certificate.certificate import Tube, certify
 from twin.live.certificate.tube import Highest

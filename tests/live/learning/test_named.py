@@ -7,7 +7,8 @@ from math import isfinite, sin
 
 import pytest
 
-from twin.live.learning.adapt import SIZES, Adaptation
+from twin.live.learning.adapt import Adaptation
+from twin.live.learning.adapted_row import SIZES
 from twin.live.learning.learned import LearnedForce, scale_of
 from twin.live.learning.movable import movable
 from twin.physics.effects import find

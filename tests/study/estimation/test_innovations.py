@@ -14,7 +14,8 @@ from twin.study.estimation.innovations import Floor, innovate, linearise
 from twin.study.estimation.respond import later
 from twin.study.reference.structure import floor_of, structural_floor
 from twin.study.track.segments import read_parts, segments
-from twin.study.track.track import READINGS, smooth_motion, track
+from twin.study.track.smooth_motion import smooth_motion
+from twin.study.track.track import READINGS, track
 
 
 @pytest.fixture(scope="module")

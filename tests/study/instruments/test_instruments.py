@@ -13,7 +13,8 @@ from twin.api.json_keys import KEYS
 from twin.cli import main
 from twin.errors import DataError, UsageError
 from twin.physics.ship import load
-from twin.recording.read import Raw, finished
+from twin.recording.finish import finished
+from twin.recording.raw import Raw
 from twin.study.instruments.arrow import Block, reduce
 from twin.study.instruments.estimate import estimate
 from twin.study.instruments.spline import Spline

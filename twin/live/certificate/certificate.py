@@ -16,6 +16,7 @@ from typing import Any
 from twin.errors import SettingsError
 from twin.live.certificate import comparison as c3
 from twin.live.certificate.comparison import Matrix, Row
+from twin.live.certificate.gains import best_gain, gains_that_do, suited_gain, usual_gain
 from twin.live.certificate.heading_bound import with_heading
 from twin.live.certificate.plant import (
     HEADING_NOISE,
@@ -28,17 +29,9 @@ from twin.live.certificate.plant import (
     usual_disturbance,
     usual_noise,
 )
+from twin.live.certificate.recursion import Ages, Recursion
 from twin.live.certificate.rolled import assess_rolled, radius
-from twin.live.certificate.theorem import (
-    Ages,
-    Promise,
-    Recursion,
-    assess,
-    best_gain,
-    gains_that_do,
-    suited_gain,
-    usual_gain,
-)
+from twin.live.certificate.theorem import Promise, assess
 from twin.live.certificate.tube import Tube
 from twin.live.learning.movable import movable
 from twin.live.observer.estimate import fastest_gain, gain_for

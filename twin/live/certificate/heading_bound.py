@@ -9,7 +9,8 @@ from dataclasses import replace
 from twin.live.certificate import comparison as c3
 from twin.live.certificate.comparison import Matrix, Row
 from twin.live.certificate.plant import Disturbance, Plant
-from twin.live.certificate.theorem import NEVER, Ages, Promise, assess
+from twin.live.certificate.recursion import Ages
+from twin.live.certificate.theorem import NEVER, Promise, assess
 
 
 def with_heading(

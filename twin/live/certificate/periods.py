@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from twin.live.certificate.comparison import AXES, Matrix, Row, apply
 from twin.live.certificate.plant import Plant
-from twin.live.certificate.theorem import CURVE, pushed, recursion
+from twin.live.certificate.recursion import CURVE, pushed, recursion
 
 if TYPE_CHECKING:
     from twin.live.certificate.certificate import Certificate

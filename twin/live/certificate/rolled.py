@@ -14,7 +14,8 @@ from math import log
 from twin.live.certificate import comparison as c3
 from twin.live.certificate.comparison import AXES, Matrix, Row
 from twin.live.certificate.plant import Disturbance, Plant
-from twin.live.certificate.theorem import NEVER, NOWHERE, Ages, Promise, pushed, ratio, recursion
+from twin.live.certificate.recursion import Ages, pushed, recursion
+from twin.live.certificate.theorem import NEVER, NOWHERE, Promise, ratio
 from twin.physics.maths import total
 
 Vector = tuple[float, ...]

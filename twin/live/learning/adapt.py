@@ -15,63 +15,26 @@ for all rows, opens as far as what the numbers of a while ago promised has come 
 
 import json
 from copy import copy, deepcopy
-from dataclasses import dataclass
 from math import isfinite, sqrt
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from twin import whole
+from twin.live.learning.adapted_row import BESIDE, COLUMNS, CORES, ROWS, SIZES, Parameter, Row
 from twin.live.learning.evidence import Three
 from twin.live.learning.named import Named
 from twin.live.learning.proof import Proof
 from twin.live.learning.ridge import HINDSIGHT, LARGEST, MEMORY, NOISE_S, SPREAD, deviations, factor, solve
 from twin.live.observer.dynamics import Forces
 from twin.physics.maths import dot, total
-from twin.physics.model import CORE
 from twin.physics.ship import Ship
 from twin.physics.state import Force
 
-ROWS = ("surge", "sway", "yaw")
-COLUMNS = (("hull", "propeller"), ("hull", "rudder"), ("hull", "rudder"))  # sizes that each row may correct
-SIZES = len(COLUMNS[0])
-BESIDE = SIZES + 1  # numbers of a row beside its components: sizes and a constant
-CORES = tuple(tuple(CORE.index(name) for name in row) for row in COLUMNS)  # where they stand among the forces
 A_MAX = 1.0  # norm of all numbers together
 BOX_COMPONENT, BOX_KNOWN, BOX_CONSTANT = 0.5, 0.3, 0.5
 # how far a number is usually off: the prior's deviations
 USUAL_COMPONENT, USUAL_KNOWN, USUAL_CONSTANT = 0.01, 0.2, 0.02
 EXCITED = 0.02  # rms of the regressors' motion below which there is nothing to learn from
-
-
-class Parameter(NamedTuple):
-    """One adapted number as it is published; status: unestimated, estimated or invalid."""
-
-    name: str
-    value: float
-    low: float
-    high: float
-    sigma: float
-    unit: str
-    status: str
-
-    def numbers(self) -> dict[str, float]:
-        return {"value": self.value, "low": self.low, "high": self.high, "sigma": self.sigma}
-
-
-@dataclass(slots=True)
-class Row:
-    """One row's numbers, their covariance, and the evidence for them."""
-
-    a: list[float]
-    I: list[list[float]]  # information: what was seen, over its noise
-    b: list[float]
-    L: list[list[float]]  # its factor, with the prior
-    sigma: list[float]  # of a, at that time
-    then: list[float]  # a of HINDSIGHT to twice that ago, whose promises the gate weighs
-    next: list[float]
-    B: list[list[float]]  # information that it shares with each number of the named effects
-    age: float = 0.0
-    spread: float = 0.05  # s_r^2
 
 
 class Adaptation:

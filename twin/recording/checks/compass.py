@@ -13,8 +13,8 @@ import numpy as np
 
 from twin.recording.cells import without_deviation
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good
+from twin.recording.checks.candidate_mistake import Single
 from twin.recording.checks.offset import by_course
-from twin.recording.checks.single_table import Single
 from twin.recording.checks.undo import HEADING, undone
 from twin.recording.checks.view import VoyageView, fit, rms
 

@@ -1,12 +1,11 @@
 """The mistakes that `single` tries, one row each: what it is called, how it is undone, what the map needs."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import numpy as np
 
+from twin.recording.checks.candidate_mistake import Single, changes, said, scaled
 from twin.recording.checks.undo import (
-    AHEAD,
     EAST,
     FIRST,
     HEADING,
@@ -19,10 +18,10 @@ from twin.recording.checks.undo import (
     as_velocity,
     velocity,
 )
+from twin.recording.checks.unit_mistakes import of_rate, of_speed
 from twin.recording.checks.view import VoyageView
-from twin.recording.units import DEG_PER_RAD, UNITS
+from twin.recording.units import DEG_PER_RAD
 
-Words = Callable[[VoyageView], str]
 HEADINGS: tuple[tuple[str, Callable[[np.ndarray], np.ndarray], str], ...] = (
     ("the heading counts from east, anticlockwise", lambda x: 90.0 - x, "sign = -1 and offset = 90"),
     ("the heading counts anticlockwise from north", lambda x: -x, "sign = -1"),
@@ -39,7 +38,6 @@ CLOCKS: tuple[tuple[str, float, str], ...] = (
     ("the time is in hours", 3600.0, "h"),
     ("the time is in microseconds", 1e-6, "us"),
 )
-SPEED_NAMES = {"kn": "knots"}
 VELOCITIES: tuple[tuple[str, Callable[[np.ndarray], np.ndarray], str, str], ...] = (
     ("surge and sway are swapped", lambda w: 1j * w.conj(), "swap their columns", "body"),
     ("surge is positive astern", lambda w: -w.conj(), "sign = -1 for surge", "body"),
@@ -79,36 +77,6 @@ VELOCITIES: tuple[tuple[str, Callable[[np.ndarray], np.ndarray], str, str], ...]
 )
 
 
-@dataclass(frozen=True)
-class Single:
-    """One mistake: `undo(view)` gives the change of columns, `needs` the measured columns without which it
-    cannot be."""
-
-    text: Words
-    undo: Callable[[VoyageView], Undo]
-    fix: Words
-    check: str
-    needs: tuple[str, ...]
-    uses: frozenset[str]
-    frame: str = ""
-
-    def possible(self, view: VoyageView, given: frozenset[str]) -> bool:
-        frame = view.voyage.meta.get("velocity_frame") or "body"
-        return set(self.needs) <= given and self.frame in ("", frame)
-
-
-def said(text: str) -> Words:
-    return lambda view: text
-
-
-def changes(undo: Undo) -> Callable[[VoyageView], Undo]:
-    return lambda view: undo
-
-
-def scaled(name: str, by: float) -> Undo:
-    return lambda c: {name: c[name] * by}
-
-
 def headed(turn: Callable[[np.ndarray], np.ndarray], mirrored: bool) -> Undo:
     return lambda c: {HEADING: turn(c[HEADING])} | ({RATE: -c[RATE]} if mirrored and RATE in c else {})
 
@@ -125,60 +93,6 @@ def sign_of_north(view: VoyageView) -> str:
 
 def west(c: Columns) -> dict[str, np.ndarray]:
     return {EAST: -c[EAST]}
-
-
-def read_unit(view: VoyageView, channel: str, standard: str) -> str:
-    """The unit that the map gave a channel."""
-    return view.voyage.meta.get("units", {}).get(channel) or standard
-
-
-def of_rate(view: VoyageView) -> list[Single]:
-    """The rate of turn in another unit than it was read in, or positive to port, or both."""
-    read, out = read_unit(view, RATE, "deg/s"), []
-    for unit, size in UNITS["degps"].items():
-        for sign in (1.0, -1.0):
-            by = sign * size / UNITS["degps"][read]
-            if by == 1.0:
-                continue
-            what = (
-                "the rate of turn is "
-                f"{f'in {unit}' if unit != read else ''}{' and ' * (unit != read and sign < 0)}{'positive to port' * (sign < 0)}"
-            )
-            fix = ", ".join([f'unit = "{unit}"'] * (unit != read) + ["sign = -1"] * (sign < 0))
-            out.append(
-                Single(
-                    said(what),
-                    changes(scaled(RATE, by)),
-                    said(f"{fix} for {RATE}"),
-                    "yaw_rate",
-                    (RATE,),
-                    frozenset(("rate",)),
-                )
-            )
-    return out
-
-
-def of_speed(view: VoyageView) -> list[Single]:
-    """The speeds in another unit than they were read in."""
-    read, out = read_unit(view, AHEAD, "m/s"), []
-    for unit, size in UNITS["mps"].items():
-        if unit != read:
-            undo: Undo = (lambda k: lambda c: as_velocity(velocity(c) * k))(size / UNITS["mps"][read])
-            what = (
-                "the speeds are in "
-                f"{SPEED_NAMES.get(unit, unit)}{f', read as {SPEED_NAMES.get(read, read)}' * (read != 'm/s')}"
-            )
-            out.append(
-                Single(
-                    said(what),
-                    changes(undo),
-                    speed_fix(unit),
-                    "velocity_frame",
-                    (FIRST,),
-                    frozenset(("velocity",)),
-                )
-            )
-    return out
 
 
 def singles(view: VoyageView) -> tuple[Single, ...]:
@@ -306,11 +220,3 @@ def singles(view: VoyageView) -> tuple[Single, ...]:
         ),
     ]
     return tuple(out)
-
-
-def speed_fix(unit: str) -> Words:
-    """The entry of the map that holds the speed: one when it comes with the course, else both."""
-    return lambda view: (
-        f'unit = "{unit}" for '
-        f"{AHEAD}{'' if view.voyage.meta.get('velocity_frame') == 'course' else ' and sway'}"
-    )

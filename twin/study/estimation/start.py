@@ -12,7 +12,8 @@ from twin.num import num
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.estimation.respond import later, stretches
-from twin.study.track.track import STATE, Track, smooth_motion
+from twin.study.track.smooth_motion import smooth_motion
+from twin.study.track.track import STATE, Track
 
 ABOUT = 2.5  # periods of the waves
 BRIDGE_S = 3.0  # instruments slower than the grid are joined by straight lines over no more than this

@@ -15,7 +15,8 @@ import numpy as np
 from twin.physics.model import Model
 from twin.study.estimation.respond import accelerations as pushed
 from twin.study.estimation.start import steadied, wave_period_s
-from twin.study.track.track import READINGS, Track, running_mean
+from twin.study.track.smooth_motion import running_mean
+from twin.study.track.track import READINGS, Track
 
 EARLIER = "_earlier"  # a quarter of a period before
 # prior width, as a share of what the rudder does in time with the waves

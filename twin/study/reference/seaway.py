@@ -24,7 +24,8 @@ from twin.study.reference.gear import geared
 from twin.study.reference.nuisance import TEMPER, nuisance_unknowns
 from twin.study.reference.structure import floor_of
 from twin.study.track.segments import read_parts, segments
-from twin.study.track.track import Track, running_mean
+from twin.study.track.smooth_motion import running_mean
+from twin.study.track.track import Track
 
 SWIFT = 3.0  # L/U_0: what swings about the mean over so long a time may be waves
 LATELY = 8.0  # L/U_0: on another course waves are met otherwise

@@ -11,7 +11,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.ndimage import median_filter
 
-from twin.study.track.track import Track, running_mean
+from twin.study.track.smooth_motion import running_mean
+from twin.study.track.track import Track
 
 SWIFT = 0.5  # L/U_0: what swings about the mean over so long a time no ship does by its rudder
 LATELY = 8.0  # L/U_0: on another course waves are met otherwise

@@ -1,0 +1,75 @@
+"""A tanker's model in an open pond with measured wind, of the open data set FRT-DS-ESSO."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from bench.decisions.question import Asked, begun, kept
+from twin.physics.ship import Ship
+from twin.recording.voyage import Voyage
+from twin.study.calibration.calibrate import calibrate
+from twin.study.reference.sailed import Sailed
+from twin.study.track.track import track
+
+ESSO = {  # the model of FRT-DS-ESSO, 1/108.33
+    "length_pp_m": 3.0,
+    "beam_m": 0.489,
+    "draught_m": 0.201,
+    "block_coefficient": 0.83,
+    "x_g_m": 0.094,
+    "service_speed_mps": 0.4,
+    "shaft_speed_rpm": 840.0,
+    "propeller_diameter_m": 0.084,
+    "pitch_ratio": 0.715,
+    "rudder_area_m2": 0.0102,
+}
+
+
+CALMEST = ("13_04", "13_14", "13_29", "14_08_51", "14_17")
+WINDY = ("13_22", "13_42", "13_57", "14_10", "14_29", "14_39", "15_06", "15_21")
+
+
+def in_the_pond(folder: Path, runs: Path) -> Iterator[Asked]:
+    """Runs of a tanker's model in an open pond with measured wind, which the model does not know, or does (as
+    calibration found it)."""
+    paths = {
+        run: next(p for p in sorted(runs.glob("*.csv")) if run in p.name and "random" not in p.name)
+        for run in (*CALMEST, *WINDY)
+    }
+
+    def ship() -> Ship:
+        voyages = [_pond(paths[run]) for run in CALMEST]
+        start = begun("Esso Osaka", ESSO, folder / "ships" / "esso.start.toml")
+        sailed = [Sailed(v, track(v, start), v.name) for v in voyages]
+        return calibrate(sailed, [(sailed[-1].track, 0)], start).ship
+
+    def without() -> Ship:
+        whole = kept(folder / "ships" / "esso", ship)
+        return replace(whole, effects=tuple(e for e in whole.effects if type(e).__name__ != "Wind"))
+
+    for run in WINDY:
+        for name, which in (("", without), (" knows Wind", lambda: kept(folder / "ships" / "esso", ship))):
+            truth = {"hidden": {"Wind": 1.0}, "knows": "Wind" if name else ""}
+            yield Asked(
+                f"esso {run}{name}", truth, lambda run=run, which=which: (which(), [_pond(paths[run])])
+            )  # type: ignore[misc]
+
+
+def _pond(path: Path) -> Voyage:
+    head = [name.split(" ")[0] for name in path.read_text().split("\n", 1)[0].split(",")]
+    c = dict(zip(head, np.genfromtxt(path, delimiter=",", skip_header=1).T, strict=True))
+    columns = {
+        "north_m": c["x_position_mid"],
+        "east_m": c["y_position_mid"],
+        "heading_true_north_deg": np.degrees(c["psi_hat"]) % 360.0,
+        "surge_velocity_mps": c["u_velo"],
+        "sway_velocity_mps": c["vm_velo"],
+        "yaw_rate_degps": np.degrees(c["r_angvelo"]),
+        "rudder_angle_deg": np.degrees(c["delta_rudder"]),
+        "propeller_rate_rpm": 60.0 * c["n_prop"],
+        "true_wind_speed_mps": c["wind_velo_true"],
+        "true_wind_direction_deg": np.degrees(c["wind_dir_true"]) % 360.0,
+    }
+    return Voyage(path.stem, c["t"], columns, {"source": "FRT-DS-ESSO"})

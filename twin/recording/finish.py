@@ -1,0 +1,78 @@
+"""From a file's samples to a voyage: rows without a time left out, what no ship can do blanked, what is
+absent derived."""
+
+import numpy as np
+
+from twin.errors import DataError
+from twin.live.signals.channels import of_actuators
+from twin.recording.mapping import PLACES
+from twin.recording.place import CHART, FRAMED, derive, present
+from twin.recording.raw import Raw
+from twin.recording.samples import plausible
+from twin.recording.timebase import (
+    rebuilt,
+    refuse_backwards,
+    refuse_leaps,
+)
+from twin.recording.voyage import Voyage
+
+FEWEST_ROWS = 10
+CONTROLS = ("rudder_angle_deg", "propeller_rate_rpm")
+
+
+def finished(raw: Raw, controls: bool = True) -> Voyage:
+    """The voyage: rows without a time left out, implausible samples blanked, what is absent derived."""
+    with_time(raw)
+    refuse_leaps(raw.path, raw.lines, raw.time_s)
+    refuse_backwards(raw.path, raw.lines, raw.time_s)
+    if raw.rebuild is not False:
+        raw.time_s, how = rebuilt(raw.path, raw.time_s, raw.rebuild)
+        raw.notes.append(how)
+    for name, values in raw.columns.items():
+        raw.columns[name], blanked = plausible(name, values, raw.lines)
+        raw.notes += blanked
+    require(raw, controls)
+    columns, derived = derive(raw.time_s, raw.columns)
+    meta = {k: v for k, v in raw.meta.items() if v}
+    meta["derived"] = meta.get("derived", {}) | derived
+    meta["notes"] = (*meta.get("notes", ()), *raw.notes)
+    meta["lost"] = (*meta.get("lost", ()), *raw.lost)
+    return Voyage(meta.pop("name", raw.path.stem), raw.time_s, columns, meta)
+
+
+def with_time(raw: Raw) -> None:
+    """Leaves out the rows without a time; DataError when too few are left."""
+    keep = np.isfinite(raw.time_s)
+    rows = int(np.count_nonzero(keep))
+    if rows < FEWEST_ROWS:
+        kind = f"this is {raw.meta['format']}; it " if "format" in raw.meta else ""
+        raise DataError(
+            f"{raw.path}: {kind}has {rows} rows with a time; at least {FEWEST_ROWS} are needed. "
+            "Is it the right time column?"
+        )
+    if rows < keep.size:
+        raw.notes.append(
+            f"{keep.size - rows} rows without a time left out (first in line {raw.lines[~keep][0]})"
+        )
+        raw.time_s, raw.lines = raw.time_s[keep], raw.lines[keep]
+        raw.columns = {name: x[keep] for name, x in raw.columns.items()}
+
+
+def require(raw: Raw, controls: bool = True) -> None:
+    """Heading, controls, and position or velocity must hold samples; DataError names all that do not."""
+    parts = any(present(raw.columns, name) for name in of_actuators(raw.columns))
+    needed = ("heading_true_north_deg", *(CONTROLS if controls and not parts else ()))
+    missing = [name for name in needed if not present(raw.columns, name)]
+    if not present(raw.columns, *CHART) and not present(raw.columns, *FRAMED):
+        missing.append(f"{' and '.join(CHART)} (or {' and '.join(PLACES)}, or {' and '.join(FRAMED)})")
+    if missing:
+        empty = [n for n in raw.columns if not present(raw.columns, n)]
+        said = [f"{', '.join(empty)}: no usable sample"] * bool(empty) + [n[:200] for n in raw.notes[:8]]
+        steady = " A shaft that kept one speed may stand under [constant]." * (CONTROLS[1] in missing)
+        kind = f"this is {raw.meta['format']}; a voyage " if "format" in raw.meta else ""
+        raise DataError(
+            f"{raw.path}: {kind}needs {', '.join(missing)}. {'; '.join(said)}{'. ' if said else ''}Add the "
+            f"column, or say in a map which one it is (--map).{steady}"
+            + " What is judged without the controls is imported with "
+            "--without-controls." * (set(missing) <= set(CONTROLS))
+        )

@@ -1,0 +1,78 @@
+"""A file's samples before anything is judged, and a table through a map."""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from twin.live.signals.channels import BY_NAME
+from twin.recording.cells import converted, earlier, sum_of, there
+from twin.recording.mapping import Key, Map, TimeColumn
+from twin.recording.place import FRAMED, placed, scaled
+from twin.recording.table import Table
+from twin.recording.timebase import (
+    TimeAxis,
+    clock_from_numbers,
+    clock_from_text,
+)
+from twin.recording.units import froude
+
+
+@dataclass
+class Raw:
+    """A file's samples in border units, before anything is judged; `lines`: where each row stands in it."""
+
+    path: Path
+    lines: np.ndarray
+    time_s: np.ndarray
+    columns: dict[str, np.ndarray]
+    meta: dict[str, Any]
+    notes: list[str] = field(default_factory=list)
+    rebuild: bool | float = False  # see TimeColumn
+    lost: list[str] = field(default_factory=list)  # what of the file was damaged
+
+
+def through(
+    path: Path, table: Table, clock: TimeAxis, by: Map, notes: list[str], facts: dict[str, Any]
+) -> Raw:
+    """A table through a map: every channel in its unit, then places and velocities in their frames."""
+    columns = {
+        name: converted(name, table, c, by.name, notes) for name, c in by.columns.items() if there(table, c)
+    }
+    for name, c in by.columns.items():
+        if c.late_s and name in columns:
+            ch = BY_NAME.get(name, BY_NAME["north_m"])
+            columns[name] = earlier(clock.time_s, columns[name], c.late_s, ch.wraps, ch.stale_s)
+    notes = [*notes, *clock.notes]
+    columns |= {name: np.full(table.lines.shape, x) for name, x in by.constant.items()}
+    given = sorted(columns)
+    columns, known, said = placed(clock.time_s, scaled(columns, by), by)
+    slower = froude("time_s", by.froude_scale)
+    step = by.time.rebuild if by.time else False
+    step = step if isinstance(step, bool) else step * slower
+    frame = by.columns[FRAMED[0]].frame if FRAMED[0] in by.columns else ""
+    meta = about(path, clock) | {
+        "map": by.name,
+        "given": given,
+        "constant": sorted(by.constant),
+        "velocity_frame": frame,
+    }
+    meta |= {"units": {name: c.unit for name, c in by.columns.items() if c.unit}} | facts | known
+    return Raw(path, table.lines, clock.time_s * slower, columns, meta, notes + said, step, list(table.lost))
+
+
+def about(path: Path, clock: TimeAxis) -> dict[str, Any]:
+    return {"source": str(path), "start_time_utc": clock.start_time_utc}
+
+
+def read_clock(path: Path, table: Table, stamps: tuple[Key, ...], spec: TimeColumn) -> TimeAxis:
+    """The clock of a table: numbers (several are added up by `factors`), moments that a packed table keeps,
+    or text."""
+    if all(s in table.numbers for s in stamps):
+        if spec.is_text:
+            spec = TimeColumn(spec.column)
+        return clock_from_numbers(path, sum_of([table.numbers[s] for s in stamps], spec.factors), spec)
+    joint = " " if spec.format else "T"
+    words = [joint.join(parts) for parts in zip(*(table.texts[s] for s in stamps), strict=True)]
+    return clock_from_text(path, table.lines, words, spec)

@@ -1,0 +1,96 @@
+"""What a first model does in the standard manoeuvres, and what an owner is told of it."""
+
+from collections.abc import Mapping
+from math import radians
+from typing import Any
+
+from twin.physics.model import Model
+from twin.physics.ship import PARTICULARS, Ship
+from twin.study.first_model import regressions as reg
+from twin.study.first_model.init import Given
+from twin.study.prediction.trial import shaft_speed, straight_line_stability, turning_circle, zigzag
+
+# what is given, and is no particular of the ship file
+INSIDE = ("shaft-speed-rpm", "propellers", "pitch-ratio", "rudder-height-m")
+
+
+FULL = 0.7  # block coefficient from which ships often do not go straight by themselves
+
+
+def sea_trial(ship: Ship) -> dict[str, Any]:
+    """What this model does in the standard manoeuvres: the check that an owner can make by eye."""
+    model = Model.of(ship)
+    circle = turning_circle(model, radians(35.0))
+    over = zigzag(model, radians(20.0), radians(20.0))
+    figures = {
+        "shaft_speed_rpm": None if ship.actuators else 60.0 * shaft_speed(model, ship.U_0),
+        **({"power": shaft_speed(model, ship.U_0)} if ship.actuators else {}),
+        "service_speed_mps": ship.U_0,
+        "advance_L": circle.advance,
+        "tactical_diameter_L": circle.tactical_diameter,
+        "speed_left": circle.speed_left,
+        "overshoot_20_20_deg": over[0] if over else None,
+        "straight_line_stability": straight_line_stability(model),
+    }
+    return {k: None if v is None else float(f"{v:.4g}") for k, v in figures.items()}
+
+
+def _driven(ship: Ship, figures: Mapping[str, Any], bridge: str) -> str:
+    """What drives the ship at service speed."""
+    at = f"at {ship.U_0:.3g} m/s ({ship.U_0 / 0.514444:.1f} kn)"
+    if ship.actuators:
+        return f"{100.0 * figures['power']:.0f} % of the power of {len(ship.actuators)} actuators {at}"
+    return f"{figures['shaft_speed_rpm']:.0f} rpm {at}: {bridge}"
+
+
+def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
+    """In words, what is unusual about a trial of so full a ship."""
+    out = []
+    if figures["straight_line_stability"] <= 0 and C_b < FULL:
+        out.append(
+            f"that so fine a hull (C_b {C_b:.2f}) does not go straight by itself is rare, and more likely "
+            "an error of these regressions than of "
+            "your numbers: calibrate before you trust how it turns"
+        )
+    if not 1.8 <= figures["tactical_diameter_L"] <= 6.5:
+        out.append(
+            f"tactical diameter {figures['tactical_diameter_L']:.1f} L is unusual (2 to 6 L): check rudder "
+            "area and speed, and calibrate"
+        )
+    if figures["speed_left"] < 0.2:
+        out.append(
+            f"only {figures['speed_left']:.0%} of the speed is left in the turn: check draught and "
+            "propeller, and calibrate"
+        )
+    if figures["overshoot_20_20_deg"] is None or figures["overshoot_20_20_deg"] > 40.0:
+        out.append("the 20/20 zigzag does not settle as ships do: check rudder area, and calibrate")
+    return out
+
+
+def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: Given) -> str:
+    """What was given, what was estimated and from where, and the sea trial."""
+    notes = ship.notes["particulars"]
+    lines = [f"{ship.name}: a first model from its main particulars", ""]
+    for f in PARTICULARS:
+        source = notes[f.name]["source"]
+        mark = "" if source == "given" else f"estimated: {reg.SOURCES.get(source, source).split(':')[0]}"
+        lines.append(
+            f"  {f.name:5} {getattr(ship, f.name):>12.5g} {f.metadata['unit']:6} "
+            f"{f.metadata['doc']:38} {mark}".rstrip()
+        )
+    others = [f"--{option} {given[option]:g}" for option in INSIDE if given[option] is not None]
+    lines += ["", f"  also given, and in its derivatives: {', '.join(others)}"] if others else []
+    bridge = "as given" if given["shaft-speed-rpm"] else "compare it with the bridge's"
+    unstable = "does not go straight by itself" + ", as many full ships" * (ship.C_b >= FULL)
+    stable = "goes straight by itself" if figures["straight_line_stability"] > 0 else unstable
+    over = figures["overshoot_20_20_deg"]
+    lines += [
+        "",
+        "  sea trial of this model (estimates; how it turns is only roughly right until it is calibrated)",
+        f"    {_driven(ship, figures, bridge)}",
+        f"    turning circle 35 deg: advance {figures['advance_L']:.1f} L, tactical diameter "
+        f"{figures['tactical_diameter_L']:.1f} L,"
+        f" {100 * figures['speed_left']:.0f} % of the speed left",
+        f"    zigzag 20/20: first overshoot {'none' if over is None else f'{over:.0f} deg'};  {stable}",
+    ]
+    return "\n".join(lines + ([""] + [f"  careful: {w}" for w in warnings] if warnings else []))
