@@ -65,7 +65,7 @@ ORDER = (
 )
 ONLY_IN_EXPORT = {"torch"}
 NOT_ON_BOARD = {
-    "torch", "scipy", "matplotlib", "pydantic", "pandas", "filterpy", "sympy", "numpy", "twin.study", "twin.recording",
+    "torch", "scipy", "matplotlib", "pydantic", "pandas", "filterpy", "sympy", "numpy", "tomlkit", "twin.study", "twin.recording",
 }  # fmt: skip
 
 

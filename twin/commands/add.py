@@ -9,8 +9,9 @@ from twin.api.update import of_sailed
 from twin.commands.answer import asked, lines_to, progress
 from twin.errors import ThresholdError, UsageError
 from twin.physics.effects import find
-from twin.physics.ship import load, save
+from twin.physics.ship import load
 from twin.recording.import_voyage import write_json
+from twin.recording.ship_file import save
 from twin.study.reference.sailed import read_all
 
 EPILOG = """example:
@@ -64,7 +65,7 @@ def run(args: argparse.Namespace) -> int:
     page = lines_to(args) if made.accepted else sys.stderr
     print("\n".join(found.text()), file=page)
     if made.accepted:
-        save(made.ship, args.output)
+        save(made.ship, args.output, args.ship)
         print(f"\nwrote {args.output}", file=page)
     if args.json:
         write_json(found.to_dict(), args.json)

@@ -6,8 +6,9 @@ import argparse
 from twin import whole
 from twin.api.calibration import of_sailed
 from twin.commands.answer import lines_to, progress
-from twin.physics.ship import load, save
+from twin.physics.ship import load
 from twin.recording.import_voyage import write_json
+from twin.recording.ship_file import save
 from twin.study.reference.sailed import read_all
 
 EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weather or with the wind recorded:
@@ -48,7 +49,7 @@ def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
     every = read_all(args.voyages, ship)
     found = of_sailed(ship, every, read_all(args.held_out, ship), progress)
-    save(found.ship, args.output)
+    save(found.ship, args.output, args.ship)
     if args.json:
         write_json(found.to_dict() | {"output": str(args.output)}, args.json)
     compare = f"twin compare VOYAGE.mcap --ship {args.output} --report compare.html"

@@ -7,11 +7,13 @@ from pathlib import Path
 
 from twin import whole
 from twin.api.instruments import FRAMES, instruments
+from twin.commands.answer import progress
 from twin.errors import SettingsError
-from twin.physics.ship import Ship, load, save
+from twin.physics.ship import Ship, load
 from twin.recording.import_voyage import write_json
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
+from twin.recording.ship_file import save
 from twin.study.instruments.corrections import as_map, corrected
 from twin.study.instruments.estimate import Instruments
 from twin.study.instruments.told import amount, told
@@ -38,12 +40,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     ship, by = load(args.ship) if args.ship else None, read_map(Path(args.map)) if args.map else None
     voyages = [read_voyage(path, by, controls=False) for path in args.voyages]
-    said = lambda text: print(f"{text} ...", file=sys.stderr)  # noqa: E731
-    done = instruments(ship, voyages, velocity_by=args.velocity_by, progress=said)
+    done = instruments(ship, voyages, velocity_by=args.velocity_by, progress=progress)
     page, paths = sys.stderr if args.json == "-" else sys.stdout, " ".join(args.voyages)
     print("\n".join(told(done.found)), file=page)
     if args.output:
-        _write(args.output, ship, done.found)
+        _write(args, ship, done.found)
         print(f"\nwrote {args.output}", file=page)
     asked = f"twin instruments {paths}{f' --ship {args.ship}' if ship else ''}"
     if args.json:
@@ -55,14 +56,15 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _write(path: str, ship: Ship | None, found: Instruments) -> None:
+def _write(args: argparse.Namespace, ship: Ship | None, found: Instruments) -> None:
+    path = args.output
     if ship is None:
         whole.write(path, as_map(found))
         return
     if not found.faults:
         raise SettingsError(f"-o {path}: no fault of an instrument was seen: nothing to write. Leave out -o.")
     mended, left = corrected(ship, found)
-    save(mended, path)
+    save(mended, path, args.ship)
     for e in left:
         size = amount(e.value, e.unknown.unit)
         print(f"not written, as no effect holds it: {e.unknown.meaning} ({size})", file=sys.stderr)

@@ -4,8 +4,9 @@ import argparse
 import sys
 
 from twin import whole
-from twin.physics.ship import load, save
+from twin.physics.ship import load
 from twin.recording.import_voyage import write_json
+from twin.recording.ship_file import save
 from twin.study.update.remove import SCHEMA_VERSION, remove
 
 
@@ -22,7 +23,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     whole.not_over(args.output, [args.ship], args.force)
     ship = remove(load(args.ship), args.effects)
-    save(ship, args.output)
+    save(ship, args.output, args.ship)
     left = [type(e).__name__ for e in ship.effects]
     if args.json:
         answer = {

@@ -1,9 +1,10 @@
 """A ship as text: the TOML that a person can read, with its sources, and that `load` reads back the same."""
 
 import json
+import math
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -80,13 +81,24 @@ def text(table: Mapping[str, Any]) -> str:
     for section, entries in (sections | {_key(k): v for k, v in tables.items()}).items():
         lines += ["", f"[{section}]"]
         for name, entry in entries.items():
-            doc = docs.get(f"{section}.{name}")
-            lines.append(f"{_key(name)} = {_inline(entry)}" + (f"  # {doc}" if doc else ""))
+            words = [w for w in (docs.get(f"{section}.{name}"), in_degrees(entry)) if w]
+            lines.append(f"{_key(name)} = {_inline(entry)}" + (f"  # {'; '.join(words)}" if words else ""))
     lists = ({"actuators": table["actuators"]} if table.get("actuators") else {}) | lists
     for name, items in lists.items():
         for item in items:
-            lines += ["", f"[[{_key(name)}]]", *(f"{_key(k)} = {_inline(v)}" for k, v in item.items())]
+            lines += ["", f"[[{_key(name)}]]"]
+            for k, v in item.items():
+                degrees = in_degrees(v)
+                lines.append(f"{_key(k)} = {_inline(v)}" + (f"  # {degrees}" if degrees else ""))
     return "\n".join(lines) + "\n"
+
+
+def in_degrees(entry: Any) -> str:
+    """What a person reads beside an angle in radians (or a rate in rad/s): the same in degrees; else ""."""
+    unit = entry.get("unit") if isinstance(entry, Mapping) else None
+    if unit not in ("rad", "rad/s") or not isinstance(entry.get("value"), (int, float)):
+        return ""
+    return f"{math.degrees(entry['value']):.4g} {unit.replace('rad', 'deg')}"
 
 
 def _key(name: str) -> str:
@@ -109,14 +121,14 @@ def _inline(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else repr(value)
 
 
-def save(ship: Ship, path: str | os.PathLike[str]) -> None:
+def save(ship: Ship, path: str | os.PathLike[str], said: Callable[[Mapping[str, Any]], str] = text) -> None:
     """Write the ship file aside and rename it into place, so that no half file is ever seen; its long arrays
-    go to a file beside it (`ship_arrays`), which is written first."""
+    go to a file beside it (`ship_arrays`), which is written first. `said`: how the rest is told."""
     place, (table, long) = Path(path), ship_arrays.divided(to_table(ship), SECTIONS)
     before = place.read_text(errors="replace") if place.is_file() else ""
     if long:
         table[ship_arrays.SECTION] = ship_arrays.write(place, long)
-    now = text(table)
+    now = said(table)
     whole.write(place, now)
     if not long or table[ship_arrays.SECTION]["file"] not in before:
         ship_arrays.forget(place, before)

@@ -11,10 +11,11 @@ from twin.api import calibration, comparison
 from twin.errors import DataError, SettingsError
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.physics.ship import load, save
+from twin.physics.ship import load
 from twin.recording.import_voyage import import_voyage, refusal
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
+from twin.recording.ship_file import save
 from twin.recording.write import write_voyage
 from twin.report.page import content, html
 from twin.studio.causes import MOST, cause_view
@@ -92,7 +93,7 @@ def calibrate(asked: Asked, job: Path, tell: Tell) -> None:
     every = _read([*asked["voyages"], *asked.get("held_outs", [])], asked["ship"], tell)
     used = len(asked["voyages"])
     done = calibration.of_sailed(ship, every[:used], every[used:], tell)
-    save(done.ship, asked["output"])
+    save(done.ship, asked["output"], asked["ship"])
     write_result(job, "result.json", done.to_dict() | {"output": asked["output"]})
     write_result(job, "view.json", {"difference": difference(asked["ship"], asked["output"])})
 
@@ -117,7 +118,7 @@ def add(asked: Asked, job: Path, tell: Tell) -> str | None:
         "output": asked["output"] if accepted else None,
     }
     if accepted:
-        save(made.ship, asked["output"])
+        save(made.ship, asked["output"], asked["ship"])
     write_result(job, "result.json", result)
     tell("drawing")
     told = result | {"history": made.ship.notes["history"]}
