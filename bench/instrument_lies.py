@@ -21,6 +21,7 @@ import numpy as np
 from bench.reference import Case, Recording, Weather, simulate
 from twin import whole
 from twin.live.gates.crosscheck import CrossChecks
+from twin.live.gates.lacking import CorrectedTick
 from twin.live.gates.plausible import Plausibility
 from twin.live.gates.sensors import Sensors
 from twin.live.observer.dynamics import NONE, Dynamics
@@ -145,7 +146,7 @@ class Watch:
         ]
         measured = self.sensors.read(said, now_s, WALL + now_s, e)
         s, physics, forces = self.dynamics.known(self.observer.correct(measured), measured)
-        self.checks.feed(measured, self.observer, s, physics, forces, dt)
+        self.checks.feed(CorrectedTick(measured, self.observer, s, physics, forces, dt))
         self.plausible.feed(measured, dt)
         self.observer.steer(self.dynamics.ahead(s, forces, NONE, dt))
         self.now_s += dt

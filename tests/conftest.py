@@ -19,7 +19,7 @@ BY_THE_CLOCK = (
     "live/test_realtime.py", "live/log/test_record.py", "live/log/test_record_faults.py",
     "live/log/test_recover.py", "live/test_run.py", "live/test_overload.py",
     "live/keelson/test_bus_hostile.py", "live/log/test_power_cut.py", "live/test_secrets.py",
-    "live/test_fault.py", "live/log/test_quota.py", "test_house.py", "test_readme.py",
+    "live/keelson/test_sockets.py", "live/test_fault.py", "live/log/test_quota.py", "test_house.py", "test_readme.py",
 )  # fmt: skip
 # sailed once for these rooms: half a minute
 SAME_VOYAGES = (
@@ -68,3 +68,15 @@ def pytest_xdist_make_scheduler(config, log):
 
     config.option.loadscopereorder = False  # which would begin with the files that have the most tests
     return Scheduling(config, log)
+
+
+@pytest.fixture(scope="session")
+def tab(tmp_path_factory):
+    """A tab of a real Chromium (tests/chromium.py); whoever takes it opens its own page and sets the size."""
+    from tests.chromium import CHROMIUM, Browser
+
+    if CHROMIUM is None:
+        pytest.skip("no Chromium here")
+    tab = Browser(tmp_path_factory.mktemp("chromium"))
+    yield tab
+    tab.close()

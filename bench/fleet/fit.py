@@ -1,15 +1,13 @@
 """The decision fitted, with each family of ships held out in turn: `python -m bench.fleet fit FOLDER`.
 
-Two forms are asked. The table of rules as it is (twin/study/diagnosis/decision.py) with its thresholds
-moved, one
-at a time, as long as the ships of the other families gain by it. And a logistic model that is monotone in a
-few
-facts, which says of each cause of the explanation how likely it is there, in the place of the rules that
-name."""
+Two forms are asked. The table of rules as it is (twin/study/diagnosis/decision.py) with its thresholds moved,
+one at a time, as long as the ships of the other families gain by it. And a logistic model that is monotone in
+a few facts, which says of each cause of the explanation how likely it is there, in the place of the rules
+that name."""
 
 import argparse
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
@@ -40,8 +38,8 @@ BEFORE = {
     "SIGNIFICANT": 3.0,
     "USUAL": 2.0,
 }  # before the fleet was asked; the others stand as they did
-ALARMS = 0.04  # share of healthy voyages that may be accused, at the working point
-COST = 5.0  # of a healthy voyage accused beyond that, in hidden causes that are named
+ALARMS = 0.04  # share of healthy voyages on which an alarm may be raised, at the working point
+COST = 5.0  # of a false alarm beyond that, in hidden causes that are named
 WRONG = 0.5  # of a wrong name
 RIDGE = 1.0
 BINS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 1.0)
@@ -53,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 @contextmanager
-def thresholds(values: Mapping[str, float]):  # type: ignore[no-untyped-def]
+def thresholds(values: Mapping[str, float]) -> Iterator[None]:
     """The table with these thresholds."""
     before = {k: getattr(decision, k) for k in values}
     try:
@@ -80,8 +78,11 @@ def worth(rows: Sequence[Row], decide: Decide) -> float:
     right = [judged.right(r, m, v) for r, m, v in said if r["kind"] != "nothing" and asked(r)]
     wrong = [bool(judged.causes(m) - set(r["hidden"])) for r, m, _ in said if r["kind"] != "nothing"]
     alarm = [bool(judged.causes(m)) or v == "unknown" for r, m, v in said if r["kind"] == "nothing"]
-    mean = lambda x: float(np.mean(x)) if x else 0.0  # noqa: E731
-    return mean(right) - WRONG * mean(wrong) - COST * max(0.0, mean(alarm) - ALARMS)
+    return _mean(right) - WRONG * _mean(wrong) - COST * max(0.0, _mean(alarm) - ALARMS)
+
+
+def _mean(some: Sequence[bool]) -> float:
+    return float(np.mean(some)) if some else 0.0
 
 
 def asked(row: Row) -> bool:
@@ -176,7 +177,12 @@ def working_point(rows: Sequence[Row], w: np.ndarray) -> float:
 def outcome(rows: Sequence[Row], decide: Decide) -> dict[str, tuple[int, int]]:
     """Counts of the figures under a decision."""
     said = [(r, *decide(r)) for r in rows]
-    of = lambda which, what: _pair(share([what(r, m, v) for r, m, v in said if which(r)]))  # noqa: E731
+
+    def of(
+        which: Callable[[Row], bool], what: Callable[[Row, tuple[str, ...], str], bool]
+    ) -> tuple[int, int]:
+        return _pair(share([what(r, m, v) for r, m, v in said if which(r)]))
+
     return {
         "single, gains": of(lambda r: r["kind"] == "single" and judged.gains(r), judged.right),
         "single, all": of(lambda r: r["kind"] == "single", judged.right),

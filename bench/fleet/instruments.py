@@ -95,9 +95,16 @@ def record(
     dt = float(true["t"][1] - true["t"][0])
     every = max(1, round(k.every_s / dt))
     t = true["t"][::every]
-    noise = lambda sd: sd * rng.standard_normal(t.size)  # noqa: E731
-    at = lambda name, late: np.interp(t - late, true["t"], true[name])  # noqa: E731
-    step = lambda v, s: np.round(v / s) * s if k.coarse else v  # noqa: E731
+
+    def noise(sd: float) -> np.ndarray:
+        return sd * rng.standard_normal(t.size)
+
+    def at(name: str, late: float) -> np.ndarray:
+        return np.interp(t - late, true["t"], true[name])
+
+    def step(values: np.ndarray, size: float) -> np.ndarray:
+        return np.round(values / size) * size if k.coarse else values
+
     late = k.gnss_late + f.late_s
     psi, heel = at("psi", late), at("heel", late)
     ax, ay = k.arm[0] + f.antenna[0], k.arm[1] + f.antenna[1]

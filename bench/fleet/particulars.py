@@ -94,7 +94,10 @@ def draw(rng: np.random.Generator, kind: str) -> Particulars:
 def linear(p: Particulars, rng: np.random.Generator) -> LinearHull:
     """Derivatives by regression, each with its published scatter."""
     k, m, block = 2 * p.T / p.L, 2 * p.C_b * p.B / p.L, p.C_b * p.B / p.L
-    near = lambda sd=0.12: float(np.exp(sd * rng.standard_normal()))  # noqa: E731
+
+    def near() -> float:
+        return float(np.exp(0.12 * rng.standard_normal()))
+
     m_x = m * rng.uniform(0.04, 0.09)
     m_y = m * rng.uniform(0.65, 0.95)
     return LinearHull(

@@ -29,6 +29,9 @@ def waving(p: Particulars, a: LinearHull, rng: Draw) -> Callable[[float], float]
 def hump(p: Particulars, a: LinearHull, rng: Draw) -> Callable[[float], float]:
     """A hump at a Froude number near 0.45 over the friction."""
     high, at, wide = rng.uniform(0.2, 0.7), rng.uniform(0.36, 0.5), rng.uniform(0.08, 0.14)
-    raw = lambda u: u * u * (1 + high * exp(-(((u / (G * p.L) ** 0.5 - at) / wide) ** 2)))  # noqa: E731
+
+    def raw(u: float) -> float:
+        return u * u * (1 + high * exp(-(((u / (G * p.L) ** 0.5 - at) / wide) ** 2)))
+
     q = 0.5 * RHO * p.L * p.T * p.U0**2 * a.R_0 / raw(p.U0)
     return lambda u: q * raw(abs(u)) * (1.0 if u > 0 else -1.2)

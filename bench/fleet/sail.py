@@ -7,14 +7,15 @@
 (Yasukawa & Yoshimura 2015, eq. 4) for the motion through water; second-order Adams-Bashforth."""
 
 from collections import deque
+from collections.abc import Sequence
 from math import cos, exp, hypot, pi, sin
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from bench.fleet.hidden import Flaws
 from bench.fleet.manoeuvres import FleetLeg, Helmsman
-from bench.fleet.particulars import RHO
+from bench.fleet.particulars import RHO, Particulars
 from bench.fleet.weather import FleetWeather, Surroundings
 
 if TYPE_CHECKING:
@@ -123,7 +124,7 @@ def sail(
         if around.waves:
             a = around.sea(t, x, y, psi, mass)
             X, Y, N = X + a[0], Y + a[1], N + a[2]
-        X, Y, N = flawed(f, p, X, Y, N, u, v, r, c, s, t, speed, weather, strips)
+        X, Y, N = flawed(f, p, (X, Y, N), Moving(t, u, v, r, speed, c, s), weather.bank, strips)
         side_pull = (m_y + mass) * u * r
         heel_rate += dt * (
             -(w_roll**2) * heel
@@ -178,25 +179,46 @@ def shallow(share: float) -> float:
     return 1.0 + 0.9 * share**2 / (1.05 - share) ** 0.7 if share else 1.0
 
 
-def flawed(f: Flaws, p, X, Y, N, u, v, r, c, s, t, speed, weather, strips):  # type: ignore[no-untyped-def]
-    """Forces with those of what is hidden."""
+class Moving(NamedTuple):
+    """How the ship moves at one moment."""
+
+    t: float  # [s]
+    u: float  # through water [m/s]
+    v: float
+    r: float  # [rad/s]
+    speed: float  # through water [m/s]
+    c: float  # cosine and sine of the heading
+    s: float
+
+
+def flawed(
+    f: Flaws,
+    p: Particulars,
+    force: tuple[float, float, float],
+    m: Moving,
+    bank_m: float,
+    strips: Sequence[tuple[float, float]],
+) -> tuple[float, float, float]:
+    """X [N], Y [N], N [N m] with the forces of what is hidden; `bank_m`: to starboard, 0 for none; `strips`:
+    where along the ship, and the drag there."""
+    X, Y, N = force
     if f.fouling:
-        X -= f.fouling * (abs(u) / p.U0) ** f.fouling_power
+        X -= f.fouling * (abs(m.u) / p.U0) ** f.fouling_power
     for x, k in strips:
-        w = v + x * r
+        w = m.v + x * m.r
         q = 0.5 * RHO * p.L * p.T * k * abs(w) * w
         Y, N = Y - q, N - x * q
     if f.tow[0]:
-        k = 1 + 0.3 * sin(2 * pi * t / f.tow_s)
+        k = 1 + 0.3 * sin(2 * pi * m.t / f.tow_s)
         X, Y, N = X + k * f.tow[0], Y + k * f.tow[1], N + k * f.tow[2]
     if f.pull[0]:
-        k = 1 + 0.15 * sin(2 * pi * t / (4 * p.unit_s))
-        X, Y = X + k * (f.pull[0] * c + f.pull[1] * s), Y + k * (f.pull[1] * c - f.pull[0] * s)
-    if f.bank and weather.bank:
-        q = 0.5 * RHO * p.L * p.T * speed * speed * f.bank * p.B / abs(weather.bank)
-        to = 1.0 if weather.bank > 0 else -1.0
+        k = 1 + 0.15 * sin(2 * pi * m.t / (4 * p.unit_s))
+        X, Y = X + k * (f.pull[0] * m.c + f.pull[1] * m.s), Y + k * (f.pull[1] * m.c - f.pull[0] * m.s)
+    if f.bank and bank_m:
+        q = 0.5 * RHO * p.L * p.T * m.speed * m.speed * f.bank * p.B / abs(bank_m)
+        to = 1.0 if bank_m > 0 else -1.0
         Y, N = Y + to * q, N - to * 0.3 * p.L * q
-    if f.ice and sin(2 * pi * t / f.ice_s) + 0.5 * sin(5.3 * t / f.ice_s) > 0.6:
+    if f.ice and sin(2 * pi * m.t / f.ice_s) + 0.5 * sin(5.3 * m.t / f.ice_s) > 0.6:
         X -= f.ice
     if f.passing[0]:
         k = (
@@ -205,17 +227,17 @@ def flawed(f: Flaws, p, X, Y, N, u, v, r, c, s, t, speed, weather, strips):  # t
             * p.L
             * p.T
             * p.U0**2
-            * exp(-((((t % f.passing_s) - 0.5 * f.passing_s) / (1.2 * p.unit_s)) ** 2))
+            * exp(-((((m.t % f.passing_s) - 0.5 * f.passing_s) / (1.2 * p.unit_s)) ** 2))
         )
         Y, N = Y + k * f.passing[0], N + k * p.L * f.passing[1]
     if f.thruster:
-        q = f.thruster * exp(-((u / (0.6 * p.U0)) ** 2))
+        q = f.thruster * exp(-((m.u / (0.6 * p.U0)) ** 2))
         Y, N = Y + q, N + 0.42 * p.L * q
     if f.yaw_damping:
-        N -= f.yaw_damping * r * abs(u) / p.U0
+        N -= f.yaw_damping * m.r * abs(m.u) / p.U0
     if f.sway_damping:
-        Y -= f.sway_damping * v
+        Y -= f.sway_damping * m.v
     if f.flap:
-        q = f.flap * u * u
+        q = f.flap * m.u * m.u
         Y, N = Y + q, N + 0.1 * p.L * q
     return X, Y, N

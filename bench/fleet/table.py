@@ -235,10 +235,9 @@ def _conformal(rows: Sequence[Row]) -> list[str]:
     for calm in (False, True):
         own = [r for r in known if practice(r["family"], r["seed"])[1] == calm]
         healthy = [r for r in own if r["kind"] == "nothing"]
-        at = lambda some: share([r["p_value"] <= r["p_value_at_best"] for r in some])  # noqa: E731
         may = f"{np.mean([r['p_value_at_best'] for r in healthy]):.0%}" if healthy else "-"
-        others = at([r for r in own if r["kind"] != "nothing"])
-        body.append(("calm days chosen" if calm else "days as they come", may, at(healthy), others))
+        others = _at_least([r for r in own if r["kind"] != "nothing"])
+        body.append(("calm days chosen" if calm else "days as they come", may, _at_least(healthy), others))
     text = (
         "Voyages whose p is the least that the ship's two to six references can show. `May be`: how often on "
         "healthy ones, where references and voyage could have come in any order. Days that were chosen for "
@@ -246,6 +245,11 @@ def _conformal(rows: Sequence[Row]) -> list[str]:
     )
     head = ("reference voyages", "may be", "healthy voyages", "voyages with something hidden")
     return lines("Conformal p-value", text, head, body) if known else []
+
+
+def _at_least(rows: Sequence[Row]) -> Share:
+    """How often p is the least that the references can show."""
+    return share([r["p_value"] <= r["p_value_at_best"] for r in rows])
 
 
 def _cost(rows: Sequence[Row]) -> list[str]:

@@ -2,11 +2,11 @@
 
 import json
 import re
-import shutil
 import subprocess
 
 import pytest
 
+from tests.chromium import CHROMIUM
 from twin import report
 from twin.errors import TwinError
 from twin.physics.effects import find
@@ -14,7 +14,7 @@ from twin.physics.model import Model
 from twin.report.page import content
 from twin.study.prediction.compare import compare
 
-BROWSER = next((b for b in map(shutil.which, ("chromium", "chromium-browser", "google-chrome")) if b), None)
+BROWSER = CHROMIUM
 FLAGS = (
     "--headless --no-sandbox --disable-gpu --no-first-run --disable-background-networking "
     "--enable-logging=stderr"

@@ -1,19 +1,13 @@
 """A project with the bundled tanker and its two voyages, a server of it, and a real Chromium."""
 
-import importlib.util
 import re
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from twin.recording.read import read_voyage
 from twin.studio.project import Project
-
-spec = importlib.util.spec_from_file_location("browser", Path(__file__).parents[1] / "live/bridge/browser.py")
-browser = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(browser)
 
 
 class Served:
@@ -50,15 +44,6 @@ def served(project):
 
 
 @pytest.fixture(scope="session")
-def tab(tmp_path_factory):
-    if browser.CHROMIUM is None:
-        pytest.skip("no Chromium here")
-    tab = browser.Browser(tmp_path_factory.mktemp("chromium"))
-    yield tab
-    tab.close()
-
-
-@pytest.fixture(scope="session")
 def serve():
     return Served
 
@@ -67,7 +52,14 @@ def serve():
 def spoiled(project):
     """An owner's table in the project: Tuesday's voyage with the rudder positive to port."""
     v = read_voyage(project.folder / "tuesday.mcap")
-    names = ["north_m", "east_m", "heading_true_north_deg", "surge_velocity_mps", "sway_velocity_mps", "yaw_rate_degps"]
+    names = [
+        "north_m",
+        "east_m",
+        "heading_true_north_deg",
+        "surge_velocity_mps",
+        "sway_velocity_mps",
+        "yaw_rate_degps",
+    ]
     columns = {n: v[n] for n in names} | {"rudder_angle_deg": -v["rudder_angle_deg"]}
     columns |= {"propeller_rate_rpm": v["propeller_rate_rpm"]}
     rows = zip(v.time_s, *columns.values(), strict=True)

@@ -7,33 +7,9 @@ import time
 
 import pytest
 
+from tests.chromium import FAINT
 from twin.studio.jobs import Jobs
 
-# the contrast of every text with the nearest background behind it; smaller than wanted: the text
-FAINT = """(() => {
-  const parts = (c) => c.match(/[\\d.]+/g).map(Number);
-  const light = ([r, g, b]) => {
-    const f = (x) => (x /= 255) <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
-    return 0.2126 * f(r) + 0.7152 * f(g) + 0.0722 * f(b);
-  };
-  const behind = (e) => {
-    for (; e; e = e.parentElement) {
-      const c = parts(getComputedStyle(e).backgroundColor);
-      if (c.length < 4 || c[3] > 0) return c;
-    }
-    return [255, 255, 255];
-  };
-  const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), faint = [];
-  while (walk.nextNode()) {
-    const e = walk.currentNode.parentElement, text = walk.currentNode.textContent.trim();
-    if (!text || !e.checkVisibility() || e.closest("noscript, option")) continue;
-    const style = getComputedStyle(e), inSvg = e instanceof SVGElement;
-    const [a, b] = [light(parts(inSvg ? style.fill : style.color)), light(behind(e))];
-    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
-    if (ratio < 4.5) faint.push(`${text.slice(0, 40)} ${ratio.toFixed(2)}`);
-  }
-  return faint;
-})()"""
 NAMELESS = """[...document.querySelectorAll("button, a, input, select, textarea, section, [role=img], [role=group], iframe, article")]
   .filter((e) => e.checkVisibility() && !(e.getAttribute("aria-label") || e.getAttribute("title")
     || e.labels?.[0]?.textContent.trim() || (!e.matches("section, [role=img], [role=group]") && e.textContent.trim())))
@@ -109,7 +85,11 @@ def test_each_part_is_read_in_every_light_and_on_every_width(page, part):
         if width == 360:
             narrow = "[...document.querySelectorAll('.uplot')].filter((e) => e.checkVisibility() && e.clientWidth < 270).length"
             assert page.value(narrow) == 0, where
-        if PICTURES and part in SEEN_HEIGHT and (width, theme) in ((1400, "light"), (1400, "dark"), (360, "night")):
+        if (
+            PICTURES
+            and part in SEEN_HEIGHT
+            and (width, theme) in ((1400, "light"), (1400, "dark"), (360, "night"))
+        ):
             page.size(width, SEEN_HEIGHT[part] if width > 400 else 800)
             time.sleep(0.6)
             keep(page, os.path.join(PICTURES, f"studio-{part}-{theme}-{width}.png"))
@@ -123,15 +103,23 @@ def test_the_keyboard_leaves_every_place_that_it_enters(page):
     seen = []
     for _ in range(140):
         page.press("Tab", 9)
-        seen.append(page.value("document.activeElement.getAttribute('aria-label') || document.activeElement.textContent.trim()"))
-    assert any(s.endswith("of monday, show it") for s in seen) and "Show less time" in seen and "Compare" in seen
+        seen.append(
+            page.value(
+                "document.activeElement.getAttribute('aria-label') || document.activeElement.textContent.trim()"
+            )
+        )
+    assert (
+        any(s.endswith("of monday, show it") for s in seen) and "Show less time" in seen and "Compare" in seen
+    )
     assert len(set(seen)) > 60
 
 
 def test_the_printed_page_has_no_buttons(page):
     show(page, PAGES["compare"])
     page.ask("Emulation.setEmulatedMedia", media="print")
-    shown = page.value("[...document.querySelectorAll('nav, form, .tools')].filter((e) => e.checkVisibility()).length")
+    shown = page.value(
+        "[...document.querySelectorAll('nav, form, .tools')].filter((e) => e.checkVisibility()).length"
+    )
     page.ask("Emulation.setEmulatedMedia", media="screen")
     assert shown == 0
 

@@ -10,6 +10,7 @@ from typing import Any, Protocol
 from twin.live.clock import Instant
 from twin.live.gates.crosscheck import CrossChecks
 from twin.live.gates.faults import KnownFaults
+from twin.live.gates.lacking import CorrectedTick
 from twin.live.gates.sensors import Sensors
 from twin.live.guard import CONTROLS, INVALID, NO_HEADING, Guard
 from twin.live.keelson.decode import Result
@@ -85,7 +86,7 @@ class Loop:
             self.faults.undo(measured, self.observer.estimate, self.observer.rates)
         )
         situation, physics, forces = self.dynamics.known(estimate, measured)
-        self.checks.feed(measured, self.observer, situation, physics, forces, dt)
+        self.checks.feed(CorrectedTick(measured, self.observer, situation, physics, forces, dt))
         verdict = self.guard.judge(measured, estimate, self.sensors.reasons(), dt, self._doubts())
         learned = self.learned.at(situation, forces, verdict.use_learned)
         self.guard.note(learned, dt, self.stabilizer.broken)

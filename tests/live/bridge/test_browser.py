@@ -1,53 +1,18 @@
 """The page in a real Chromium: what is seen, by keyboard and screen reader, small and large, day and night."""
 
-import importlib.util
 import threading
 import time
-from pathlib import Path
 
 import pytest
 
-spec = importlib.util.spec_from_file_location("browser", Path(__file__).with_name("browser.py"))
-browser = importlib.util.module_from_spec(spec)
-spec.loader.exec_module(browser)
-pytestmark = pytest.mark.skipif(browser.CHROMIUM is None, reason="no Chromium here")
+from tests.chromium import CHROMIUM, FAINT
 
-# the contrast of every text with the nearest background behind it; smaller than wanted: the text
-FAINT = """(() => {
-  const parts = (c) => c.match(/[\\d.]+/g).map(Number);
-  const light = ([r, g, b]) => {
-    const f = (x) => (x /= 255) <= 0.04045 ? x / 12.92 : ((x + 0.055) / 1.055) ** 2.4;
-    return 0.2126 * f(r) + 0.7152 * f(g) + 0.0722 * f(b);
-  };
-  const behind = (e) => {
-    for (; e; e = e.parentElement) {
-      const c = parts(getComputedStyle(e).backgroundColor);
-      if (c.length < 4 || c[3] > 0) return c;
-    }
-    return [255, 255, 255];
-  };
-  const walk = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT), faint = [];
-  while (walk.nextNode()) {
-    const e = walk.currentNode.parentElement, text = walk.currentNode.textContent.trim();
-    if (!text || !e.checkVisibility() || e.closest("noscript")) continue;
-    const style = getComputedStyle(e), inSvg = e instanceof SVGElement;
-    const [a, b] = [light(parts(inSvg ? style.fill : style.color)), light(behind(e))];
-    const ratio = (Math.max(a, b) + 0.05) / (Math.min(a, b) + 0.05);
-    if (ratio < 4.5) faint.push(`${text.slice(0, 40)} ${ratio.toFixed(2)}`);
-  }
-  return faint;
-})()"""
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")
+
 NAMELESS = """[...document.querySelectorAll("button, table, section, svg[role=img], [role=group]")]
   .filter((e) => e.checkVisibility() && !(e.getAttribute("aria-label") || e.textContent.trim()
     || document.getElementById(e.getAttribute("aria-labelledby"))?.textContent)).map((e) => e.outerHTML.slice(0, 80))"""
 THEMES = ("light", "dark", "night")
-
-
-@pytest.fixture(scope="module")
-def tab(tmp_path_factory):
-    tab = browser.Browser(tmp_path_factory.mktemp("chromium"))
-    yield tab
-    tab.close()
 
 
 class Sea:

@@ -14,13 +14,10 @@ from collections.abc import Iterator
 from math import cos, hypot, sin
 
 from twin.live.gates.cusum import Cusum
-from twin.live.gates.lacking import FAST, SLOW, Lacking
-from twin.live.observer.dynamics import Forces, KnownDynamics
-from twin.live.observer.estimate import Observer
+from twin.live.gates.lacking import FAST, SLOW, CorrectedTick, Lacking
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
-from twin.physics.state import Situation
 
 POSITIONS = "positions against speed over ground and heading: they walk apart"
 CURRENT = "speed over ground against speed through water: they part faster than a current changes"
@@ -46,16 +43,9 @@ class CrossChecks:
         """What is known to be wrong with what the physics is asked about; "" when nothing is."""
         return self.reasons[0] if self.reasons else ""
 
-    def feed(
-        self,
-        measured: Measured,
-        observer: Observer,
-        s: Situation,
-        physics: KnownDynamics,
-        forces: Forces,
-        dt: float,
-    ) -> None:
-        """One tick: what is measured, the corrected estimate, and the known forces in it."""
+    def feed(self, now: CorrectedTick) -> None:
+        """One tick."""
+        measured, dt = now.measured, now.dt
         if not 0.0 < dt <= GAP_S:
             for check in (self._way, self._stream, self._heading, *self._lacking):
                 check.pause()
@@ -64,7 +54,7 @@ class CrossChecks:
         self._stream.feed(measured, dt)
         self._heading.feed(measured, dt)
         for lacking in self._lacking:
-            lacking.feed(measured, observer, s, physics, forces, dt)
+            lacking.feed(now)
         self.reasons = list(self._said())
 
     def _said(self) -> Iterator[str]:

@@ -8,6 +8,7 @@ beyond counts. Of the rudder only while its feedback stands: one that moves is n
 """
 
 from math import inf, radians
+from typing import NamedTuple
 
 from twin.live.gates.cusum import Cusum
 from twin.live.gates.helm import HULL, RUDDER, Helm
@@ -28,6 +29,18 @@ OF_FORCES = 0.35
 USUAL_BLOCKS = 8.0  # over which the moment that is lacking is taken to be usual, while the rudder moves
 # blocks in L/U_0, and their least length [s]: for calm water, and to see through waves
 FAST, SLOW = (1.0 / 16.0, 0.5), (0.25, 4.0)
+
+
+class CorrectedTick(NamedTuple):
+    """One tick as the checks see it: what is measured, the estimate corrected by it, and the known forces in
+    it."""
+
+    measured: Measured
+    observer: Observer
+    s: Situation
+    physics: KnownDynamics
+    forces: Forces
+    dt: float  # [s] since the last one
 
 
 class Lacking:
@@ -54,16 +67,9 @@ class Lacking:
     def pause(self) -> None:
         self._start = None
 
-    def feed(
-        self,
-        measured: Measured,
-        observer: Observer,
-        s: Situation,
-        physics: KnownDynamics,
-        forces: Forces,
-        dt: float,
-    ) -> None:
-        """One tick; `observer.rates` are those that carried the estimate to now."""
+    def feed(self, now: CorrectedTick) -> None:
+        """One tick; the observer's `rates` are those that carried the estimate to now."""
+        measured, observer, s, physics, forces, dt = now
         e = observer.estimate
         if (
             not e.ready
