@@ -36,6 +36,15 @@ def test_what_a_page_links_to_is_there(page):
     assert not [link for link in links if not (page.parent / link).exists()]
 
 
+@pytest.mark.parametrize(
+    "page", [p for p in PAGES if "results" not in p.parts], ids=lambda p: str(p.relative_to(ROOT / "docs"))
+)
+def test_a_source_file_that_a_page_names_is_there(page):
+    """Expected: every path of the repository; results stand as they were when they were measured."""
+    named = re.findall(r"(?<![\w/.])(?:twin|bench|export|deploy|tests)/[\w/]+\.py\b", page.read_text())
+    assert not [name for name in named if not (ROOT / name).exists()]
+
+
 def test_the_index_leads_to_every_page():
     docs = ROOT / "docs"
     here = {page.relative_to(docs).as_posix(): page for page in PAGES if page.name != "index.md"}
