@@ -59,7 +59,7 @@ def diagnose(
     """Judge all candidates jointly on these voyages."""
     case = assemble(voyages, ship, references, progress)
     weighed, found, seen = search(case, progress)
-    w = weights(case, weighed)
+    w = weights(case, weighed, found)
     progress("gathering the facts")
     considered = consider(case, weighed, found, seen, w)
     facts, decision = considered.facts, decide(considered.facts)

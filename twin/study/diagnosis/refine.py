@@ -50,6 +50,7 @@ class Found:
     floor_m: float = float("nan")
     # what the voyages say about that place, in its world
     reduced: Reduced | None = field(default=None, repr=False)
+    steady: bool = False  # whether it holds a stream that may change, and did not (steady.py)
 
 
 def refine(
@@ -59,18 +60,19 @@ def refine(
     z: np.ndarray,
     wider: Sequence[str],
     hoped: float = -np.inf,
-    known: Sets = (),
+    part: Found | None = None,
 ) -> tuple[Found, list[Hypothesis]]:
     """Newton steps on the effects' own parameters, begun at `z` and taken in `scenario`, until they stand;
     begun again farther out when that explains nothing plainly, or when a number whose effect is bent ended at
     nothing, or the whole below the log weight that was `hoped` for to first order (not those of effects that
-    were found already, `known`: they were looked for far out when they were). What was found; and, about it,
+    were found already, in a `part` of the set: they were looked for far out when they were); and from where
+    that part stands, when the whole ended below it. What was found; and, about it,
     the hypothesis in every world, every one that has one of `wider` beside it, and every one without what any
     day brings."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     narrow, kept = case.along(case.lines, chosen)
     at = np.zeros_like(z)
-    top = _place(narrow, chosen, scenario, z[kept], hoped, known)
+    top = _place(narrow, chosen, scenario, z[kept], hoped, part, kept)
     at[kept] = top.at
     model, lines = about(case, at, mine, case.unknowns)
     whole, _ = case.along(lines)
@@ -88,11 +90,23 @@ def refine(
     ]
 
 
-def _place(case: Case, chosen: Sets, scenario: str, z: np.ndarray, hoped: float, known: Sets = ()) -> "_Top":
-    """The best of the climbs that `refine` speaks of."""
+def _place(
+    case: Case,
+    chosen: Sets,
+    scenario: str,
+    z: np.ndarray,
+    hoped: float,
+    part: Found | None,
+    kept: np.ndarray,
+) -> "_Top":
+    """The best of the climbs that `refine` speaks of (`kept`: which of all effects' numbers these are)."""
+    known = part.hypothesis.effects if part else ()
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     new = np.array([i for i in mine if case.effects[i].owner not in known], dtype=int)
     top = _Top.of(case, chosen, *_newton(case, chosen, mine, scenario, z)[1:])
+    if part and top.best.log_weight < min(hoped, _without_news(case, part, chosen)):
+        at = np.where([u.owner in known for u in case.effects], part.posterior.z[kept], 0.0)
+        top = top.or_from(case, chosen, mine, at)
     first = clipped(case, z)
     first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
     for k, factor in enumerate(FARTHER):
@@ -111,6 +125,12 @@ def _place(case: Case, chosen: Sets, scenario: str, z: np.ndarray, hoped: float,
         for i in mine:
             top = top.or_from(case, chosen, mine, FARTHER[-1] * np.eye(z.size)[i])
     return top
+
+
+def _without_news(case: Case, part: Found, chosen: Sets) -> float:
+    """Log weight of a set whose new effects say nothing beside a part of it."""
+    h = part.hypothesis
+    return h.log_evidence + case.log_prior(chosen, h.scenario)
 
 
 @dataclass(frozen=True)
