@@ -40,7 +40,9 @@ def test_a_cause_is_as_probable_whatever_the_weather_beside_it():
 
 def test_water_that_moves_more_than_on_the_references_is_a_stream_that_changes():
     case = case_of("Current", "VaryingCurrent")
-    w = weights(case, [Hypothesis((), "streaming", 0.0, 0.0), Hypothesis((), "usual", math.log(0.25), 0.0)], {})
+    w = weights(
+        case, [Hypothesis((), "streaming", 0.0, 0.0), Hypothesis((), "usual", math.log(0.25), 0.0)], {}
+    )
     assert w.weather["VaryingCurrent"] == pytest.approx(0.8) and w.nothing == pytest.approx(1.0)
 
 
@@ -51,7 +53,9 @@ def test_a_stream_that_may_change_and_did_not_is_told_as_a_steady_one_and_its_ed
     case.ordered = lambda chosen: tuple(n for n in case.candidates if n in chosen)
     said = {("VaryingCurrent",): -3.0, ("Current", "HeadingBias"): -9.0, ("Current",): -20.0}
     weighed = [Hypothesis(s, "usual", says, 0.0) for s, says in said.items()]
-    still = {s: Found(h, None, None, steady=s == ("VaryingCurrent",)) for s, h in zip(said, weighed, strict=True)}
+    still = {
+        s: Found(h, None, None, steady=s == ("VaryingCurrent",)) for s, h in zip(said, weighed, strict=True)
+    }
     w = weights(case, weighed, still)
     assert w.nothing > 0.99 and w.weather["Current"] == pytest.approx(1.0)
     assert w.weather["VaryingCurrent"] == 0.0 and w.effects["HeadingBias"] < 0.01
