@@ -11,10 +11,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from twin.physics.model import Model
+from twin.study.diagnosis.bent import FARTHER, bent_numbers
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.estimation.columns import ROUGH, Unknown, changed, with_values
+from twin.study.estimation.columns import ROUGH, Unknown, with_values
 from twin.study.estimation.innovations import Linear, linearise
-from twin.study.estimation.respond import respond, standard
+from twin.study.estimation.respond import respond
 from twin.study.reference.evidence import (
     Hypothesis,
     Posterior,
@@ -29,9 +30,6 @@ DOUBTS = (0.2, 0.1, 0.05)
 IRREGULAR = (1.0, 0.5)  # and of one that comes and goes with what no input shows
 Sets = tuple[str, ...]
 NEWTON = 8  # steps, at most
-# times the linear guess, where Newton begins again when it ended in no plain world, or at nothing
-FARTHER = (2.0, 4.0)
-BENT = 0.3  # share of what a number does that is not in proportion to it
 BEHIND = 60.0  # log odds behind the likeliest world from which a restless one is out of the question
 LEAST = 0.2  # of a step that a climb tries: of 345 climbs four got higher by less
 STANDS = 0.05  # prior widths that a step may still move
@@ -96,8 +94,8 @@ def _place(
     scenario: str,
     z: np.ndarray,
     hoped: float,
-    part: Found | None,
-    kept: np.ndarray,
+    part: Found | None = None,
+    kept: np.ndarray | slice = slice(None),
 ) -> "_Top":
     """The best of the climbs that `refine` speaks of (`kept`: which of all effects' numbers these are)."""
     known = part.hypothesis.effects if part else ()
@@ -111,7 +109,7 @@ def _place(
     first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
     for k, factor in enumerate(FARTHER):
         plain, fallen = SCENARIOS[top.best.scenario].plain, top.best.log_weight < hoped
-        bent = [] if plain and not fallen and top.at[new].all() else _bent(case, new, top.at)
+        bent = [] if plain and not fallen and top.at[new].all() else bent_numbers(case, new, top.at)
         lost = [i for i in bent if fallen or top.at[i] == 0.0]
         # numbers that work in proportion have one best place, which the first climb from afar found
         if not lost and (plain or (k and not bent)):
@@ -216,33 +214,6 @@ def _told(case: Case, lines: Sequence[Linear], scenario: str, at: np.ndarray) ->
         return case.reduced(lines, case.scenarios([scenario], DOUBTS[0]), at)[0]
     except np.linalg.LinAlgError:
         return None
-
-
-def _bent(case: Case, mine: np.ndarray, at: np.ndarray) -> list[int]:
-    """Parameters of which what they do is not in proportion to them: about nothing they may not be seen, and
-    a climb may end on a lower top."""
-    own = [case.effects[i] for i in mine]
-    model = with_values(
-        case.model, own, [u.centre + u.sd * at[i] for i, u in zip(mine, own, strict=True)], case.catalogue
-    )
-    return [int(i) for i, u in zip(mine, own, strict=True) if _bends(case, model, u)]
-
-
-def _bends(case: Case, model: Model, unknown: Unknown) -> bool:
-    """Whether so many prior widths of a number do clearly more, or less, than so many times what one does."""
-    for line in case.lines:
-        here = model.without_inputs(line.track.missing())[0]
-        none, one, far = (
-            respond(line.track, changed(here, unknown, unknown.centre + k * unknown.sd, case.catalogue))[0]
-            for k in (0.0, 1.0, FARTHER[-1])
-        )
-        did, missed = (
-            (far - none) / standard(here),
-            (far - none - FARTHER[-1] * (one - none)) / standard(here),
-        )
-        if np.linalg.norm(missed) > BENT * np.linalg.norm(did):
-            return True
-    return False
 
 
 def _everywhere(
