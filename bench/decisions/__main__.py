@@ -91,7 +91,7 @@ def decided(folder: Path, question: Asked, tag: str) -> dict[str, Any]:
     case, (weighed, found, seen) = pickle.loads(
         (folder / "searched" / tag / _file(question, "pickle")).read_bytes()
     )
-    facts = consider(case, weighed, found, seen, weights(case, weighed)).facts
+    facts = consider(case, weighed, found, seen, weights(case, weighed, found)).facts
     answer = decide(facts)
     return {
         "truth": question.truth,

@@ -5,7 +5,7 @@ import pytest
 
 from bench.fleet import cases, hidden, instruments, sail, weather
 from bench.fleet.hulls import FAMILIES
-from bench.fleet.judged import Share, right
+from bench.fleet.judged import Share, right, wrong_names
 from bench.fleet.manoeuvres import zigzag
 from bench.fleet.ship import build
 
@@ -84,3 +84,14 @@ def test_a_cause_too_many_makes_an_answer_wrong_and_weather_does_not():
     assert right(row | {"missing": ["HullFouling", "Wind"]})
     assert not right(row | {"missing": ["HullFouling", "GyroBias"]})
     assert not right(row | {"missing": []})
+
+
+def test_a_slow_compass_has_a_name_by_now_and_beside_another_it_is_wrong():
+    row = {"kind": "outside", "hidden": {"SlowCompass": 1.0}, "verdict": "missing", "weather": []}
+    assert right(row | {"missing": ["HeadingLag", "Wind"]}) and not wrong_names(
+        row | {"missing": ["HeadingLag"]}
+    )
+    assert not right(row | {"missing": ["HeadingLag", "SensorDelay"]})
+    assert not right(row | {"missing": ["SensorDelay"]})
+    assert right(row | {"missing": [], "verdict": "unknown"})
+    assert not right(row | {"hidden": {"Ice": 1.0}, "missing": ["HeadingLag"]})

@@ -36,13 +36,32 @@ def test_how_far_what_the_ship_has_is_from_its_file_over_what_its_form_may_be_of
     assert change(SimpleNamespace(present=set()), found, "SteeringLag") == 0.0
 
 
-def test_how_clear_an_effect_is_tells_its_clearest_number(judged):
-    """Test: two numbers known to 0.2 each, at 0.7 and 0.1. Expected: three and a half standard deviations."""
+def clear(judged, name, z, covariance):
+    """Significance of an effect whose first numbers are these, known so well; its others stand at nothing."""
     case, found = judged
-    rows = [i for i, u in enumerate(case.effects) if u.owner == "SensorDelay"]
-    z, covariance = np.zeros(len(case.effects)), np.eye(len(case.effects))
-    covariance[np.ix_(rows, rows)] = 0.04 * np.eye(len(rows))
-    z[rows[:2]] = 0.7, 0.1
-    assert significance(
-        case, replace(found, posterior=replace(found.posterior, z=z, covariance=covariance)), "SensorDelay"
-    ) == pytest.approx(3.5)
+    rows = [i for i, u in enumerate(case.effects) if u.owner == name]
+    all_z, all_c = np.zeros(len(case.effects)), np.eye(len(case.effects))
+    all_c[np.ix_(rows, rows)] = covariance
+    all_z[rows] = z
+    known = replace(found.posterior, z=all_z, covariance=all_c)
+    return significance(case, replace(found, posterior=known), name)
+
+
+def test_one_number_is_as_clear_as_its_standard_deviations_from_none(judged):
+    assert clear(judged, "GyroBias", [0.7], [[0.04]]) == pytest.approx(3.5)
+
+
+def test_two_numbers_that_are_known_by_their_difference_alone_are_clear_together(judged):
+    """Test: a bias of 0.7 and what of it turned the velocity, each known to 0.5, their difference to 0.05.
+    Expected: far clearer than either, 0.7/0.5."""
+    alike = 0.25 - 0.5 * 0.05**2
+    assert clear(judged, "HeadingBias", [0.7, 0.0], [[0.25, alike], [alike, 0.25]]) > 10.0
+
+
+def test_a_second_number_that_says_nothing_makes_an_effect_no_clearer(judged):
+    both = clear(judged, "HeadingBias", [0.7, 0.0], [[0.04, 0.0], [0.0, 0.04]])
+    assert 3.0 < both < 3.5
+
+
+def test_numbers_that_no_chance_makes_are_told_by_their_distance(judged):
+    assert clear(judged, "HeadingBias", [60.0, 0.0], np.eye(2)) == pytest.approx(60.0, abs=0.5)

@@ -177,7 +177,7 @@ def test_the_best_come_first():
 def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker, voyages):
     case = assemble([voyages["RudderWear"]], tanker)
     weighed, found, _ = search(case)
-    assert weights(case, weighed).best.effects == ("RudderWear",)
+    assert weights(case, weighed, found).best.effects == ("RudderWear",)
     assert found["RudderWear",].off_m < 0.7 * found[()].off_m
     path = open_loop_check(case, found, weighed)
     assert path.windows == pytest.approx(case.tracks[0].t[-1] / horizon_s(case.tracks[0], case.model))

@@ -8,17 +8,17 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.diagnosis.assemble import assemble
+from twin.study.diagnosis.bent import bends, bent_numbers
 from twin.study.diagnosis.refine import (
     DOUBTS,
     IRREGULAR,
-    _bends,
-    _bent,
     _doubt,
     _newton,
     _place,
     _told,
     _Top,
     about,
+    refine,
 )
 from twin.study.estimation.respond import standard
 from twin.study.reference.evidence import Hypothesis
@@ -35,18 +35,18 @@ def rows(case, owner):
 
 def test_a_gears_travel_time_is_not_in_proportion_to_what_it_does_and_a_rudders_offset_is(case):
     by_label = {u.label: u for u in case.effects}
-    assert _bends(case, case.model, by_label["SteeringLag.travel_time"])
-    assert not _bends(case, case.model, by_label["RudderOffset.offset"])
-    assert not _bends(case, case.model, by_label["PropellerWear.loss"])
+    assert bends(case, case.model, by_label["SteeringLag.travel_time"])
+    assert not bends(case, case.model, by_label["RudderOffset.offset"])
+    assert not bends(case, case.model, by_label["PropellerWear.loss"])
 
 
 def test_only_what_bends_is_looked_for_far_out(case):
     gear, offset = rows(case, "SteeringLag"), rows(case, "RudderOffset")
     for size in (0.0, 1.0):
-        assert {case.effects[i].name for i in _bent(case, gear, np.full(len(case.effects), size))} >= {
+        assert {case.effects[i].name for i in bent_numbers(case, gear, np.full(len(case.effects), size))} >= {
             "travel_time"
         }
-        assert _bent(case, offset, np.full(len(case.effects), size)) == []
+        assert bent_numbers(case, offset, np.full(len(case.effects), size)) == []
 
 
 def test_what_no_day_brings_steers_no_climb(case):
@@ -98,6 +98,18 @@ def test_a_slow_gear_is_found_however_far_out_it_stands(case):
         other = _newton(case, ("SteeringLag",), mine, "usual", z)[0]
         assert other.log_weight < top.best.log_weight + 0.5
     assert top.at[mine][1] == pytest.approx(1.57, abs=0.3)  # 65 deg in as long as it sails so many lengths
+
+
+def test_a_set_whose_first_guess_was_far_off_stands_no_lower_than_its_part(case):
+    """Test: beside a slow gear a receiver six seconds late, as a guess. Expected: begun again from where the gear
+    stands by itself, the pair is about as likely as a delay that says nothing makes it."""
+    guess, gear = np.zeros(len(case.effects)), ("SteeringLag",)
+    guess[rows(case, "SteeringLag")[:2]] = [0.5, 1.5]
+    part = refine(case, gear, "usual", guess, ())[0]
+    both = case.ordered((*gear, "SensorDelay"))
+    guess[rows(case, "SensorDelay")] = 10.0
+    top = _place(case, both, "usual", guess, np.inf, part)
+    assert top.best.log_weight > part.hypothesis.log_evidence + case.log_prior(both, "usual") - 10.0
 
 
 def test_a_climb_that_got_no_higher_is_asked_in_no_other_world(case, monkeypatch):

@@ -54,8 +54,8 @@ def test_a_pair_begins_where_the_likelier_of_its_parts_was_found_and_that_is_not
     worn, slow = (held.found[(name,)].hypothesis.log_weight for name in PAIR)
     began = {}
 
-    def begins(case, chosen, scenario, z, wider, hoped, known):
-        began.update(z=z, known=known)
+    def begins(case, chosen, scenario, z, wider, hoped, part):
+        began.update(z=z, known=part.hypothesis.effects)
         return replace(
             held.found[PAIR[1:]], hypothesis=replace(held.found[PAIR[1:]].hypothesis, effects=chosen)
         ), []
@@ -123,7 +123,7 @@ def test_an_effect_that_ended_at_nothing_says_no_more_than_the_rest(case, monkey
     list."""
     held = book(case)
 
-    def at_nothing(case, chosen, scenario, z, wider, hoped, known):
+    def at_nothing(case, chosen, scenario, z, wider, hoped, part):
         none = held.found[()]
         h = replace(none.hypothesis, effects=chosen, log_evidence=1e6)
         return Found(h, replace(none.posterior, z=np.zeros(len(case.effects))), case.model), [h]
@@ -158,8 +158,8 @@ def test_what_any_day_brings_is_no_news_where_it_stands_today(tanker, voyages):
         held.judge(("Current",))
         nothing[name] = max(h.log_weight for h in held.weighed() if not h.effects) - before
     assert nothing["knows"] > 1.0 and nothing["knows not"] == 0.0
-    weighed, _, _ = search(usual)
-    assert weights(usual, weighed).weather["Current"] < SURE
+    weighed, found, _ = search(usual)
+    assert weights(usual, weighed, found).weather["Current"] < SURE
 
 
 @pytest.mark.parametrize("c_d, hollow", [(0.0, True), (0.1, False)])

@@ -30,7 +30,9 @@ def case_of(*candidates, unnamed=()):
 def test_a_cause_is_as_probable_whatever_the_weather_beside_it():
     said = {("RudderWear",): 0.2, ("Wind", "RudderWear"): 0.5, ("Wind",): 0.2, (): 0.1}
     w = weights(
-        case_of("Wind", "RudderWear"), [Hypothesis(s, "usual", math.log(p), 0.0) for s, p in said.items()]
+        case_of("Wind", "RudderWear"),
+        [Hypothesis(s, "usual", math.log(p), 0.0) for s, p in said.items()],
+        {},
     )
     assert w.effects == {"RudderWear": pytest.approx(0.7)} and w.nothing == pytest.approx(0.3)
     assert w.weather == {"Wind": pytest.approx(0.7)}
@@ -38,13 +40,30 @@ def test_a_cause_is_as_probable_whatever_the_weather_beside_it():
 
 def test_water_that_moves_more_than_on_the_references_is_a_stream_that_changes():
     case = case_of("Current", "VaryingCurrent")
-    w = weights(case, [Hypothesis((), "streaming", 0.0, 0.0), Hypothesis((), "usual", math.log(0.25), 0.0)])
+    w = weights(
+        case, [Hypothesis((), "streaming", 0.0, 0.0), Hypothesis((), "usual", math.log(0.25), 0.0)], {}
+    )
     assert w.weather["VaryingCurrent"] == pytest.approx(0.8) and w.nothing == pytest.approx(1.0)
+
+
+def test_a_stream_that_may_change_and_did_not_is_told_as_a_steady_one_and_its_eddies_blame_no_cause():
+    """Test: beside a stream that hardly changes nothing is missing; beside a steady one a compass would be
+    off. Expected: no cause, and the stream is a steady one."""
+    case = case_of("Current", "VaryingCurrent", "HeadingBias")
+    case.ordered = lambda chosen: tuple(n for n in case.candidates if n in chosen)
+    said = {("VaryingCurrent",): -3.0, ("Current", "HeadingBias"): -9.0, ("Current",): -20.0}
+    weighed = [Hypothesis(s, "usual", says, 0.0) for s, says in said.items()]
+    still = {
+        s: Found(h, None, None, steady=s == ("VaryingCurrent",)) for s, h in zip(said, weighed, strict=True)
+    }
+    w = weights(case, weighed, still)
+    assert w.nothing > 0.99 and w.weather["Current"] == pytest.approx(1.0)
+    assert w.weather["VaryingCurrent"] == 0.0 and w.effects["HeadingBias"] < 0.01
 
 
 @pytest.mark.parametrize("effect, unknown", [("WaveDrift", 0.0), ("Loading", 1.0)])
 def test_water_that_the_sea_makes_restless_is_nothing_unknown_beside_the_seas_own_force(effect, unknown):
-    assert weights(case_of(effect), [Hypothesis((effect,), "strange", 0.0, 0.0)]).unknown == unknown
+    assert weights(case_of(effect), [Hypothesis((effect,), "strange", 0.0, 0.0)], {}).unknown == unknown
 
 
 @pytest.mark.parametrize("tank, unknown", [(-300.0, 0.0), (-105.0, 1.0)])
@@ -59,7 +78,7 @@ def test_what_is_known_by_its_form_alone_beside_an_effect_that_does_most_only_me
         ("SwayingMass",): tank,
         (): -900.0,
     }
-    w = weights(case, [Hypothesis(effects, "usual", says, 0.0) for effects, says in said.items()])
+    w = weights(case, [Hypothesis(effects, "usual", says, 0.0) for effects, says in said.items()], {})
     assert w.unknown == pytest.approx(unknown) and w.effects["RollCoupling"] == pytest.approx(1.0)
     assert w.unnamed["SwayingMass"] == pytest.approx(1.0)
 

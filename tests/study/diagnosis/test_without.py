@@ -29,5 +29,5 @@ def test_an_effect_that_the_ship_had_is_put_back_to_what_it_was(worn):
 def test_where_the_best_that_is_known_is_no_tow_the_answer_is_that_nobody_knows(tanker, voyages):
     case = assemble([voyages["IceLike"]], tanker)
     weighed, found, seen = search(case)
-    facts = consider(case, weighed, found, seen, weights(case, weighed)).facts
+    facts = consider(case, weighed, found, seen, weights(case, weighed, found)).facts
     assert decide(facts).verdict == "unknown"

@@ -13,7 +13,8 @@ from twin.recording.inputs import INPUTS
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.altered import sized
-from twin.study.diagnosis.assemble import assemble, unjudged_because
+from twin.study.diagnosis.assemble import assemble, of_tracks, unjudged_because
+from twin.study.diagnosis.by_kinematics import accused, asked_for
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.confidence import confidence
 from twin.study.diagnosis.consider import Considered, consider
@@ -59,7 +60,13 @@ def diagnose(
     """Judge all candidates jointly on these voyages."""
     case = assemble(voyages, ship, references, progress)
     weighed, found, seen = search(case, progress)
-    w = weights(case, weighed)
+    w = weights(case, weighed, found)
+    if accused(case, w.best.effects):
+        progress("asking how the instruments go together, whatever the ship is")
+        if wanted := asked_for(case):
+            case = of_tracks(case.tracks, ship, references, progress, wanted)
+            weighed, found, seen = search(case, progress)
+            w = weights(case, weighed, found)
     progress("gathering the facts")
     considered = consider(case, weighed, found, seen, w)
     facts, decision = considered.facts, decide(considered.facts)

@@ -26,7 +26,7 @@ class Cause:
     log_bayes_factor: float  # how much likelier is the best hypothesis with it than the best without it?
     alone: float  # how much likelier are the readings with it alone than with nothing? [log Bayes factor]
     error_gain: float | None  # share by which the open-loop error is less with it; None: not asked [1]
-    significance: float  # how far is its clearest number from none? [standard deviations]
+    significance: float  # how far are its numbers together from none? [standard deviations of one]
     change: float  # how far is its clearest number from the ship's file, over what its form may miss? [1]
 
 

@@ -11,10 +11,11 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from twin.physics.model import Model
+from twin.study.diagnosis.bent import FARTHER, bent_numbers
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.estimation.columns import ROUGH, Unknown, changed, with_values
+from twin.study.estimation.columns import ROUGH, Unknown, with_values
 from twin.study.estimation.innovations import Linear, linearise
-from twin.study.estimation.respond import respond, standard
+from twin.study.estimation.respond import respond
 from twin.study.reference.evidence import (
     Hypothesis,
     Posterior,
@@ -29,9 +30,6 @@ DOUBTS = (0.2, 0.1, 0.05)
 IRREGULAR = (1.0, 0.5)  # and of one that comes and goes with what no input shows
 Sets = tuple[str, ...]
 NEWTON = 8  # steps, at most
-# times the linear guess, where Newton begins again when it ended in no plain world, or at nothing
-FARTHER = (2.0, 4.0)
-BENT = 0.3  # share of what a number does that is not in proportion to it
 BEHIND = 60.0  # log odds behind the likeliest world from which a restless one is out of the question
 LEAST = 0.2  # of a step that a climb tries: of 345 climbs four got higher by less
 STANDS = 0.05  # prior widths that a step may still move
@@ -50,6 +48,7 @@ class Found:
     floor_m: float = float("nan")
     # what the voyages say about that place, in its world
     reduced: Reduced | None = field(default=None, repr=False)
+    steady: bool = False  # whether it holds a stream that may change, and did not (steady.py)
 
 
 def refine(
@@ -59,18 +58,19 @@ def refine(
     z: np.ndarray,
     wider: Sequence[str],
     hoped: float = -np.inf,
-    known: Sets = (),
+    part: Found | None = None,
 ) -> tuple[Found, list[Hypothesis]]:
     """Newton steps on the effects' own parameters, begun at `z` and taken in `scenario`, until they stand;
     begun again farther out when that explains nothing plainly, or when a number whose effect is bent ended at
     nothing, or the whole below the log weight that was `hoped` for to first order (not those of effects that
-    were found already, `known`: they were looked for far out when they were). What was found; and, about it,
+    were found already, in a `part` of the set: they were looked for far out when they were); and from where
+    that part stands, when the whole ended below it. What was found; and, about it,
     the hypothesis in every world, every one that has one of `wider` beside it, and every one without what any
     day brings."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     narrow, kept = case.along(case.lines, chosen)
     at = np.zeros_like(z)
-    top = _place(narrow, chosen, scenario, z[kept], hoped, known)
+    top = _place(narrow, chosen, scenario, z[kept], hoped, part, kept)
     at[kept] = top.at
     model, lines = about(case, at, mine, case.unknowns)
     whole, _ = case.along(lines)
@@ -88,16 +88,28 @@ def refine(
     ]
 
 
-def _place(case: Case, chosen: Sets, scenario: str, z: np.ndarray, hoped: float, known: Sets = ()) -> "_Top":
-    """The best of the climbs that `refine` speaks of."""
+def _place(
+    case: Case,
+    chosen: Sets,
+    scenario: str,
+    z: np.ndarray,
+    hoped: float,
+    part: Found | None = None,
+    kept: np.ndarray | slice = slice(None),
+) -> "_Top":
+    """The best of the climbs that `refine` speaks of (`kept`: which of all effects' numbers these are)."""
+    known = part.hypothesis.effects if part else ()
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     new = np.array([i for i in mine if case.effects[i].owner not in known], dtype=int)
     top = _Top.of(case, chosen, *_newton(case, chosen, mine, scenario, z)[1:])
+    if part and top.best.log_weight < min(hoped, _without_news(case, part, chosen)):
+        at = np.where([u.owner in known for u in case.effects], part.posterior.z[kept], 0.0)
+        top = top.or_from(case, chosen, mine, at)
     first = clipped(case, z)
     first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
     for k, factor in enumerate(FARTHER):
         plain, fallen = SCENARIOS[top.best.scenario].plain, top.best.log_weight < hoped
-        bent = [] if plain and not fallen and top.at[new].all() else _bent(case, new, top.at)
+        bent = [] if plain and not fallen and top.at[new].all() else bent_numbers(case, new, top.at)
         lost = [i for i in bent if fallen or top.at[i] == 0.0]
         # numbers that work in proportion have one best place, which the first climb from afar found
         if not lost and (plain or (k and not bent)):
@@ -111,6 +123,12 @@ def _place(case: Case, chosen: Sets, scenario: str, z: np.ndarray, hoped: float,
         for i in mine:
             top = top.or_from(case, chosen, mine, FARTHER[-1] * np.eye(z.size)[i])
     return top
+
+
+def _without_news(case: Case, part: Found, chosen: Sets) -> float:
+    """Log weight of a set whose new effects say nothing beside a part of it."""
+    h = part.hypothesis
+    return h.log_evidence + case.log_prior(chosen, h.scenario)
 
 
 @dataclass(frozen=True)
@@ -196,33 +214,6 @@ def _told(case: Case, lines: Sequence[Linear], scenario: str, at: np.ndarray) ->
         return case.reduced(lines, case.scenarios([scenario], DOUBTS[0]), at)[0]
     except np.linalg.LinAlgError:
         return None
-
-
-def _bent(case: Case, mine: np.ndarray, at: np.ndarray) -> list[int]:
-    """Parameters of which what they do is not in proportion to them: about nothing they may not be seen, and
-    a climb may end on a lower top."""
-    own = [case.effects[i] for i in mine]
-    model = with_values(
-        case.model, own, [u.centre + u.sd * at[i] for i, u in zip(mine, own, strict=True)], case.catalogue
-    )
-    return [int(i) for i, u in zip(mine, own, strict=True) if _bends(case, model, u)]
-
-
-def _bends(case: Case, model: Model, unknown: Unknown) -> bool:
-    """Whether so many prior widths of a number do clearly more, or less, than so many times what one does."""
-    for line in case.lines:
-        here = model.without_inputs(line.track.missing())[0]
-        none, one, far = (
-            respond(line.track, changed(here, unknown, unknown.centre + k * unknown.sd, case.catalogue))[0]
-            for k in (0.0, 1.0, FARTHER[-1])
-        )
-        did, missed = (
-            (far - none) / standard(here),
-            (far - none - FARTHER[-1] * (one - none)) / standard(here),
-        )
-        if np.linalg.norm(missed) > BENT * np.linalg.norm(did):
-            return True
-    return False
 
 
 def _everywhere(

@@ -119,8 +119,6 @@ class _Book:
         self.wide = False  # whether every promising effect is judged, because the best so far leaves too much
         self.asked: OpenLoopCheck | None = None  # where those that could be the answer lead it
         self.entries: dict[tuple[Sets, str], Hypothesis] = {}
-        # with a stream that may change and did not: no set that holds one of these is asked again
-        self.steady: list[Sets] = []
         for scenario, reduced in scenarios.items():
             for chosen, evidence in _linear(case, reduced, scenario):
                 self._enter(Hypothesis(chosen, scenario, evidence, case.log_prior(chosen, scenario)))
@@ -143,7 +141,7 @@ class _Book:
         self.last = singles[first : first + LAST]
 
     def _enter(self, h: Hypothesis) -> None:
-        if np.isfinite(h.log_weight) and not any(set(s) <= set(h.effects) for s in self.steady):
+        if np.isfinite(h.log_weight):
             self.entries[h.effects, h.scenario] = h
 
     def weighed(self) -> list[Hypothesis]:
@@ -244,13 +242,13 @@ class _Book:
         about = start.reduced if part and start.reduced else self.scenarios[scenario]
         z = boxed(about, chosen, posterior(about, chosen)).z
         wider = self.case.candidates if len(self.case.causes(chosen)) < MOST else self.case.weather
-        self.found[chosen], judged = refine(self.case, chosen, scenario, z, wider, hoped, part)
+        self.found[chosen], judged = refine(self.case, chosen, scenario, z, wider, hoped, start)
         if self._hollow(chosen):
             self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}
             judged = [h for h in judged if h.effects != chosen]
         if steady(self.case, self.found[chosen]):
-            self.steady.append(chosen)
-            self.entries = {key: h for key, h in self.entries.items() if not set(chosen) <= set(key[0])}
+            self.found[chosen] = replace(self.found[chosen], steady=True)
+            self.first = [*self._simpler(chosen), *self.first]
         for h in judged:
             if self._counts(chosen, h):
                 self._enter(h)

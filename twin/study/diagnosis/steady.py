@@ -3,7 +3,9 @@ stream is a steady one.
 
 What changes with the clock has a number for every twenty minutes, and where a core or another effect is only
 roughly right these find something to mend: a full `Current` of the 2 m boat was a `VaryingCurrent` by 35 in
-log evidence, for changes of 3 to 4 % of it; of true ones two thirds and more change."""
+log evidence, for changes of 3 to 4 % of it; of true ones two thirds and more change. Such a stream is told as
+what it is, a steady one. It stays in the weighing all the same: eddies that the voyages do show, taken from
+every hypothesis, are put down to a cause."""
 
 import numpy as np
 

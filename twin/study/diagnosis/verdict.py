@@ -60,8 +60,10 @@ class Weights:
     weather: Mapping[str, float] = field(default_factory=dict)
 
 
-def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
-    p = probabilities(weighed)
+def weights(case: Case, weighed: Sequence[Hypothesis], found: Mapping[tuple[str, ...], Found]) -> Weights:
+    """The probabilities of all answers, from those of the hypotheses; a stream that may change and was
+    `found` not to counts as the steady one."""
+    p, still = probabilities(weighed), [set(s) for s, f in found.items() if f.steady]
     each = dict.fromkeys(case.candidates, 0.0)
     alone: dict[str, float] = {}
     for h in weighed:
@@ -70,7 +72,8 @@ def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
     nothing = unknown = 0.0
     for h, share in zip(weighed, p, strict=True):
         nameless = _nameless(case, h, alone)
-        for name in {*h.effects, *restless_water(case, h)}:
+        chosen = told(case, h.effects) if any(s <= set(h.effects) for s in still) else h.effects
+        for name in {*chosen, *restless_water(case, h)}:
             each[name] += float(share)
         unknown += float(share) * nameless
         nothing += float(share) * (not case.causes(h.effects) and not nameless)
@@ -78,6 +81,13 @@ def weights(case: Case, weighed: Sequence[Hypothesis]) -> Weights:
     return Weights(
         nothing, unknown, of(case.names(case.candidates)), weighed[0], of(case.unnamed), of(case.weather)
     )
+
+
+def told(case: Case, effects: Sequence[str]) -> tuple[str, ...]:
+    """A set of effects with the steady stream in the place of one that may change."""
+    parts = {n: case.catalogue[n].holds for n in effects if case.catalogue[n].is_weather()}
+    kept = (n for n in effects if not parts.get(n))
+    return case.ordered([*kept, *(part for held in parts.values() for part in held)])
 
 
 def restless_water(case: Case, h: Hypothesis) -> list[str]:

@@ -192,7 +192,7 @@ def _judged(case: Case, chosen: Sets, start: Found | None) -> Found:
     """A set of effects about its own size, begun where a part of it was found to stand, or at its first-order
     guess in the likeliest world."""
     if start is not None and start.reduced is not None:
-        scenario, about, part = start.hypothesis.scenario, start.reduced, start.hypothesis.effects
+        scenario, about, part = start.hypothesis.scenario, start.reduced, start
     else:
         scenarios = dict(
             zip(SCENARIOS, case.reduced(case.lines, case.scenarios(list(SCENARIOS))), strict=True)
@@ -201,9 +201,9 @@ def _judged(case: Case, chosen: Sets, start: Found | None) -> Found:
             w: posterior(r, chosen).log_evidence + case.log_prior(chosen, w) for w, r in scenarios.items()
         }
         scenario = max(guess, key=lambda w: guess[w])
-        about, part = scenarios[scenario], ()
+        about, part = scenarios[scenario], None
     z = boxed(about, chosen, posterior(about, chosen)).z
-    return refine(case, chosen, scenario, z, (), known=part)[0]
+    return refine(case, chosen, scenario, z, (), part=part)[0]
 
 
 def _with(case: Case, names: Sets, z: np.ndarray) -> Model:

@@ -1,0 +1,40 @@
+"""Numbers of which what they do is not in proportion to them: a climb from afar may find what one from
+nothing cannot see."""
+
+import numpy as np
+
+from twin.physics.model import Model
+from twin.study.diagnosis.case import Case
+from twin.study.estimation.columns import Unknown, changed, with_values
+from twin.study.estimation.respond import respond, standard
+
+# times the linear guess, where a climb begins again when it ended in no plain world, or at nothing
+FARTHER = (2.0, 4.0)
+BENT = 0.3  # share of what a number does that is not in proportion to it
+
+
+def bent_numbers(case: Case, mine: np.ndarray, at: np.ndarray) -> list[int]:
+    """Parameters of which what they do is not in proportion to them: about nothing they may not be seen, and
+    a climb may end on a lower top."""
+    own = [case.effects[i] for i in mine]
+    model = with_values(
+        case.model, own, [u.centre + u.sd * at[i] for i, u in zip(mine, own, strict=True)], case.catalogue
+    )
+    return [int(i) for i, u in zip(mine, own, strict=True) if bends(case, model, u)]
+
+
+def bends(case: Case, model: Model, unknown: Unknown) -> bool:
+    """Whether so many prior widths of a number do clearly more, or less, than so many times what one does."""
+    for line in case.lines:
+        here = model.without_inputs(line.track.missing())[0]
+        none, one, far = (
+            respond(line.track, changed(here, unknown, unknown.centre + k * unknown.sd, case.catalogue))[0]
+            for k in (0.0, 1.0, FARTHER[-1])
+        )
+        did, missed = (
+            (far - none) / standard(here),
+            (far - none - FARTHER[-1] * (one - none)) / standard(here),
+        )
+        if np.linalg.norm(missed) > BENT * np.linalg.norm(did):
+            return True
+    return False
