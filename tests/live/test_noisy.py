@@ -33,7 +33,10 @@ def test_I21_ten_times_the_noise_weighs_less_and_is_said_within_ten_seconds(make
 
 @pytest.mark.parametrize(
     "name, by, state, most",
-    [("yaw_rate_degps", 0.1, "yaw_rate_degps", 0.1), ("surge_velocity_through_water_mps", 0.5, "surge_velocity_mps", 0.2)],
+    [
+        ("yaw_rate_degps", 0.1, "yaw_rate_degps", 0.1),
+        ("surge_velocity_through_water_mps", 0.5, "surge_velocity_mps", 0.2),
+    ],
 )
 def test_I22_a_constant_offset_of_gyro_or_log_is_said_and_the_estimate_stays_within_it(
     make_service, name, by, state, most
@@ -50,7 +53,11 @@ def test_I22_a_constant_offset_of_gyro_or_log_is_said_and_the_estimate_stays_wit
 
         return alter
 
-    assert not any(name.split("_through")[0] in text for tick in bridge.run(300.0, with_log(0.0)) for text in tick.reasons)
+    assert not any(
+        name.split("_through")[0] in text
+        for tick in bridge.run(300.0, with_log(0.0))
+        for text in tick.reasons
+    )
     told = None
     for k in range(300):
         tick = bridge.run(1.0, with_log(by))[-1]

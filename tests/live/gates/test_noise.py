@@ -2,6 +2,7 @@
 
 import math
 import random
+from itertools import pairwise
 
 import pytest
 
@@ -13,7 +14,7 @@ STEP_S = 0.1
 def heard(values, floor=0.5):
     """The watch after these values, and at which of them it was loud."""
     noise, loud = Noise(floor), []
-    for k, (before, value) in enumerate(zip(values, values[1:], strict=False)):
+    for k, (before, value) in enumerate(pairwise(values)):
         noise.feed(value - before, STEP_S)
         loud += [k] * noise.loud
     return noise, loud

@@ -4,8 +4,11 @@
 
 White noise of variance sigma^2 gives d's neighbours the covariance -sigma^2; what the ship or a wave does is
 smooth from sample to sample, so its neighbours go the same way and it counts for nothing. The usual variance
-is the instrument's own, learned while the ship sails.
+is the instrument's own, learned while the ship sails. Waves too short for a slow instrument look like
+noise of all instruments: one that is loud is believed to be so only while the others are not.
 """
+
+from collections.abc import Mapping
 
 NOW, USUALLY = 16, 600  # samples that either mean remembers
 ENOUGH = 50  # samples from which the usual is known
@@ -15,13 +18,50 @@ SLOWLY = 0.1  # of the usual pace at which a loud channel teaches
 LEAST = 0.01  # of what noise may add to a change (Gate.floor): noise below it does not matter
 
 
-class Noise:
-    """Fed with each good sample of one channel; `weight` is what a sample is worth now, 1 unless it is loud."""
+INSTRUMENTS = (  # what one instrument measures; the sea moves all of them at once
+    ("north_m", "east_m", "surge_velocity_mps", "sway_velocity_mps"),
+    ("heading_true_north_deg", "yaw_rate_degps", "roll_deg"),
+    ("surge_velocity_through_water_mps", "sway_velocity_through_water_mps"),
+)
+WITNESSES = ("roll_deg",)  # tells of the sea; its own noise matters to nothing
 
-    __slots__ = ("_count", "_d", "_grain", "_last", "_least", "_now", "_usual", "loud")
+
+class NoiseWatch:
+    """The channels of one ship; `loud` are those that are far noisier than they were while no other
+    instrument is restless, and what a sample of each is worth now."""
+
+    def __init__(self, floors: Mapping[str, float]):
+        self.loud: dict[str, float] = {}
+        self._of = {
+            name: (Noise(floors[name]), instrument) for instrument in INSTRUMENTS for name in instrument
+        }
+        self._restless: set[str] = set()
+
+    def feed(self, name: str, change: float, dt: float) -> None:
+        """The change of a channel since its sample before, which is dt seconds older."""
+        if name not in self._of:
+            return
+        noise, instrument = self._of[name]
+        noise.feed(change, dt)
+        (self._restless.add if noise.restless else self._restless.discard)(name)
+        if noise.loud and name not in WITNESSES and not self._restless.difference(instrument):
+            self.loud[name] = noise.weight
+        else:
+            self.loud.pop(name, None)
+
+    def lose(self, name: str) -> None:
+        """Nothing comes from this channel any more."""
+        self._restless.discard(name)
+        self.loud.pop(name, None)
+
+
+class Noise:
+    """Fed with each good sample of one channel; `weight` is what a sample is worth now, 1 unless loud."""
+
+    __slots__ = ("_count", "_d", "_grain", "_last", "_least", "_now", "_usual", "loud", "restless")
 
     def __init__(self, floor: float):
-        self.loud = False
+        self.loud = self.restless = False  # far above its usual noise; somewhat
         self._least = LEAST * floor
         self._grain = floor
         self._last: tuple[float, float] | None = None  # the last change, and over how long
@@ -57,7 +97,7 @@ class Noise:
         most = MOST * self._floor()
         seen = min(max(both, -most), most) if known else both
         self._now += (seen - self._now) / min(self._count, NOW)
-        if known:
-            self.loud = self._now > (QUIET if self.loud else LOUD) * self._floor()
-        pace = SLOWLY if known and self._now > QUIET * self._floor() else 1.0
+        self.restless = known and self._now > QUIET * self._floor()
+        self.loud = self.restless and (self.loud or self._now > LOUD * self._floor())
+        pace = SLOWLY if self.restless else 1.0
         self._usual += pace * (seen - self._usual) / min(self._count, USUALLY)

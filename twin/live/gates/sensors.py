@@ -10,7 +10,7 @@ from math import degrees, inf, pi
 
 from twin.live.gates.frozen import Frozen
 from twin.live.gates.gate import Gate
-from twin.live.gates.noise import Noise
+from twin.live.gates.noise import NoiseWatch
 from twin.live.gates.rivals import Rivals
 from twin.live.keelson.stamps import Stamps
 from twin.live.observer.estimate import HELD, Estimate
@@ -53,8 +53,7 @@ class Sensors:
             -FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
             FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
         )
-        self._noise = {name: Noise(floor) for name, floor in floors.items()}
-        self._loud: dict[str, Noise] = {}  # channels that are much noisier than usual
+        self._noise = NoiseWatch(floors)
         self.stamps = Stamps(max_delay_s)
         self.rivals = Rivals()
         self.rejected = 0
@@ -119,21 +118,21 @@ class Sensors:
             self.rejected += 1
             return
         self._put(name, gate)
-        if before is not None and name in self._noise:
-            self._hear(name, gate, before, t - before_s)
+        if before is not None:
+            self._weigh(name, gate, before, t - before_s)
         attribute = gate.channel.attribute
         fresh[attribute] = fresh.get(attribute, 0.0) + (t - before_s if before_s > 0.0 else 0.0)
         if gate.step:
             steps[attribute] = gate.step * gate.channel.to_si
 
-    def _hear(self, name: str, gate: Gate, before: float, dt: float) -> None:
-        """How noisy the channel is; while it is loud it weighs less."""
-        noise, weights, attribute = self._noise[name], self._now.weights, gate.channel.attribute
-        noise.feed(gate.difference(gate.value or 0.0, before), dt)
-        if noise.loud:
-            self._loud[name], weights[attribute] = noise, noise.weight
-        elif name in self._loud:
-            del self._loud[name], weights[attribute]
+    def _weigh(self, name: str, gate: Gate, before: float, dt: float) -> None:
+        """A channel that is far noisier than it was weighs less."""
+        self._noise.feed(name, gate.difference(gate.value or 0.0, before), dt)
+        weights, attribute = self._now.weights, gate.channel.attribute
+        if name in self._noise.loud:
+            weights[attribute] = self._noise.loud[name]
+        elif attribute in weights:
+            del weights[attribute]
 
     def _put(self, name: str, gate: Gate) -> None:
         channel, value, now = gate.channel, gate.value or 0.0, self._now
@@ -154,8 +153,8 @@ class Sensors:
         self._odd.add(name)
         del now.border[name], now.taken[name], now.si[attribute]
         now.si.pop(FROM.get(attribute, ""), None)
-        if self._loud.pop(name, None):
-            del now.weights[attribute]
+        self._noise.lose(name)
+        now.weights.pop(attribute, None)
         return attribute
 
     def _derive(self, measured: Measured, own: Estimate) -> None:
@@ -231,7 +230,7 @@ class Sensors:
 
     def loud(self) -> list[str]:
         """The channels that are much noisier than they used to be, in words."""
-        return [f"{name}: far noisier than it was; it weighs less" for name in sorted(self._loud)]
+        return [f"{name}: far noisier than it was; it weighs less" for name in sorted(self._noise.loud)]
 
 
 def motion_of(own: Estimate) -> dict[str, float]:
