@@ -27,6 +27,11 @@ BENCHES: dict[str, Bench] = {
         "the budget: time and memory of the loop, part by part",
         "twin-bench --steps 10000",
     ),
+    "arm64": Bench(
+        "bench.arm64.run",
+        "the same log on an emulated Cortex-A72: are the numbers the same?",
+        "twin-bench arm64 --root .arm64",
+    ),
     "sea": Bench(
         "bench.sea_process", "the reference sea, speaking Keelson in real time", "twin-bench sea --hull usv"
     ),

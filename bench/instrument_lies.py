@@ -9,6 +9,7 @@ voyage without a lie counts the false alarms.
 
 import argparse
 import math
+import random
 from collections import Counter
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -93,6 +94,17 @@ def _random(row: Row, since_s: float, memory: dict[str, float]) -> None:
         row["heading_true_north_deg"] = 360.0 * memory["seed"] / 2147483647.0
 
 
+def _noisy(**sigma: float) -> Callable[[Row, float, dict[str, float]], None]:
+    """Normal random numbers on each channel."""
+
+    def tell(row: Row, since_s: float, memory: dict[str, float]) -> None:
+        chance = random.Random(round(since_s * RATE_HZ))
+        for name, by in sigma.items():
+            row[name] += chance.gauss(0.0, by)
+
+    return tell
+
+
 def _swing(row: Row, since_s: float, memory: dict[str, float]) -> None:
     """Half round and back again, every 20 s, at 18 deg/s."""
     row["heading_true_north_deg"] += 180.0 * (1.0 - abs((since_s % 20.0) - 10.0) / 10.0)
@@ -108,6 +120,10 @@ LIES = (
     Lie("compass walks off, 0.05 deg/s", 120.0, _add(heading_true_north_deg=0.05)),
     Lie("compass random", 10.0, _random),
     Lie("compass swings by 180 deg", 10.0, _swing),
+    Lie("positions noisy, 5 m", 10.0, _noisy(north_m=5.0, east_m=5.0)),
+    Lie("heading noisy, 2 deg", 10.0, _noisy(heading_true_north_deg=2.0)),
+    Lie("speed over ground noisy, 0.5 m/s", 10.0, _noisy(surge_velocity_mps=0.5, sway_velocity_mps=0.5)),
+    Lie("rate of turn noisy, 1 deg/s", 10.0, _noisy(yaw_rate_degps=1.0)),
     Lie("shaft feedback stuck at 0", 60.0, _stuck("propeller_rate_rpm", 0.0)),
     Lie("rudder feedback stuck", 10.0, _stuck("rudder_angle_deg"), ("rudder_angle_deg", 10.0)),
 )
@@ -192,10 +208,8 @@ def run(args: argparse.Namespace) -> int:
 
 def _sailed(task: tuple[str, str, str, float, bool]) -> list[Outcome]:
     hull, weather, manoeuvre, duration_s, lies = task
-    (recording,) = simulate(
-        [Case(hull, manoeuvre, WEATHERS[weather][HULLS.index(hull)], seed=17, duration_s=duration_s)]
-    )
-    rows, watch, words = list(_rows(recording)), Watch(load(hull)), Counter[str]()
+    rows = voyage_rows(hull, WEATHERS[weather][HULLS.index(hull)], manoeuvre, duration_s)
+    watch, words = Watch(load(hull)), Counter[str]()
     half = watch
     for k, row in enumerate(rows):
         if k == len(rows) // 2:
@@ -234,6 +248,12 @@ def _found(half: Watch, rows: list[Row], lie: Lie) -> tuple[float, str]:
         elif new := [text for text in said if text not in before]:
             return (k / RATE_HZ - begins_s if begins_s == begins_s else 0.0), new[0]
     return math.nan, ""
+
+
+def voyage_rows(hull: str, weather: str | Weather, manoeuvre: str, duration_s: float) -> list[Row]:
+    """What the instruments say on one voyage of the reference sea, row by row."""
+    (recording,) = simulate([Case(hull, manoeuvre, weather, seed=17, duration_s=duration_s)])
+    return list(_rows(recording))
 
 
 def _rows(recording: Recording) -> Iterator[Row]:

@@ -129,6 +129,7 @@ class Loop:
         return (
             self.learned.helm.stuck
             or next(iter(self._doubts()), "")
+            or next(iter(self.sensors.loud()), "")
             or self.sensors.stamps.unsure(measured.now_s)
         )
 

@@ -10,6 +10,7 @@ from math import degrees, inf, pi
 
 from twin.live.gates.frozen import Frozen
 from twin.live.gates.gate import Gate
+from twin.live.gates.noise import NoiseWatch
 from twin.live.gates.rivals import Rivals
 from twin.live.keelson.stamps import Stamps
 from twin.live.observer.estimate import HELD, Estimate
@@ -52,6 +53,7 @@ class Sensors:
             -FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
             FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
         )
+        self._noise = NoiseWatch(floors)
         self.stamps = Stamps(max_delay_s)
         self.rivals = Rivals()
         self.rejected = 0
@@ -105,7 +107,7 @@ class Sensors:
             self.rejected += 1
             return
         t, quality = self.stamps.on_monotonic(result)
-        before_s = gate.time_s
+        before_s, before = gate.time_s, gate.value
         if quality is not Quality.OK:
             gate.refuse(quality, result.received_s)
         else:
@@ -116,10 +118,21 @@ class Sensors:
             self.rejected += 1
             return
         self._put(name, gate)
+        if before is not None:
+            self._weigh(name, gate, before, t - before_s)
         attribute = gate.channel.attribute
         fresh[attribute] = fresh.get(attribute, 0.0) + (t - before_s if before_s > 0.0 else 0.0)
         if gate.step:
             steps[attribute] = gate.step * gate.channel.to_si
+
+    def _weigh(self, name: str, gate: Gate, before: float, dt: float) -> None:
+        """A channel that is far noisier than it was weighs less."""
+        self._noise.feed(name, gate.difference(gate.value or 0.0, before), dt)
+        weights, attribute = self._now.weights, gate.channel.attribute
+        if name in self._noise.loud:
+            weights[attribute] = self._noise.loud[name]
+        elif attribute in weights:
+            del weights[attribute]
 
     def _put(self, name: str, gate: Gate) -> None:
         channel, value, now = gate.channel, gate.value or 0.0, self._now
@@ -140,6 +153,8 @@ class Sensors:
         self._odd.add(name)
         del now.border[name], now.taken[name], now.si[attribute]
         now.si.pop(FROM.get(attribute, ""), None)
+        self._noise.lose(name)
+        now.weights.pop(attribute, None)
         return attribute
 
     def _derive(self, measured: Measured, own: Estimate) -> None:
@@ -211,7 +226,11 @@ class Sensors:
                 said.append(f"{name}: {WORDS[Quality(quality)]}")
             elif name in self._losing:
                 said.append(f"{name}: samples are lost, less than 60 % of the usual rate arrives")
-        return said + self.stamps.reasons(self._now_s)
+        return said + self.loud() + self.stamps.reasons(self._now_s)
+
+    def loud(self) -> list[str]:
+        """The channels that are much noisier than they used to be, in words."""
+        return [f"{name}: far noisier than it was; it weighs less" for name in sorted(self._noise.loud)]
 
 
 def motion_of(own: Estimate) -> dict[str, float]:

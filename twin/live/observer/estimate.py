@@ -202,6 +202,7 @@ class Observer:
         limit = doubt.limit()
         waits_s = max(hold_s + heard_s - measured.time[source], dt)
         a = min(self.gain * dt, DELAYED * dt / waits_s, A_MAX)
+        a *= measured.weights.get(source, 1.0)
         usual = -limit <= gap <= limit
         self.received[state] = usual and a >= self.gain * dt  # the certificate is that of K, not of less
         pull = gap if usual else limit if gap > 0.0 else -limit

@@ -148,8 +148,9 @@ class RollBack(Observer):
                 continue
             drift = 0.0 if source == state else self.estimate.current_body()["uv".index(state)]
             taken_s = min(max(measured.time[source], self._nodes[0][0]), measured.now_s)
-            counts = source == state and state not in measured.derived and taken_s == measured.time[source]
-            share = PLACE if i < 2 else FULL
+            own, weight = source == state and state not in measured.derived, measured.weights.get(source, 1.0)
+            counts = own and taken_s == measured.time[source] and weight == 1.0
+            share = weight * (PLACE if i < 2 else FULL)
             limit = self.sigma.of[state].limit()
             heard.append(LateSample(taken_s, i, si[source] + drift, limit, share, counts))
         return heard

@@ -21,6 +21,7 @@ class Measured:
     time: Numbers = field(default_factory=dict)  # when it was measured [s, monotonic]
     heard: Numbers = field(default_factory=dict)  # when it arrived
     hold_s: Numbers = field(default_factory=dict)  # how long after that the next sample is due
+    weights: Numbers = field(default_factory=dict)  # of what is noisier than usual, below 1
     border: Numbers = field(default_factory=dict)  # by channel, border units: what is logged and shown
     taken: Numbers = field(default_factory=dict)  # by channel, when it was measured
     clock_step_s: float = 0.0
@@ -36,6 +37,7 @@ class Measured:
             self.time,
             self.heard,
             self.hold_s,
+            self.weights,
             self.border,
             self.taken,
             clock_step_s,
@@ -55,6 +57,7 @@ class Measured:
         """A value that follows from what another attribute measures."""
         if not self.derived:
             self.time, self.heard, self.hold_s = dict(self.time), dict(self.heard), dict(self.hold_s)
+            self.weights = dict(self.weights)
         self.si[attribute] = value
         self.derived.add(attribute)
         self.time[attribute], self.heard[attribute], self.hold_s[attribute] = (
@@ -62,5 +65,7 @@ class Measured:
             self.heard[of],
             self.hold_s[of],
         )
+        if of in self.weights:
+            self.weights[attribute] = self.weights[of]
         if of in self.fresh:
             self.fresh[attribute] = self.fresh[of]
