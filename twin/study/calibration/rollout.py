@@ -14,7 +14,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.physics.model import Model
+from twin.study.estimation.box import within
 from twin.study.estimation.columns import Unknown, with_values
+from twin.study.estimation.dissipation import half_spaces
 from twin.study.estimation.fit import Catalogue
 from twin.study.prediction.openloop import coarse
 from twin.study.track.track import Track
@@ -42,6 +44,7 @@ class _PathProblem:
             np.array([u.sd for u in self.unknowns]),
         )
         self.box = (np.array([[u.lo, u.hi] for u in self.unknowns]).T - self.centre) / self.sd
+        self.hull = half_spaces(self.model.ship, self.unknowns)
         self.scale = np.ones(1)
 
     def values(self, z: np.ndarray) -> list[float]:
@@ -91,7 +94,8 @@ def rolled_out(
 
 
 def _descend(problem: _PathProblem, z: np.ndarray) -> tuple[np.ndarray, float]:
-    """One step of Levenberg and Marquardt, inside the boxes; z itself when no step is better."""
+    """One step of Levenberg and Marquardt, inside the boxes and the half-spaces of a hull that dissipates; z
+    itself when no step is better."""
     r = problem.residual(z)
     best = problem.cost(r, z)
     J = np.empty((r.size, z.size))
@@ -101,7 +105,8 @@ def _descend(problem: _PathProblem, z: np.ndarray) -> tuple[np.ndarray, float]:
         J[:, j] = (problem.residual(z + step) - r) / step[j]
     JJ, pull = J.T @ J + np.eye(z.size), J.T @ r + z
     for damping in np.geomspace(0.01, 100.0, TRIES):
-        new = np.clip(z - np.linalg.solve(JJ + damping * np.diag(np.diag(JJ)), pull), *problem.box)
+        H = np.linalg.inv(JJ + damping * np.diag(np.diag(JJ)))
+        new = within(z - H @ pull, H, *problem.box, *problem.hull)
         cost = problem.cost(problem.residual(new), new)
         if cost < best:
             return new, cost
