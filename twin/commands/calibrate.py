@@ -6,6 +6,7 @@ import sys
 
 from twin import whole
 from twin.api.calibration import of_sailed
+from twin.errors import ThresholdError
 from twin.physics.ship import load, save
 from twin.recording.import_voyage import write_json
 from twin.study.calibration.calibrate import told
@@ -15,8 +16,8 @@ EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weath
 zigzags, circles, speed changes.
 Without --held-out the last third of the voyages (or of a single voyage) is held back to measure the error.
 The standard errors, and the structural error that remains, are stored in the ship file: they keep an
-imperfect model from being called a missing effect. Exit code 4: a voyage cannot be used; 5: the ship file is
-not valid.
+imperfect model from being called a missing effect. Exit code 3: the error on what was not used for the fit
+grew, so that no ship file is written; 4: a voyage cannot be used; 5: the ship file is not valid.
 """
 
 
@@ -50,12 +51,15 @@ def run(args: argparse.Namespace) -> int:
     every = read_all(args.voyages, ship)
     kept = read_all(args.held_out, ship)
     done = of_sailed(ship, every, kept, lambda text: print(f"{text} ...", file=sys.stderr))
-    save(done.ship, args.output)
-    result = done.to_dict() | {"output": str(args.output)}
+    if done.accepted:
+        save(done.ship, args.output)
+    result = done.to_dict() | {"output": str(args.output) if done.accepted else None}
     if args.json:
         write_json(result, args.json)
-    page = sys.stderr if args.json == "-" else sys.stdout
+    page = sys.stderr if args.json == "-" or not done.accepted else sys.stdout
     print("\n".join(told(result)), file=page)
+    if not done.accepted:
+        raise ThresholdError(f"{done.refused} {args.output} was not written.")
     print(
         f"\nwrote {args.output}\nnext: twin compare VOYAGE.mcap --ship {args.output} --report compare.html",
         file=page,

@@ -25,6 +25,7 @@ STEP_S = 0.2
 FEWEST = 12  # windows that do not overlap
 SEEN = 0.1  # share of an axis' motion that thrust must explain to tell anything of it
 LEAD = 10.0  # log likelihood ratio that proves another wiring than the recorded one
+MORE = 0.15  # of an axis' motion that the other wiring must explain more: models of hulls are off by less
 RIVAL = 5.0  # and to the next that is not the same, or needs fewer mistakes
 ALIKE = 0.02  # share of the force by which two wirings that mean the same may differ
 
@@ -57,7 +58,8 @@ def actuators(view: VoyageView) -> Check:
         return cannot_tell(name, "it hardly moves under thrust that changes.")
     as_is = next(t for t in tried if t.wiring.text == RIGHT)
     best = max(tried, key=lambda t: t.total - RIVAL * max(t.wiring.mistakes - 1, 0))
-    if best is as_is or best.total - as_is.total < RIVAL:
+    more = np.nan_to_num(best.share - as_is.share).max()
+    if best is as_is or best.total - as_is.total < RIVAL or more < MORE:
         return good(name, f"thrust explains {_shares(as_is)}, as the ship file has its actuators.")
     return _judged(name, best, as_is, tried)
 
