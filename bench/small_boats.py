@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from twin import whole
 from twin.physics.actuators import Actuator
 from twin.physics.particulars import Ship
 from twin.physics.ship import load
@@ -23,18 +24,25 @@ from twin.recording.checks.view import VoyageView
 from twin.recording.voyage import Voyage
 
 STEP_S, SAMPLE = 0.05, 4  # integrated so finely, recorded every fourth step
-LENGTH_M, MASS_KG = 3.0, 180.0
-THRUST_N = 150.0
+LENGTH_M, MASS_KG, THRUST_N = 3.0, 180.0, 150.0
+SMALL = 0.4  # of these: the electric catamaran with two thrusters
 Columns = dict[str, np.ndarray]
 AZIMUTHS = (("bow_p", 1.1, -0.5), ("bow_s", 1.1, 0.5), ("stern_p", -1.1, -0.5), ("stern_s", -1.1, 0.5))
+
+
+def scale(kind: str) -> float:
+    """Its length over LENGTH_M."""
+    return SMALL if kind == "thrusters" else 1.0
 
 
 def parts(kind: str) -> tuple[Actuator, ...]:
     """The actuators of a kind of boat, as its owner writes them down."""
 
+    k = scale(kind)
+
     def one(name: str, what: str, channels: tuple[str, ...], x: float, y: float) -> Actuator:
-        numbers = {"ahead": THRUST_N, "astern": 0.6 * THRUST_N}
-        return Actuator(name, what, channels, x=x, y=y, **numbers)
+        numbers = {"ahead": THRUST_N * k**2, "astern": 0.6 * THRUST_N * k**2}
+        return Actuator(name, what, channels, x=k * x, y=k * y, **numbers)
 
     pwm, turned = ("pwm_us",), ("command", "angle_deg")
     sides = (("port", -0.6), ("starboard", 0.6))
@@ -53,17 +61,20 @@ KINDS = ("thrusters", "screws and bow thruster", "outboards", "azimuths")
 
 
 def ship_of(kind: str) -> Ship:
-    base = load("usv")
+    base, k = load("usv"), scale(kind)
+    inertia = MASS_KG * 0.06 * LENGTH_M**2 * k**5
     return replace(
-        base, L_pp=LENGTH_M, B=1.4, T=0.25, m=MASS_KG, I_z=MASS_KG * 0.06 * LENGTH_M**2, U_0=2.0,
+        base, L_pp=k * LENGTH_M, B=k * 1.4, T=k * 0.25, m=MASS_KG * k**3, I_z=inertia, U_0=2.0,
         actuators=parts(kind),
     )  # fmt: skip
 
 
-def sailed(kind: str, seed: int, duration_s: float = 240.0) -> Voyage:
-    """One boat, drawn by its seed, under orders that nobody planned: straight, turning, stopping."""
+def sailed(kind: str, seed: int, duration_s: float = 240.0, boat_seed: int | None = None) -> Voyage:
+    """One boat under orders that nobody planned: straight, turning, stopping. `boat_seed`: the same boat on
+    voyages of several seeds."""
     rng = np.random.default_rng([seed, KINDS.index(kind)])
-    boat, order = _Boat(kind, rng), _orders(kind, rng, round(duration_s / STEP_S))
+    drawn = rng if boat_seed is None else np.random.default_rng([boat_seed, KINDS.index(kind), 7])
+    boat, order = _Boat(kind, drawn, rng), _orders(kind, rng, round(duration_s / STEP_S))
     rows = [boat.step({n: x[k] for n, x in order.items()}) for k in range(round(duration_s / STEP_S))]
     x, y, psi, u, v, r = np.array(rows)[::SAMPLE].T
     n = x.size
@@ -113,16 +124,17 @@ class _Boat:
     """Its own equations: mass and added mass, linear and quadratic drag, a thrust curve of some power between
     1 and 2, a lag, gusts."""
 
-    def __init__(self, kind: str, rng: np.random.Generator):
-        self.parts, self.rng = parts(kind), rng
-        self.mass = MASS_KG * np.array([rng.uniform(1.05, 1.2), rng.uniform(1.4, 2.0)])
-        self.inertia = MASS_KG * (0.25 * LENGTH_M) ** 2 * rng.uniform(1.2, 1.8)
-        self.drag = np.array([25.0, 90.0, 60.0]) * rng.uniform(0.6, 1.5, 3)
-        self.linear = np.array([10.0, 30.0, 20.0]) * rng.uniform(0.3, 1.5, 3)
+    def __init__(self, kind: str, rng: np.random.Generator, gusts: np.random.Generator):
+        k = scale(kind)
+        self.parts, self.rng, self.full = parts(kind), gusts, THRUST_N * k**2
+        self.mass = MASS_KG * k**3 * np.array([rng.uniform(1.05, 1.2), rng.uniform(1.4, 2.0)])
+        self.inertia = MASS_KG * (0.25 * LENGTH_M) ** 2 * k**5 * rng.uniform(1.2, 1.8)
+        self.drag = np.array([25.0 * k**2, 90.0 * k**2, 60.0 * k**3]) * rng.uniform(0.6, 1.5, 3)
+        self.linear = np.array([10.0 * k**2, 30.0 * k**2, 20.0 * k**3]) * rng.uniform(0.3, 1.5, 3)
         self.curve, self.lag = rng.uniform(1.0, 2.0), rng.uniform(0.1, 0.6)
         self.strength = {a.name: rng.uniform(0.7, 1.2) for a in self.parts}
         self.push = dict.fromkeys(self.strength, 0.0)
-        self.gust, self.wind = np.zeros(3), np.array([4.0, 6.0, 4.0]) * rng.uniform(0.0, 1.0)
+        self.gust, self.wind = np.zeros(3), np.array([2.0, 4.0, k]) * k**2 * rng.uniform(0.0, 0.25)
         self.state = np.zeros(6)
 
     def step(self, order: dict[str, float]) -> np.ndarray:
@@ -142,7 +154,7 @@ class _Boat:
     def _of(self, a: Actuator, order: dict[str, float]) -> np.ndarray:
         c = order[a.columns()[0]]
         c = (c - 1500.0) / 400.0 if "pwm" in a.attributes else c
-        full = THRUST_N * (1.0 if c > 0.0 else 0.6) * self.strength[a.name]
+        full = self.full * (1.0 if c > 0.0 else 0.6) * self.strength[a.name]
         self.push[a.name] += (
             STEP_S / self.lag * (full * np.sign(c) * abs(c) ** self.curve - self.push[a.name])
         )
@@ -210,11 +222,41 @@ def mistakes(seeds: int, first: int = 1000) -> list[dict[str, Any]]:
     return rows
 
 
+STOP_US = 1511.0  # of its controllers
+# column of a log, its channel, and the log's number of the channel's
+LOG: tuple[tuple[str, str, float, float], ...] = (
+    ("x_ned", "north_m", 1.0, 0.0), ("y_ned", "east_m", 1.0, 0.0),
+    ("yaw", "heading_true_north_deg", 1.0, 0.0),
+    ("surge", "surge_velocity_mps", 1.0, 0.0), ("sway", "sway_velocity_mps", 1.0, 0.0),
+    ("yaw_rate", "yaw_rate_degps", np.pi / 180.0, 0.0),
+    ("thr_right", "port.pwm_us", 1.0, 11.0), ("thr_left", "starboard.pwm_us", -1.0, 3011.0),
+)  # fmt: skip
+
+
+def log_of(seed: int, factor: float, path: str) -> None:
+    """A log of the small catamaran as its autopilot writes it: milliseconds, radians a second, one controller
+    wired in reverse, and the sides named as seen from ahead. `factor`: of what is recorded of starboard."""
+    v = sailed("thrusters", seed, boat_seed=0)
+    c = {n: k * v[channel] + add for n, channel, k, add in LOG}
+    c["thr_left"] = STOP_US + factor * (c["thr_left"] - STOP_US)
+    rows = np.column_stack([1000.0 * v.time_s, *c.values()])
+    text = ",".join(["original_timestamp", *c]) + "\n"
+    text += "".join(",".join(f"{x:.6g}" for x in row) + "\n" for row in rows.tolist())
+    whole.write(path, text, "--csv")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--csv", metavar="FILE", help="write the log of one small catamaran instead")
+    parser.add_argument("--seed", type=int, default=1, help="which one")
+    parser.add_argument(
+        "--scaled", type=float, default=1.0, help="its starboard thruster is recorded so much"
+    )
     parser.add_argument("--seeds", type=int, default=25, help="healthy boats of each kind")
     parser.add_argument("--planted", type=int, default=10, help="boats of each mistake")
     args = parser.parse_args()
+    if args.csv:
+        return log_of(args.seed, args.scaled, args.csv)
     json.dump({"healthy": healthy(args.seeds), "mistakes": mistakes(args.planted)}, sys.stdout, indent=1)
 
 

@@ -31,7 +31,8 @@ def test_every_bundled_ship_takes_energy_out_of_every_motion(name):
 
 def test_what_is_held_is_the_power_of_the_damping_itself():
     """Test: derivatives drawn about the bundled ship's, power at random motions without the linear terms.
-    Expected: where every half-space is kept, nothing feeds the motion; where many are left, something does."""
+    Expected: where every half-space is kept, next to nothing feeds the motion (between two directions a
+        hundredth); without them much does."""
     ship = load("usv")
     unknowns = unknowns_of(ship)
     spaces = half_spaces(ship, unknowns)
@@ -39,13 +40,14 @@ def test_what_is_held_is_the_power_of_the_damping_itself():
     motion = rng.uniform(-1.0, 1.0, (3, 400)) * np.array(
         [[1.5 * ship.U_0], [ship.U_0], [ship.U_0 / ship.L_pp]]
     )
-    drawn = rng.standard_normal((60, len(unknowns)))
-    kept = [within(z, np.eye(len(unknowns)), -9.0 + 0 * z, 9.0 + 0 * z, *spaces) for z in 4.0 * drawn]
-    fed = [power(with_z(ship, unknowns, z), *motion).min() for z in 4.0 * drawn]
-    assert min(fed) < 0.0
+    drawn = 3.0 * rng.standard_normal((60, len(unknowns)))
+    kept = [within(z, np.eye(len(unknowns)), -9.0 + 0 * z, 9.0 + 0 * z, *spaces) for z in drawn]
+    fed = [power(with_z(ship, unknowns, z), *motion).min() for z in drawn]
+    assert np.mean([x < 0.0 for x in fed]) > 0.8
     linear = {"X_u": 0.0, "Y_v": 0.0, "N_r": 0.0}
     left = [power(with_z(ship, unknowns, z).with_derivatives(**linear), *motion) for z in kept]
-    assert all(p.min() > 0.0 for p in left)
+    assert all(p.min() > -0.01 * p.max() for p in left)
+    assert np.mean([(p < 0.0).mean() for p in left]) < 0.002
 
 
 def test_a_tenth_of_the_first_models_damping_is_kept_in_the_direction_that_data_would_turn_round():

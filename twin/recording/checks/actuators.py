@@ -25,7 +25,9 @@ STEP_S = 0.2
 FEWEST = 12  # windows that do not overlap
 SEEN = 0.1  # share of an axis' motion that thrust must explain to tell anything of it
 LEAD = 10.0  # log likelihood ratio that proves another wiring than the recorded one
-MORE = 0.15  # of an axis' motion that the other wiring must explain more: models of hulls are off by less
+# models of hulls are off by less: of an axis' motion, what the other wiring must explain more, or the most
+# that it may leave of what is not explained as recorded; to be believed, and to be told
+PROOF, HINT = (0.15, 0.6), (0.1, 0.75)
 RIVAL = 5.0  # and to the next that is not the same, or needs fewer mistakes
 ALIKE = 0.02  # share of the force by which two wirings that mean the same may differ
 
@@ -58,8 +60,7 @@ def actuators(view: VoyageView) -> Check:
         return cannot_tell(name, "it hardly moves under thrust that changes.")
     as_is = next(t for t in tried if t.wiring.text == RIGHT)
     best = max(tried, key=lambda t: t.total - RIVAL * max(t.wiring.mistakes - 1, 0))
-    more = np.nan_to_num(best.share - as_is.share).max()
-    if best is as_is or best.total - as_is.total < RIVAL or more < MORE:
+    if best is as_is or best.total - as_is.total < RIVAL or not _better(best, as_is, HINT):
         return good(name, f"thrust explains {_shares(as_is)}, as the ship file has its actuators.")
     return _judged(name, best, as_is, tried)
 
@@ -73,9 +74,15 @@ def _judged(name: str, best: TriedWiring, as_is: TriedWiring, tried: list[TriedW
     )
     sides = " (or exchange their x_m and y_m in the ship file)" * ("exchange" in best.wiring.fix)
     fix = f"In the map: {best.wiring.fix}{sides}"
-    if best.total - as_is.total >= LEAD and best.total - rival.total >= RIVAL:
+    if best.total - max(as_is.total, rival.total) >= LEAD and _better(best, as_is, PROOF):
         return wrong(name, f"{saw}: {best.wiring.text}, that is believed. {fix}.")
     return doubtful(name, f"{saw}. Not proved: more turning under thrust would tell. {fix}.")
+
+
+def _better(a: TriedWiring, b: TriedWiring, by: tuple[float, float]) -> bool:
+    """Whether one explains so much more of an axis than the other."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return bool(np.any((a.share - b.share >= by[0]) | ((1.0 - a.share) / (1.0 - b.share) <= by[1])))
 
 
 def _shares(t: TriedWiring) -> str:

@@ -4,7 +4,8 @@
     E(nu) = -1/2 (Y_vdot v^2 + (Y_rdot + N_vdot) v r + N_rdot r^2) >= KEPT E_first(nu)    energy of the water
 
 in every direction of nu = (u, v, r), where `first` is the model that the priors are centred on. Both are
-linear in the derivatives, so that each direction is one half-space of them. Added mass and rigid body do no
+linear in the derivatives, so that each direction is one half-space of them; what lies between two directions
+may feed a hundredth of what they take. Added mass and rigid body do no
 work in C(nu), so a hull that keeps to P > 0 stays bounded whatever bounded force drives it. Short voyages
 leave directions open in which the ship never moved; without this a fit takes what sign it likes there and
 the model runs away.
@@ -24,7 +25,7 @@ from twin.study.estimation.columns import Unknown
 
 KEPT = 0.1  # least share of the first model's damping, and of its added mass, that a fit may leave
 FASTEST = 1.5  # of service speed: up to here resistance that grows faster than quadratic must not push
-PER_EDGE = 9  # directions along each edge of the cube that they are taken from
+PER_EDGE = 13  # directions along each edge of the cube that they are taken from
 LINEAR = ("X_u", "Y_v", "N_r")  # never positive by their boxes, and small where the others are large
 OF_WATER = ("Y_vdot", "Y_rdot", "N_vdot", "N_rdot")
 OF_DAMPING = tuple(
