@@ -13,6 +13,7 @@ from twin.study.calibration.calibrate import calibrate as fit_core
 from twin.study.calibration.calibrate import told
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.held_out import LAST, split
+from twin.study.calibration.worse import refusal
 from twin.study.reference.sailed import Sailed, sailed
 
 if TYPE_CHECKING:
@@ -21,9 +22,20 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, repr=False)
 class Calibration(Result):
-    """`ship`: calibrated. Its rows are the derivatives: before, after, standard error, whether excited."""
+    """`ship`: calibrated, or as it was where that made it worse (`accepted`, `refused`). Its rows are the
+    derivatives: before, after, standard error, whether excited."""
 
     ship: Ship
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the open-loop error on what was not used for the fit did not grow."""
+        return bool(self.data["accepted"])
+
+    @property
+    def refused(self) -> str:
+        """Why the uncalibrated numbers are kept, and what to sail; "" where they are not."""
+        return str(self.data["refused"])
 
     @property
     def errors(self) -> "pandas.DataFrame":
@@ -65,8 +77,9 @@ def calibrate(
     """Fit the core to reference voyages (nothing wrong on them; calm, or with the wind recorded).
 
     `held_out`: voyages on which the error is measured; without any the last third is held back for that, and
-    the ship that is returned is then fitted to all. `progress(text)` is told every step. DataError when a
-    voyage cannot be used. Seconds to minutes.
+    the ship that is returned is then fitted to all. Where that error grew, the ship is returned as it was and
+    `refused` says why. `progress(text)` is told every step. DataError when a voyage cannot be used. Seconds
+    to minutes.
     """
     every = [sailed(v, ship) for v in several(voyages)]
     return of_sailed(ship, every, [sailed(v, ship) for v in several(held_out)], quietly(progress))
@@ -76,10 +89,12 @@ def of_sailed(ship: Ship, every: list[Sailed], kept: list[Sailed], tell: Progres
     """The same of voyages that are read already."""
     fitted, held, words = split(every, kept)
     done = fit_core(fitted, held, ship, tell)
-    if words == LAST:
+    why = refusal(ship, done.result["held_out"], done.result["unexcited"])
+    if words == LAST and not why:
         tell("once more, with every voyage")
         done = fit_core(every, held, ship, tell, done.result["fitted_by"]).with_errors_of(done)
     r = done.result
     found = doubts(r["derivatives"], r["held_out"], r["floor"]["share"], r["usual"], r["between_voyages"])
     checks = of_voyages([s.voyage for s in (*every, *kept)], ship)
-    return Calibration(done.ship, data=r | {"held_out_is": words, "doubts": found, "data_checks": checks})
+    said = {"held_out_is": words, "doubts": found, "accepted": not why, "refused": why, "data_checks": checks}
+    return Calibration(ship if why else done.ship, data=r | said)

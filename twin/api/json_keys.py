@@ -214,6 +214,8 @@ CALIBRATE = (
     JsonKey("by_regime[].windows", "-", "how many predictions"),
     JsonKey("by_regime[].position_m", "m", "open-loop error in place"),
     JsonKey("doubts[]", "", "what is doubtful about this calibration, to be acted on", "there is some"),
+    JsonKey("accepted", "", "whether the error on what was not used did not grow; else no file is written"),
+    JsonKey("refused", "", "why not, and what to sail; empty where it is accepted"),
     *CHECKS,
     *COMMAND,
 )

@@ -2,10 +2,12 @@
 unexplained."""
 
 import argparse
+import sys
 
 from twin import whole
 from twin.api.calibration import of_sailed
 from twin.commands.answer import lines_to, progress
+from twin.errors import ThresholdError
 from twin.physics.ship import load
 from twin.recording.import_voyage import write_json
 from twin.recording.ship_file import save
@@ -15,8 +17,8 @@ EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weath
 zigzags, circles, speed changes.
 Without --held-out the last third of the voyages (or of a single voyage) is held back to measure the error.
 The standard errors, and the structural error that remains, are stored in the ship file: they keep an
-imperfect model from being called a missing effect. Exit code 4: a voyage cannot be used; 5: the ship file is
-not valid.
+imperfect model from being called a missing effect. Exit code 3: the error on what was not used for the fit
+grew, so that no ship file is written; 4: a voyage cannot be used; 5: the ship file is not valid.
 """
 
 
@@ -49,9 +51,13 @@ def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
     every = read_all(args.voyages, ship)
     found = of_sailed(ship, every, read_all(args.held_out, ship), progress)
-    save(found.ship, args.output, args.ship)
+    if found.accepted:
+        save(found.ship, args.output, args.ship)
     if args.json:
-        write_json(found.to_dict() | {"output": str(args.output)}, args.json)
+        write_json(found.to_dict() | {"output": str(args.output) if found.accepted else None}, args.json)
+    if not found.accepted:
+        print("\n".join(found.text()), file=sys.stderr)
+        raise ThresholdError(f"{found.refused} {args.output} was not written.")
     compare = f"twin compare VOYAGE.mcap --ship {args.output} --report compare.html"
     print("\n".join([*found.text(), "", f"wrote {args.output}", f"next: {compare}"]), file=lines_to(args))
     return 0

@@ -87,15 +87,19 @@ def diagnose(asked: Asked, job: Path, tell: Tell) -> None:
     write_view(job, drawn, {"causes": causes, "forces": [force_view(t, model) for t in tracks]})
 
 
-def calibrate(asked: Asked, job: Path, tell: Tell) -> None:
+def calibrate(asked: Asked, job: Path, tell: Tell) -> str | None:
     _not_there(asked["output"])
     ship = load(asked["ship"])
     every = _read([*asked["voyages"], *asked.get("held_outs", [])], asked["ship"], tell)
     used = len(asked["voyages"])
     done = calibration.of_sailed(ship, every[:used], every[used:], tell)
-    save(done.ship, asked["output"], asked["ship"])
-    write_result(job, "result.json", done.to_dict() | {"output": asked["output"]})
-    write_result(job, "view.json", {"difference": difference(asked["ship"], asked["output"])})
+    if done.accepted:
+        save(done.ship, asked["output"], asked["ship"])
+    output = asked["output"] if done.accepted else None
+    write_result(job, "result.json", done.to_dict() | {"output": output})
+    changes = difference(asked["ship"], asked["output"]) if done.accepted else []
+    write_result(job, "view.json", {"difference": changes})
+    return None if done.accepted else f"{done.refused} {asked['output']} was not written."
 
 
 def add(asked: Asked, job: Path, tell: Tell) -> str | None:

@@ -71,7 +71,9 @@ def test_an_effect_of_nobody_is_refused_when_it_is_declared():
         type("Nobodys", (Force,), {"belongs_to": "sea"})
 
 
-def test_what_the_readings_alone_show_is_no_cause_of_a_diagnosis_unless_it_is_in_the_file_or_asked_for(make, kvlcc2):
+def test_what_the_readings_alone_show_is_no_cause_of_a_diagnosis_unless_it_is_in_the_file_or_asked_for(
+    make, kvlcc2
+):
     """Expected: neither candidate, nor not judged, nor a usual error of a calibration; `twin add` can ask."""
     kinematic = {e.__name__ for e in BUILT_IN if e.kinematic}
     assert kinematic == {"HeadingLag", "CompassDeviation", "ReceiverSmoothing"}

@@ -55,7 +55,11 @@ def test_a_perfect_model_is_said_to_be_no_worse_than_one_would_look(sailed, make
 
 @pytest.mark.parametrize(
     "off, said",
-    [((1.2, 3.0, 1.1), "60 s open-loop"), ((1.2, 3.0, 1.6), "120 s open-loop"), ((1.2, 1.4, 1.1), "120 s open-loop")],
+    [
+        ((1.2, 3.0, 1.1), "60 s open-loop"),
+        ((1.2, 3.0, 1.6), "120 s open-loop"),
+        ((1.2, 1.4, 1.1), "120 s open-loop"),
+    ],
 )
 def test_the_verdict_is_of_the_longest_horizon_or_of_the_one_that_stands_out(off, said):
     floor = {"position_mae_m": 2.0, "heading_mae_deg": 1.0, "of": "sensors and structure"}

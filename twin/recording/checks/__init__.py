@@ -10,6 +10,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from twin.physics.ship import Ship
+from twin.recording.checks.actuators import actuators
 from twin.recording.checks.answer import Check
 from twin.recording.checks.clock import clock_steps, control_gaps, time_gaps, time_stamps, whole_file
 from twin.recording.checks.compass import compass
@@ -20,6 +21,7 @@ from twin.recording.checks.propeller import propeller_rate
 from twin.recording.checks.rudder import rudder_sign, rudder_unit
 from twin.recording.checks.samples import frozen, missing_samples, plausible_values, spikes
 from twin.recording.checks.size import duration, ship_size
+from twin.recording.checks.standstill import actuator_zero
 from twin.recording.checks.steps import heading_steps
 from twin.recording.checks.turning import yaw_rate
 from twin.recording.checks.view import VoyageView
@@ -47,6 +49,8 @@ CHECKS: tuple[Callable[[VoyageView], Check], ...] = (
     rudder_sign,
     rudder_unit,
     propeller_rate,
+    actuators,
+    actuator_zero,
     speed_log,
     wind,
     ship_size,

@@ -19,6 +19,7 @@ OF_MOTION = (
     "rudder_sign",
     "rudder_unit",
     "propeller_rate",
+    "actuators",
     "speed_log",
     "wind",
 )
@@ -31,6 +32,7 @@ WITNESSES: dict[str, tuple[str, ...]] = {
     "speed_log": ("place", "course"),
     "wind": ("turning", "course"),
     "rudder_unit": ("turning",),
+    "actuators": ("turning", "place"),
 }
 Checks = Sequence[Callable[[VoyageView], Check]]
 

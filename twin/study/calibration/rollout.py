@@ -5,8 +5,8 @@ A filter's innovations tell the fast part of a motion from the noise to any prec
 sensor's timing or the form of a force is a little off, the derivatives that explain it best one step ahead
 need not be the ones that lead the ship to the right place. What the twin promises is the place. So from the
 innovations' answer, or from the first model where that predicts better, Gauss-Newton goes on with the errors
-after HORIZON ship lengths, under the same priors (output error, multiple shooting; Ljung 1999, sec. 7.2; Bock
-1983)."""
+after HORIZON ship lengths, or after SHORTEST_S where a boat sails these sooner, under the same priors (output
+error, multiple shooting; Ljung 1999, sec. 7.2; Bock 1983)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,13 +14,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.physics.model import Model
+from twin.study.estimation.box import within
 from twin.study.estimation.columns import Unknown, with_values
+from twin.study.estimation.dissipation import half_spaces
 from twin.study.estimation.fit import Catalogue
-from twin.study.prediction.openloop import coarse
+from twin.study.prediction.openloop import HORIZONS_S, coarse
 from twin.study.track.track import Track
 
 HORIZON, LEADS = 3.0, 3  # ship lengths ahead, looked at so often on the way
-STRIDE = 1.0  # ship lengths between the beginnings of two predictions
+SHORTEST_S = HORIZONS_S[0]  # a prediction is judged no sooner: three lengths of a boat are a second or two
+OVERLAP = 3.0  # of the time ahead over that between the beginnings of two predictions
 ROUNDS, TRIES = 2, 4
 SEEN = [0, 1, 2, 3]  # x, y, psi, u: what a prediction is judged by
 STEP = 0.1  # prior widths by which a derivative is changed to see what it does
@@ -42,6 +45,7 @@ class _PathProblem:
             np.array([u.sd for u in self.unknowns]),
         )
         self.box = (np.array([[u.lo, u.hi] for u in self.unknowns]).T - self.centre) / self.sd
+        self.hull = half_spaces(self.model.ship, self.unknowns)
         self.scale = np.ones(1)
 
     def values(self, z: np.ndarray) -> list[float]:
@@ -49,11 +53,11 @@ class _PathProblem:
 
     def off(self, z: np.ndarray) -> np.ndarray:
         """(W, K, 4) errors of all predictions, zero where nothing was measured."""
-        time = float(self.model.ship.scale("time"))
+        ahead = max(HORIZON * float(self.model.ship.scale("time")), SHORTEST_S)
         model = with_values(self.model, self.unknowns, self.values(z), self.catalogue)
         parts = []
         for t in self.tracks:
-            off = coarse(t, model.without_inputs(t.missing())[0], HORIZON * time, LEADS, STRIDE * time).off()
+            off = coarse(t, model.without_inputs(t.missing())[0], ahead, LEADS, ahead / OVERLAP).off()
             parts.append(np.nan_to_num(off[..., SEEN]).transpose(1, 0, 2))
         return np.concatenate(parts)
 
@@ -61,7 +65,7 @@ class _PathProblem:
         """Sets the usual size of an error, by lead and channel, as it is at z; neighbouring predictions share
         most of theirs."""
         usual = 1.4826 * np.median(np.abs(self.off(z)), axis=0)
-        self.scale = np.maximum(usual, 1e-9) * np.sqrt(len(SEEN) * LEADS * HORIZON / STRIDE)
+        self.scale = np.maximum(usual, 1e-9) * np.sqrt(len(SEEN) * LEADS * OVERLAP)
 
     def residual(self, z: np.ndarray) -> np.ndarray:
         """One error in units of its usual size; what is far off counts as eight times that, no more."""
@@ -91,7 +95,8 @@ def rolled_out(
 
 
 def _descend(problem: _PathProblem, z: np.ndarray) -> tuple[np.ndarray, float]:
-    """One step of Levenberg and Marquardt, inside the boxes; z itself when no step is better."""
+    """One step of Levenberg and Marquardt, inside the boxes and the half-spaces of a hull that dissipates; z
+    itself when no step is better."""
     r = problem.residual(z)
     best = problem.cost(r, z)
     J = np.empty((r.size, z.size))
@@ -101,7 +106,8 @@ def _descend(problem: _PathProblem, z: np.ndarray) -> tuple[np.ndarray, float]:
         J[:, j] = (problem.residual(z + step) - r) / step[j]
     JJ, pull = J.T @ J + np.eye(z.size), J.T @ r + z
     for damping in np.geomspace(0.01, 100.0, TRIES):
-        new = np.clip(z - np.linalg.solve(JJ + damping * np.diag(np.diag(JJ)), pull), *problem.box)
+        H = np.linalg.inv(JJ + damping * np.diag(np.diag(JJ)))
+        new = within(z - H @ pull, H, *problem.box, *problem.hull)
         cost = problem.cost(problem.residual(new), new)
         if cost < best:
             return new, cost

@@ -12,8 +12,9 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-from twin.study.estimation.box import stopped
+from twin.study.estimation.box import within
 from twin.study.estimation.columns import LATE, Unknown, with_values
+from twin.study.estimation.dissipation import HalfSpaces, half_spaces
 from twin.study.estimation.innovations import Floor, Linear, Normal, innovate, linearise
 from twin.study.track.track import Track
 
@@ -56,10 +57,11 @@ def fit(
 ) -> Fit:  # fmt: skip
     """The most probable values of the unknowns, given the tracks and their priors, after at most STEPS steps.
 
-    Each goes to where the equations at the last place are most probable, inside the boxes and no further than
-    they were found to hold: a step that kept its promise lets the next one go twice as far, one that did not
-    is not taken but made shorter (trust region; Nocedal & Wright 2006, sec. 4.1), so that a fit of many
-    numbers that is begun far off does not end in a corner of their boxes; the last one is not judged.
+    Each goes to where the equations at the last place are most probable, inside the boxes, where the hull
+    takes energy out of every motion (dissipation.py), and no further than they were found to hold: a step
+    that kept its promise lets the next one go twice as far, one that did not is not taken but made shorter
+    (trust region; Nocedal & Wright 2006, sec. 4.1), so that a fit of many numbers that is begun far off does
+    not end in a corner of their boxes; the last one is not judged.
     `smooth`: faults of instruments are judged along the smooth motion alone, as long as the core that the
         filter follows is not found yet,
     and errs by more than they do."""
@@ -142,10 +144,14 @@ class _Problem:
             np.array([[u.lo for u in self.unknowns], [u.hi for u in self.unknowns]]) - self.centre
         ) / self.sd
 
+    @cached_property
+    def hull(self) -> HalfSpaces:
+        """Where the damping takes energy out of every motion."""
+        return half_spaces(self.model.ship, self.unknowns)
+
     def start(self) -> np.ndarray:
-        return np.clip(
-            (np.array([_present(self.model, u) for u in self.unknowns]) - self.centre) / self.sd, *self.box
-        )
+        here = (np.array([_present(self.model, u) for u in self.unknowns]) - self.centre) / self.sd
+        return within(here, np.eye(here.size), *self.box, *self.hull)
 
     def values(self, z: np.ndarray) -> np.ndarray:
         return np.clip(
@@ -164,10 +170,11 @@ class _Problem:
     def better(self, here: _Here, far: float) -> tuple[np.ndarray, float]:
         """A more probable place (or one that is as good as here), and how far the step after it may go."""
         while True:
-            z, _ = stopped(
+            z = within(
                 here.z + here.covariance @ here.pull,
                 here.covariance,
                 *np.clip(self.box, here.z - far, here.z + far),
+                *self.hull,
             )
             if here.as_good_as(z):
                 return z, far

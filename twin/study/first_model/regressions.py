@@ -116,15 +116,23 @@ def service_speed(L: float, C_b: float) -> float:
     return min(0.34, max(0.13, (1.08 - C_b) / 1.68)) * (9.80665 * L) ** 0.5
 
 
+# of L: the water that swaying sets in motion has its centre no farther from midship. The regression's is
+# farther out on beamy hulls, where the energy of that water would be negative
+FARTHEST_WATER = 0.1
+
+
 def added_masses(h: HullForm) -> Estimates:
     """Added masses in prime form; the two couplings of sway and yaw are made equal (their mean), as potential
     flow has them."""
     aspect = pi * h.T / h.L  # pi (T/L)^2 over T/L, since we divide by T instead of L
     B_L, B_T = h.B / h.L, h.B / h.T
+    sway = 1.0 + 0.16 * h.C_b * B_T - 5.1 * B_L**2
+    farthest = FARTHEST_WATER * sway
     coupled = 0.5 * (0.67 * B_L - 0.0033 * B_T**2 + 1.1 * B_L - 0.041 * B_T)
+    coupled = min(farthest, max(-farthest, coupled))
     return {
         "X_udot": (-2.7 * h.volume ** (5.0 / 3.0) / h.L**2 / (0.5 * h.L**2 * h.T), "SOE82"),
-        "Y_vdot": (-aspect * (1.0 + 0.16 * h.C_b * B_T - 5.1 * B_L**2), "CGH83"),
+        "Y_vdot": (-aspect * sway, "CGH83"),
         "Y_rdot": (-aspect * coupled, "CGH83"),
         "N_vdot": (-aspect * coupled, "CGH83"),
         "N_rdot": (-aspect * max(0.03, 1.0 / 12.0 + 0.017 * h.C_b * B_T - 0.33 * B_L), "CGH83"),

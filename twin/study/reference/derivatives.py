@@ -5,8 +5,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from twin.physics.ship import Ship
+from twin.study.estimation.box import within
 from twin.study.estimation.columns import Unknown
+from twin.study.estimation.dissipation import half_spaces
 from twin.study.estimation.fit import Fit
 
 UNEXCITED = 0.1  # a derivative of whose prior variance the voyages took away less than this keeps its prior
@@ -30,9 +34,20 @@ class Derivative(NamedTuple):
 
 
 def told_by(found: Fit) -> list[Derivative]:
-    """Those among the fit's unknowns."""
+    """Those among the fit's unknowns; where those that keep their priors would leave the others with a hull
+    that does not dissipate, the others are the nearest with which it does."""
     rows = zip(found.unknowns, found.value.tolist(), found.sd.tolist(), found.gained.tolist(), strict=True)
-    return [Derivative(*row) for row in rows if row[0].owner == "core"]
+    told = [Derivative(*row) for row in rows if row[0].owner == "core"]
+    free = [d for d in told if d.excited]
+    if not free:
+        return told
+    kept = found.model.ship.with_derivatives(**{d.unknown.name: d.unknown.centre for d in told})
+    centre, prior, sd = np.array([(d.unknown.centre, d.unknown.sd, d.sd) for d in free]).T
+    z = (np.array([d.fitted for d in free]) - centre) / prior
+    box = (np.array([[d.unknown.lo, d.unknown.hi] for d in free]).T - centre) / prior
+    near = within(z, np.diag((sd / prior) ** 2), *box, *half_spaces(kept, [d.unknown for d in free]))
+    value = dict(zip((d.unknown.name for d in free), (centre + prior * near).tolist(), strict=True))
+    return [d._replace(fitted=value.get(d.unknown.name, d.fitted)) for d in told]
 
 
 def first_prior(unknown: Unknown, ship: Ship) -> Unknown:

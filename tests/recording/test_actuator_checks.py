@@ -1,0 +1,60 @@
+"""Sides, signs and zeros of actuators, on boats that share no equation with the twin."""
+
+from dataclasses import replace
+
+import pytest
+
+from bench.small_boats import KINDS, MISTAKES, healthy, sailed, ship_of
+from twin.recording.checks import run_checks
+from twin.recording.checks.actuators import actuators
+from twin.recording.checks.standstill import actuator_zero
+from twin.recording.checks.view import VoyageView
+
+SEED = 4242
+
+
+def answer(voyage, ship):
+    return actuators(VoyageView(voyage, ship))
+
+
+def test_on_healthy_boats_of_every_kind_nothing_is_proved():
+    found = healthy(1)
+    assert found["voyages"] == len(KINDS) and found["proved"] == [] and found["looks"] == []
+
+
+@pytest.mark.parametrize(
+    ("kind", "what", "plant", "words"), MISTAKES, ids=[f"{m[0]}: {m[1]}" for m in MISTAKES]
+)
+def test_a_mistake_of_the_wiring_is_named_and_undone(kind, what, plant, words):
+    """Expected: proved, named in the first words, and the same mistake once more (its own remedy, but for a
+    zero of an angle) gives a voyage with which nothing is wrong."""
+    right = sailed(kind, SEED)
+    wrong = replace(right, columns=plant(dict(right.columns)))
+    found = answer(wrong, ship_of(kind))
+    assert found.unusable and f"{words}, that is believed" in found.text
+    if "90 deg" not in what:
+        assert answer(replace(wrong, columns=plant(dict(wrong.columns))), ship_of(kind)).ok
+
+
+def test_exchanged_sides_are_told_once_by_the_check_they_belong_to():
+    right = sailed("thrusters", SEED)
+    plant = next(m[2] for m in MISTAKES if m[:2] == ("thrusters", "sides exchanged"))
+    found = run_checks(replace(right, columns=plant(dict(right.columns))), ship_of("thrusters"))
+    assert [c.name for c in found if c.unusable] == ["actuators"]
+
+
+def test_a_stop_at_another_pulse_is_read_from_where_the_boat_lies_still():
+    """Test: the record of both thrusters 16 us too high; they stand still at 1516. Expected: zero = 0.04,
+    and nothing on the boat whose file has it."""
+    right, ship = sailed("thrusters", SEED), ship_of("thrusters")
+    ship = replace(ship, actuators=tuple(replace(a, linear=1.0) for a in ship.actuators))
+    moved = replace(right, columns={n: x + 16.0 * n.endswith("pwm_us") for n, x in right.columns.items()})
+    found = actuator_zero(VoyageView(moved, ship))
+    assert not found.ok and "zero = 0.04 for port, 0.04 for starboard" in found.text
+    mended = ship.with_derivatives(**{"port.zero": 0.04, "starboard.zero": 0.04})
+    assert actuator_zero(VoyageView(moved, mended)).ok
+
+
+def test_without_a_ship_file_with_actuators_it_says_what_it_needs():
+    found = answer(sailed("thrusters", SEED), None)
+    assert found.ok and not found.told and "--ship" in found.text

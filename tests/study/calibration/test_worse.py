@@ -1,0 +1,36 @@
+"""A calibration that made its ship worse is not written, and says what to sail."""
+
+from twin.physics.ship import load
+from twin.study.calibration.worse import refusal
+
+USV = load("usv")
+
+
+def entry(horizon_s, before_m, position_m, before_deg=4.0, heading_deg=3.0):
+    return {
+        "horizon_s": horizon_s, "windows": 20, "before_m": before_m, "position_m": position_m,
+        "before_deg": before_deg, "heading_deg": heading_deg,
+    }  # fmt: skip
+
+
+def test_an_error_that_fell_is_accepted():
+    assert refusal(USV, [entry(10.0, 2.0, 1.0), entry(60.0, 9.0, 6.0)], ["Y_vv"]) == ""
+
+
+def test_an_error_that_grew_names_its_horizon_before_and_after_and_the_manoeuvres():
+    told = refusal(USV, [entry(10.0, 2.0, 2.1), entry(60.0, 9.0, 30.0, 4.0, 12.0)], ["X_uu", "port.gain"])
+    assert "after 60 s" in told and "9 m" in told and "30 m" in told and "12 deg" in told
+    assert "speed changes" in told and "one actuator works alone" in told and "zigzags" not in told
+
+
+def test_a_model_that_runs_away_is_refused_though_most_numbers_fell():
+    told = refusal(USV, [entry(10.0, 2.0, 0.5, 9.0, 1.0), entry(120.0, 40.0, 4.4e5, 90.0, 60.0)], ["Y_vv"])
+    assert "runs away" in told and "440 km" in told and "zigzags" in told
+
+
+def test_a_little_more_at_one_horizon_is_no_reason():
+    assert refusal(USV, [entry(10.0, 1.0, 1.02), entry(60.0, 9.0, 6.0)], []) == ""
+
+
+def test_where_nothing_could_be_judged_nothing_is_refused():
+    assert refusal(USV, [entry(10.0, 2.0, 9.0) | {"windows": 0}], []) == ""

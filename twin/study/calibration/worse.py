@@ -1,0 +1,68 @@
+"""Whether a calibration made its ship's model worse, and what to sail then.
+
+A calibrated ship file is written only when its open-loop error on what was not used for the fit did not
+grow: a fit to short or one-sided voyages may explain them and lead the ship astray everywhere else."""
+
+from collections.abc import Mapping, Sequence
+from math import log
+from typing import Any
+
+from twin.num import num
+from twin.physics.particulars import Ship
+
+GREW = 0.05  # mean logarithm of the errors in place and heading over all horizons, from which they grew
+FASTEST = 3.0  # times service speed: a model that gets farther off than that ran away
+# what excites derivatives whose names begin so
+MANOEUVRES = (
+    (("X_",), "speed changes from stop to full and back"),
+    (("Y_", "N_"), "zigzags and full turns to both sides at two speeds"),
+    (("",), "stretches on which one actuator works alone"),
+)
+
+
+def refusal(ship: Ship, held_out: Sequence[Mapping[str, Any]], unexcited: Sequence[str]) -> str:
+    """Why the uncalibrated numbers are kept: which horizon, before and after, and what to sail; "" when the
+    error did not grow. `held_out`: entries of --json."""
+    judged = [e for e in held_out if e["windows"] and e["position_m"] is not None]
+    if not judged:
+        return ""
+    away = [e for e in judged if ran_away(ship, e)]
+    if not away and growth(judged) <= GREW:
+        return ""
+    e = max(away or judged, key=lambda e: e["position_m"] / max(e["before_m"], 1e-9))
+    what = "runs away" if away else "is worse than the one it began from"
+    before = f"{_far(e['before_m'])} and {num(e['before_deg'], 3)} deg"
+    after = f"{_far(e['position_m'])} and {num(e['heading_deg'], 3)} deg"
+    return (
+        f"the calibrated model {what}: after {e['horizon_s']:.0f} s it is {before} off before and {after} "
+        "after, on what was not used for the fit. The uncalibrated numbers are kept. Give longer reference "
+        f"voyages on which nothing is wrong, with {to_sail(unexcited)}."
+    )
+
+
+def ran_away(ship: Ship, entry: Mapping[str, Any]) -> bool:
+    """Whether the mean error is farther than the ship gets, and it was not before."""
+    reach = FASTEST * float(ship.U_0) * entry["horizon_s"]
+    return bool(entry["position_m"] > reach >= entry["before_m"])
+
+
+def growth(judged: Sequence[Mapping[str, Any]]) -> float:
+    """Mean logarithm of after over before, in place and heading over all horizons."""
+    names = (("position_m", "before_m"), ("heading_deg", "before_deg"))
+    pairs = [(e[a], e[b]) for e in judged for a, b in names]
+    return sum(log(max(a, 1e-9) / max(b, 1e-9)) for a, b in pairs) / len(pairs)
+
+
+def to_sail(unexcited: Sequence[str]) -> str:
+    """Manoeuvres that show what these voyages left open."""
+    out = list[str]()
+    for name in unexcited or ("X_", "Y_"):
+        own = name if "." not in name else "."
+        what = next(words for starts, words in MANOEUVRES if own.startswith(starts))
+        if what not in out:
+            out.append(what)
+    return " and ".join((", ".join(out[:-1]), out[-1])) if len(out) > 1 else out[0]
+
+
+def _far(metres: float) -> str:
+    return f"{num(metres, 3)} m" if metres < 1e4 else f"{num(metres / 1e3, 3)} km"

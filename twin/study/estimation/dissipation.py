@@ -1,0 +1,103 @@
+"""A hull in still water takes energy out of its own motion, whichever way it moves; so must a fitted one.
+
+    P(nu) = -(X_d u + Y_d v + N_d r) >= KEPT P_first(nu)          power that the damping takes out
+    E(nu) = -1/2 (Y_vdot v^2 + (Y_rdot + N_vdot) v r + N_rdot r^2) >= KEPT E_first(nu)    energy of the water
+
+in every direction of nu = (u, v, r), where `first` is the model that the priors are centred on. Both are
+linear in the derivatives, so that each direction is one half-space of them; what lies between two directions
+may feed a hundredth of what they take. Added mass and rigid body do no
+work in C(nu), so a hull that keeps to P > 0 stays bounded whatever bounded force drives it. Short voyages
+leave directions open in which the ship never moved; without this a fit takes what sign it likes there and
+the model runs away.
+
+Source: Fossen (2021) Handbook of Marine Craft, ch. 6: D(nu_r) > 0 and M_A = M_A^T > 0.
+"""
+
+from collections.abc import Sequence
+from dataclasses import fields, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from twin.physics import core
+from twin.physics.ship import Derivatives, Ship
+from twin.study.estimation.columns import Unknown
+
+KEPT = 0.1  # least share of the first model's damping, and of its added mass, that a fit may leave
+FASTEST = 1.5  # of service speed: up to here resistance that grows faster than quadratic must not push
+PER_EDGE = 13  # directions along each edge of the cube that they are taken from
+LINEAR = ("X_u", "Y_v", "N_r")  # never positive by their boxes, and small where the others are large
+OF_WATER = ("Y_vdot", "Y_rdot", "N_vdot", "N_rdot")
+OF_DAMPING = tuple(
+    f.name
+    for f in fields(Derivatives)
+    if f.name[:2] in ("X_", "Y_", "N_") and not f.name.endswith("dot") and f.name not in LINEAR
+)
+
+
+class HalfSpaces(NamedTuple):
+    """rows @ z >= least, z the unknowns in widths of their priors from their centres."""
+
+    rows: np.ndarray  # (C, P)
+    least: np.ndarray  # (C,)
+
+
+def half_spaces(ship: Ship, unknowns: Sequence[Unknown]) -> HalfSpaces:
+    """What the unknowns of a ship's core may not leave; none when none of them is of its damping or its added
+    mass."""
+    first = ship.with_derivatives(**{u.name: u.centre for u in unknowns if u.owner == "core"})
+    rows, at_first = [], []
+    for names, measure in ((OF_DAMPING, _damped), (OF_WATER, _energy)):
+        column = [j for j, u in enumerate(unknowns) if u.owner == "core" and u.name in names]
+        if not column:
+            continue
+        here = measure(first)
+        some = np.zeros((here.size, len(unknowns)))
+        for j in column:
+            u = unknowns[j]
+            some[:, j] = measure(first.with_derivatives(**{u.name: u.centre + u.sd})) - here
+        rows.append(some)
+        at_first.append(here)
+    if not rows:
+        return HalfSpaces(np.zeros((0, len(unknowns))), np.zeros(0))
+    power, slope = np.concatenate(at_first), np.concatenate(rows)
+    size = np.linalg.norm(slope, axis=1)
+    free = size > 1e-12 * max(size.max(), 1e-300)
+    least = KEPT * np.maximum(power, 0.0) - power
+    return HalfSpaces(slope[free] / size[free, None], least[free] / size[free])
+
+
+def power(ship: Ship, u: np.ndarray, v: np.ndarray, r: np.ndarray) -> np.ndarray:
+    """Power [W] that the hull's damping takes out of its motion at (u, v [m/s], r [rad/s])."""
+    X, Y, N = core.damping(u, v, r, ship.c)
+    return np.asarray(-(X * u + Y * v + N * r))
+
+
+def _damped(ship: Ship) -> np.ndarray:
+    """Power [W] without its linear part in every direction: of the quadratic part alone, and as fast as
+    FASTEST with what grows faster."""
+    none = dict.fromkeys(LINEAR, 0.0)
+    fast = replace(ship, derivatives=replace(ship.derivatives, **none))
+    slow = replace(fast, derivatives=replace(fast.derivatives, X_uuu=0.0))
+    u, v, r = DIRECTIONS.T * FASTEST * float(ship.U_0)
+    return np.concatenate([power(s, u, v, r / float(ship.L_pp)) for s in (slow, fast)])
+
+
+def _energy(ship: Ship) -> np.ndarray:
+    """Energy [J] of the water that swaying and yawing set in motion, by direction."""
+    angle = np.linspace(0.0, np.pi, 4 * PER_EDGE, endpoint=False)
+    v, r = np.cos(angle), np.sin(angle) / float(ship.L_pp)
+    c = ship.c
+    return np.asarray(-0.5 * (c.Y_vdot * v * v + (c.Y_rdot + c.N_vdot) * v * r + c.N_rdot * r * r))
+
+
+def _directions() -> np.ndarray:
+    """(D, 3) evenly over the sides of a cube; of two that are mirrored (v, r) one."""
+    edge = np.linspace(-1.0, 1.0, PER_EDGE)
+    sides = np.array(np.meshgrid(edge, edge, edge, indexing="ij")).reshape(3, -1).T
+    sides = sides[np.abs(sides).max(1) == 1.0]
+    port = (sides[:, 1] < 0.0) | ((sides[:, 1] == 0.0) & (sides[:, 2] < 0.0))
+    return sides[~port]
+
+
+DIRECTIONS = _directions()
