@@ -12,6 +12,7 @@ Turns n give T = gain rho D^4 (K_T0 |n| n + K_T1 |n| u_a/D) [Fossen 2021, ch. 9]
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
 from twin.physics.number import number
@@ -61,7 +62,7 @@ class Actuator:
         """The same with some of its numbers changed."""
         return replace(self, **numbers)
 
-    @property
+    @cached_property
     def attributes(self) -> tuple[str, ...]:
         """What is recorded of it, as physics calls it."""
         from .channels import CHANNELS_OF
