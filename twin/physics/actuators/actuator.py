@@ -103,9 +103,18 @@ class Actuator:
     def force(self, told: Mapping[str, Number], u: Number, v: Number, r: Number, ship: "Ship") -> "Tau":
         """(X [N], Y [N], N [N m]) in body axes; `told`: what is recorded of all actuators, `name.attribute`
         in SI; (u, v, r): the ship through the water."""
+        return self._of_kind(self, told, u, v, r, ship)
+
+    @cached_property
+    def _of_kind(self) -> Any:
         from .kinds import KINDS
 
-        return KINDS[self.kind].force(self, told, u, v, r, ship)
+        return KINDS[self.kind].force
+
+    @cached_property
+    def keys(self) -> dict[str, str]:
+        """Under which name each attribute is told."""
+        return {attribute: f"{self.name}.{attribute}" for attribute in self.attributes}
 
 
 NUMBERS = {f.name: f for f in fields(Actuator) if f.metadata}
