@@ -1,6 +1,6 @@
 """python -m bench.boats -o boats.jsonl: the four craft of the reference sea, from a builder's sheet to a
-calibrated ship and to what is wrong with one of their actuators. A line of JSON a result, written as it comes;
-what the file holds already is not done again."""
+calibrated ship and to what is wrong with one of their actuators. A line of JSON a result, written as it
+comes; what the file holds already is not done again."""
 
 import argparse
 import json

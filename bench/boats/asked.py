@@ -1,6 +1,7 @@
-"""What is asked of each craft: reference voyages to calibrate on, voyages that the fit never saw, and a voyage
-for each fault of one actuator."""
+"""What is asked of each craft: reference voyages to calibrate on, voyages that the fit never saw, and a
+voyage for each fault of one actuator."""
 
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -15,8 +16,7 @@ from twin.recording.voyage import Voyage
 from twin.study.first_model.init import OPTIONS, first_model
 
 FITTED, UNSEEN, FAULTY = (11, 12, 13), (21, 22), 31  # seeds
-LENGTHS = 90.0  # L/U0 that a voyage lasts, and no less than 300 s
-HORIZONS_S = (10.0, 60.0, 120.0)
+LENGTHS, LEAST_S = 60.0, 150.0  # how long a voyage lasts: in L/U0, and at least
 Asked = tuple[
     str, tuple[tuple[str, float], ...], str
 ]  # what is put in, as the sea has it, who should be named
@@ -53,6 +53,10 @@ ASKED: dict[str, list[Asked]] = {
 }
 
 
+def say(text: str) -> None:
+    print(f"  {time.strftime('%H:%M:%S')} {text}", file=sys.stderr, flush=True)
+
+
 def from_sheet(name: str) -> Ship:
     """The first model that `twin init` makes of a builder's sheet."""
     craft = CRAFT[name]
@@ -63,7 +67,7 @@ def from_sheet(name: str) -> Ship:
 
 def voyage(name: str, seed: int, hidden: tuple[tuple[str, float], ...] = ()) -> Voyage:
     craft = CRAFT[name]
-    seconds = max(LENGTHS * craft.L / craft.U0, 300.0)
+    seconds = max(LENGTHS * craft.L / craft.U0, LEAST_S)
     columns = sail(BoatCase(name, "mixed", hidden, seed), seconds)
     return Voyage(f"{name} {seed}", columns.pop("time_s"), columns)
 
@@ -72,7 +76,7 @@ def calibrated(name: str) -> tuple[dict[str, Any], str]:
     """Errors on voyages that were not fitted, before and after; and the calibrated ship file."""
     begin, first = time.time(), from_sheet(name)
     unseen = [voyage(name, seed) for seed in UNSEEN]
-    found = twin.calibrate(first, [voyage(name, seed) for seed in FITTED], held_out=unseen)
+    found = twin.calibrate(first, [voyage(name, seed) for seed in FITTED], held_out=unseen, progress=say)
     numbers = {
         row["name"]: [row["before"], row["after"], row.get("sd")]
         for row in found.data["derivatives"]
@@ -93,7 +97,7 @@ def diagnosed(name: str, asked: Asked, ship_file: Path) -> dict[str, Any]:
     """What a diagnosis of one voyage says."""
     what, hidden, wanted = asked
     begin, ship = time.time(), load(ship_file)
-    found = twin.diagnose(ship, voyage(name, FAULTY, hidden))
+    found = twin.diagnose(ship, voyage(name, FAULTY, hidden), progress=say)
     shown = [dict(c) for c in found.data["candidates"][:4]]
     return {
         "craft": name,
