@@ -15,6 +15,7 @@ import sys
 import time
 from contextlib import suppress
 from math import inf, isfinite
+from typing import Any
 
 from google.protobuf.message import DecodeError
 
@@ -24,9 +25,10 @@ from twin.live.faulty import EVERYTHING, Faulty, Sample
 from twin.live.inject import KINDS, InjectedFault
 from twin.live.keelson import messages
 from twin.live.keelson.bus import Bus
-from twin.live.keelson.topics import BY_SUBJECT, address, is_own
+from twin.live.keelson.topics import OF_ACTUATORS, address, is_own, topic_of
 from twin.live.log.logfile import LogFile
 from twin.live.log.mcap_read import McapReader
+from twin.live.log.own_row import ROW, own_row
 
 OF_A_PROCESS = ("pause", "disk")
 STEP_S = 0.005  # how often the proxy looks for messages
@@ -124,12 +126,14 @@ def in_a_log(path: str, output: str, what: str, fault: InjectedFault) -> int:
     """A copy of a log with the fault in it, whole or not at all."""
     if os.path.realpath(path) == os.path.realpath(output):
         raise UsageError(f"-o {output}: is the log itself. Give another name.")
-    reader, faulty = McapReader(path), None
-    with LogFile(output) as log:
+    reader, faulty, own = McapReader(path), None, dict[str, Any]()
+    with LogFile(output, own) as log:
         for message in reader.messages():
             at_s = _at_s(message.type_name, message.data, message.log_ns)
             if faulty is None:
-                faulty = Faulty(what, fault._replace(start_s=at_s + fault.start_s))
+                own |= own_row(reader)
+                begins = fault._replace(start_s=at_s + fault.start_s)
+                faulty = Faulty(what, begins, own.get(ROW, messages.Row))
             for sample in faulty.feed(Sample(at_s, message.topic, message.type_name, message.data)):
                 shift_ns = round((sample.at_s - at_s) * 1e9) if sample.at_s > at_s else 0
                 log.add(
@@ -181,7 +185,9 @@ def proxy(args: argparse.Namespace, fault: InjectedFault) -> int:
     stop: list[int] = []
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda caught, _: stop.append(caught))
-    with ZenohBus(BusSettings(args.base, args.entity, args.listen, (args.connect,))) as bus:
+    between = ZenohBus(BusSettings(args.base, args.entity, args.listen, (args.connect,)))
+    between.listen_to(list(OF_ACTUATORS))
+    with between as bus:
         print(f"{args.listen} -> {args.connect}: {args.what} {fault.kind}. Stop it with Ctrl-C.", flush=True)
         began_s, faulty = time.monotonic(), None
         while not stop and time.monotonic() - began_s < args.duration:
@@ -199,7 +205,7 @@ def proxy(args: argparse.Namespace, fault: InjectedFault) -> int:
 
 def _pass_on(bus: Bus, faulty: Faulty, key: str, envelope: bytes, now_s: float) -> None:
     place = address(key)
-    topic = BY_SUBJECT.get(place.subject) if place else None
+    topic = topic_of(place) if place else None
     if place is None or topic is None or is_own(place.source):
         return
     try:

@@ -29,8 +29,8 @@ def hidden_in(craft: Craft, effects: tuple[tuple[str, float], ...]) -> dict[str,
         what, _, name = text.partition(".")
         if what not in USUAL or name not in states:
             raise ValueError(
-                f"{text!r} is nothing that a {craft.name} can hide: one of {', '.join(USUAL)}, a dot, and one "
-                f"of {', '.join(states)}."
+                f"{text!r} is nothing that a {craft.name} can hide: one of {', '.join(USUAL)}, a dot, and "
+                f"one of {', '.join(states)}."
             )
         _put(states[name], next(d for d in craft.drives if d.name == name), what, size)
     return states

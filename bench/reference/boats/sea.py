@@ -5,6 +5,7 @@ import math
 import random
 from collections import deque
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 
@@ -201,3 +202,11 @@ def sail(case: BoatCase, seconds: float, tick_s: float = 0.1) -> dict[str, np.nd
         rows.append(sea.readings())
         sea.step()
     return {name: np.array([row[name] for row in rows]) for name in columns_of(sea.craft)}
+
+
+def write_csv(columns: dict[str, np.ndarray], path: Path) -> None:
+    """The measured columns, empty where there was no sample."""
+    with open(path, "w") as out:
+        out.write(",".join(columns) + "\n")
+        for row in zip(*(x.tolist() for x in columns.values()), strict=True):
+            out.write(",".join("" if x != x else f"{x:.10g}" for x in row) + "\n")

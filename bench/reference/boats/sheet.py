@@ -45,12 +45,16 @@ def _rounded(x: float) -> float:
 
 def text(name: str) -> str:
     """The file that `twin init --actuators` reads."""
-    c = CRAFT[name]
-    options = " ".join(f"--{k} {v:g}" for k, v in particulars(c).items())
-    lines = [f"# {name}: twin init {name} {options} --actuators THIS.toml -o {name}.toml"]
-    for table in actuators(c):
+    lines = [f"# {name}, as its builder has it"]
+    for table in actuators(CRAFT[name]):
         lines += ["", "[[actuators]]", *(f"{k} = {_toml(v)}" for k, v in table.items())]
     return "\n".join(lines) + "\n"
+
+
+def command(name: str, file: str) -> str:
+    """The line that makes a first model of it."""
+    options = " ".join(f"--{k} {v:.10g}" for k, v in particulars(CRAFT[name]).items())
+    return f"twin init {name} {options} --actuators {file} -o {name}.toml"
 
 
 def particulars(c: Craft) -> dict[str, float]:
@@ -69,4 +73,4 @@ def particulars(c: Craft) -> dict[str, float]:
 def _toml(value: Any) -> str:
     if isinstance(value, list):
         return "[" + ", ".join(f'"{x}"' for x in value) + "]"
-    return f'"{value}"' if isinstance(value, str) else f"{value:g}"
+    return f'"{value}"' if isinstance(value, str) else f"{value:.10g}"

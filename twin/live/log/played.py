@@ -16,12 +16,12 @@ from google.protobuf.message import DecodeError
 from twin.errors import DataError
 from twin.live.keelson import messages
 from twin.live.keelson.decode import Decoder, Result, from_row
-from twin.live.keelson.schema import classes_from_set
 from twin.live.keelson.stamps import LATEST_S, YEAR_S
 from twin.live.keelson.topics import address, is_own, topic_of
 from twin.live.log.mcap_read import McapReader, Message
+from twin.live.log.own_row import ROW, own_row
 
-TICK, ROW = "shiptwin.Tick", "shiptwin.Row"
+TICK = "shiptwin.Tick"
 PEEK = 5000  # messages within which a log of the twin shows its first tick
 MAX_GAP_S = 60.0  # a longer hole in a foreign log is jumped over
 T = TypeVar("T", bound=tuple[Any, ...])
@@ -63,7 +63,7 @@ class PlayedLog:
             return self._in_order(self._as_ticked(whole))
         if ROW in types:
             self.kind = "an imported voyage"
-            self._rows_of_actuators()
+            self.classes |= own_row(self._reader)
             return self._on_grid(self._in_order(self._rows(whole)))
         if any(self._topic_type(message.topic) for message in first):
             self.kind = "a log of Keelson scalars"
@@ -144,15 +144,6 @@ class PlayedLog:
             if self._topic_type(message.topic):
                 time_s = message.log_ns * 1e-9
                 yield time_s, self.decoder.decode_stripped(message.topic, message.data, time_s), message
-
-    def _rows_of_actuators(self) -> None:
-        """The log's own schema of a row, where that has the channels of a ship's actuators."""
-        try:
-            (own,) = classes_from_set(self._reader.schemas[ROW], [ROW])
-        except (KeyError, TypeError, DecodeError):
-            return  # the rows are tried by the usual one
-        if any("." in messages.channel_name(field.name) for field in own.DESCRIPTOR.fields):
-            self.classes[ROW] = own
 
     def _topic_type(self, topic: str) -> str:
         """The message type of a logged input of the twin, "" for anything else."""
