@@ -16,7 +16,7 @@ from twin.recording.voyage import Voyage
 from twin.study.first_model.init import OPTIONS, first_model
 
 FITTED, UNSEEN, FAULTY = (11, 12, 13), (21, 22), 31  # seeds
-LENGTHS, LEAST_S = 60.0, 150.0  # how long a voyage lasts: in L/U0, and at least
+LENGTHS, LEAST_S = 45.0, 90.0  # how long a voyage lasts: in L/U0, and at least
 Asked = tuple[
     str, tuple[tuple[str, float], ...], str
 ]  # what is put in, as the sea has it, who should be named
@@ -77,11 +77,7 @@ def calibrated(name: str) -> tuple[dict[str, Any], str]:
     begin, first = time.time(), from_sheet(name)
     unseen = [voyage(name, seed) for seed in UNSEEN]
     found = twin.calibrate(first, [voyage(name, seed) for seed in FITTED], held_out=unseen, progress=say)
-    numbers = {
-        row["name"]: [row["before"], row["after"], row.get("sd")]
-        for row in found.data["derivatives"]
-        if "." in row["name"]
-    }
+    numbers = [dict(row) for row in found.data["derivatives"] if "." in row["name"]]
     row = {
         "craft": name,
         "what": "calibrate",
