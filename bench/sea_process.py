@@ -1,6 +1,7 @@
 """The reference sea as a process: a ship that sails in real time and whose instruments speak Keelson.
 
 twin-bench sea --hull usv --manoeuvre zigzag_20 --connect tcp/127.0.0.1:7447
+twin-bench sea --hull ferry4 --hidden worn.aft_port:0.18 --connect tcp/127.0.0.1:7447
 """
 
 import argparse
@@ -16,7 +17,12 @@ from pathlib import Path
 import zenoh
 
 from bench.reference import HULLS, WEATHERS, Case, Sea, simulate
+from bench.reference.boats import CRAFT, BoatCase, BoatSea, sail, sheet
+from bench.reference.boats.faults import USUAL, hidden_in
+from bench.reference.boats.helmsman import PLANS
+from bench.reference.boats.sea import write_csv
 from bench.reference.manoeuvres import MANOEUVRES
+from twin import whole
 from twin.cli import guarded
 from twin.errors import SettingsError, UsageError, did_you_mean
 from twin.live.keelson.messages import encode_fix, encode_float, wrap
@@ -33,15 +39,26 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--listen", default="", metavar="ENDPOINT", help="or where the sea listens")
     parser.add_argument("--base", default="twin", help="first part of the keys (default: twin)")
     parser.add_argument("--entity", default="ship", help="the ship's name in the keys (default: ship)")
-    parser.add_argument("--hull", default="usv", help=f"one of {', '.join(HULLS)} (default: usv, 2 m long)")
+    parser.add_argument(
+        "--hull",
+        default="usv",
+        help=f"one of {', '.join(HULLS)} (default: usv, 2 m long), or with several actuators "
+        f"{', '.join(CRAFT)}",
+    )
     parser.add_argument("--manoeuvre", default="mixed", help="what the helmsman does (default: mixed)")
+    parser.add_argument(
+        "--sheet",
+        metavar="FILE.toml",
+        help="write what a builder's sheet says of the actuators of this hull there, and stop",
+    )
     parser.add_argument("--weather", default="TS-01", help=f"one of {', '.join(WEATHERS)} (default: TS-01)")
     parser.add_argument(
         "--hidden",
         metavar="EFFECT",
         action="append",
         default=[],
-        help="what happens to it that nobody tells (repeat): HullFouling, ...",
+        help="what happens to it that nobody tells (repeat): HullFouling, ...; of a hull with several "
+        f"actuators WHAT.ACTUATOR or WHAT.ACTUATOR:SIZE, WHAT one of {', '.join(USUAL)}",
     )
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--hz", type=float, default=10.0, help="how often the sea moves on (default: 10)")
@@ -59,9 +76,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    if args.sheet:
+        return _sheet(args)
     if args.csv:
         return _write(args)
-    sea = Sea(_case(args), 1.0 / args.hz)
+    sea = _boat(args) if args.hull in CRAFT else Sea(_case(args), 1.0 / args.hz)
     for _ in range(round(args.after * args.hz)):
         sea.step()
     signal.signal(signal.SIGTERM, lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
@@ -93,6 +112,10 @@ class Voice:
                 self.fix = publisher
             elif topic.factor == 1.0:
                 self.scalars[topic.channels[0]] = publisher
+        for drive in CRAFT[args.hull].drives if args.hull in CRAFT else ():
+            for last in drive.records:
+                place = key(args.base, args.entity, f"actuator_{last}", f"{drive.name}/{SOURCE}")
+                self.scalars[f"{drive.name}.{last}"] = session.declare_publisher(place)
 
     def wait_for_twin(self) -> None:
         """Until a twin ticks: slow instruments speak once a minute, their first word must not be lost."""
@@ -133,8 +156,11 @@ def _write(args: argparse.Namespace) -> int:
     if not path.parent.is_dir():
         raise UsageError(f"--csv {path}: there is no folder {path.parent}.")
     aside = path.with_name(f".{path.name}.part")
-    (voyage,) = simulate([replace(_case(args), duration_s=args.duration)], 1.0 / args.hz)
-    voyage.write_csv(aside)
+    if args.hull in CRAFT:
+        write_csv(sail(_boat_case(args), args.duration, 1.0 / args.hz), aside)
+    else:
+        (voyage,) = simulate([replace(_case(args), duration_s=args.duration)], 1.0 / args.hz)
+        voyage.write_csv(aside)
     aside.replace(path)
     print(
         f"{path}: {args.duration:g} s of {args.hull}. Next: twin import {path} -o {path.with_suffix('.mcap')}"
@@ -142,8 +168,53 @@ def _write(args: argparse.Namespace) -> int:
     return 0
 
 
+def _sheet(args: argparse.Namespace) -> int:
+    """The tables of actuators that `twin init` takes."""
+    if args.hull not in CRAFT:
+        raise UsageError(f"--sheet is for a hull with several actuators: {', '.join(CRAFT)}.")
+    whole.write(args.sheet, sheet.text(args.hull), "--sheet")
+    print(sheet.command(args.hull, args.sheet))
+    return 0
+
+
+def _boat(args: argparse.Namespace) -> BoatSea:
+    return BoatSea(_boat_case(args), 1.0 / args.hz)
+
+
+def _boat_case(args: argparse.Namespace) -> BoatCase:
+    """Wind and current of the weather; these boats feel no waves."""
+    for what, known in (("manoeuvre", PLANS), ("weather", WEATHERS)):
+        value = getattr(args, what)
+        if value not in known:
+            raise SettingsError(f"--{what} {value}: a {args.hull} has none.{did_you_mean(value, known)}")
+    hidden, weather = tuple(map(_sized, args.hidden)), WEATHERS[args.weather]
+    to = math.radians(weather.current_to_deg)
+    case = BoatCase(
+        args.hull,
+        args.manoeuvre,
+        hidden,
+        args.seed,
+        (weather.wind_mps, weather.wind_from_deg),
+        (weather.current_mps * math.cos(to), weather.current_mps * math.sin(to)),
+    )
+    try:
+        hidden_in(CRAFT[args.hull], hidden)
+    except ValueError as error:
+        raise SettingsError(f"--hidden {error}") from None
+    return case
+
+
+def _sized(text: str) -> tuple[str, float]:
+    """`worn.port:0.18`, or without a size the usual one."""
+    name, _, size = text.partition(":")
+    try:
+        return name, float(size) if size else USUAL.get(name.partition(".")[0], 1.0)
+    except ValueError:
+        raise UsageError(f"--hidden {text}: {size!r} is no number.") from None
+
+
 def _case(args: argparse.Namespace) -> Case:
-    for what, known in (("hull", HULLS), ("manoeuvre", MANOEUVRES), ("weather", WEATHERS)):
+    for what, known in (("hull", [*HULLS, *CRAFT]), ("manoeuvre", MANOEUVRES), ("weather", WEATHERS)):
         value = getattr(args, what)
         if value not in known:
             raise SettingsError(f"--{what} {value}: the reference sea has none.{did_you_mean(value, known)}")

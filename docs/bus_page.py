@@ -13,10 +13,11 @@ import twin.live.keelson
 from twin.live.keelson import messages
 from twin.live.keelson.meanings import meaning_of, unit_of
 from twin.live.keelson.messages import TABLE
-from twin.live.keelson.topics import INPUTS, OUTPUTS, Output, Topic
+from twin.live.keelson.topics import ALIKE, FLOAT, INPUTS, OF_ACTUATORS, OUTPUTS, Output, Topic
 from twin.live.keelson.zenoh_config import MAX_BYTES, MAX_HZ
 from twin.live.signals.channels import BY_NAME
 from twin.live.signals.readings import WORDS
+from twin.physics.actuators.channels import CHANNELS_OF
 
 DOCS = Path(__file__).resolve().parent
 SHIPPED = Path(str(files(twin.live.keelson)))
@@ -120,6 +121,7 @@ def subjects() -> str:
     """The subjects that Keelson does not know, as its SDK reads them."""
     known = _keelsons()
     ours = {s.subject: s.type_name for s in (*INPUTS, *OUTPUTS) if s.subject not in known}
+    ours |= dict.fromkeys(OF_ACTUATORS, FLOAT)
     lines = [f"{subject + ':':<40}{type_name}" for subject, type_name in ours.items()]
     head = "# Made by docs/bus_page.py: subjects of the twin that Keelson does not know."
     return "\n".join([head, *lines, ""])
@@ -133,7 +135,7 @@ def _keelsons() -> set[str]:
 
 def page() -> str:
     """docs/bus.md."""
-    blocks = [HEAD, _inputs(), _outputs(), SDK, _messages(), LOGS]
+    blocks = [HEAD, _inputs(), _actuators(), _outputs(), SDK, _messages(), LOGS]
     return "".join(blocks)
 
 
@@ -148,6 +150,30 @@ def _inputs() -> str:
             "What is outside the range is refused.\n",
             "| subject | type | unit | range | what | lost after |",
             "|---|---|---|---|---|---|",
+            *rows,
+            "",
+        ]
+    )
+
+
+def _actuators() -> str:
+    rows = []
+    for subject, last in OF_ACTUATORS.items():
+        c = CHANNELS_OF[last]
+        rows.append(f"| `{subject}/NAME` | {FLOAT} | {c.unit} | {c.low:g} .. {c.high:g} | {c.doc} |")
+    also = " and ".join(f"`{subject}/NAME` fills `NAME.{last}`" for subject, last in ALIKE.items())
+    return "\n".join(
+        [
+            "\n### Of a ship that lists its actuators\n",
+            "Of a ship file with `[[actuators]]` (docs/actuators.md) the twin listens to each channel of "
+            "each, too. The source id begins with the actuator's name as in the ship file,",
+            "and may go on behind a slash: `actuator_rate_rpm/port` and `actuator_rate_rpm/port/encoder` "
+            f"both fill `port.rate_rpm`. Keelson's own are heard as well: {also}.",
+            "Names that the ship file does not have are refused. Lost after 5 s, or after ten of the "
+            "channel's own periods. Under `[sources]` a channel stands in quotes: `\"port.rate_rpm\" = "
+            "\"port/encoder\"`.\n",
+            "| subject / source | type | unit | range | what |",
+            "|---|---|---|---|---|",
             *rows,
             "",
         ]

@@ -19,6 +19,7 @@ from bench.tick import table as tick_table
 from bench.tick.process import WARM_UP
 from twin.errors import TwinError, UsageError
 from twin.live.learning.residual import bundled
+from twin.physics.particulars import Ship
 from twin.physics.ship import load
 
 SCHEMA_VERSION = 1
@@ -124,16 +125,18 @@ class Place:
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             self.endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
-        found = bundled(self.ship)
+        found = None if self.ship.actuators else bundled(self.ship)
         self.residual = found.name if found else "stand-in with drawn weights (this ship has none)"
-        self._settings(args.ship, found or self._stand_in())
+        if self.ship.actuators:
+            self.residual = "none: a network looks at one rudder and one shaft"
+        self._settings(args.ship, "none" if self.ship.actuators else found or self._stand_in())
 
     def seconds(self, steps: int) -> float:
         """How long the voyage lasts by the loop's clock."""
         return (WARM_UP + steps + PARTS) / self.rate + 2.0
 
     def prepare(self, steps: int) -> None:
-        feed.prepare(self.folder / "rows", self.seconds(steps), _hull(self.ship.name))
+        feed.prepare(self.folder / "rows", self.seconds(steps), _hull(self.ship))
 
     def loop(self, steps: int, parts: int, pace: str) -> dict[str, Any]:
         """One run of the service, fed by a process beside it."""
@@ -151,7 +154,7 @@ class Place:
 
         return stand_in.write(self.folder / "stand-in.onnx", self.ship)
 
-    def _settings(self, ship: str, residual: Path) -> None:
+    def _settings(self, ship: str, residual: Path | str) -> None:
         # the limit of 200 messages a second is meant for time that passes
         zenoh = self.folder / "zenoh.json5"
         zenoh.write_text(
@@ -160,7 +163,7 @@ class Place:
         settings = {
             "ship": {"file": ship}, "loop": {"rate_hz": self.rate}, "log": {"folder": self.folder / "logs"},
             "bus": {"listen": self.endpoint, "file": zenoh}, "state": {"folder": self.folder / "state"},
-            "residual": {"file": residual, "required": True},
+            "residual": {"file": residual, "required": residual != "none"},
         }  # fmt: skip
         sections = [
             [f"[{name}]", *(f"{key} = {json.dumps(x, default=str)}" for key, x in keys.items())]
@@ -169,11 +172,23 @@ class Place:
         (self.folder / "twin.toml").write_text("\n".join(line for section in sections for line in section))
 
 
-def _hull(ship_name: str) -> str:
-    """The reference sea's hull for a bundled ship; KVLCC2 for any other: the cost does not depend on it."""
+def _hull(ship: Ship) -> str:
+    """The reference sea's hull for a bundled ship; KVLCC2 for any other: the cost does not depend on it. A
+    ship of actuators must be one of the sea's own, that speaks of each."""
+    from bench.reference.boats import CRAFT
     from bench.ships import NAMES
 
-    return next((hull for hull, name in NAMES.items() if name == ship_name), "kvlcc2")
+    if not ship.actuators:
+        return next((hull for hull, name in NAMES.items() if name == ship.name), "kvlcc2")
+    own = {c.name: {f"{d.name}.{r}" for d in c.drives for r in d.records} for c in CRAFT.values()}
+    wanted = {channel for a in ship.actuators for channel in a.columns()}
+    for name, said in own.items():
+        if wanted == said:
+            return name
+    raise UsageError(
+        f"--ship: no hull of the reference sea has the actuators of {ship.name!r}. Take one that has: "
+        f"twin-bench sea --hull {next(iter(own))} --sheet FILE.toml, then twin init."
+    )
 
 
 def _json_of(command: list[str], who: str) -> dict[str, Any]:

@@ -26,7 +26,8 @@ HZ = 10.0  # of the reference sea
 
 
 class FedRow(NamedTuple):
-    """What is said at one instant: seconds since the start, and (subject, value or (north, east))."""
+    """What is said at one instant: seconds since the start, and (subject, value or (north, east)); the
+    subject of an actuator with its name behind it."""
 
     time_s: float
     said: list[tuple[str, float | tuple[float, float]]]
@@ -35,8 +36,13 @@ class FedRow(NamedTuple):
 def prepare(path: Path, seconds: float, hull: str) -> None:
     """Sail the voyage that will be fed and keep it in a file."""
     from bench.reference import Case, Sea
+    from bench.reference.boats import CRAFT, BoatCase, BoatSea
 
-    sea = Sea(Case(hull, "mixed", "TS-01", seed=7, duration_s=None), 1.0 / HZ)
+    sea = (
+        BoatSea(BoatCase(hull, "mixed", seed=7), 1.0 / HZ)
+        if hull in CRAFT
+        else Sea(Case(hull, "mixed", "TS-01", seed=7, duration_s=None), 1.0 / HZ)
+    )
     rows = []
     for _ in range(int(seconds * HZ)):
         rows.append(_row(sea.readings()))
@@ -50,6 +56,10 @@ def _row(readings: dict[str, float]) -> FedRow:
         values = tuple(readings.get(channel, float("nan")) for channel in topic.channels)
         if topic.factor == 1.0 and all(v == v for v in values):
             said.append((topic.subject, values[0] if len(values) == 1 else values))  # type: ignore[arg-type]
+    for channel, value in readings.items():
+        name, _, last = channel.rpartition(".")
+        if name and value == value:
+            said.append((f"actuator_{last}/{name}", value))
     return FedRow(readings["time_s"], said)
 
 
@@ -57,7 +67,10 @@ class TickFeed:
     """`follow(wall_s)` says what is due."""
 
     def __init__(self, session, base: str, entity: str, rows: Sequence[FedRow]):
-        self.put = {s: session.declare_publisher(key(base, entity, s, "sea")).put for s in BY_SUBJECT}
+        own = dict.fromkeys(s for row in rows for s, _ in row.said if "/" in s)
+        places = {s: key(base, entity, s, "sea") for s in BY_SUBJECT}
+        places |= {s: key(base, entity, *s.split("/")) for s in own}
+        self.put = {s: session.declare_publisher(place).put for s, place in places.items()}
         self.datum = geodesy.datum(LATITUDE_DEG, LONGITUDE_DEG)
         self.rows, self.next, self.start_s = rows, 0, None
 

@@ -4,7 +4,6 @@ import sys
 from math import ceil
 from pathlib import Path
 
-from twin.errors import SettingsError
 from twin.live import realtime
 from twin.live.certificate.certificate import Certificate, on_board
 from twin.live.certificate.rolled_tube import tube_of
@@ -29,6 +28,9 @@ from twin.physics.ship import load as load_ship
 
 CERTIFY = "from twin.live.build import certify_aside; certify_aside{!r}"
 LATENESS = 1.05  # periods within which a tick still counts as one
+NO_THEOREM = (
+    "none for a ship of actuators yet: the slopes of its theorem are those of one rudder and one shaft"
+)
 CERTIFY_S = 20.0  # the longest the service's start waits for a certificate
 
 
@@ -42,11 +44,6 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
     breathe = realtime.drop_pages if settings["loop.drop_pages"] else int
     breathe()
     ship = load_ship(settings["ship.file"], arrays=False)
-    if ship.actuators:
-        raise SettingsError(
-            f"{settings['ship.file']}: the loop on board does not take [[actuators]] yet. Ashore twin "
-            "calibrate, compare, diagnose and add do."
-        )
     notes: list[str] = []
     if settings["residual.file"] != "none":
         network.open_library(breathe)
@@ -89,6 +86,11 @@ def residual_of(settings: Settings, ship: Ship) -> tuple[Residual | None, str]:
     asked = settings["residual.file"]
     if asked == "none":
         return None, "the settings want none"
+    if ship.actuators:
+        why = "a network looks at one rudder and one shaft, and this ship lists [[actuators]]"
+        if asked or settings["residual.required"]:
+            raise ResidualError(f'residual.file: {why}. Set it to "none"')
+        return None, why
     path = Path(asked) if asked else residuals.bundled(ship)
     try:
         if path is None:
@@ -128,6 +130,8 @@ def stabilizer_of(
 ) -> Stabilizer:
     """The certificate from its file; when there is none it is worked out by another process (it needs
     numpy, the loop does not). Its period is a little longer than the loop's: a tick may wake late."""
+    if ship.actuators:
+        return Stabilizer(None, NO_THEOREM)
     h, K = LATENESS / settings["loop.rate_hz"], settings["observer.gain"] or None
     oldest_s = settings["observer.oldest_s"] or min(max(0.0125 * ship.L_pp / ship.U_0, h), 1.2)
     delay = max(ceil(oldest_s / h - 1e-6), 1)

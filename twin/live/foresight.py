@@ -13,8 +13,10 @@ from math import ceil, degrees, hypot
 from typing import NamedTuple
 
 from twin.live.loop import Loop
-from twin.live.observer.dynamics import INPUTS, KnownDynamics, Steering
+from twin.live.observer.controls import newly_told
+from twin.live.observer.dynamics import INPUTS, KnownDynamics
 from twin.live.observer.predict import STEP, LearnedAt, Middle, carry
+from twin.live.observer.steering import Steering
 from twin.live.signals.derive import turn
 from twin.physics.maths import total
 from twin.physics.state import Situation
@@ -97,8 +99,9 @@ class Foresight:
             for name in INPUTS:
                 if name in si:
                     setattr(s, name, si[name])
+            newly_told(s, si)
             if steering:
-                steering.order = si.get("delta", steering.order)
+                steering.take(si)
             if t_next - t > 5.0:
                 break
             while left and start.time_s + left[0] <= t_next + 1e-6:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from twin.live.gates.plausible import Plausibility
 from twin.live.learning.learned import Learned, LearnedForce
+from twin.live.observer.controls import ONE_SCREW, controls_of
 from twin.live.observer.estimate import Estimate
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
@@ -20,7 +21,7 @@ STARTING, HYBRID, PHYSICS, RECKONING, INVALID = (
     "dead reckoning",
     "invalid",
 )
-CONTROLS = {"delta": "rudder_angle_deg", "n": "propeller_rate_rpm"}
+CONTROLS = ONE_SCREW
 WORSE, BETTER = 1.1, 0.9  # error with the learned force over the error without: off above, on again below
 CLIPPED_SHARE = 0.5
 NO_HEADING = "no heading"
@@ -61,6 +62,8 @@ class Guard:
         # how long the model may run without measurements before nothing is promised
         self.reckoning_s = reckoning_s
         self.learned = learned
+        self.controls = controls_of(ship)
+        self._counting = "heading", "surge", "sway", "yaw", *self.controls.values()
         self.plausible = Plausibility(ship)
         hold_s = hold_s or 3.0 * T
         self._worse = HeldControl(hold_s)
@@ -93,7 +96,7 @@ class Guard:
             return Verdict(
                 STARTING, [_waiting(measured), *said], False, "no estimate yet", next(iter(odd), "")
             )
-        lost = _lost(measured)
+        lost = _lost(measured, self.controls)
         if lost == NO_HEADING and "psi" in measured.derived:
             self._reckoning_since = None
             return Verdict(
@@ -103,7 +106,7 @@ class Guard:
             return self._reckon(measured.now_s, lost, said)._replace(odd=next(iter(odd), ""))
         self._reckoning_since = None
         off = self._off(measured.now_s, next(iter(doubts), ""))
-        frozen = odd[0] if odd else next((text for text in sensors if _matters(text)), "")
+        frozen = odd[0] if odd else next((text for text in sensors if text.startswith(self._counting)), "")
         return Verdict(
             PHYSICS if off else HYBRID,
             [*off, *([self._outside] if self._outside else []), *said],
@@ -172,17 +175,12 @@ def _waiting(measured: Measured) -> str:
     return f"waiting for {' and '.join(needs) or 'the next sample'}"
 
 
-def _lost(measured: Measured) -> str:
+def _lost(measured: Measured, controls: dict[str, str]) -> str:
     """What is missing that only the model can stand in for; "" when nothing essential is."""
     si = measured.si
-    missing = [name for a, name in CONTROLS.items() if a not in si]
+    missing = [name for a, name in controls.items() if a not in si]
     if "psi" not in si or "psi" in measured.derived:
         missing.append("heading")
     if not any(a in si for a in ("x", "u", "u_r")):
         missing.append("position and speed")
     return f"no {', no '.join(missing)}" if missing else ""
-
-
-def _matters(text: str) -> bool:
-    """Whether a channel's trouble is one that learning must not see."""
-    return text.startswith(("heading", "surge", "sway", "yaw", "rudder", "propeller"))

@@ -1,6 +1,6 @@
 """Ears: what came in since the last tick, written to the log as it came, and decoded."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Collection, Iterable, Mapping
 
 from twin.live.clock import Instant
 from twin.live.keelson.bus import Bus
@@ -24,7 +24,11 @@ class Inbox:
         sources: Mapping[str, str] | None = None,
     ):
         self.bus, self.log, self.seats = bus, log, Seats(sources)
-        self.decoder = Decoder(datum)
+        self.decoder = Decoder(datum, ())
+
+    def listen_to(self, actuators: Collection[str]) -> None:
+        """Hear these channels of the ship's actuators, too."""
+        self.decoder.actuators = self.seats.actuators = frozenset(actuators)
 
     @property
     def datum(self) -> Datum | None:

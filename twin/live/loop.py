@@ -4,7 +4,7 @@ Each object takes messages and gives messages; none of them knows a clock, a fil
 objects run live, in a replay and in a test, and the same messages give the same states.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any, Protocol
 
 from twin.live.clock import Instant
@@ -14,7 +14,9 @@ from twin.live.gates.lacking import CorrectedTick
 from twin.live.gates.sensors import Sensors
 from twin.live.guard import CONTROLS, INVALID, NO_HEADING, Guard
 from twin.live.keelson.decode import Result
+from twin.live.learning.evidence import Three
 from twin.live.learning.learned import LearnedForce
+from twin.live.observer.controls import actuator_channels
 from twin.live.observer.dynamics import Dynamics
 from twin.live.observer.estimate import Observer
 from twin.live.observer.predict import LearnedAt, Predictor
@@ -68,7 +70,7 @@ class Loop:
         self.predictor = predictor or Predictor(ship, rate_hz=rate_hz)
         self.stabilizer = stabilizer or Stabilizer()
         self.publisher = voice.publisher
-        self.publisher.identity = identity(ship)
+        self.publisher.identity, self.publisher.actuators = identity(ship), actuator_channels(ship)
         self.pace = Pace(rate_hz)
         self.overruns = 0
         self.notes: list[str] = []  # said once, at the start: files left out, rights not granted
@@ -90,7 +92,7 @@ class Loop:
         verdict = self.guard.judge(measured, estimate, self.sensors.reasons(), dt, self._doubts())
         learned = self.learned.at(situation, forces, verdict.use_learned)
         self.guard.note(learned, dt, self.stabilizer.broken)
-        self.learned.learn(measured_nu(measured), situation, forces, learned, physics, dt, verdict.frozen)
+        self.learned.learn(self._nu(measured), situation, forces, learned, physics, dt, verdict.frozen)
         self.dynamics.adopt(self.learned.effects)
         self.observer.steer(self.dynamics.ahead(situation, forces, learned.force, self.period_s))
         self.observer.remember(self.dynamics.now, situation, learned.force)
@@ -162,6 +164,9 @@ class Loop:
         self.pace = self.pace._replace(overruns=self.overruns)
         return dt
 
+    def _nu(self, measured: Measured) -> Three | None:
+        return measured_nu(measured, self.guard.controls)
+
     def learned_at(self, allowed: bool = True) -> LearnedAt:
         """The learned force as the predictor carries it ahead."""
         return lambda s, forces: self.learned.at(s, forces, allowed).force
@@ -185,7 +190,7 @@ class Loop:
     def _reasons(self, seen: Seen) -> list[str]:
         said = [*seen.verdict.reasons, *self.watched()]
         for attribute, value in self.dynamics.held.items():
-            channel = BY_NAME[CONTROLS[attribute]]
+            channel = BY_NAME[self.guard.controls[attribute]]
             said.append(
                 f"{channel.name} is lost: its last value, {value / channel.to_si:.4g}, is held and "
                 "may no longer be so"
@@ -201,10 +206,10 @@ class Loop:
         return said
 
 
-def measured_nu(measured: Measured) -> tuple[float, float, float] | None:
+def measured_nu(measured: Measured, controls: Iterable[str] = CONTROLS) -> Three | None:
     """What the adaptation learns from: speed over ground and rate of turn, measured, with controls; else
     None."""
     si = measured.si
-    if measured.derived & {"u", "psi"} or not measured.has("u", "v", "r", "delta", "n", "psi"):
+    if measured.derived & {"u", "psi"} or not measured.has("u", "v", "r", "psi", *controls):
         return None
     return si["u"], si["v"], si["r"]

@@ -12,6 +12,7 @@ from twin.live.learning.learned import Learned
 from twin.live.observer.estimate import Estimate
 from twin.live.seen import Seen, Standing
 from twin.live.signals.geodesy import Datum, from_chart
+from twin.live.signals.measured import Measured
 from twin.physics.core import Tau
 from twin.physics.maths import total
 
@@ -24,12 +25,13 @@ class Publisher:
 
     def __init__(self) -> None:
         self.withheld, self.identity = 0, ""
+        self.actuators: tuple[str, ...] = ()  # channels of the ship's own
         self._next: dict[Output, float] = {}
 
     def tick(self, seen: Seen, standing: Standing) -> Any:
         """The wide record."""
         finite, instant, measured, estimate = self._finite, seen.instant, seen.measured, seen.estimate
-        ready, pace = estimate.ready, standing.pace
+        ready, pace, ages = estimate.ready, standing.pace, measured.age_by_channel()
         return messages.Tick(
             index=instant.number,
             time_s=instant.time_s,
@@ -42,9 +44,9 @@ class Publisher:
             overruns=pace.overruns,
             rejected=standing.rejected,
             log_dropped=standing.log_dropped,
-            measured=finite({**measured.border, "time_s": instant.wall_s}),
-            age_s=finite(measured.age_by_channel()),
-            quality=standing.quality,
+            measured=finite({**self._without_actuators(measured.border), "time_s": instant.wall_s}),
+            age_s=finite(self._without_actuators(ages)),
+            quality=self._without_actuators(standing.quality),
             estimate=finite(state_of(estimate)) if ready else None,
             sigma=finite(border_sigma(estimate.sigma)) if ready else None,
             known=[
@@ -67,7 +69,15 @@ class Publisher:
                 for p in seen.ahead
             ],
             certificate=finite(seen.certified._asdict()),
+            actuators=[
+                {"name": name, "quality": standing.quality[name], **finite(_channel(name, measured, ages))}
+                for name in self.actuators
+            ],
         )
+
+    def _without_actuators(self, by_channel: dict[str, Any]) -> dict[str, Any]:
+        """A message has a field for each channel that every ship has; those of actuators are a list."""
+        return {k: x for k, x in by_channel.items() if "." not in k} if self.actuators else by_channel
 
     def due(self, tick: Any, datum: Datum | None) -> list[tuple[Output, bytes]]:
         """The subjects whose time has come, encoded; `datum` is the origin of north and east."""
@@ -93,6 +103,10 @@ class Publisher:
         kept = {name: x for name, x in values.items() if isfinite(x)}
         self.withheld += len(values) - len(kept)
         return kept
+
+
+def _channel(name: str, measured: Measured, ages: dict[str, float]) -> dict[str, float]:
+    return {"value": measured.border[name], "age_s": ages[name]} if name in measured.border else {}
 
 
 def state_of(e: Estimate) -> dict[str, float]:

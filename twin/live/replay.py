@@ -17,6 +17,7 @@ from twin.live.log.mcap_index import PROVENANCE
 from twin.live.log.played import Batch, PlayedLog
 from twin.live.log.record import LogFile
 from twin.live.loop import Loop
+from twin.live.observer.controls import actuator_channels
 from twin.live.outbox import Outbox
 from twin.live.paced import PacedClock, Player
 from twin.live.provenance import REPLAY, identity, provenance
@@ -62,12 +63,13 @@ def replay(
     played = PlayedLog(log, settings["loop.rate_hz"])
     batches = played.batches()
     with ExitStack() as stack:
-        file = stack.enter_context(LogFile(output)) if output else None
+        file = stack.enter_context(LogFile(output, played.classes)) if output else None
         ears = Played([])
         voice = Outbox(
             Publisher(), settings["bus.base"], settings["bus.entity"], bus, file.add if file else None
         )
         loop = build.loop_of(settings, ears, voice, patience_s=None)
+        played.decoder.actuators = actuator_channels(loop.ship)
         loop.publisher.identity = identity(loop.ship, REPLAY)
         if file:
             file.describe(PROVENANCE, provenance(settings, loop.ship))

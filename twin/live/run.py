@@ -19,6 +19,7 @@ from twin.live.clock import Clock, MonotonicClock
 from twin.live.inbox import Inbox
 from twin.live.keelson.alone import alone
 from twin.live.keelson.bus import Bus
+from twin.live.keelson.topics import actuator_subjects
 from twin.live.keelson.zenoh_config import BusSettings
 from twin.live.keep import Keeper
 from twin.live.lagging import Lagging
@@ -26,6 +27,7 @@ from twin.live.log.quota import Quota
 from twin.live.log.record import Recorder
 from twin.live.loop import Loop
 from twin.live.notify import Notifier
+from twin.live.observer.controls import actuator_channels
 from twin.live.outbox import Outbox
 from twin.live.provenance import provenance
 from twin.live.publish import Publisher
@@ -79,6 +81,9 @@ def opened(settings: Settings, clock_of: Callable[[float], Clock] = MonotonicClo
     log = recorder.write if recorder else None
     inbox = Inbox(bus, log, sources=settings.sources)
     loop = build.loop_of(settings, inbox, _voice(settings, bus, log))
+    if channels := actuator_channels(loop.ship):
+        inbox.listen_to(channels)
+        bus.listen_to(actuator_subjects(channels))
     with alone(settings["state.folder"]), bus:
         if recorder:
             recorder.about = provenance(settings, loop.ship)

@@ -28,6 +28,7 @@ export function panels(frame) {
   mode(frame.mode);
   tiles(frame.states);
   motion(frame.states);
+  actuators(frame.actuators);
   ahead(frame.ahead);
   forces(frame.forces);
   water(frame);
@@ -69,6 +70,17 @@ function motion(states) {
     return ["", `${s.name} [${s.unit}]`, [fixed(s.measured, s.decimals), s.lost ? "lost" : "measured"], [fixed(s.estimate, s.decimals) + sigma], [age, s.lost ? "lost" : ""]];
   });
   table(by("motion"), "Motion, measured and estimated", ["", "measured", "estimated ± 1 sigma", "age"], rows);
+}
+
+// What each actuator is told or says of itself; a ship with one propeller and one rudder has none.
+function actuators(channels) {
+  by("actuators-box").hidden = !channels.length;
+  const rows = channels.map((c) => {
+    const lost = c.level === "bad" ? "lost" : "";
+    const said = c.value === null ? c.words : `${fixed(c.value, 1)}${c.unit === "-" ? "" : ` ${c.unit}`}`;
+    return ["", c.name, [said, lost], [c.age === null ? "–" : `${c.age.toFixed(1)} s`, lost]];
+  });
+  table(by("actuators"), "What each actuator does", ["", "says", "age"], rows);
 }
 
 function ahead(next) {

@@ -11,6 +11,7 @@ from twin.live.guard import HYBRID, INVALID, PHYSICS, RECKONING, STARTING
 from twin.live.keelson.meanings import UNITS
 from twin.live.signals.channels import CHANNELS
 from twin.live.signals.readings import WORDS, Quality
+from twin.physics.actuators import CHANNELS_OF
 from twin.physics.maths import total
 
 SILENT_S = 1.0  # after this the whole picture is marked as old
@@ -61,6 +62,7 @@ def scene(
         "wind": _wind(tick, since_s),
         "stream": _stream(tick.estimate),
         "instruments": [row for channel in CHANNELS if (row := _instrument(tick, channel.name, since_s))],
+        "actuators": [_actuator(channel, since_s) for channel in tick.actuators],
         "pace": _pace(tick),
     }
 
@@ -208,9 +210,29 @@ def _instrument(tick: Any, name: str, since_s: float) -> dict[str, Any] | None:
     code = getattr(tick.quality, name)
     if code in (Quality.NEVER_SEEN, Quality.NOT_GIVEN):
         return None
+    return {"name": _plain(name), "age": _age(tick, name, since_s), **_fares(code)}
+
+
+def _fares(code: int) -> dict[str, str]:
     words = WORDS[Quality(code)] if code in Quality._value2member_map_ else "unknown"
     level = "good" if code == Quality.OK else "bad" if code == Quality.STALE else "fair"
-    return {"name": _plain(name), "age": _age(tick, name, since_s), "level": level, "words": words}
+    return {"level": level, "words": words}
+
+
+def _actuator(channel: Any, since_s: float) -> dict[str, Any]:
+    """One channel of an actuator: the value that holds, how old it is, and how it fares; without a value it
+    is lost, or nobody has said it yet."""
+    owner, _, last = channel.name[:80].rpartition(".")
+    known, age = CHANNELS_OF.get(last), number(channel, "age_s", 1.0, 1)
+    quality = "bad" if not channel.HasField("value") and channel.quality else _fares(channel.quality)["level"]
+    return {
+        "name": f"{owner} {known.attribute if known else last}",
+        "unit": known.unit if known else "",
+        "value": number(channel, "value", 1.0, 2),
+        "age": None if age is None else round(age + since_s, 1),
+        **_fares(channel.quality),
+        "level": quality,
+    }
 
 
 def _age(tick: Any, channel: str, since_s: float) -> float | None:

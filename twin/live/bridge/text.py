@@ -35,6 +35,7 @@ def page(frame: dict[str, Any]) -> str:
         return "\n".join(head)
     mode = frame["mode"]
     blocks = [*head, f"{BOLD}{mode['name'].upper()}{PLAIN}: {mode['words']}", "", *_states(frame), ""]
+    blocks += _actuators(frame["actuators"])
     blocks += [*_ahead(frame["ahead"]), "", *_forces(frame["forces"]), "", _water(frame), ""]
     blocks += [*_alarms(frame["alarms"]), "", *_instruments(frame["instruments"]), "", _pace(frame["pace"])]
     return "\n".join(blocks)
@@ -92,6 +93,16 @@ def _states(frame: dict[str, Any]) -> list[str]:
         age = "lost" if state["lost"] else f"{state['age']:.1f} s" if state["age"] is not None else "-"
         rows.append(f"{name:<26}" + "".join(f"{text:>12}" for text in numbers) + f"{age:>10}")
     return rows
+
+
+def _actuators(channels: list[dict[str, Any]]) -> list[str]:
+    """A line for each channel of an actuator, "" behind the last."""
+    rows = []
+    for c in channels:
+        value = c["words"] if c["value"] is None else f"{c['value']:.1f} {c['unit'].replace('-', '')}".strip()
+        age = "-" if c["age"] is None else f"{c['age']:.1f} s"
+        rows.append(f"{c['name'][:30]:<32}{value:>36}{age:>10}")
+    return [*rows, ""] if rows else []
 
 
 def _ahead(ahead: dict[str, Any] | None) -> list[str]:

@@ -35,7 +35,8 @@ class CrossChecks:
         self._way = Way(U)
         self._stream = Stream(U)
         self._heading = Heading(T)
-        self._lacking = Lacking(ship, FAST), Lacking(ship, SLOW)
+        # of one shaft and one rudder; what an actuator of several lacks, the others may bring
+        self._lacking = () if ship.actuators else (Lacking(ship, FAST), Lacking(ship, SLOW))
         self.reasons: list[str] = []
 
     @property

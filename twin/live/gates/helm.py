@@ -95,3 +95,20 @@ class Helm:
             Situation(u=model.loaded.U_0, n=propeller_rate(model), delta=angle), model.water(Situation())
         )
         return abs(float(forces[RUDDER][2])) / angle
+
+
+class NoHelm:
+    """Of a ship of actuators: which of them does not do what it says, one moment cannot tell."""
+
+    stuck = resting = ""
+
+    def feed(self, s: Situation, forces: Forces, unexplained_Nm: float, dt: float) -> bool:
+        return False
+
+    def pause(self) -> None:
+        pass
+
+
+def helm_of(ship: Ship) -> Helm | NoHelm:
+    """Who doubts the rudder's feedback."""
+    return NoHelm() if ship.actuators else Helm(ship)

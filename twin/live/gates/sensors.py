@@ -8,6 +8,7 @@ derived.
 from collections.abc import Sequence
 from math import degrees, inf, pi
 
+from twin.live.gates.actuators import gates_of
 from twin.live.gates.frozen import Frozen
 from twin.live.gates.gate import Gate
 from twin.live.gates.noise import NoiseWatch
@@ -47,12 +48,13 @@ class Sensors:
         self.gates = {
             c.name: Gate(c, floors.get(c.name, FAR), _frozen(c.name, floors), sources.get(c.name))
             for c in CHANNELS
-        }
-        shaft = self.gates["propeller_rate_rpm"]
-        shaft.low, shaft.high = (
-            -FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
-            FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
-        )
+        } | gates_of(ship, sources)
+        if not ship.actuators:
+            shaft = self.gates["propeller_rate_rpm"]
+            shaft.low, shaft.high = (
+                -FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
+                FASTEST_SHAFT * ship.U_0 / ship.D_P * 60.0,
+            )
         self._noise = NoiseWatch(floors)
         self.stamps = Stamps(max_delay_s)
         self.rivals = Rivals()

@@ -11,7 +11,7 @@ from google.protobuf.message import DecodeError
 from twin.errors import UsageError, did_you_mean
 from twin.live.injection.inject import KINDS, NEEDS_AMOUNT, InjectedFault, Injector, Report
 from twin.live.keelson import messages
-from twin.live.keelson.topics import BY_SUBJECT, FIX, POSITION, Topic, address, is_own
+from twin.live.keelson.topics import FIX, POSITION, Topic, address, is_own, topic_of
 from twin.live.signals.channels import BY_NAME
 
 ROW = "shiptwin.Row"
@@ -56,7 +56,7 @@ class Faulty:
     """A stream of messages in, the stream with the fault out; everything that is not the channel's passes as
     it is."""
 
-    def __init__(self, what: str, fault: InjectedFault):
+    def __init__(self, what: str, fault: InjectedFault, row_class: Any = messages.Row):
         if what not in EVERYTHING:
             if fault.kind not in KINDS:
                 raise UsageError(f"no fault is called {fault.kind!r}.{did_you_mean(fault.kind, KINDS)}")
@@ -64,7 +64,7 @@ class Faulty:
                 raise UsageError(
                     f"{fault.kind}: by how much? --by takes a number in the unit of the channel ({what})."
                 )
-        self.what, self.fault = what, fault
+        self.what, self.fault, self._row_class = what, fault, row_class
         self.channels = () if what in EVERYTHING else channels_of(what)
         self.changed = 0  # messages that are not as they were
         self._random = random.Random(fault.seed)
@@ -84,7 +84,7 @@ class Faulty:
         if sample.type_name == ROW:
             return [self._row(sample)]
         place = address(sample.key)
-        topic = BY_SUBJECT.get(place.subject) if place and not is_own(place.source) else None
+        topic = topic_of(place) if place and not is_own(place.source) else None
         if topic is None or not set(topic.channels) & set(self.channels):
             return [*come, sample]
         return [*come, *self._message(sample, topic)]
@@ -113,14 +113,15 @@ class Faulty:
 
     def _row(self, sample: Sample) -> Sample:
         """A row is one sample of all channels: of the reports that have come, the newest stands in it."""
-        row = _parsed(messages.Row, sample.payload)
+        row = _parsed(self._row_class, sample.payload)
         if row is None:
             return sample
         touched = False
         for name in self.channels:
-            if not row.HasField(name):
+            field = messages.field_name(name)
+            if field not in row.DESCRIPTOR.fields_by_name or not row.HasField(field):
                 continue
-            true = getattr(row, name)
+            true = getattr(row, field)
             injector = self._injectors.setdefault(
                 name, Injector(self.fault._replace(seed=self.fault.seed + len(self._injectors)))
             )
@@ -128,10 +129,10 @@ class Faulty:
             if reports and reports[-1].values == (true,):
                 continue
             touched = True
-            row.ClearField(name)
+            row.ClearField(field)
             if reports:
                 values = reports[-1].values
-                setattr(row, name, self._anything(name) if values is None else values[0])
+                setattr(row, field, self._anything(name) if values is None else values[0])
         self.changed += touched
         return sample._replace(payload=row.SerializeToString()) if touched else sample
 
@@ -151,7 +152,7 @@ class Faulty:
 
     def _restamped(self, sample: Sample) -> bytes:
         if sample.type_name == ROW:
-            row = _parsed(messages.Row, sample.payload)
+            row = _parsed(self._row_class, sample.payload)
             if row is None:
                 return sample.payload
             row.time_s += self.fault.by

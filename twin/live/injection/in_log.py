@@ -2,6 +2,7 @@
 
 import os
 from contextlib import suppress
+from typing import Any
 
 from google.protobuf.message import DecodeError
 
@@ -11,6 +12,7 @@ from twin.live.injection.inject import InjectedFault
 from twin.live.keelson import messages
 from twin.live.log.logfile import LogFile
 from twin.live.log.mcap_read import McapReader
+from twin.live.log.own_row import ROW, own_row
 
 
 def in_a_log(path: str, output: str, what: str, fault: InjectedFault) -> tuple[int, list[str]]:
@@ -18,12 +20,14 @@ def in_a_log(path: str, output: str, what: str, fault: InjectedFault) -> tuple[i
     wrong with the log itself."""
     if os.path.realpath(path) == os.path.realpath(output):
         raise UsageError(f"-o {output}: is the log itself. Give another name.")
-    reader, faulty = McapReader(path), None
-    with LogFile(output) as log:
+    reader, faulty, own = McapReader(path), None, dict[str, Any]()
+    with LogFile(output, own) as log:
         for message in reader.messages():
             at_s = _at_s(message.type_name, message.data, message.log_ns)
             if faulty is None:
-                faulty = Faulty(what, fault._replace(start_s=at_s + fault.start_s))
+                own |= own_row(reader)
+                begins = fault._replace(start_s=at_s + fault.start_s)
+                faulty = Faulty(what, begins, own.get(ROW, messages.Row))
             for sample in faulty.feed(Sample(at_s, message.topic, message.type_name, message.data)):
                 shift_ns = round((sample.at_s - at_s) * 1e9) if sample.at_s > at_s else 0
                 log.add(

@@ -9,7 +9,7 @@ from twin.live.injection.faulty import Faulty, Sample
 from twin.live.injection.inject import InjectedFault
 from twin.live.keelson import messages
 from twin.live.keelson.bus import Bus
-from twin.live.keelson.topics import BY_SUBJECT, address, is_own
+from twin.live.keelson.topics import OF_ACTUATORS, address, is_own, topic_of
 from twin.live.keelson.zenoh_bus import ZenohBus
 from twin.live.keelson.zenoh_config import BusSettings
 
@@ -24,7 +24,9 @@ def proxy(
     stop: list[int] = []
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, lambda caught, _: stop.append(caught))
-    with ZenohBus(BusSettings(base, entity, listen, (connect,))) as bus:
+    between = ZenohBus(BusSettings(base, entity, listen, (connect,)))
+    between.listen_to(list(OF_ACTUATORS))
+    with between as bus:
         print(f"{listen} -> {connect}: {what} {fault.kind}. Stop it with Ctrl-C.", flush=True)
         began_s, faulty = time.monotonic(), None
         while not stop and time.monotonic() - began_s < duration_s:
@@ -42,7 +44,7 @@ def proxy(
 
 def _pass_on(bus: Bus, faulty: Faulty, key: str, envelope: bytes, now_s: float) -> None:
     place = address(key)
-    topic = BY_SUBJECT.get(place.subject) if place else None
+    topic = topic_of(place) if place else None
     if place is None or topic is None or is_own(place.source):
         return
     try:

@@ -27,6 +27,10 @@ class Bus(Protocol):
 
     def __exit__(self, *_: object) -> None: ...
 
+    def listen_to(self, subjects: list[str]) -> None:
+        """Hear these subjects as well; before it is opened."""
+        ...
+
     def drain(self, now_s: float) -> list[Incoming]:
         """Everything that came in since the last call; never waits. `now_s` is the monotonic time [s]."""
         ...
@@ -52,6 +56,9 @@ class MemoryBus:
 
     def __exit__(self, *_: object) -> None:
         pass
+
+    def listen_to(self, subjects: list[str]) -> None:
+        """It hears all that is put."""
 
     def put(self, key: str, data: bytes) -> None:
         self.waiting.append((key, data))

@@ -6,6 +6,7 @@ available". These gates have no memory; those that need the sample before (jump,
 are in `sensors.py`.
 """
 
+from collections.abc import Collection
 from math import hypot, isfinite
 from typing import Any, NamedTuple
 
@@ -13,7 +14,7 @@ from google.protobuf.message import DecodeError
 from google.protobuf.unknown_fields import UnknownFieldSet
 
 from twin.live.keelson import messages
-from twin.live.keelson.topics import BY_SUBJECT, FIX, Topic, address, is_own
+from twin.live.keelson.topics import FIX, Topic, address, is_own, topic_of
 from twin.live.signals.channels import BY_NAME
 from twin.live.signals.geodesy import MAX_DISTANCE_M, MAX_LATITUDE_DEG, Datum, datum, to_chart
 from twin.live.signals.readings import Quality, Reading, Rejected
@@ -51,8 +52,9 @@ class Decoder:
     first fix would otherwise put the whole voyage outside the chart).
     """
 
-    def __init__(self, at: Datum | None = None):
-        self.datum = at
+    def __init__(self, at: Datum | None = None, actuators: Collection[str] | None = None):
+        """actuators: channels of the ship's own; None where the ship is not known."""
+        self.datum, self.actuators = at, actuators
         self._first: tuple[float, float] | None = None
         self._keys: dict[str, tuple[Topic | None, str]] = {}
 
@@ -87,7 +89,7 @@ class Decoder:
         if known is None:
             place = address(key)
             source = place.source if place else ""
-            known = (BY_SUBJECT.get(place.subject) if place and not is_own(source) else None, source)
+            known = (topic_of(place, self.actuators) if place and not is_own(source) else None, source)
             if len(self._keys) < MAX_KEYS:
                 self._keys[key] = known
         return known
@@ -160,13 +162,14 @@ def from_row(row: Any, time_s: float, received_s: float, source: str) -> list[Re
     """Readings of a logged Row, with the same gate; `time_s` is their stamp [s, UTC or the voyage's own]."""
     results: list[Result] = []
     for field, value in row.ListFields():
-        if field.name not in BY_NAME:
+        name = messages.channel_name(field.name)
+        if name not in BY_NAME:
             continue
-        quality = check(field.name, value)
+        quality = check(name, value)
         if quality is Quality.OK:
-            results.append(Reading(field.name, value, time_s, received_s, source))
+            results.append(Reading(name, value, time_s, received_s, source))
         else:
-            results.append(Rejected(field.name, quality, _number(field.name, value), received_s, source))
+            results.append(Rejected(name, quality, _number(name, value), received_s, source))
     return results
 
 

@@ -71,6 +71,11 @@ MEANINGS = {
     "Tick.parameters": "numbers that are learned on board, in each tenth tick",
     "Tick.predictions": "in the ticks in which a round of predictions is ready",
     "Tick.certificate": "of the observer",
+    "Tick.actuators": "channels of the ship's actuators; none of a ship with one propeller and one rudder",
+    "ActuatorChannel.name": "ACTUATOR.CHANNEL, as in the ship file: `port.rate_rpm`",
+    "ActuatorChannel.value": "newest good sample, held until it is lost, in the channel's unit",
+    "ActuatorChannel.age_s": "since the source's stamp",
+    "ActuatorChannel.quality": "why its newest sample was taken or refused: a code as in Codes",
     "north_m": "north of the voyage's datum",
     "east_m": "east of the voyage's datum",
 }

@@ -64,6 +64,13 @@ TABLE: dict[str, list[Field]] = {
         ("yaw_bound_degps", "double"),
         ("step_margin", "double"),  # share of an error that one sample surely takes away, 0 when none does
     ],
+    # one channel of one actuator of the ship
+    "ActuatorChannel": [
+        ("name", "string"),
+        ("value", "double?"),  # the newest good sample, held until it is stale
+        ("age_s", "double?"),
+        ("quality", "int32"),  # readings.Quality
+    ],
     "Tick": [
         ("index", "int64"),
         ("time_s", "double"),  # monotonic
@@ -86,6 +93,7 @@ TABLE: dict[str, list[Field]] = {
         ("parameters", "Parameter*"),
         ("predictions", "Prediction*"),
         ("certificate", "Certificate"),
+        ("actuators", "ActuatorChannel*"),  # of a ship that lists its actuators, in the order of its file
     ],
 }
 Float: Any = keelson_class("keelson.TimestampedFloat")

@@ -4,9 +4,9 @@ apart.
 Without a bound, a sender that takes a new name for every message fills the log's table of channels and the
 memory."""
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
-from twin.live.keelson.topics import BY_SUBJECT, address
+from twin.live.keelson.topics import address, topic_of
 from twin.live.signals.channels import BY_NAME
 
 MOST = 8  # sources heard for a subject, besides the one that the owner named; a ship has two or three
@@ -21,6 +21,7 @@ class Seats:
 
     def __init__(self, sources: Mapping[str, str] | None = None):
         self._sources = dict(sources or {})
+        self.actuators: Collection[str] = ()  # channels of the ship's own
         self._heard_s: dict[str, dict[str, float]] = {}  # subject: {key: when it was last heard}
         self._subject: dict[str, str] = {}  # key that has a seat: its subject
         self._said, self._until_s = "", 0.0
@@ -42,16 +43,18 @@ class Seats:
         place = address(key) if len(key.encode()) <= MAX_KEY else None
         if place is None:
             return self._refuse("a name", f"a key of {len(key)} characters", now_s)
-        topic = BY_SUBJECT.get(place.subject)
+        topic = topic_of(place, self.actuators)
         if topic is None or any(self._sources.get(channel) == place.source for channel in topic.channels):
             return True
-        seated = self._heard_s.setdefault(place.subject, {})
+        # of one subject many actuators speak, each with sources of its own
+        what = topic.channels[0] if "." in topic.channels[0] else place.subject
+        seated = self._heard_s.setdefault(what, {})
         if len(seated) >= MOST:
             self._stand_up(seated, now_s - max(SILENT_S, *(BY_NAME[c].stale_s for c in topic.channels)))
         if len(seated) >= MOST:
-            return self._refuse(place.subject, f"{place.source[:40]!r}", now_s)
+            return self._refuse(what, f"{place.source[:40]!r}", now_s)
         seated[key] = now_s
-        self._subject[key] = place.subject
+        self._subject[key] = what
         return True
 
     def _stand_up(self, seated: dict[str, float], before_s: float) -> None:

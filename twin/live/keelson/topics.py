@@ -4,10 +4,12 @@ Keys are Keelson's: {base}/@v0/{entity}/pubsub/{subject}/{source_id}. A channel'
 Keelson has one; the twin's own subjects follow its naming rule (quantity, frame, unit).
 """
 
+from collections.abc import Collection
 from typing import NamedTuple
 
 from twin.errors import SettingsError, did_you_mean
-from twin.live.signals.channels import CHANNELS
+from twin.live.signals.channels import BY_NAME, CHANNELS
+from twin.physics.actuators.channels import CHANNELS_OF
 
 OWN_SOURCE = "twin"  # what the twin says carries this source id; it never listens to it
 KNOT = 1852.0 / 3600.0  # [m/s]
@@ -43,6 +45,10 @@ INPUTS: tuple[Topic, ...] = (
     Topic("speed_through_water_knots", FLOAT, ("surge_velocity_through_water_mps",), KNOT),
 )
 BY_SUBJECT: dict[str, Topic] = {topic.subject: topic for topic in INPUTS}
+# of a ship's actuators, by the last part of the channel's name; which of them begins the source id
+OF_ACTUATORS: dict[str, str] = {f"actuator_{last}": last for last in CHANNELS_OF}
+# Keelson's own, heard as well where the source id begins with the name of one of the ship's actuators
+ALIKE = {"propeller_rate_rpm": "rate_rpm", "rudder_angle_deg": "angle_deg"}
 
 OUTPUTS: tuple[Output, ...] = (
     Output("twin_tick", "shiptwin.Tick", "twin", 0.0, "everything one tick knew"),
@@ -87,6 +93,25 @@ def address(text: str) -> Address | None:
     if not (found and versioned and has_source and base and entity and subject and source):
         return None
     return Address(base, entity, subject, source)
+
+
+def topic_of(place: Address, actuators: Collection[str] | None = None) -> Topic | None:
+    """What a key carries. `actuators`: the channels of the ship's own, beside which there are none; None
+    where the ship is not known, so that any name may be one's."""
+    name = place.source.partition("/")[0]
+    if last := OF_ACTUATORS.get(place.subject):
+        channel = f"{name}.{last}"
+        known = channel in (BY_NAME if actuators is None else actuators)
+        return Topic(place.subject, FLOAT, (channel,)) if known else None
+    if actuators and (channel := f"{name}.{ALIKE.get(place.subject)}") in actuators:
+        return Topic(place.subject, FLOAT, (channel,))
+    return BY_SUBJECT.get(place.subject)
+
+
+def actuator_subjects(channels: Collection[str]) -> list[str]:
+    """Subjects that carry these channels of actuators, beside those that every ship's twin listens to."""
+    lasts = {channel.rpartition(".")[2] for channel in channels}
+    return [subject for subject, last in OF_ACTUATORS.items() if last in lasts]
 
 
 def subjects(wanted: list[str] | None = None) -> list[str]:

@@ -39,6 +39,10 @@ class ZenohBus:
         self._thread: Thread | None = None
         self._received = self._published = self._refused = 0
 
+    def listen_to(self, subjects: list[str]) -> None:
+        """Subscribe to these as well; before the bus is opened."""
+        self._subjects += [subject for subject in subjects if subject not in self._subjects]
+
     def __enter__(self) -> "ZenohBus":
         self._try_to_open()
         if self._link is None and not self._client and not may_come(self._why):

@@ -10,7 +10,7 @@ from copy import copy
 from dataclasses import dataclass, field
 from math import sqrt
 
-from twin.live.gates.helm import Helm
+from twin.live.gates.helm import helm_of
 from twin.live.learning.adapt import Adaptation
 from twin.live.learning.evidence import Evidence, Three
 from twin.live.learning.movable import movable
@@ -50,7 +50,7 @@ class LearnedForce:
         rows = residual.manifest.whitening[1] if residual and residual.manifest.whitening else ()
         learns = adapt and (residual is not None or bool(movable(ship.effects, ship)))
         self.adaptation = Adaptation(ship, self.scale, len(rows), residual is not None) if learns else None
-        self.evidence, self.helm = Evidence(ship, self.scale), Helm(ship)
+        self.evidence, self.helm = Evidence(ship, self.scale), helm_of(ship)
         self.bound_N = self.bound * max(self.scale.X, self.scale.Y)
         self.bound_Nm = self.bound * self.scale.N
         self._waited_s = 0.0

@@ -193,6 +193,8 @@ def ship_hash(ship: Ship) -> str:
         section: {name: entry["value"] for name, entry in table[section].items()}
         for section in ("particulars", "derivatives")
     }
+    if ship.actuators:
+        numbers["actuators"] = {a.name: repr(a) for a in ship.actuators}
     effects = {name: {k: p["value"] for k, p in entry.items()} for name, entry in table["effects"].items()}
     for owner, entry in (numbers | effects).items():
         for name in LATER.get(owner, ()):

@@ -25,7 +25,7 @@ class LogFile:
 
     def __init__(self, path: str | Path, classes: dict[str, Any] | None = None):
         """`classes`: by type name those that are not the usual ones (a row with the ship's actuators)."""
-        self.path, self._classes = Path(path), classes or {}
+        self.path, self._classes = Path(path), {} if classes is None else classes
         self._aside = self.path.with_name(f".{self.path.name}.{os.getpid()}.part")
 
     def __enter__(self) -> "LogFile":

@@ -17,10 +17,11 @@ from twin.errors import DataError
 from twin.live.keelson import messages
 from twin.live.keelson.decode import Decoder, Result, from_row
 from twin.live.keelson.stamps import LATEST_S, YEAR_S
-from twin.live.keelson.topics import BY_SUBJECT, address, is_own
+from twin.live.keelson.topics import address, is_own, topic_of
 from twin.live.log.mcap_read import McapReader, Message
+from twin.live.log.own_row import ROW, own_row
 
-TICK, ROW = "shiptwin.Tick", "shiptwin.Row"
+TICK = "shiptwin.Tick"
 PEEK = 5000  # messages within which a log of the twin shows its first tick
 MAX_GAP_S = 60.0  # a longer hole in a foreign log is jumped over
 T = TypeVar("T", bound=tuple[Any, ...])
@@ -43,6 +44,7 @@ class PlayedLog:
         self.path, self.period_s = Path(path), 1.0 / rate_hz
         self.decoder = Decoder()
         self.kind = ""
+        self.classes: dict[str, Any] = {}  # types that are not the usual ones: a row with actuators
         self._refused: Counter[str] = Counter()
 
     @property
@@ -61,8 +63,9 @@ class PlayedLog:
             return self._in_order(self._as_ticked(whole))
         if ROW in types:
             self.kind = "an imported voyage"
+            self.classes |= own_row(self._reader)
             return self._on_grid(self._in_order(self._rows(whole)))
-        if any(_topic_type(message.topic) for message in first):
+        if any(self._topic_type(message.topic) for message in first):
             self.kind = "a log of Keelson scalars"
             return self._on_grid(self._in_order(self._scalars(whole)))
         raise DataError(
@@ -92,7 +95,7 @@ class PlayedLog:
         raw: list[Message] = []
         for message in source:
             if message.type_name != TICK:
-                if _topic_type(message.topic):
+                if self._topic_type(message.topic):
                     raw.append(message)
                 continue
             try:
@@ -126,10 +129,11 @@ class PlayedLog:
             yield Batch(tick_s, tick_s, _received(results, tick_s), raw)
 
     def _rows(self, source: Iterator[Message]) -> Iterator[tuple[float, list[Result], Message]]:
+        row_class = self.classes.get(ROW, messages.Row)
         for message in source:
             if message.type_name == ROW:
                 try:
-                    row = messages.Row.FromString(message.data)
+                    row = row_class.FromString(message.data)
                 except DecodeError:
                     self._refused[ROW] += 1
                     continue
@@ -137,16 +141,15 @@ class PlayedLog:
 
     def _scalars(self, source: Iterator[Message]) -> Iterator[tuple[float, list[Result], Message]]:
         for message in source:
-            if _topic_type(message.topic):
+            if self._topic_type(message.topic):
                 time_s = message.log_ns * 1e-9
                 yield time_s, self.decoder.decode_stripped(message.topic, message.data, time_s), message
 
-
-def _topic_type(topic: str) -> str:
-    """The message type of a logged input of the twin, "" for anything else."""
-    place = address(topic)
-    known = BY_SUBJECT.get(place.subject) if place else None
-    return known.type_name if known and place and not is_own(place.source) else ""
+    def _topic_type(self, topic: str) -> str:
+        """The message type of a logged input of the twin, "" for anything else."""
+        place = address(topic)
+        known = topic_of(place, self.decoder.actuators) if place else None
+        return known.type_name if known and place and not is_own(place.source) else ""
 
 
 def _received(results: list[Result], time_s: float) -> list[Result]:

@@ -19,6 +19,7 @@ from twin.live.keelson.schema import classes_from_set
 from twin.live.keelson.wire import double_columns
 from twin.live.log.mcap_read import McapReader
 from twin.live.log.onebase import Columns, on_one_base, without_repeats
+from twin.live.signals.channels import BY_NAME
 from twin.live.signals.readings import WORDS, Reading
 
 UNREADABLE = "that cannot be decoded"
@@ -90,13 +91,19 @@ class LogRows:
         parts = list(self._parts_of_ticks())
         if not parts:
             raise DataError(f"{self._reader.path}: none of its {len(self._ticks)} {TICK} can be decoded.")
-        times, walls, measured, ages = zip(*parts, strict=True)
+        times, walls, measured, ages, actuators = zip(*parts, strict=True)
         time_s = np.array(times) + (walls[0] - times[0])
         columns, _ = self._doubles(TICK, ROW, list(measured))
         columns.pop("time_s", None)
-        return time_s, without_repeats(time_s, columns, self._doubles(TICK, AGES, list(ages))[0])
+        old = self._doubles(TICK, AGES, list(ages))[0]
+        for row, channels in enumerate(actuators):
+            for c in channels:
+                if c.HasField("value") and c.name in BY_NAME:
+                    _cell(columns, c.name, row, c.value, len(parts))
+                    _cell(old, c.name, row, c.age_s, len(parts))
+        return time_s, without_repeats(time_s, columns, old)
 
-    def _parts_of_ticks(self) -> Iterator[tuple[float, float, bytes, bytes]]:
+    def _parts_of_ticks(self) -> Iterator[tuple[float, float, bytes, bytes, list[Any]]]:
         tick_class = self._class(TICK, TICK)
         for data in self._ticks:
             try:
@@ -104,7 +111,8 @@ class LogRows:
             except DecodeError:
                 self.refused[f"{TICK} {UNREADABLE}"] += 1
                 continue
-            yield tick.time_s, tick.wall_s, tick.measured.SerializeToString(), tick.age_s.SerializeToString()
+            measured, ages = tick.measured.SerializeToString(), tick.age_s.SerializeToString()
+            yield tick.time_s, tick.wall_s, measured, ages, list(getattr(tick, "actuators", ()))
 
     def _class(self, type_name: str, wanted: str) -> Any:
         """A message class as the log's own schema defines it."""
@@ -135,3 +143,9 @@ class LogRows:
             values.append(result.value)
         elif result.channel:
             self.refused[f"{result.channel}, {WORDS[result.quality]}"] += 1
+
+
+def _cell(columns: Columns, name: str, row: int, value: float, rows: int) -> None:
+    if name not in columns:
+        columns[name] = np.full(rows, np.nan)
+    columns[name][row] = value

@@ -4,18 +4,20 @@ where it is now, and without those effects whose inputs nobody measures.
     nu_dot = M^-1 (sum of the known forces + the learned one) + r x nu_c
 """
 
-from collections import deque
 from collections.abc import Sequence
-from copy import copy
 
+from twin.live.observer.controls import at_rest, controls_of, newly_told
 from twin.live.observer.estimate import Estimate
+from twin.live.observer.steering import Gear, Steering, gears_of
 from twin.live.signals.measured import Measured
 from twin.physics import core
-from twin.physics.effect import Effect, Flow, Lag
+from twin.physics.effect import Effect, Flow
 from twin.physics.maths import cos, sin, total
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import LIGHT, WEATHER, Force, Growth, Number, Rates, Situation, Water
+
+__all__ = ["INPUTS", "Dynamics", "Forces", "Gear", "KnownDynamics", "Steering", "first_current"]
 
 Forces = Sequence[core.Tau]
 NONE = Force(0.0, 0.0, 0.0)
@@ -115,12 +117,14 @@ class Dynamics:
         self.full = Model(ship, tuple(e for e in ship.effects if e not in streams))
         self.off: tuple[Effect, ...] = ()  # effects without their inputs
         self.held: dict[str, float] = {}  # controls whose feedback is lost, at their last value [SI]
+        self._names = tuple(controls_of(ship))
         self._controls: dict[str, float] = {}  # the last that was measured of each
         self.now = KnownDynamics(self.full, self.first_current)
         self._needed = sorted({need for e in self.full.effects for need in e.needs if need in WEATHER})
         self._models: dict[tuple[str, ...], tuple[Model, tuple[Effect, ...]]] = {}
         self._adopted: Sequence[Effect] = ship.effects
-        self._steering = Steering([Gear(lag) for lag in self.full.lags])
+        self._rest = at_rest(ship)  # of actuators of which nothing was measured yet
+        self._steering = gears_of(self.full.lags, self._rest)
 
     def adopt(self, effects: Sequence[Effect]) -> None:
         """The ship's effects with the numbers that act from now on (twin/live/learning/named.py)."""
@@ -134,27 +138,32 @@ class Dynamics:
         s = self.situation(e, measured)
         return s, self.now, self.now.forces(s)
 
-    def steering(self) -> "Steering | None":
-        """The gear as it is now, to be carried ahead; None when the rudder is where it was ordered."""
-        return self._steering.copy() if self._steering.gears else None
+    def steering(self) -> Steering | None:
+        """The gear as it is now, to be carried ahead; None when all is where it was ordered."""
+        return self._steering.copy() if self._steering.late else None
 
     def ahead(self, s: Situation, forces: Forces, learned: Force, h: float) -> Rates:
         """What takes nu over the next h seconds."""
         return self.now.mean_rates(s, forces, learned, h)
 
     def situation(self, e: Estimate, measured: Measured) -> Situation:
-        """The ship's state as estimated, with controls and weather as measured. Of a rudder or shaft whose
-        feedback is lost the last value holds (see `held`), 0 where there never was one."""
+        """The ship's state as estimated, with controls and weather as measured. Of a rudder, shaft or
+        actuator whose feedback is lost the last value holds (see `held`), what gives nothing where there
+        never was one."""
         si = measured.si
         self._hold(si)
         s = Situation(e.x, e.y, e.psi, e.u, e.v, e.r, t=measured.now_s)
         for name in INPUTS:
             if name in si:
                 setattr(s, name, si[name])
-        for name, value in self.held.items():
-            setattr(s, name, value)
-        self._steering.order = s.delta  # type: ignore[assignment]
-        s.delta = self._steering.at(measured.now_s)
+        if self._rest:
+            s.told = self._rest
+            newly_told(s, self._controls)
+        else:
+            for name, value in self.held.items():
+                setattr(s, name, value)
+        self._steering.take(s.told or {"delta": s.delta})
+        self._steering.follow(s)
         missing = tuple([need for need in self._needed if need not in si])
         if missing not in self._models:
             self._models[missing] = self.full.without_inputs(set(missing))
@@ -163,8 +172,8 @@ class Dynamics:
         return s
 
     def _hold(self, si: dict[str, float]) -> None:
-        """A lost feedback does not stop engine or rudder."""
-        for name in CONTROLS:
+        """A lost feedback does not stop engine, rudder or actuator."""
+        for name in self._names:
             if name in si:
                 self._controls[name] = si[name]
                 self.held.pop(name, None)
@@ -176,48 +185,3 @@ def _along(s: Situation, start: tuple[Number, ...], r: Number, k: Rates, h: floa
     """Puts s where it is h seconds after the start at rates k, turning with r meanwhile."""
     psi0, u0, v0, r0 = start
     s.psi, s.u, s.v, s.r = psi0 + h * r, u0 + h * k[0], v0 + h * k[1], r0 + h * k[2]
-
-
-class Steering:
-    """The order, and the rudder that follows it through every gear of the model."""
-
-    def __init__(self, gears: "list[Gear]", order: float = 0.0):
-        self.gears, self.order = gears, order
-
-    def at(self, t: float) -> float:
-        """Where the rudder is at time t [rad]; times may only go on."""
-        delta = self.order
-        for gear in self.gears:
-            delta = gear.turn(delta, t)
-        return delta
-
-    def copy(self) -> "Steering":
-        return Steering([gear.copy() for gear in self.gears], self.order)
-
-
-class Gear:
-    """A rudder that answers late: where it is, given what was ordered."""
-
-    def __init__(self, lag: Lag):
-        self.lag = lag
-        self.actual: float | None = None
-        self._orders: deque[tuple[float, float]] = deque(maxlen=4096)
-        self._t = 0.0
-
-    def turn(self, order: float, now_s: float) -> float:
-        """Where the rudder is now [rad]."""
-        dt, self._t = now_s - self._t, now_s
-        if self.actual is None or not 0.0 <= dt < 5.0:  # after a pause no earlier order counts
-            self._orders.clear()
-            self.actual = order
-        self._orders.append((now_s, order))
-        due = now_s - self.lag.dead_time()
-        while len(self._orders) > 1 and self._orders[1][0] <= due:
-            self._orders.popleft()
-        self.actual = float(self.lag.step(self.actual, self._orders[0][1], dt))
-        return self.actual
-
-    def copy(self) -> "Gear":
-        other = copy(self)
-        other._orders = self._orders.copy()
-        return other

@@ -12,8 +12,9 @@ from dataclasses import replace
 from math import ceil, exp, hypot, log, pi
 from typing import NamedTuple
 
-from twin.live.observer.dynamics import Forces, KnownDynamics, Steering
+from twin.live.observer.dynamics import Forces, KnownDynamics
 from twin.live.observer.estimate import MAX_GAP_S, Estimate
+from twin.live.observer.steering import Steering
 from twin.live.signals.derive import turn
 from twin.physics.maths import cos, sin
 from twin.physics.ship import Ship
@@ -192,7 +193,7 @@ def carry(
     """Puts s h seconds on: nu by one Runge-Kutta step, eta along the mean of old and new nu; learned force
     that of the step's middle, the rudder where a slow gear has it by then."""
     if steering:
-        s.delta = steering.at(s.t)
+        steering.follow(s)
     forces = physics.forces(s)
     rates = physics.far_rates(s, forces, middle.of(learned(s, forces), h), h)
     u, v, r = s.u + h * rates.u, s.v + h * rates.v, s.r + h * rates.r

@@ -50,7 +50,7 @@ def is_sentinel(channel: str, value: float, out_of_range: bool) -> bool:
     if out_of_range and value in GENERIC:
         return True
     width = abs(value) * IN_RANGE_TOO
-    for code in CODES[channel]:  # noqa: SIM110 (called for each sample: three times as fast as any())
+    for code in CODES.get(channel, ()):  # noqa: SIM110 (called for each sample: three times as fast as any())
         if -width <= value - code <= width:
             return True
     return False

@@ -12,6 +12,7 @@ Turns n give T = gain rho D^4 (K_T0 |n| n + K_T1 |n| u_a/D) [Fossen 2021, ch. 9]
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any, Self
 
 from twin.physics.number import number
@@ -61,7 +62,7 @@ class Actuator:
         """The same with some of its numbers changed."""
         return replace(self, **numbers)
 
-    @property
+    @cached_property
     def attributes(self) -> tuple[str, ...]:
         """What is recorded of it, as physics calls it."""
         from .channels import CHANNELS_OF
@@ -102,9 +103,18 @@ class Actuator:
     def force(self, told: Mapping[str, Number], u: Number, v: Number, r: Number, ship: "Ship") -> "Tau":
         """(X [N], Y [N], N [N m]) in body axes; `told`: what is recorded of all actuators, `name.attribute`
         in SI; (u, v, r): the ship through the water."""
+        return self._of_kind(self, told, u, v, r, ship)
+
+    @cached_property
+    def _of_kind(self) -> Any:
         from .kinds import KINDS
 
-        return KINDS[self.kind].force(self, told, u, v, r, ship)
+        return KINDS[self.kind].force
+
+    @cached_property
+    def keys(self) -> dict[str, str]:
+        """Under which name each attribute is told."""
+        return {attribute: f"{self.name}.{attribute}" for attribute in self.attributes}
 
 
 NUMBERS = {f.name: f for f in fields(Actuator) if f.metadata}

@@ -14,17 +14,20 @@ class ActuatorChannel(NamedTuple):
     low: float
     high: float
     doc: str
+    unit: str
 
 
 CHANNELS_OF: dict[str, ActuatorChannel] = {
-    "command": ActuatorChannel("command", 1.0, -1.5, 1.5, "order as a share of full ahead, negative astern"),
-    "pwm_us": ActuatorChannel("pwm", 1.0, 500.0, 2500.0, "pulse width of its controller, 1500 is stop"),
-    "rate_rpm": ActuatorChannel("rate", 1.0 / 60.0, -20000.0, 20000.0, "turns, positive ahead"),
-    "rate_rev_s": ActuatorChannel("rate", 1.0, -330.0, 330.0, "turns, positive ahead"),
-    "thrust_n": ActuatorChannel("thrust", 1.0, -1e7, 1e7, "thrust, positive ahead"),
-    "angle_deg": ActuatorChannel("angle", DEG, -720.0, 720.0, "angle: see the actuator's kind"),
-    "angle_rad": ActuatorChannel("angle", 1.0, -13.0, 13.0, "angle: see the actuator's kind"),
-    "pitch_ratio": ActuatorChannel("pitch", 1.0, -2.5, 2.5, "pitch over diameter, positive ahead"),
+    "command": ActuatorChannel(
+        "command", 1.0, -1.5, 1.5, "order as a share of full ahead, negative astern", "-"
+    ),
+    "pwm_us": ActuatorChannel("pwm", 1.0, 500.0, 2500.0, "pulse width of its controller, 1500 is stop", "us"),
+    "rate_rpm": ActuatorChannel("rate", 1.0 / 60.0, -20000.0, 20000.0, "turns, positive ahead", "1/min"),
+    "rate_rev_s": ActuatorChannel("rate", 1.0, -330.0, 330.0, "turns, positive ahead", "1/s"),
+    "thrust_n": ActuatorChannel("thrust", 1.0, -1e7, 1e7, "thrust, positive ahead", "N"),
+    "angle_deg": ActuatorChannel("angle", DEG, -720.0, 720.0, "angle: see the actuator's kind", "deg"),
+    "angle_rad": ActuatorChannel("angle", 1.0, -13.0, 13.0, "angle: see the actuator's kind", "rad"),
+    "pitch_ratio": ActuatorChannel("pitch", 1.0, -2.5, 2.5, "pitch over diameter, positive ahead", "-"),
 }
 DRIVES = ("command", "pwm", "rate", "thrust")  # one of them says how hard it pushes
 

@@ -27,14 +27,14 @@ class Kind(NamedTuple):
 
 def push(a: Actuator, told: Told, u_a: Number, ship: "Ship") -> Number:
     """Thrust [N] along the actuator's own axis, with the water running along it at u_a [m/s]."""
-    name = a.name
-    if "thrust" in a.attributes:
-        return a.gain * told[f"{name}.thrust"]
-    if "rate" in a.attributes:
-        n, f = told[f"{name}.rate"], ship.rho * a.D**4
-        pitch = told[f"{name}.pitch"] / a.pitch_0 if "pitch" in a.attributes else 1.0
+    has = a.keys
+    if "thrust" in has:
+        return a.gain * told[has["thrust"]]
+    if "rate" in has:
+        n, f = told[has["rate"]], ship.rho * a.D**4
+        pitch = told[has["pitch"]] / a.pitch_0 if "pitch" in has else 1.0
         return a.gain * f * abs(n) * (a.K_T0 * n * pitch + a.K_T1 * u_a / a.D)
-    c = told[f"{name}.command"] if "command" in a.attributes else (told[f"{name}.pwm"] - STOP_US) / SPAN_US
+    c = told[has["command"]] if "command" in has else (told[has["pwm"]] - STOP_US) / SPAN_US
     ahead = positive(c - a.zero - a.dead, 1e-8) / (1.0 - a.dead)
     astern = positive(a.zero - c - a.dead, 1e-8) / (1.0 - a.dead)
     at_rest = a.ahead * _curve(a, ahead) - a.astern * _curve(a, astern)
@@ -56,7 +56,7 @@ def fixed(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship"
 
 def azimuth(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
     """Its angle is where the thrust pushes the ship to: 0 ahead, positive to starboard."""
-    angle = told[f"{a.name}.angle"] + a.trim
+    angle = told[a.keys["angle"]] + a.trim
     c, s = cos(angle), sin(angle)
     T = push(a, told, (u - a.y * r) * c + (v + a.x * r) * s, ship)
     return _at(a, T * c, T * s)
@@ -64,7 +64,7 @@ def azimuth(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Shi
 
 def steered(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
     """Its angle is counted like a rudder's: positive turns the ship to starboard when the jet is astern."""
-    angle = told[f"{a.name}.angle"] + a.trim
+    angle = told[a.keys["angle"]] + a.trim
     c, s = cos(angle), sin(angle)
     T = push(a, told, u - a.y * r, ship)
     return _at(a, T * c, -T * s)
@@ -81,8 +81,8 @@ def propeller(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "S
     c, along = a.coefficients(ship), u - a.y * r
     T = push(a, told, c.wake_share * along, ship)
     X, Y, N = c.thrust_share * T, 0.0, 0.0
-    if "angle" in a.attributes:
-        drag, Y, N = core.rudder(along, v, r, told[f"{a.name}.angle"] + a.trim, T, c)
+    if "angle" in a.keys:
+        drag, Y, N = core.rudder(along, v, r, told[a.keys["angle"]] + a.trim, T, c)
         X = X + drag
     return X, Y, N - a.y * X
 

@@ -57,8 +57,16 @@ class ActuatorForce(OfActuator, Force):
     def force(self, s: Situation, ship: "Ship") -> ForceVector:
         a = ship.actuator(self.actuator)
         was = a.force(s.told, s.u_r, s.v_r, s.r, ship)  # type: ignore[arg-type]
-        now = self.altered(a).force(s.told, s.u_r, s.v_r, s.r, ship)  # type: ignore[arg-type]
+        now = self._altered(a).force(s.told, s.u_r, s.v_r, s.r, ship)  # type: ignore[arg-type]
         return ForceVector(now[0] - was[0], now[1] - was[1], now[2] - was[2])
+
+    def _altered(self, a: Actuator) -> Actuator:
+        """The same, made once: the loop asks a hundred times a second."""
+        known = self.__dict__.get("_made")
+        if known is None or known[0] is not a:
+            known = a, self.altered(a)
+            object.__setattr__(self, "_made", known)
+        return known[1]  # type: ignore[no-any-return]
 
 
 @cache

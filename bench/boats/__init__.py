@@ -1,0 +1,1 @@
+"""Calibration and diagnosis of vessels with several actuators, on the boats of the reference sea."""

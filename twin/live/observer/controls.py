@@ -1,0 +1,34 @@
+"""What engine and helm must tell the loop: rudder and shaft, or every channel of the ship's actuators, and
+where each stands until somebody has told."""
+
+from collections.abc import Mapping
+
+from twin.live.signals.channels import BY_NAME
+from twin.physics.actuators.helm import told
+from twin.physics.ship import Ship
+from twin.physics.state import Situation
+
+ONE_SCREW = {"delta": "rudder_angle_deg", "n": "propeller_rate_rpm"}
+
+
+def controls_of(ship: Ship) -> dict[str, str]:
+    """Attribute of physics -> channel."""
+    if not ship.actuators:
+        return ONE_SCREW
+    return {BY_NAME[c].attribute: c for c in actuator_channels(ship)}
+
+
+def actuator_channels(ship: Ship) -> tuple[str, ...]:
+    """Every channel of the ship's actuators by its whole name (`port.rate_rpm`)."""
+    return tuple(c for a in ship.actuators for c in a.columns())
+
+
+def at_rest(ship: Ship) -> dict[str, float]:
+    """What actuators are told that give nothing, by `name.attribute` [SI]; of a ship without any {}."""
+    return {k: float(x) for k, x in told(ship, 0.0, 0.0).items()} if ship.actuators else {}
+
+
+def newly_told(s: Situation, si: Mapping[str, float]) -> None:
+    """Puts what is measured of the actuators into a situation that had something else of them."""
+    if s.told:
+        s.told = {k: si.get(k, x) for k, x in s.told.items()}
