@@ -83,6 +83,7 @@ def _write_json(summary: Summary, path: str) -> None:
         "schema_version": SCHEMA_VERSION,
         **summary._asdict(),
         "foresight": [f._asdict() for f in summary.foresight],
+        "tube": [c._asdict() for c in summary.tube],
     }
     text = json.dumps(table, indent=2)
     if path == "-":

@@ -79,6 +79,8 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
     )
     if said := loop.stabilizer.why_not:
         notes.append(f"certificate: {said}")
+    if said := loop.tube.why_not:
+        notes.append(f"prediction tube: {said}")
     loop.notes = notes
     return loop
 
