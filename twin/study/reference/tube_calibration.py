@@ -156,9 +156,14 @@ def quantiles(voyages: Sequence[Sequence[float]]) -> list[float]:
     """At LEVELS as far as they are finite; where the promised one is not, the greatest score alone: the best
     that so few voyages can show."""
     if len(voyages) < needed(LEVEL):
-        return digits([max(s for v in voyages for s in v)])
-    found = [hierarchical_quantile(v_level[0], v_level[1]) for v_level in ((voyages, p) for p in LEVELS)]
-    return digits([q for q in found if np.isfinite(q)])
+        return raised([max(s for v in voyages for s in v)])
+    found = [hierarchical_quantile(voyages, level) for level in LEVELS]
+    return raised([q for q in found if np.isfinite(q)])
+
+
+def raised(values: Sequence[float]) -> list[float]:
+    """Five digits, rounded up: what is promised stays promised."""
+    return [float(f"{x:.5g}") if float(f"{x:.5g}") >= x else float(f"{x * 1.0001:.5g}") for x in values]
 
 
 def digits(values: Any) -> list[float]:
