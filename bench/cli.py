@@ -59,7 +59,7 @@ BENCHES: dict[str, Bench] = {
     "tube": Bench(
         "bench.tube.run",
         "the tube around the predictions: is it kept on voyages and hulls that it has not seen?",
-        "twin-bench tube --ships kvlcc2 --voyages 40 --work .tube",
+        "twin-bench tube --ships kvlcc2=40 --work .tube",
     ),
     "hidden-effects": Bench(
         "bench.league.hidden_effects",

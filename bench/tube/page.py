@@ -1,29 +1,27 @@
 """What `twin-bench tube` prints, as Markdown."""
 
-import argparse
 from collections.abc import Iterable, Mapping, Sequence
 
 from bench.tube.held_out import EVERY, Row
 
 
 def page(
-    args: argparse.Namespace,
     counts: Mapping[str, int],
     own: Mapping[str, Mapping[str, Sequence[Row]]],
     others: Mapping[str, Sequence[Row]],
 ) -> str:
     """The whole page."""
-    sailed = ", ".join(f"{n} of {hull}" for hull, n in counts.items())
+    ships = " ".join(f"{hull}={n}" for hull, n in counts.items())
     return f"""# The tube around the predictions, tried
 
-`twin-bench tube --ships {" ".join(counts)} --voyages {args.voyages} --work .tube` (voyages: {sailed})
+`twin-bench tube --ships {ships} --work .tube`
 
 90 % is promised of the place (ellipse) and of the heading (to either side), if helm and engine are held.
 Each voyage (any sea up to the ship's highest of `twin-bench seaway`; courses, zigzags, turns and speeds
 drawn from its seed) went through the loop that the service builds and was judged by a tube of all *other*
 voyages of its hull, against the measured place and heading. Inside: each voyage has weight one; behind ±:
 the standard deviation from voyage to voyage. On: voyages whose quantile the tube took, after a third of the
-others (20 at most) had given the regression. Radius: of the circle of the ellipse's area. Score: the
+others (12 at most) had given the regression. Radius: of the circle of the ellipse's area. Score: the
 interval score, the smaller the better. The slow correction on board is left out. How it works:
 [decision 0021](../decisions/{DECISION}).
 

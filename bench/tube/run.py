@@ -11,18 +11,24 @@ from pathlib import Path
 
 from bench import answer
 from bench.options import positive
-from bench.seaway import HIGHEST
 from bench.tube.held_out import Row, across, left_out
 from bench.tube.page import page
 from bench.tube.sailing import voyages
 from twin.recording.jsonable import plain
 
-ALIKE = ("kvlcc2", "container", "kvlcc2_model", "usv")
+SHIPS = ("kvlcc2", "container", "kvlcc2_model", "usv")
+VOYAGES = 64
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--ships", nargs="+", choices=sorted(HIGHEST), default=list(ALIKE))
-    parser.add_argument("--voyages", type=positive, default=60, help="of each ship (default: 60)")
+    parser.add_argument(
+        "--ships",
+        nargs="+",
+        type=ship,
+        metavar="SHIP[=VOYAGES]",
+        default=[ship(name) for name in SHIPS],
+        help=f"{', '.join(SHIPS)}, and how many voyages of each (default: {VOYAGES})",
+    )
     parser.add_argument(
         "--work",
         metavar="FOLDER",
@@ -33,15 +39,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     answer.add_arguments(parser)
 
 
+def ship(text: str) -> tuple[str, int]:
+    """A ship and how many voyages of it; ValueError for any other text."""
+    name, given, count = text.partition("=")
+    if name not in SHIPS:
+        raise ValueError(name)
+    return name, positive(count) if given else VOYAGES
+
+
 def run(args: argparse.Namespace) -> int:
-    sailed = {hull: voyages(hull, args.voyages, args.work) for hull in args.ships}
+    sailed = {hull: voyages(hull, count, args.work) for hull, count in args.ships}
     own: dict[str, dict[str, list[Row]]] = {}
     for hull, found in sailed.items():
         answer.tell(f"{hull}: each voyage by the tube of the others")
         own[hull] = {who: left_out(hull, found, who) for who in ("model", "reckoning")}
-    others = {
-        f"{a} -> {b}": across(a, b, sailed) for a, b in permutations(args.ships, 2) if {a, b} <= set(sailed)
-    }
+    others = {f"{a} -> {b}": across(a, b, sailed) for a, b in permutations(sailed, 2)}
     result = {
         "schema_version": 1,
         "voyages": {hull: len(found) for hull, found in sailed.items()},
@@ -50,6 +62,6 @@ def run(args: argparse.Namespace) -> int:
         },
         "other_hull": {pair: [r._asdict() for r in rows] for pair, rows in others.items()},
     }
-    text = page(args, {h: len(found) for h, found in sailed.items()}, own, others)
+    text = page({hull: len(found) for hull, found in sailed.items()}, own, others)
     answer.give(args, plain(result), text, answer.kept(args.page))
     return 0

@@ -260,7 +260,7 @@ INSTRUMENTS = (
     JsonKey("files.ship", "", "the ship file that was given", CLI),
     JsonKey("files.voyages[]", "", "the voyages that were given", CLI),
 )
-NINE = "nine voyages met it"
+MET = "45 voyages met it"
 SIZE = (
     JsonKey("voyages", "", "voyages that the promise rests on"),
     JsonKey("predictions", "", "predictions that came due on all of them"),

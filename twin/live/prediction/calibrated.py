@@ -4,7 +4,7 @@
     place:   (along/sigma_along)^2 + (across/sigma_across)^2 <= q^2          heading:  |error| <= q sigma
 
 q is the quantile that a new voyage like the references keeps with the level (`twin tube`); it is looked up in
-the regime's own cell where nine voyages filled it, else in its parent's.
+the regime's own cell where 45 voyages filled it, else in its parent's.
 """
 
 from collections.abc import Mapping
@@ -21,6 +21,7 @@ AXES = ("along", "across", "heading")
 TARGETS = ("place", "heading")
 BEYOND = (4, 5, 6)  # of phi: waves, wind, the estimate's sigma; beyond the references nothing is promised
 WORDS = {4: "wave height", 5: "wind", 6: "uncertainty of the estimate"}
+OWN = len(NAMES) - 2  # from here on phi of place and phi of heading differ
 ROOM = 0.1  # of the references' range, by which it may be left
 
 
@@ -67,12 +68,12 @@ class Calibrated(NamedTuple):
 
     def within(self, known: Known) -> tuple[list[float], list[float]]:
         """phi held inside what the references had."""
-        n = len(NAMES)
+        values = (*known.place, *known.heading[OWN:])
         held = [
-            min(max(x, lo), hi)
-            for x, lo, hi in zip((*known.place, *known.heading[6:]), self.low, self.high, strict=True)
+            lo if x < lo else hi if x > hi else x
+            for x, lo, hi in zip(values, self.low, self.high, strict=True)
         ]
-        return held[:n], [*held[: n - 2], *held[n:]]
+        return held[: OWN + 2], held[:OWN] + held[OWN + 2 :]
 
     def beyond(self, known: Known) -> str:
         """What no reference voyage had, in words; "" where they had it all."""

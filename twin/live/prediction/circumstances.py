@@ -9,7 +9,7 @@ L/U; sea unknown, slight, moderate or rough, by H_s/L.
 """
 
 from math import exp, hypot, log
-from typing import NamedTuple
+from typing import Any, NamedTuple, cast
 
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction
@@ -44,6 +44,7 @@ class Circumstances:
         self._shaft = HELD_J * ship.U_0 / ship.D_P if ship.D_P else float("inf")  # [1/s]
         self._delta = self._n = 0.0
         self.moved_s = float("-inf")  # when helm or engine last moved
+        self._now_s, self._now = float("nan"), cast(tuple[Any, ...], ())  # what holds at this moment
         self._good_s: float | None = None  # since when there is an estimate without a break
 
     def step(self, now_s: float, measured: Measured, good: bool) -> None:
@@ -65,10 +66,23 @@ class Circumstances:
         self, now_s: float, e: Estimate, measured: Measured, p: Prediction, usual: tuple[float, ...]
     ) -> Known:
         """Of prediction p; `usual`: the prior of its error in place [m] and heading [rad]."""
+        if self._now_s != now_s:
+            self._now_s, self._now = now_s, self._common(now_s, e, measured)
+        common, of_place, of_heading, helm, sea = self._now
+        return Known(
+            (*common, of_place, log_ratio(p.sigma[0], usual[0])),
+            (*common, of_heading, log_ratio(p.sigma[2], usual[1])),
+            helm,
+            sea,
+        )
+
+    def _common(self, now_s: float, e: Estimate, measured: Measured) -> tuple[Any, ...]:
+        """What all horizons share: the first six of phi, log(sigma/sigma_0) of place and of heading, helm and
+        sea."""
         si, U = measured.si, max(hypot(e.u, e.v), self.least_U)
         H_s, time_s = si.get("H_s"), self.L / U
         since_s = now_s - self.moved_s
-        common = (
+        phi = (
             1.0,
             abs(e.r) * time_s,
             abs(si.get("delta", self._delta)),
@@ -76,12 +90,9 @@ class Circumstances:
             100.0 * (H_s or 0.0) / self.L,
             si.get("wind_speed", 0.0) / U,
         )
-        return Known(
-            (*common, log_ratio(e.sigma[0], SIGMA_PLACE_M), log_ratio(p.sigma[0], usual[0])),
-            (*common, log_ratio(e.sigma[2], SIGMA_HEADING_RAD), log_ratio(p.sigma[2], usual[1])),
-            HELMS[since_s < time_s],
-            sea_of(H_s, self.L),
-        )
+        of_place = log_ratio(e.sigma[0], SIGMA_PLACE_M)
+        of_heading = log_ratio(e.sigma[2], SIGMA_HEADING_RAD)
+        return phi, of_place, of_heading, HELMS[since_s < time_s], sea_of(H_s, self.L)
 
 
 def sea_of(H_s: float | None, L: float) -> str:

@@ -32,7 +32,9 @@ class Watch:
         return [pair for h, waiting in self._waiting.items() for pair in self._due(h, waiting, now_s)]
 
     def _wait(self, now_s: float, measured: Measured, e: Estimate, p: Prediction) -> None:
-        h = min(self._usual, key=lambda h: abs(h - p.horizon_s))
+        h = next((h for h in self._usual if abs(h - p.horizon_s) < 0.5), None)
+        if h is None:
+            return
         known = self.circumstances.known(now_s, e, measured, p, self._usual[h])
         start_s, due_s = now_s - p.age_s, now_s + p.horizon_s
         self._waiting[h].append(Foretold(start_s, now_s, due_s, p.state, known, p.region))

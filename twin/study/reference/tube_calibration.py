@@ -1,13 +1,14 @@
 """The prediction tube of a ship from reference voyages (the ship file's [tube]; twin/live/prediction).
 
     s = |(along/sigma_along, across/sigma_across)|,  |heading|/sigma_heading        scores
-    log sigma = log usual + c . phi          ridge regression of log|error|, on a third of the voyages
+    log sigma = log usual + c . phi      ridge regression of log|error|, a third of the voyages, 12 at most
     q = hierarchical quantile of the scores of all others, the voyage as unit
 
 Split conformal prediction [Vovk 2012; Lee, Barber & Willett 2023, arXiv:2306.06342]: for a random moment of a
 new voyage exchangeable with these the score is below q with the level at least, whatever the correlation
-within voyages; a level is finite from V >= level/(1 - level) voyages on. A regime has its own q only where so
-many voyages met it.
+within voyages; a level is finite from V >= level/(1 - level) voyages on. With V of them q is that of the
+level (V + 1)/V times as high, so a regime has its own q only where that costs no more than two per cent: 45
+voyages.
 """
 
 from collections.abc import Mapping, Sequence
@@ -28,7 +29,8 @@ from twin.study.reference.hierarchical import hierarchical_quantile
 
 LEVEL = 0.9
 LEVELS = (0.8, 0.85, 0.88, 0.9, 0.92, 0.94, 0.96, 0.98)
-FEWEST_FIT, MOST_FIT = 4, 20  # voyages that the regression takes
+FEWEST_FIT, MOST_FIT = 4, 12  # voyages that the regression takes
+COST = 0.02  # what a regime's own quantile may be above the level for want of voyages
 LEAST = 0.05  # of the mean error: a smaller one counts as this in log|error|
 Array = NDArray[np.float64]
 
@@ -36,6 +38,11 @@ Array = NDArray[np.float64]
 def needed(level: float) -> int:
     """Voyages from which a level can be shown."""
     return ceil(level / (1.0 - level) - 1e-9)
+
+
+def needed_for_regime() -> int:
+    """Voyages from which a regime has a quantile of its own."""
+    return ceil(LEVEL / COST - 1e-9)
 
 
 def parted(count: int) -> list[bool]:
@@ -138,7 +145,7 @@ def _cells(voyages: Sequence[Sequence[tuple[Judged, float, float]]]) -> dict[str
     for name in names:
         inside = [[s for s in v if name in regimes(s[0])] for v in voyages]
         inside = [v for v in inside if v]
-        if name == "all" or len(inside) >= needed(LEVEL):
+        if name == "all" or len(inside) >= needed_for_regime():
             place = quantiles([[place for _, place, _ in v] for v in inside])
             heading = quantiles([[heading for _, _, heading in v] for v in inside])
             count = min(len(place), len(heading))
