@@ -6,6 +6,7 @@ from pathlib import Path
 
 from twin.errors import SettingsError
 from twin.live import realtime
+from twin.live.certificate.authority import authority_margin
 from twin.live.certificate.certificate import Certificate, on_board
 from twin.live.certificate.rolled_tube import tube_of
 from twin.live.certificate.store import kept, mark, on_file
@@ -143,7 +144,8 @@ def stabilizer_of(
         )
     if certificate is None:
         return Stabilizer(None, f"not worked out ({said})")
-    return Stabilizer(tube_of(certificate), "" if certificate.ok else certificate.reason)
+    why_not = "" if certificate.ok else certificate.reason
+    return Stabilizer(tube_of(certificate), why_not, authority_margin(Model.of(ship), certificate))
 
 
 def steps_of(settings: Settings, ship: Ship) -> int:

@@ -65,7 +65,7 @@ def test_what_reference_voyages_promise_is_shown_along_the_course_and_what_they_
     assert (first["tube"]["level"], first["tube"]["voyages"], second["tube"]["level"]) == (90, 20, 0)
     nearest = min(frame["ahead"]["way"], key=lambda p: abs(p[0] - first["n"]) + abs(p[1] - first["e"]))
     assert nearest[2] == pytest.approx(7.0, abs=0.2)
-    words = "\n".join(page(frame))
+    words = page(frame)
     assert "90 %, on 20 voyages" in words and "no promise, wind above the references'" in words
 
 

@@ -59,6 +59,7 @@ MEANINGS = {
     "Certificate.inside": "whether the certificate holds now",
     "yaw_bound_degps": "live bound of the observer's error in the rate of turn",
     "step_margin": "share of an error that one sample surely takes away, 0 when none does",
+    "authority_margin": "share of the rudder's authority that is left; below 0 no course is covered by proof",
     "Tick.index": "number of the tick since start",
     "Tick.time_s": "monotonic clock of the twin's computer",
     "Tick.wall_s": "UTC since 1970",

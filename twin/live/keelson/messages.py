@@ -74,6 +74,7 @@ TABLE: dict[str, list[Field]] = {
         ("inside", "bool"),
         ("yaw_bound_degps", "double"),
         ("step_margin", "double"),  # share of an error that one sample surely takes away, 0 when none does
+        ("authority_margin", "double"),  # share of the rudder that the bounds leave, < 0: course not covered
     ],
     "Tick": [
         ("index", "int64"),
