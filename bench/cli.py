@@ -61,6 +61,11 @@ BENCHES: dict[str, Bench] = {
         "what a seaway costs the promise, and is it kept there?",
         "twin-bench seaway --ship kvlcc2",
     ),
+    "tube": Bench(
+        "bench.tube.run",
+        "the tube around the predictions: is it kept on voyages and hulls that it has not seen?",
+        "twin-bench tube --ships kvlcc2=40 --work .tube",
+    ),
     "hidden-effects": Bench(
         "bench.league.hidden_effects",
         "the hidden-effect league: is what is missing named?",

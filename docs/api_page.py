@@ -42,8 +42,26 @@ key without a "when" is in every answer.
 """
 GROUPS = {
     "Files": ("read_voyage", "read_voyages"),
-    "Verbs": ("instruments", "calibrate", "compare", "diagnose", "add", "remove", "simulate", "catalogue"),
-    "Results": ("InstrumentCheck", "Calibration", "Comparison", "Diagnosis", "Update", "Simulation"),
+    "Verbs": (
+        "instruments",
+        "calibrate",
+        "tube",
+        "compare",
+        "diagnose",
+        "add",
+        "remove",
+        "simulate",
+        "catalogue",
+    ),
+    "Results": (
+        "InstrumentCheck",
+        "Calibration",
+        "TubeCalibration",
+        "Comparison",
+        "Diagnosis",
+        "Update",
+        "Simulation",
+    ),
     "Ship and voyage": ("Ship", "Voyage"),
 }
 

@@ -170,8 +170,8 @@ def _actuators() -> str:
             "and may go on behind a slash: `actuator_rate_rpm/port` and `actuator_rate_rpm/port/encoder` "
             f"both fill `port.rate_rpm`. Keelson's own are heard as well: {also}.",
             "Names that the ship file does not have are refused. Lost after 5 s, or after ten of the "
-            "channel's own periods. Under `[sources]` a channel stands in quotes: `\"port.rate_rpm\" = "
-            "\"port/encoder\"`.\n",
+            'channel\'s own periods. Under `[sources]` a channel stands in quotes: `"port.rate_rpm" = '
+            '"port/encoder"`.\n',
             "| subject / source | type | unit | range | what |",
             "|---|---|---|---|---|",
             *rows,

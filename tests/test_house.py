@@ -44,6 +44,7 @@ ORDER = (
     "twin.live.observer",
     "twin.live.gates",
     "twin.live.learning",
+    "twin.live.prediction",
     "twin.live.certificate",
     "twin.live.injection",
     "twin.live",

@@ -22,6 +22,7 @@ PUBLIC = {  # name -> the module that holds it
     "InstrumentCheck": "twin.api.instruments",
     "Ship": "twin.physics.particulars",
     "Simulation": "twin.api.simulation",
+    "TubeCalibration": "twin.api.tube",
     "Update": "twin.api.update",
     "Voyage": "twin.recording.voyage",
     "add": "twin.api.update",
@@ -34,6 +35,7 @@ PUBLIC = {  # name -> the module that holds it
     "read_voyages": "twin.api.voyages",
     "remove": "twin.api.update",
     "simulate": "twin.api.simulation",
+    "tube": "twin.api.tube",
 }
 __all__ = ["__version__", *PUBLIC]
 

@@ -61,6 +61,11 @@ VERBS: dict[str, Verb] = {
         "fits the core to reference voyages",
         "twin calibrate calm.mcap --ship alma.toml -o alma2.toml",
     ),
+    "tube": Verb(
+        "twin.commands.tube",
+        "how far predictions on board may be off, from voyages that the model has not seen",
+        "twin tube june*.mcap --ship alma2.toml -o alma3.toml",
+    ),
     "compare": Verb(
         "twin.commands.compare",
         "model against measurement: how wrong, and where",

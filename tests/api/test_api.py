@@ -45,7 +45,9 @@ def test_every_public_name_is_there_and_says_what_it_is(name):
         assert all(p.annotation is not p.empty for p in inspect.signature(thing).parameters.values())
 
 
-@pytest.mark.parametrize("name", ["instruments", "calibrate", "compare", "diagnose", "add", "simulate", "remove"])
+@pytest.mark.parametrize(
+    "name", ["instruments", "calibrate", "compare", "diagnose", "add", "simulate", "remove"]
+)
 def test_the_ship_comes_first_and_what_is_optional_has_a_name(name):
     first, *rest = inspect.signature(getattr(twin, name)).parameters.values()
     assert first.name == "ship"

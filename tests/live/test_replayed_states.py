@@ -31,7 +31,9 @@ def states(ship: str, folder: Path) -> str:
     return digest(lines(LOG, settings, SECONDS))
 
 
-@pytest.mark.skipif(not has_fma(), reason="a libm without FMA rounds some functions otherwise in the last digit")
+@pytest.mark.skipif(
+    not has_fma(), reason="a libm without FMA rounds some functions otherwise in the last digit"
+)
 @pytest.mark.parametrize("ship", SHIPS)
 def test_a_stored_log_replays_to_the_numbers_on_file(ship, tmp_path):
     assert states(ship, tmp_path) == json.loads(STORED.read_text())[ship]

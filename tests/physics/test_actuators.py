@@ -62,9 +62,7 @@ def test_a_thruster_by_hand():
 def test_an_azimuth_by_hand():
     table = PORT | {"kind": "azimuth", "channels": ["thrust_n", "angle_deg"], "y_m": 0.2}
     ship = ship_with(table)
-    X, Y, N = ship.actuator("port").force(
-        {"port.thrust": 10.0, "port.angle": radians(30.0)}, 0, 0, 0, ship
-    )
+    X, Y, N = ship.actuator("port").force({"port.thrust": 10.0, "port.angle": radians(30.0)}, 0, 0, 0, ship)
     assert pytest.approx(10.0 * 3**0.5 / 2) == X and pytest.approx(5.0) == Y
     assert pytest.approx(-0.4 * 5.0 - 0.2 * X) == N
 
@@ -100,7 +98,12 @@ def one_of_each():
         PORT | {"name": "fixed_thruster", "channels": ["pwm_us"]},
         PORT | {"name": "tunnel_thruster", "kind": "tunnel_thruster", "x_m": 1.0, "half_mps": 1.0},
         {"name": "propeller", "kind": "propeller", "channels": pods, **own},
-        {"name": "controllable_pitch", "kind": "controllable_pitch", "channels": [*pods, "pitch_ratio"], **own},
+        {
+            "name": "controllable_pitch",
+            "kind": "controllable_pitch",
+            "channels": [*pods, "pitch_ratio"],
+            **own,
+        },
     )
 
 

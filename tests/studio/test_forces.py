@@ -12,7 +12,10 @@ from twin.studio.project import BUNDLED
 from twin.study.prediction.unexplained import energy, missing_force
 from twin.study.reference.sailed import sailed
 
-FOULED = {"effect": "HullFouling", "parameters": [{"name": "extra", "value": 0.32, "low95": 0.24, "high95": 0.4, "unit": "-"}]}
+FOULED = {
+    "effect": "HullFouling",
+    "parameters": [{"name": "extra", "value": 0.32, "low95": 0.24, "high95": 0.4, "unit": "-"}],
+}
 
 
 @pytest.fixture(scope="module")
@@ -43,8 +46,15 @@ def test_a_cause_is_told_in_the_words_of_the_bridge(monday):
     assert ways([track], with_cause(model, FOULED), "HullFouling") == ["against the motion"]
     told = cause_view([track], model, FOULED, 120.0)
     speed = told["changes"][0]
-    assert speed["what"] == "speed" and speed["unit"] == "kn" and speed["high95"] < speed["value"] < speed["low95"] < 0.0
-    assert number(FOULED["parameters"][0])["value"] == pytest.approx(32.0) and number(FOULED["parameters"][0])["unit"] == "%"
+    assert (
+        speed["what"] == "speed"
+        and speed["unit"] == "kn"
+        and speed["high95"] < speed["value"] < speed["low95"] < 0.0
+    )
+    assert (
+        number(FOULED["parameters"][0])["value"] == pytest.approx(32.0)
+        and number(FOULED["parameters"][0])["unit"] == "%"
+    )
     current = {"name": "north", "value": 0.514444, "low95": 0.0, "high95": None, "unit": "m/s"}
     assert number(current)["value"] == pytest.approx(1.0, rel=1e-4) and number(current)["unit"] == "kn"
 
@@ -52,7 +62,10 @@ def test_a_cause_is_told_in_the_words_of_the_bridge(monday):
 def test_noise_goes_with_nothing_and_what_persists_counts_as_few_samples():
     """Test: a thousand pairs of white noise, and of slow wandering. Expected: p below 0.05 in about 5 % of both."""
     rng = np.random.default_rng(1)
-    for make in (lambda: rng.standard_normal(200), lambda: np.convolve(rng.standard_normal(204), np.ones(5), "valid")):
+    for make in (
+        lambda: rng.standard_normal(200),
+        lambda: np.convolve(rng.standard_normal(204), np.ones(5), "valid"),
+    ):
         p = np.array([correlated(make(), make())["p"] for _ in range(1000)])
         assert 0.02 < np.mean(p < 0.05) < 0.12
     assert autocorrelation(rng.standard_normal(5000))[1:] == pytest.approx(0.0, abs=0.06)

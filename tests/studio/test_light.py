@@ -30,15 +30,25 @@ def test_the_server_is_loaded_by_nothing_else(what):
 
 def test_an_installation_gets_every_file_of_the_page():
     root = Path(__file__).parents[2]
-    kept = tomllib.loads((root / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"]["twin.studio.page"]
-    there = {f"*{p.suffix}" for p in (root / "twin/studio/page").iterdir() if p.is_file() and p.suffix != ".py"}
+    kept = tomllib.loads((root / "pyproject.toml").read_text())["tool"]["setuptools"]["package-data"][
+        "twin.studio.page"
+    ]
+    there = {
+        f"*{p.suffix}" for p in (root / "twin/studio/page").iterdir() if p.is_file() and p.suffix != ".py"
+    }
     assert there <= set(kept) and "/app/uplot-license.txt" in page_files()
 
 
 def test_without_the_extra_one_line_says_what_to_install(tmp_path):
     script = "import sys; sys.modules['starlette'] = None; from twin.cli import main; sys.exit(main(['studio', sys.argv[1]]))"
-    done = subprocess.run([sys.executable, "-c", script, str(tmp_path)], capture_output=True, text=True, timeout=60)
-    assert done.returncode == 1 and "pip install 'shiptwin[studio]'" in done.stderr and "Traceback" not in done.stderr
+    done = subprocess.run(
+        [sys.executable, "-c", script, str(tmp_path)], capture_output=True, text=True, timeout=60
+    )
+    assert (
+        done.returncode == 1
+        and "pip install 'shiptwin[studio]'" in done.stderr
+        and "Traceback" not in done.stderr
+    )
 
 
 @pytest.mark.parametrize("words", [["nowhere"], [".", "--port", "70000"], [".", "--demo", "--read-only"]])

@@ -63,7 +63,10 @@ MISTAKES = {
     "east to the west": (scaled("east_m", -1.0), "velocity_frame"),
     "north and east swapped": (swapped("north_m", "east_m"), "velocity_frame"),
     "surge and sway swapped": (swapped("surge_velocity_mps", "sway_velocity_mps"), "velocity_frame"),
-    "heading by 180": (lambda c: c.update({"heading_true_north_deg": (c["heading_true_north_deg"] + 180.0) % 360.0}), "velocity_frame"),
+    "heading by 180": (
+        lambda c: c.update({"heading_true_north_deg": (c["heading_true_north_deg"] + 180.0) % 360.0}),
+        "velocity_frame",
+    ),
 }
 
 

@@ -123,7 +123,13 @@ def test_a_file_is_taken_whole_and_never_over_another(client, project):
 def test_a_file_that_is_too_long_leaves_nothing_behind(project):
     app, answers = Studio(project.folder, most_upload=1000).app(), []
     parts = iter([{"type": "http.request", "body": b"x" * 600, "more_body": True}] * 2)
-    scope = {"type": "http", "method": "POST", "path": "/api/files/long.csv", "headers": [], "query_string": b""}
+    scope = {
+        "type": "http",
+        "method": "POST",
+        "path": "/api/files/long.csv",
+        "headers": [],
+        "query_string": b"",
+    }
 
     async def receive():
         return next(parts)
@@ -144,7 +150,16 @@ def test_what_is_asked_amiss_gets_one_line(client):
         ({"verb": "compare", "ship": "/etc/passwd", "voyages": ["monday.mcap"]}, "is no name of a file"),
         ({"verb": "compare", "ship": "tanker.toml", "voyages": "monday.mcap"}, "must be a list"),
         ({"verb": "look", "file": "monday.mcap", "shell": "x"}, "nothing that it knows"),
-        ({"verb": "add", "ship": "tanker.toml", "voyages": ["monday.mcap"], "effects": ["HullFouling"], "output": "tanker.toml"}, "is there already"),
+        (
+            {
+                "verb": "add",
+                "ship": "tanker.toml",
+                "voyages": ["monday.mcap"],
+                "effects": ["HullFouling"],
+                "output": "tanker.toml",
+            },
+            "is there already",
+        ),
         ([], "one JSON object"),
     ):
         status, said = client.json("/api/jobs", asked)
@@ -174,7 +189,9 @@ def test_a_job_that_fails_says_the_line_and_code_of_the_command_line(client, pro
 
 
 def test_a_cancelled_job_stops_and_can_be_asked_again(client, project):
-    _, said = client.json("/api/jobs", {"verb": "diagnose", "ship": "tanker.toml", "voyages": ["monday.mcap"]})
+    _, said = client.json(
+        "/api/jobs", {"verb": "diagnose", "ship": "tanker.toml", "voyages": ["monday.mcap"]}
+    )
     name = said["job"]
     until = time.monotonic() + 30
     while client.json(f"/api/jobs/{name}")[1]["state"] == "waiting":
@@ -200,13 +217,35 @@ def test_the_tags_are_a_plain_file(client, project):
 
 def test_a_first_model_is_tried_and_written_as_twin_init_writes_it(client, project):
     values = {"length-pp-m": 180, "beam-m": 30, "draught-m": 10.5}
-    status, tried = client.json("/api/ships/try", {"name": "MV Alma", "values": values, "output": "alma.toml"})
-    assert status == 200 and tried["command"] == "twin init 'MV Alma' --length-pp-m 180 --beam-m 30 --draught-m 10.5 -o alma.toml"
+    status, tried = client.json(
+        "/api/ships/try", {"name": "MV Alma", "values": values, "output": "alma.toml"}
+    )
+    assert (
+        status == 200
+        and tried["command"]
+        == "twin init 'MV Alma' --length-pp-m 180 --beam-m 30 --draught-m 10.5 -o alma.toml"
+    )
     assert client.json("/api/ships", {"name": "MV Alma", "values": values, "output": "alma.toml"})[0] == 200
     from twin.cli import main
 
     other = project.folder / "other.toml"
-    assert main(["init", "MV Alma", "--length-pp-m", "180", "--beam-m", "30", "--draught-m", "10.5", "-o", str(other)]) == 0
+    assert (
+        main(
+            [
+                "init",
+                "MV Alma",
+                "--length-pp-m",
+                "180",
+                "--beam-m",
+                "30",
+                "--draught-m",
+                "10.5",
+                "-o",
+                str(other),
+            ]
+        )
+        == 0
+    )
     assert (project.folder / "alma.toml").read_text() == other.read_text()
     status, said = client.json("/api/ships/try", {"name": "x", "values": values | {"beam-m": 300}})
     assert status == 400 and "--beam-m 300 lies outside" in said["said"]
@@ -214,7 +253,9 @@ def test_a_first_model_is_tried_and_written_as_twin_init_writes_it(client, proje
 
 def test_the_ships_page_gets_numbers_with_sources_and_a_measured_turn(client):
     ship = client.json("/api/ships/tanker.toml")[1]
-    assert ship["calibrated"] and len(ship["derivatives"]) == 39 and ship["trial"]["limits"][0]["limit"] == 4.5
+    assert (
+        ship["calibrated"] and len(ship["derivatives"]) == 39 and ship["trial"]["limits"][0]["limit"] == 4.5
+    )
     assert {p["name"]: p["source"] for p in ship["particulars"]}["L_pp"] == "YY15"
     turn = client.json("/api/turn?ship=tanker.toml&voyage=monday.mcap")[1]
     assert turn["turned_deg"] > 10 and turn["y"][-1] > 0.5
@@ -225,16 +266,32 @@ def test_a_log_of_a_twin_is_shown_on_the_bridges_page(client, project):
     from twin.recording.read import read_voyage
     from twin.recording.write import write_voyage
 
-    write_voyage(read_voyage(project.folder / "monday.mcap").between(0.0, 60.0), project.folder / "minute.mcap")
-    words = [sys.executable, "-m", "twin", "replay", "minute.mcap", "--ship", "tanker.toml", "-o", "ticks.mcap"]
+    write_voyage(
+        read_voyage(project.folder / "monday.mcap").between(0.0, 60.0), project.folder / "minute.mcap"
+    )
+    words = [
+        sys.executable,
+        "-m",
+        "twin",
+        "replay",
+        "minute.mcap",
+        "--ship",
+        "tanker.toml",
+        "-o",
+        "ticks.mcap",
+    ]
     subprocess.run(words, cwd=project.folder, check=True, capture_output=True, timeout=120)
     assert client.ask("/events")[0] == 404
     assert client.json("/api/live", {"log": "ticks.mcap"}) == (200, {"name": "ticks.mcap"})
     assert client.json("/api/project")[1]["live"] == "ticks.mcap" and b"chart.js" in client.ask("/main.js")[2]
     connection = http.client.HTTPConnection("127.0.0.1", client.port, timeout=20)
-    connection.request("GET", "/events", headers={"Host": f"127.0.0.1:{client.port}", "Cookie": client.cookie})
+    connection.request(
+        "GET", "/events", headers={"Host": f"127.0.0.1:{client.port}", "Cookie": client.cookie}
+    )
     answer = connection.getresponse()
     frame = next(line for line in iter(answer.readline, b"") if line.startswith(b"data: {"))
     connection.close()
     assert json.loads(frame[6:])["ship"]["ship"] == "KVLCC2"
-    assert client.json("/api/live", {"leave": True})[0] == 200 and client.json("/api/project")[1]["live"] == ""
+    assert (
+        client.json("/api/live", {"leave": True})[0] == 200 and client.json("/api/project")[1]["live"] == ""
+    )

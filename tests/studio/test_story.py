@@ -41,8 +41,13 @@ def go(page, address):
 
 def press(page, name):
     """The button of that name in the form."""
-    page.wait(f"[...document.querySelectorAll('main button')].some((b) => b.textContent === {json.dumps(name)} && !b.disabled)", 30)
-    page.value(f"[...document.querySelectorAll('main button')].find((b) => b.textContent === {json.dumps(name)}).click()")
+    page.wait(
+        f"[...document.querySelectorAll('main button')].some((b) => b.textContent === {json.dumps(name)} && !b.disabled)",
+        30,
+    )
+    page.value(
+        f"[...document.querySelectorAll('main button')].find((b) => b.textContent === {json.dumps(name)}).click()"
+    )
 
 
 def ended(page, verb):
@@ -50,7 +55,10 @@ def ended(page, verb):
     page.wait(f"location.hash.startsWith('#/{verb}/')", 30)
     name = page.value("location.hash.split('/')[2].split('?')[0]")
     page.wait(f"!['waiting', 'running', undefined].includes({OVER.format(name=json.dumps(name))})", SLOW_S)
-    page.wait("[...document.querySelectorAll('main h2')].some((h) => h.textContent === 'The same on the command line')", 30)
+    page.wait(
+        "[...document.querySelectorAll('main h2')].some((h) => h.textContent === 'The same on the command line')",
+        30,
+    )
     return name
 
 
@@ -82,8 +90,14 @@ def test_data_compare_diagnose_add_compare_with_the_numbers_of_the_command_line(
     go(page, "#/diagnose")
     press(page, "Diagnose")
     found = answer(project, ended(page, "diagnose"))
-    assert found["missing"] == ["HullFouling"] and "against the motion" in shown(page) and "kn slower" in shown(page)
-    assert page.value("[...document.querySelectorAll('figcaption')].some((f) => f.innerText.includes('with HullFouling'))")
+    assert (
+        found["missing"] == ["HullFouling"]
+        and "against the motion" in shown(page)
+        and "kn slower" in shown(page)
+    )
+    assert page.value(
+        "[...document.querySelectorAll('figcaption')].some((f) => f.innerText.includes('with HullFouling'))"
+    )
     page.value("document.getElementById('to-add').click()")
     page.wait("document.getElementById('effect-0')?.checked === true", 30)
     press(page, "Add and prove")
@@ -96,13 +110,18 @@ def test_data_compare_diagnose_add_compare_with_the_numbers_of_the_command_line(
     press(page, "Compare")
     last = answer(project, ended(page, "compare"))
     assert last["files"] == {"ship": added["output"], "voyages": ["tuesday.mcap"]}
-    assert last["horizons"][-1]["position_mae_m"] == pytest.approx(added["horizons"][-1]["after"]["position_mae_m"])
+    assert last["horizons"][-1]["position_mae_m"] == pytest.approx(
+        added["horizons"][-1]["after"]["position_mae_m"]
+    )
     assert not page.said
     for mine in (first, found, last):
         assert typed(project, mine["command"], tmp_path / "typed.json") == mine
     os.rename(project.folder / added["output"], tmp_path / "the-page's.toml")
     theirs = typed(project, added["command"], tmp_path / "typed.json")
-    assert theirs == added and (project.folder / added["output"]).read_text() == (tmp_path / "the-page's.toml").read_text()
+    assert (
+        theirs == added
+        and (project.folder / added["output"]).read_text() == (tmp_path / "the-page's.toml").read_text()
+    )
 
 
 def test_two_answers_are_seen_on_top_of_each_other_and_the_address_keeps_the_zoom(page):
@@ -120,11 +139,17 @@ def test_a_reload_in_the_middle_of_work_loses_nothing(page, project):
     press(page, "Diagnose")
     page.wait("location.hash.startsWith('#/diagnose/0')", 30)
     name = page.value("location.hash.split('/')[2]")
-    page.wait(f"{OVER.format(name=json.dumps(name))} === 'running' && !!document.querySelector('#work progress')", 60)
+    page.wait(
+        f"{OVER.format(name=json.dumps(name))} === 'running' && !!document.querySelector('#work progress')",
+        60,
+    )
     page.value("location.reload()")
     time.sleep(0.3)
     page.wait("window.twinStudio?.drawn > 0", 30)
-    page.wait(f"!!document.querySelector('#work [data-job=\"{name}\"]') || {OVER.format(name=json.dumps(name))} === 'done'", 30)
+    page.wait(
+        f"!!document.querySelector('#work [data-job=\"{name}\"]') || {OVER.format(name=json.dumps(name))} === 'done'",
+        30,
+    )
     assert ended(page, "diagnose") == name
     assert answer(project, name)["missing"] == ["HullFouling"]
 
@@ -143,7 +168,9 @@ def test_a_killed_worker_is_said_and_the_work_can_be_done_again(page, project):
     page.value("document.getElementById('retry').click()")
     page.wait(f"location.hash.startsWith('#/diagnose/0') && !location.hash.includes({json.dumps(name)})", 30)
     again = ended(page, "diagnose")
-    asked = [json.loads((project.folder / "jobs" / n / "job.json").read_text())["asked"] for n in (name, again)]
+    asked = [
+        json.loads((project.folder / "jobs" / n / "job.json").read_text())["asked"] for n in (name, again)
+    ]
     assert asked[0] == asked[1] and answer(project, again)["files"]["voyages"] == asked[1]["voyages"]
 
 
@@ -163,7 +190,9 @@ def test_an_owners_bad_table_is_mended_by_the_button_and_imported(page, project,
 
 def test_a_file_with_a_hostile_name_and_a_hostile_ship_are_text(page, project):
     (project.folder / "evil.toml").write_text(
-        (project.folder / "tanker.toml").read_text().replace('name = "KVLCC2"', 'name = "<img src=x onerror=alert(1)><script>alert(2)</script>"', 1)
+        (project.folder / "tanker.toml")
+        .read_text()
+        .replace('name = "KVLCC2"', 'name = "<img src=x onerror=alert(1)><script>alert(2)</script>"', 1)
     )
     (project.folder / "<img src=x onerror=alert(3)>.csv").write_text("a,b\n1,2\n")
     page.value("location.reload()")

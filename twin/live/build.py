@@ -5,6 +5,7 @@ from math import ceil
 from pathlib import Path
 
 from twin.live import realtime
+from twin.live.certificate.authority import authority_margin
 from twin.live.certificate.certificate import Certificate, on_board
 from twin.live.certificate.rolled_tube import tube_of
 from twin.live.certificate.store import kept, mark, on_file
@@ -76,6 +77,8 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
     )
     if said := loop.stabilizer.why_not:
         notes.append(f"certificate: {said}")
+    if said := loop.tube.why_not:
+        notes.append(f"prediction tube: {said}")
     loop.notes = notes
     return loop
 
@@ -145,7 +148,8 @@ def stabilizer_of(
         )
     if certificate is None:
         return Stabilizer(None, f"not worked out ({said})")
-    return Stabilizer(tube_of(certificate), "" if certificate.ok else certificate.reason)
+    why_not = "" if certificate.ok else certificate.reason
+    return Stabilizer(tube_of(certificate), why_not, authority_margin(Model.of(ship), certificate))
 
 
 def steps_of(settings: Settings, ship: Ship) -> int:

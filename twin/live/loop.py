@@ -22,6 +22,7 @@ from twin.live.observer.estimate import Observer
 from twin.live.observer.predict import LearnedAt, Predictor
 from twin.live.outbox import Outbox
 from twin.live.parts import Parts
+from twin.live.prediction.prediction_tube import PredictionTube
 from twin.live.provenance import identity
 from twin.live.seen import Pace, Seen, Standing
 from twin.live.signals.channels import BY_NAME
@@ -68,6 +69,7 @@ class Loop:
         self.guard = guard or Guard(ship, learned)
         self.checks = CrossChecks(ship)
         self.predictor = predictor or Predictor(ship, rate_hz=rate_hz)
+        self.tube = PredictionTube(ship)
         self.stabilizer = stabilizer or Stabilizer()
         self.publisher = voice.publisher
         self.publisher.identity, self.publisher.actuators = identity(ship), actuator_channels(ship)
@@ -96,7 +98,7 @@ class Loop:
         self.dynamics.adopt(self.learned.effects)
         self.observer.steer(self.dynamics.ahead(situation, forces, learned.force, self.period_s))
         self.observer.remember(self.dynamics.now, situation, learned.force)
-        ahead = self.predictor.advance(
+        foretold = self.predictor.advance(
             instant.time_s,
             estimate,
             situation,
@@ -105,6 +107,7 @@ class Loop:
             verdict.mode != INVALID,
             self.dynamics.steering,
         )
+        ahead = self.tube.around(instant.time_s, measured, estimate, foretold, verdict.mode != INVALID)
         certified = self.stabilizer.step(
             self.observer,
             measured,
@@ -149,6 +152,7 @@ class Loop:
             ("step", self.dynamics, "ahead"),
             ("adapt", self.learned, "learn"),
             ("predict", self.predictor, "advance"),
+            ("tube", self.tube, "around"),
             ("certificate", self.stabilizer, "step"),
             ("publish", self.publisher, "tick"),
             ("record", self.voice, "send"),
@@ -197,6 +201,8 @@ class Loop:
             )
         if self.stabilizer.outside and self.stabilizer.promises:
             said.append(f"certificate: {self.stabilizer.outside}")
+        if self.tube.beyond:
+            said.append(f"prediction tube: no promise, {self.tube.beyond}")
         if self.dynamics.off:
             said.append(
                 f"effects without their inputs: {', '.join(type(e).__name__ for e in self.dynamics.off)}"

@@ -10,6 +10,7 @@ from twin.live.keelson import messages
 from twin.live.keelson.topics import OUTPUTS, Output
 from twin.live.learning.learned import Learned
 from twin.live.observer.estimate import Estimate
+from twin.live.observer.predict import Prediction, Region
 from twin.live.seen import Seen, Standing
 from twin.live.signals.geodesy import Datum, from_chart
 from twin.live.signals.measured import Measured
@@ -58,16 +59,7 @@ class Publisher:
                 {"name": p.name, "unit": p.unit, "status": p.status, **finite(p.numbers())}
                 for p in standing.parameters
             ],
-            predictions=[
-                {
-                    "horizon_s": p.horizon_s,
-                    "state": finite(border_state(*p.state)),
-                    "sigma": finite(border_sigma(p.sigma)),
-                    "age_s": p.age_s,
-                    "status": p.status,
-                }
-                for p in seen.ahead
-            ],
+            predictions=[self._prediction(p) for p in seen.ahead],
             certificate=finite(seen.certified._asdict()),
             actuators=[
                 {"name": name, "quality": standing.quality[name], **finite(_channel(name, measured, ages))}
@@ -78,6 +70,19 @@ class Publisher:
     def _without_actuators(self, by_channel: dict[str, Any]) -> dict[str, Any]:
         """A message has a field for each channel that every ship has; those of actuators are a list."""
         return {k: x for k, x in by_channel.items() if "." not in k} if self.actuators else by_channel
+
+    def _prediction(self, p: Prediction) -> dict[str, Any]:
+        said = {
+            "horizon_s": p.horizon_s,
+            "state": self._finite(border_state(*p.state)),
+            "sigma": self._finite(border_sigma(p.sigma)),
+            "age_s": p.age_s,
+            "status": p.status,
+        }
+        if r := p.region:
+            words = {"voyages": r.voyages, "regime": r.regime, "status": r.status}
+            said["tube"] = self._finite(border_region(r)) | words
+        return said
 
     def due(self, tick: Any, datum: Datum | None) -> list[tuple[Output, bytes]]:
         """The subjects whose time has come, encoded; `datum` is the origin of north and east."""
@@ -133,6 +138,13 @@ def border_sigma(sigma: tuple[float, ...]) -> dict[str, float]:
     return {
         "north_m": x, "east_m": y, "heading_true_north_deg": degrees(psi),
         "surge_velocity_mps": u, "sway_velocity_mps": v, "yaw_rate_degps": degrees(r),
+    }  # fmt: skip
+
+
+def border_region(r: Region) -> dict[str, float]:
+    return {
+        "along_m": r.along_m, "across_m": r.across_m, "course_deg": degrees(r.course) % 360.0,
+        "heading_deg": degrees(r.heading), "level": r.level,
     }  # fmt: skip
 
 

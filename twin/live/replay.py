@@ -20,9 +20,11 @@ from twin.live.loop import Loop
 from twin.live.observer.controls import actuator_channels
 from twin.live.outbox import Outbox
 from twin.live.paced import PacedClock, Player
+from twin.live.prediction.coverage import Coverage
 from twin.live.provenance import REPLAY, identity, provenance
 from twin.live.publish import Publisher
 from twin.live.signals.config import Settings
+from twin.live.tube_kept import TubeKept
 from twin.physics.maths import total
 
 SCHEMA_VERSION = 1
@@ -43,11 +45,13 @@ class Summary(NamedTuple):
     withheld: int  # numbers that were not finite, and so were not said
     foresight: list[Sight]
     notes: list[str]
+    tube: list[Coverage]  # of the predictions with a promise
 
     def as_json(self) -> dict[str, Any]:
         """The same as plain types."""
         sights = [f._asdict() for f in self.foresight]
-        return {"schema_version": SCHEMA_VERSION, **self._asdict(), "foresight": sights}
+        kept = [c._asdict() for c in self.tube]
+        return {"schema_version": SCHEMA_VERSION, **self._asdict(), "foresight": sights, "tube": kept}
 
 
 def replay(
@@ -84,7 +88,7 @@ def _sailed(
 ) -> Summary:
     modes: Counter[str] = Counter()
     reasons: Counter[str] = Counter()
-    foresight = Foresight(loop)
+    foresight, kept = Foresight(loop), TubeKept(loop)
     first_s = last_s = None
     while (instant := clock.wait()) is not None:
         batch = waiting.pop()
@@ -94,6 +98,7 @@ def _sailed(
         ears.datum = played.decoder.datum
         tick = loop.tick(instant)
         foresight.look(instant.time_s)
+        kept.look(instant.time_s)
         modes[tick.mode] += 1
         reasons.update(_without_numbers(reason) for reason in tick.reasons)
         first_s, last_s = instant.time_s if first_s is None else first_s, instant.time_s
@@ -113,6 +118,7 @@ def _sailed(
         loop.publisher.withheld,
         foresight.judged(),
         [*played.notes, *loop.notes],
+        kept.judged(),
     )
 
 
@@ -144,4 +150,21 @@ def told(s: Summary) -> list[str]:
             f"({f.windows} starts)"
             for f in s.foresight
         ]
+    lines += _tube(s.tube)
     return lines + [f"note: {note}" for note in s.notes]
+
+
+def _tube(rows: list[Coverage]) -> list[str]:
+    """How the prediction tube was kept."""
+    if not rows:
+        return []
+    return ["tube, helm and engine held, against what was measured:", *map(_kept, rows)]
+
+
+def _kept(c: Coverage) -> str:
+    return (
+        f"  {c.horizon_s:4.0f} s: {100 * c.place_inside:.0f} % of places, {100 * c.heading_inside:.0f} % of "
+        f"headings inside ({100 * c.level:.0f} % promised on {c.voyages} voyages), {c.place_radius_m:.3g} m "
+        f"and {c.heading_deg:.2g} deg wide; interval score {c.place_score_m:.3g} m, "
+        f"{c.heading_score_deg:.2g} deg ({c.judged} predictions)"
+    )

@@ -25,6 +25,7 @@ class Certified(NamedTuple):
     inside: bool = False
     yaw_bound_degps: float = 0.0
     step_margin: float = 0.0
+    authority_margin: float = 0.0  # of the rudder against what the bounds leave open (authority.py)
 
 
 class Seen(NamedTuple):

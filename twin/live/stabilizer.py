@@ -30,8 +30,10 @@ class Stabilizer:
     false. Where it may have left the operating set the tube begins anew from what is measured, and promises
     again once all that a late measurement looks back on is inside."""
 
-    def __init__(self, tube: Tube | None = None, why_not: str = "no certificate"):
-        self.tube, self.why_not = tube, why_not
+    def __init__(
+        self, tube: Tube | None = None, why_not: str = "no certificate", authority_margin: float = 0.0
+    ):
+        self.tube, self.why_not, self._authority = tube, why_not, authority_margin
         self.promises = tube is not None and tube.certificate.ok
         self._step_margin = tube.certificate.step_margin if tube else 0.0
         self._parity = Parity(tube.certificate.heading_noise) if tube else None
@@ -61,7 +63,8 @@ class Stabilizer:
         does."""
         tube = self.tube
         if tube is None or not observer.estimate.ready:
-            return Certified(margin=tube.certificate.margin if tube else 0.0)
+            margin = tube.certificate.margin if tube else 0.0
+            return Certified(margin=margin, authority_margin=self._authority)
         dt = tube.certificate.h if dt is None else dt
         if observer.restarts != self._restarts:
             self._begin(observer, measured, tube)
@@ -82,7 +85,9 @@ class Stabilizer:
         else:
             tube.reset(first, self._heading(observer, measured, tube))
         if tube.says_nothing():  # with measurements it comes back by itself
-            return Certified(certificate.margin, USELESS, False, degrees(pi), self._step_margin)
+            return Certified(
+                certificate.margin, USELESS, False, degrees(pi), self._step_margin, self._authority
+            )
         inside = self.promises and proven and self.outside is None
         return Certified(
             certificate.margin,
@@ -90,6 +95,7 @@ class Stabilizer:
             inside,
             degrees(tube.beta[2]),
             self._step_margin,
+            self._authority,
         )
 
     def _apart(self, observer: Observer, measured: Measured, tube: Tube, dt: float) -> str:

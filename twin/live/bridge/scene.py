@@ -104,8 +104,8 @@ def _ahead(tick: Any, ahead: Ahead | None, since_s: float) -> dict[str, Any] | N
     age_s = max(tick.time_s - ahead.said_s, 0.0) + since_s
     rounds = [p for p in ahead.tick.predictions if _place(p.state) and p.horizon_s <= max(SHOWN_S)]
     shown = [_prediction(p, ahead.tick) for p in rounds if p.horizon_s in SHOWN_S]
-    stops = [(0.0, ahead.tick.estimate, ahead.tick.sigma)]
-    stops += [(p.horizon_s, p.state, p.sigma) for p in sorted(rounds, key=lambda p: p.horizon_s)]
+    stops = [(0.0, ahead.tick.estimate, _width(ahead.tick.sigma))]
+    stops += [(p.horizon_s, p.state, _half_width(p)) for p in sorted(rounds, key=lambda p: p.horizon_s)]
     way = [point for a, b in pairwise(stops) for point in _between(a, b)]
     return {"age": round(age_s, 1), "old": age_s > OLD_AHEAD_S, "shown": shown, "way": way}
 
@@ -118,18 +118,35 @@ def _prediction(p: Any, tick: Any) -> dict[str, Any]:
         "horizon": p.horizon_s,
         **(_place(p.state) or {}),
         **sigmas,
+        "tube": _tube(p),
         "distance": round(hypot(north, east), 1),
         "bearing": round(degrees(atan2(east, north)) % 360.0, 1),
         "status": p.status,
     }
 
 
-def _between(a: tuple[float, Any, Any], b: tuple[float, Any, Any]) -> list[list[float]]:
+def _tube(p: Any) -> dict[str, Any] | None:
+    """The region that reference voyages promise: half axes along and across the course, and how sure."""
+    if not p.HasField("tube"):
+        return None
+    t = p.tube
+    return {
+        "along": round(t.along_m, 1),
+        "across": round(t.across_m, 1),
+        "course": round(t.course_deg, 1),
+        "heading": round(t.heading_deg, 1),
+        "level": round(100.0 * t.level),
+        "voyages": t.voyages,
+        "words": t.status,
+    }
+
+
+def _between(a: tuple[float, Any, float], b: tuple[float, Any, float]) -> list[list[float]]:
     """Points [north, east, half width of the tube] from one state to the next: the cubic through both places
     with both speeds over ground."""
     T = b[0] - a[0]
     (n0, e0, dn0, de0), (n1, e1, dn1, de1) = _motion(a[1]), _motion(b[1])
-    w0, w1 = _width(a[2]), _width(b[2])
+    w0, w1 = a[2], b[2]
     points = []
     for i in range(STEPS + 1):
         s = i / STEPS
@@ -155,6 +172,11 @@ def _motion(state: Any) -> tuple[float, float, float, float]:
 
 def _width(sigma: Any) -> float:
     return max(sigma.north_m, sigma.east_m)
+
+
+def _half_width(p: Any) -> float:
+    """Of the tube beside the way: what is promised across it, else one sigma."""
+    return float(p.tube.across_m) if p.HasField("tube") and p.tube.level else _width(p.sigma)
 
 
 def _forces(tick: Any, largest: tuple[float, float]) -> dict[str, Any]:

@@ -111,10 +111,21 @@ def _ahead(ahead: dict[str, Any] | None) -> list[str]:
     old = f" OLD, said {ahead['age']:.0f} s ago" if ahead["old"] else ""
     return [
         f"in {p['horizon']:.0f} s: heading {p['psi']:.0f}°, {p['distance']:.0f} m off towards "
-        f"{p['bearing']:03.0f}°, +- {_number(p['sn'], 0)} m north, +- {_number(p['se'], 0)} m east "
-        f"({p['status']}){old}"
+        f"{p['bearing']:03.0f}°, {_surely(p)}{old}"
         for p in ahead["shown"]
     ]
+
+
+def _surely(p: dict[str, Any]) -> str:
+    """What reference voyages promise, else one sigma."""
+    tube = p["tube"]
+    if tube and tube["level"]:
+        return (
+            f"+- {tube['along']:.0f} m along, +- {tube['across']:.0f} m across, +- {tube['heading']:.1f}° "
+            f"({tube['level']} %, on {tube['voyages']} voyages, helm held)"
+        )
+    why = f"; no promise, {tube['words']}" if tube else ""
+    return f"+- {_number(p['sn'], 0)} m north, +- {_number(p['se'], 0)} m east ({p['status']}{why})"
 
 
 def _forces(forces: dict[str, Any]) -> list[str]:

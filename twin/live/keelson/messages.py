@@ -50,12 +50,23 @@ TABLE: dict[str, list[Field]] = {
         ("unit", "string"),
         ("status", "string"),  # unestimated | estimated | invalid
     ],
+    "PredictionTube": [
+        ("along_m", "double"),  # half axes of the ellipse around the predicted place
+        ("across_m", "double"),
+        ("course_deg", "double"),  # the axis "along"
+        ("heading_deg", "double"),  # to either side
+        ("level", "double"),  # share of errors inside that is promised, 0: no promise
+        ("voyages", "int64"),  # that the promise rests on
+        ("regime", "string"),
+        ("status", "string"),  # calibrated | why not
+    ],
     "Prediction": [
         ("horizon_s", "double"),
         ("state", "State"),
         ("sigma", "State"),
         ("age_s", "double"),  # of the estimate it started from
         ("status", "string"),  # of sigma: prior | learned
+        ("tube", "PredictionTube"),  # where the ship file has a [tube]
     ],
     "Certificate": [
         ("margin", "double"),
@@ -63,6 +74,7 @@ TABLE: dict[str, list[Field]] = {
         ("inside", "bool"),
         ("yaw_bound_degps", "double"),
         ("step_margin", "double"),  # share of an error that one sample surely takes away, 0 when none does
+        ("authority_margin", "double"),  # share of the rudder that the bounds leave, < 0: course not covered
     ],
     # one channel of one actuator of the ship
     "ActuatorChannel": [

@@ -28,6 +28,22 @@ LEARNED = 20  # errors seen before the uncertainty counts as learned
 LearnedAt = Callable[[Situation, Forces], Force]
 
 
+class Region(NamedTuple):
+    """Where the ship will be with probability `level` (0: no promise) if helm and engine are held: an ellipse
+    around the predicted place with half axes along and across the predicted course [m, m, rad], and the
+    heading to either side [rad]. `voyages`, `regime`: what that rests on; status: "calibrated", or why not.
+    """
+
+    along_m: float
+    across_m: float
+    heading: float
+    course: float
+    level: float
+    voyages: int
+    regime: str
+    status: str
+
+
 class Prediction(NamedTuple):
     """eta and nu `horizon_s` after the tick that says it [SI], one sigma of each, from an estimate `age_s`
     old.
@@ -40,6 +56,7 @@ class Prediction(NamedTuple):
     sigma: tuple[float, ...]
     age_s: float
     status: str
+    region: Region | None = None  # where the ship file has a [tube]
 
 
 class Predictor:
@@ -203,20 +220,20 @@ def carry(
     s.psi, s.u, s.v, s.r, s.t = s.psi + 0.5 * h * (s.r + r), u, v, r, s.t + h
 
 
+def usual_error(ship: Ship, horizon_s: float) -> tuple[float, ...]:
+    """A prior of the error in place [m], heading [rad], u, v [m/s] and r [rad/s] after that time."""
+    push = 0.015 * ship.U_0**2 / ship.L_pp
+    psi = min(0.75 * push / ship.L_pp * horizon_s**2 + 0.01, 1.0)
+    place = 0.5 * push * horizon_s**2 + 0.3 * ship.U_0 * horizon_s * psi + 1.0
+    speed = push * horizon_s + 0.01
+    return place, psi, speed, speed, 1.5 * push / ship.L_pp * horizon_s + 1e-5
+
+
 class Sureness:
     """How far predictions of one horizon were off: a 68 % quantile for place, heading, u, v and r."""
 
     def __init__(self, ship: Ship, horizon_s: float):
-        push = 0.015 * ship.U_0**2 / ship.L_pp
-        psi = min(0.75 * push / ship.L_pp * horizon_s**2 + 0.01, 1.0)
-        place = 0.5 * push * horizon_s**2 + 0.3 * ship.U_0 * horizon_s * psi + 1.0
-        first = (
-            place,
-            psi,
-            push * horizon_s + 0.01,
-            push * horizon_s + 0.01,
-            1.5 * push / ship.L_pp * horizon_s + 1e-5,
-        )
+        first = usual_error(ship, horizon_s)
         self._log_q = [log(q) for q in first]
         self.seen = 0
 

@@ -34,10 +34,10 @@ class Sailed:
 
 def sailed(voyage: Voyage, ship: Ship, sha256: str = "") -> Sailed:
     """A voyage on the ship's grid; `sha256`: of its file, else of its samples."""
-    return Sailed(voyage, swung(track(voyage, ship), Model.of(ship)), sha256 or _of_samples(voyage))
+    return Sailed(voyage, swung(track(voyage, ship), Model.of(ship)), sha256 or samples_hash(voyage))
 
 
-def _of_samples(voyage: Voyage) -> str:
+def samples_hash(voyage: Voyage) -> str:
     known = hashlib.sha256(voyage.time_s.tobytes())
     for name in sorted(voyage.columns):
         known.update(name.encode())

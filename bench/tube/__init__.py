@@ -1,0 +1,1 @@
+"""The prediction tube on voyages that it was not calibrated with: `twin-bench tube`."""

@@ -1,0 +1,102 @@
+"""`twin tube`: from voyages to the [tube] of a ship file, which the loop then says."""
+
+import json
+from math import degrees, radians
+
+import numpy as np
+import pytest
+
+import twin
+from twin import cli
+from twin.api.json_key import unknown_paths
+from twin.api.json_keys import KEYS
+from twin.errors import DataError
+from twin.live.replay import replay
+from twin.live.signals.config import Settings
+from twin.physics.model import Model
+from twin.physics.state import Situation
+
+SECONDS, STEP_S = 100.0, 0.1
+
+
+def sailed(path, seed):
+    """The bundled boat under its own model, straight on with a turn in the middle, as a table of measurements."""
+    ship, rng = twin.Ship.load("usv"), np.random.default_rng(seed)
+    model, n = Model.of(ship), 0.9 * ship.U_0 / (0.7 * ship.D_P)
+    state, rows = (0.0, 0.0, 0.5 * seed, 0.8 * ship.U_0, 0.0, 0.0), []
+    for k in range(round(SECONDS / STEP_S)):
+        rudder = 6.0 if 40.0 <= k * STEP_S < 44.0 else 0.0
+        x, y, psi, u, v, r = state
+        noise = rng.normal(size=6) * (0.05, 0.05, 0.1, 0.01, 0.01, 0.1)
+        measured = np.array([x, y, degrees(psi) % 360.0, u, v, degrees(r)]) + noise
+        rows.append([k * STEP_S, *measured, rudder, 60.0 * n, 0.01])
+        state = model.step(state, Situation(delta=radians(rudder), n=n), STEP_S)
+    names = (
+        "time_s,north_m,east_m,heading_true_north_deg,surge_velocity_mps,sway_velocity_mps,yaw_rate_degps,"
+        "rudder_angle_deg,propeller_rate_rpm,wave_height_significant_m"
+    )
+    np.savetxt(path, rows, delimiter=",", header=names, comments="", fmt="%.6f")
+    return str(path)
+
+
+@pytest.fixture(scope="module")
+def voyages(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("voyages")
+    return [sailed(folder / f"v{seed}.csv", seed) for seed in (1, 2)]
+
+
+@pytest.fixture(scope="module")
+def found(voyages, tmp_path_factory):
+    """What the command wrote: its JSON and its ship file."""
+    folder = tmp_path_factory.mktemp("ship")
+    told, ship = folder / "told.json", folder / "boat.toml"
+    command = ["tube", *voyages, "--ship", "usv", "-o", str(ship), "--json", str(told)]
+    assert cli.main(command) == 0
+    return json.loads(told.read_text()), ship
+
+
+def test_the_command_writes_a_tube_and_says_what_so_few_voyages_can_promise(found):
+    result, _ = found
+    assert unknown_paths(KEYS["tube"], result) == []
+    rows = {row["horizon_s"]: row for row in result["horizons"]}
+    assert rows[10.0]["voyages"] == 2 and rows[10.0]["level"] == pytest.approx(2.0 / 3.0)
+    assert 0.0 < rows[10.0]["place_m"] < 10.0
+    few, *others = result["doubts"]
+    assert "67 % at best" in few and any("120 s" in text for text in others)
+    assert any("one sea" in text for text in others)
+
+
+def test_the_ship_file_with_its_tube_is_the_same_ship(found):
+    _, path = found
+    made, before = twin.Ship.load(path), twin.Ship.load("usv")
+    assert made.derivatives == before.derivatives and made.L_pp == before.L_pp
+    assert set(made.notes) - set(before.notes) == {"tube"}
+
+
+def test_a_replay_with_the_tube_says_how_it_was_kept(found, voyages, tmp_path):
+    """Test: a voyage of the calibration itself. Expected: every error within the greatest of all; what was
+    promised, its width and the voyages it rests on in the summary."""
+    _, ship = found
+    log = tmp_path / "v.mcap"
+    assert cli.main(["import", voyages[0], "-o", str(log)]) == 0
+    summary = replay(log, Settings({"ship.file": str(ship)}))
+    row = next(c for c in summary.tube if c.horizon_s == 10.0)
+    assert row.voyages == 2 and row.level == pytest.approx(2.0 / 3.0) and row.judged > 5
+    assert row.place_inside > 0.9 and row.heading_inside > 0.9
+    assert row.place_score_m >= row.place_radius_m > 0.0
+    assert replay(log, Settings({"ship.file": "usv"})).tube == []
+
+
+def test_a_voyage_given_twice_is_refused(voyages):
+    with pytest.raises(DataError, match="same voyage"):
+        twin.tube(twin.Ship.load("usv"), twin.read_voyages([voyages[0], voyages[0]]))
+
+
+def test_voyages_without_a_steady_stretch_are_one_line_and_no_file(tmp_path, capsys):
+    path = tmp_path / "short.csv"
+    sailed(path, 3)
+    path.write_text("\n".join(path.read_text().splitlines()[:150]) + "\n")  # 15 s
+    out = tmp_path / "boat.toml"
+    assert cli.main(["tube", str(path), "--ship", "usv", "-o", str(out)]) == DataError.exit_code
+    *_, complaint = capsys.readouterr().err.strip().splitlines()
+    assert "DataError" in complaint and "steady stretches" in complaint and not out.exists()

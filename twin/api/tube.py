@@ -1,0 +1,111 @@
+"""`twin.tube`: how far predictions on board may be off, from reference voyages."""
+
+import os
+import tempfile
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from twin.api.result import Progress, Result, metres, quietly
+from twin.api.voyages import several
+from twin.errors import DataError
+from twin.live.learning.residual import ship_hash
+from twin.live.prediction.calibrated import SECTION, calibrated_of
+from twin.live.signals import config
+from twin.physics.particulars import Ship
+from twin.physics.ship import save
+from twin.recording.jsonable import plain
+from twin.recording.voyage import Voyage
+from twin.study.reference.foretold import errors_of
+from twin.study.reference.sailed import samples_hash
+from twin.study.reference.tube_calibration import section
+from twin.study.reference.tube_doubts import doubts
+from twin.study.reference.tube_told import rows, told
+
+
+@dataclass(frozen=True, repr=False)
+class TubeCalibration(Result):
+    """`ship`: with its [tube], as `twin run` and `twin replay` take it. Its rows are the horizons."""
+
+    ship: Ship
+
+    @property
+    def warnings(self) -> list[str]:
+        """What these voyages cannot promise, in words an owner can act on."""
+        return list(self.data["doubts"])
+
+    def _rows(self) -> Any:
+        return [{k: v for k, v in row.items() if k != "regimes"} for row in self.data["horizons"]]
+
+    def __repr__(self) -> str:
+        last = self.data["horizons"][-1]
+        return (
+            f"<TubeCalibration of {self.ship.name!r}: {100 * last['level']:.0f} % within "
+            f"{metres(last['place_m'])} at {last['horizon_s']:g} s, {len(self.warnings)} warnings>"
+        )
+
+    def page(self) -> str:
+        """The lines of the terminal as a page."""
+        from html import escape
+
+        return f"<!doctype html><meta charset=utf-8><pre>{escape(chr(10).join(told(self.data)))}</pre>"
+
+
+def tube(
+    ship: Ship,
+    voyages: Voyage | Iterable[Voyage],
+    *,
+    settings: str | os.PathLike[str] | None = None,
+    progress: Progress | None = None,
+) -> TubeCalibration:
+    """Take voyages on which nothing was wrong, and which the model was not calibrated to, through the loop as
+    it runs on board, and find within how many metres and degrees its predictions came true.
+
+    `settings`: the file that `twin run` uses, so that network, rate and horizons are the same. 90 % takes
+    nine voyages; of fewer the best level they can show is promised. DataError when a voyage cannot be used or
+    is given twice. A few seconds for ten minutes of voyage.
+    """
+    tell, every = quietly(progress), several(voyages)
+    if not every:
+        raise DataError("no voyage was given. Give some on which nothing was wrong.")
+    _once(every)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "ship.toml"
+        save(ship, path)
+        # nothing that one voyage taught the loop may help it on the next
+        chosen = (
+            config.load(os.fspath(settings) if settings is not None else None)
+            .but("ship.file", str(path))
+            .but("state.folder", "")
+        )
+        found = []
+        for voyage in every:
+            tell(f"{voyage.name} through the loop")
+            found.append(errors_of(voyage, chosen))
+    source = f"twin tube, {len(every)} voyages: {', '.join(v.name for v in every[:20])}"
+    table = section(ship, ship_hash(ship), found, source)
+    made = replace(ship, notes={**ship.notes, SECTION: table})
+    calibrated = calibrated_of(made)
+    assert calibrated is not None
+    fitted = {str(v.get("name")) for v in ship.notes.get("structural", {}).get("voyages", [])}
+    said = {
+        "schema_version": 1,
+        "ship": ship.name,
+        "level": table["level"],
+        "voyages": [
+            {"name": v.name, "predictions": sum(len(x) for x in e.values())}
+            for v, e in zip(every, found, strict=True)
+        ],
+        "horizons": rows(ship, calibrated, [e for e in found if any(e.values())]),
+        "doubts": doubts(table, every, chosen["prediction.horizons_s"], float(ship.L_pp), fitted),
+    }
+    return TubeCalibration(made, data=plain(said))
+
+
+def _once(voyages: list[Voyage]) -> None:
+    seen: dict[str, str] = {}
+    for v in voyages:
+        if (key := samples_hash(v)) in seen:
+            raise DataError(f"{v.name}: is the same voyage as {seen[key]}. Give each voyage once.")
+        seen[key] = v.name

@@ -1,0 +1,55 @@
+"""`twin tube`: how far the predictions on board may be off, from reference voyages."""
+
+import argparse
+import sys
+
+from twin import whole
+from twin.api.tube import tube
+from twin.api.voyages import read_voyage
+from twin.physics.ship import load, save
+from twin.recording.import_voyage import write_json
+from twin.study.reference.tube_told import told
+
+EPILOG = """Voyages on which nothing was wrong and which the model was not calibrated to, in the seas and
+loadings it will meet. Each goes through the loop as it runs on board. How far the predictions for 10, 60 and
+120 s were off from the measured place and heading, while helm and engine were held, becomes [tube] in the
+ship file. `twin run` then says within how many metres and degrees the ship will be with 90 %, and on how many
+voyages that rests. 90 % takes nine voyages; fewer promise less, and it is said. Once the model changes (twin
+add, twin calibrate) a tube is not used any more: make it again. Exit code 4: a voyage cannot be used; 5: ship
+file or settings are not valid.
+"""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.epilog = f"{parser.epilog or ''}\n\n{EPILOG}"
+    parser.add_argument(
+        "voyages", metavar="VOYAGE", nargs="+", help="voyages that the model was not calibrated to"
+    )
+    parser.add_argument(
+        "--ship", metavar="SHIP.toml", required=True, help="the ship file, or a bundled ship's name"
+    )
+    parser.add_argument(
+        "--config", metavar="TWIN.toml", help="settings of `twin run` on board, if it has any"
+    )
+    parser.add_argument(
+        "-o", "--output", metavar="SHIP2.toml", required=True, help="the ship file with its tube"
+    )
+    parser.add_argument("--force", action="store_true", help="write over a file that is there")
+    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+
+
+def run(args: argparse.Namespace) -> int:
+    whole.not_over(args.output, [args.ship, *args.voyages], args.force)
+    ship = load(args.ship)
+    voyages = [read_voyage(path) for path in args.voyages]
+    done = tube(
+        ship, voyages, settings=args.config, progress=lambda text: print(f"{text} ...", file=sys.stderr)
+    )
+    save(done.ship, args.output)
+    result = done.to_dict() | {"output": str(args.output)}
+    if args.json:
+        write_json(result, args.json)
+    page = sys.stderr if args.json == "-" else sys.stdout
+    print("\n".join(told(result)), file=page)
+    print(f"\nwrote {args.output}\nnext: twin replay VOYAGE.mcap --ship {args.output}", file=page)
+    return 0
