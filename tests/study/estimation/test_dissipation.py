@@ -41,7 +41,7 @@ def test_what_is_held_is_the_power_of_the_damping_itself():
         [[1.5 * ship.U_0], [ship.U_0], [ship.U_0 / ship.L_pp]]
     )
     drawn = 3.0 * rng.standard_normal((60, len(unknowns)))
-    kept = [within(z, np.eye(len(unknowns)), -9.0 + 0 * z, 9.0 + 0 * z, *spaces) for z in drawn]
+    kept = [within(z, np.eye(len(unknowns)), np.array([-9.0 + 0 * z, 9.0 + 0 * z]), spaces) for z in drawn]
     fed = [power(with_z(ship, unknowns, z), *motion).min() for z in drawn]
     assert np.mean([x < 0.0 for x in fed]) > 0.8
     linear = {"X_u": 0.0, "Y_v": 0.0, "N_r": 0.0}
@@ -58,7 +58,7 @@ def test_a_tenth_of_the_first_models_damping_is_kept_in_the_direction_that_data_
     j = names.index("Y_vv")
     wrong[j] = (0.5 - unknowns[j].centre) / unknowns[j].sd  # sway that its own damping would feed
     far = 99.0 + 0 * wrong
-    z = within(wrong, np.eye(wrong.size), -far, far, *half_spaces(ship, unknowns))
+    z = within(wrong, np.eye(wrong.size), np.array([-far, far]), half_spaces(ship, unknowns))
     found = unknowns[j].centre + unknowns[j].sd * z[j]
     assert KEPT * unknowns[j].centre >= found - 1e-9 and found < 0.0
 
@@ -70,7 +70,7 @@ def test_the_nearest_place_inside_box_and_half_spaces_is_the_one_another_solver_
         C, mean = B @ B.T + 0.1 * np.eye(5), 2.0 * rng.standard_normal(5)
         rows = rng.standard_normal((7, 5))
         least = -0.5 * np.abs(rng.standard_normal(7))
-        z = within(mean, C, np.full(5, -1.5), np.full(5, 1.5), rows, least)
+        z = within(mean, C, np.array([np.full(5, -1.5), np.full(5, 1.5)]), (rows, least))
         P = np.linalg.inv(C)
         other = minimize(
             lambda x, P=P, m=mean: 0.5 * (x - m) @ P @ (x - m), np.zeros(5), bounds=[(-1.5, 1.5)] * 5,

@@ -116,10 +116,11 @@ def _columns(view: VoyageView, ship: Ship, motion: np.ndarray, wiring: Wiring) -
         (f"{a.name}.{n}", c) for a in ship.actuators for n, c in zip(a.attributes, a.columns(), strict=True)
     ]
     told = wiring.undo({n: view.si(c) for n, c in names})
+    u, v, r = motion
     mass = np.array([ship.m, ship.m, ship.I_z], float)[:, None]
     out = []
     for a in ship.actuators:
-        force = np.array([np.broadcast_to(f, motion[0].shape) for f in a.force(told, *motion, ship)]) / mass
+        force = np.array([np.broadcast_to(f, motion[0].shape) for f in a.force(told, u, v, r, ship)]) / mass
         ahead = _ahead(a, told)
         out += [np.where(side, force, 0.0 * force) for side in (ahead, ~ahead)]
     return np.stack(out, axis=2)

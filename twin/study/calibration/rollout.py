@@ -107,7 +107,7 @@ def _descend(problem: _PathProblem, z: np.ndarray) -> tuple[np.ndarray, float]:
     JJ, pull = J.T @ J + np.eye(z.size), J.T @ r + z
     for damping in np.geomspace(0.01, 100.0, TRIES):
         H = np.linalg.inv(JJ + damping * np.diag(np.diag(JJ)))
-        new = within(z - H @ pull, H, *problem.box, *problem.hull)
+        new = within(z - H @ pull, H, problem.box, problem.hull)
         cost = problem.cost(problem.residual(new), new)
         if cost < best:
             return new, cost

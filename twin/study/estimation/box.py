@@ -27,15 +27,15 @@ def stopped(
 def within(
     mean: np.ndarray,
     covariance: np.ndarray,
-    lo: np.ndarray,
-    hi: np.ndarray,
-    rows: np.ndarray,
-    least: np.ndarray,
+    box: np.ndarray,
+    hull: tuple[np.ndarray, np.ndarray],
 ) -> np.ndarray:
-    """(R,) the same inside the box and where rows @ z >= least (C, R), (C,).
+    """(R,) the same inside the box (2, R) and where rows @ z >= least, of `hull`: (C, R), (C,).
 
     The least distance in the density's own measure [Lawson & Hanson 1974, ch. 23: LDP by non-negative least
     squares]; where nothing lies inside all of them, the box alone."""
+    lo, hi = box
+    rows, least = hull
     z, _ = stopped(mean, covariance, lo, hi)
     if np.all(rows @ z >= least - INSIDE):
         return z

@@ -151,7 +151,7 @@ class _Problem:
 
     def start(self) -> np.ndarray:
         here = (np.array([_present(self.model, u) for u in self.unknowns]) - self.centre) / self.sd
-        return within(here, np.eye(here.size), *self.box, *self.hull)
+        return within(here, np.eye(here.size), self.box, self.hull)
 
     def values(self, z: np.ndarray) -> np.ndarray:
         return np.clip(
@@ -173,8 +173,8 @@ class _Problem:
             z = within(
                 here.z + here.covariance @ here.pull,
                 here.covariance,
-                *np.clip(self.box, here.z - far, here.z + far),
-                *self.hull,
+                np.clip(self.box, here.z - far, here.z + far),
+                self.hull,
             )
             if here.as_good_as(z):
                 return z, far

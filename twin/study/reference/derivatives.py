@@ -45,7 +45,7 @@ def told_by(found: Fit) -> list[Derivative]:
     centre, prior, sd = np.array([(d.unknown.centre, d.unknown.sd, d.sd) for d in free]).T
     z = (np.array([d.fitted for d in free]) - centre) / prior
     box = (np.array([[d.unknown.lo, d.unknown.hi] for d in free]).T - centre) / prior
-    near = within(z, np.diag((sd / prior) ** 2), *box, *half_spaces(kept, [d.unknown for d in free]))
+    near = within(z, np.diag((sd / prior) ** 2), box, half_spaces(kept, [d.unknown for d in free]))
     value = dict(zip((d.unknown.name for d in free), (centre + prior * near).tolist(), strict=True))
     return [d._replace(fitted=value.get(d.unknown.name, d.fitted)) for d in told]
 
