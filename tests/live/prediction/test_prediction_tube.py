@@ -19,9 +19,8 @@ from twin.live.signals.measured import Measured
 from twin.physics.ship import from_table, save, text, to_table
 
 N = len(NAMES)
-KNOWN = Regressors(
-    (1.0, 0.2, 0.1, 0.0, 0.3, 0.5, 0.0, 0.0), (1.0, 0.2, 0.1, 0.0, 0.3, 0.5, 0.0, 0.0), "still", "slight"
-)
+PHI = (1.0, 0.2, 0.1, 0.0, 0.3, 0.5, 0.0, 0.0)
+KNOWN = Regressors(PHI, PHI, "still", "slight")
 LEVELS = (0.8, 0.9, 0.96)
 
 
@@ -230,8 +229,7 @@ def region_of(along, across, heading):
 def test_inside_is_inside_the_ellipse():
     region = region_of(4.0, 2.0, 0.1)
     j = Judged(foretold(region=region), 2.0, 1.9, 0.05, True)
-    assert inside(j) == (False, True)
-    assert inside(j._replace(across=1.7)) == (True, True)
+    assert inside(j) == (False, True) and inside(j._replace(across=1.7)) == (True, True)
 
 
 def test_the_correction_is_slow_in_the_right_direction_and_bounded(kvlcc2):
@@ -251,11 +249,9 @@ def test_the_correction_is_slow_in_the_right_direction_and_bounded(kvlcc2):
 
 
 def test_coverage_width_and_interval_score_by_hand():
-    """Test: an ellipse of 4 m by 1 m (radius 2 m); errors of 2 m ahead (inside) and 6 m ahead (1.5 times
-    out). Expected: half inside; score 2 and 2 + 1/0.1."""
+    """An ellipse of 4 m by 1 m; errors of 2 m ahead (inside) and 6 m (1.5 times out): 2 m and 2 + 10 m."""
     region = region_of(4.0, 1.0, 0.1)
-    rows = [entry(judged_at(along, 0.05, region), region) for along in (2.0, 6.0)]
-    found = coverage(60.0, rows)
+    found = coverage(60.0, [entry(judged_at(along, 0.05, region), region) for along in (2.0, 6.0)])
     assert (found.place_inside, found.heading_inside, found.judged) == (0.5, 1.0, 2)
     assert found.place_radius_m == 2.0 and found.place_score_m == pytest.approx((2.0 + 12.0) / 2.0)
     assert found.heading_score_deg == found.heading_deg == pytest.approx(degrees(0.1))
