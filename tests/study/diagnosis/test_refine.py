@@ -100,16 +100,18 @@ def test_a_slow_gear_is_found_however_far_out_it_stands(case):
     assert top.at[mine][1] == pytest.approx(1.57, abs=0.3)  # 65 deg in as long as it sails so many lengths
 
 
-def test_a_set_whose_first_guess_was_far_off_stands_no_lower_than_its_part(case):
-    """Test: beside a slow gear a receiver six seconds late, as a guess. Expected: begun again from where the gear
-    stands by itself, the pair is about as likely as a delay that says nothing makes it."""
+def test_a_set_whose_climb_went_astray_stands_no_lower_than_its_part(case, monkeypatch):
+    """Test: a climb of one step, begun with a receiver six seconds late beside a gear that was found. Expected:
+    far below the gear alone; begun again from where that stands, about as likely as it."""
     guess, gear = np.zeros(len(case.effects)), ("SteeringLag",)
     guess[rows(case, "SteeringLag")[:2]] = [0.5, 1.5]
     part = refine(case, gear, "usual", guess, ())[0]
     both = case.ordered((*gear, "SensorDelay"))
     guess[rows(case, "SensorDelay")] = 10.0
-    top = _place(case, both, "usual", guess, np.inf, part)
-    assert top.best.log_weight > part.hypothesis.log_evidence + case.log_prior(both, "usual") - 10.0
+    monkeypatch.setattr("twin.study.diagnosis.refine.NEWTON", 1)
+    alone = part.hypothesis.log_evidence + case.log_prior(both, "usual")
+    astray, again = (_place(case, both, "usual", guess, hoped, part) for hoped in (-np.inf, np.inf))
+    assert astray.best.log_weight < alone - 20.0 < alone - 10.0 < again.best.log_weight
 
 
 def test_a_climb_that_got_no_higher_is_asked_in_no_other_world(case, monkeypatch):
