@@ -12,7 +12,7 @@ import numpy as np
 
 from bench.tube.sailing import HORIZONS_S, Sailed
 from twin.live.observer.predict import usual_error
-from twin.live.prediction.calibrated import SECTION, Calibrated, calibrated_of
+from twin.live.prediction.calibrated import SECTION, RegionTable, calibrated_of
 from twin.live.prediction.circumstances import HELMS, SEAS
 from twin.live.prediction.coverage import score
 from twin.live.prediction.judge import Judged
@@ -55,14 +55,14 @@ class Row(NamedTuple):
     heading_score_deg: float
 
 
-def table_of(ship: Ship, voyages: Sequence[Errors]) -> Calibrated:
+def table_of(ship: Ship, voyages: Sequence[Errors]) -> RegionTable:
     """The tube of these voyages, as a ship file's [tube] is read."""
     made = calibrated_of(replace(ship, notes={SECTION: section(ship, "", voyages, "")}))
     assert made is not None
     return made
 
 
-def judged(ship: Ship, table: Calibrated, h: float, voyage: Sequence[Judged]) -> list[Kept]:
+def judged(ship: Ship, table: RegionTable, h: float, voyage: Sequence[Judged]) -> list[Kept]:
     """The predictions of one voyage inside or outside a tube."""
     usual, out = usual_error(ship, h), []
     for j in voyage:

@@ -20,7 +20,7 @@ from twin import whole
 from twin.live.guard import INVALID
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction
-from twin.live.prediction.circumstances import Known
+from twin.live.prediction.circumstances import Regressors
 from twin.live.prediction.judge import Foretold, Judged
 from twin.live.prediction.watch import Watch
 from twin.study.reference.foretold import Errors
@@ -119,7 +119,7 @@ def _row(j: Judged) -> list[Any]:
 def _judged(row: Sequence[Any]) -> Judged:
     helm, sea, said_s, along, across, heading, *phi = row
     n = len(phi) // 2
-    known = Known(tuple(phi[:n]), tuple(phi[n:]), helm, sea)
+    known = Regressors(tuple(phi[:n]), tuple(phi[n:]), helm, sea)
     return Judged(Foretold(said_s, said_s, said_s, (), known), along, across, heading, True)
 
 

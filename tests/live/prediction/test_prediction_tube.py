@@ -11,7 +11,7 @@ from twin.live.learning.residual import ship_hash
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction, Region, usual_error
 from twin.live.prediction.calibrated import calibrated_of
-from twin.live.prediction.circumstances import NAMES, SEAS, Circumstances, Known, sea_of
+from twin.live.prediction.circumstances import NAMES, SEAS, Circumstances, Regressors, sea_of
 from twin.live.prediction.coverage import coverage, entry
 from twin.live.prediction.judge import Foretold, Judge, Judged, along_and_across
 from twin.live.prediction.prediction_tube import GAIN, PredictionTube, inside
@@ -19,7 +19,7 @@ from twin.live.signals.measured import Measured
 from twin.physics.ship import from_table, save, text, to_table
 
 N = len(NAMES)
-KNOWN = Known(
+KNOWN = Regressors(
     (1.0, 0.2, 0.1, 0.0, 0.3, 0.5, 0.0, 0.0), (1.0, 0.2, 0.1, 0.0, 0.3, 0.5, 0.0, 0.0), "still", "slight"
 )
 LEVELS = (0.8, 0.9, 0.96)

@@ -10,7 +10,7 @@ import pytest
 from twin.errors import DataError
 from twin.live.observer.predict import usual_error
 from twin.live.prediction.calibrated import SECTION, calibrated_of
-from twin.live.prediction.circumstances import Known
+from twin.live.prediction.circumstances import Regressors
 from twin.live.prediction.judge import Foretold, Judged
 from twin.physics.ship import load
 from twin.recording.voyage import Voyage
@@ -36,7 +36,7 @@ def sailed(rng, count=60, H_s=None, steady=0.3):
     for _ in range(count):
         phi = (1.0, abs(rng.normal()), 0.1, 0.0, 100.0 * H_s / 320.0, 0.5, 0.0, 0.0)
         helm = "moving" if rng.random() < 0.5 else "still"
-        known = Known(phi, phi, helm, sea)
+        known = Regressors(phi, phi, helm, sea)
         along, across, heading = size * rng.normal(), 2.0 * size * rng.normal(), 0.002 * size * rng.normal()
         out.append(Judged(Foretold(0.0, 0.0, H, (), known), along, across, heading, True))
     return {H: out}

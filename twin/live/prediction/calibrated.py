@@ -12,7 +12,7 @@ from math import exp
 from typing import Any, NamedTuple
 
 from twin.errors import SettingsError
-from twin.live.prediction.circumstances import NAMES, Known
+from twin.live.prediction.circumstances import NAMES, Regressors
 from twin.physics.maths import dot
 from twin.physics.ship import Ship
 
@@ -40,7 +40,7 @@ class Horizon(NamedTuple):
     cells: dict[str, Cell]
 
 
-class Calibrated(NamedTuple):
+class RegionTable(NamedTuple):
     """[tube] of a ship file. `level`: what is promised, `levels`: of the quantiles, rising."""
 
     level: float
@@ -56,7 +56,7 @@ class Calibrated(NamedTuple):
         """The horizon of the table that this one is."""
         return next((h for h in self.horizons if abs(h - horizon_s) < 0.5), None)
 
-    def sigmas(self, h: float, known: Known, usual: tuple[float, ...]) -> tuple[float, float, float]:
+    def sigmas(self, h: float, known: Regressors, usual: tuple[float, ...]) -> tuple[float, float, float]:
         """The usual error along, across [m] and in heading [rad]."""
         place, heading = self.within(known)
         along, across, turning = self.horizons[h].coefficients
@@ -66,7 +66,7 @@ class Calibrated(NamedTuple):
             usual[1] * exp(dot(turning, heading)),
         )
 
-    def within(self, known: Known) -> tuple[list[float], list[float]]:
+    def within(self, known: Regressors) -> tuple[list[float], list[float]]:
         """phi held inside what the references had."""
         values = (*known.place, *known.heading[OWN:])
         held = [
@@ -75,7 +75,7 @@ class Calibrated(NamedTuple):
         ]
         return held[: OWN + 2], held[:OWN] + held[OWN + 2 :]
 
-    def beyond(self, known: Known) -> str:
+    def beyond(self, known: Regressors) -> str:
         """What no reference voyage had, in words; "" where they had it all."""
         if known.sea not in self.seas and "unknown" in (known.sea, *self.seas):
             return "wave height is not known" if known.sea == "unknown" else "no reference knew its waves"
@@ -84,7 +84,7 @@ class Calibrated(NamedTuple):
                 return f"{WORDS[k]} above the references'"
         return ""
 
-    def cell(self, h: float, known: Known) -> tuple[str, Cell]:
+    def cell(self, h: float, known: Regressors) -> tuple[str, Cell]:
         """The regime's own cell, else its parent's."""
         cells = self.horizons[h].cells
         name = next(n for n in (f"{known.helm}_{known.sea}", known.helm, "all") if n in cells)
@@ -104,7 +104,7 @@ class Calibrated(NamedTuple):
         return of[-1]
 
 
-def calibrated_of(ship: Ship) -> Calibrated | None:
+def calibrated_of(ship: Ship) -> RegionTable | None:
     """The ship file's [tube]; None where it has none. SettingsError where it cannot be used."""
     table = ship.notes.get(SECTION)
     if table is None:
@@ -118,7 +118,7 @@ def calibrated_of(ship: Ship) -> Calibrated | None:
         ) from None
 
 
-def _read(table: Mapping[str, Any]) -> Calibrated:
+def _read(table: Mapping[str, Any]) -> RegionTable:
     n = len(NAMES)
     levels = _row(table["levels"])
     if not levels or list(levels) != sorted(levels):
@@ -136,7 +136,7 @@ def _read(table: Mapping[str, Any]) -> Calibrated:
     }
     if not horizons or any("all" not in h.cells for h in horizons.values()):
         raise ValueError("a horizon without its cell `all`")
-    return Calibrated(
+    return RegionTable(
         float(table["level"]), int(table["voyages"]), str(table["model"]), levels,
         _row(table["lowest"], n + 2), _row(table["highest"], n + 2), tuple(table["seas"]), horizons,
     )  # fmt: skip

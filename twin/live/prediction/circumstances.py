@@ -26,7 +26,7 @@ HELMS = ("still", "moving")
 NAMES = ("one", "turning", "rudder", "helm_moved", "waves", "wind", "sigma", "error_so_far")
 
 
-class Known(NamedTuple):
+class Regressors(NamedTuple):
     """phi of place and of heading, and the regime."""
 
     place: tuple[float, ...]
@@ -64,12 +64,12 @@ class Circumstances:
 
     def known(
         self, now_s: float, e: Estimate, measured: Measured, p: Prediction, usual: tuple[float, ...]
-    ) -> Known:
+    ) -> Regressors:
         """Of prediction p; `usual`: the prior of its error in place [m] and heading [rad]."""
         if self._now_s != now_s:
             self._now_s, self._now = now_s, self._common(now_s, e, measured)
         common, of_place, of_heading, helm, sea = self._now
-        return Known(
+        return Regressors(
             (*common, of_place, log_ratio(p.sigma[0], usual[0])),
             (*common, of_heading, log_ratio(p.sigma[2], usual[1])),
             helm,

@@ -33,7 +33,7 @@ class Coverage(NamedTuple):
     heading_score_deg: float
 
 
-class Entry(NamedTuple):
+class JudgedRegion(NamedTuple):
     """One prediction: half width and error of place [m] and of heading [rad], and what was promised."""
 
     radius: float
@@ -44,14 +44,14 @@ class Entry(NamedTuple):
     voyages: int
 
 
-def entry(j: Judged, region: Region) -> Entry:
+def entry(j: Judged, region: Region) -> JudgedRegion:
     """Of a prediction that was judged, and what was promised of it."""
     radius = sqrt(region.along_m * region.across_m)
     error = radius * hypot(j.along / region.along_m, j.across / region.across_m)
-    return Entry(radius, error, region.heading, abs(j.heading), region.level, region.voyages)
+    return JudgedRegion(radius, error, region.heading, abs(j.heading), region.level, region.voyages)
 
 
-def coverage(horizon_s: float, entries: Sequence[Entry]) -> Coverage:
+def coverage(horizon_s: float, entries: Sequence[JudgedRegion]) -> Coverage:
     """The summary of at least one."""
     n, a = len(entries), 1.0 - min(e.level for e in entries)
     return Coverage(

@@ -9,7 +9,7 @@ from math import atan2, cos, sin
 from typing import NamedTuple
 
 from twin.live.observer.predict import Region
-from twin.live.prediction.circumstances import Known
+from twin.live.prediction.circumstances import Regressors
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
 
@@ -26,7 +26,7 @@ class Foretold(NamedTuple):
     said_s: float
     due_s: float
     state: tuple[float, ...]
-    known: Known
+    known: Regressors
     region: Region | None = None
 
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 from twin.live.learning.residual import ship_hash
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction, Region, usual_error
-from twin.live.prediction.calibrated import TARGETS, Calibrated, calibrated_of
+from twin.live.prediction.calibrated import TARGETS, RegionTable, calibrated_of
 from twin.live.prediction.circumstances import Circumstances
 from twin.live.prediction.judge import Foretold, Judge, Judged, course
 from twin.live.signals.measured import Measured
@@ -48,7 +48,7 @@ class PredictionTube:
         self._waiting: dict[float, Foretold] = {}
         self.beyond = ""  # what no reference voyage had, in the last round
 
-    def _usable(self, table: Calibrated | None) -> Calibrated | None:
+    def _usable(self, table: RegionTable | None) -> RegionTable | None:
         if table is not None and table.model != ship_hash(self.ship):
             self.why_not = (
                 f"the [tube] of the ship file was found with another model ({table.model}, now "

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from twin.errors import DataError
 from twin.live.observer.predict import usual_error
-from twin.live.prediction.calibrated import AXES, Calibrated, Horizon
+from twin.live.prediction.calibrated import AXES, Horizon, RegionTable
 from twin.live.prediction.circumstances import HELMS, NAMES, SEAS
 from twin.live.prediction.judge import Judged
 from twin.physics.ship import Ship
@@ -88,7 +88,7 @@ def _horizon(
     usual, chosen = usual_error(ship, h)[:2], parted(len(voyages))
     fitted = [v for v, fit in zip(voyages, chosen, strict=True) if fit]
     rows = coefficients(fitted, usual)
-    only = Calibrated(
+    only = RegionTable(
         LEVEL, 0, "", LEVELS, tuple(table["lowest"]), tuple(table["highest"]), (),
         {h: Horizon(tuple(tuple(c) for c in rows), {})},
     )  # fmt: skip
@@ -101,7 +101,7 @@ def _horizon(
     return out
 
 
-def score(table: Calibrated, h: float, j: Judged, usual: tuple[float, ...]) -> tuple[float, float]:
+def score(table: RegionTable, h: float, j: Judged, usual: tuple[float, ...]) -> tuple[float, float]:
     """Of place and of heading: the error over what is usual in these circumstances."""
     along, across, heading = table.sigmas(h, j.foretold.known, (usual[0], usual[1]))
     return hypot(j.along / along, j.across / across), abs(j.heading) / heading

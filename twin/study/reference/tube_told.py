@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 
 from twin.live.observer.predict import usual_error
-from twin.live.prediction.calibrated import Calibrated
+from twin.live.prediction.calibrated import RegionTable
 from twin.live.prediction.judge import Judged
 from twin.physics.ship import Ship
 from twin.study.reference.foretold import Errors
 from twin.study.reference.tube_calibration import regimes
 
 
-def rows(ship: Ship, table: Calibrated, voyages: Sequence[Errors]) -> list[dict[str, Any]]:
+def rows(ship: Ship, table: RegionTable, voyages: Sequence[Errors]) -> list[dict[str, Any]]:
     """One row a horizon: what is promised, how wide the tube is in the mean, and the same by regime."""
     out = []
     for h, horizon in table.horizons.items():
@@ -34,7 +34,7 @@ def rows(ship: Ship, table: Calibrated, voyages: Sequence[Errors]) -> list[dict[
     return out
 
 
-def half_widths(table: Calibrated, h: float, j: Judged, usual: tuple[float, float]) -> tuple[float, float]:
+def half_widths(table: RegionTable, h: float, j: Judged, usual: tuple[float, float]) -> tuple[float, float]:
     """Radius of the place's circle of the same area [m] and half width of the heading [rad]."""
     along, across, heading = table.sigmas(h, j.foretold.known, usual)
     _, cell = table.cell(h, j.foretold.known)
