@@ -1,5 +1,5 @@
 """A rudder's feedback that is stuck: found by how it turns, and what it taught taken back; a rudder that is
-truly held is not accused."""
+truly held raises no alarm."""
 
 from dataclasses import replace
 

@@ -10,7 +10,7 @@ from bench.fleet.ship import build
 from twin.physics.effects.heading_lag import HeadingLag
 from twin.physics.model import Model
 from twin.study.diagnosis.assemble import of_tracks
-from twin.study.diagnosis.by_kinematics import accused, asked_for, beyond_usual
+from twin.study.diagnosis.by_kinematics import asked_for, beyond_usual, instrument_suspected
 from twin.study.first_model.init import OPTIONS, first_model
 from twin.study.track.track import track
 
@@ -53,9 +53,11 @@ def case(tanker, voyages):
     return of_tracks([track(voyages["nothing"], tanker)], tanker)
 
 
-def test_only_where_an_instrument_is_accused_are_the_instruments_asked(case):
-    assert accused(case, ("Current", "SensorDelay")) and accused(case, ("HullFouling", "GyroBias"))
-    assert not accused(case, ()) and not accused(case, ("Current", "HullFouling"))
+def test_only_where_an_instrument_is_suspected_are_the_instruments_asked(case):
+    assert instrument_suspected(case, ("Current", "SensorDelay")) and instrument_suspected(
+        case, ("HullFouling", "GyroBias")
+    )
+    assert not instrument_suspected(case, ()) and not instrument_suspected(case, ("Current", "HullFouling"))
 
 
 @pytest.mark.parametrize(

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from twin.study.estimation.filters import STATES, Filters, Noise, RunsAway, Stretches
+from twin.study.estimation.filters import STATES, Filters, NoiseVariances, RunsAway, Stretches
 
 STEPS, SEED = 400, 5
 
@@ -21,7 +21,7 @@ def unstable(growth: float, read_every: int, steps: int = STEPS) -> Filters:
         shown=np.zeros((steps, 1, 8, 1)), pushed=np.zeros((steps, 1, 6, 1), np.float32),
         spread=np.zeros((steps, 1, 6, 3), np.float32), turns={},
     )  # fmt: skip
-    noise = Noise(np.full((steps, 1, 1, 8), 1e-5), np.full((steps, 1, 1, STATES), 1e-6))
+    noise = NoiseVariances(np.full((steps, 1, 1, 8), 1e-5), np.full((steps, 1, 1, STATES), 1e-6))
     return Filters(told, noise, np.eye(STATES)[None, None] * 0.1)
 
 

@@ -1,5 +1,5 @@
-"""Instruments first: where an instrument is accused, how position, velocity, heading, rate of turn and log go
-together is asked without any model of the ship (twin/study/instruments).
+"""Instruments first: where an instrument is suspected, position, velocity, heading, rate of turn and log are
+checked against each other without any model of the ship (twin/study/instruments).
 
 A slow compass looks like a late receiver, an antenna elsewhere and a slow gear together; the rate of turn
 proves it alone. What kinematics ask for, and is larger than what is usual of that instrument, becomes a
@@ -23,7 +23,7 @@ from twin.study.instruments.unknowns import FAULTS
 USUAL = {"heading_delay": "compass"}  # number of kinematics -> whose usual lateness is known (columns.py)
 
 
-def accused(case: Case, effects: Sequence[str]) -> bool:
+def instrument_suspected(case: Case, effects: Sequence[str]) -> bool:
     """Whether one of these effects is an instrument's."""
     return any(case.catalogue[name].belongs_to == "instrument" for name in case.names(effects))
 

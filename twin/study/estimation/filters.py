@@ -40,7 +40,7 @@ class Stretches:
 
 
 @dataclass(frozen=True)
-class Noise:
+class NoiseVariances:
     """Of every floor (W) and every segment: variances."""
 
     reading: np.ndarray  # (T, W, S, 8)
@@ -57,7 +57,7 @@ class Filters:
     """A filter for every floor and segment, all at the same step; begun with the covariance C (W, S, n, n), n
     being 11, or 23 at sea."""
 
-    def __init__(self, told: Stretches, noise: Noise, C: np.ndarray) -> None:
+    def __init__(self, told: Stretches, noise: NoiseVariances, C: np.ndarray) -> None:
         self.told, self.noise, self.C = told, noise, C
         self.X = np.zeros((*C.shape[:3], told.shown.shape[-1]), LIGHT)
         self.H, self.unread = told.H.astype(LIGHT), np.where(told.here[:, None], noise.reading, 1.0)

@@ -35,7 +35,7 @@ from twin.study.estimation.filters import (
     STATES,
     WAVES,
     Filters,
-    Noise,
+    NoiseVariances,
     Stretches,
 )
 from twin.study.estimation.normal import Normal, Sums
@@ -305,7 +305,7 @@ def _in_waves(lines: Sequence[Linear]) -> bool:
     return any(line.track.swell is not None for line in lines)
 
 
-def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> Noise:
+def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> NoiseVariances:
     """Every floor in turn, over all segments."""
     ship, h = lines[0].model.ship, _steps(lines, where)
     time, speed = float(ship.scale("time")), float(ship.scale("speed"))
@@ -320,7 +320,7 @@ def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> No
         new.append(out)
     reading = [abreast([_reading(x.track, f) for x in lines], where) for f in floors]
     swell = abreast([waves.renewed(x.track) for x in lines], where) if _in_waves(lines) else None
-    return Noise(np.stack(reading, axis=1), np.stack(new, axis=1), swell)
+    return NoiseVariances(np.stack(reading, axis=1), np.stack(new, axis=1), swell)
 
 
 def _steps(lines: Sequence[Linear], where: Where) -> np.ndarray:
