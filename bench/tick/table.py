@@ -14,6 +14,7 @@ DOC = {
     "step": "the model to the next tick",
     "adapt": "learn slowly, inside bounds",
     "predict": "10, 60 and 120 s ahead, a few steps a tick",
+    "tube": "how far predictions were off, and will be",
     "certificate": "stability by numbers",
     "publish": "the wide record",
     "record": "to the bus and to the log",
