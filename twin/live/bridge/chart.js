@@ -69,7 +69,7 @@ export function draw(frame, old) {
 
 // The range that holds what is ahead: one of a ladder, and not a smaller one before it fits well.
 function fitted(frame, place) {
-  const far = (frame.ahead?.shown ?? []).map((p) => Math.hypot(p.n - place.n, p.e - place.e) + (p.tube?.level ? Math.max(p.tube.along, p.tube.across) : 2 * Math.max(p.sn ?? 0, p.se ?? 0)));
+  const far = (frame.ahead?.shown ?? []).map((p) => Math.hypot(p.n - place.n, p.e - place.e) + (p.tube?.drawn ? Math.max(p.tube.along, p.tube.across) : 2 * Math.max(p.sn ?? 0, p.se ?? 0)));
   const wanted = Math.max(...far, 1.6 * (frame.ship.length_m || 20), 10) * 1.12;
   const step = (m) => {
     const ten = 10 ** Math.floor(Math.log10(m));
@@ -112,7 +112,9 @@ function ahead(frame, at, perM, turn) {
   const shown = frame.ahead && !frame.ahead.old ? frame.ahead : { way: [], shown: [] };
   const way = shown.way.map(([n, e]) => at(n, e));
   set(parts.way, { d: line(way) });
-  set(parts.tube, { d: tube(way, shown.way.map((p) => p[2] * perM)) });
+  const known = shown.way.findIndex((p) => p[2] === null); // the tube ends where no width is known any more
+  const wide = known < 0 ? shown.way : shown.way.slice(0, known);
+  set(parts.tube, { d: tube(way.slice(0, wide.length), wide.map((p) => p[2] * perM)) });
   while (parts.later.childNodes.length > shown.shown.length) parts.later.lastChild.remove();
   while (parts.later.childNodes.length < shown.shown.length) {
     parts.later.append(drawn("g", {}, drawn("ellipse", { class: "spread" }), drawn("path", { class: "later" }), drawn("text", { class: "ahead" })));
@@ -121,7 +123,7 @@ function ahead(frame, at, perM, turn) {
     const [spread, outline, label] = parts.later.childNodes[i].childNodes;
     const [x, y] = at(p.n, p.e);
     const here = `translate(${x.toFixed(1)} ${y.toFixed(1)})`;
-    const tube = p.tube?.level ? p.tube : null; // an ellipse along the course where one is promised, else one sigma north and east
+    const tube = p.tube?.drawn ? p.tube : null; // an ellipse along the course where one is promised, else one sigma north and east
     const [rx, ry, by] = tube ? [tube.across, tube.along, tube.course] : [p.se ?? 0, p.sn ?? 0, 0];
     set(spread, { rx: (rx * perM).toFixed(1), ry: (ry * perM).toFixed(1), transform: `${here} rotate(${(by - turn / RAD).toFixed(2)})` });
     set(outline, { d: hull(frame.ship, perM), transform: `${here} rotate(${(p.psi - turn / RAD).toFixed(2)})` });
@@ -131,7 +133,7 @@ function ahead(frame, at, perM, turn) {
     const aside = 12 + Math.max(Math.max(rx, ry) * perM, (frame.ship.beam_m * perM) / 2, 9);
     const [dx, dy] = [side * Math.cos(abeam) * aside, side * Math.sin(abeam) * aside];
     set(label, { x: (x + dx).toFixed(1), y: (y + dy + 5).toFixed(1), "text-anchor": dx > 0.4 * aside ? "start" : "middle" });
-    say(label, `${p.horizon.toFixed(0)} s`);
+    say(label, p.tube && !tube ? `${p.horizon.toFixed(0)} s, ${p.tube.level ? `${p.tube.level} % only` : "no promise"}` : `${p.horizon.toFixed(0)} s`);
   });
 }
 

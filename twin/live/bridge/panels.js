@@ -92,20 +92,21 @@ function ahead(next) {
   table(by("ahead"), "Where the ship will be", ["", "from here", "heading", "within", "how sure"], rows);
   const note = by("ahead-note");
   set(note, { class: next?.old ? "note old" : "note" });
-  say(note, !next ? "No prediction yet." : next.old ? `OLD: said ${next.age.toFixed(0)} s ago.` : promised(shown) ? "If helm and engine are held. Along / across the course, and heading." : "± north / east: 68 % of the errors are smaller; prior: assumed, learned: from this voyage.");
+  say(note, !next ? "No prediction yet." : !shown.length ? "No prediction for 60 or 120 s (prediction.horizons_s of the settings)." : next.old ? `OLD: said ${next.age.toFixed(0)} s ago.` : promised(shown) ? "If helm and engine are held. Along / across the course, and heading." : "± north / east: 68 % of the errors are smaller; prior: assumed, learned: from this voyage.");
 }
 
 const promised = (shown) => shown.some((p) => p.tube?.level);
 
 // What is promised where reference voyages do, else one sigma.
 function spread(p) {
+  if (!p.tube?.level && p.sn === null) return "no promise";
   if (!p.tube?.level) return `± ${fixed(p.sn, 0)} / ${fixed(p.se, 0)} m`;
   return `± ${fixed(p.tube.along, 0)} / ${fixed(p.tube.across, 0)} m, ± ${fixed(p.tube.heading, 1)}°`;
 }
 
 function surely(p) {
   if (!p.tube) return p.status;
-  return p.tube.level ? `${p.tube.level} %, on ${p.tube.voyages} voyages` : `${p.status}: no promise, ${p.tube.words}`;
+  return p.tube.level ? `${p.tube.level} %, on ${p.tube.voyages} voyages` : (p.sn === null ? p.tube.words : `${p.status}: no promise, ${p.tube.words}`);
 }
 
 function forces({ unit, moment_unit, rows, parts, share }) {

@@ -20,6 +20,8 @@ SHOWN_S = (60.0, 120.0)  # horizons that are drawn, where the twin says them
 OLD_AHEAD_S = 10.0  # a prediction said longer ago is shown as old
 STEPS = 8  # points of the way between two horizons
 
+Stop = tuple[float, Any, float | None]  # seconds from now, the state then, half width of the tube [m]
+
 MODES = {
     HYBRID: ("good", "physics and learned force, on measurements"),
     PHYSICS: ("fair", "without the learned force, on measurements"),
@@ -103,29 +105,39 @@ def _ahead(tick: Any, ahead: Ahead | None, since_s: float) -> dict[str, Any] | N
         return None
     age_s = max(tick.time_s - ahead.said_s, 0.0) + since_s
     rounds = [p for p in ahead.tick.predictions if _place(p.state) and p.horizon_s <= max(SHOWN_S)]
-    shown = [_prediction(p, ahead.tick) for p in rounds if p.horizon_s in SHOWN_S]
-    stops = [(0.0, ahead.tick.estimate, _width(ahead.tick.sigma))]
-    stops += [(p.horizon_s, p.state, _half_width(p)) for p in sorted(rounds, key=lambda p: p.horizon_s)]
+    promised = max((p.tube.level for p in rounds if p.HasField("tube")), default=0.0)
+    shown = [_prediction(p, ahead.tick, promised) for p in rounds if p.horizon_s in SHOWN_S]
+    stops: list[Stop] = [(0.0, ahead.tick.estimate, _width(ahead.tick.sigma))]
+    stops += [
+        (p.horizon_s, p.state, _half_width(p, promised)) for p in sorted(rounds, key=lambda p: p.horizon_s)
+    ]
     way = [point for a, b in pairwise(stops) for point in _between(a, b)]
     return {"age": round(age_s, 1), "old": age_s > OLD_AHEAD_S, "shown": shown, "way": way}
 
 
-def _prediction(p: Any, tick: Any) -> dict[str, Any]:
+def _drawn(p: Any, promised: float) -> bool:
+    """Whether its region is drawn: only those of the highest level are, and no sigma beside them, for side by
+    side the smaller one would look the surer one."""
+    return bool(promised and p.HasField("tube") and p.tube.level == promised)
+
+
+def _prediction(p: Any, tick: Any, promised: float) -> dict[str, Any]:
     """One horizon: the place, how far off that is, and the published uncertainty."""
     north, east = p.state.north_m - tick.estimate.north_m, p.state.east_m - tick.estimate.east_m
-    sigmas = {name: number(p.sigma, field, 1.0, 2) for name, field in (("sn", "north_m"), ("se", "east_m"))}
+    fields = (("sn", "north_m"), ("se", "east_m"))
+    sigmas = {name: None if promised else number(p.sigma, field, 1.0, 2) for name, field in fields}
     return {
         "horizon": p.horizon_s,
         **(_place(p.state) or {}),
         **sigmas,
-        "tube": _tube(p),
+        "tube": _tube(p, promised),
         "distance": round(hypot(north, east), 1),
         "bearing": round(degrees(atan2(east, north)) % 360.0, 1),
         "status": p.status,
     }
 
 
-def _tube(p: Any) -> dict[str, Any] | None:
+def _tube(p: Any, promised: float) -> dict[str, Any] | None:
     """The region that reference voyages promise: half axes along and across the course, and how sure."""
     if not p.HasField("tube"):
         return None
@@ -138,23 +150,25 @@ def _tube(p: Any) -> dict[str, Any] | None:
         "level": round(100.0 * t.level),
         "voyages": t.voyages,
         "words": t.status,
+        "drawn": _drawn(p, promised),
     }
 
 
-def _between(a: tuple[float, Any, float], b: tuple[float, Any, float]) -> list[list[float]]:
+def _between(a: Stop, b: Stop) -> list[list[float | None]]:
     """Points [north, east, half width of the tube] from one state to the next: the cubic through both places
-    with both speeds over ground."""
+    with both speeds over ground. No width on the way to or from a place for which none is known."""
     T = b[0] - a[0]
     (n0, e0, dn0, de0), (n1, e1, dn1, de1) = _motion(a[1]), _motion(b[1])
     w0, w1 = a[2], b[2]
-    points = []
+    points: list[list[float | None]] = []
     for i in range(STEPS + 1):
         s = i / STEPS
         h0, h1 = (1 + 2 * s) * (1 - s) ** 2, s * s * (3 - 2 * s)
         g0, g1 = s * (1 - s) ** 2 * T, s * s * (s - 1) * T
         north = h0 * n0 + g0 * dn0 + h1 * n1 + g1 * dn1
         east = h0 * e0 + g0 * de0 + h1 * e1 + g1 * de1
-        points.append([round(north, 1), round(east, 1), round(w0 + s * (w1 - w0), 1)])
+        width = None if w0 is None or w1 is None else round(w0 + s * (w1 - w0), 1)
+        points.append([round(north, 1), round(east, 1), width])
     return points
 
 
@@ -174,9 +188,11 @@ def _width(sigma: Any) -> float:
     return max(sigma.north_m, sigma.east_m)
 
 
-def _half_width(p: Any) -> float:
-    """Of the tube beside the way: what is promised across it, else one sigma."""
-    return float(p.tube.across_m) if p.HasField("tube") and p.tube.level else _width(p.sigma)
+def _half_width(p: Any, promised: float) -> float | None:
+    """Of the tube beside the way: one sigma, or what is promised across it where anything is."""
+    if not promised:
+        return _width(p.sigma)
+    return float(p.tube.across_m) if _drawn(p, promised) else None
 
 
 def _forces(tick: Any, largest: tuple[float, float]) -> dict[str, Any]:
