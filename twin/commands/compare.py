@@ -17,7 +17,7 @@ EPILOG = """example:
 
 Metrics of --fail-above: position_mae_m, lateral_mae_m, heading_mae_deg (at the longest horizon, or at one:
 position_mae_m@60), noise_units (position error over its floor), unexplained_force.surge|sway|yaw,
-learned_share, channels.COLUMN.mae. Exit code 3: a threshold is passed; 4: a voyage cannot be used; 5: the
+learned_share, channels.COLUMN.mae. Exit code 3: a threshold is not met; 4: a voyage cannot be used; 5: the
 ship file is not valid.
 """
 

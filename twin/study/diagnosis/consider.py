@@ -8,7 +8,8 @@ import numpy as np
 
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.clear import change, significance
-from twin.study.diagnosis.decision import CLEAR, SURE, explained
+from twin.study.diagnosis.criteria import CLEAR, SURE
+from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
 from twin.study.diagnosis.moments import Moment, moments
 from twin.study.diagnosis.open_loop_check import roughly

@@ -16,7 +16,8 @@ from twin.physics.effect import SensorFault
 from twin.study.diagnosis.altered import floats
 from twin.study.diagnosis.case import ODDS_WEAK, SCENARIOS, Case
 from twin.study.diagnosis.consider import left_over
-from twin.study.diagnosis.decision import NEARLY, explained
+from twin.study.diagnosis.criteria import NEARLY
+from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.open_loop_check import OpenLoopCheck, open_loop_check
 from twin.study.diagnosis.refine import Found, Sets, refine
 from twin.study.diagnosis.steady import steady

@@ -10,7 +10,7 @@ import numpy as np
 from twin.physics import core
 from twin.physics.model import Model
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.diagnosis.decision import CERTAIN, CLEAR, LOST, SURE
+from twin.study.diagnosis.criteria import CERTAIN, CLEAR, LOST, SURE
 from twin.study.diagnosis.open_loop_check import COMPLEXITY
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.without import without

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from math import radians
 from typing import Any
 
+from twin.num import percent
 from twin.physics.model import Model
 from twin.physics.ship import PARTICULARS, Ship
 from twin.study.first_model import regressions as reg
@@ -59,7 +60,7 @@ def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
         )
     if figures["speed_left"] < 0.2:
         out.append(
-            f"only {figures['speed_left']:.0%} of the speed is left in the turn: check draught and "
+            f"only {percent(figures['speed_left'])} of the speed is left in the turn: check draught and "
             "propeller, and calibrate"
         )
     if figures["overshoot_20_20_deg"] is None or figures["overshoot_20_20_deg"] > 40.0:

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from twin.errors import SettingsError
-from twin.num import num
+from twin.num import num, percent
 from twin.physics.actuators import Actuator
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship
@@ -111,7 +111,8 @@ def _particulars(given: Given, least: float = 0.2) -> Numbers:
     by_mass = None if mass is None else mass / (rho * box)
     if by_mass is not None and not least <= by_mass <= 0.99:
         raise SettingsError(
-            f"--mass-kg {mass:g} fills {by_mass:.0%} of length x beam x draught; a ship fills {least:.0%} to "
+            f"--mass-kg {mass:g} fills {percent(by_mass)} of length x beam x draught; a ship fills "
+            f"{percent(least)} to "
             "99 %. Check the mass (kg) and the draught."
         )
     if by_mass is not None and C_b is not None and abs(by_mass / C_b - 1.0) > 0.05:
