@@ -1,5 +1,5 @@
-"""What every key of a verb's JSON means: the one table behind docs/json.md, held against real results by
-tests/api/test_docs_pages.py."""
+"""What every key of a result's JSON means: the one table behind docs/json.md, held against real results where
+each verb is tested (tests/api/test_notebook.py and others)."""
 
 from twin.api.json_key import (
     ABOUT,
@@ -284,6 +284,12 @@ TUBE = (
     JsonKey("doubts[]", "", "what these voyages cannot promise, and what to do", "there is something"),
     JsonKey("output", "", "the ship file that was written", CLI),
 )
+SIMULATE = (
+    *ABOUT,
+    JsonKey("manoeuvre", "", "what was sailed, as it was asked for: straight, zigzag_ANGLE or circle_ANGLE"),
+    JsonKey("columns.time_s[]", "s", "times from the beginning"),
+    JsonKey("columns.*[]", "of the channel", "position, heading and speeds at these times, by channel"),
+)
 KEYS: dict[str, tuple[JsonKey, ...]] = {
     "instruments": INSTRUMENTS,
     "compare": COMPARE,
@@ -291,4 +297,5 @@ KEYS: dict[str, tuple[JsonKey, ...]] = {
     "add": ADD,
     "calibrate": CALIBRATE,
     "tube": TUBE,
+    "simulate": SIMULATE,
 }
