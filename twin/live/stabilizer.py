@@ -1,5 +1,6 @@
-"""The certificate beside the loop: the live bound on the observer's error, and whether its assumptions
-hold now."""
+"""The stabilizer: what is certified of the observer's stability, tick by tick. It steers nothing; it follows
+the bound of the observer's error and says whether the assumptions of its proof hold now
+(docs/stability.md)."""
 
 from math import degrees, hypot, pi
 
