@@ -144,7 +144,7 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
 def row(p: Param, ship: Ship | None) -> tuple[str, str, str, str, str, str]:
     """A parameter in a table: name, unit, plausible size, box, prior width, meaning."""
     k, times = (p.scale(ship), "") if ship else (1.0, f" {SCALES[p.of]}" if p.of else "")
-    says = lambda x: f"{num(x * k, 4)}" + (times if x else "")  # noqa: E731
+    says = lambda x: num(x * k, 4) + (times if x else "")  # noqa: E731
     form = "" if p.form == FORM else f" (its form may be off by {percent(p.form)})"
     return p.name, p.unit, says(p.default), f"{says(p.lo)} .. {says(p.hi)}", says(p.sd), p.doc + form
 

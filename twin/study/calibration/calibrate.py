@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.physics.effect import Effect
 from twin.physics.effects import of_ship
 from twin.physics.effects.antenna_offset import AntennaOffset
@@ -270,15 +270,16 @@ def told(result: dict[str, Any]) -> list[str]:
             f"  wind pushed it on these voyages: how is now part of the model (Wind: {_sizes(wind)})"
         )
     lines += [
-        f"  {name} was measured and too faint to be told: up to {HARDER:g} times as hard a push is reckoned "
-        "with and not called missing"
+        f"  {name} was measured and too faint to be told: up to {as_given(HARDER)} times as hard a push is "
+        "reckoned with and not called missing"
         for name in result["too_faint"]
     ]
     lines += [f"  {text}" for text in told_of_waves(result["waves"])]
     share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [
-        f"usual on this ship: {i['name']} {num(i['value'], 3)} +- {i['sd']:.1g} (kept in mind by diagnose)"
+        f"usual on this ship: {i['name']} {num(i['value'], 3)} +- {num(i['sd'], 1)} (kept in mind by "
+        "diagnose)"
         for i in result["usual"]
     ]
     lines += ["", f"{'derivative':<10}{'before':>11}{'now':>11}{'+-':>9}"]
@@ -294,5 +295,5 @@ def told(result: dict[str, Any]) -> list[str]:
 
 def _sizes(numbers: dict[str, dict[str, Any]]) -> str:
     return ", ".join(
-        f"{name} {num(n['value'], 3)} +- {n['sd']:.1g} {n['unit']}" for name, n in numbers.items()
+        f"{name} {num(n['value'], 3)} +- {num(n['sd'], 1)} {n['unit']}" for name, n in numbers.items()
     )

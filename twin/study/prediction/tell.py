@@ -3,7 +3,7 @@
 import textwrap
 from typing import Any
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.study.estimation.start import told_of_waves
 
 BAR = 24
@@ -46,7 +46,7 @@ def _horizons(rows: list[dict[str, Any]]) -> list[str]:
             f"{num(r[k], 3)} / {num(n[k], 2)}" for k in ("position_mae_m", "lateral_mae_m", "heading_mae_deg")
         ]
         units = _units(r["position_mae_m"], n["position_mae_m"])
-        out.append(f"{r['horizon_s']:>6g} s    {cells[0]:<15}{cells[1]:<13}{cells[2]:<16}{units}")
+        out.append(f"{as_given(r['horizon_s']):>6} s    {cells[0]:<15}{cells[1]:<13}{cells[2]:<16}{units}")
     return out
 
 
