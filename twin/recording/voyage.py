@@ -134,10 +134,9 @@ class Voyage:
         hole_s = self.hole_s if hole_s is None else hole_s
         if sailed_s(self.time_s, hole_s) / step_s > MOST_STEPS:
             raise DataError(
-                f"{self.name}: {num(self.sailed_s, 4)} s are more than {MOST_STEPS:.0e} steps of "
-                f"{num(step_s, 3)} s, "
-                "in which this ship "
-                f"must be looked at; there are {len(self)} samples. Cut it into shorter voyages."
+                f"{self.name}: {as_given(self.sailed_s, 4)} s are more than {MOST_STEPS:.0e} steps of "
+                f"{num(step_s, 3)} s, in which this ship must be looked at; there are {len(self)} samples. "
+                "Cut it into shorter voyages."
             )
         grid = self.time_s[0] + step_s * steps_on(self.time_s, step_s, hole_s)
         return self.with_rows(

@@ -21,7 +21,7 @@ from twin.live.learning import manifest as manifests
 from twin.live.learning.manifest import Manifest
 from twin.live.learning.network import Network, NetworkError
 from twin.live.learning.onnx_file import FLOAT, OnnxError, look, with_rows
-from twin.num import num
+from twin.num import as_given, num
 from twin.physics import ship as ships
 from twin.physics.maths import dot, total
 from twin.physics.ship import Ship
@@ -113,8 +113,8 @@ class Residual:
                     return [], 0.0, f"its input {name} is not measured"
                 weight *= max(1.0 - max(low - zeta, zeta - high) / (high - low) / MARGIN, 0.0) ** 2
                 why = (
-                    f"{name} = {num(zeta, 4)} is outside {num(low, 4)} to {num(high, 4)}, where it was "
-                    "trained"
+                    f"{name} = {as_given(zeta, 4)} is outside {as_given(low, 4)} to {as_given(high, 4)}, "
+                    "where it was trained"
                 )
                 zeta = min(max(zeta, low), high)
             values.append((zeta - offset) / scale)

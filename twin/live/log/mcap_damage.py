@@ -3,7 +3,7 @@
 from struct import Struct
 from typing import NamedTuple
 
-from twin.num import as_given, num
+from twin.num import as_given
 
 EXTENT = "shiptwin.extent"  # table of words: how far a log reached when it was written in one go
 # table of words: a crash cut the log off, and what was whole of it was finished
@@ -28,7 +28,7 @@ class Damage(NamedTuple):
         if self.before_ns is not None:
             end_s = (self.before_ns - first) * 1e-9
             return (
-                f"{self.what}: {num(end_s - begin_s, 4)} s are lost, from {as_given(begin_s, 6)} to "
+                f"{self.what}: {as_given(end_s - begin_s, 4)} s are lost, from {as_given(begin_s, 6)} to "
                 f"{as_given(end_s, 6)} s"
             )
         if last_ns is None:
@@ -36,8 +36,8 @@ class Damage(NamedTuple):
         if last_ns <= start:
             return f"{self.what}: its last message, at {as_given(begin_s, 6)} s, is there"
         return (
-            f"{self.what}: {num((last_ns - start) * 1e-9, 4)} s are lost, from {as_given(begin_s, 6)} s to "
-            f"the end at {as_given((last_ns - first) * 1e-9, 6)} s"
+            f"{self.what}: {as_given((last_ns - start) * 1e-9, 4)} s are lost, from {as_given(begin_s, 6)} s "
+            f"to the end at {as_given((last_ns - first) * 1e-9, 6)} s"
         )
 
 

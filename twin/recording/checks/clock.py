@@ -91,8 +91,8 @@ def control_gaps(view: VoyageView) -> Check:
     parts = of_actuators(view.voyage.columns)
     found = {name: gaps(view.voyage, name) for name in (*CONTROLS, *parts)}
     said = [
-        f"{name} changed in {len(g)} gap{'s' * (len(g) > 1)} of {num(sum(b - a for a, b in g), 4)} s in all, "
-        f"the longest {num(b - a, 4)} s after {as_given(a)} s"
+        f"{name} changed in {len(g)} gap{'s' * (len(g) > 1)} of {as_given(sum(b - a for a, b in g), 4)} s in "
+        f"all, the longest {as_given(b - a, 4)} s after {as_given(a)} s"
         for name, g in found.items()
         if g
         for a, b in [max(g, key=lambda pair: pair[1] - pair[0])]

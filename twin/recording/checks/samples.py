@@ -3,7 +3,7 @@
 import numpy as np
 
 from twin.live.signals.channels import BY_NAME
-from twin.num import as_given, num
+from twin.num import as_given
 from twin.recording.checks.answer import Check, doubtful, good
 from twin.recording.checks.view import VoyageView
 from twin.recording.samples import spikes as spike_rows
@@ -52,7 +52,7 @@ def hole(v: Voyage, name: str) -> str:
     if gaps[i] <= limit:
         return ""
     where = "begins late," if i == 0 else "ends early," if i == gaps.size - 1 else "has a hole,"
-    return f"{name} {where} {num(gaps[i], 4)} s from {as_given(edges[i])} s"
+    return f"{name} {where} {as_given(gaps[i], 4)} s from {as_given(edges[i])} s"
 
 
 def plausible_values(view: VoyageView) -> Check:
@@ -74,7 +74,7 @@ def spikes(view: VoyageView) -> Check:
         if rows.size:
             i = int(rows[0])
             found.append(
-                f"{name} {rows.size}, first {num(values[i], 4)} at {as_given(view.voyage.time_s[i])} s"
+                f"{name} {rows.size}, first {as_given(values[i], 4)} at {as_given(view.voyage.time_s[i])} s"
             )
     if found:
         return doubtful(
@@ -156,8 +156,8 @@ def standing(
     t = view.even.time_s
     said = text.format(moved[i] * unit)
     return (
-        f"{name} stays {as_given(x[starts[i]], 6)} from {num(t[starts[i]], 4)} to {num(t[ends[i]], 4)} s "
-        f"while {said}"
+        f"{name} stays {as_given(x[starts[i]], 6)} from {as_given(t[starts[i]], 4)} to "
+        f"{as_given(t[ends[i]], 4)} s while {said}"
     )
 
 

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from twin.num import num, percent
+from twin.num import as_given, num, percent
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.overtime import changes
 from twin.study.estimation.start import told_of_waves
@@ -91,7 +91,7 @@ def _candidate(c: dict[str, Any]) -> list[str]:
         head += f" (together with {', '.join(c['together_with'])})"
     lines = [head]
     for p in c["parameters"]:
-        file = f"   (ship file: {num(p['in_ship_file'], 4)})" if "in_ship_file" in p else ""
+        file = f"   (ship file: {as_given(p['in_ship_file'], 4)})" if "in_ship_file" in p else ""
         end = "   (at the end of its box)" if p["at_box_end"] else ""
         lines.append(
             f"          {p['name']:<12} {num(p['value'], 4):>11} {p['unit']:<5} 95 %: {num(p['low95'], 4)} "
