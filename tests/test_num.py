@@ -1,6 +1,9 @@
 """Numbers as they are told to a person: known zeros kept, no power of ten, one place that does it."""
 
 import ast
+import json
+import shutil
+import subprocess
 from math import inf, nan
 from pathlib import Path
 
@@ -83,3 +86,31 @@ def test_every_number_that_a_user_sees_goes_through_the_one_place():
         if found:
             wrong[name] = found
     assert not wrong
+
+
+@pytest.mark.skipif(shutil.which("node") is None, reason="no node")
+def test_the_pages_tell_a_number_by_the_same_rule():
+    """Test: the script of the pages. Expected: what num and as_given say, with thin spaces between thousands."""
+    values = [
+        0.0,
+        2.0,
+        9.99,
+        99.6,
+        0.05,
+        -2.0,
+        613240.0,
+        1e9,
+        3.2e-5,
+        4e12,
+        120.0,
+        1234567.0,
+        0.3,
+        1e-7,
+        12345.6,
+    ]
+    script = (ROOT / "twin" / "report" / "number.js").read_text() + (
+        f"console.log(JSON.stringify({values}.map((x) => [num(x, 3), num(x, 2), asGiven(x)])));"
+    )
+    done = subprocess.run(["node", "-e", script], capture_output=True, text=True, timeout=60, check=True)
+    told = [[text.replace("\u202f", "") for text in row] for row in json.loads(done.stdout)]
+    assert told == [[num(x, 3), num(x, 2), as_given(x)] for x in values]

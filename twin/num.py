@@ -1,7 +1,7 @@
 """The one way in which a number is told to a person. No power of ten where digits will do.
 
 `num`: what was measured or estimated, to so many significant digits, its known zeros included (2.0, 160).
-`as_given`: what was declared or read off a clock (a setting, a limit, a time), with no zeros of ours (120, 0.5).
+`as_given`: what was declared, or read off a clock (a setting, a limit, a time), without further zeros (120).
 """
 
 from math import isfinite

@@ -57,7 +57,7 @@ def test_the_page_opens_in_a_browser_without_a_complaint_and_shows_every_part(pa
     assert complaints == []
     assert "data-ready-ms" in dom
     for words in (
-        "Error in units of noise",
+        "Error over the expected error",
         "Where it fails",
         "Worst windows",
         "Channel by time",

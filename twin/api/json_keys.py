@@ -193,6 +193,7 @@ CALIBRATE = (
     JsonKey("usual[].name", "", "what this ship clearly shows of a lasting effect", "there is some"),
     JsonKey("usual[].value", "of the number", "how much", "there is some"),
     JsonKey("usual[].sd", "of the number", "standard error", "there is some"),
+    JsonKey("usual[].unit", "", "its unit", "there is some"),
     JsonKey("between_voyages.*", "prior widths", "standard deviation between voyages", "some differ"),
     JsonKey("floor.share[]", "-", "noise model: slow error in surge, sway, yaw, as a share of the forces"),
     JsonKey("floor.calm", "-", "the same share of a standard acceleration, in quiet sailing"),

@@ -81,8 +81,8 @@ def time_gaps(view: VoyageView) -> Check:
     return doubtful(
         name,
         f"{gaps.size} gaps, {as_given(steps[gaps].sum(), 6)} s in all, the longest "
-        f"{as_given(steps[worst], 6)} s after {as_given(t[worst])} s. Nothing is made up there; predictions "
-        "are not run across them.",
+        f"{as_given(steps[worst], 6)} s after {as_given(t[worst])} s. Nothing is filled in there; "
+        "predictions are not run across them.",
     )
 
 

@@ -22,7 +22,7 @@ def missing_samples(view: VoyageView) -> Check:
     absent = ", ".join(name for name in v.absent() if not _follows(v, name)) or "nothing"
     if found:
         return doubtful(
-            "missing_samples", f"{'; '.join(found)}. Nothing is made up there. Absent altogether: {absent}."
+            "missing_samples", f"{'; '.join(found)}. Nothing is filled in there. Absent altogether: {absent}."
         )
     return good(
         "missing_samples",
@@ -78,9 +78,9 @@ def spikes(view: VoyageView) -> Check:
             )
     if found:
         return doubtful(
-            "spikes", f"lonely samples: {'; '.join(found)}. In the map: despike = true blanks them."
+            "spikes", f"isolated samples: {'; '.join(found)}. In the map: despike = true blanks them."
         )
-    return good("spikes", "no lonely samples.")
+    return good("spikes", "no isolated samples.")
 
 
 def frozen(view: VoyageView) -> Check:
@@ -89,9 +89,7 @@ def frozen(view: VoyageView) -> Check:
         text for f in (frozen_heading, frozen_position, frozen_speed, frozen_yaw_rate) if (text := f(view))
     ]
     if found:
-        return doubtful(
-            "frozen", f"{'; '.join(found)}. A sensor that hangs: blank this stretch, or cut it off."
-        )
+        return doubtful("frozen", f"{'; '.join(found)}. A frozen sensor: blank this stretch, or cut it off.")
     return good("frozen", "nothing stands still that should move.")
 
 

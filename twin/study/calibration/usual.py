@@ -77,13 +77,12 @@ def path_errors(
 
 def clearly_there(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
     """What this ship clearly shows of lasting effects: not wrong, but part of it. What no ship can show (a
-    rudder ahead of its order) stands in for something else, and is kept in mind without being told."""
-    can = {
-        u.label: (u.lo - u.centre, u.hi - u.centre) for u in nuisance_unknowns(Model.of(ship), of_ship(ship))
-    }
+    rudder ahead of its order) stands in for something else, and is allowed for without being told."""
+    of = {u.label: u for u in nuisance_unknowns(Model.of(ship), of_ship(ship))}
+    can = {label: (u.lo - u.centre, u.hi - u.centre) for label, u in of.items()}
     sd = np.sqrt(np.diag(np.array(found["covariance"])))
     return [
-        {"name": label, "value": float(v), "sd": float(s)}
+        {"name": label, "value": float(v), "sd": float(s), "unit": of[label].unit}
         for label, v, s in zip(found["labels"], found["offset"], sd, strict=True)
         if not label.startswith(("core.", "form."))
         and abs(v) > CLEAR * s

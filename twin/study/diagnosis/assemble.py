@@ -85,7 +85,7 @@ def of_tracks(
         usual = usual_unknowns(model, catalogue)
         lines = read_lines([swung(track(v, ship), model) for v in references], model, usual, catalogue)
         if floor_of(ship) is None:
-            progress("finding the structural floor")
+            progress("estimating the noise model")
             path = structural_floor(_of_core(lines, usual), core_unknowns(model))
             floor = floor_beside(lines, usual, path)
         temper = temper_of(innovate(lines, [floor])[0], usual)
@@ -93,7 +93,7 @@ def of_tracks(
     else:
         known = from_ship(model, nuisance)
     known = replace(known.beside(rough), daily=dict(known.daily) | of_known_weather(model, catalogue))
-    progress("linearising")
+    progress("linearising the ship and its instruments along the tracks")
     case = Case(
         tracks,
         model,

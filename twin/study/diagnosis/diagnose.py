@@ -44,7 +44,7 @@ SOME = 0.5  # probability from which a kind of weather is told
 
 @dataclass(frozen=True)
 class Diagnosed:
-    """The contract's JSON, and what a report draws it from."""
+    """The JSON of docs/json.md, and what a report draws it from."""
 
     result: dict[str, Any]
     case: Case
@@ -62,12 +62,12 @@ def diagnose(
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed, found)
     if instrument_suspected(case, w.best.effects):
-        progress("asking how the instruments go together, whatever the ship is")
+        progress("checking the instruments against each other, without the ship model")
         if wanted := asked_for(case):
             case = of_tracks(case.tracks, ship, references, progress, wanted)
             weighed, found, seen = search(case, progress)
             w = weights(case, weighed, found)
-    progress("gathering the facts")
+    progress("computing the facts")
     considered = consider(case, weighed, found, seen, w)
     facts, decision = considered.facts, decide(considered.facts)
     nothing = 0.0 if decision.reason == "pushed" else facts.nothing
@@ -81,7 +81,7 @@ def diagnose(
     ]
     listed = [c for c in candidates if c]
     if w.best.effects:
-        progress("asking each part of the voyages")
+        progress("estimating each part of the voyages by itself")
         parts = over_time(case, found[w.best.effects], w.best.effects)
         for c in listed:
             if c["effect"] in parts:
@@ -244,7 +244,7 @@ def _next(
         rivals = (first, second)
     if rivals is None:
         return None
-    progress(f"sailing manoeuvres that would tell {rivals[0]} from {rivals[1]}")
+    progress(f"simulating manoeuvres that would tell {rivals[0]} from {rivals[1]}")
     sets = [s for s in found if rivals[0] in s]
     z = found[sets[0]].posterior.z if sets else np.ones(len(case.effects))
     return next_manoeuvre(case, case.model, *rivals, z)

@@ -47,7 +47,7 @@ Searched = tuple[list[Hypothesis], dict[Sets, Found], dict[str, bool]]
 def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> Searched:
     """All hypotheses with their weights, best first; the few that were judged about their own size; and
     whether each candidate, had it its plausible size, would have shown."""
-    progress("every effect and every pair")
+    progress("weighing every effect and every pair")
     scenarios = dict(zip(SCENARIOS, case.reduced(case.lines, case.scenarios(list(SCENARIOS))), strict=True))
     seen = {name: visible(scenarios["usual"], name) for name in case.candidates if name not in case.unnamed}
     weak = [name for name in seen if not seen[name] and case.catalogue[name].needs]
@@ -66,9 +66,9 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
         chosen = book.next()
         if chosen is None:
             break
-        progress("judging " + " + ".join(chosen) + " about its own size")
+        progress(f"refitting {' + '.join(chosen)} at {'its' if len(chosen) == 1 else 'their'} estimate")
         book.judge(chosen)
-    progress("running each open loop over held-out parts")
+    progress("open-loop validation on held-out parts")
     book.asked = asked = open_loop_check(book.case, book.found, book.weighed(), book.asked)
     return book.proved(asked), book.found | dict(asked.found), seen
 

@@ -25,7 +25,7 @@ CLEARLY = 1.5
 
 @dataclass(frozen=True)
 class ComparedVoyages:
-    """What compare found (`result` is the contract's JSON), and what a report draws it from."""
+    """What compare found (`result` is the JSON of docs/json.md), and what a report draws it from."""
 
     result: dict[str, Any]
     sailed: tuple[Sailed, ...]

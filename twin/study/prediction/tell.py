@@ -39,7 +39,7 @@ def _units(error: float, floor: float) -> str:
 
 def _horizons(rows: list[dict[str, Any]]) -> list[str]:
     of = rows[0]["noise_floor"]["of"]
-    out = ["", f"open loop   position [m]   across [m]   heading [deg]   position over its noise ({of})"]
+    out = ["", f"open loop   position [m]   across [m]   heading [deg]   position over expected ({of})"]
     for r in rows:
         n = r["noise_floor"]
         cells = [
@@ -53,7 +53,7 @@ def _horizons(rows: list[dict[str, Any]]) -> list[str]:
 def _channels(channels: dict[str, dict[str, Any]]) -> list[str]:
     out = [
         "",
-        f"{'channel':<36}{'error':>9}{'noise':>9}{'R2':>8}{'skill':>8}   (skill: against dead reckoning)",
+        f"{'channel':<36}{'error':>9}{'expected':>9}{'R2':>8}{'skill':>8}   (skill: against dead reckoning)",
     ]
     for name, c in channels.items():
         cells = [

@@ -25,10 +25,7 @@ def verdict(result: dict[str, Any], proof: HeldOutProof, shown: Fall) -> str:
     """The first sentence: is what was held out likelier, and what that is in metres."""
     names = " and ".join(result["added"])
     if proof.idle:
-        return (
-            f"{names}: fitted to nothing on these voyages; with it this ship file predicts what it did "
-            "without."
-        )
+        return f"{names}: fitted to zero on these voyages, so this ship file predicts as it did before."
     how = f"{_ratio(proof)}; {_metres(result, shown)}"
     if proof.proved:
         return f"With {names} measurements not used to fit it are likelier: {how}."
@@ -38,15 +35,13 @@ def verdict(result: dict[str, Any], proof: HeldOutProof, shown: Fall) -> str:
 def refused(proof: HeldOutProof, shown: Fall) -> str:
     """The reason, and what would tell."""
     if proof.idle:
-        return "nothing changes: the effect was fitted to nothing;"
+        return "nothing changes: the effect was fitted to zero;"
     reason = f"not proved: {_ratio(proof)}; {shown.sentence()}."
     if proof.more_s is None:
         return f"{reason} More of such voyages would not prove it."
     if proof.more_s > FOREVER_S:
         return f"{reason} Too little of it shows to be proved in a hundred hours."
-    return (
-        f"{reason} If it goes on so, about {_duration(proof.more_s)} more of held-out sailing would prove it."
-    )
+    return f"{reason} At this rate about {_duration(proof.more_s)} more of held-out sailing would prove it."
 
 
 def _ratio(proof: HeldOutProof) -> str:
@@ -96,11 +91,12 @@ def notes(
         )
     present = {type(e).__name__ for e in ship.effects}
     notes += [
-        f"{n} was in the model already: it was fitted anew." for n in sorted(present.intersection(made.names))
+        f"{n} was in the model already: it was fitted again."
+        for n in sorted(present.intersection(made.names))
     ]
     calm = [f"{n.effect}.{n.name}" for n in made.numbers if n.gained < UNTOUCHED]
     if calm:
-        notes.append(f"The voyages say little about {', '.join(calm)}: kept near what was believed before.")
+        notes.append(f"The voyages say little about {', '.join(calm)}: kept near its prior.")
     ends = [f"{n.effect}.{n.name} = {num(n.value, 3)} {n.unit}" for n in made.numbers if n.at_box_end]
     if ends:
         notes.append(

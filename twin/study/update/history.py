@@ -18,7 +18,7 @@ def told(ship: Ship) -> list[str]:
     steps = ladder(ship)
     if not steps:
         return [f"{ship.name}: nothing was added or removed yet; the core stands alone."]
-    out = [f"{ship.name}: held-out position error [m], before -> after (noise floor)"]
+    out = [f"{ship.name}: held-out position error [m], before -> after (expected error)"]
     for step in steps:
         done = " and ".join(
             f"{verb} {', '.join(step[key])}"
