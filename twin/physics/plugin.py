@@ -71,9 +71,9 @@ def declared(effect: Any, name: str) -> None:
     # which a dataclass makes up
     if not (effect.__doc__ or "").strip() or (effect.__doc__ or "").startswith(f"{name}("):
         raise Refused("it has no docstring, which is its sentence in a report")
-    strange = sorted(set(effect.needs) - {f.name for f in fields(Situation)})
-    if strange:
-        raise Refused(f"needs names {', '.join(strange)}, which no Situation has")
+    unknown = sorted(set(effect.needs) - {f.name for f in fields(Situation)})
+    if unknown:
+        raise Refused(f"needs names {', '.join(unknown)}, which no Situation has")
     try:
         params = effect.params()
     except TypeError:

@@ -92,7 +92,7 @@ def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_res
     assert like["effect"] == "RudderPlay" and "RudderPlay" not in catalogue()
     (gap,) = like["parameters"]
     assert gap["low95"] <= np.radians(2.5) <= gap["high95"] and gap["unit"] == "rad"
-    assert ("looks like RudderPlay: The rudder hangs loose") in result["sentence"] and any(
+    assert ("resembles RudderPlay: The rudder hangs loose") in result["sentence"] and any(
         "gap" in line for line in told(result)
     )
 

@@ -21,7 +21,7 @@ from twin.study.track.track import Track
 
 @dataclass(frozen=True)
 class Scenario:
-    """One state of the world: factors on the floor's slow acceleration error (beside all that is usual; or
+    """One noise scenario: factors on the noise model's slow acceleration error (beside all that is usual; or
     `alone`, of the core alone) and on the water's own motion, and its odds."""
 
     share: float

@@ -110,8 +110,8 @@ def diagnose(
         "moments": [m.told(case.model) for m in considered.pushes],
         "path": {
             "horizon_s": horizon_s(case.tracks[0], case.model),
-            "error_without": base.off_m,
-            "error_floor": base.floor_m,
+            "error_without": base.open_loop_error_m,
+            "error_floor": base.expected_error_m,
         },
         "next_manoeuvre": _next(case, found, decision.verdict, decision.missing, listed, visible, progress),
         "not_judged": _not_judged(case),
@@ -174,8 +174,10 @@ def _candidate(
         "typical_force": typical_force(case, best.model, name),
         "error_horizon_s": horizon_s(case.tracks[0], case.model),
         "error_without": _without(case, found, considered, name),
-        "error_with": held_out_error(case, best) if np.isnan(best.off_m) else best.off_m,
-        "error_floor": best.floor_m,
+        "error_with": held_out_error(case, best)
+        if np.isnan(best.open_loop_error_m)
+        else best.open_loop_error_m,
+        "error_floor": best.expected_error_m,
         "together_with": [n for n in best.hypothesis.effects if n != name],
         "cannot_be_told_from": list(considered.like.get(name) or alike(case, weighed, name)),
         "says": (case.catalogue[name].__doc__ or "").strip().splitlines()[0],
@@ -191,7 +193,7 @@ def _confidence(considered: Considered, name: str) -> float | None:
 def _without(case: Case, found: dict[tuple[str, ...], Found], considered: Considered, name: str) -> float:
     """Open-loop error without a cause: with the day's weather alone; without a kind of weather: of the model
     as it is [m]."""
-    return found[() if name in case.weather else considered.base].off_m
+    return found[() if name in case.weather else considered.base].open_loop_error_m
 
 
 def _weather(

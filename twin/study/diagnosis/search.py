@@ -76,7 +76,7 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
 def _explained(case: Case, weighed: list[Hypothesis], found: dict[Sets, Found]) -> bool:
     best = weighed[0].effects
     if not case.causes(best):
-        return found[best].off_m <= NEARLY * found[best].floor_m
+        return found[best].open_loop_error_m <= NEARLY * found[best].expected_error_m
     return explained(left_over(case, weighed, found, best))
 
 
@@ -187,7 +187,7 @@ class _Book:
 
     def next(self) -> Sets | None:
         """What to judge about its own size next; each effect of a set alone before the set, and beside what
-        is no news: it may do what took two."""
+        is unchanged: it may do what took two."""
         while self.first:
             if (chosen := self.first.pop(0)) not in self.found:
                 return chosen

@@ -1,9 +1,9 @@
-"""The structural floor of a ship: how much a calibrated model of this kind still leaves unexplained, found on
+"""The noise model of a ship: how much a calibrated model of this kind still leaves unexplained, found on
 reference voyages.
 
 Each number of the Floor is the one under which every reference voyage is most probable given the others, the
 core's own uncertainty integrated out (cross-validated likelihood; Rasmussen & Williams 2006, sec. 5.4.2),
-climbed on a geometric grid."""
+found by coordinate ascent on a geometric grid."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -28,7 +28,7 @@ BOUNDS = {
     "sensor": (0.7, 4.0),
     "wander": (5e-4, 0.5),
 }
-WANDER = 4e-3  # where the climb begins, m/sqrt(s)
+WANDER = 4e-3  # where the ascent begins, m/sqrt(s)
 # how far the slow part may fall beside more unknowns, as a share of what a core alone is ever trusted with
 BESIDE = 0.4
 
@@ -83,15 +83,15 @@ def structural_floor(
 ) -> Floor:
     """The most probable floor of these reference voyages (linearised about the fitted model): what the core
     alone leaves."""
-    return _climbed(lines, unknowns, start or Floor(), 1.0, MOST_SEGMENTS)
+    return _ascended(lines, unknowns, start or Floor(), 1.0, MOST_SEGMENTS)
 
 
 def floor_beside(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor) -> Floor:
     """The same when the unknowns are all that a diagnosis keeps in mind: less is left beside them."""
-    return _climbed(lines, unknowns, start, BESIDE, FEWER)
+    return _ascended(lines, unknowns, start, BESIDE, FEWER)
 
 
-def _climbed(
+def _ascended(
     lines: Sequence[Linear], unknowns: Sequence[Unknown], floor: Floor, least: float, most: int
 ) -> Floor:
     sd, step, floor = np.array([u.sd for u in unknowns]), 2.0, replace(floor, wander=floor.wander or WANDER)

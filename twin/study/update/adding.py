@@ -189,8 +189,8 @@ def _may_stand_beside(case: Case, name: str, chosen: Sets) -> bool:
 
 
 def _judged(case: Case, chosen: Sets, start: Found | None) -> Found:
-    """A set of effects about its own size, begun where a part of it was found to stand, or at its first-order
-    guess in the likeliest world."""
+    """A set of effects relinearised at its estimate, begun where a part of it was found to stand, or at its
+    first-order guess in the likeliest noise scenario."""
     if start is not None and start.reduced is not None:
         scenario, about, part = start.hypothesis.scenario, start.reduced, start
     else:
