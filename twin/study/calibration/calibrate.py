@@ -22,7 +22,7 @@ from twin.study.calibration.rollout import rolled_out
 from twin.study.calibration.usual import clearly_there, usual
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import Fit, fit
-from twin.study.estimation.innovations import Floor
+from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.start import told_of_waves, waves_on
 from twin.study.reference.derivatives import (
     Derivative,
@@ -80,7 +80,7 @@ class Core:
     # of the gear, the antenna and the wind, with their standard errors
     numbers: dict[str, dict[str, dict[str, Any]]]
     antenna: AntennaOffset | None  # where it was found, if not where the ship file has it
-    floor: Floor
+    floor: NoiseModel
     temper: float
 
 

@@ -12,7 +12,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.estimation.columns import Unknown
-from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
+from twin.study.estimation.innovations import Linear, NoiseModel, innovate, linearise
 from twin.study.prediction.left_out import models_without, path_error
 from twin.study.reference.derivatives import first_prior
 from twin.study.reference.healthy import left_out_scores
@@ -25,7 +25,7 @@ from twin.study.track.track import Track
 CLEAR = 4.0  # standard errors
 
 
-def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
+def usual(ship: Ship, tracks: Sequence[Track], floor: NoiseModel) -> dict[str, Any]:
     """Offsets from the ship file and their covariance, in the unknowns' own units; by how much numbers differ
     from voyage to voyage; and the floor `beside` all that. A diagnosis starts from here."""
     model, known = Model.of(ship), of_ship(ship)
@@ -57,7 +57,7 @@ def path_errors(
     tracks: Sequence[Track],
     lines: Sequence[Linear],
     unknowns: Sequence[Unknown],
-    floor: Floor,
+    floor: NoiseModel,
     temper: float,
     centres: np.ndarray,
     between: Mapping[str, float],

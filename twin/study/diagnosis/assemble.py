@@ -22,7 +22,7 @@ from twin.study.estimation.columns import (
     lateness_unknowns,
     rough_unknowns,
 )
-from twin.study.estimation.innovations import Floor, Linear, innovate
+from twin.study.estimation.innovations import Linear, NoiseModel, innovate
 from twin.study.reference.nuisance import (
     TEMPER,
     from_references,
@@ -78,7 +78,7 @@ def of_tracks(
     core = [u for u in (*nuisance, *rough) if u.owner in ("core", FORM, SEA, ROUGH)]
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
-    path = floor_of(ship) or Floor()
+    path = floor_of(ship) or NoiseModel()
     floor, temper = floor_of(ship, "beside") or path, _temper(ship)
     if references:
         progress("reading the reference voyages")

@@ -15,7 +15,7 @@ from twin.physics.model import Model
 from twin.study.diagnosis.case import MOST_SEGMENTS, SCENARIOS, Case
 from twin.study.diagnosis.refine import Found, Sets, standing
 from twin.study.estimation.columns import with_values
-from twin.study.estimation.innovations import Floor, innovate
+from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
 from twin.study.prediction.openloop import MODEL, STRUCTURE, Windows, coarse, predict
 from twin.study.reference.evidence import Hypothesis, given, posterior, reduce
@@ -214,7 +214,7 @@ def held_out_error(case: Case, found: Found) -> float:
     return total / max(count, 1)
 
 
-def _usual(case: Case, floor: Floor) -> float:
+def _usual(case: Case, floor: NoiseModel) -> float:
     """Mean position error [m] of a model that is as good as this floor."""
     errors = []
     for track in case.tracks:
