@@ -52,8 +52,8 @@ class Fit:
 
 
 def fit(
-    tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue, floor: NoiseModel, *,
-    temper: float = 1.0, smooth: bool = False,
+    tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue,
+    floor: NoiseModel, *, temper: float = 1.0, smooth: bool = False,
 ) -> Fit:  # fmt: skip
     """The most probable values of the unknowns, given the tracks and their priors, after at most STEPS steps.
 

@@ -1,8 +1,8 @@
 """The noise model of a ship: how much a calibrated model of this kind still leaves unexplained, found on
 reference voyages.
 
-Each number of the NoiseModel is the one under which every reference voyage is most probable given the others, the
-core's own uncertainty integrated out (cross-validated likelihood; Rasmussen & Williams 2006, sec. 5.4.2),
+Each number of the NoiseModel is the one under which every reference voyage is most probable given the others,
+the core's own uncertainty integrated out (cross-validated likelihood; Rasmussen & Williams 2006, sec. 5.4.2),
 found by coordinate ascent on a geometric grid."""
 
 from collections.abc import Callable, Sequence
