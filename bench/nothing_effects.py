@@ -29,7 +29,7 @@ from twin.study.diagnosis.assemble import of_tracks
 from twin.study.diagnosis.case import SCENARIOS
 from twin.study.diagnosis.case import Case as Judged
 from twin.study.diagnosis.refine import Found
-from twin.study.estimation.innovations import Floor, innovate, linearise
+from twin.study.estimation.innovations import NoiseModel, innovate, linearise
 from twin.study.prediction.left_out import models_without
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.reference.derivatives import first_prior
@@ -120,7 +120,7 @@ def _left_out(path: str, *voyages: str) -> tuple[Ship, list[Track], list[Ship]]:
     model, unknowns = Model.of(ship), usual_unknowns(Model.of(ship), known)
     normal = innovate(
         [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks],
-        [floor_of(ship, "beside") or Floor()],
+        [floor_of(ship, "beside") or NoiseModel()],
     )[0]
     pull = np.array([(first_prior(u, ship).centre - u.centre) / u.sd for u in unknowns])
     scatter = np.array([stored["between_voyages"].get(u.label, 0.0) ** 2 for u in unknowns])

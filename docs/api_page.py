@@ -12,6 +12,7 @@ from typing import Any
 
 import twin
 from twin.api.json_keys import KEYS
+from twin.cli import VERBS
 
 DOCS = Path(__file__).resolve().parent
 HEAD = """# Python interface
@@ -38,7 +39,8 @@ Made by `python docs/api_page.py` of `twin/api/json_keys.py`; tests hold it agai
 object comes from `--json FILE` and from a result's `to_dict()`. In a path `[]` stands for the entries of a
 list and `*` for a name: a channel, an effect, a parameter. Empty lists and objects are there although nothing
 stands in them; numbers that are not known are null. A unit "of the channel" stands in the channel's name. A
-key without a "when" is in every answer.
+key without a "when" is in every answer. `twin.simulate` has no command, so that its object comes from
+`to_dict()` alone.
 """
 GROUPS = {
     "Files": ("read_voyage", "read_voyages"),
@@ -125,7 +127,8 @@ def json() -> str:
     """The whole of docs/json.md."""
     lines = [JSON_HEAD]
     for verb, keys in KEYS.items():
-        lines += [f"## twin {verb}", "", "| key | unit | meaning | when |", "|---|---|---|---|"]
+        title = f"## twin {verb}" if verb in VERBS else f"## twin.{verb}"
+        lines += [title, "", "| key | unit | meaning | when |", "|---|---|---|---|"]
         lines += [f"| `{k.path}` | {k.unit} | {k.meaning} | {k.when} |" for k in keys]
         lines.append("")
     return "\n".join(lines).rstrip() + "\n"

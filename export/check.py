@@ -15,6 +15,7 @@ from export.network import ResidualNetwork
 from twin.cli import guarded
 from twin.errors import TwinError
 from twin.live.learning.residual import load as load_residual
+from twin.num import as_given, num
 from twin.physics.ship import load
 
 AGREE = 1e-6  # of the larger of 1 and the feature's size
@@ -48,7 +49,8 @@ def agree(network: ResidualNetwork, model: bytes) -> float:
     worst = disagreement(network, model)
     if not worst <= AGREE:
         raise TwinError(
-            f"torch and ONNX Runtime disagree by {worst:.2g} (at most {AGREE:g}); nothing was written."
+            f"torch and ONNX Runtime disagree by {num(worst, 2)} (at most {as_given(AGREE)}); nothing was "
+            "written."
         )
     return worst
 

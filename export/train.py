@@ -10,6 +10,7 @@ from typing import Any
 
 from export.data import leg, model_of, split
 from twin.errors import DataError, ThresholdError, TwinError
+from twin.num import num
 from twin.physics.ship import Ship, load
 from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
@@ -192,7 +193,7 @@ def bar(label: str) -> Any:
         filled = round(20 * epoch / epochs)
         text = (
             f"{label}{stage:<12} [{'#' * filled}{'.' * (20 - filled)}] {epoch:>3}/{epochs}  loss "
-            f"{loss:.4g}  validation {validation:.4g}"
+            f"{num(loss, 4)}  validation {num(validation, 4)}"
         )
         end = "\r" if sys.stderr.isatty() else "\n"
         if sys.stderr.isatty() or epoch % 10 == 0 or epoch == epochs:

@@ -12,6 +12,7 @@ from export.batches import TrainingWindows, input_names, windows
 from export.data import TrainingLeg
 from export.loss import free_run
 from export.network import ResidualNetwork
+from twin.num import num
 from twin.physics.model import Model
 from twin.physics.state import Situation
 
@@ -43,9 +44,8 @@ class Worth:
         said = "is worth having" if self.proved else "is not worth having"
         return (
             f"the residual {said}: over {self.horizon_s:.0f} s on {self.windows} held-out free runs the "
-            f"place is off by {q:.3g} m "
-            f"with it, {p:.3g} m without (ratio {self.ratio_low95:.2f} to {self.ratio_high95:.2f}), "
-            f"the heading by {b:.3g} deg, {a:.3g} deg without"
+            f"place is off by {num(q, 3)} m with it, {num(p, 3)} m without (ratio {self.ratio_low95:.2f} to "
+            f"{self.ratio_high95:.2f}), the heading by {num(b, 3)} deg, {num(a, 3)} deg without"
         )
 
     def told(self) -> dict[str, Any]:

@@ -77,3 +77,12 @@ def test_a_result_is_held_against_the_table_key_by_key():
     assert unknown_paths(keys, good) == [] and absent_keys(keys, good) == []
     assert unknown_paths(keys, good | {"new": 1}) == ["new"]
     assert absent_keys(keys, {"b": [{"c": 2}]}) == ["a.*.m"]
+
+
+@pytest.mark.parametrize(
+    "page", sorted((ROOT / "docs" / "decisions").glob("0*.md")), ids=lambda p: p.name[:4]
+)
+def test_a_decision_stands_on_one_short_page(page):
+    """Expected: at most 25 lines, none longer than a line of code may be by much."""
+    lines = page.read_text().splitlines()
+    assert len(lines) <= 25 and max(map(len, lines)) <= 120

@@ -1,7 +1,35 @@
-"""The one way in which a number is told to a person: so many significant digits, and no power of ten."""
+"""The one way in which a number is told to a person. No power of ten where digits will do.
+
+`num`: what was measured or estimated, to so many significant digits, its known zeros included (2.0, 160).
+`as_given`: what was declared, or read off a clock (a setting, a limit, a time), without further zeros (120).
+"""
+
+from math import isfinite
+
+LEAST, MOST = -4, 12  # powers of ten between which a number is told by its digits alone
 
 
-def num(value: float, digits: int = 2) -> str:
-    """`value` with so many significant digits, 160 and not 1.6e+02; what is smaller than 1e-4 or not below
-    1e12 keeps its power of ten."""
-    return f"{float(f'{value:.{digits}g}'):.12g}"
+def num(value: float, digits: int = 2, sign: bool = False) -> str:
+    """`value` to so many significant digits: 2.0 and 160, not 2 and 1.6e+02; `sign`: with its plus, too. What
+    is smaller than 1e-4, or not below 1e12, keeps its power of ten."""
+    if value == 0.0 or not isfinite(value):
+        return "0" if value == 0.0 else str(float(value))
+    plus = "+" if sign else ""
+    mantissa, _, power = f"{value:{plus}.{digits - 1}e}".partition("e")
+    tens = int(power)
+    if not LEAST <= tens < MOST:
+        return f"{mantissa}e{tens}"
+    return f"{float(f'{mantissa}e{tens}'):{plus}.{max(digits - 1 - tens, 0)}f}"
+
+
+def as_given(value: float, digits: int = 6) -> str:
+    """A declared number as it was given, to at most so many significant digits, its whole part whole: 120,
+    0.5, 1000000000."""
+    whole = 10.0**digits <= abs(value) < 10.0**MOST
+    head, point, power = (f"{value:.0f}" if whole else num(value, digits)).partition("e")
+    return (head.rstrip("0").rstrip(".") if "." in head else head) + point + power
+
+
+def percent(share: float) -> str:
+    """A share or a probability, in whole per cent."""
+    return f"{100.0 * share:.0f} %"

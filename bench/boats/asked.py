@@ -102,7 +102,7 @@ def diagnosed(name: str, asked: Asked, ship_file: Path) -> dict[str, Any]:
         "wanted": wanted,
         "verdict": found.verdict,
         "named": found.effects,
-        "sentence": found.reason,
+        "sentence": found.sentence,
         "probabilities": found.data["probabilities"],
         "candidates": [{k: c.get(k) for k in ("effect", "probability", "parameters")} for c in shown],
         "seconds": round(time.time() - begin),

@@ -143,8 +143,8 @@ def _asked(ship: RandomShip, case: FleetCase, model: Model, facts: dict[str, Any
             "effects": s,
             "weight": f.hypothesis.log_weight,
             "scenario": f.hypothesis.scenario,
-            "error_m": f.off_m,
-            "expected_m": f.floor_m,
+            "error_m": f.open_loop_error_m,
+            "expected_m": f.expected_error_m,
         }
         for s, f in said.found.items()
     ]
@@ -166,14 +166,18 @@ def oracle(said: Diagnosed, case: FleetCase) -> dict[str, Any] | None:
     )
     chosen = c.ordered((*day, *true))
     base = min(
-        (s for s in said.found if not c.causes(s) and np.isfinite(said.found[s].off_m)),
-        key=lambda s: said.found[s].off_m,
+        (s for s in said.found if not c.causes(s) and np.isfinite(said.found[s].open_loop_error_m)),
+        key=lambda s: said.found[s].open_loop_error_m,
     )
-    without = said.found[()].off_m if any(n in c.weather for n in true) else said.found[base].off_m
+    without = (
+        said.found[()].open_loop_error_m
+        if any(n in c.weather for n in true)
+        else said.found[base].open_loop_error_m
+    )
     found = said.found.get(chosen)
     if found is None:
         found = refine(c, chosen, "usual", np.zeros(len(c.effects)), ())[0]
-    error = found.off_m if np.isfinite(found.off_m) else held_out_error(c, found)
+    error = found.open_loop_error_m if np.isfinite(found.open_loop_error_m) else held_out_error(c, found)
     numbers = {}
     for i, u in enumerate(c.effects):
         if u.owner in true:

@@ -19,7 +19,7 @@ from scipy.optimize import minimize
 from bench.fleet import judged
 from bench.fleet.judged import Row, Share, share
 from bench.fleet.table import lines, read_facts, rows_of
-from twin.study.diagnosis import decision
+from twin.study.diagnosis import criteria, decision, naming
 from twin.study.diagnosis.confidence import FACTS
 from twin.study.diagnosis.facts import Cause, Facts
 
@@ -53,14 +53,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 @contextmanager
 def thresholds(values: Mapping[str, float]) -> Iterator[None]:
     """The table with these thresholds."""
-    before = {k: getattr(decision, k) for k in values}
+    before = {k: getattr(criteria, k) for k in values}
     try:
         for k, v in values.items():
-            setattr(decision, k, v)
+            setattr(criteria, k, v)
         yield
     finally:
         for k, v in before.items():
-            setattr(decision, k, v)
+            setattr(criteria, k, v)
 
 
 Answer = tuple[tuple[str, ...], str]
@@ -92,7 +92,7 @@ def asked(row: Row) -> bool:
 
 def moved(rows: Sequence[Row]) -> dict[str, float]:
     """Thresholds by coordinate ascent from today's; a move must be worth a case in a hundred."""
-    best = {k: float(getattr(decision, k)) for k in GRID} | BEFORE
+    best = {k: float(getattr(criteria, k)) for k in GRID} | BEFORE
     with thresholds(best):
         top = worth(rows, by_table)
     for _ in range(2):
@@ -147,7 +147,7 @@ def by_logistic(w: np.ndarray, limit: float) -> Decide:
         f: Facts = row["read"]
         named = [c.effect for c in f.causes if c.in_explanation and probability(w, f, c) >= limit]
         if named:
-            return (*named, *decision.weather_named(f)), "missing"
+            return (*named, *naming.weather_named(f)), "missing"
         d = decision.decide(f)
         if judged.causes(d.missing):
             return tuple(n for n in d.missing if n in judged.OF_THE_VOYAGE), "undecided"
@@ -246,7 +246,7 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _changed(best: Mapping[str, float]) -> dict[str, float]:
-    return {k: v for k, v in best.items() if v != BEFORE.get(k, getattr(decision, k))}
+    return {k: v for k, v in best.items() if v != BEFORE.get(k, getattr(criteria, k))}
 
 
 def _weights(w: np.ndarray) -> dict[str, float]:

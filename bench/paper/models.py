@@ -31,7 +31,7 @@ from twin.physics.effects import catalogue, find
 from twin.physics.model import Model
 from twin.study.estimation.columns import core_unknowns, effect_unknowns
 from twin.study.estimation.fit import fit
-from twin.study.estimation.innovations import Floor
+from twin.study.estimation.innovations import NoiseModel
 from twin.study.reference.nuisance import TEMPER
 
 Predict = Callable[[Sequence[LabCourse]], list[np.ndarray]]  # (T, W, 3) for each course
@@ -228,4 +228,4 @@ def _fitted(model: Model, courses: Sequence[LabCourse], effects: Sequence[str]) 
         if effects
         else core_unknowns(model)
     )
-    return fit([c.floating for c in courses], model, unknowns, catalogue(), Floor(), temper=TEMPER).model
+    return fit([c.floating for c in courses], model, unknowns, catalogue(), NoiseModel(), temper=TEMPER).model

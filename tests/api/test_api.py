@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import twin
+from twin.api.json_key import absent_keys, unknown_paths
+from twin.api.json_keys import KEYS
 from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.errors import DataError, SettingsError, UsageError
 
@@ -100,6 +102,11 @@ def test_a_simulated_zigzag_turns_back_when_the_heading_passes_the_angle(tanker)
     heading = (run.to_dataframe()["heading_true_north_deg"] + 180.0) % 360.0 - 180.0
     assert 20.0 < heading.max() < 60.0 and -60.0 < heading.min() < -20.0
     assert run.to_dataframe()["time_s"].iloc[-1] == pytest.approx(1200.0, abs=1.0)
+
+
+def test_the_json_of_a_simulation_has_the_keys_of_the_table(tanker):
+    result = twin.simulate(tanker, manoeuvre="straight", duration_s=60.0).to_dict()
+    assert unknown_paths(KEYS["simulate"], result) == [] and absent_keys(KEYS["simulate"], result) == []
 
 
 def test_a_simulated_circle_to_port_turns_to_port(tanker):

@@ -12,6 +12,7 @@ from twin.commands.story import SHIP
 from twin.errors import DataError
 from twin.live.clock import ReplayClock
 from twin.live.log.played import PlayedLog
+from twin.num import as_given
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.recording.write import write_voyage
@@ -37,7 +38,7 @@ def test_stamps_that_are_no_date_in_any_unit_are_refused_with_the_maps_line(
     write_csv, columns, refused, first
 ):
     path = write_csv(columns | {"time_s": first * (1.0 + 1e-9 * columns["time_s"])}, digits=17)
-    refused(path, f"{first:.6g}"[:5], "[time] unit")
+    refused(path, as_given(first)[:5], "[time] unit")
 
 
 @pytest.mark.parametrize("ahead", [1e9, 1e12, 1e300])

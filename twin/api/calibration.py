@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Progress, Result, frame, metres, quietly
 from twin.api.voyages import several
+from twin.num import as_given
 from twin.physics.particulars import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.voyage import Voyage
@@ -57,7 +58,9 @@ class Calibration(Result):
 
     def __repr__(self) -> str:
         last = self.data["held_out"][-1]
-        error = f"{metres(last['before_m'])} -> {metres(last['position_m'])} at {last['horizon_s']:g} s"
+        error = (
+            f"{metres(last['before_m'])} -> {metres(last['position_m'])} at {as_given(last['horizon_s'])} s"
+        )
         return f"<Calibration of {self.ship.name!r}: {error}, {len(self.warnings)} warnings>"
 
     def page(self) -> str:

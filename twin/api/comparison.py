@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from twin.api.result import PathLike, Progress, Result, frame, metres, quietly
 from twin.api.voyages import several
-from twin.num import num
+from twin.num import as_given, num
 from twin.physics.model import Model
 from twin.physics.particulars import Ship
 from twin.recording.voyage import Voyage
@@ -54,7 +54,8 @@ class Comparison(Result):
     def __repr__(self) -> str:
         row = self.data["horizons"][-1]
         error = (
-            f"{metres(row['position_mae_m'])}, {num(row['heading_mae_deg'], 2)} deg at {row['horizon_s']:g} s"
+            f"{metres(row['position_mae_m'])}, {num(row['heading_mae_deg'], 2)} deg at "
+            f"{as_given(row['horizon_s'])} s"
         )
         expected = f"expected {metres(row['noise_floor']['position_mae_m'])}"
         return f"<Comparison of {self.data['ship']!r}: {error}; {expected}>"

@@ -35,7 +35,12 @@ class Diagnosis(Result):
 
     @property
     def reason(self) -> str:
-        """The sentence that goes with the verdict."""
+        """The rule that decided, as in JSON (docs/diagnosis.md, section 7)."""
+        return str(self.data["reason"])
+
+    @property
+    def sentence(self) -> str:
+        """The verdict in words, with its reason."""
         return str(self.data["sentence"])
 
     @property
@@ -62,7 +67,7 @@ class Diagnosis(Result):
 
     def __repr__(self) -> str:
         named = f" {', '.join(self.effects)}" if self.effects else ""
-        return f"<Diagnosis of {self.data['ship']!r}: {self.verdict}{named}. {self.reason}>"
+        return f"<Diagnosis of {self.data['ship']!r}: {self.verdict}{named}. {self.sentence}>"
 
     def with_identifiability(self, residual: PathLike | None = None) -> "Diagnosis":
         """Also what the first of the voyages can tell at all. `residual`: an ONNX file of what was learned,
@@ -86,9 +91,8 @@ class Diagnosis(Result):
         """The page of `twin diagnose --report`."""
         from twin.report.page import content, html
 
-        result = self.to_dict() | {"verdict_text": self.reason}
-        tracks = list(self.case.tracks)
-        return html(content("diagnose", result, tracks, self.case.model, voyages=list(self.voyages)))
+        tracks, voyages = list(self.case.tracks), list(self.voyages)
+        return html(content("diagnose", self.to_dict(), tracks, self.case.model, voyages=voyages))
 
 
 def diagnose(

@@ -68,7 +68,8 @@ def provenance(path: str, what: str) -> tuple[JsonKey, ...]:
 EXPECTED = (
     *under("horizons[].noise_floor", ERRORS, "expected of this ship: "),
     JsonKey(
-        "horizons[].noise_floor.of", "", "what that expectation rests on: sensors, structure, or references"
+        "horizons[].noise_floor.of", "", "what it rests on: sensors, sensors and structure, or "
+        "reference voyages"
     ),
     JsonKey(
         "horizons[].noise_floor.limit95", "-", "times the expected error that 95 % of healthy voyages stay "

@@ -1,5 +1,5 @@
-"""What every key of a verb's JSON means: the one table behind docs/json.md, held against real results by
-tests/api/test_docs_pages.py."""
+"""What every key of a result's JSON means: the one table behind docs/json.md, held against real results where
+each verb is tested (tests/api/test_notebook.py and others)."""
 
 from twin.api.json_key import (
     ABOUT,
@@ -193,6 +193,7 @@ CALIBRATE = (
     JsonKey("usual[].name", "", "what this ship clearly shows of a lasting effect", "there is some"),
     JsonKey("usual[].value", "of the number", "how much", "there is some"),
     JsonKey("usual[].sd", "of the number", "standard error", "there is some"),
+    JsonKey("usual[].unit", "", "its unit", "there is some"),
     JsonKey("between_voyages.*", "prior widths", "standard deviation between voyages", "some differ"),
     JsonKey("floor.share[]", "-", "noise model: slow error in surge, sway, yaw, as a share of the forces"),
     JsonKey("floor.calm", "-", "the same share of a standard acceleration, in quiet sailing"),
@@ -284,6 +285,12 @@ TUBE = (
     JsonKey("doubts[]", "", "what these voyages cannot promise, and what to do", "there is something"),
     JsonKey("output", "", "the ship file that was written", CLI),
 )
+SIMULATE = (
+    *ABOUT,
+    JsonKey("manoeuvre", "", "what was sailed, as it was asked for: straight, zigzag_ANGLE or circle_ANGLE"),
+    JsonKey("columns.time_s[]", "s", "times from the beginning"),
+    JsonKey("columns.*[]", "of the channel", "position, heading and speeds at these times, by channel"),
+)
 KEYS: dict[str, tuple[JsonKey, ...]] = {
     "instruments": INSTRUMENTS,
     "compare": COMPARE,
@@ -291,4 +298,5 @@ KEYS: dict[str, tuple[JsonKey, ...]] = {
     "add": ADD,
     "calibrate": CALIBRATE,
     "tube": TUBE,
+    "simulate": SIMULATE,
 }

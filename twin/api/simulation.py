@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Result
 from twin.errors import UsageError
+from twin.num import as_given
 from twin.physics.model import Eta_nu, Model
 from twin.physics.particulars import Ship
 from twin.study.prediction.trial import Steer, sail, shaft_speed
@@ -52,7 +53,9 @@ class Simulation(Result):
         rows = self._rows()
         some = rows[:: max(1, len(rows) // 10)]
         head = "".join(f"<th>{name}</th>" for name in COLUMNS)
-        body = "".join(f"<tr>{''.join(f'<td>{v:.5g}</td>' for v in row.values())}</tr>" for row in some)
+        body = "".join(
+            f"<tr>{''.join(f'<td>{as_given(v, 5)}</td>' for v in row.values())}</tr>" for row in some
+        )
         return f"<!doctype html><meta charset=utf-8><table><tr>{head}</tr>{body}</table>"
 
 
@@ -66,7 +69,7 @@ def simulate(
     UsageError when there is no such manoeuvre or the duration is not positive.
     """
     if not 0.0 < duration_s <= 1e6:
-        raise UsageError(f"duration_s = {duration_s:g}: seconds between 0 and 1e6 are needed.")
+        raise UsageError(f"duration_s = {as_given(duration_s)}: seconds between 0 and 1e6 are needed.")
     model, speed = Model.of(ship).without_inputs(NOT_IN_STILL_WATER)[0], speed_mps or float(ship.U_0)
     log = sail(model, _steer(manoeuvre), shaft_speed(model, speed), duration_s, speed)
     columns: dict[str, list[float]] = {name: [] for name in COLUMNS}

@@ -13,6 +13,7 @@ from twin.errors import DataError
 from twin.live.learning.residual import ship_hash
 from twin.live.prediction.calibrated import SECTION, calibrated_of
 from twin.live.signals import config
+from twin.num import as_given
 from twin.physics.particulars import Ship
 from twin.physics.ship import save
 from twin.recording.jsonable import plain
@@ -42,7 +43,7 @@ class TubeCalibration(Result):
         last = self.data["horizons"][-1]
         return (
             f"<TubeCalibration of {self.ship.name!r}: {100 * last['level']:.0f} % within "
-            f"{metres(last['place_m'])} at {last['horizon_s']:g} s, {len(self.warnings)} warnings>"
+            f"{metres(last['place_m'])} at {as_given(last['horizon_s'])} s, {len(self.warnings)} warnings>"
         )
 
     def page(self) -> str:

@@ -125,7 +125,7 @@ def add(
     """
     names = [effects] if isinstance(effects, str) else list(effects)
     if not names:
-        raise UsageError("no effect to add. `twin.diagnose(...).effects` may be empty: look at its reason.")
+        raise UsageError("no effect to add. `twin.diagnose(...).effects` may be empty: look at its sentence.")
     chosen = [find(name) for name in dict.fromkeys(names)]
     used, kept = ([sailed(v, ship) for v in several(vs)] for vs in (voyages, held_out))
     return of_sailed(ship, chosen, used, kept, cross_validated, force, quietly(progress))

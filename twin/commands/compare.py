@@ -16,8 +16,8 @@ EPILOG = """example:
   twin compare monday.mcap --ship alma.toml --fail-above position_mae_m=50 --json -
 
 Metrics of --fail-above: position_mae_m, lateral_mae_m, heading_mae_deg (at the longest horizon, or at one:
-position_mae_m@60), noise_units (position error over its floor), unexplained_force.surge|sway|yaw,
-learned_share, channels.COLUMN.mae. Exit code 3: a threshold is passed; 4: a voyage cannot be used; 5: the
+position_mae_m@60), noise_units (position error over the expected one), unexplained_force.surge|sway|yaw,
+learned_share, channels.COLUMN.mae. Exit code 3: a threshold is not met; 4: a voyage cannot be used; 5: the
 ship file is not valid.
 """
 
@@ -28,7 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "voyages",
         metavar="VOYAGE",
         nargs="+",
-        help="voyages: MCAP logs or CSV files with the contract's columns",
+        help="voyages: MCAP logs, or tables with the column names of docs/import.md",
     )
     parser.add_argument(
         "--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name"

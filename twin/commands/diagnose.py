@@ -55,7 +55,7 @@ def run(args: argparse.Namespace) -> int:
     found = diagnose(ship, voyages, reference=reference, progress=progress)
     command = f"twin diagnose {' '.join(args.voyages)} --ship {args.ship}"
     files = {"ship": args.ship, "voyages": args.voyages}
-    found = found.with_keys(command=command, verdict_text=found.reason, files=files)
+    found = found.with_keys(command=command, verdict_text=found.sentence, files=files)
     if args.identifiability or args.residual:
         found = found.with_identifiability(args.residual or None)
     answer(args, found)

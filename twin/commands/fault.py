@@ -17,6 +17,7 @@ from twin.live.injection.faulty import asked
 from twin.live.injection.in_log import in_a_log
 from twin.live.injection.inject import KINDS, InjectedFault
 from twin.live.injection.of_process import OF_A_PROCESS, of_a_process
+from twin.num import as_given
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -82,7 +83,7 @@ def run(args: argparse.Namespace) -> int:
     if args.what in OF_A_PROCESS:
         of_a_process(args.what, args.pid, args.start, args.seconds)
         done = "stopped" if args.what == "pause" else "no write succeeded"
-        print(f"process {args.pid}: {done} for {args.seconds:g} s")
+        print(f"process {args.pid}: {done} for {as_given(args.seconds)} s")
         return 0
     fault = asked(args.what, args.kind, args.by, args.start, args.seconds, args.seed)
     if args.log and args.output:

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 from twin import whole
+from twin.num import as_given
 from twin.physics.ship import load_actuators, save
 from twin.recording.import_voyage import write_json
 from twin.study.first_model.first_trial import doubts, sea_trial, summary
@@ -20,7 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             type=float,
             required=option in REQUIRED,
             metavar="X",
-            help=f"{doc} [{lo:g} to {hi:g}]",
+            help=f"{doc} [{as_given(lo)} to {as_given(hi)}]",
         )
     parser.add_argument(
         "--actuators",

@@ -23,6 +23,7 @@ from twin.live.observer.rollback import RollBack, inner_steps
 from twin.live.outbox import Outbox
 from twin.live.signals.config import Settings
 from twin.live.stabilizer import Stabilizer
+from twin.num import as_given
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.ship import load as load_ship
@@ -175,7 +176,11 @@ def _worked_out(patience_s: float | None, *arguments: object) -> tuple[Certifica
         done = subprocess.run(command, capture_output=True, text=True, timeout=patience_s, check=True)
         return Certificate.from_json(done.stdout), ""
     except subprocess.TimeoutExpired:
-        return None, f"not ready after {patience_s:g} s. Start again when the machine is less busy"
+        return (
+            None,
+            f"not ready after {as_given(patience_s or CERTIFY_S)} s. Start again when the machine is "
+            "less busy",
+        )
     except subprocess.CalledProcessError as error:
         return None, (error.stderr.strip().splitlines() or ["no reason given"])[-1]
     except OSError as error:

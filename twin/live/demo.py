@@ -26,6 +26,7 @@ from twin.live.keelson import messages
 from twin.live.log.logfile import read
 from twin.live.signals.config import Settings
 from twin.live.terminal import View
+from twin.num import as_given, num
 from twin.physics.ship import load
 
 SEA = "bench.sea_process"  # the reference sea: a program beside the twin, not a part of it
@@ -55,12 +56,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(args: argparse.Namespace) -> int:
     """Sail, look, log, replay, and say what to do next."""
     if not 5.0 <= args.seconds <= 3600.0:
-        raise UsageError(f"--seconds {args.seconds:g}: 5 to 3600 can be shown.")
+        raise UsageError(f"--seconds {as_given(args.seconds)}: 5 to 3600 can be shown.")
     ship = load(args.ship)
     folder = Path(args.logs) / time.strftime("demo-%Y%m%d-%H%M%S")
     settings = settings_for(args.ship, folder)
     print(
-        f"{ship.name} sails a {args.manoeuvre} in the reference sea for {args.seconds:g} s; its twin listens."
+        f"{ship.name} sails a {args.manoeuvre} in the reference sea for {as_given(args.seconds)} s; its twin "
+        "listens."
     )
     with reference_sea(settings, args, RUN_IN * ship.L_pp / ship.U_0):
         view = View(sys.stdout, f"shiptwin demo: {ship.name}", args.seconds, str(folder))
@@ -142,7 +144,7 @@ def compared(log: Path, again: Path) -> str:
     return (
         ("the same estimates as live, bit for bit")
         if worst == 0.0
-        else f"estimates differ from live by {worst:.2g} at most"
+        else f"estimates differ from live by {num(worst, 2)} at most"
     )
 
 

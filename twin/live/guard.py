@@ -12,6 +12,7 @@ from twin.live.learning.learned import Learned, LearnedForce
 from twin.live.observer.controls import ONE_SCREW, controls_of
 from twin.live.observer.estimate import Estimate
 from twin.live.signals.measured import Measured
+from twin.num import as_given
 from twin.physics.ship import Ship
 
 STARTING, HYBRID, PHYSICS, RECKONING, INVALID = (
@@ -159,7 +160,10 @@ class Guard:
         now_s = measured.now_s
         for attribute, step in measured.steps.items():
             self._announced.append(
-                (now_s, f"{attribute} stepped by {step:.4g} (SI) and stayed: the new value is believed")
+                (
+                    now_s,
+                    f"{attribute} stepped by {as_given(step, 4)} (SI) and stayed: the new value is believed",
+                )
             )
         if measured.clock_step_s:
             self._announced.append(

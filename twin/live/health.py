@@ -14,6 +14,7 @@ from twin.live.keelson import messages
 from twin.live.keelson.topics import OWN_SOURCE, key
 from twin.live.signals import config
 from twin.live.signals.config import Settings
+from twin.num import as_given
 
 SCHEMA_VERSION = 1
 
@@ -21,7 +22,7 @@ SCHEMA_VERSION = 1
 def ask(args: argparse.Namespace) -> int:
     """Listen, judge, tell; the exit code."""
     if not 0.0 < args.timeout <= 3600.0:
-        raise UsageError(f"--timeout {args.timeout:g}: more than 0 and at most 3600 s.")
+        raise UsageError(f"--timeout {as_given(args.timeout)}: more than 0 and at most 3600 s.")
     tick = hear(config.load(args.config), args.timeout)
     code, said = judged(tick)
     _tell(said, tick, code, args.json)
@@ -60,7 +61,8 @@ def judged(tick: Any) -> tuple[int, str]:
     reasons = "; ".join(tick.reasons) or "all well"
     lost = f", {tick.log_dropped} messages not logged" if tick.log_dropped else ""
     said = (
-        f"{tick.mode}, {tick.rate_hz:g} Hz, {skipped(tick)}, {tick.rejected} samples refused{lost}: {reasons}"
+        f"{tick.mode}, {as_given(tick.rate_hz)} Hz, {skipped(tick)}, {tick.rejected} samples refused{lost}: "
+        f"{reasons}"
     )
     return (0 if tick.mode in (HYBRID, PHYSICS) else 1), said
 

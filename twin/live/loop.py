@@ -29,6 +29,7 @@ from twin.live.signals.channels import BY_NAME
 from twin.live.signals.geodesy import Datum
 from twin.live.signals.measured import Measured
 from twin.live.stabilizer import Stabilizer
+from twin.num import as_given
 from twin.physics.ship import Ship
 
 PARAMETERS_EVERY = 10  # ticks between two lists of adapted numbers
@@ -196,7 +197,7 @@ class Loop:
         for attribute, value in self.dynamics.held.items():
             channel = BY_NAME[self.guard.controls[attribute]]
             said.append(
-                f"{channel.name} is lost: its last value, {value / channel.to_si:.4g}, is held and "
+                f"{channel.name} is lost: its last value, {as_given(value / channel.to_si, 4)}, is held and "
                 "may no longer be so"
             )
         if self.stabilizer.outside and self.stabilizer.promises:

@@ -12,6 +12,7 @@ from twin.live.keelson.zenoh_config import BusSettings
 from twin.live.paced import FASTEST, KEYS, SLOWEST, Player
 from twin.live.replay import Summary, replay
 from twin.live.signals.config import Settings
+from twin.num import as_given
 
 
 def replay_onto_bus(
@@ -19,12 +20,14 @@ def replay_onto_bus(
 ) -> Summary:
     """The voyage on the bus of these settings; TwinError when that bus cannot be opened now."""
     if not SLOWEST <= speed <= FASTEST:
-        raise UsageError(f"--speed {speed:g}: {SLOWEST:g} to {FASTEST:g} times the voyage's own.")
+        raise UsageError(
+            f"--speed {as_given(speed)}: {as_given(SLOWEST)} to {as_given(FASTEST)} times the voyage's own."
+        )
     with ZenohBus(BusSettings.of(settings), []) as bus:
         if (alarm := bus.state.alarm) and not settings["bus.router"]:
             raise TwinError(alarm.partition("; trying on")[0])
         where = settings["bus.router"] or settings["bus.listen"] or " ".join(settings["bus.connect"])
-        _say(f"{Path(log).name} on {where}, {speed:g} times as fast. {KEYS}; watch it: twin view")
+        _say(f"{Path(log).name} on {where}, {as_given(speed)} times as fast. {KEYS}; watch it: twin view")
         if alarm:
             _say(alarm)
         with Player(speed, _say).attended() as player:

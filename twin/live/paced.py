@@ -16,6 +16,7 @@ from contextlib import contextmanager
 from typing import Any
 
 from twin.live.clock import LONGEST_SLEEP_S, Instant
+from twin.num import as_given
 
 SLICE_S = 0.05  # how soon a key or a signal is heard
 SLOWEST, FASTEST = 0.1, 100.0  # times the voyage's own speed
@@ -40,7 +41,7 @@ class Player:
             self.pause()
         elif pressed in "+-" and pressed:
             self.speed = min(max(self.speed * (2.0 if pressed == "+" else 0.5), SLOWEST), FASTEST)
-            self.say(f"{self.speed:g} times as fast as the voyage")
+            self.say(f"{as_given(self.speed)} times as fast as the voyage")
         elif pressed == "q":
             self.over = True
 

@@ -25,6 +25,7 @@ from twin.live.provenance import REPLAY, identity, provenance
 from twin.live.publish import Publisher
 from twin.live.signals.config import Settings
 from twin.live.tube_kept import TubeKept
+from twin.num import num
 from twin.physics.maths import total
 
 SCHEMA_VERSION = 1
@@ -164,7 +165,7 @@ def _tube(rows: list[Coverage]) -> list[str]:
 def _kept(c: Coverage) -> str:
     return (
         f"  {c.horizon_s:4.0f} s: {100 * c.place_inside:.0f} % of places, {100 * c.heading_inside:.0f} % of "
-        f"headings inside ({100 * c.level:.0f} % promised on {c.voyages} voyages), {c.place_radius_m:.3g} m "
-        f"and {c.heading_deg:.2g} deg wide; interval score {c.place_score_m:.3g} m, "
-        f"{c.heading_score_deg:.2g} deg ({c.judged} predictions)"
+        f"headings inside ({100 * c.level:.0f} % promised on {c.voyages} voyages), "
+        f"{num(c.place_radius_m, 3)} m and {num(c.heading_deg, 2)} deg wide; interval score "
+        f"{num(c.place_score_m, 3)} m, {num(c.heading_score_deg, 2)} deg ({c.judged} predictions)"
     )

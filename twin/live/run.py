@@ -33,6 +33,7 @@ from twin.live.provenance import provenance
 from twin.live.publish import Publisher
 from twin.live.signals import config
 from twin.live.signals.config import Settings
+from twin.num import as_given
 
 WATCHDOG_S = 0.25  # how often the service manager hears that a step was good
 STATUS_S = 1.0
@@ -40,7 +41,7 @@ STATUS_S = 1.0
 
 def _served(args: argparse.Namespace) -> int:
     if args.duration is not None and not args.duration > 0.0:
-        raise UsageError(f"--duration {args.duration:g}: more than 0 s.")
+        raise UsageError(f"--duration {as_given(args.duration)}: more than 0 s.")
     settings = config.load(args.config)
     return serve(settings.but("ship.file", args.ship) if args.ship else settings, duration_s=args.duration)
 
@@ -175,7 +176,7 @@ class Service:
     def _greeting(self) -> str:
         learned = "hybrid" if self.loop.learned.residual else f"physics only ({self.loop.learned.why_not})"
         notes = [*self.loop.notes, *filter(None, [self.bus.state.alarm])]
-        return f"{self.loop.ship.name}: {self.loop.rate_hz:g} Hz, {learned}. " + " ".join(
+        return f"{self.loop.ship.name}: {as_given(self.loop.rate_hz)} Hz, {learned}. " + " ".join(
             f"[{note}]" for note in notes
         )
 

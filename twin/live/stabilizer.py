@@ -1,5 +1,6 @@
-"""The certificate beside the loop: the live bound on the observer's error, and whether its assumptions
-hold now."""
+"""The stabilizer: what is certified of the observer's stability, tick by tick. It steers nothing; it follows
+the bound of the observer's error and says whether the assumptions of its proof hold now
+(docs/stability.md)."""
 
 from math import degrees, hypot, pi
 
@@ -13,6 +14,7 @@ from twin.live.parity import Parity
 from twin.live.seen import Certified
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
+from twin.num import num
 from twin.physics.state import Situation
 
 NU = ("u", "v", "r")
@@ -119,7 +121,9 @@ class Stabilizer:
         self._since_late_s = self._since_late_s + dt if count == 1 else 0.0
         if count != TOO_LONG:
             return ""
-        return f"the tick came late, after = {dt:.2g} s where {tube.certificate.h:.2g} s are certified"
+        return (
+            f"the tick came late, after = {num(dt, 2)} s where {num(tube.certificate.h, 2)} s are certified"
+        )
 
     def _steps(self, observer: Observer, measured: Measured, tube: Tube, dt: float, acts: bool) -> None:
         got = tuple([observer.received[a] and self._in_time(a, measured, tube) for a in NU])

@@ -3,6 +3,7 @@
 from textwrap import wrap
 from typing import Any, TextIO
 
+from twin.num import as_given, num
 from twin.physics.maths import total
 
 WIDTH = 78
@@ -59,14 +60,14 @@ def line(tick: Any, seconds: float) -> str:
     """The same in one line."""
     known = _sum(tick.known)
     pairs = [f"{name} {_pair(tick, field, n)} {unit}" for name, field, unit, n in STATES[:3]]
-    said = [f"{seconds:5.0f} s", tick.mode, f"{tick.rate_hz:g} Hz", _time(tick), *pairs]
+    said = [f"{seconds:5.0f} s", tick.mode, f"{as_given(tick.rate_hz)} Hz", _time(tick), *pairs]
     said += [f"known {_three(known)}", f"learned {_three(_force(tick.learned))}", f"refused {tick.rejected}"]
     return " | ".join(said)
 
 
 def _pace(tick: Any) -> str:
     counts = f"skipped {tick.overruns}   refused {tick.rejected}   log lost {tick.log_dropped}"
-    return f"{tick.rate_hz:g} Hz   {_time(tick)}   {counts}"
+    return f"{as_given(tick.rate_hz)} Hz   {_time(tick)}   {counts}"
 
 
 def _time(tick: Any) -> str:
@@ -92,7 +93,7 @@ def _forces(tick: Any) -> list[str]:
 
 
 def _force_row(name: str, force: tuple[float, ...]) -> str:
-    return f"{name:<24}" + "".join(f"{x:>+12.4g}" for x in force)
+    return f"{name:<24}" + "".join(f"{num(x, 4, sign=True):>12}" for x in force)
 
 
 def ahead(tick: Any) -> list[str]:
@@ -128,4 +129,4 @@ def _sum(forces: Any) -> tuple[float, ...]:
 
 
 def _three(force: tuple[float, ...]) -> str:
-    return "/".join(f"{x:+.3g}" for x in force)
+    return "/".join(num(x, 3, sign=True) for x in force)

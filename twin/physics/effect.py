@@ -9,6 +9,7 @@ from dataclasses import MISSING, dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 from twin.errors import SettingsError
+from twin.num import as_given
 
 from .state import Force as ForceVector
 from .state import Number, Situation, Water
@@ -166,9 +167,8 @@ class Effect:
             if not lo <= value <= hi:
                 unit = "" if p.unit == "-" else f" {p.unit}"
                 raise SettingsError(
-                    f"{where}effects.{name}.{p.name} = {value:g}{unit} lies outside its box [{lo:g}, "
-                    f"{hi:g}]. "
-                    f"Correct the number, or remove [effects.{name}]."
+                    f"{where}effects.{name}.{p.name} = {as_given(value)}{unit} lies outside its box "
+                    f"[{as_given(lo)}, {as_given(hi)}]. Correct the number, or remove [effects.{name}]."
                 )
         for particular in self.needs_ship:
             if getattr(ship, particular, None) is None:

@@ -11,6 +11,8 @@ from importlib.metadata import EntryPoint
 from math import isfinite
 from typing import Any
 
+from twin.num import as_given
+
 from .effect import Effect, Flow, Force, Lag, SensorFault
 from .state import Situation
 
@@ -69,9 +71,9 @@ def declared(effect: Any, name: str) -> None:
     # which a dataclass makes up
     if not (effect.__doc__ or "").strip() or (effect.__doc__ or "").startswith(f"{name}("):
         raise Refused("it has no docstring, which is its sentence in a report")
-    strange = sorted(set(effect.needs) - {f.name for f in fields(Situation)})
-    if strange:
-        raise Refused(f"needs names {', '.join(strange)}, which no Situation has")
+    unknown = sorted(set(effect.needs) - {f.name for f in fields(Situation)})
+    if unknown:
+        raise Refused(f"needs names {', '.join(unknown)}, which no Situation has")
     try:
         params = effect.params()
     except TypeError:
@@ -83,11 +85,11 @@ def declared(effect: Any, name: str) -> None:
             raise Refused(f"{p.name}: default, lo, hi, sd and null must be finite numbers")
         if not (p.lo < p.hi and p.lo <= p.null <= p.hi and p.lo <= p.default <= p.hi):
             raise Refused(
-                f"{p.name}: null {p.null:g} and default {p.default:g} must lie in its box "
-                f"[{p.lo:g}, {p.hi:g}]"
+                f"{p.name}: null {as_given(p.null)} and default {as_given(p.default)} must lie in its box "
+                f"[{as_given(p.lo)}, {as_given(p.hi)}]"
             )
         if not p.sd > 0.0:
-            raise Refused(f"{p.name}: the width of its prior, sd, must be positive (it is {p.sd:g})")
+            raise Refused(f"{p.name}: the width of its prior, sd, must be positive (it is {as_given(p.sd)})")
 
 
 def works(effect: type[Effect]) -> None:

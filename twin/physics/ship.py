@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from twin.errors import SettingsError, did_you_mean
+from twin.num import as_given
 
 from . import ship_arrays
 from .actuators import Actuator
@@ -191,8 +192,8 @@ def _numbers(table: Mapping[str, Any], known: tuple[Any, ...], where: str) -> di
         meta, value = by_name[key], _value(entry, where + key)
         if not meta["lo"] <= value <= meta["hi"]:
             raise SettingsError(
-                f"{where}{key} = {value:g} {meta['unit']} lies outside [{meta['lo']:g}, {meta['hi']:g}] "
-                f"({meta['doc']}). Check its unit."
+                f"{where}{key} = {as_given(value)} {meta['unit']} lies outside [{as_given(meta['lo'])}, "
+                f"{as_given(meta['hi'])}] ({meta['doc']}). Check its unit."
             )
         _same_unit(entry, meta["unit"], where + key)
         out[key] = value

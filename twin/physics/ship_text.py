@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from twin import whole
+from twin.num import as_given
 
 from . import ship_arrays
 from .actuators.file import tables as actuator_tables
@@ -98,7 +99,7 @@ def in_degrees(entry: Any) -> str:
     unit = entry.get("unit") if isinstance(entry, Mapping) else None
     if unit not in ("rad", "rad/s") or not isinstance(entry.get("value"), (int, float)):
         return ""
-    return f"{math.degrees(entry['value']):.4g} {unit.replace('rad', 'deg')}"
+    return f"{as_given(math.degrees(entry['value']), 4)} {unit.replace('rad', 'deg')}"
 
 
 def _key(name: str) -> str:

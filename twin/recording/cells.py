@@ -44,7 +44,8 @@ def there(table: Table, c: Column) -> bool:
 
 
 def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) -> np.ndarray:
-    """One channel with its sign, unit, offset and direction as the contract has them (not yet its frame)."""
+    """One channel with its sign, unit, offset and direction as docs/import.md has them (not yet its "
+    "frame)."""
     values = raw(table, c)
     scale = 1.0 if c.unit in PLAIN_UNITS else factor(target(name, c), c.unit or "", where)
     values = values * (c.sign * scale * c.factor) + c.offset + (180.0 if c.direction == "to" else 0.0)

@@ -1,4 +1,5 @@
-"""A header without a map: contract names are taken, near misses refused, other columns named as unused."""
+"""A header without a map: the names of docs/import.md are taken, near misses refused, other columns "
+"named as unused."""
 
 import difflib
 from collections.abc import Collection, Sequence
@@ -20,7 +21,7 @@ MISSPELT = 0.85  # a name this much alike is a slip of the pen, not another quan
 
 
 def own_names(path: Path, names: Sequence[str]) -> tuple[Map, tuple[str, ...]]:
-    """(the map of the contract's own names, one sentence for each column that is not used)."""
+    """(the map of the documented names, one sentence for each column that is not used)."""
     columns = {n: Column(n) for n in names if n in NAMES or n in BY_NAME} | over_ground(names)
     used = {*TIMES, *(c.column for c in columns.values())}
     unused = tuple(unknown(path, name) for name in names if name and name not in used)
@@ -56,7 +57,7 @@ def column_names(path: Path) -> list[str]:
 
 
 def unknown(path: Path, name: str) -> str:
-    """What to say of a column that the contract does not know; DataError when it is a slip of the pen."""
+    """What to say of a column that docs/import.md does not have; DataError when it is a slip of the pen."""
     if any(word in name.lower() for word in OVER_GROUND):
         pairs = ", or else ".join(" and ".join(pair) for pair in (FRAMED, *GROUND.values()))
         return f"{name!r} is not used (what is read as velocity over ground: {pairs})"

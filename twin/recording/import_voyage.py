@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 
 from twin import whole
 from twin.errors import SettingsError, did_you_mean
+from twin.num import as_given
 from twin.physics.ship import load
 from twin.recording.checks import CHECKS, Check, run_checks
 from twin.recording.formats.choose import sources_of
@@ -94,7 +95,10 @@ def summary(found: Imported, every: bool = False) -> list[str]:
     """What is wrong first, then what asks for a look; what is quiet is one line, unless every check is asked
     for."""
     v = found.voyage
-    lines = [f"{v.name}: {len(v)} rows, {v.duration_s:.6g} s, a sample every {v.step_s:.6g} s{read_as(v)}"]
+    lines = [
+        f"{v.name}: {len(v)} rows, {as_given(v.duration_s, 6)} s, a sample every {as_given(v.step_s, 6)} "
+        f"s{read_as(v)}"
+    ]
     wrong = [c for c in found.checks if c.unusable]
     looks = [c for c in found.checks if not c.ok and not c.unusable]
     quiet = [c for c in found.checks if c.ok]

@@ -8,6 +8,7 @@ from typing import Any
 
 from twin.errors import SettingsError, did_you_mean
 from twin.live.signals.channels import BY_NAME
+from twin.num import as_given
 from twin.recording.mapping import (
     FRAMED,
     FRAMES,
@@ -146,7 +147,7 @@ def time_column(entry: Any, where: str) -> TimeColumn:
     one_of(out.unit, (*UNITS["s"], "iso"), f"{where}: [time] unit")
     if not isinstance(out.rebuild, bool) and not out.rebuild > 0.0:
         raise SettingsError(
-            f"{where}: [time] rebuild = {out.rebuild:g} must be true, false or a step in seconds."
+            f"{where}: [time] rebuild = {as_given(out.rebuild)} must be true, false or a step in seconds."
         )
     return out
 

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from twin.live.signals.channels import BY_NAME
+from twin.num import as_given
 from twin.recording.frames import SMOOTH_S, body_from_earth, chart, earth_from_body, integral, slope
 from twin.recording.mapping import FRAMED, PLACES, Map
 from twin.recording.resample import beside, continuous
@@ -78,10 +79,12 @@ def derive(time_s: np.ndarray, columns: Columns) -> tuple[Columns, dict[str, str
         north, east = (slope(time_s, columns[name]) for name in CHART)
         east, psi = _with(time_s, east, north, CHART[1]), np.radians(_with(time_s, heading, north, HEADING))
         columns |= dict(zip(FRAMED, body_from_earth(north, east, psi), strict=True))
-        how |= dict.fromkeys(FRAMED, f"slope of the position over {SMOOTH_S:g} s, turned by the heading")
+        how |= dict.fromkeys(
+            FRAMED, f"slope of the position over {as_given(SMOOTH_S)} s, turned by the heading"
+        )
     if not present(columns, "yaw_rate_degps"):
         columns["yaw_rate_degps"] = slope(time_s, heading)
-        how["yaw_rate_degps"] = f"slope of the heading over {SMOOTH_S:g} s"
+        how["yaw_rate_degps"] = f"slope of the heading over {as_given(SMOOTH_S)} s"
     return columns, how
 
 

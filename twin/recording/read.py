@@ -1,4 +1,4 @@
-"""Files to voyages: an MCAP log, or a text file by the contract's column names or by a map.
+"""Files to voyages: an MCAP log, or a text file by the column names of docs/import.md or by a map.
 
 What cannot be used is a DataError; what was blanked, assumed or derived stands in the voyage's `meta`.
 """

@@ -4,6 +4,7 @@ import numpy as np
 
 from twin.live.signals.channels import BY_NAME
 from twin.live.signals.sentinels import CODES, GENERIC, IN_RANGE_TOO
+from twin.num import as_given
 from twin.recording.resample import continuous
 
 FEWEST = 20  # samples, to know what is usual
@@ -24,8 +25,8 @@ def plausible(name: str, values: np.ndarray, lines: np.ndarray) -> tuple[np.ndar
     if outside.any():
         i = int(np.flatnonzero(outside)[0])
         notes.append(
-            f"{name}: {count(outside, lines)} outside [{ch.low:g}, {ch.high:g}], the first "
-            f"{values[i]:g}: wrong unit?"
+            f"{name}: {count(outside, lines)} outside [{as_given(ch.low)}, {as_given(ch.high)}], the first "
+            f"{as_given(values[i])}: wrong unit?"
         )
     return np.where(outside, np.nan, values), notes
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from twin.errors import DataError, TwinError
-from twin.num import num
+from twin.num import as_given
 from twin.recording.columns_seen import SeenColumns, columns_seen
 from twin.recording.formats import recognised
 from twin.recording.formats.choose import Sources, chosen
@@ -65,8 +65,8 @@ def of_signals(signals: Signals, sources: Sources) -> str:
         if found and found.channel not in choice.columns and found.channel != "time":
             values = np.frombuffer(series.values)
             lines.append(
-                f"# {found.channel} = {toml({'column': name})}  # by its name; {num(values.min(), 4)} to "
-                f"{num(values.max(), 4)}. Unit and sign?"
+                f"# {found.channel} = {toml({'column': name})}  # by its name; {as_given(values.min(), 4)} "
+                f"to {as_given(values.max(), 4)}. Unit and sign?"
             )
     return "\n".join(lines + lacking(choice.columns)) + "\n"
 
@@ -130,7 +130,7 @@ def describe(entry: Entry, channel: str, seen: SeenColumns, name: str, how: Gues
         if np.isfinite(values).any()
         else (np.nan, np.nan)
     )
-    entry.why.append(f"{low:.6g} to {high:.6g}")
+    entry.why.append(f"{as_given(low, 6)} to {as_given(high, 6)}")
     if how.unit == "quaternion":
         entry.keys |= {"column": [f"{name[:-2]}_{k}" for k in "xyzw"], "unit": "quaternion"}
         entry.why[:] = ['from north, clockwise? If it counts from east: unit = "quaternion_enu"']

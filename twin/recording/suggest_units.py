@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.recording.columns_seen import SeenColumns
 from twin.recording.formats.guess import Guess, guess
 from twin.recording.resample import continuous
@@ -70,8 +70,8 @@ def clock_unit(values: np.ndarray) -> tuple[str, str]:
     steps = np.diff(values[np.isfinite(values)])
     step = float(np.median(steps)) if steps.size else 1.0
     if step >= 20.0 and steps.size > 10:
-        return "ms", f"a step of {num(step, 4)}: milliseconds? CONFIRM"
-    return "s", f"a step of {num(step, 4)}"
+        return "ms", f"a step of {as_given(step, 4)}: milliseconds? CONFIRM"
+    return "s", f"a step of {as_given(step, 4)}"
 
 
 def text_format(stamps: Sequence[str]) -> dict[str, Any] | None:

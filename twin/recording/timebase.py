@@ -10,7 +10,7 @@ import numpy as np
 
 from twin.errors import DataError
 from twin.live.keelson.stamps import LATEST_S, YEAR_S
-from twin.num import num
+from twin.num import as_given, num
 from twin.recording.mapping import TimeColumn
 from twin.recording.units import UNITS
 
@@ -47,14 +47,14 @@ def clock_from_numbers(path: Path, stamps: np.ndarray, spec: TimeColumn) -> Time
     )
     if unit is None:
         raise DataError(
-            f"{path}: its first time stamp, {finite[0]:.6g} s, is no time since the begin of a voyage and no "
-            "date before 2100. "
+            f"{path}: its first time stamp, {as_given(finite[0], 6)} s, is no time since the begin of a "
+            "voyage and no date before 2100. "
             'Correct the stamps, or give their unit in a map: [time] unit = "ms" (s, ms, us, ns, min, h).'
         )
     first = finite[0] * UNITS["s"][unit]
     said = (
-        f"the time counts {FINER[unit]} since 1970 (its first stamp is {finite[0]:.6g}, which in seconds is "
-        "no date) and was "
+        f"the time counts {FINER[unit]} since 1970 (its first stamp is {as_given(finite[0], 6)}, which in "
+        "seconds is no date) and was "
         f'read so, from {utc(first)}; in a map: [time] unit = "{unit}"'
     )
     return TimeAxis((time_s - finite[0]) * UNITS["s"][unit], utc(first), (said,))
@@ -133,10 +133,9 @@ def refuse_leaps(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
     if ahead.size:
         i = int(ahead[0])
         raise DataError(
-            f"{path}: line {lines[i + 1]}: time leaps ahead from {time_s[i]:g} s to {time_s[i + 1]:g} s, by "
-            f"more than a year ({ahead.size} times "
-            "in all). A clock that was not set yet, or a wrong stamp? Correct or remove these rows, or split "
-            "the file there."
+            f"{path}: line {lines[i + 1]}: time leaps ahead from {as_given(time_s[i])} s to "
+            f"{as_given(time_s[i + 1])} s, by more than a year ({ahead.size} times in all). A clock that was "
+            "not set yet, or a wrong stamp? Correct or remove these rows, or split the file there."
         )
 
 
@@ -150,8 +149,8 @@ def refuse_backwards(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
     if DAY_S * 0.9 < time_s[i] - time_s[i + 1] <= DAY_S:
         why = "The clock passes midnight: export the date too."
     raise DataError(
-        f"{path}: line {lines[i + 1]}: time goes back from {time_s[i]:g} s to {time_s[i + 1]:g} s "
-        f"({back.size} times in all). {why}"
+        f"{path}: line {lines[i + 1]}: time goes back from {as_given(time_s[i])} s to "
+        f"{as_given(time_s[i + 1])} s ({back.size} times in all). {why}"
     )
 
 
@@ -173,10 +172,9 @@ def rebuilt(path: Path, time_s: np.ndarray, step: bool | float) -> tuple[np.ndar
     worst, allowed = int(np.argmax(off)), rounding + step
     if off[worst] > allowed:
         raise DataError(
-            f"{path}: row {worst + 1}: the stamp {time_s[worst]:g} s lies {num(off[worst], 3)} s from an "
-            "even "
-            f"step of {step:.6g} s; rounding explains {num(allowed, 2)} s. Rows are missing, or the step is "
-            "wrong: leave rebuild out."
+            f"{path}: row {worst + 1}: the stamp {as_given(time_s[worst])} s lies {num(off[worst], 3)} s "
+            f"from an even step of {as_given(step, 6)} s; rounding explains {num(allowed, 2)} s. Rows are "
+            "missing, or the step is wrong: leave rebuild out."
         )
     within = f"the stamps are within {num(off.max(), 2)} s of it"
-    return time_s[0] + step * k, f"time stamps rebuilt with an even step of {step:.6g} s ({within})"
+    return time_s[0] + step * k, f"time stamps rebuilt with an even step of {as_given(step, 6)} s ({within})"

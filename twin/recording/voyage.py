@@ -11,7 +11,7 @@ import numpy as np
 
 from twin.errors import DataError, did_you_mean
 from twin.live.signals.channels import BY_NAME, CHANNELS, Channel
-from twin.num import num
+from twin.num import as_given, num
 from twin.recording.holes import HOLE_S, WAITS, sailed_s, steps_on
 from twin.recording.resample import continuous, resampled, wrapped
 
@@ -128,14 +128,15 @@ class Voyage:
         middle.
         """
         if not step_s > 0 or not len(self):
-            raise DataError(f"{self.name}: cannot be put on a grid of {step_s:g} s with {len(self)} samples.")
+            raise DataError(
+                f"{self.name}: cannot be put on a grid of {as_given(step_s)} s with {len(self)} samples."
+            )
         hole_s = self.hole_s if hole_s is None else hole_s
         if sailed_s(self.time_s, hole_s) / step_s > MOST_STEPS:
             raise DataError(
-                f"{self.name}: {num(self.sailed_s, 4)} s are more than {MOST_STEPS:.0e} steps of "
-                f"{num(step_s, 3)} s, "
-                "in which this ship "
-                f"must be looked at; there are {len(self)} samples. Cut it into shorter voyages."
+                f"{self.name}: {as_given(self.sailed_s, 4)} s are more than {MOST_STEPS:.0e} steps of "
+                f"{num(step_s, 3)} s, in which this ship must be looked at; there are {len(self)} samples. "
+                "Cut it into shorter voyages."
             )
         grid = self.time_s[0] + step_s * steps_on(self.time_s, step_s, hole_s)
         return self.with_rows(

@@ -2,11 +2,10 @@
 
     report.write("diagnose.html", "diagnose", result, tracks, model)
 
-`result` is the verb's JSON by the contract. Further keys are shown when they are there: `verdict_text` (the
-sentence on top; else it is made from the contract), `command` (what was typed), `files` {ship, voyages} (for
-the commands beside suggestions), `voyages` (provenance), `data_checks`, `notes`, `history`. What the page
-needs and `result` lacks (horizons, channels, where, worst_windows, unexplained_force, switched_off) is worked
-out from tracks and model."""
+`result` is the verb's JSON as docs/json.md has it; its sentence stands on top. Further keys are shown when
+they are there: `command` (what was typed), `files` {ship, voyages} (for the commands beside suggestions),
+`voyages` (provenance), `data_checks`, `notes`, `history`. What the page needs and `result` lacks (horizons,
+channels, where, worst_windows, unexplained_force, switched_off) is computed from tracks and model."""
 
 from twin.report.page import write
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy  # noqa: F401 (where it is loaded, an installed effect that does not work on arrays is left out)
 
-from twin.num import num
+from twin.num import as_given, percent
 from twin.physics.effect import FORM, Effect, Param
 from twin.physics.effects import OF_ACTUATORS, UNNAMED, catalogue, find, of_ship
 from twin.physics.ship import Ship
@@ -54,7 +54,7 @@ def _instead(effect: type[Effect]) -> str:
 
 def _attacks(effect: type[Effect]) -> str:
     """How well it is known where along the hull it attacks, in words."""
-    return f"within {effect.lever:.0%} of its length of where the form has it (one standard deviation)"
+    return f"within {percent(effect.lever)} of its length of where the form has it (one standard deviation)"
 
 
 def chosen(name: str | None, ship: Ship | None = None) -> list[type[Effect]]:
@@ -144,8 +144,8 @@ def one(effect: type[Effect], ship: Ship | None, width: int) -> str:
 def row(p: Param, ship: Ship | None) -> tuple[str, str, str, str, str, str]:
     """A parameter in a table: name, unit, plausible size, box, prior width, meaning."""
     k, times = (p.scale(ship), "") if ship else (1.0, f" {SCALES[p.of]}" if p.of else "")
-    says = lambda x: f"{num(x * k, 4)}" + (times if x else "")  # noqa: E731
-    form = "" if p.form == FORM else f" (its form may be off by {p.form:.0%})"
+    says = lambda x: as_given(x * k, 4) + (times if x else "")  # noqa: E731
+    form = "" if p.form == FORM else f" (its form may be off by {percent(p.form)})"
     return p.name, p.unit, says(p.default), f"{says(p.lo)} .. {says(p.hi)}", says(p.sd), p.doc + form
 
 

@@ -6,15 +6,15 @@ function addCommand(names) {
 
 function rankingSection() {
   const list = RESULT.candidates || [], out = [];
-  for (const c of RESULT.resembles || []) out.push(el("p.note", null, `It looks like this, which is no effect of the catalogue. ${c.says}`), candidate(c));
+  for (const c of RESULT.resembles || []) out.push(el("p.note", null, `It resembles this, which is not in the catalogue of effects. ${c.says}`), candidate(c));
   for (const c of list) out.push(candidate(c));
-  if (!out.length) out.push(el("p.note", null, "No candidate is worth a line."));
-  if ((RESULT.weather || []).length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Today's water and wind, reckoned with whatever is missing: " + RESULT.weather.map((w) => `${w.effect} (${w.parameters.map((p) => `${p.name} ${num(p.value)} ${p.unit === "-" ? "" : p.unit}`.trim()).join(", ")})`).join("; ")));
+  if (!out.length) out.push(el("p.note", null, "No cause is likely enough to be shown."));
+  if ((RESULT.weather || []).length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Today's water and wind, allowed for whatever is missing: " + RESULT.weather.map((w) => `${w.effect} (${w.parameters.map((p) => `${p.name} ${num(p.value)} ${p.unit === "-" ? "" : p.unit}`.trim()).join(", ")})`).join("; ")));
   if ((RESULT.rivals || []).length > 1) out.push(el("p.note", { style: { marginTop: "10px" } }, "Rivals (log Bayes factor behind the first; error on held-out parts): " + RESULT.rivals.map((r) => `${r.effects.join(" + ") || "nothing"} (${num(r.log_bayes_factor)}${r.error_m === null ? "" : `; ${num(r.error_m)} m`})`).join(", ")));
   const missing = (RESULT.answer || {}).lasting || RESULT.missing || [];
   if (missing.length) out.push(el("p.note", { style: { marginTop: "10px" } }, "Add what is missing, and see whether the error falls on measurements that were not used:"), command(addCommand(missing)));
   const words = (x) => (typeof x === "string" ? x : [x.effect, x.why || (x.lacks || x.not_measured || []).map((n) => `no ${n}`).join(", ")].filter(Boolean).join(": "));
-  for (const [key, said] of [["not_judged", "Could not be judged: "], ["as_on_references", "No stronger than on the reference voyages, reckoned with and not called missing: "], ["not_visible", "Too small to be seen in these voyages, even at a plausible size: "]]) {
+  for (const [key, said] of [["not_judged", "Could not be judged: "], ["as_on_references", "No stronger than on the reference voyages, allowed for and not called missing: "], ["not_visible", "Too small to be seen in these voyages, even at a plausible size: "]]) {
     if ((RESULT[key] || []).length) out.push(el("p.note", { style: { marginTop: "8px" } }, said + RESULT[key].map(words).join("; ")));
   }
   return section("Which effect is missing", "judged together; forces are typical of these voyages", ...out);
@@ -25,7 +25,7 @@ function candidate(c) {
   const left = el("div", null, el("h3", null, c.effect), el("div", null, bar(c.probability || 0), `${num(100 * (c.probability || 0), 2)} %`));
   const said = [["X_N", "along the ship", "N"], ["Y_N", "across it", "N"], ["N_Nm", "of turning", "N m"]].filter(([k]) => force[k]).map(([k, w, u]) => `${si(Math.abs(force[k]), u)} ${w}`);
   const right = el("div", null, said.length ? el("div", { title: "root mean square over these voyages; the sign is in its numbers" }, `${said.join(", ")} (root mean square)`) : null, (c.parameters || []).length > 6 ? curve(c.parameters) : (c.parameters || []).map(parameter));
-  if (c.error_without !== undefined && c.error_with !== undefined && c.error_without !== null) right.append(el("p.note", null, `error ${num(c.error_without)} m without it, ${num(c.error_with)} m with it${c.error_floor ? `; a true cause may leave ${num(c.error_floor)} m` : ""}`));
+  if (c.error_without !== undefined && c.error_with !== undefined && c.error_without !== null) right.append(el("p.note", null, `error ${num(c.error_without)} m without it, ${num(c.error_with)} m with it${c.error_floor ? `; ${num(c.error_floor)} m is expected even with the right cause` : ""}`));
   if ((c.cannot_be_told_from || []).length) right.append(el("div", null, el("span.note", null, "cannot be told from "), c.cannot_be_told_from.map((n) => el("span.chip", null, n))));
   if ((c.over_time || []).length > 1) right.append(el("div", null, el("span.note", null, "part by part (1 is the size above) "), c.over_time.map((p) => el("span.chip", null, `${DATA.voyages.length > 1 && p.voyage ? `${p.voyage} ` : ""}${clock(p.start_s)} to ${clock(p.end_s)}: ${num(p.share, 2)} ± ${num(p.sd, 2)}`))));
   if (!weak && worthTrying(c.effect)) right.append(command(addCommand(c.effect)));
@@ -38,12 +38,12 @@ function worthTrying(effect) {
   return RESULT.verdict === "undecided" || named.some((c) => (c.cannot_be_told_from || []).includes(effect));
 }
 
-/** Stretches on which something pushed it that was not there before and after. */
+/** Stretches on which a force pushed the ship that was not there before or after. */
 function momentsSection() {
   const list = RESULT.moments || [];
   if (!list.length) return null;
   const rows = list.map((m) => stretchRow(m, el("td.n", null, si(m.X_N, "N")), el("td.n", null, si(m.Y_N, "N")), el("td.n", null, si(m.N_Nm, "N m"))));
-  return section("Moments at which something pushed it", "and not before or after; click one to see it in the plots", table([...(DATA.voyages.length > 1 ? ["voyage"] : []), "when", ">ahead", ">to starboard", ">turning to starboard"], rows));
+  return section("Transient disturbances", "a force pushed the ship then, and not before or after; click one to see it in the plots", table([...(DATA.voyages.length > 1 ? ["voyage"] : []), "when", ">ahead", ">to starboard", ">turning to starboard"], rows));
 }
 
 const drawings = document.createElement("template");
@@ -85,7 +85,7 @@ function fittedSection() {
   const p = RESULT.proof || {};
   if (p.kind) out.push(el("p.note", null, `Proof (${p.kind}): log likelihood ratio ${num(p.log_likelihood_ratio)}, 95 % ${num(p.low95)} to ${num(p.high95)}; needed ${num(p.needed)} and an interval above zero.`));
   if (j.measure) out.push(el("p.note", null, `That is ${j.measure}: ${num(j.before)} → ${num(j.after)} ${j.unit}; 95 % of the change ${num(j.low95, 2)} to ${num(j.high95, 2)} (windows resampled in blocks).`));
-  return section("What was fitted", "95 % intervals, doubt about the core included", ...out);
+  return section("What was fitted", "95 % intervals, the uncertainty of the core included", ...out);
 }
 
 /** Every step of the ship's history: position error before and after, at the longest horizon. */
@@ -94,5 +94,5 @@ function ladderSection() {
   if (!list.length) return null;
   const longest = (h) => h.errors[h.errors.length - 1], top = Math.max(...list.map((h) => longest(h).before_m));
   const rows = list.map((h) => { const e = longest(h); return el("tr", null, el("td", null, h.date || ""), el("td", null, `+ ${(h.added || []).join(", ")}${h.forced ? " (forced)" : ""}`), el("td", null, bar(e.before_m / top), `${num(e.before_m)} m`), el("td", null, bar(e.after_m / top), `${num(e.after_m)} m`), el("td.n", null, `${num(e.noise_floor_m, 2)} m`)); });
-  return section("The ladder", "held-out position error at the longest horizon, each step on its own held-out voyages", table(["date", "step", "before", "after", ">noise"], rows));
+  return section("The ladder", "held-out position error at the longest horizon, each step on its own held-out voyages", table(["date", "step", "before", "after", ">expected"], rows));
 }

@@ -1,4 +1,4 @@
-// Elements, numbers and colours.
+// Elements and colours.
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const RESULT = DATA.result;
 
@@ -18,15 +18,6 @@ function el(what, props, ...children) {
 
 function section(title, about, ...children) {
   return el("section", null, el(".head", null, el("h2", null, title), about ? el("p", null, about) : null), ...children);
-}
-
-/** Three significant digits, thousands with a thin space. */
-function num(x, digits = 3) {
-  if (x === null || x === undefined || !isFinite(x)) return "–";
-  const size = Math.abs(x);
-  if (size >= 1e6 || (size > 0 && size < 1e-3)) return x.toExponential(digits - 1).replace("e+", "e");
-  const places = size === 0 ? 0 : Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-  return x.toFixed(Math.min(places, 6)).replace(/\B(?<!\.\d*)(?=(\d{3})+(?!\d))/g, "\u202f");
 }
 
 /** 1234567 N as 1.23 MN. */

@@ -15,6 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from twin.errors import SettingsError
+from twin.num import as_given
 from twin.physics.effect import Effect
 from twin.physics.effects import BUILT_IN, UNNAMED
 from twin.physics.interval import Interval
@@ -153,7 +154,7 @@ def null(effect: type[Effect], ship: Ship) -> str | None:
         return (
             None
             if abs(got[0] - 0.3) < 1e-12 and got[1] == 0.0
-            else (f"at null the order 0.3 rad gives {got[0]:g} rad after {got[1]:g} s")
+            else (f"at null the order 0.3 rad gives {as_given(got[0])} rad after {as_given(got[1])} s")
         )
     got = answer(absent, s, ship)
     if effect.kind == "Force" and absent.alter(ship) != ship:  # type: ignore[attr-defined]
@@ -185,7 +186,9 @@ def _as_floats(effect: type[Effect], ship: Ship, made: Callable[[list[float]], A
     wide = np.stack([np.broadcast_to(np.asarray(x, float), len(moments)) for x in many], 1)
     off = np.abs(wide - floats) > 1e-9 * np.abs(floats).max() + 1e-15
     return (
-        (f"it answers {wide[off][0]:g} where one by one it answers {floats[off][0]:g}") if off.any() else None
+        (f"it answers {as_given(wide[off][0])} where one by one it answers {as_given(floats[off][0])}")
+        if off.any()
+        else None
     )
 
 
@@ -208,7 +211,7 @@ def intervals(effect: type[Effect], ship: Ship) -> str | None:
     for box, x in zip(boxes, answer(one, point, ship), strict=True):
         low, high = (box.lo, box.hi) if isinstance(box, Interval) else (box, box)
         if not low <= x <= high:
-            return f"the box [{low:g}, {high:g}] does not hold the number {x:g}"
+            return f"the box [{as_given(low)}, {as_given(high)}] does not hold the number {as_given(x)}"
     return None
 
 

@@ -21,7 +21,7 @@ function tone() {
   if (!RESULT.horizons.length) return ["fair", "not judged"];
   const times = RESULT.horizons.map((h) => Math.max(h.position_mae_m / h.noise_floor.position_mae_m, h.heading_mae_deg / h.noise_floor.heading_mae_deg));
   const last = times[times.length - 1], x = last < 1.5 ? Math.max(...times) : last; // as the verdict (compare.py)
-  return x < 1.5 ? ["good", "within noise"] : x < 4 ? ["fair", `${num(x, 2)} times the noise`] : ["bad", `${num(x, 2)} times the noise`];
+  return x < 1.5 ? ["good", "as expected"] : x < 4 ? ["fair", `${num(x, 2)} times the expected error`] : ["bad", `${num(x, 2)} times the expected error`];
 }
 
 function head() {
@@ -76,14 +76,14 @@ function channelPanel(v, c) {
   const main = plot(96, [{ data: c.measured, colour: "measured", width: 1.6, alpha: 0.9 }, ...lines], { label: `${word}, measured and modelled, over time` });
   const panel = view.panels[view.panels.length - 1];
   const rest = plot(50, LINES.map((l) => ({ data: c.residuals[l.key], colour: LINES.length > 1 ? l.colour : "residual", width: 1.3, breaks: v.restarts, gap: 1e9 })), { band: c.noise || 1e-6, label: `${word}, measured − model, over time` });
-  panel.say = (t) => { value.textContent = t === null ? "" : `${clock(t)}  ${num(valueAt(c.measured, t))}\n${LINES.map((l) => `${l.word} ${num(valueAt(c.lines[l.key], t))}\nmeasured − it ${num(valueAt(c.residuals[l.key], t))}`).join("\n")}`; };
+  panel.say = (t) => { value.textContent = t === null ? "" : `${clock(t)}  ${asGiven(valueAt(c.measured, t), 5)}\n${LINES.map((l) => `${l.word} ${asGiven(valueAt(c.lines[l.key], t), 5)}\nmeasured − it ${asGiven(valueAt(c.residuals[l.key], t), 5)}`).join("\n")}`; };
   return el(".panel", null, el(".name", null, el("b", null, word), el("small", null, `${unit}; below: measured − model, noise ±${num(c.noise, 2)}`), value), el("div", null, main, rest));
 }
 
 function inputPanel(c) {
   const [word, unit] = named(c.name), value = el(".value");
   const box = plot(58, [{ data: c.measured, colour: "measured", width: 1.3, gap: 90 }], { label: `${word}, recorded, over time` });
-  view.panels[view.panels.length - 1].say = (t) => { value.textContent = t === null ? "" : `${clock(t)}  ${num(valueAt(c.measured, t))}`; };
+  view.panels[view.panels.length - 1].say = (t) => { value.textContent = t === null ? "" : `${clock(t)}  ${asGiven(valueAt(c.measured, t), 5)}`; };
   return el(".panel", null, el(".name", null, el("b", null, word), el("small", null, unit), value), box);
 }
 

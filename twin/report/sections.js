@@ -1,7 +1,7 @@
 // The parts of the page that every verb has.
 const MEASURES = [["position", "position_mae_m", "m"], ["across", "lateral_mae_m", "m"], ["heading", "heading_mae_deg", "deg"]];
 
-/** Errors by horizon in units of noise, on one logarithmic scale. */
+/** Errors by horizon over the expected ones, on one logarithmic scale. */
 function errorsSection() {
   const rows = [], all = [];
   for (const h of RESULT.horizons) for (const [word, key, unit] of MEASURES) {
@@ -17,12 +17,12 @@ function errorsSection() {
     last = r.horizon;
   }
   const marks = [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500].filter((x) => x <= top && x >= low);
-  const ticks = el(".ticks", null, marks.map((x) => el("span", { style: { left: P(x) } }, x === 1 ? "noise" : `×${x}`)));
+  const ticks = el(".ticks", null, marks.map((x) => el("span", { style: { left: P(x) } }, x === 1 ? "expected" : `×${x}`)));
   box.append(el("div"), ticks, el("div"));
-  const about = `open loop from the measured state, ${RESULT.horizons.map((h) => h.windows).slice(-1)[0]} windows; noise: ${DATA.floor === "sensors" ? "what a perfect model would show through these instruments" : "what instruments and the calibrated model's own limits leave"}`;
-  const key = rows.some((r) => r.then !== null) ? [["var(--before)", "before"], ["var(--model)", "after"]] : [["var(--good)", "below 1.5 times the noise"], ["var(--model)", "more"]];
+  const about = `open loop from the measured state, ${RESULT.horizons.map((h) => h.windows).slice(-1)[0]} windows; expected: ${DATA.floor === "sensors" ? "what a perfect model would show through these instruments" : "what instruments and the calibrated model's own limits leave"}`;
+  const key = rows.some((r) => r.then !== null) ? [["var(--before)", "before"], ["var(--model)", "after"]] : [["var(--good)", "below 1.5 times the expected"], ["var(--model)", "more"]];
   const legend = el(".legend", null, key.map(([colour, word]) => el("span", null, el("i.box", { style: { background: colour } }), word)));
-  return section("Error in units of noise", about, legend, box, forces());
+  return section("Error over the expected error", about, legend, box, forces());
 }
 
 function scale(r, P) {
@@ -38,7 +38,7 @@ function scale(r, P) {
 
 function said(r) {
   const now = `${num(r.now)} ${r.unit}`, value = r.then === null ? now : `${num(r.then)} → ${now}`;
-  return el(".say", null, `${r.word} `, el("b", null, value), ` · ×${num(r.x, 2)} · noise ${num(r.floor, 2)}`);
+  return el(".say", null, `${r.word} `, el("b", null, value), ` · ×${num(r.x, 2)} · expected ${num(r.floor, 2)}`);
 }
 
 function forces() {
@@ -81,7 +81,7 @@ function worstSection() {
 function channelsSection() {
   const rows = Object.entries(RESULT.channels || {}).map(([name, c]) => { const [word, unit] = named(name); return el("tr", null, el("td", null, word), el("td.n", null, `${num(c.mae)} ${unit}`), el("td.n", null, num(c.noise, 2)), el("td.n", null, `×${num(c.mae / c.noise, 2)}`), el("td.n", null, c.r2 === null || c.r2 === undefined ? "–" : c.r2.toFixed(3)), el("td.n", null, c.skill === null || c.skill === undefined ? "–" : c.skill.toFixed(3))); });
   const note = el("p.note", null, `Mean over every moment up to ${DATA.longest_s} s ahead. Skill: share of the squared error of dead reckoning (speeds of the start held) that the model removes; below 0 it is worse than that.`);
-  return section("Channels", null, table(["channel", ">error", ">noise", ">ratio", ">R²", ">skill"], rows), note);
+  return section("Channels", null, table(["channel", ">error", ">expected", ">ratio", ">R²", ">skill"], rows), note);
 }
 
 function checksSection() {

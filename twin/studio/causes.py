@@ -53,9 +53,9 @@ def ways(tracks: Sequence[Track], model: Model, name: str) -> list[str]:
     sums, squares = np.zeros(3), np.zeros(3)
     known_energy = np.zeros(3)
     for track in tracks:
-        able = fed(model, track)[0]
+        known_model = fed(model, track)[0]
         s = track.situation(**dict(zip(STATE, track.state.T, strict=True)))
-        forces = able.known(s)
+        forces = known_model.known(s)
         if name not in forces:
             return []
         f = [np.broadcast_to(np.asarray(x, float), track.t.shape)[track.whole] for x in forces[name]]

@@ -10,6 +10,7 @@ import numpy as np
 
 from twin.api.simulation import simulate
 from twin.errors import SettingsError
+from twin.num import as_given
 from twin.physics.particulars import Derivatives, Ship
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
@@ -77,7 +78,7 @@ def made(name: str, values: Any) -> tuple[Ship, list[str]]:
 
 def command(name: str, values: Mapping[str, Any], output: str) -> str:
     """The command line that makes the same ship."""
-    options = [w for k, v in values.items() if v not in (None, "") for w in (f"--{k}", f"{v:g}")]
+    options = [w for k, v in values.items() if v not in (None, "") for w in (f"--{k}", as_given(v, 12))]
     return shlex.join(["twin", "init", name, *options, "-o", output])
 
 

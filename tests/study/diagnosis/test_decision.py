@@ -7,8 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from twin.study.diagnosis.decision import CAUSE_RULES, RULES, SURE, decide, why_not
+from twin.study.diagnosis.criteria import SURE
+from twin.study.diagnosis.decision import RULES, decide
 from twin.study.diagnosis.facts import Cause, Facts, Left
+from twin.study.diagnosis.naming import CAUSE_RULES, SECOND_NOT_SURE, why_not
+from twin.study.diagnosis.sentences import why_not as words
 
 RECORDED = json.loads(Path(__file__).with_name("recorded_facts.json").read_text())
 LEFT = Left(error=0.9, share=0.4, restless=0.0)
@@ -160,19 +163,35 @@ def test_in_a_sea_a_force_is_named_only_where_the_model_alone_leads_astray():
     assert decide(facts(cause(), sea=True, error_nothing=1.2)).missing == ()
 
 
-def test_every_reason_for_not_naming_has_its_words():
-    from twin.study.diagnosis.sentences import why_not as words
+def test_every_reason_for_not_naming_has_words_of_its_own():
+    c = {"parameters": [], "error_with": 1.0, "error_without": 2.0, "probability": 0.85}
+    reasons = [*(rule.reason for rule in CAUSE_RULES), SECOND_NOT_SURE]
+    said = {reason: words(c, reason) for reason in reasons}
+    both = said.pop("change_within_form")
+    assert both == said["not_significant"]
+    assert len(set(said.values())) == len(said)
+    assert said["unlikely"] == "its probability, 85 %, is below the 90 % needed to name it"
 
-    c = {"parameters": [], "error_with": 1.0, "error_without": 2.0}
-    default = words(c, "not_in_explanation")
-    assert all(
-        words(c, reason) != default
-        for reason, _ in CAUSE_RULES
-        if reason not in ("not_in_explanation", "unlikely")
+
+def test_a_cause_of_the_explanation_that_is_not_likely_enough_is_told_so():
+    unlikely = cause(probability=0.85, with_rivals=0.88)
+    answer = decide(facts(unlikely))
+    assert answer.reason == "not_named" and answer.not_named == {"HullFouling": "unlikely"}
+    c = {
+        "effect": "HullFouling",
+        "parameters": [],
+        "probability": 0.85,
+        "error_with": 1.0,
+        "error_without": 2.0,
+    }
+    said = answer.sentence({"candidates": [c], "answer": {"not_named": answer.not_named}})
+    assert said == (
+        "Undecided: the readings ask for HullFouling (85 %), but its probability, 85 %, is below the 90 % needed "
+        "to name it."
     )
 
 
-def test_a_cause_is_no_news_where_healthy_voyages_of_the_ship_show_as_much():
+def test_a_cause_is_unchanged_where_healthy_voyages_of_the_ship_show_as_much():
     """Test: a clear cause, and how many reference voyages a single cause explains as much. Expected: named where
     none reaches it or nobody knows, and not from a quarter of them on."""
     clear = facts(cause())

@@ -92,7 +92,7 @@ def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_res
     assert like["effect"] == "RudderPlay" and "RudderPlay" not in catalogue()
     (gap,) = like["parameters"]
     assert gap["low95"] <= np.radians(2.5) <= gap["high95"] and gap["unit"] == "rad"
-    assert ("looks like RudderPlay: The rudder hangs loose") in result["sentence"] and any(
+    assert ("resembles RudderPlay: The rudder hangs loose") in result["sentence"] and any(
         "gap" in line for line in told(result)
     )
 
@@ -150,7 +150,7 @@ def test_a_wind_is_news_unless_it_blew_as_hard_on_the_reference_voyages(tanker, 
     known = diagnose([voyages["Wind"]], tanker, [voyages["calm"], voyages["Wind again"]]).result
     assert "Wind" not in known["missing"] and known["as_on_references"] == ["Wind"], "\n".join(told(known))
     assert (
-        "Wind was no stronger than on the reference voyages: it is reckoned with, and not called missing."
+        "Wind was no stronger than on the reference voyages: it is allowed for, and not called missing."
     ) in told(known)
 
 

@@ -28,10 +28,12 @@ TEN = 10.0  # windows that do not overlap
 FLOOR_M = float(np.hypot(8.0, FORM * 20.0))  # where nothing is off by 20 m
 
 
-def asked(levered=None, **off_m):
+def asked(levered=None, **open_loop_error_m):
     """What a few hypotheses were off by [m] at a floor of 8 m in the usual world and of 16 m in a rough
     one."""
-    sets = {tuple(n for n in name.split("_") if n != "nothing"): off for name, off in off_m.items()}
+    sets = {
+        tuple(n for n in name.split("_") if n != "nothing"): off for name, off in open_loop_error_m.items()
+    }
     found = {
         s: Found(Hypothesis(s, "usual", 0.0, 0.0), None, None, 0.0, off, FLOOR_M) for s, off in sets.items()
     }
@@ -178,14 +180,14 @@ def test_a_worn_rudder_leads_a_tanker_where_she_went_and_nothing_does_not(tanker
     case = assemble([voyages["RudderWear"]], tanker)
     weighed, found, _ = search(case)
     assert weights(case, weighed, found).best.effects == ("RudderWear",)
-    assert found["RudderWear",].off_m < 0.7 * found[()].off_m
+    assert found["RudderWear",].open_loop_error_m < 0.7 * found[()].open_loop_error_m
     path = open_loop_check(case, found, weighed)
     assert path.windows == pytest.approx(case.tracks[0].t[-1] / horizon_s(case.tracks[0], case.model))
     worn, healthy = (
         path.log_probability(replace(found[s].hypothesis, scenario="usual")) for s in (("RudderWear",), ())
     )
     assert worn > healthy
-    assert held_out_error(case, found[()]) == pytest.approx(found[()].off_m)
+    assert held_out_error(case, found[()]) == pytest.approx(found[()].open_loop_error_m)
 
 
 def test_what_is_likely_by_now_is_asked_however_unlikely_it_was_where_it_was_found(tanker, voyages):

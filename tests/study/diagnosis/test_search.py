@@ -8,7 +8,7 @@ import pytest
 from twin.physics.effects import catalogue
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.case import SCENARIOS
-from twin.study.diagnosis.decision import SURE
+from twin.study.diagnosis.criteria import SURE
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.search import _Book, search
 from twin.study.diagnosis.verdict import weights

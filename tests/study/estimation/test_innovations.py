@@ -10,7 +10,7 @@ from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.study.estimation.columns import core_unknowns, effect_unknowns, with_values
 from twin.study.estimation.fit import fit
-from twin.study.estimation.innovations import Floor, innovate, linearise
+from twin.study.estimation.innovations import NoiseModel, innovate, linearise
 from twin.study.estimation.respond import later
 from twin.study.reference.structure import floor_of, structural_floor
 from twin.study.track.segments import read_parts, segments
@@ -28,7 +28,7 @@ def judged(tanker, voyages):
 def test_tangents_say_what_a_changed_model_would_leave_over(judged):
     """Misfit at theta predicted from A and b against the misfit of a model that was really changed."""
     t, model, unknowns = judged
-    known, floor = catalogue(), Floor()
+    known, floor = catalogue(), NoiseModel()
     A, b, ee = innovate([linearise(t, model, unknowns, known)], [floor])[0].total()
     theta = np.array([0.0, 0.004, 0.0, 0.0, 0.002, 0.0])
     changed = with_values(
@@ -150,7 +150,7 @@ def test_a_fault_of_an_instrument_that_one_voyage_lacks_says_nothing_there(judge
         replace(t, measured=np.where(np.arange(8) < 6, t.measured, np.nan)), model, unknowns, catalogue()
     )
     alone, both = (
-        innovate(lines, [Floor()])[0].total()[0][0, 0] for lines in ([with_log], [silent, with_log])
+        innovate(lines, [NoiseModel()])[0].total()[0][0, 0] for lines in ([with_log], [silent, with_log])
     )
     assert with_log.turns and not silent.turns and both == pytest.approx(alone, rel=1e-6) and alone > 0.0
 
@@ -159,7 +159,9 @@ def test_until_the_core_is_found_faults_of_instruments_are_judged_along_the_smoo
     """Test: a fit with a turned compass in the model, as calibration asks and as adding an effect does.
     Expected: the filter's path has a say in the second alone."""
     t, model, unknowns = judged
-    fitted = [fit([t], model, unknowns[-2:], catalogue(), Floor(), smooth=smooth) for smooth in (True, False)]
+    fitted = [
+        fit([t], model, unknowns[-2:], catalogue(), NoiseModel(), smooth=smooth) for smooth in (True, False)
+    ]
     assert [bool(f.lines[0].turns) for f in fitted] == [False, True]
 
 
@@ -182,7 +184,7 @@ def test_a_late_receiver_shows_a_wave_as_it_was_then_on_each_stretch_by_itself(j
 def test_floors_side_by_side_are_floors_one_at_a_time(judged):
     t, model, unknowns = judged
     lines = [linearise(t, model, unknowns, catalogue())]
-    floors = [Floor(), Floor().scaled(4.0, white=2.0)]
+    floors = [NoiseModel(), NoiseModel().scaled(4.0, white=2.0)]
     together = innovate(lines, floors)
     for floor, both in zip(floors, together, strict=True):
         alone = innovate(lines, [floor])[0]
@@ -319,9 +321,9 @@ def test_a_turned_compass_that_is_known_costs_nothing(judged):
 
     through_it = replace(t, state=turned(t.state, 2, 3, 4), measured=turned(t.measured, 2, 3, 4))
     unknowns = [*core_unknowns(model), *effect_unknowns(known["GyroBias"], model)]
-    straight = innovate([linearise(t, model.but(antenna), unknowns, known)], [Floor()])[0]
-    shown = innovate([linearise(through_it, model.but(compass, antenna), unknowns, known)], [Floor()])[0]
-    believed = innovate([linearise(through_it, model.but(antenna), unknowns, known)], [Floor()])[0]
+    straight = innovate([linearise(t, model.but(antenna), unknowns, known)], [NoiseModel()])[0]
+    shown = innovate([linearise(through_it, model.but(compass, antenna), unknowns, known)], [NoiseModel()])[0]
+    believed = innovate([linearise(through_it, model.but(antenna), unknowns, known)], [NoiseModel()])[0]
     A, b, ee = straight.total()
     for told, expected in zip(shown.total(), (A, b, ee), strict=True):
         np.testing.assert_allclose(told, expected, rtol=0.02, atol=1e-3 * np.abs(expected).max())

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.num import num
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.study.estimation.start import steadied, told_of_waves, wave_period_s, waves_on
@@ -102,7 +103,7 @@ def test_a_model_that_no_filter_can_follow_says_nothing_of_waves(calm, tanker, m
 
 def test_waves_are_told_with_their_voyage_and_period(rough, calm):
     (said,) = told_of_waves(waves_on([calm, rough]))
-    assert calm.name in said and f"{wave_period_s(rough):.2g} s" in said
+    assert calm.name in said and f"{num(wave_period_s(rough))} s" in said
 
 
 def test_the_period_and_the_strength_of_the_waves_are_found(rough):

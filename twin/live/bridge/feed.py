@@ -15,6 +15,7 @@ from twin.live.log.mcap_index import PROVENANCE
 from twin.live.log.mcap_read import McapReader
 from twin.live.provenance import LIVE
 from twin.live.signals.config import Settings
+from twin.num import as_given
 
 TICK = "shiptwin.Tick"
 FIRST = 5000  # messages of a log within which the first tick stands
@@ -126,7 +127,7 @@ class LogFeed:
 
     def __init__(self, path: str | Path, speed: float = 1.0):
         if not 0.1 <= speed <= 100.0:
-            raise UsageError(f"--speed {speed:g}: 0.1 to 100 times the voyage's own.")
+            raise UsageError(f"--speed {as_given(speed)}: 0.1 to 100 times the voyage's own.")
         self.name, self.speed, self.over = Path(path).name, speed, False
         self._reader = McapReader(path)
         self._source = self._reader.messages()

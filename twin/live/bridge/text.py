@@ -5,6 +5,7 @@ from textwrap import wrap
 from typing import Any, TextIO
 
 from twin.live.terminal import BOLD, CLEAR, DIM, LINE_S, PAGE_S, PLAIN, WIDTH
+from twin.num import as_given
 
 OLD = "\x1b[7m"  # reversed
 ORIGINS = {"live": "", "replay": "RECORDED, replayed", "log": "RECORDED"}
@@ -53,9 +54,12 @@ def line(frame: dict[str, Any]) -> str:
         clock(frame["wall_s"]),
         frame["mode"]["name"],
         *pairs,
-        f"known {known['X']:g}/{known['Y']:g} {unit}",
+        f"known {as_given(known['X'])}/{as_given(known['Y'])} {unit}",
     ]
-    said += [f"learned {learned['X']:g}/{learned['Y']:g} {unit}", f"alarms {len(frame['alarms'])}"]
+    said += [
+        f"learned {as_given(learned['X'])}/{as_given(learned['Y'])} {unit}",
+        f"alarms {len(frame['alarms'])}",
+    ]
     recorded = ORIGINS.get(frame["ship"]["origin"], "").partition(",")[0]
     return " | ".join([*filter(None, [recorded, old]), *said])
 
@@ -170,7 +174,7 @@ def _age(instrument: dict[str, Any]) -> str:
 def _pace(pace: dict[str, Any]) -> str:
     slack = "no deadline" if pace["slack_ms"] is None else f"{pace['slack_ms']:.0f} ms left of each period"
     counts = f"skipped {pace['overruns']}, refused {pace['rejected']}, log lost {pace['log_dropped']}"
-    return f"{DIM}{pace['rate']:g} Hz, {slack}; {counts}{PLAIN}"
+    return f"{DIM}{as_given(pace['rate'])} Hz, {slack}; {counts}{PLAIN}"
 
 
 def _pair(state: dict[str, Any]) -> str:

@@ -16,6 +16,7 @@ from twin.live.certificate.comparison import AXES, Matrix, Row
 from twin.live.certificate.plant import Disturbance, Plant
 from twin.live.certificate.recursion import Ages, pushed, recursion
 from twin.live.certificate.theorem import NEVER, NOWHERE, Promise, ratio
+from twin.num import num
 from twin.physics.maths import total
 
 Vector = tuple[float, ...]
@@ -71,8 +72,9 @@ def assess_rolled(
     push, calm = pushed(inner(plant, q), 0.0)
     if end is None or not 0.0 < a <= 1.0:
         reason = (
-            f"K = {K[0]:.3g} 1/s does not hold with {q} inner steps of {plant.h / q:.2g} s: errors grow by "
-            f"{radius(on):.3g} between two samples. Run the loop faster, or narrow the operating set."
+            f"K = {num(K[0], 3)} 1/s does not hold with {q} inner steps of {num(plant.h / q, 2)} s: errors "
+            f"grow by {num(radius(on), 3)} between two samples. Run the loop faster, or narrow the operating "
+            "set."
         )
         none = c3.matrix(lambda i, j: NEVER)
         return Promise(False, reason, 1.0 - worst, -NEVER, NOWHERE, none, none, G, push, calm, usual)  # type: ignore[arg-type]
@@ -86,7 +88,9 @@ def assess_rolled(
     by_force = _columns(lambda unit: settles(unit, still, plant_turns(plant, unit)), alone)
     by_noise = _columns(lambda unit: settles(zero, (*unit, 0.0), 0.0), alone)
     bound = settles(d.calm, (*noise, heading_noise), rate)
-    reason = f"K = {K[0]:.3g} 1/s holds, {q} inner steps: a sample takes away {100 * a:.0f} % of an error."
+    reason = (
+        f"K = {num(K[0], 3)} 1/s holds, {q} inner steps: a sample takes away {100 * a:.0f} % of an error."
+    )
     decay = -log(radius(G)) / plant.h
     return Promise(
         True, reason, 1.0 - worst, decay, bound[:3], by_force, by_noise, G, push, calm, usual  # type: ignore[arg-type]

@@ -14,6 +14,7 @@ from twin.live.certificate.rolled import InnerStep, inner, way
 from twin.live.certificate.tube import NOTHING, Three, Tube
 from twin.live.observer.operating import NU, WORDS
 from twin.live.observer.rollback import KEPT_S, Path, State
+from twin.num import num
 from twin.physics.state import Situation
 
 if TYPE_CHECKING:
@@ -111,7 +112,10 @@ class RolledTube(Tube):
         for name, value, b, w, (low, high) in zip(NU, motion, x, self.way, self._limits, strict=False):
             most = b + self._length * w
             if not low + most <= value <= high - most:
-                return f"{WORDS[name]} = {value:.3g} (+-{most:.3g}) outside [{low:.3g}, {high:.3g}]"
+                return (
+                    f"{WORDS[name]} = {num(value, 3)} (+-{num(most, 3)}) outside [{num(low, 3)}, "
+                    f"{num(high, 3)}]"
+                )
         return None
 
     def _on(self, x: Four) -> Four:

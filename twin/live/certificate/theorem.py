@@ -16,6 +16,7 @@ from twin.live.certificate.comparison import Matrix, Row
 from twin.live.certificate.gains import gains_that_do
 from twin.live.certificate.plant import Disturbance, Plant
 from twin.live.certificate.recursion import NEVER, Ages, Recursion, pushed, recursion
+from twin.num import as_given, num
 
 NOWHERE: Row = (NEVER, NEVER, NEVER)
 
@@ -89,7 +90,7 @@ def _rate(step: Recursion, h: float) -> float:
 
 
 def _reason(plant: Plant, K: Row, m: Ages, ratio: float, worst: float, extra: Matrix | None) -> str:
-    told, late = ", ".join(f"{k:.3g}" for k in K), "/".join(map(str, m))
+    told, late = ", ".join(num(k, 3) for k in K), "/".join(map(str, m))
     if worst < 1.0:
         least = f"{100 * ratio:.0f} % of it is the least that pulls back faster than errors can grow"
         return f"K = ({told}) 1/s holds: {least}."
@@ -99,12 +100,12 @@ def _reason(plant: Plant, K: Row, m: Ages, ratio: float, worst: float, extra: Ma
     limits = gains_that_do(plant, m, extra)
     if limits is None:
         period = _period_that_does(plant, m, extra)
-        cure = f"Run the loop every {period:.2g} s or faster, or narrow the operating set."
-        return f"no K holds at a period of {plant.h:g} s with measurements {late} samples old. {cure}"
-    do = f"K from {limits[0]:.3g} to {limits[1]:.3g} 1/s would do (the same on every axis)."
+        cure = f"Run the loop every {num(period, 2)} s or faster, or narrow the operating set."
+        return f"no K holds at a period of {as_given(plant.h)} s with measurements {late} samples old. {cure}"
+    do = f"K from {num(limits[0], 3)} to {num(limits[1], 3)} 1/s would do (the same on every axis)."
     if max(K) < limits[0] or ratio >= 1.0:
         return f"K = ({told}) 1/s is too small: errors could grow faster than it pulls them back. {do}"
-    allowed = f"what a period of {plant.h:g} s and measurements {late} samples old allow"
+    allowed = f"what a period of {as_given(plant.h)} s and measurements {late} samples old allow"
     return f"K = ({told}) 1/s is outside {allowed}. {do}"
 
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from twin.live.certificate.comparison import add, scaled_row
 from twin.live.certificate.periods import SURE, TABLE, Periods, of_certificate
 from twin.live.observer.operating import NU, WORDS
+from twin.num import num
 from twin.physics.state import Situation
 
 if TYPE_CHECKING:
@@ -225,5 +226,5 @@ class Tube:
         for name, b in zip(NU, self.beta, strict=True):
             low, high = ranges[name]
             if not b < 0.5 * (high - low):
-                return f"the bound of {WORDS[name]} is as wide as the operating set, +- = {b:.3g}"
+                return f"the bound of {WORDS[name]} is as wide as the operating set, +- = {num(b, 3)}"
         return None

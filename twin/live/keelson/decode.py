@@ -19,6 +19,7 @@ from twin.live.signals.channels import BY_NAME
 from twin.live.signals.geodesy import MAX_DISTANCE_M, MAX_LATITUDE_DEG, Datum, datum, to_chart
 from twin.live.signals.readings import Quality, Reading, Rejected
 from twin.live.signals.sentinels import is_no_position, is_sentinel
+from twin.num import as_given
 
 EARLIEST_S = 946684800.0  # 2000-01-01: an earlier stamp is a clock that was never set
 LATEST_S = 4102444800.0  # 2100-01-01: a later stamp is garbage
@@ -207,7 +208,7 @@ def _stamp(message: Any) -> float:
 
 def _number(channel: str, value: float) -> str:
     limits = BY_NAME[channel]
-    return f"{channel} = {value:g}, expected {limits.low:g} to {limits.high:g}"
+    return f"{channel} = {as_given(value)}, expected {as_given(limits.low)} to {as_given(limits.high)}"
 
 
 def _reject(topic: Topic, quality: Quality, why: str, received_s: float, source: str) -> list[Result]:

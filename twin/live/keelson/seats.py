@@ -65,7 +65,7 @@ class Seats:
         self.refused += 1
         self._until_s = now_s + NOTICE_S
         self._said = (
-            f"{subject}: more than {MOST} sources speak for it, {who} is not heard. "
-            "Name the right one under [sources], and close the bus to strangers ([bus] file)"
+            f"{subject}: more than {MOST} sources speak for it, {who} is not heard. Name the right one under "
+            "[sources], and keep other senders off the bus ([bus] file)"
         )
         return False

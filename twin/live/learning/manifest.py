@@ -15,6 +15,7 @@ from math import isfinite
 from typing import Any
 
 from twin.errors import SettingsError, did_you_mean
+from twin.num import as_given
 from twin.physics.state import Force
 from twin.physics.zeta import ZETA
 
@@ -180,7 +181,7 @@ def _number(table: dict[str, Any], key: str) -> float:
 def _positive(table: dict[str, Any], key: str) -> float:
     value = _number(table, key)
     if value <= 0.0:
-        raise ManifestError(f"{key} = {value:g}: must be positive")
+        raise ManifestError(f"{key} = {as_given(value)}: must be positive")
     return value
 
 

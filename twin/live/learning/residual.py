@@ -21,6 +21,7 @@ from twin.live.learning import manifest as manifests
 from twin.live.learning.manifest import Manifest
 from twin.live.learning.network import Network, NetworkError
 from twin.live.learning.onnx_file import FLOAT, OnnxError, look, with_rows
+from twin.num import as_given, num
 from twin.physics import ship as ships
 from twin.physics.maths import dot, total
 from twin.physics.ship import Ship
@@ -111,7 +112,10 @@ class Residual:
                 if zeta is None or not isfinite(zeta):
                     return [], 0.0, f"its input {name} is not measured"
                 weight *= max(1.0 - max(low - zeta, zeta - high) / (high - low) / MARGIN, 0.0) ** 2
-                why = f"{name} = {zeta:.4g} is outside {low:.4g} to {high:.4g}, where it was trained"
+                why = (
+                    f"{name} = {as_given(zeta, 4)} is outside {as_given(low, 4)} to {as_given(high, 4)}, "
+                    "where it was trained"
+                )
                 zeta = min(max(zeta, low), high)
             values.append((zeta - offset) / scale)
         return values, weight, why
@@ -148,7 +152,8 @@ def check(model: bytes, text: bytes, ship: Ship, where: str = "residual") -> Res
     norm = sqrt(total(w * w for row in manifest.W for w in row))
     if norm > manifest.W_max:
         raise ResidualError(
-            f"{where}: its last layer has the norm {norm:.3g}, the manifest allows {manifest.W_max:.3g}"
+            f"{where}: its last layer has the norm {num(norm, 3)}, the manifest allows "
+            f"{num(manifest.W_max, 3)}"
         )
     digest = hashlib.sha256(model).hexdigest()
     if digest != manifest.sha256:
@@ -258,6 +263,6 @@ def _golden(trunk: Network, manifest: Manifest, where: str) -> None:
         worst = max(abs(p - w) if isfinite(p) else inf for p, w in zip(phi, wanted, strict=True))
         if not worst <= GOLDEN * size:
             raise ResidualError(
-                f"{where}: a golden input gives another output than in training (off by {worst:.3g})"
+                f"{where}: a golden input gives another output than in training (off by {num(worst, 3)})"
             )
     trunk.close()

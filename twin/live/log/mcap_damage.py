@@ -3,6 +3,8 @@
 from struct import Struct
 from typing import NamedTuple
 
+from twin.num import as_given
+
 EXTENT = "shiptwin.extent"  # table of words: how far a log reached when it was written in one go
 # table of words: a crash cut the log off, and what was whole of it was finished
 REPAIRED = "shiptwin.repaired"
@@ -25,14 +27,17 @@ class Damage(NamedTuple):
         begin_s = (start - first) * 1e-9
         if self.before_ns is not None:
             end_s = (self.before_ns - first) * 1e-9
-            return f"{self.what}: {end_s - begin_s:.4g} s are lost, from {begin_s:.6g} to {end_s:.6g} s"
+            return (
+                f"{self.what}: {as_given(end_s - begin_s, 4)} s are lost, from {as_given(begin_s, 6)} to "
+                f"{as_given(end_s, 6)} s"
+            )
         if last_ns is None:
-            return f"{self.what}: what followed after {begin_s:.6g} s is lost"
+            return f"{self.what}: what followed after {as_given(begin_s, 6)} s is lost"
         if last_ns <= start:
-            return f"{self.what}: its last message, at {begin_s:.6g} s, is there"
+            return f"{self.what}: its last message, at {as_given(begin_s, 6)} s, is there"
         return (
-            f"{self.what}: {(last_ns - start) * 1e-9:.4g} s are lost, from {begin_s:.6g} s to the end at "
-            f"{(last_ns - first) * 1e-9:.6g} s"
+            f"{self.what}: {as_given((last_ns - start) * 1e-9, 4)} s are lost, from {as_given(begin_s, 6)} s "
+            f"to the end at {as_given((last_ns - first) * 1e-9, 6)} s"
         )
 
 

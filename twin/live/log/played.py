@@ -20,6 +20,7 @@ from twin.live.keelson.stamps import LATEST_S, YEAR_S
 from twin.live.keelson.topics import address, is_own, topic_of
 from twin.live.log.mcap_read import McapReader, Message
 from twin.live.log.own_row import ROW, own_row
+from twin.num import as_given
 
 TICK = "shiptwin.Tick"
 PEEK = 5000  # messages within which a log of the twin shows its first tick
@@ -80,13 +81,13 @@ class PlayedLog:
             time_s = item[0]
             if not abs(time_s) <= LATEST_S:
                 raise DataError(
-                    f"{self.path}: {time_s:.6g} s is no time of a log. Counts it milliseconds or less? twin "
-                    "import reads such a voyage."
+                    f"{self.path}: {as_given(time_s, 6)} s is no time of a log. Counts it milliseconds or "
+                    "less? twin import reads such a voyage."
                 )
             if last_s is not None and not last_s - MAX_GAP_S <= time_s <= last_s + YEAR_S:
                 raise DataError(
-                    f"{self.path}: time leaps from {last_s:.6g} s to {time_s:.6g} s. A wrong stamp, or two "
-                    "logs in one? Split it there."
+                    f"{self.path}: time leaps from {as_given(last_s, 6)} s to {as_given(time_s, 6)} s. A "
+                    "wrong stamp, or two logs in one? Split it there."
                 )
             last_s = time_s
             yield item

@@ -9,6 +9,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
+from twin.num import as_given
+
 DAY_S = 86400.0
 MB = 1e6
 ENDINGS = ("mcap", "unreadable")
@@ -51,7 +53,8 @@ def trim(folder: Path, name: str, quota: Quota, writing: Path | None = None) -> 
     if quota.free_mb and free < quota.free_mb * MB and _free(folder) < quota.free_mb * MB:
         raise OSError(
             errno.ENOSPC,
-            f"only {_free(folder) / MB:.0f} MB are free, log.free_mb keeps {quota.free_mb:g} for others",
+            f"only {_free(folder) / MB:.0f} MB are free, log.free_mb keeps {as_given(quota.free_mb)} for "
+            "others",
             str(folder),
         )
     return _told(gone)
@@ -73,11 +76,11 @@ def own_files(folder: Path, name: str, writing: Path | None = None) -> list[Old]
 def _why(file: Old, quota: Quota, newest_s: float, total: int, free: int) -> str:
     """The setting that asks for this file's place, "" when none does."""
     if quota.keep_days and newest_s - file.time_s > quota.keep_days * DAY_S:
-        return f"log.keep_days = {quota.keep_days:g}"
+        return f"log.keep_days = {as_given(quota.keep_days)}"
     if quota.max_mb and total > quota.max_mb * MB:
-        return f"log.max_mb = {quota.max_mb:g}"
+        return f"log.max_mb = {as_given(quota.max_mb)}"
     if quota.free_mb and free < quota.free_mb * MB:
-        return f"log.free_mb = {quota.free_mb:g}"
+        return f"log.free_mb = {as_given(quota.free_mb)}"
     return ""
 
 

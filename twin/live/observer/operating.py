@@ -11,6 +11,7 @@ from functools import cached_property
 from math import hypot, inf, isfinite, pi
 
 from twin.errors import SettingsError
+from twin.num import num
 from twin.physics import core
 from twin.physics.maths import clip
 from twin.physics.model import Model
@@ -69,8 +70,8 @@ class OperatingSet:
 
 
 def _said(name: str, value: float, bound: float, lo: float, hi: float) -> str:
-    how = f" (+-{bound:.3g})" if bound else ""
-    return f"{WORDS[name]} = {value:.3g}{how} outside [{lo:.3g}, {hi:.3g}]"
+    how = f" (+-{num(bound, 3)})" if bound else ""
+    return f"{WORDS[name]} = {num(value, 3)}{how} outside [{num(lo, 3)}, {num(hi, 3)}]"
 
 
 @dataclass(frozen=True)

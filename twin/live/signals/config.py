@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 
 from twin.errors import SettingsError, did_you_mean
 from twin.live.signals.channels import BY_NAME
+from twin.num import as_given
 
 
 class Key(NamedTuple):
@@ -161,7 +162,7 @@ def example() -> str:
         if head != section:
             lines += [""] * bool(section) + [f"[{head}]"]
             section = head
-        limits = f", {key.low:g} to {key.high:g}" if key.high != float("inf") else ""
+        limits = f", {as_given(key.low)} to {as_given(key.high)}" if key.high != float("inf") else ""
         note = f"{key.doc}{f' [{key.unit}]' if key.unit else ''}{limits}"
         lines.append(f"{name} = {_toml(key.default)}  # {note}")
     return "\n".join(
@@ -273,8 +274,8 @@ def _number(key: Key, value: Any, where: str) -> Any:
         raise SettingsError(f"{where} = {_short(value)}: a whole number is needed.")
     if not key.low <= value <= key.high:
         raise SettingsError(
-            f"{where} = {_short(value)}{f' {key.unit}' if key.unit else ''} lies outside "
-            f"{key.low:g} to {key.high:g} ({key.doc})."
+            f"{where} = {_short(value)}{f' {key.unit}' if key.unit else ''} lies outside {as_given(key.low)} "
+            f"to {as_given(key.high)} ({key.doc})."
         )
     return value if key.kind is int else float(value)
 
@@ -293,7 +294,7 @@ def _short(value: Any) -> str:
     """A value as it can stand in a message: one line, not longer than a few words."""
     if isinstance(value, int) and not isinstance(value, bool) and abs(value) >= 10**18:
         return f"a whole number of about {round(value.bit_length() * 0.30103)} digits"
-    said = f"{value:g}" if isinstance(value, float) else repr(value)
+    said = as_given(value) if isinstance(value, float) else repr(value)
     return said if len(said) <= 60 else f"{said[:56]} ..."
 
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from twin.errors import SettingsError, did_you_mean
+from twin.num import as_given
 
 from .actuator import NUMBERS, Actuator
 from .channels import CHANNELS_OF, DRIVES
@@ -57,8 +58,8 @@ def _one(
         lo, hi = f.metadata["lo"], f.metadata["hi"]
         if not lo <= number <= hi:
             raise SettingsError(
-                f"{where}.{key} = {number:g} {f.metadata['unit']} lies outside [{lo:g}, {hi:g}] "
-                f"({f.metadata['doc']}). Check its unit."
+                f"{where}.{key} = {as_given(number)} {f.metadata['unit']} lies outside [{as_given(lo)}, "
+                f"{as_given(hi)}] ({f.metadata['doc']}). Check its unit."
             )
         if isinstance(entry, Mapping):
             notes[f"{name}.{f.name}"] = dict(entry)

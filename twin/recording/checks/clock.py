@@ -3,7 +3,7 @@
 import numpy as np
 
 from twin.live.signals.channels import of_actuators
-from twin.num import num
+from twin.num import as_given, num
 from twin.recording.checks.answer import Check, doubtful, good, wrong
 from twin.recording.checks.view import VoyageView
 from twin.recording.unknown_controls import CONTROLS, gaps
@@ -45,14 +45,16 @@ def time_stamps(view: VoyageView) -> Check:
         return wrong(
             name,
             f"{100 * share:.0f} % of the time stamps repeat, the first at "
-            f"{t[np.flatnonzero(repeated)[0]]:g} s; steps of up to {steps.max():g} s beside a mean of "
-            f"{mean:.6g} s: the stamps are believed to be rounded. In the map: [time] rebuild = true (even "
-            f"steps of {mean:.6g} s), or give more digits.",
+            f"{as_given(t[np.flatnonzero(repeated)[0]])} s; steps of up to {as_given(steps.max())} s beside "
+            f"a mean of {as_given(mean, 6)} s: the stamps are believed to be rounded. In the map: [time] "
+            f"rebuild = true (even steps of {as_given(mean, 6)} s), or give more digits.",
         )
     if repeated.any():
         i = int(np.flatnonzero(repeated)[0])
         return doubtful(
-            name, f"{repeated.sum()} time stamps repeat, the first at {t[i]:g} s; such samples are averaged."
+            name,
+            f"{repeated.sum()} time stamps repeat, the first at {as_given(t[i])} s; such samples are "
+            "averaged.",
         )
     inside = steps[steps < GAP_STEPS * usual]
     scatter = float(np.std(inside) / usual)
@@ -63,7 +65,7 @@ def time_stamps(view: VoyageView) -> Check:
             f"{num(usual, 3)} s. "
             "Were the stamps taken at arrival? Log the sensor's own time.",
         )
-    return good(name, f"a sample every {usual:.6g} s, scatter {100 * scatter:.1f} % of a step.")
+    return good(name, f"a sample every {as_given(usual, 6)} s, scatter {100 * scatter:.1f} % of a step.")
 
 
 def time_gaps(view: VoyageView) -> Check:
@@ -78,8 +80,9 @@ def time_gaps(view: VoyageView) -> Check:
     worst = int(gaps[np.argmax(steps[gaps])])
     return doubtful(
         name,
-        f"{gaps.size} gaps, {steps[gaps].sum():.6g} s in all, the longest {steps[worst]:.6g} s after "
-        f"{t[worst]:g} s. Nothing is made up there; predictions are not run across them.",
+        f"{gaps.size} gaps, {as_given(steps[gaps].sum(), 6)} s in all, the longest "
+        f"{as_given(steps[worst], 6)} s after {as_given(t[worst])} s. Nothing is filled in there; "
+        "predictions are not run across them.",
     )
 
 
@@ -88,9 +91,8 @@ def control_gaps(view: VoyageView) -> Check:
     parts = of_actuators(view.voyage.columns)
     found = {name: gaps(view.voyage, name) for name in (*CONTROLS, *parts)}
     said = [
-        f"{name} changed in {len(g)} gap{'s' * (len(g) > 1)} of {num(sum(b - a for a, b in g), 4)} s in all, "
-        "the "
-        f"longest {num(b - a, 4)} s after {a:g} s"
+        f"{name} changed in {len(g)} gap{'s' * (len(g) > 1)} of {as_given(sum(b - a for a, b in g), 4)} s in "
+        f"all, the longest {as_given(b - a, 4)} s after {as_given(a)} s"
         for name, g in found.items()
         if g
         for a, b in [max(g, key=lambda pair: pair[1] - pair[0])]
@@ -124,9 +126,9 @@ def clock_steps(view: VoyageView) -> Check:
         if said and went_on(view.voyage, int(i), usual):
             return wrong(
                 name,
-                f"the clock steps by {steps[i] - usual:.6g} s, {said}, at {t[i]:g} s, while the ship sails "
-                "on as if nothing had been: it was set. "
-                f"Take {said} off the stamps after that row, or cut the file there.",
+                f"the clock steps by {as_given(steps[i] - usual, 6)} s, {said}, at {as_given(t[i])} s, "
+                f"while the ship sails on as if nothing had been: it was set. Take {said} off the stamps "
+                "after that row, or cut the file there.",
             )
     return good(name, "the clock makes no step of an hour, a day or a week.")
 

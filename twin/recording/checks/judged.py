@@ -46,7 +46,7 @@ def judged(view: VoyageView, checks: Checks) -> list[Check]:
         answers |= {name: a for name, a in again.items() if name not in named}
     answers |= named
     broken = {name for name, off in offs(coarse(without)).items() if off is not None and off > BROKEN}
-    return [no_witness(a, broken) if name not in named else a for name, a in answers.items()]
+    return [not_proved_beside(a, broken) if name not in named else a for name, a in answers.items()]
 
 
 def named_mistakes(view: VoyageView, answers: dict[str, Check]) -> tuple[dict[str, Check], VoyageView]:
@@ -76,7 +76,7 @@ def remade_by(voyage: Voyage, changed: Voyage) -> Voyage:
     return remade(voyage, {**measured(voyage), HEADING: changed[HEADING]})
 
 
-def no_witness(answer: Check, broken: set[str]) -> Check:
+def not_proved_beside(answer: Check, broken: set[str]) -> Check:
     """A proof that rests on what another check doubts is a doubt itself."""
     doubted = [name for name in WITNESSES.get(answer.name, ()) if name in broken]
     if not answer.unusable or not doubted:

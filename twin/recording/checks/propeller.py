@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.view import VoyageView
 
@@ -75,5 +75,7 @@ def advance(name: str, way: float, rate: float, diameter: float) -> Check:
                 "ship.",
             )
     return doubtful(
-        name, f"{saw}, expected {low:g} to {high:g}: another ship's file, a wrong unit, or a wrong diameter?"
+        name,
+        f"{saw}, expected {as_given(low)} to {as_given(high)}: another ship's file, a wrong unit, or a "
+        "wrong diameter?",
     )

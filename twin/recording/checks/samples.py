@@ -3,7 +3,7 @@
 import numpy as np
 
 from twin.live.signals.channels import BY_NAME
-from twin.num import num
+from twin.num import as_given
 from twin.recording.checks.answer import Check, doubtful, good
 from twin.recording.checks.view import VoyageView
 from twin.recording.samples import spikes as spike_rows
@@ -22,7 +22,7 @@ def missing_samples(view: VoyageView) -> Check:
     absent = ", ".join(name for name in v.absent() if not _follows(v, name)) or "nothing"
     if found:
         return doubtful(
-            "missing_samples", f"{'; '.join(found)}. Nothing is made up there. Absent altogether: {absent}."
+            "missing_samples", f"{'; '.join(found)}. Nothing is filled in there. Absent altogether: {absent}."
         )
     return good(
         "missing_samples",
@@ -52,7 +52,7 @@ def hole(v: Voyage, name: str) -> str:
     if gaps[i] <= limit:
         return ""
     where = "begins late," if i == 0 else "ends early," if i == gaps.size - 1 else "has a hole,"
-    return f"{name} {where} {num(gaps[i], 4)} s from {edges[i]:g} s"
+    return f"{name} {where} {as_given(gaps[i], 4)} s from {as_given(edges[i])} s"
 
 
 def plausible_values(view: VoyageView) -> Check:
@@ -73,12 +73,14 @@ def spikes(view: VoyageView) -> Check:
         rows = spike_rows(values, BY_NAME[name].wraps)
         if rows.size:
             i = int(rows[0])
-            found.append(f"{name} {rows.size}, first {num(values[i], 4)} at {view.voyage.time_s[i]:g} s")
+            found.append(
+                f"{name} {rows.size}, first {as_given(values[i], 4)} at {as_given(view.voyage.time_s[i])} s"
+            )
     if found:
         return doubtful(
-            "spikes", f"lonely samples: {'; '.join(found)}. In the map: despike = true blanks them."
+            "spikes", f"isolated samples: {'; '.join(found)}. In the map: despike = true blanks them."
         )
-    return good("spikes", "no lonely samples.")
+    return good("spikes", "no isolated samples.")
 
 
 def frozen(view: VoyageView) -> Check:
@@ -87,9 +89,7 @@ def frozen(view: VoyageView) -> Check:
         text for f in (frozen_heading, frozen_position, frozen_speed, frozen_yaw_rate) if (text := f(view))
     ]
     if found:
-        return doubtful(
-            "frozen", f"{'; '.join(found)}. A sensor that hangs: blank this stretch, or cut it off."
-        )
+        return doubtful("frozen", f"{'; '.join(found)}. A frozen sensor: blank this stretch, or cut it off.")
     return good("frozen", "nothing stands still that should move.")
 
 
@@ -154,7 +154,8 @@ def standing(
     t = view.even.time_s
     said = text.format(moved[i] * unit)
     return (
-        f"{name} stays {x[starts[i]]:.6g} from {num(t[starts[i]], 4)} to {num(t[ends[i]], 4)} s while {said}"
+        f"{name} stays {as_given(x[starts[i]], 6)} from {as_given(t[starts[i]], 4)} to "
+        f"{as_given(t[ends[i]], 4)} s while {said}"
     )
 
 

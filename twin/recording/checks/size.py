@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good
 from twin.recording.checks.view import VoyageView
 
@@ -24,10 +24,10 @@ def ship_size(view: VoyageView) -> Check:
     froude = speed / np.sqrt(G * length)
     turning = tightest(view, length)
     draught = float(np.nanmedian(view.voyage["draught_mean_m"])) if view.voyage.has("draught_mean_m") else 0.0
-    saw = f"Froude number {froude:.3f}, tightest turn r L/U = {turning:.2f} with L = {num(length, 4)} m"
+    saw = f"Froude number {froude:.3f}, tightest turn r L/U = {turning:.2f} with L = {as_given(length, 4)} m"
     other = (
-        f"Another ship's file, or a model's ([scale] froude = ...)? {view.ship.name} is {num(length, 4)} m "
-        "long."
+        f"Another ship's file, or a model's ([scale] froude = ...)? {view.ship.name} is "
+        f"{as_given(length, 4)} m long."
     )
     if froude > FASTEST_FROUDE:
         return doubtful(name, f"{saw}: {num(speed, 3)} m/s is too fast for it. {other}")
@@ -64,10 +64,10 @@ def duration(view: VoyageView) -> Check:
     )
     if view.ship is not None:
         lengths = sailed / float(view.ship.L_pp)
-        saw = f"{num(seconds, 4)} s, {lengths:.0f} ship lengths"
+        saw = f"{as_given(seconds, 4)} s, {lengths:.0f} ship lengths"
         short = lengths < SHORT_LENGTHS
     else:
-        saw, short = f"{num(seconds, 4)} s, {num(sailed, 4)} m", seconds < SHORT_S
+        saw, short = f"{as_given(seconds, 4)} s, {as_given(sailed, 4)} m", seconds < SHORT_S
     if short:
         return doubtful(
             name,

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.physics.actuators import Actuator
 from twin.physics.actuators.channels import DRIVES
 from twin.physics.actuators.kinds import SPAN_US, STOP_US
@@ -43,7 +43,7 @@ def actuator_zero(view: VoyageView) -> Check:
     pushed = {a.name: _share(a, told[a.name]) for a in parts}
     driven = float(ship.U_0) * abs(sum(pushed.values()) / len(parts)) ** 0.5
     saw = f"it lies still ({num(speed, 2)} m/s) for {(last - first) * view.step_s:.0f} s while " + ", ".join(
-        f"{a.name} is told {num(told[a.name], 5)}" for a in parts
+        f"{a.name} is told {as_given(told[a.name], 5)}" for a in parts
     )
     if driven < DRIVEN * max(speed, STILL * float(ship.U_0) / DRIVEN):
         return good(name, f"{saw}, at which the ship file has it stand still.")

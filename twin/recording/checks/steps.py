@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.relations import over_ground
 from twin.recording.checks.view import VoyageView
@@ -110,7 +110,7 @@ def in_turn(view: VoyageView, s: StepSamples) -> Check | None:
     upper = upper_rows(s, big)
     text = (
         f"two headings in turn, {step:.1f} deg apart, {100 * upper.mean():.0f} % of the samples on the "
-        f"larger, from {s.t[big[0]]:g} s on"
+        f"larger, from {as_given(s.t[big[0]])} s on"
     )
     return wrong(
         NAME,
@@ -208,10 +208,9 @@ def across_north(view: VoyageView, s: StepSamples) -> Check | None:
     return wrong(
         NAME,
         f"{rows.size} headings are far off the course, all of them while the ship heads within "
-        f"{NEAR_NORTH_DEG:.0f} deg of north, the first "
-        f"{s.psi[rows[0]]:.0f} deg at {s.t[rows[0]]:g} s: means were taken across north, where 359 and 1 "
-        "make 180. Export single samples, or means "
-        "of sine and cosine; until then leave those cells empty.",
+        f"{NEAR_NORTH_DEG:.0f} deg of north, the first {s.psi[rows[0]]:.0f} deg at {as_given(s.t[rows[0]])} "
+        "s: means were taken across north, where 359 and 1 make 180. Export single samples, or means of "
+        "sine and cosine; until then leave those cells empty.",
     )
 
 
@@ -223,7 +222,8 @@ def jump(view: VoyageView, s: StepSamples) -> Check | None:
     i = int(big[np.argmax(np.abs(s.odd[big]))])
     rate = abs(s.odd[i]) / max(s.t[i + 1] - s.t[i], 1e-9)
     text = (
-        f"the heading jumps by {s.odd[i]:+.1f} deg at {s.t[i + 1]:g} s ({num(rate, 3)} deg/s) and stays there"
+        f"the heading jumps by {s.odd[i]:+.1f} deg at {as_given(s.t[i + 1])} s ({num(rate, 3)} deg/s) and "
+        "stays there"
     )
     independent = not view.derived("yaw_rate_degps") or (over_ground(view) is not None and view.way_on)
     who = "the rate of turn" if not view.derived("yaw_rate_degps") else "the course over ground"

@@ -11,7 +11,7 @@ from math import pi
 
 import numpy as np
 
-from twin.num import num
+from twin.num import as_given
 from twin.physics.actuators import Actuator
 from twin.physics.actuators.channels import DRIVES
 from twin.physics.actuators.kinds import SPAN_US, STOP_US
@@ -87,7 +87,7 @@ def _reverse(parts: tuple[Actuator, ...], text: str) -> Wiring:
     fixes = []
     for a, n, channel in drives:
         twice = 2.0 * stop(a, n)
-        offset = f" and offset = {num(twice, 6)}" if twice else ""
+        offset = f" and offset = {as_given(twice, 6)}" if twice else ""
         fixes.append(f"sign = -1{offset} for {a.name}.{channel}")
     return Wiring(text, undo, ", ".join(fixes))
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from twin.errors import DataError
 from twin.live.signals.channels import BY_NAME
+from twin.num import as_given
 
 PLACE = ("latitude_deg", "longitude_deg")
 COURSE = ("speed_over_ground_mps", "course_over_ground_deg")
@@ -89,9 +90,9 @@ class Signals:
         if time_s < self._latest - BACK_S:
             back = self._latest - time_s
             raise DataError(
-                f"{self.path}: line {line}: the clock steps back by {back:.6g} s{step_known(back)}. Two logs "
-                "pasted "
-                "together, or a clock that was set? Split the file there and import the parts."
+                f"{self.path}: line {line}: the clock steps back by {as_given(back, 6)} s{step_known(back)}. "
+                "Two logs pasted together, or a clock that was set? Split the file there and import the "
+                "parts."
             )
         self._latest = max(self._latest, time_s)
 

@@ -1,7 +1,8 @@
 // Compare: error against horizon, where it is large, the missing force; several answers on top of each other.
 
 import { address, change, found, start, state, unpack } from "/app/api.js";
-import { button, card, choose, clock, el, field, named, num, table } from "/app/dom.js";
+import { button, card, choose, clock, el, field, named, table } from "/app/dom.js";
+import { asGiven, num } from "/app/number.js";
 import { chart, heatStrip, ways } from "/app/draw.js";
 import { timePlot, timeView, zoomer } from "/app/plot.js";
 import { kept as saved } from "/app/save.js";
@@ -46,7 +47,7 @@ export function horizonCard(done) {
     return [{ name, x, y: rows.map((h) => h.position_mae_m), look: LOOKS[i % 4], points: true }, { name: i ? "" : "expected", x, y: rows.map((h) => h.noise_floor.position_mae_m), look: i ? `${LOOKS[i % 4]} dots` : "c-expected dashed" }];
   });
   const heads = ["after", ["position [m]"], ["expected [m]"], ["ratio"], ["across [m]"], ["heading [deg]"], ["expected [deg]"]];
-  const rows = done.flatMap((a) => a.result.horizons.map((h) => [`${num(h.horizon_s)} s${done.length > 1 ? `, ${label(a.job)}` : ""}`, h.position_mae_m, h.noise_floor.position_mae_m, h.position_mae_m / h.noise_floor.position_mae_m, h.lateral_mae_m, h.heading_mae_deg, h.noise_floor.heading_mae_deg]));
+  const rows = done.flatMap((a) => a.result.horizons.map((h) => [`${asGiven(h.horizon_s)} s${done.length > 1 ? `, ${label(a.job)}` : ""}`, h.position_mae_m, h.noise_floor.position_mae_m, h.position_mae_m / h.noise_floor.position_mae_m, h.lateral_mae_m, h.heading_mae_deg, h.noise_floor.heading_mae_deg]));
   const shown = rows.map((row) => row.map((c, i) => (i ? el("span", { class: i === 3 ? (c > 1.5 ? "bad" : c > 1.15 ? "fair" : "good") : null, title: String(c) }, num(c)) : c)));
   return card("How wrong, by how far ahead", chart("Position error, open loop", lines, { zero: "both", x: "seconds ahead", y: "m" }), saved("Errors by horizon", heads, rows, table("Mean absolute errors, open loop from the measured state", heads, shown)));
 }
@@ -110,7 +111,7 @@ export function seriesCard(done, v, view, extra) {
   });
   const inputs = v.inputs.map((c) => { const [title, unit] = named(c.name); return timePlot(title, [{ name: "recorded", t: unpackOnce(v, c.measured.t), y: unpack(c.measured.y), look: "c-measured" }], { unit, view, height: 110 }); });
   const way = [{ name: "measured", x: unpack(v.track.y), y: unpack(v.track.x), look: "c-measured" }, ...others.flatMap(({ a, voyage }, i) => Object.entries(voyage.track.lines).map(([key, l]) => ({ name: extra?.name(key, a) ?? "predicted", x: unpack(l.y), y: unpack(l.x), look: extra?.look(key, i) ?? LOOKS[i % 4] })))];
-  const s = card(`Measured and predicted: ${v.name}`, el("p.note", null, `The prediction starts anew from the measured state every ${num(done[0].view.longest_s)} s; it is never fitted to the voyage. Drag across a plot to see less time.`), zoomer(view), el(".two", null, plots.flat()), el("details", null, el("summary", null, `Controls and weather (${inputs.length})`), el(".three", null, inputs)), el("details", null, el("summary", null, "The way over ground"), ways(`Way over ground, ${v.name}`, way)));
+  const s = card(`Measured and predicted: ${v.name}`, el("p.note", null, `The prediction starts anew from the measured state every ${asGiven(done[0].view.longest_s)} s; it is never fitted to the voyage. Drag across a plot to see less time.`), zoomer(view), el(".two", null, plots.flat()), el("details", null, el("summary", null, `Controls and weather (${inputs.length})`), el(".three", null, inputs)), el("details", null, el("summary", null, "The way over ground"), ways(`Way over ground, ${v.name}`, way)));
   s.id = "series";
   return s;
 }

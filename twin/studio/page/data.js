@@ -2,7 +2,8 @@
 
 import { address, ask, files, found, over, samples, start, state } from "/app/api.js";
 import { again, doing } from "/app/main.js";
-import { boxes, button, card, choose, command, el, field, named, num, table } from "/app/dom.js";
+import { boxes, button, card, choose, command, el, field, named, table } from "/app/dom.js";
+import { asGiven, num } from "/app/number.js";
 import { timePlot, timeView, zoomer } from "/app/plot.js";
 import { TAGS, answerOf, go, kept, stateWord } from "/app/shared.js";
 import { kept as saved } from "/app/save.js";
@@ -67,7 +68,7 @@ async function looked(name) {
 }
 
 function head(file, k) {
-  return el("section.card", { "aria-label": "What it is" }, el("p.big", null, `Recognised as ${k.format}. `, k.samples ? `${k.rows} rows, ${num(k.duration_s, 5)} s, a sample every ${num(k.step_s)} s, ${k.columns.length} channels.` : ""),
+  return el("section.card", { "aria-label": "What it is" }, el("p.big", null, `Recognised as ${k.format}. `, k.samples ? `${k.rows} rows, ${asGiven(k.duration_s, 5)} s, a sample every ${asGiven(k.step_s)} s, ${k.columns.length} channels.` : ""),
     k.every > 1 ? el("p.note", null, `Every ${k.every}th sample is drawn.`) : null, (k.notes || []).map((n) => el("p.note", null, n)),
     k.absent?.length ? el("details", null, el("summary", null, `${k.absent.length} channels are absent`), el("p.note", null, k.absent.map((c) => named(c)[0]).join(", "))) : null);
 }
@@ -87,7 +88,7 @@ function checks(k, x, view, name) {
 const channelPlot = (name, x, view, height) => { const [title, unit] = named(name); return timePlot(title, [{ name: "recorded", t: x.time_s, y: x[name], look: "c-model" }], { unit, view, height }); };
 
 function channels(k, x, view) {
-  const rows = k.columns.map((c) => [named(c.name)[0], named(c.name)[1], num(c.low, 5), num(c.high, 5), `${num(100 * c.there)} %`, c.derived || ""]);
+  const rows = k.columns.map((c) => [named(c.name)[0], named(c.name)[1], asGiven(c.low, 5), asGiven(c.high, 5), `${num(100 * c.there)} %`, c.derived || ""]);
   const heads = ["channel", "unit", ["least"], ["most"], ["there"], "derived"];
   return el("section.card", { "aria-label": "Channels" }, el("h2", null, "Channels"), zoomer(view), el(".three", null, k.columns.map((c) => channelPlot(c.name, x, view, 120))), el("details", null, el("summary", null, "As numbers"), saved("Channels", heads, rows, table("Channels", heads, rows))));
 }
@@ -96,7 +97,7 @@ function mapCard(k, x, name) {
   if (!k.map_text) return null;
   const text = el("textarea", { id: "map-text", rows: Math.min(24, k.map_text.split("\n").length + 1), "aria-label": "The map as text", spellcheck: "false" });
   text.value = k.map_text;
-  const seen = (c) => { const s = k.columns.find((o) => o.name === c); return s ? `${num(s.low, 4)} to ${num(s.high, 4)} ${named(c)[1]}` : ""; };
+  const seen = (c) => { const s = k.columns.find((o) => o.name === c); return s ? `${asGiven(s.low, 4)} to ${asGiven(s.high, 4)} ${named(c)[1]}` : ""; };
   const rows = (k.entries || []).map((e) => [named(e.channel)[0], e.column, [e.unit, e.sign < 0 ? "other sign" : "", e.offset ? `offset ${num(e.offset)}` : "", e.frame].filter(Boolean).join(", ") || "as it is", seen(e.channel)]);
   return card("The map: which column is what", rows.length ? table(k.map ? `As ${k.map} says` : "Proposed from names, units, ranges and motion; nothing is written yet", ["channel", "column of the file", "read as", "values"], rows) : null,
     el("details", { open: !!k.problem }, el("summary", null, "The map as text"), text, el(".tools", null, button(`Save as ${mapOf(name)}`, doing(async () => { await ask("/api/maps", { name: mapOf(name), text: text.value }); await again(); }), { id: "save-map", disabled: state.project.read_only }))));

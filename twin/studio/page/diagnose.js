@@ -1,7 +1,8 @@
 // Diagnose: what is missing, how surely, how large in the words of the bridge, and what it would change.
 
 import { address, change, start, state } from "/app/api.js";
-import { button, card, choose, el, field, num, svg, table } from "/app/dom.js";
+import { button, card, choose, el, field, svg, table } from "/app/dom.js";
+import { asGiven, num } from "/app/number.js";
 import { unpack } from "/app/api.js";
 import { forcesCard, heatOf, seriesCard } from "/app/compare.js";
 import { timeView } from "/app/plot.js";
@@ -49,9 +50,9 @@ function cause(c, a, chosen) {
   const force = [["X", f.X_N, 1e-3, "kN"], ["Y", f.Y_N, 1e-3, "kN"], ["N", f.N_Nm, 1e-6, "MN m"]].filter(([, x]) => x).map(([n, x, k, u]) => `${n} ${num(k * x)} ${u}`).join(", ");
   return el("article.card", { "aria-label": c.effect }, el(".head", null, el("h3", null, c.effect), p === undefined ? null : el("b", null, `${num(100 * p, 2)} %`), button(on ? "Shown below" : "Show the prediction with it", () => change({ with: c.effect }), { class: "small", id: `with-${c.effect}`, "aria-pressed": String(on), disabled: !told.lines })),
     p === undefined ? null : bar(p, `probability ${num(100 * p, 2)} %`), el("p", null, c.says || ""), el("p", null, ways, force ? `Typical size ${force} (root mean square).` : ""), sizes, changes(told),
-    c.error_without === undefined ? null : el("p.note", null, `On parts that were not used to fit it, the ${num(c.error_horizon_s)} s error falls from ${num(c.error_without)} to ${num(c.error_with)} m; if it is the true cause, ${num(c.error_floor)} m is expected.`),
+    c.error_without === undefined ? null : el("p.note", null, `On parts that were not used to fit it, the ${asGiven(c.error_horizon_s)} s error falls from ${num(c.error_without)} to ${num(c.error_with)} m; if it is the true cause, ${num(c.error_floor)} m is expected.`),
     c.cannot_be_told_from?.length ? el("p.fair", null, `Cannot be told from ${c.cannot_be_told_from.join(", ")}.`) : null,
-    c.over_time?.length ? el("details", null, el("summary", null, "Part by part"), table("Size in each part of a voyage, over its estimate", ["part", ["share"], ["standard error"]], c.over_time.map((o) => [`${o.voyage}, ${num(o.start_s, 5)} to ${num(o.end_s, 5)} s`, num(o.share), num(o.sd)]))) : null);
+    c.over_time?.length ? el("details", null, el("summary", null, "Part by part"), table("Size in each part of a voyage, over its estimate", ["part", ["share"], ["standard error"]], c.over_time.map((o) => [`${o.voyage}, ${asGiven(o.start_s, 5)} to ${asGiven(o.end_s, 5)} s`, num(o.share), num(o.sd)]))) : null);
 }
 
 const span = (numbers) => { const v = numbers.map((n) => n.value); return `${num(Math.min(...v))} to ${num(Math.max(...v))} ${numbers[0].unit}`; };
@@ -79,5 +80,5 @@ function next(a) {
 function more(d) {
   const list = (words, names) => (names?.length ? el("p.note", null, `${words}: ${names.join(", ")}.`) : null);
   return card("What was not decided by these voyages", list("Too small to be seen here at a plausible size", d.not_visible), list("Could not be judged, for want of a recording", d.not_judged?.map((n) => `${n.effect} (${n.lacks.join(", ")})`)), Object.entries(d.answer?.not_named || {}).map(([n, why]) => el("p.note", null, `${n} is likely and not named: ${typeof why === "string" ? why : JSON.stringify(why)}`)),
-    d.moments?.length ? table("Transient disturbances", ["voyage", ["from [s]"], ["to [s]"], ["X [kN]"], ["Y [kN]"], ["N [MN m]"]], d.moments.map((m) => [m.voyage, num(m.start_s, 5), num(m.end_s, 5), num(m.X_N / 1e3), num(m.Y_N / 1e3), num(m.N_Nm / 1e6)])) : null);
+    d.moments?.length ? table("Transient disturbances", ["voyage", ["from [s]"], ["to [s]"], ["X [kN]"], ["Y [kN]"], ["N [MN m]"]], d.moments.map((m) => [m.voyage, asGiven(m.start_s, 5), asGiven(m.end_s, 5), num(m.X_N / 1e3), num(m.Y_N / 1e3), num(m.N_Nm / 1e6)])) : null);
 }

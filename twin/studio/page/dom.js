@@ -67,14 +67,6 @@ export function boxes(legend, id, names, chosen, changed) {
     names.length ? null : el("span.note", null, "none here yet"));
 }
 
-/** A number as it is read: so many digits as tell something. */
-export function num(x, digits = 3) {
-  if (x === null || x === undefined || Number.isNaN(x)) return "–";
-  const size = Math.abs(x);
-  if (size !== 0 && (size >= 1e6 || size < 1e-4)) return x.toExponential(digits - 1);
-  return String(size >= 10 ** (digits - 1) ? Math.round(x) : Number(x.toPrecision(digits)));
-}
-
 export function clock(s) {
   const t = Math.round(s), m = Math.floor(t / 60), h = Math.floor(m / 60);
   return h ? `${h}:${String(m % 60).padStart(2, "0")}:${String(t % 60).padStart(2, "0")}` : `${m}:${String(t % 60).padStart(2, "0")}`;

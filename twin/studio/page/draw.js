@@ -1,6 +1,7 @@
 // Drawings as SVG: lines over any axis, ways over ground, heat strips. Colours are classes, so that each light has its own.
 
-import { el, named, num, svg } from "/app/dom.js";
+import { el, named, svg } from "/app/dom.js";
+import { asGiven, num } from "/app/number.js";
 import { keepers } from "/app/save.js";
 
 export function ticks(low, high, count) {
@@ -38,8 +39,8 @@ function lined(title, lines, o, width) {
   const X = (x) => left + (x - x0) * kx, Y = (y) => height - bottom - (y - y0) * ky;
   const words = `${title}. ${lines.filter((l) => l.name).map((l) => `${l.name}: ${summary(l)}`).join("; ")}`;
   const out = svg("svg", { viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": words });
-  for (const t of ticks(y0, y1, Math.max(2, height / 55))) out.append(svg("path", { class: "grid", d: `M${left} ${Y(t).toFixed(1)}H${width - right}` }), svg("text", { x: left - 6, y: Y(t) + 4, "text-anchor": "end" }, num(t, 4)));
-  for (const t of ticks(x0, x1, Math.max(2, (width - left) / 85))) out.append(svg("path", { class: "grid", d: `M${X(t).toFixed(1)} ${top}V${height - bottom}` }), svg("text", { x: X(t), y: height - bottom + 15, "text-anchor": "middle" }, num(t, 4)));
+  for (const t of ticks(y0, y1, Math.max(2, height / 55))) out.append(svg("path", { class: "grid", d: `M${left} ${Y(t).toFixed(1)}H${width - right}` }), svg("text", { x: left - 6, y: Y(t) + 4, "text-anchor": "end" }, asGiven(t, 4)));
+  for (const t of ticks(x0, x1, Math.max(2, (width - left) / 85))) out.append(svg("path", { class: "grid", d: `M${X(t).toFixed(1)} ${top}V${height - bottom}` }), svg("text", { x: X(t), y: height - bottom + 15, "text-anchor": "middle" }, asGiven(t, 4)));
   out.append(svg("text", { class: "strong", x: (left + width - right) / 2, y: height - 4, "text-anchor": "middle" }, o.x || ""), svg("text", { class: "strong", x: 2, y: 10 }, o.y || ""));
   for (const m of o.marks || []) out.append(svg("path", { class: "l c-wrong dashed", d: `M${left} ${Y(m.y)}H${width - right}` }), svg("text", { class: "strong", x: width - right, y: Y(m.y) - 5, "text-anchor": "end" }, m.text));
   for (const l of lines) {
@@ -84,7 +85,7 @@ export function heatStrip(voyage, heat, view) {
         drawing.append(svg("rect", { class: `heat${look}`, x: x.toFixed(1), y: k * row + 1, width: (next - x + 0.6).toFixed(1), height: row - 2 }));
       }
     });
-    for (const t of ticks(heat.t[0], end, Math.max(2, (width - names) / 90))) if (X(t) < width - 20) drawing.append(svg("text", { x: X(t), y: height - 5, "text-anchor": "middle" }, `${num(t, 5)} s`));
+    for (const t of ticks(heat.t[0], end, Math.max(2, (width - names) / 90))) if (X(t) < width - 20) drawing.append(svg("text", { x: X(t), y: height - 5, "text-anchor": "middle" }, `${asGiven(t, 5)} s`));
     if (view.from !== null) drawing.append(svg("rect", { class: "heatbox", x: X(Math.max(view.from, heat.t[0])), y: 0.8, width: Math.max(X(Math.min(view.to, end)) - X(Math.max(view.from, heat.t[0])), 2), height: height - 22 }));
     box.replaceChildren(drawing);
   };
@@ -107,7 +108,7 @@ export function whiskers(title, rows) {
   for (const z of [-2, 0, 2]) out.append(svg("path", { class: "grid", d: `M${X(z)} 4V${height - 24}` }), svg("text", { x: X(z), y: height - 8, "text-anchor": "middle" }, z ? `${z} sd` : "prior"));
   rows.forEach((r, i) => {
     const y = i * row + 16, z = (v) => Math.max(-3, Math.min(3, (v - r.prior) / r.prior_sd));
-    out.append(svg("text", { class: "strong", x: 0, y: y + 4 }, r.name), svg("path", { class: "l c-measured", d: `M${X(-1.96)} ${y - 4}H${X(1.96)}` }), svg("path", { class: "l c-model", d: `M${X(z(r.value - 1.96 * r.sd))} ${y + 3}H${X(z(r.value + 1.96 * r.sd))}` }), svg("circle", { class: "c-model fill", cx: X(z(r.value)), cy: y + 3, r: 4 }), svg("text", { x: width - 80, y: y + 5 }, num(r.value, 4)));
+    out.append(svg("text", { class: "strong", x: 0, y: y + 4 }, r.name), svg("path", { class: "l c-measured", d: `M${X(-1.96)} ${y - 4}H${X(1.96)}` }), svg("path", { class: "l c-model", d: `M${X(z(r.value - 1.96 * r.sd))} ${y + 3}H${X(z(r.value + 1.96 * r.sd))}` }), svg("circle", { class: "c-model fill", cx: X(z(r.value)), cy: y + 3, r: 4 }), svg("text", { x: width - 80, y: y + 5 }, asGiven(r.value, 4)));
   });
   return el("figure", null, el("figcaption", null, el("b", null, title), el("span.legend", null, el("span", null, el("i.c-measured"), "prior, 95 %"), el("span", null, el("i.c-model"), "after, 95 %")), keepers(title, () => out, () => [["name", "prior", "prior_sd", "value", "sd"], ...rows.map((r) => [r.name, r.prior, r.prior_sd, r.value, r.sd])])), el(".draw", null, out));
 }

@@ -1,7 +1,8 @@
 // Plots over time by uPlot: one zoom for all of a page, kept in its address; measured, models, and the difference.
 
 import { change, route } from "/app/api.js";
-import { button, el, num, svg } from "/app/dom.js";
+import { button, el, svg } from "/app/dom.js";
+import { asGiven, num } from "/app/number.js";
 import { ticks } from "/app/draw.js";
 import { keepers } from "/app/save.js";
 
@@ -27,7 +28,7 @@ export function timeView() {
 /** Buttons for the zoom, for hands without a mouse. */
 export function zoomer(view) {
   const by = (shift, size) => () => { const [a, b] = view.range(), m = (a + b) / 2 + shift * (b - a), h = ((b - a) / 2) * size; view.set(m - h, m + h); };
-  const said = el("span.note", { role: "status" }), tell = () => { const [a, b] = view.range(); said.textContent = b > a ? `${num(a, 5)} to ${num(b, 5)} s` : ""; };
+  const said = el("span.note", { role: "status" }), tell = () => { const [a, b] = view.range(); said.textContent = b > a ? `${asGiven(a, 5)} to ${asGiven(b, 5)} s` : ""; };
   view.watch(tell);
   setTimeout(tell, 50);
   return el(".tools.sticky", { role: "group", "aria-label": "Time shown" }, button("−", by(0, 2), { "aria-label": "Show more time" }), button("+", by(0, 0.5), { "aria-label": "Show less time" }), button("◀", by(-0.5, 1), { "aria-label": "Earlier" }), button("▶", by(0.5, 1), { "aria-label": "Later" }), button("All", () => view.set(null, null), { "aria-label": "Show all time" }), said);
@@ -68,7 +69,7 @@ function paint(self, box, data, lines, options, view, readout) {
   self.plot = new uPlot({
     width, height: options.height || 170, legend: { show: false }, pxAlign: false, cursor: { sync: { key: "time" }, drag: { x: true, y: false }, y: false },
     scales: { x: { time: false, min: from, max: to }, y: { range: options.band ? (u, low, high) => { const m = Math.max(Math.abs(low), Math.abs(high), 2.5 * options.band); return [-m, m]; } : (u, low, high) => uPlot.rangeNum(low ?? 0, high ?? 1, 0.08, true) } },
-    axes: [{ ...axis, size: 30, space: 70, values: (u, v) => v.map((x) => `${num(x, 6)}`) }, { ...axis, size: 56, space: 26, values: (u, v) => v.map((x) => num(x, 4)) }],
+    axes: [{ ...axis, size: 30, space: 70, values: (u, v) => v.map((x) => `${asGiven(x, 6)}`) }, { ...axis, size: 56, space: 26, values: (u, v) => v.map((x) => asGiven(x, 4)) }],
     series: [{}, ...lines.map((l) => ({ stroke: look(l.look), width: l.width || 1.6, dash: l.look.includes("dashed") ? [7, 5] : l.look.includes("dots") ? [2, 4] : undefined, points: { show: false }, spanGaps: false }))],
     hooks: {
       setSelect: [(u) => { if (u.select.width > 4) { view.set(u.posToVal(u.select.left, "x"), u.posToVal(u.select.left + u.select.width, "x")); u.setSelect({ width: 0, height: 0 }, false); } }],
@@ -84,7 +85,7 @@ function told(u, data, lines, options) {
   if (i === null || i === undefined) return "";
   const at = (k) => { for (let d = 0; d < 40; d++) for (const j of [i - d, i + d]) { const v = data[k + 1][j]; if (v === v && v !== null && v !== undefined) return v; } return null; };
   const first = at(0);
-  return `${num(data[0][i], 6)} s: ${lines.map((l, k) => { const v = at(k); return `${l.name} ${num(v, 5)}${k && first !== null && v !== null && options.compared ? ` (${v - first >= 0 ? "+" : "−"}${num(Math.abs(v - first), 3)})` : ""}`; }).join(" · ")} ${options.unit || ""}`;
+  return `${asGiven(data[0][i], 6)} s: ${lines.map((l, k) => { const v = at(k); return `${l.name} ${asGiven(v, 5)}${k && first !== null && v !== null && options.compared ? ` (${v - first >= 0 ? "+" : "−"}${num(Math.abs(v - first), 3)})` : ""}`; }).join(" · ")} ${options.unit || ""}`;
 }
 
 /** One table of all times: [t, y of each line], NaN shown as a gap, and nothing where a line has no sample. */
@@ -115,8 +116,8 @@ function drawn(title, data, lines, options, view) {
   for (const v of ys) { if (v < low) low = v; if (v > high) high = v; }
   if (!(low < high)) { low -= 1; high += 1; }
   const X = (t) => left + ((t - a) / (b - a)) * (width - left - 12), Y = (v) => height - 30 - ((v - low) / (high - low)) * (height - 60), out = svg("svg", { viewBox: `0 0 ${width} ${height}` });
-  for (const v of ticks(low, high, 5)) out.append(svg("path", { class: "grid", d: `M${left} ${Y(v)}H${width - 12}` }), svg("text", { x: left - 6, y: Y(v) + 4, "text-anchor": "end" }, num(v, 4)));
-  for (const t of ticks(a, b, 8)) out.append(svg("text", { x: X(t), y: height - 12, "text-anchor": "middle" }, `${num(t, 6)} s`));
+  for (const v of ticks(low, high, 5)) out.append(svg("path", { class: "grid", d: `M${left} ${Y(v)}H${width - 12}` }), svg("text", { x: left - 6, y: Y(v) + 4, "text-anchor": "end" }, asGiven(v, 4)));
+  for (const t of ticks(a, b, 8)) out.append(svg("text", { x: X(t), y: height - 12, "text-anchor": "middle" }, `${asGiven(t, 6)} s`));
   out.append(svg("text", { class: "strong", x: left, y: 16 }, `${title}${options.unit ? ` [${options.unit}]` : ""}: ${lines.map((l) => l.name).join(", ")}`));
   lines.forEach((l, k) => {
     let d = "", up = true;

@@ -2,7 +2,8 @@
 
 import { address, ask, files, state } from "/app/api.js";
 import { again, doing } from "/app/main.js";
-import { card, choose, command, el, field, num, table } from "/app/dom.js";
+import { card, choose, command, el, field, table } from "/app/dom.js";
+import { asGiven, num } from "/app/number.js";
 import { chart } from "/app/draw.js";
 import { diff, ladder } from "/app/add.js";
 import { kept as saved } from "/app/save.js";
@@ -17,13 +18,13 @@ export async function ship(r) {
   const s = await ask(`/api/ships/${encodeURIComponent(r.item)}`), other = r.query.get("beside");
   const lines = other ? (await ask(`/api/difference?before=${encodeURIComponent(other)}&after=${encodeURIComponent(r.item)}`)).lines : [];
   const pick = field("difference from", choose("beside", [["", "none"], ...ships.filter((x) => x !== r.item).map((x) => [x, x])], other || "", (v) => { location.hash = address("ship", r.item, { beside: v, turn: r.query.get("turn") }); }));
-  return [el("h1", null, `${s.ship}: ${r.item}`), list, await trials(s, r), el(".two", null, numbers("Particulars", s.particulars), el("section.card", { "aria-label": "Effects" }, el("h2", null, "Effects of this model"), s.effects.length ? s.effects.map((e) => table(e.name, ["number", ["value"], "unit"], e.numbers.map((n) => [n.name.replaceAll("_", " "), num(n.value, 4), n.unit]))) : el("p", null, "The core alone."), el("p.note", null, s.calibrated ? "Its core was calibrated to reference voyages." : "Its core was not calibrated yet."))), ladder(s.history), numbers("Derivatives", s.derivatives), Object.keys(s.sources || {}).length ? card("Sources", el("dl", null, Object.entries(s.sources).map(([k, t]) => [el("dt", null, el("b", null, k)), el("dd", null, String(t))]))) : null, card("Difference of ship files", el("form", null, pick), lines.length ? diff(lines) : other ? el("p", null, "They are the same.") : null)];
+  return [el("h1", null, `${s.ship}: ${r.item}`), list, await trials(s, r), el(".two", null, numbers("Particulars", s.particulars), el("section.card", { "aria-label": "Effects" }, el("h2", null, "Effects of this model"), s.effects.length ? s.effects.map((e) => table(e.name, ["number", ["value"], "unit"], e.numbers.map((n) => [n.name.replaceAll("_", " "), asGiven(n.value, 4), n.unit]))) : el("p", null, "The core alone."), el("p.note", null, s.calibrated ? "Its core was calibrated to reference voyages." : "Its core was not calibrated yet."))), ladder(s.history), numbers("Derivatives", s.derivatives), Object.keys(s.sources || {}).length ? card("Sources", el("dl", null, Object.entries(s.sources).map(([k, t]) => [el("dt", null, el("b", null, k)), el("dd", null, String(t))]))) : null, card("Difference of ship files", el("form", null, pick), lines.length ? diff(lines) : other ? el("p", null, "They are the same.") : null)];
 }
 
 /** Every number with unit and source; what was estimated is marked. */
 function numbers(title, list) {
   const heads = ["number", ["value"], ["standard error"], "unit", "meaning", "source"], rows = list.map((n) => [n.name, n.value, n.sd, n.unit, n.doc, n.source || ""]);
-  const shown = rows.map((row, i) => [row[0], num(row[1], 5), num(row[2]), row[3], row[4], el("span", { class: /^given|^calibrated/.test(row[5]) ? "good" : !row[5] || /EST|ROUGH|ALEX|prior kept|^m\/|k_zz/.test(row[5]) ? "fair" : null }, row[5] || "usual value")]);
+  const shown = rows.map((row, i) => [row[0], asGiven(row[1], 5), num(row[2]), row[3], row[4], el("span", { class: /^given|^calibrated/.test(row[5]) ? "good" : !row[5] || /EST|ROUGH|ALEX|prior kept|^m\/|k_zz/.test(row[5]) ? "fair" : null }, row[5] || "usual value")]);
   return card(title, saved(title, heads, rows, table(`${title} with units and sources; in green what was given or calibrated, in amber what was only estimated`, heads, shown)));
 }
 

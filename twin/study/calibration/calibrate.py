@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import Any
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.physics.effect import Effect
 from twin.physics.effects import of_ship
 from twin.physics.effects.antenna_offset import AntennaOffset
@@ -22,7 +22,7 @@ from twin.study.calibration.rollout import rolled_out
 from twin.study.calibration.usual import clearly_there, usual
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import Fit, fit
-from twin.study.estimation.innovations import Floor
+from twin.study.estimation.innovations import NoiseModel
 from twin.study.estimation.start import told_of_waves, waves_on
 from twin.study.reference.derivatives import (
     Derivative,
@@ -80,7 +80,7 @@ class Core:
     # of the gear, the antenna and the wind, with their standard errors
     numbers: dict[str, dict[str, dict[str, Any]]]
     antenna: AntennaOffset | None  # where it was found, if not where the ship file has it
-    floor: Floor
+    floor: NoiseModel
     temper: float
 
 
@@ -96,18 +96,18 @@ def calibrate(
     sailed = [s.track for s in fitted]
     core = _core(sailed, ship, progress)
     if core.antenna is not None:
-        progress("again, with the antenna where it was found")
+        progress("fitting again, with the antenna where it was found")
         core = _with_antenna(core.antenna, sailed, ship, progress)
     tracks = core.tracks
     held_out = [(swung(t, core.model), first) for t, first in held_out]
     ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
     if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
-        progress("fitting to where it went")
+        progress("fitting along the path")
         open_loop_check = rolled_out(tracks, Model.of(ships["steps"]), excited, of_ship(ship)).ship
         ships["paths"] = with_core_of(ships["steps"], open_loop_check)
     off = {way: errors(Model.of(s), held_out) for way, s in ships.items()}
     way = by if by in ships else min(ships, key=lambda way: size(off[way]) - BETTER * (way == "steps"))
-    progress("learning what is usual on this ship")
+    progress("estimating the baseline of this ship")
     lasting_ones = usual(ships[way], tracks, core.floor)
     judged = {"held_out": off[way], "by_regime": by_regime(Model.of(ships[way]), held_out)}
     after = noted(ships[way], "structural", lasting_ones | judged)
@@ -135,20 +135,20 @@ def _with_antenna(
 def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
     model, known = Model.of(ship), of_ship(ship)
     unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
-    progress("fitting the core, and asking whether the rudder that was recorded is its order")
+    progress("fitting the core, and testing whether the recorded rudder angle is the order")
     tracks = [levelled(t) for t in sailed]
     rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
-    progress("asking again whether waves swing it")
+    progress("testing again whether waves move the ship")
     again = [swung(t, rough.model) for t in sailed]
     if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
         tracks = [levelled(t) for t in again]
         rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
-    progress("asking whether wind pushed it")
+    progress("testing whether wind pushed the ship")
     rough = with_or_without_wind(tracks, rough, known, TEMPER)
     unknowns = rough.unknowns
-    progress("finding the structural floor")
+    progress("estimating the noise model")
     floor, temper = structural_floor(rough.lines, unknowns), temper_of(rough.normal, unknowns)
-    progress("fitting again above the floor")
+    progress("fitting again with this noise model")
     found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, smooth=True)
     asked = tuple(e for e in found.model.effects if type(e).__name__ in ASKED_FOR)
     kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
@@ -257,28 +257,30 @@ def told(result: dict[str, Any]) -> list[str]:
     )
     if gear := result["gear"]:
         lines.append(
-            "  rudder_angle_deg is the rudder's order: the gear between them is now part of the "
-            f"model (SteeringLag: {_sizes(gear)})"
+            "  rudder_angle_deg is the rudder order: the steering gear behind it is now part of the model "
+            f"(SteeringLag: {_sizes(gear)})"
         )
     if antenna := result["antenna"]:
         lines.append(
-            "  place is measured elsewhere than the ship file had it: where is now part of the "
-            f"model (AntennaOffset: {_sizes(antenna)})"
+            "  position is measured elsewhere than the ship file says: the place is now part of the model "
+            f"(AntennaOffset: {_sizes(antenna)})"
         )
     if wind := result["wind"]:
         lines.append(
-            f"  wind pushed it on these voyages: how is now part of the model (Wind: {_sizes(wind)})"
+            "  wind pushed the ship on these voyages: its force is now part of the model (Wind: "
+            f"{_sizes(wind)})"
         )
     lines += [
-        f"  {name} was measured and too faint to be told: up to {HARDER:g} times as hard a push is reckoned "
-        "with and not called missing"
+        f"  {name} was measured, but too weak to be estimated: up to {as_given(HARDER)} times as strong, it "
+        "is allowed for and not called missing"
         for name in result["too_faint"]
     ]
     lines += [f"  {text}" for text in told_of_waves(result["waves"])]
     share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [
-        f"usual on this ship: {i['name']} {num(i['value'], 3)} +- {i['sd']:.1g} (kept in mind by diagnose)"
+        f"baseline of this ship: {i['name']} {num(i['value'], 3)} +- {num(i['sd'], 1)} {i['unit']} (allowed "
+        "for by twin diagnose)"
         for i in result["usual"]
     ]
     lines += ["", f"{'derivative':<10}{'before':>11}{'now':>11}{'+-':>9}"]
@@ -294,5 +296,5 @@ def told(result: dict[str, Any]) -> list[str]:
 
 def _sizes(numbers: dict[str, dict[str, Any]]) -> str:
     return ", ".join(
-        f"{name} {num(n['value'], 3)} +- {n['sd']:.1g} {n['unit']}" for name, n in numbers.items()
+        f"{name} {num(n['value'], 3)} +- {num(n['sd'], 1)} {n['unit']}" for name, n in numbers.items()
     )

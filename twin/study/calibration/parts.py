@@ -15,7 +15,7 @@ from twin.physics.ship import Ship
 from twin.study.calibration.held_out import HeldOut, errors, size
 from twin.study.estimation.columns import effect_unknowns
 from twin.study.estimation.fit import Catalogue, Fit, fit
-from twin.study.estimation.innovations import Floor
+from twin.study.estimation.innovations import NoiseModel
 from twin.study.reference.gear import CLEAR as CLEARLY_BETTER
 from twin.study.reference.weather import strengths
 from twin.study.track.track import Track
@@ -34,7 +34,7 @@ def with_or_without_wind(tracks: Sequence[Track], without: Fit, known: Catalogue
     if not pushed or any(t.missing().intersection(Wind.needs) for t in tracks):
         return without
     unknowns = (*without.unknowns, *effect_unknowns(Wind, Model(without.model.ship)))
-    found = fit(tracks, without.model, unknowns, known, Floor(), temper=temper, smooth=True)
+    found = fit(tracks, without.model, unknowns, known, NoiseModel(), temper=temper, smooth=True)
     return found if found.cost < without.cost - 2.0 * CLEARLY_BETTER else without
 
 

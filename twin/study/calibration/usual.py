@@ -12,7 +12,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.estimation.columns import Unknown
-from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
+from twin.study.estimation.innovations import Linear, NoiseModel, innovate, linearise
 from twin.study.prediction.left_out import models_without, path_error
 from twin.study.reference.derivatives import first_prior
 from twin.study.reference.healthy import left_out_scores
@@ -25,7 +25,7 @@ from twin.study.track.track import Track
 CLEAR = 4.0  # standard errors
 
 
-def usual(ship: Ship, tracks: Sequence[Track], floor: Floor) -> dict[str, Any]:
+def usual(ship: Ship, tracks: Sequence[Track], floor: NoiseModel) -> dict[str, Any]:
     """Offsets from the ship file and their covariance, in the unknowns' own units; by how much numbers differ
     from voyage to voyage; and the floor `beside` all that. A diagnosis starts from here."""
     model, known = Model.of(ship), of_ship(ship)
@@ -57,7 +57,7 @@ def path_errors(
     tracks: Sequence[Track],
     lines: Sequence[Linear],
     unknowns: Sequence[Unknown],
-    floor: Floor,
+    floor: NoiseModel,
     temper: float,
     centres: np.ndarray,
     between: Mapping[str, float],
@@ -77,13 +77,12 @@ def path_errors(
 
 def clearly_there(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
     """What this ship clearly shows of lasting effects: not wrong, but part of it. What no ship can show (a
-    rudder ahead of its order) stands in for something else, and is kept in mind without being told."""
-    can = {
-        u.label: (u.lo - u.centre, u.hi - u.centre) for u in nuisance_unknowns(Model.of(ship), of_ship(ship))
-    }
+    rudder ahead of its order) stands in for something else, and is allowed for without being told."""
+    of = {u.label: u for u in nuisance_unknowns(Model.of(ship), of_ship(ship))}
+    can = {label: (u.lo - u.centre, u.hi - u.centre) for label, u in of.items()}
     sd = np.sqrt(np.diag(np.array(found["covariance"])))
     return [
-        {"name": label, "value": float(v), "sd": float(s)}
+        {"name": label, "value": float(v), "sd": float(s), "unit": of[label].unit}
         for label, v, s in zip(found["labels"], found["offset"], sd, strict=True)
         if not label.startswith(("core.", "form."))
         and abs(v) > CLEAR * s

@@ -22,7 +22,7 @@ from twin.study.estimation.columns import (
     lateness_unknowns,
     rough_unknowns,
 )
-from twin.study.estimation.innovations import Floor, Linear, innovate
+from twin.study.estimation.innovations import Linear, NoiseModel, innovate
 from twin.study.reference.nuisance import (
     TEMPER,
     from_references,
@@ -78,14 +78,14 @@ def of_tracks(
     core = [u for u in (*nuisance, *rough) if u.owner in ("core", FORM, SEA, ROUGH)]
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
-    path = floor_of(ship) or Floor()
+    path = floor_of(ship) or NoiseModel()
     floor, temper = floor_of(ship, "beside") or path, _temper(ship)
     if references:
         progress("reading the reference voyages")
         usual = usual_unknowns(model, catalogue)
         lines = read_lines([swung(track(v, ship), model) for v in references], model, usual, catalogue)
         if floor_of(ship) is None:
-            progress("finding the structural floor")
+            progress("estimating the noise model")
             path = structural_floor(_of_core(lines, usual), core_unknowns(model))
             floor = floor_beside(lines, usual, path)
         temper = temper_of(innovate(lines, [floor])[0], usual)
@@ -93,7 +93,7 @@ def of_tracks(
     else:
         known = from_ship(model, nuisance)
     known = replace(known.beside(rough), daily=dict(known.daily) | of_known_weather(model, catalogue))
-    progress("linearising")
+    progress("linearising the ship and its instruments along the tracks")
     case = Case(
         tracks,
         model,

@@ -1,4 +1,4 @@
-"""Numbers of which what they do is not in proportion to them: a climb from afar may find what one from
+"""Numbers of which what they do is not in proportion to them: an iteration from afar may find what one from
 nothing cannot see."""
 
 import numpy as np
@@ -8,8 +8,9 @@ from twin.study.diagnosis.case import Case
 from twin.study.estimation.columns import Unknown, changed, with_values
 from twin.study.estimation.respond import respond, standard
 
-# times the linear guess, where a climb begins again when it ended in no plain world, or at nothing
-FARTHER = (2.0, 4.0)
+# times the linear guess, where a Newton iteration begins again when it ended in no plain scenario, or at
+# nothing
+MULTI_START = (2.0, 4.0)
 BENT = 0.3  # share of what a number does that is not in proportion to it
 
 
@@ -29,11 +30,11 @@ def bends(case: Case, model: Model, unknown: Unknown) -> bool:
         here = model.without_inputs(line.track.missing())[0]
         none, one, far = (
             respond(line.track, changed(here, unknown, unknown.centre + k * unknown.sd, case.catalogue))[0]
-            for k in (0.0, 1.0, FARTHER[-1])
+            for k in (0.0, 1.0, MULTI_START[-1])
         )
         did, missed = (
             (far - none) / standard(here),
-            (far - none - FARTHER[-1] * (one - none)) / standard(here),
+            (far - none - MULTI_START[-1] * (one - none)) / standard(here),
         )
         if np.linalg.norm(missed) > BENT * np.linalg.norm(did):
             return True

@@ -14,7 +14,7 @@ from twin.errors import DataError
 from twin.physics.effect import Effect
 from twin.physics.effects import of_ship
 from twin.study.diagnosis.case import Case
-from twin.study.diagnosis.decision import SIGNIFICANT
+from twin.study.diagnosis.criteria import SIGNIFICANT
 from twin.study.estimation.columns import lateness_unknowns
 from twin.study.instruments.estimate import estimate
 from twin.study.instruments.findings import Instruments

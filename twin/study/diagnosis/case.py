@@ -11,7 +11,7 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown
-from twin.study.estimation.innovations import Floor, Linear, innovate
+from twin.study.estimation.innovations import Linear, NoiseModel, innovate
 from twin.study.reference.directions import directions
 from twin.study.reference.evidence import Nuisance, Reduced, posterior, reduce
 from twin.study.reference.reading import MOST_SEGMENTS
@@ -21,7 +21,7 @@ from twin.study.track.track import Track
 
 @dataclass(frozen=True)
 class Scenario:
-    """One state of the world: factors on the floor's slow acceleration error (beside all that is usual; or
+    """One noise scenario: factors on the noise model's slow acceleration error (beside all that is usual; or
     `alone`, of the core alone) and on the water's own motion, and its odds."""
 
     share: float
@@ -64,8 +64,8 @@ class Case:
     unknowns: tuple[Unknown, ...]  # core, then the parameters of the candidates and of all instruments
     effects: tuple[Unknown, ...]  # parameters of the candidates
     nuisance: Nuisance
-    floor: Floor  # what is left when all unknowns explain what they can
-    path: Floor  # what the model alone leaves, when it is run free
+    floor: NoiseModel  # what is left when all unknowns explain what they can
+    path: NoiseModel  # what the model alone leaves, when it is run free
     temper: float
     odds: Mapping[str, float]
     lines: tuple[Linear, ...]  # of what is read of each track
@@ -105,12 +105,12 @@ class Case:
         return tuple(name for name in self.candidates if name in chosen)
 
     def reduced(
-        self, lines: Sequence[Linear], floors: Sequence[Floor], at: np.ndarray | None = None
+        self, lines: Sequence[Linear], floors: Sequence[NoiseModel], at: np.ndarray | None = None
     ) -> list[Reduced]:
         normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))
         return [reduce(n, self.nuisance, self.unknowns, self.effects, self.temper, at) for n in normals]
 
-    def scenarios(self, names: Sequence[str], doubt: float = 0.0) -> list[Floor]:
+    def scenarios(self, names: Sequence[str], doubt: float = 0.0) -> list[NoiseModel]:
         floors = (
             (self.path if w.alone else self.floor).scaled(w.share, flow=w.flow)
             for w in map(SCENARIOS.__getitem__, names)
@@ -187,7 +187,7 @@ def _uneven(line: Linear, time: float) -> Linear:
     return replace(line, shown=shown, track=replace(line.track, ripple=shown.ripple))
 
 
-def _rougher(floor: Floor, white: float, sensor: float) -> Floor:
+def _rougher(floor: NoiseModel, white: float, sensor: float) -> NoiseModel:
     """The floor with a fast part of at least `white` in each axis, and so many times the readings'
     scatter."""
     surge, sway, yaw = (max(white, w) for w in floor.white)

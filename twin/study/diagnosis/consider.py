@@ -8,7 +8,8 @@ import numpy as np
 
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.clear import change, significance
-from twin.study.diagnosis.decision import CLEAR, SURE, explained
+from twin.study.diagnosis.criteria import CLEAR, SURE
+from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
 from twin.study.diagnosis.moments import Moment, moments
 from twin.study.diagnosis.open_loop_check import roughly
@@ -67,15 +68,15 @@ def consider(
         likeliest=w.best.effects,
         explanation=explanation,
         left=left,
-        error_nothing=nothing.off_m / nothing.floor_m,
-        error_best=_ratio(best.off_m, best.floor_m),
+        error_nothing=nothing.open_loop_error_m / nothing.expected_error_m,
+        error_best=_ratio(best.open_loop_error_m, best.expected_error_m),
         manoeuvre=case.excited,
         power=power(case, seen),
         structural=case.path.share,
         noise=_by_axis(np.array(case.floor.white) / case.white),
         scatter=case.floor.sensor / case.scatter,
         sea=any(at_sea(t, case.model) for t in case.tracks),
-        rough=roughly(case) / nothing.floor_m,
+        rough=roughly(case) / nothing.expected_error_m,
         transient=strongest.log_evidence if strongest else 0.0,
         in_waves=any(m.voyage == t.name and wave_period_s(t) > 0.0 for m in pushes for t in case.tracks),
         resembles=tuple(name for name, p in w.unnamed.items() if p >= SURE),
@@ -106,7 +107,9 @@ def without_causes(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Set
     asked = (
         h.effects
         for h in weighed
-        if not case.causes(h.effects) and h.effects in found and np.isfinite(found[h.effects].off_m)
+        if not case.causes(h.effects)
+        and h.effects in found
+        and np.isfinite(found[h.effects].open_loop_error_m)
     )
     return next(asked, ())
 
@@ -114,9 +117,13 @@ def without_causes(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Set
 def _least_error(found: Mapping[Sets, Found], rest: Sets) -> float:
     """The open-loop error that the rest of a set leads to [m]; where nobody asked, the least of its parts
     (one of which is nothing)."""
-    if rest in found and np.isfinite(found[rest].off_m):
-        return found[rest].off_m
-    return min(f.off_m for s, f in found.items() if set(s) <= set(rest) and np.isfinite(f.off_m))
+    if rest in found and np.isfinite(found[rest].open_loop_error_m):
+        return found[rest].open_loop_error_m
+    return min(
+        f.open_loop_error_m
+        for s, f in found.items()
+        if set(s) <= set(rest) and np.isfinite(f.open_loop_error_m)
+    )
 
 
 def _ratio(error: float, expected: float) -> float | None:
@@ -151,7 +158,8 @@ def left_over(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Fo
     scenarios = [h for h in weighed if h.effects == chosen]
     plain = next((h for h in scenarios if SCENARIOS[h.scenario].plain), None)
     return Left(
-        error=_ratio(own.off_m, own.floor_m), share=_ratio(own.off_m, nothing.off_m),
+        error=_ratio(own.open_loop_error_m, own.expected_error_m),
+        share=_ratio(own.open_loop_error_m, nothing.open_loop_error_m),
         restless=scenarios[0].log_weight - plain.log_weight if plain else NO_GAP,
     )  # fmt: skip
 
@@ -179,7 +187,7 @@ def _cause(
     )
     none = max(f.hypothesis.log_weight for s, f in found.items() if not case.causes(s))
     alone = max(only - none, -NO_GAP)
-    gain = 1.0 - own.off_m / least if own and np.isfinite(own.off_m) else None
+    gain = 1.0 - own.open_loop_error_m / least if own and np.isfinite(own.open_loop_error_m) else None
     probability = w.effects[name] if name in w.effects else w.weather[name]
     return Cause(
         effect=name,

@@ -44,7 +44,7 @@ SOME = 0.5  # probability from which a kind of weather is told
 
 @dataclass(frozen=True)
 class Diagnosed:
-    """The contract's JSON, and what a report draws it from."""
+    """The JSON of docs/json.md, and what a report draws it from."""
 
     result: dict[str, Any]
     case: Case
@@ -62,12 +62,12 @@ def diagnose(
     weighed, found, seen = search(case, progress)
     w = weights(case, weighed, found)
     if instrument_suspected(case, w.best.effects):
-        progress("asking how the instruments go together, whatever the ship is")
+        progress("checking the instruments against each other, without the ship model")
         if wanted := asked_for(case):
             case = of_tracks(case.tracks, ship, references, progress, wanted)
             weighed, found, seen = search(case, progress)
             w = weights(case, weighed, found)
-    progress("gathering the facts")
+    progress("computing the facts")
     considered = consider(case, weighed, found, seen, w)
     facts, decision = considered.facts, decide(considered.facts)
     nothing = 0.0 if decision.reason == "pushed" else facts.nothing
@@ -81,7 +81,7 @@ def diagnose(
     ]
     listed = [c for c in candidates if c]
     if w.best.effects:
-        progress("asking each part of the voyages")
+        progress("estimating each part of the voyages by itself")
         parts = over_time(case, found[w.best.effects], w.best.effects)
         for c in listed:
             if c["effect"] in parts:
@@ -110,8 +110,8 @@ def diagnose(
         "moments": [m.told(case.model) for m in considered.pushes],
         "path": {
             "horizon_s": horizon_s(case.tracks[0], case.model),
-            "error_without": base.off_m,
-            "error_floor": base.floor_m,
+            "error_without": base.open_loop_error_m,
+            "error_floor": base.expected_error_m,
         },
         "next_manoeuvre": _next(case, found, decision.verdict, decision.missing, listed, visible, progress),
         "not_judged": _not_judged(case),
@@ -174,8 +174,10 @@ def _candidate(
         "typical_force": typical_force(case, best.model, name),
         "error_horizon_s": horizon_s(case.tracks[0], case.model),
         "error_without": _without(case, found, considered, name),
-        "error_with": held_out_error(case, best) if np.isnan(best.off_m) else best.off_m,
-        "error_floor": best.floor_m,
+        "error_with": held_out_error(case, best)
+        if np.isnan(best.open_loop_error_m)
+        else best.open_loop_error_m,
+        "error_floor": best.expected_error_m,
         "together_with": [n for n in best.hypothesis.effects if n != name],
         "cannot_be_told_from": list(considered.like.get(name) or alike(case, weighed, name)),
         "says": (case.catalogue[name].__doc__ or "").strip().splitlines()[0],
@@ -191,7 +193,7 @@ def _confidence(considered: Considered, name: str) -> float | None:
 def _without(case: Case, found: dict[tuple[str, ...], Found], considered: Considered, name: str) -> float:
     """Open-loop error without a cause: with the day's weather alone; without a kind of weather: of the model
     as it is [m]."""
-    return found[() if name in case.weather else considered.base].off_m
+    return found[() if name in case.weather else considered.base].open_loop_error_m
 
 
 def _weather(
@@ -244,7 +246,7 @@ def _next(
         rivals = (first, second)
     if rivals is None:
         return None
-    progress(f"sailing manoeuvres that would tell {rivals[0]} from {rivals[1]}")
+    progress(f"simulating manoeuvres that would tell {rivals[0]} from {rivals[1]}")
     sets = [s for s in found if rivals[0] in s]
     z = found[sets[0]].posterior.z if sets else np.ones(len(case.effects))
     return next_manoeuvre(case, case.model, *rivals, z)

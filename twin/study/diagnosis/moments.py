@@ -17,7 +17,7 @@ from twin.physics.model import Model
 from twin.study.diagnosis.case import MOST_SEGMENTS, Case
 from twin.study.diagnosis.open_loop_check import plain
 from twin.study.diagnosis.refine import Found, standing
-from twin.study.estimation.innovations import Floor, Linear, innovate
+from twin.study.estimation.innovations import Linear, NoiseModel, innovate
 from twin.study.estimation.respond import standard
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import likeliest
@@ -85,7 +85,7 @@ def _in_one(line: Linear, theta: np.ndarray) -> Linear:
     return replace(line, A=line.A @ theta[:, None], R=line.R @ theta[:, None], turns=turns)
 
 
-def _asked(case: Case, lines: Sequence[Linear], floor: Floor, lengths: float) -> list[Moment]:
+def _asked(case: Case, lines: Sequence[Linear], floor: NoiseModel, lengths: float) -> list[Moment]:
     time = float(case.model.ship.scale("time"))
     where = segments([line.track for line in lines], time, MOST_SEGMENTS)
     steps = [max(4, round(lengths * time / line.track.h)) for line in lines]

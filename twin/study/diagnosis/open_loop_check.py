@@ -15,7 +15,7 @@ from twin.physics.model import Model
 from twin.study.diagnosis.case import MOST_SEGMENTS, SCENARIOS, Case
 from twin.study.diagnosis.refine import Found, Sets, standing
 from twin.study.estimation.columns import with_values
-from twin.study.estimation.innovations import Floor, innovate
+from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.rough import COMES_AND_GOES, added, elsewhere
 from twin.study.prediction.openloop import MODEL, STRUCTURE, Windows, coarse, predict
 from twin.study.reference.evidence import Hypothesis, given, posterior, reduce
@@ -39,7 +39,7 @@ class OpenLoopCheck:
     """How far from the measured path each hypothesis ended, and what noise and structure alone would have
     made of it."""
 
-    found: Mapping[Sets, Found]  # with `off_m`; "nothing" is among them
+    found: Mapping[Sets, Found]  # with `open_loop_error_m`; "nothing" is among them
     floor: Mapping[str, float]  # [m], by world
     levered: Mapping[Sets, float]  # [m] and what each may leave whose side force attacks elsewhere along it
     windows: float  # that do not overlap, and no more than MOST
@@ -53,14 +53,22 @@ class OpenLoopCheck:
             self.found.get(h.effects),
             max(m for s, m in self.levered.items() if set(s) <= set(h.effects)),
         )
-        floor = _floor(h, self.floor, self.found[()].off_m, self.irregular, levered)
-        error = own.off_m if own else min(f.off_m for s, f in self.found.items() if set(s) <= set(h.effects))
+        floor = _floor(h, self.floor, self.found[()].open_loop_error_m, self.irregular, levered)
+        error = (
+            own.open_loop_error_m
+            if own
+            else min(f.open_loop_error_m for s, f in self.found.items() if set(s) <= set(h.effects))
+        )
         return self._path(error, floor)
 
     def weigh(self, weighed: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The same hypotheses with this evidence too, best first, but for those that spoil what a part of
         them does. As far as one effect leads it there alone, the second is not needed."""
-        single = (self._path(f.off_m, f.floor_m) for s, f in self.found.items() if len(self._causes(s)) == 1)
+        single = (
+            self._path(f.open_loop_error_m, f.expected_error_m)
+            for s, f in self.found.items()
+            if len(self._causes(s)) == 1
+        )
         complexity = max(0.0, COMPLEXITY + max(single, default=-COMPLEXITY))
         kept = [h for h in weighed if not self._degrades(h.effects)]
         extra = (
@@ -79,12 +87,12 @@ class OpenLoopCheck:
         there neither does that, but one that mends the steps of another's form."""
         own, parts = (
             self.found.get(effects),
-            (f.off_m for s, f in self.found.items() if self._causes(s) and set(s) < set(effects)),
+            (f.open_loop_error_m for s, f in self.found.items() if self._causes(s) and set(s) < set(effects)),
         )
         return (
             own is not None
-            and own.off_m > own.floor_m
-            and min(parts, default=np.inf) < (1.0 - DEGRADED) * own.off_m
+            and own.open_loop_error_m > own.expected_error_m
+            and min(parts, default=np.inf) < (1.0 - DEGRADED) * own.open_loop_error_m
         )
 
     def _path(self, error: float, floor: float) -> float:
@@ -102,7 +110,7 @@ def open_loop_check(
     """Run nothing and every hypothesis that could still be the answer over the held-out parts (`weighed`:
     what is known of all of them by now; one is likelier than where it was found if it leaves to any day what
     another had found). What was asked `before` is not run again."""
-    known = {s: f.off_m for s, f in before.found.items()} if before else {}
+    known = {s: f.open_loop_error_m for s, f in before.found.items()} if before else {}
     likely = {s: max((h.log_weight for h in weighed if h.effects == s), default=-np.inf) for s in found}
     best = max(likely.values())
     off = {
@@ -122,7 +130,7 @@ def open_loop_check(
         for s in off
     }
     ends = {s: _floor(plain(found[s].hypothesis), floor, off[()], irregular, levered[s]) for s in off}
-    asked = {s: replace(found[s], off_m=m, floor_m=ends[s]) for s, m in off.items()}
+    asked = {s: replace(found[s], open_loop_error_m=m, expected_error_m=ends[s]) for s, m in off.items()}
     windows = min(MOST, sum((len(t) - 1) * t.h / horizon_s(t, case.model) for t in case.tracks))
     return OpenLoopCheck(asked, floor, levered, windows, irregular, frozenset(case.weather))
 
@@ -206,7 +214,7 @@ def held_out_error(case: Case, found: Found) -> float:
     return total / max(count, 1)
 
 
-def _usual(case: Case, floor: Floor) -> float:
+def _usual(case: Case, floor: NoiseModel) -> float:
     """Mean position error [m] of a model that is as good as this floor."""
     errors = []
     for track in case.tracks:

@@ -1,5 +1,4 @@
-"""A hypothesis judged about its own size: linearised anew where its effects stand, so that what is not linear
-counts in full.
+"""A hypothesis relinearised at its estimate, so that what is not linear counts in full.
 
 An effect is granted that its form is only roughly right: a share of its own force may be something else, the
 one of DOUBTS under which the voyages are most probable (no share of what the ship meets because a stream
@@ -11,7 +10,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from twin.physics.model import Model
-from twin.study.diagnosis.bent import FARTHER, bent_numbers
+from twin.study.diagnosis.bent import MULTI_START, bent_numbers
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.estimation.columns import ROUGH, Unknown, with_values
 from twin.study.estimation.innovations import Linear, linearise
@@ -30,8 +29,8 @@ DOUBTS = (0.2, 0.1, 0.05)
 IRREGULAR = (1.0, 0.5)  # and of one that comes and goes with what no input shows
 Sets = tuple[str, ...]
 NEWTON = 8  # steps, at most
-BEHIND = 60.0  # log odds behind the likeliest world from which a restless one is out of the question
-LEAST = 0.2  # of a step that a climb tries: of 345 climbs four got higher by less
+BEHIND = 60.0  # log odds behind the likeliest scenario from which a restless one is out of the question
+LEAST = 0.2  # of a step that an iteration tries: of 345 iterations four got higher by less
 STANDS = 0.05  # prior widths that a step may still move
 
 
@@ -43,10 +42,10 @@ class Found:
     posterior: Posterior
     model: Model
     doubt: float = 0.0  # share of its own force that may be something else
-    off_m: float = float("nan")  # held-out position error, when it was asked (open_loop_check.py)
-    # and what it would be were this the truth, in a world as it was on the reference voyages
-    floor_m: float = float("nan")
-    # what the voyages say about that place, in its world
+    open_loop_error_m: float = float("nan")  # held-out position error, when it was asked (open_loop_check.py)
+    # and what it would be were this the truth, with the noise of the reference voyages
+    expected_error_m: float = float("nan")
+    # what the voyages say about that place, in its noise scenario
     reduced: Reduced | None = field(default=None, repr=False)
     steady: bool = False  # whether it holds a stream that may change, and did not (steady.py)
 
@@ -64,9 +63,8 @@ def refine(
     begun again farther out when that explains nothing plainly, or when a number whose effect is bent ended at
     nothing, or the whole below the log weight that was `hoped` for to first order (not those of effects that
     were found already, in a `part` of the set: they were looked for far out when they were); and from where
-    that part stands, when the whole ended below it. What was found; and, about it,
-    the hypothesis in every world, every one that has one of `wider` beside it, and every one without what any
-    day brings."""
+    that part stands, when the whole ended below it. What was found; and, about it, the hypothesis in every
+    noise scenario, every one that has one of `wider` beside it, and every one without what any day brings."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     narrow, kept = case.along(case.lines, chosen)
     at = np.zeros_like(z)
@@ -97,21 +95,21 @@ def _place(
     part: Found | None = None,
     kept: np.ndarray | slice = slice(None),
 ) -> "_Top":
-    """The best of the climbs that `refine` speaks of (`kept`: which of all effects' numbers these are)."""
+    """The best of the iterations of `refine` (`kept`: which of all effects' numbers these are)."""
     known = part.hypothesis.effects if part else ()
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     new = np.array([i for i in mine if case.effects[i].owner not in known], dtype=int)
     top = _Top.of(case, chosen, *_newton(case, chosen, mine, scenario, z)[1:])
-    if part and top.best.log_weight < min(hoped, _without_news(case, part, chosen)):
+    if part and top.best.log_weight < min(hoped, _without_gain(case, part, chosen)):
         at = np.where([u.owner in known for u in case.effects], part.posterior.z[kept], 0.0)
         top = top.or_from(case, chosen, mine, at)
     first = clipped(case, z)
     first[first == 0.0] = 1.0  # what its box had pressed to nothing begins at a plausible size
-    for k, factor in enumerate(FARTHER):
+    for k, factor in enumerate(MULTI_START):
         plain, fallen = SCENARIOS[top.best.scenario].plain, top.best.log_weight < hoped
         bent = [] if plain and not fallen and top.at[new].all() else bent_numbers(case, new, top.at)
         lost = [i for i in bent if fallen or top.at[i] == 0.0]
-        # numbers that work in proportion have one best place, which the first climb from afar found
+        # numbers that work in proportion have one best place, which the first iteration from afar found
         if not lost and (plain or (k and not bent)):
             break
         first[[i for i in lost if top.at[i] == 0.0]] = 1.0
@@ -121,11 +119,11 @@ def _place(
     # about none, a slow gear is seen by its delay alone
     if all(case.catalogue[name].kind == "Lag" for name in chosen):
         for i in mine:
-            top = top.or_from(case, chosen, mine, FARTHER[-1] * np.eye(z.size)[i])
+            top = top.or_from(case, chosen, mine, MULTI_START[-1] * np.eye(z.size)[i])
     return top
 
 
-def _without_news(case: Case, part: Found, chosen: Sets) -> float:
+def _without_gain(case: Case, part: Found, chosen: Sets) -> float:
     """Log weight of a set whose new effects say nothing beside a part of it."""
     h = part.hypothesis
     return h.log_evidence + case.log_prior(chosen, h.scenario)
@@ -133,8 +131,8 @@ def _without_news(case: Case, part: Found, chosen: Sets) -> float:
 
 @dataclass(frozen=True)
 class _Top:
-    """The best place that was climbed to so far, the tracks about it, and the hypothesis there in every world
-    (by columns of its own alone)."""
+    """The best place that was found so far, the tracks about it, and the hypothesis there in each
+    scenario (by columns of its own alone)."""
 
     at: np.ndarray
     lines: Sequence[Linear] = field(repr=False)
@@ -154,7 +152,7 @@ class _Top:
 
     @property
     def near(self) -> list[str]:
-        """The worlds that may still be the likeliest once others are beside it: the plain ones, and those
+        """The scenarios that may still be the likeliest once others are beside it: the plain ones, and those
         that are not far behind."""
         return [
             n
@@ -167,7 +165,7 @@ class _Top:
         return max(self.judged.values(), key=lambda h: h.log_weight)
 
     def or_from(self, case: Case, chosen: Sets, mine: np.ndarray, z: np.ndarray) -> "_Top":
-        """This place, or a better one to which a climb in the usual world leads from `z`; other worlds are
+        """This place, or a better one to which an iteration in the usual scenario leads from `z`; others are
         asked only if that one is better."""
         here, at, lines = _newton(case, chosen, mine, "usual", z)
         if here.log_weight <= self.judged["usual"].log_weight:
@@ -178,9 +176,9 @@ class _Top:
 def _newton(
     case: Case, chosen: Sets, mine: np.ndarray, scenario: str, z: np.ndarray
 ) -> tuple[Hypothesis, np.ndarray, Sequence[Linear]]:
-    """Where the effects' parameters come to stand: the hypothesis there (in that world, by columns of its own
-    alone), the place, and the tracks about it. A step after which the voyages are less probable is taken back
-    by half, and by half again: what is bent may lead a whole step astray."""
+    """Where the effects' parameters come to stand: the hypothesis there (in that scenario, by columns of its
+    own alone), the place, and the tracks about it. A step after which the voyages are less probable is taken
+    back by half, and by half again: what is bent may lead a whole step astray."""
     lines: Sequence[Linear] = case.lines
     merit, best, aim, share, here = (
         -np.inf,
@@ -219,7 +217,7 @@ def _told(case: Case, lines: Sequence[Linear], scenario: str, at: np.ndarray) ->
 def _everywhere(
     case: Case, chosen: Sets, lines: Sequence[Linear], at: np.ndarray, doubt: float, names: Sequence[str]
 ) -> dict[str, Reduced]:
-    """In each of these worlds."""
+    """In each of these scenarios."""
     return dict(zip(names, case.reduced(lines, case.scenarios(names, doubt), at), strict=True))
 
 

@@ -16,7 +16,8 @@ from twin.physics.effect import SensorFault
 from twin.study.diagnosis.altered import floats
 from twin.study.diagnosis.case import ODDS_WEAK, SCENARIOS, Case
 from twin.study.diagnosis.consider import left_over
-from twin.study.diagnosis.decision import NEARLY, explained
+from twin.study.diagnosis.criteria import NEARLY
+from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.open_loop_check import OpenLoopCheck, open_loop_check
 from twin.study.diagnosis.refine import Found, Sets, refine
 from twin.study.diagnosis.steady import steady
@@ -46,7 +47,7 @@ Searched = tuple[list[Hypothesis], dict[Sets, Found], dict[str, bool]]
 def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> Searched:
     """All hypotheses with their weights, best first; the few that were judged about their own size; and
     whether each candidate, had it its plausible size, would have shown."""
-    progress("every effect and every pair")
+    progress("weighing every effect and every pair")
     scenarios = dict(zip(SCENARIOS, case.reduced(case.lines, case.scenarios(list(SCENARIOS))), strict=True))
     seen = {name: visible(scenarios["usual"], name) for name in case.candidates if name not in case.unnamed}
     weak = [name for name in seen if not seen[name] and case.catalogue[name].needs]
@@ -65,9 +66,9 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
         chosen = book.next()
         if chosen is None:
             break
-        progress("judging " + " + ".join(chosen) + " about its own size")
+        progress(f"refitting {' + '.join(chosen)} at {'its' if len(chosen) == 1 else 'their'} estimate")
         book.judge(chosen)
-    progress("running each open loop over held-out parts")
+    progress("open-loop validation on held-out parts")
     book.asked = asked = open_loop_check(book.case, book.found, book.weighed(), book.asked)
     return book.proved(asked), book.found | dict(asked.found), seen
 
@@ -75,7 +76,7 @@ def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bo
 def _explained(case: Case, weighed: list[Hypothesis], found: dict[Sets, Found]) -> bool:
     best = weighed[0].effects
     if not case.causes(best):
-        return found[best].off_m <= NEARLY * found[best].floor_m
+        return found[best].open_loop_error_m <= NEARLY * found[best].expected_error_m
     return explained(left_over(case, weighed, found, best))
 
 
@@ -186,7 +187,7 @@ class _Book:
 
     def next(self) -> Sets | None:
         """What to judge about its own size next; each effect of a set alone before the set, and beside what
-        is no news: it may do what took two."""
+        is unchanged: it may do what took two."""
         while self.first:
             if (chosen := self.first.pop(0)) not in self.found:
                 return chosen

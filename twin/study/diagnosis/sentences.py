@@ -3,10 +3,12 @@ bridge."""
 
 from typing import Any
 
-from twin.num import num
+from twin.num import num, percent
+from twin.study.diagnosis.criteria import CERTAIN, NAMED
 
 Result = dict[str, Any]
-SMALL = "It is too small to reduce the open-loop error of these voyages: `twin add` may ask for others."
+SMALL = "It is too small to reduce the open-loop error of these voyages: `twin add` may ask for more voyages."
+ROUGHLY = "in weather like this, whose force is known only roughly, that may be the weather's effect"
 
 
 def named(result: Result) -> str:
@@ -17,7 +19,8 @@ def named(result: Result) -> str:
     doubt = f" These voyages cannot tell it from {' or '.join(rivals)}." if rivals else ""
     small = f" {SMALL}" if size and len(names) == 1 and not nearer(first) else ""
     more = "".join(
-        f" Beside it is something like {c['effect']}, or its form is another than nature's." for c in beside
+        f" Something like {c['effect']} acts beside it, or it acts in another form than the catalogue's."
+        for c in beside
     )
     return (
         f"Missing: {' and '.join(likely(result, n) for n in names)}. "
@@ -52,22 +55,22 @@ def resembles(result: Result) -> str:
     like, near = result["resembles"][0], _near(result)
     beside = f" Beside it: {' with '.join(near)}." if near else ""
     return (
-        "Something is missing that is none of the effects of the catalogue. It looks like "
+        "Something is missing that is not in the catalogue of effects. It resembles "
         f"{like['effect']}: {like['says']}{beside}"
     )
 
 
 def pushed(result: Result) -> str:
     return (
-        "Something is missing that no effect I know would do: it pushed the ship "
-        f"{when(result['moments'][0])} as it did not before."
+        "Something is missing that no known effect explains: a force pushed the ship "
+        f"{when(result['moments'][0])}, and not before or after."
     )
 
 
 def unexplained(result: Result) -> str:
     near = _near(result)
     nearest = f" Nearest, but not enough: {' with '.join(near)}." if near else ""
-    return f"Something is missing, but none of the effects I know explains it.{nearest}"
+    return f"Something is missing, but none of the known effects explains it.{nearest}"
 
 
 def one_of(result: Result) -> str:
@@ -80,36 +83,31 @@ def one_of(result: Result) -> str:
 
 def no_manoeuvre(result: Result) -> str:
     return (
-        "Undecided: no manoeuvre was sailed, and a ship that holds course and speed tells one cause from "
-        "no other."
+        "Undecided: no manoeuvre was sailed, and on a ship that holds course and speed no cause can be told "
+        "apart from another."
     )
 
 
 def weather(result: Result) -> str:
     says = next((likely(result, c["effect"]) for c in result["candidates"]), "something")
-    return (
-        f"Undecided: the readings say {says}, but in weather like this, whose force the model knows only "
-        "roughly, that may be the weather's "
-        "doing. A calmer voyage would tell."
-    )
+    return f"Undecided: the readings point to {says}, but {ROUGHLY}. A calmer voyage would tell."
 
 
 def as_near(result: Result) -> str:
     return (
-        "Undecided: the readings are not what they usually are, as no effect explains, but "
+        "Undecided: the readings differ from what is usual, and no effect explains how; but "
         f"{_error(result)}, which is no clear difference."
     )
 
 
 def astray(result: Result) -> str:
-    return f"Undecided: no effect that I know is likely, but {_error(result)}."
+    return f"Undecided: no known effect is likely, but {_error(result)}."
 
 
 def pushed_in_weather(result: Result) -> str:
     return (
-        f"Undecided: {when(result['moments'][0])} something pushed the ship as it did not before and after. "
-        "Where waves toss a ship that may be "
-        "a group of them."
+        f"Undecided: {when(result['moments'][0])} a force pushed the ship, and not before or after. "
+        "In waves that may be a group of high ones."
     )
 
 
@@ -133,22 +131,25 @@ def cannot_tell(result: Result) -> str:
 
 
 def why_not(c: Result, reason: str) -> str:
-    """Why what is likely is not named."""
+    """Why what is likely is not named: the words of each reason of the decision."""
     none = "the ship file has it" if any("in_ship_file" in p for p in c["parameters"]) else "none"
     with_it = (
         f"{num(c['error_with'], 3)} m with it, {num(c['error_without'], 3)} m without"
         if c["error_with"] is not None
-        else "nobody asked"
+        else "not computed"
     )
     return {
+        "not_in_explanation": "the explanation that leaves least does without it",
         "as_on_references": "single causes explained as much of healthy reference voyages of this ship",
+        "unlikely": f"its probability, {int(100.0 * c['probability'])} %, is below the {100.0 * NAMED:.0f} % "
+        "needed to name it",
         "not_significant": f"not one of its numbers is clearly other than {none}",
         "change_within_form": f"not one of its numbers is clearly other than {none}",
         "no_nearer": f"adding it does not reduce the open-loop error ({with_it})",
-        "weather_may_mislead": "in weather like this, whose force the model knows only roughly, that may be "
-        "the weather's doing",
-        "second_not_sure": "of two forms that are only roughly right, one may mend the other",
-    }.get(reason, "the explanation that leaves least does without it")
+        "weather_may_mislead": ROUGHLY,
+        "second_not_sure": f"a second cause needs {100.0 * CERTAIN:.0f} %: it may only be correcting an "
+        "error in the form of the first",
+    }[reason]
 
 
 def by_name(result: Result) -> Result:
@@ -160,13 +161,12 @@ def likely(result: Result, name: str) -> str:
     c = by_name(result).get(name)
     if c is None:
         return name
-    return (
-        f"{'a change of ' * any('in_ship_file' in p for p in c['parameters'])}{name} ({c['probability']:.0%})"
-    )
+    changed = any("in_ship_file" in p for p in c["parameters"])
+    return f"{'a change of ' * changed}{name} ({percent(c['probability'])})"
 
 
 def nearer(candidate: Result) -> bool:
-    """Whether the ship is led nearer with this effect than without any."""
+    """Whether the open-loop error is smaller with this effect than without any."""
     return candidate["error_with"] is not None and bool(candidate["error_with"] < candidate["error_without"])
 
 

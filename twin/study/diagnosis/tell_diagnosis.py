@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from twin.num import num
+from twin.num import as_given, num, percent
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.overtime import changes
 from twin.study.estimation.start import told_of_waves
@@ -17,13 +17,14 @@ def told(result: dict[str, Any]) -> list[str]:
     for c in result["resembles"]:
         lines += _candidate(c)
     if result["verdict"] == "unknown" and result["candidates"]:
-        lines.append("were it one of the effects I know:")
+        lines.append("if it is one of the known effects:")
     for c in result["candidates"]:
         lines += _candidate(c) + _not_named(c, result)
     lines += _today(result["weather"])
     chances = result["probabilities"]
     lines.append(
-        f"nothing missing: {chances['nothing_missing']:.0%}   something unknown: {chances['unknown']:.0%}"
+        f"nothing missing: {percent(chances['nothing_missing'])}   something unknown: "
+        f"{percent(chances['unknown'])}"
     )
     lines.append(_healthy(result))
     if result["next_manoeuvre"]:
@@ -37,7 +38,7 @@ def told(result: dict[str, Any]) -> list[str]:
         for n in result["not_judged"]
     ]
     lines += [
-        f"{n} was no stronger than on the reference voyages: it is reckoned with, and not called missing."
+        f"{n} was no stronger than on the reference voyages: it is allowed for, and not called missing."
         for n in result["as_on_references"]
     ]
     lines += told_of_waves(result["waves"])
@@ -53,12 +54,12 @@ def _healthy(result: dict[str, Any]) -> str:
     """How rare the voyage would be on this ship in health."""
     if result.get("p_value") is None:
         return (
-            "against healthy voyages: not asked, the ship file lacks the scores of its reference voyages "
-            "(calibrate anew)"
+            "against healthy voyages: not computed, the ship file lacks the scores of its reference voyages "
+            "(calibrate again)"
         )
     return (
-        f"against healthy voyages: p = {result['p_value']:.2g} by {result['p_value_references']} reference "
-        f"voyages, which can show {result['p_value_at_best']:.2g} at best"
+        f"against healthy voyages: p = {num(result['p_value'])} by {result['p_value_references']} reference "
+        f"voyages, which can show {num(result['p_value_at_best'])} at best"
     )
 
 
@@ -76,21 +77,21 @@ def _today(weather: list[dict[str, Any]]) -> list[str]:
             if w["typical_force"] and say.force(w["typical_force"])
             else ""
         )
-        lines.append(f"{w['probability']:6.0%}  {w['effect']}: {numbers}{pushed}")
+        lines.append(f"{percent(w['probability']):>6}  {w['effect']}: {numbers}{pushed}")
     return [*lines, ""]
 
 
 def _moment(m: dict[str, Any]) -> str:
-    return f"{say.when(m)} something pushed the ship that was not there before and after: {say.force(m)}"
+    return f"{say.when(m)} a force pushed the ship that was not there before or after: {say.force(m)}"
 
 
 def _candidate(c: dict[str, Any]) -> list[str]:
-    head = f"{c['probability']:6.0%}  {c['effect']}"
+    head = f"{percent(c['probability']):>6}  {c['effect']}"
     if c["together_with"]:
         head += f" (together with {', '.join(c['together_with'])})"
     lines = [head]
     for p in c["parameters"]:
-        file = f"   (ship file: {num(p['in_ship_file'], 4)})" if "in_ship_file" in p else ""
+        file = f"   (ship file: {as_given(p['in_ship_file'], 4)})" if "in_ship_file" in p else ""
         end = "   (at the end of its box)" if p["at_box_end"] else ""
         lines.append(
             f"          {p['name']:<12} {num(p['value'], 4):>11} {p['unit']:<5} 95 %: {num(p['low95'], 4)} "
@@ -99,19 +100,25 @@ def _candidate(c: dict[str, Any]) -> list[str]:
     force = c["typical_force"]
     if say.force(force):
         lines.append(f"          typically    {say.force(force)}")
-    floor = f" (a true cause may leave {num(c['error_floor'], 3)} m)" if c["error_floor"] is not None else ""
+    expected = (
+        f" ({num(c['error_floor'], 3)} m is expected even with the right cause)"
+        if c["error_floor"] is not None
+        else ""
+    )
     lines.append(
         f"          {c['error_horizon_s']:.0f} s error  {num(c['error_without'], 3)} m without, "
-        f"{num(c['error_with'], 3)} m with it{floor}, "
+        f"{num(c['error_with'], 3)} m with it{expected}, "
         "on parts not used for the fit"
     )
     if changes(c.get("over_time", ())):
-        lines.append("          not the same all the time (1 = the size above):")
+        lines.append("          its size changes with time (1 = the size above):")
         lines += [_part(p) for p in c["over_time"]]
     if c.get("confidence") is not None:
-        lines.append(f"          on other ships {c['confidence']:.0%} of causes with such facts were there")
+        lines.append(
+            f"          on other ships {percent(c['confidence'])} of causes with such facts were really there"
+        )
     if c["cannot_be_told_from"]:
-        lines.append(f"          not told from {', '.join(c['cannot_be_told_from'])}")
+        lines.append(f"          cannot be told apart from {', '.join(c['cannot_be_told_from'])}")
     return lines
 
 

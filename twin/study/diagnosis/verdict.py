@@ -10,7 +10,7 @@ import numpy as np
 from twin.physics import core
 from twin.physics.model import Model
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.diagnosis.decision import CERTAIN, CLEAR, LOST, SURE
+from twin.study.diagnosis.criteria import CERTAIN, CLEAR, LOST, SURE
 from twin.study.diagnosis.open_loop_check import COMPLEXITY
 from twin.study.diagnosis.refine import Found
 from twin.study.diagnosis.without import without
@@ -41,7 +41,7 @@ def rivals(weighed: Sequence[Hypothesis], found: Mapping[tuple[str, ...], Found]
             "effects": list(h.effects),
             "scenario": h.scenario,
             "log_bayes_factor": h.log_weight - weighed[0].log_weight,
-            "error_m": found[h.effects].off_m if h.effects in found else None,
+            "error_m": found[h.effects].open_loop_error_m if h.effects in found else None,
         }
         for h in first
     ]
@@ -99,7 +99,7 @@ def restless_water(case: Case, h: Hypothesis) -> list[str]:
 
 
 def _nameless(case: Case, h: Hypothesis, alone: Mapping[str, float]) -> bool:
-    """Whether what is at work under a hypothesis has no name: the world is so restless without a sea that
+    """Whether what is at work under a hypothesis has no name: the scenario is so restless without a sea that
     pushes it, or what is known by its form alone is there and does not merely mend the form of an effect
     that does clearly more `alone` (log weight of each effect by itself)."""
     known = [alone.get(name, -np.inf) for name in case.names(h.effects)]

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.errors import DataError
+from twin.num import num
 
 # places in the state
 MOTION, PLACE, SPEEDS, SLOW, FLOW = slice(0, 6), slice(0, 2), slice(3, 6), slice(6, 9), slice(9, 11)
@@ -107,9 +108,10 @@ class Filters:
     def _runs_away(self, k: int) -> RunsAway:
         growth = np.abs(np.linalg.eigvals(self.told.F[max(k - 1, 0)])).max()
         return RunsAway(
-            f"the fitted model runs away: what it is off by grows up to {growth:.3g} times in a time step, "
-            "so nothing can be told from these voyages. Check mass, yaw inertia and actuators in the ship "
-            "file and what the recording says of them; give more voyages, or readings without long gaps."
+            f"the fitted model runs away: what it is off by grows up to {num(growth, 3)} times in a time "
+            "step, so nothing can be told from these voyages. Check mass, yaw inertia and actuators in the "
+            "ship file and what the recording says of them; give more voyages, or readings without long "
+            "gaps."
         )
 
 

@@ -15,7 +15,7 @@ from twin.physics.model import Model
 from twin.study.estimation.box import within
 from twin.study.estimation.columns import LATE, Unknown, with_values
 from twin.study.estimation.dissipation import HalfSpaces, half_spaces
-from twin.study.estimation.innovations import Floor, Linear, Normal, innovate, linearise
+from twin.study.estimation.innovations import Linear, NoiseModel, Normal, innovate, linearise
 from twin.study.track.track import Track
 
 Catalogue = dict[str, type[Effect]]
@@ -52,8 +52,8 @@ class Fit:
 
 
 def fit(
-    tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue, floor: Floor, *,
-    temper: float = 1.0, smooth: bool = False,
+    tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue,
+    floor: NoiseModel, *, temper: float = 1.0, smooth: bool = False,
 ) -> Fit:  # fmt: skip
     """The most probable values of the unknowns, given the tracks and their priors, after at most STEPS steps.
 
@@ -125,7 +125,7 @@ class _Problem:
     model: Model
     unknowns: tuple[Unknown, ...]
     catalogue: Catalogue
-    floor: Floor
+    floor: NoiseModel
     temper: float
     smooth: bool
 

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from twin.errors import DataError
+from twin.num import as_given
 from twin.physics.effects import of_ship
 from twin.physics.effects.current import Current
 from twin.physics.model import Model
@@ -254,7 +255,7 @@ def _thinned(t: Track) -> Track:
 
 def text(result: Mapping[str, Any]) -> list[str]:
     """The report as lines for a terminal."""
-    lines = [f"What {result['voyage']} can tell (windows of {LENGTHS:g} ship lengths)", ""]
+    lines = [f"What {result['voyage']} can tell (windows of {as_given(LENGTHS)} ship lengths)", ""]
     lines += [f"{'sensors':<36}{'rank':>10}{'informative':>13}{'log10 cond':>12}  weakest direction"]
     for suite, g in result["observability"].items():
         weakest = ", ".join(f"{name} {x:+.2f}" for name, x in list(g["weakest"].items())[:3])

@@ -62,7 +62,7 @@ MEMORY_B, MEMORY_C = 3.0, 12.0  # correlation times of b and c, in ship lengths 
 
 
 @dataclass(frozen=True)
-class Floor:
+class NoiseModel:
     """What a correct model of this kind still leaves unexplained on this ship: the structural floor.
 
     `share` (3,): slow acceleration error as a share of the acceleration that hull, rudder and propeller
@@ -84,7 +84,7 @@ class Floor:
     wander: float = 0.0
     doubt: float = 0.0
 
-    def scaled(self, factor: float = 1.0, white: float = 1.0, flow: float = 1.0) -> "Floor":
+    def scaled(self, factor: float = 1.0, white: float = 1.0, flow: float = 1.0) -> "NoiseModel":
         (a, b, c), (d, e, f) = self.share, self.white
         return replace(
             self,
@@ -254,7 +254,7 @@ def busy(track: Track, model: Model) -> np.ndarray:
     return out
 
 
-def innovate(lines: Sequence[Linear], floors: Sequence[Floor], most: int | None = None) -> list[Normal]:
+def innovate(lines: Sequence[Linear], floors: Sequence[NoiseModel], most: int | None = None) -> list[Normal]:
     """Filter every segment of every track (or an even choice of `most`), under every floor, side by side; the
     normal equations for each floor."""
     where = segments([line.track for line in lines], float(lines[0].model.ship.scale("time")), most)
@@ -305,7 +305,7 @@ def _in_waves(lines: Sequence[Linear]) -> bool:
     return any(line.track.swell is not None for line in lines)
 
 
-def _noise(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> NoiseVariances:
+def _noise(lines: Sequence[Linear], floors: Sequence[NoiseModel], where: Where) -> NoiseVariances:
     """Every floor in turn, over all segments."""
     ship, h = lines[0].model.ship, _steps(lines, where)
     time, speed = float(ship.scale("time")), float(ship.scale("speed"))
@@ -338,7 +338,7 @@ def _spread(line: Linear) -> np.ndarray:
     return out.astype(LIGHT)
 
 
-def _slow(line: Linear, floor: Floor) -> np.ndarray:
+def _slow(line: Linear, floor: NoiseModel) -> np.ndarray:
     """(N, 3) variance of the slowly varying acceleration error."""
     calm = floor.calm * standard(line.model)
     return (
@@ -348,7 +348,7 @@ def _slow(line: Linear, floor: Floor) -> np.ndarray:
     )
 
 
-def _reading(track: Track, floor: Floor) -> np.ndarray:
+def _reading(track: Track, floor: NoiseModel) -> np.ndarray:
     """(N, 8) variance of each reading."""
     return np.square(
         floor.sensor
@@ -356,7 +356,7 @@ def _reading(track: Track, floor: Floor) -> np.ndarray:
     )
 
 
-def _start(lines: Sequence[Linear], floors: Sequence[Floor], where: Where) -> np.ndarray:
+def _start(lines: Sequence[Linear], floors: Sequence[NoiseModel], where: Where) -> np.ndarray:
     """(W, S, n, n) covariance at the start of each segment: the motion nearly unknown, b, c and the waves as
     they usually are."""
     ship, first = lines[0].model.ship, [(i, a, a + 1) for i, a, _ in where]

@@ -58,19 +58,21 @@ def steadied(track: Track) -> Track:
 
 
 def wave_period_s(track: Track) -> float:
-    """Of the waves that swing it most of the time."""
+    """Of the waves that move the ship most of the time."""
     return 0.0 if track.swell is None else 2.0 * np.pi / float(np.median(track.swell[:, 1:3]))
 
 
 def waves_on(tracks: Sequence[Track]) -> list[dict[str, Any]]:
-    """On which voyages waves were seen to swing it, and how often."""
+    """On which voyages waves were seen to move the ship, and how often."""
     return [{"voyage": t.name, "period_s": wave_period_s(t)} for t in tracks if t.swell is not None]
 
 
 def told_of_waves(waves: Sequence[dict[str, Any]]) -> list[str]:
     """The same in words."""
-    said = "predictions begin in the motion without them, and they are no effect's doing"
-    return [f"On {w['voyage']} waves swing it about every {num(w['period_s'], 2)} s: {said}." for w in waves]
+    said = "predictions begin from the motion without them, and no effect is named for them"
+    return [
+        f"On {w['voyage']} waves move the ship, about every {num(w['period_s'], 2)} s: {said}." for w in waves
+    ]
 
 
 def undone(track: Track, model: Model) -> Track:

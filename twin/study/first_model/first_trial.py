@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from math import radians
 from typing import Any
 
+from twin.num import as_given, num, percent
 from twin.physics.model import Model
 from twin.physics.ship import PARTICULARS, Ship
 from twin.study.first_model import regressions as reg
@@ -37,7 +38,7 @@ def sea_trial(ship: Ship) -> dict[str, Any]:
 
 def _driven(ship: Ship, figures: Mapping[str, Any], bridge: str) -> str:
     """What drives the ship at service speed."""
-    at = f"at {ship.U_0:.3g} m/s ({ship.U_0 / 0.514444:.1f} kn)"
+    at = f"at {num(ship.U_0, 3)} m/s ({ship.U_0 / 0.514444:.1f} kn)"
     if ship.actuators:
         return f"{100.0 * figures['power']:.0f} % of the power of {len(ship.actuators)} actuators {at}"
     return f"{figures['shaft_speed_rpm']:.0f} rpm {at}: {bridge}"
@@ -59,7 +60,7 @@ def doubts(figures: Mapping[str, Any], C_b: float) -> list[str]:
         )
     if figures["speed_left"] < 0.2:
         out.append(
-            f"only {figures['speed_left']:.0%} of the speed is left in the turn: check draught and "
+            f"only {percent(figures['speed_left'])} of the speed is left in the turn: check draught and "
             "propeller, and calibrate"
         )
     if figures["overshoot_20_20_deg"] is None or figures["overshoot_20_20_deg"] > 40.0:
@@ -75,10 +76,10 @@ def summary(ship: Ship, figures: Mapping[str, Any], warnings: list[str], given: 
         source = notes[f.name]["source"]
         mark = "" if source == "given" else f"estimated: {reg.SOURCES.get(source, source).split(':')[0]}"
         lines.append(
-            f"  {f.name:5} {getattr(ship, f.name):>12.5g} {f.metadata['unit']:6} "
+            f"  {f.name:5} {as_given(getattr(ship, f.name), 5):>12} {f.metadata['unit']:6} "
             f"{f.metadata['doc']:38} {mark}".rstrip()
         )
-    others = [f"--{option} {given[option]:g}" for option in INSIDE if given[option] is not None]
+    others = [f"--{o} {as_given(value)}" for o in INSIDE if (value := given[o]) is not None]
     lines += ["", f"  also given, and in its derivatives: {', '.join(others)}"] if others else []
     bridge = "as given" if given["shaft-speed-rpm"] else "compare it with the bridge's"
     unstable = "does not go straight by itself" + ", as many full ships" * (ship.C_b >= FULL)

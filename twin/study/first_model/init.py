@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from twin.errors import SettingsError
-from twin.num import num
+from twin.num import as_given, num, percent
 from twin.physics.actuators import Actuator
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, PARTICULARS, Derivatives, Ship
@@ -81,7 +81,9 @@ def _two_fullnesses(given: Given, ship: Ship) -> list[str]:
     C_b = given["block-coefficient"]
     if given["mass-kg"] is None or C_b is None or abs(ship.C_b - C_b) < 5e-4:
         return []
-    return [f"--mass-kg gives C_b = {num(ship.C_b, 4)}, which is used; --block-coefficient {C_b:g} is not"]
+    return [
+        f"--mass-kg gives C_b = {num(ship.C_b, 4)}, which is used; --block-coefficient {as_given(C_b)} is not"
+    ]
 
 
 def _ship(name: str, particulars: Numbers, derivatives: Numbers) -> Ship:
@@ -94,12 +96,14 @@ def _check(given: Given) -> None:
         value = given[option]
         if value is not None and not lo <= value <= hi:
             raise SettingsError(
-                f"--{option} {value:g} lies outside {lo:g} to {hi:g} ({doc}). Check its unit."
+                f"--{option} {as_given(value)} lies outside {as_given(lo)} to {as_given(hi)} ({doc}). Check "
+                "its unit."
             )
     L, B, T = (float(given[o]) for o in REQUIRED)  # type: ignore[arg-type]
     if B >= L or T >= L:
         raise SettingsError(
-            f"a ship {L:g} m long, {B:g} m wide and {T:g} m deep is no ship. Check the order of the numbers."
+            f"a ship {as_given(L)} m long, {as_given(B)} m wide and {as_given(T)} m deep is no ship. Check "
+            "the order of the numbers."
         )
 
 
@@ -109,14 +113,15 @@ def _particulars(given: Given, least: float = 0.2) -> Numbers:
     rho, box = given["rho-kg-m3"] or 1025.0, L * B * T
     mass, C_b, speed = given["mass-kg"], given["block-coefficient"], given["service-speed-mps"]
     by_mass = None if mass is None else mass / (rho * box)
-    if by_mass is not None and not least <= by_mass <= 0.99:
+    if mass is not None and by_mass is not None and not least <= by_mass <= 0.99:
         raise SettingsError(
-            f"--mass-kg {mass:g} fills {by_mass:.0%} of length x beam x draught; a ship fills {least:.0%} to "
-            "99 %. Check the mass (kg) and the draught."
+            f"--mass-kg {as_given(mass)} fills {percent(by_mass)} of length x beam x draught; a ship fills "
+            f"{percent(least)} to 99 %. Check the mass (kg) and the draught."
         )
     if by_mass is not None and C_b is not None and abs(by_mass / C_b - 1.0) > 0.05:
         raise SettingsError(
-            f"--mass-kg gives C_b = {by_mass:.3f}, but --block-coefficient is {C_b:g}. Leave one of them out."
+            f"--mass-kg gives C_b = {by_mass:.3f}, but --block-coefficient is {as_given(C_b)}. Leave one of "
+            "them out."
         )
     given_fullness = by_mass if by_mass is not None else C_b
     fullness = (
@@ -126,15 +131,15 @@ def _particulars(given: Given, least: float = 0.2) -> Numbers:
     x_G = given["x-g-m"] or 0.0
     if abs(x_G) > FARTHEST_G * L:
         raise SettingsError(
-            f"--x-g-m {x_G:g} is more than {FARTHEST_G:g} of the length from midship (half "
+            f"--x-g-m {as_given(x_G)} is more than {as_given(FARTHEST_G)} of the length from midship (half "
             "of L_pp, ahead positive). Check it."
         )
     I_z = given["yaw-inertia-kgm2"]
     m = mass if mass is not None else rho * C * box
     if I_z is not None and not 0.15 <= (I_z / m) ** 0.5 / L <= 0.4:
         raise SettingsError(
-            f"--yaw-inertia-kgm2 {I_z:g} is a radius of {(I_z / m) ** 0.5 / L:.2f} L; a ship "
-            "has 0.2 to 0.3. Check it."
+            f"--yaw-inertia-kgm2 {as_given(I_z)} is a radius of {(I_z / m) ** 0.5 / L:.2f} L; a ship has 0.2 "
+            "to 0.3. Check it."
         )
 
     def said(option: str, estimate: float, source: str) -> tuple[float, str]:
@@ -189,7 +194,9 @@ def _derivatives(h: reg.HullForm, p: Numbers, given: Given) -> Numbers:
 def _propellers(given: Given) -> float:
     count = given.get("propellers") or 1.0
     if count != round(count):
-        raise SettingsError(f"--propellers {count:g} is no whole number. How many propellers turn alike?")
+        raise SettingsError(
+            f"--propellers {as_given(count)} is no whole number. How many propellers turn alike?"
+        )
     return count
 
 
@@ -220,10 +227,9 @@ def _pitch_ratio(h: reg.HullForm, p: Numbers, given: Given, d: Numbers) -> float
     pitch = _matching(lambda x: turns(D, x), rpm, 0.3, 2.0)
     if abs(turns(D, pitch) / rpm - 1.0) > 0.02:
         raise SettingsError(
-            f"--shaft-speed-rpm {rpm:g} cannot drive it at {num(h.U, 3)} m/s with a propeller of {num(D, 3)} "
-            "m: no "
-            "usual pitch does. "
-            "Check shaft speed, service speed, propeller diameter and --propellers."
+            f"--shaft-speed-rpm {as_given(rpm)} cannot drive it at {num(h.U, 3)} m/s with a propeller of "
+            f"{num(D, 3)} m: no usual pitch does. Check shaft speed, service speed, propeller diameter and "
+            "--propellers."
         )
     return pitch
 
@@ -247,7 +253,7 @@ def _in_ranges(ship: Ship) -> None:
             if not f.metadata["lo"] <= value <= f.metadata["hi"]:
                 raise SettingsError(
                     f"the regressions give {where}.{f.name} = {num(value, 3)} {f.metadata['unit']} "
-                    f"({f.metadata['doc']}), outside "
-                    f"[{f.metadata['lo']:g}, {f.metadata['hi']:g}]: this hull is too unlike a ship. Check "
-                    "length, beam and draught."
+                    f"({f.metadata['doc']}), outside [{as_given(f.metadata['lo'])}, "
+                    f"{as_given(f.metadata['hi'])}]: this hull is too unlike a ship. Check length, beam and "
+                    "draught."
                 )

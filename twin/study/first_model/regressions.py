@@ -7,7 +7,7 @@ the core's form."""
 from math import atan, log10, pi
 from typing import NamedTuple
 
-from twin.num import num
+from twin.num import as_given, num
 
 Estimates = dict[str, tuple[float, str]]  # name -> value, key in SOURCES
 
@@ -85,7 +85,9 @@ def outside(h: HullForm) -> list[str]:
     found: dict[str, list[str]] = {}
     for source, name, lo, hi in VALIDITY:
         if not lo <= h.ratios[name] <= hi:
-            found.setdefault(name, []).append(f"{SOURCES[source].split(')')[0]}) {lo:g} to {hi:g}")
+            found.setdefault(name, []).append(
+                f"{SOURCES[source].split(')')[0]}) {as_given(lo)} to {as_given(hi)}"
+            )
     return [
         f"{name} = {num(h.ratios[name], 3)} is unlike the hulls of {', '.join(where)}: rougher until "
         "calibrated"

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from twin.errors import SettingsError
+from twin.num import as_given, num
 from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.ship import Ship
@@ -85,13 +86,12 @@ def as_map(found: Instruments) -> str:
     said = [e for e in _seen(found) if e.unknown.name in OFFSETS]
     for e in said:
         channel, k = OFFSETS[e.unknown.name]
-        lines.append(
-            f'{channel} = {{ column = "{channel}", offset = {-e.value * k:.6g} }}  # +- {1.96 * e.sd * k:.2g}'
-        )
+        entry = f'{channel} = {{ column = "{channel}", offset = {as_given(-e.value * k, 6)} }}'
+        lines.append(f"{entry}  # +- {num(1.96 * e.sd * k, 2)}")
     for e in _seen(found):
         if e not in said:
             lines.append(
-                f"# {e.unknown.name} = {e.value:.6g} {e.unknown.unit}: a map cannot take it off; a "
+                f"# {e.unknown.name} = {as_given(e.value, 6)} {e.unknown.unit}: a map cannot take it off; a "
                 "ship file can (--ship ... -o SHIP.toml)"
             )
     if not said:

@@ -13,7 +13,7 @@ from twin.study.instruments.select import Book, Weighed
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, InstrumentUnknown
 
 SEEN = 5.0  # log Bayes factor from which a fault is said to be seen (150 to 1)
-BLURRED = 0.5  # of a prior width: a number that the readings leave wider is not known
+UNINFORMATIVE = 0.5  # of a prior width: a number that the readings leave wider is not known
 ALIKE = 0.8  # correlation from which two numbers are said to be hard to tell apart
 P95 = 1.96
 CLOCKS = {
@@ -131,7 +131,7 @@ def _one(
         fault in ALWAYS or fault in faults,
         lbf,
         abs(value) + P95 * sd,
-        bool(wide[at] < BLURRED * book.fit.width[i]),
+        bool(wide[at] < UNINFORMATIVE * book.fit.width[i]),
         book.names[everything.at[j]] if alike[j] > ALIKE else None,
         None if own is None else readings[own].name,
     )

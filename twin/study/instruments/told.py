@@ -103,7 +103,7 @@ def told(found: Instruments) -> list[str]:
     untold = [
         f.words for name, f in FAULTS.items() if name not in (*ALWAYS, found.clock, *found.log_bayes_factors)
     ]
-    out += textwrap.wrap(f"no reading tells of: {'; '.join(untold)}", 110) if untold else []
+    out += textwrap.wrap(f"not observable from these readings: {'; '.join(untold)}", 110) if untold else []
     reference, later = found.relative
     out += [
         "",

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from twin.errors import DataError
-from twin.num import num
+from twin.num import as_given, num
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
@@ -25,7 +25,7 @@ CLEARLY = 1.5
 
 @dataclass(frozen=True)
 class ComparedVoyages:
-    """What compare found (`result` is the contract's JSON), and what a report draws it from."""
+    """What compare found (`result` is the JSON of docs/json.md), and what a report draws it from."""
 
     result: dict[str, Any]
     sailed: tuple[Sailed, ...]
@@ -46,9 +46,8 @@ def compare(
     rows = told_by_references(score.horizons(windows, horizons_s, floor is not None), windows, ship)
     if not rows:
         raise DataError(
-            f"{', '.join(s.track.name for s in sailed)}: no stretch of {min(horizons_s):g} s with controls "
-            "and position "
-            "throughout. Give a longer voyage, or shorter horizons with --horizon."
+            f"{', '.join(s.track.name for s in sailed)}: no stretch of {as_given(min(horizons_s))} s with "
+            "controls and position throughout. Give a longer voyage, or shorter horizons with --horizon."
         )
     longest = rows[-1]["horizon_s"]
     judged = energy([s.track for s in sailed], models)
@@ -105,7 +104,7 @@ def verdict(result: dict[str, Any]) -> str:
     error = f"{num(row[keys[0]], 3)} m and {num(row[keys[1]], 2)} deg"
     expected = f"expected {of}: {num(floor[keys[0]], 2)} m and {num(floor[keys[1]], 2)} deg"
     ratio = f"ratio {num(times[0], 2)} and {num(times[1], 2)}"
-    head = f"{row['horizon_s']:g} s open-loop error: {error}; {expected} ({ratio})"
+    head = f"{as_given(row['horizon_s'])} s open-loop error: {error}; {expected} ({ratio})"
     if max(times) < clearly:
         return f"{head}: no more than expected."
     where = result["where"][:1]

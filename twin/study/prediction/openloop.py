@@ -19,7 +19,7 @@ from twin.physics.effects.current import Current
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
-from twin.study.estimation.innovations import MEMORY_B, Floor, busy
+from twin.study.estimation.innovations import MEMORY_B, NoiseModel, busy
 from twin.study.estimation.respond import readings, standard, steered
 from twin.study.estimation.start import noisy, seen, steadied, true_motion
 from twin.study.reference.structure import once_off
@@ -75,7 +75,7 @@ class Windows:
 
 
 def predict(
-    track: Track, model: Model, horizons_s: Sequence[float] = HORIZONS_S, *, floor: Floor | None = None,
+    track: Track, model: Model, horizons_s: Sequence[float] = HORIZONS_S, *, floor: NoiseModel | None = None,
     stride_s: float = STRIDE_S, leads: int = LEADS, seed: int = 0,
 ) -> Windows:  # fmt: skip
     """Run the model over the track's windows. `floor`: what calibration left unexplained, if the ship knows
@@ -204,7 +204,7 @@ class _Slow:
 
 
 def _slow(
-    track: Track, model: Model, floor: Floor | None, start: np.ndarray, rng: np.random.Generator
+    track: Track, model: Model, floor: NoiseModel | None, start: np.ndarray, rng: np.random.Generator
 ) -> _Slow | None:
     """The disturbances that a floor describes (see innovations.py), drawn for every window."""
     if floor is None:

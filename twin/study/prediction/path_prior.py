@@ -7,7 +7,7 @@ import numpy as np
 
 from twin.physics.model import Model
 from twin.physics.ship import Ship
-from twin.study.estimation.innovations import Floor
+from twin.study.estimation.innovations import NoiseModel
 from twin.study.prediction.errors import vectors
 from twin.study.prediction.left_out import ALIKE
 from twin.study.prediction.openloop import STRUCTURE, Windows, predict
@@ -35,7 +35,7 @@ def errors_of(ship: Ship, tracks: Sequence[Track], horizons_s: Sequence[float]) 
 def prior(model: Model, tracks: Sequence[Track], horizons_s: Sequence[float]) -> PathError:
     """Simulated on these tracks with the ship's structural error, or the usual one of ships that were never
     calibrated."""
-    floor = floor_of(model.ship) or Floor()
+    floor = floor_of(model.ship) or NoiseModel()
     windows = [predict(t, fed(model, t)[0], horizons_s, floor=floor, seed=i) for i, t in enumerate(tracks)]
     usable = [h for h in horizons_s if any(w.valid[w.at(h)].any() for w in windows)] or [min(horizons_s)]
     covariance = np.array([WIDER**2 * _covariance(windows, h) for h in usable])

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.physics.ship import Ship
 from twin.study.prediction.openloop import Windows
 
@@ -117,7 +117,7 @@ def conditions(m: Means, ship: Ship) -> list[Condition]:
 
 
 def _number(value: float) -> str:
-    return f"{value:.0f}" if abs(value) >= 20 else f"{num(value, 3)}"
+    return f"{value:.0f}" if abs(value) >= 20 else num(value, 3)
 
 
 def _thirds(x: np.ndarray | None, what: str, unit: str, least: float) -> Iterator[Condition]:
@@ -169,13 +169,16 @@ def _weather(m: Means, name: str, what: str, unit: str, least: float) -> Iterato
 def _depth(depth: np.ndarray | None, T: float) -> Iterator[Condition]:
     for draughts in (1.5, 2.0, 3.0, 5.0):
         if depth is not None:
-            yield f"depth under {draughts:g} draughts ({num(draughts * T, 3)} m)", depth < draughts * T
+            yield (
+                f"depth under {as_given(draughts)} draughts ({num(draughts * T, 3)} m)",
+                depth < draughts * T,
+            )
 
 
 def _bank(bank: np.ndarray | None, B: float) -> Iterator[Condition]:
     for beams in (2.0, 4.0):
         if bank is not None:
-            yield f"a bank within {beams:g} beams ({num(beams * B, 3)} m)", bank < beams * B
+            yield f"a bank within {as_given(beams)} beams ({num(beams * B, 3)} m)", bank < beams * B
 
 
 def _times(m: Means) -> Iterator[Condition]:

@@ -3,7 +3,7 @@
 import textwrap
 from typing import Any
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.study.estimation.start import told_of_waves
 
 BAR = 24
@@ -39,21 +39,21 @@ def _units(error: float, floor: float) -> str:
 
 def _horizons(rows: list[dict[str, Any]]) -> list[str]:
     of = rows[0]["noise_floor"]["of"]
-    out = ["", f"open loop   position [m]   across [m]   heading [deg]   position over its noise ({of})"]
+    out = ["", f"open loop   position [m]   across [m]   heading [deg]   position over expected ({of})"]
     for r in rows:
         n = r["noise_floor"]
         cells = [
             f"{num(r[k], 3)} / {num(n[k], 2)}" for k in ("position_mae_m", "lateral_mae_m", "heading_mae_deg")
         ]
         units = _units(r["position_mae_m"], n["position_mae_m"])
-        out.append(f"{r['horizon_s']:>6g} s    {cells[0]:<15}{cells[1]:<13}{cells[2]:<16}{units}")
+        out.append(f"{as_given(r['horizon_s']):>6} s    {cells[0]:<15}{cells[1]:<13}{cells[2]:<16}{units}")
     return out
 
 
 def _channels(channels: dict[str, dict[str, Any]]) -> list[str]:
     out = [
         "",
-        f"{'channel':<36}{'error':>9}{'noise':>9}{'R2':>8}{'skill':>8}   (skill: against dead reckoning)",
+        f"{'channel':<36}{'error':>9}{'expected':>9}{'R2':>8}{'skill':>8}   (skill: against dead reckoning)",
     ]
     for name, c in channels.items():
         cells = [

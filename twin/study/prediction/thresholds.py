@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from twin.errors import did_you_mean
-from twin.num import num
+from twin.num import as_given, num
 from twin.study.prediction import score
 from twin.study.track.track import MEASURED
 
@@ -39,7 +39,7 @@ def metric(result: dict[str, Any], name: str) -> float | None:
     """The number that --fail-above speaks of; None when these voyages do not give it."""
     name, _, at = name.partition("@")
     row = next(
-        (r for r in result["horizons"] if at and f"{r['horizon_s']:g}" == at),
+        (r for r in result["horizons"] if at and f"{as_given(r['horizon_s'])}" == at),
         None if at else result["horizons"][-1],
     )
     if row is not None and name == "noise_units":
@@ -58,7 +58,7 @@ def passed(result: dict[str, Any], limits: Sequence[tuple[str, float]]) -> list[
         if value is None:
             out.append(f"{name} is not in the result (see twin compare --help)")
         elif value > limit:
-            out.append(f"{name} = {num(value, 4)} is above {limit:g}")
+            out.append(f"{name} = {num(value, 4)} is above {as_given(limit)}")
     return out
 
 

@@ -14,7 +14,7 @@ from twin.physics.effects.steering_lag import SteeringLag
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown, effect_unknowns
 from twin.study.estimation.fit import Catalogue, Fit, evidence, fit
-from twin.study.estimation.innovations import Floor, innovate, linearise
+from twin.study.estimation.innovations import NoiseModel, innovate, linearise
 from twin.study.track.track import Track
 
 # L/U_0; the first is as fast as a large tanker's must be
@@ -43,7 +43,7 @@ def with_or_without_gear(
             about,
             (*unknowns, *(gear_unknowns(about) if about.lags and not about.ship.actuators else ())),
             known,
-            Floor(),
+            NoiseModel(),
             temper=temper,
             smooth=True,
         )
@@ -73,7 +73,7 @@ def geared(
 
     def probable(m: Model) -> float:
         lines = [linearise(t, m.without_inputs(t.missing())[0], unknowns, known) for t in tracks]
-        return evidence(innovate(lines, [Floor()])[0], sd) / temper
+        return evidence(innovate(lines, [NoiseModel()])[0], sd) / temper
 
     none = (probable(model), 0.0, 0.0)
     _, _, travel = slow = max(none, *((probable(with_gear(0.0, k)), 0.0, k) for k in TRAVEL))

@@ -30,7 +30,7 @@ from twin.study.estimation.columns import (
     lateness_unknowns,
     rough_unknowns,
 )
-from twin.study.estimation.innovations import Floor, innovate
+from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.reference.evidence import Reduced, reduce, weigh_sets
 from twin.study.reference.nuisance import Known, lasting, of_known_weather
 from twin.study.reference.reading import MOST_SEGMENTS, read_lines
@@ -78,7 +78,7 @@ def left_out_scores(
     model: Model,
     catalogue: Mapping[str, type[Effect]],
     known: Known,
-    floor: Floor,
+    floor: NoiseModel,
     temper: float,
 ) -> list[float]:
     """The score of each reference voyage when only the others tell what is usual on the ship; none where

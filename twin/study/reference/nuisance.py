@@ -17,7 +17,7 @@ from twin.study.estimation.columns import (
     lateness_unknowns,
     sea_unknowns,
 )
-from twin.study.estimation.innovations import Floor, Linear, Normal, innovate
+from twin.study.estimation.innovations import Linear, NoiseModel, Normal, innovate
 from twin.study.reference.between import BetweenVoyages, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
 
@@ -79,7 +79,7 @@ def usual_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Un
 def from_references(
     lines: Sequence[Linear],
     unknowns: tuple[Unknown, ...],
-    floor: Floor,
+    floor: NoiseModel,
     temper: float,
     prior: np.ndarray | None = None,
 ) -> tuple[Nuisance, dict[str, float]]:
@@ -130,7 +130,7 @@ class Known:
 def known_from(
     lines: Sequence[Linear],
     unknowns: tuple[Unknown, ...],
-    floor: Floor,
+    floor: NoiseModel,
     temper: float,
     prior: np.ndarray | None = None,
 ) -> Known:

@@ -17,7 +17,7 @@ from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.fit import evidence
-from twin.study.estimation.innovations import Floor, Linear, innovate, linearise
+from twin.study.estimation.innovations import Linear, NoiseModel, innovate, linearise
 from twin.study.estimation.respond import respond
 from twin.study.estimation.start import steadied, wave_period_s
 from twin.study.reference.gear import geared
@@ -66,7 +66,7 @@ def swung(track: Track, model: Model) -> Track:
 def _likeliest(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple[Track, float, float]:
     """The track in waves as strong as the readings ask for, if anything swings it; log evidence of that, and
     of no waves."""
-    floor, rough = floor_of(model.ship) or Floor(), _swinging(track, model)
+    floor, rough = floor_of(model.ship) or NoiseModel(), _swinging(track, model)
     if rough.swell is None:
         return track, -np.inf, 0.0
     parts = [

@@ -1,9 +1,9 @@
-"""The structural floor of a ship: how much a calibrated model of this kind still leaves unexplained, found on
+"""The noise model of a ship: how much a calibrated model of this kind still leaves unexplained, found on
 reference voyages.
 
-Each number of the Floor is the one under which every reference voyage is most probable given the others, the
-core's own uncertainty integrated out (cross-validated likelihood; Rasmussen & Williams 2006, sec. 5.4.2),
-climbed on a geometric grid."""
+Each number of the NoiseModel is the one under which every reference voyage is most probable given the others,
+the core's own uncertainty integrated out (cross-validated likelihood; Rasmussen & Williams 2006, sec. 5.4.2),
+found by coordinate ascent on a geometric grid."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -15,7 +15,7 @@ from twin.errors import SettingsError
 from twin.physics.ship import Ship
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.fit import evidence
-from twin.study.estimation.innovations import Floor, Linear, Normal, innovate
+from twin.study.estimation.innovations import Linear, NoiseModel, Normal, innovate
 from twin.study.reference.path_error import of_ship
 
 MOST_SEGMENTS = 40
@@ -28,12 +28,12 @@ BOUNDS = {
     "sensor": (0.7, 4.0),
     "wander": (5e-4, 0.5),
 }
-WANDER = 4e-3  # where the climb begins, m/sqrt(s)
+WANDER = 4e-3  # where the ascent begins, m/sqrt(s)
 # how far the slow part may fall beside more unknowns, as a share of what a core alone is ever trusted with
 BESIDE = 0.4
 
 
-def floor_of(ship: Ship, name: str = "floor") -> Floor | None:
+def floor_of(ship: Ship, name: str = "floor") -> NoiseModel | None:
     """The floor that calibration left in the ship file, None when it was never calibrated: what the model
     alone leaves (`floor`), or what is left beside all that is usual on this ship (`beside`)."""
     table = ship.notes.get("structural", {}).get(name)
@@ -43,7 +43,7 @@ def floor_of(ship: Ship, name: str = "floor") -> Floor | None:
         rest: dict[str, Any] = {
             key: _by_axis(v) if key == "white" else float(v) for key, v in table.items() if key != "share"
         }
-        return Floor(_by_axis(table["share"]), **rest)
+        return NoiseModel(_by_axis(table["share"]), **rest)
     except (TypeError, ValueError, KeyError) as error:
         raise SettingsError(
             f"{ship.name}: [structural] {name} in the ship file is damaged ({error}). Calibrate it again."
@@ -79,21 +79,21 @@ def _by_axis(value: float | Sequence[float]) -> tuple[float, float, float]:
 
 
 def structural_floor(
-    lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor | None = None
-) -> Floor:
+    lines: Sequence[Linear], unknowns: Sequence[Unknown], start: NoiseModel | None = None
+) -> NoiseModel:
     """The most probable floor of these reference voyages (linearised about the fitted model): what the core
     alone leaves."""
-    return _climbed(lines, unknowns, start or Floor(), 1.0, MOST_SEGMENTS)
+    return _ascended(lines, unknowns, start or NoiseModel(), 1.0, MOST_SEGMENTS)
 
 
-def floor_beside(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: Floor) -> Floor:
+def floor_beside(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: NoiseModel) -> NoiseModel:
     """The same when the unknowns are all that a diagnosis keeps in mind: less is left beside them."""
-    return _climbed(lines, unknowns, start, BESIDE, FEWER)
+    return _ascended(lines, unknowns, start, BESIDE, FEWER)
 
 
-def _climbed(
-    lines: Sequence[Linear], unknowns: Sequence[Unknown], floor: Floor, least: float, most: int
-) -> Floor:
+def _ascended(
+    lines: Sequence[Linear], unknowns: Sequence[Unknown], floor: NoiseModel, least: float, most: int
+) -> NoiseModel:
     sd, step, floor = np.array([u.sd for u in unknowns]), 2.0, replace(floor, wander=floor.wander or WANDER)
     best = _scores(lines, [floor], sd, most)[0]
     while step > 1.2:
@@ -104,7 +104,7 @@ def _climbed(
             if _inside(t := change(floor, k), least)
         ]
         scores = _scores(lines, [t for _, t in trials], sd, most)
-        better: dict[int, tuple[float, Floor]] = {}
+        better: dict[int, tuple[float, NoiseModel]] = {}
         for (i, trial), score in zip(trials, scores, strict=True):
             if score > max(best, better.get(i, (best, floor))[0]):
                 better[i] = (score, trial)
@@ -120,7 +120,7 @@ def _climbed(
     return floor.scaled(few**0.5)
 
 
-def _together(floor: Floor, moves: Sequence[Floor]) -> Floor:
+def _together(floor: NoiseModel, moves: Sequence[NoiseModel]) -> NoiseModel:
     """The floor with all these single changes made together."""
     start, out = _logs(floor), _logs(floor)
     for move in moves:
@@ -128,16 +128,16 @@ def _together(floor: Floor, moves: Sequence[Floor]) -> Floor:
     return _floor(out)
 
 
-def _logs(floor: Floor) -> np.ndarray:
+def _logs(floor: NoiseModel) -> np.ndarray:
     return np.log([*floor.share, *floor.white, floor.calm, floor.flow, floor.sensor, floor.wander])
 
 
-def _floor(logs: np.ndarray) -> Floor:
+def _floor(logs: np.ndarray) -> NoiseModel:
     a, b, c, d, e, f, calm, flow, sensor, wander = np.exp(logs).tolist()
-    return Floor((a, b, c), calm, (d, e, f), flow, sensor, wander)
+    return NoiseModel((a, b, c), calm, (d, e, f), flow, sensor, wander)
 
 
-def _scores(lines: Sequence[Linear], floors: Sequence[Floor], sd: np.ndarray, most: int) -> list[float]:
+def _scores(lines: Sequence[Linear], floors: Sequence[NoiseModel], sd: np.ndarray, most: int) -> list[float]:
     return [predictive(n, sd) for n in innovate(lines, floors, most)] if floors else []
 
 
@@ -156,8 +156,8 @@ def predictive(normal: Normal, sd: np.ndarray) -> float:
     return float(np.mean([whole - evidence(normal.only(of != g), sd) for g in groups]))
 
 
-def _change(i: int) -> Callable[[Floor, float], Floor]:
-    def change(floor: Floor, factor: float) -> Floor:
+def _change(i: int) -> Callable[[NoiseModel, float], NoiseModel]:
+    def change(floor: NoiseModel, factor: float) -> NoiseModel:
         logs = _logs(floor)
         logs[i] += np.log(factor) * (0.5 if i == SENSOR else 1.0)
         return _floor(logs)
@@ -169,7 +169,7 @@ SENSOR = 8  # the place of the readings' scatter in `_logs`
 CHANGES = tuple(_change(i) for i in range(10))
 
 
-def _inside(floor: Floor, least: float) -> bool:
+def _inside(floor: NoiseModel, least: float) -> bool:
     low = {"share": least, "calm": least}
     values = {name: np.atleast_1d(getattr(floor, name)) for name in BOUNDS}
     return all(low.get(name, 1.0) * lo <= v <= hi for name, (lo, hi) in BOUNDS.items() for v in values[name])

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from twin.live.prediction.circumstances import SEAS
+from twin.num import as_given, num
 from twin.recording.voyage import Voyage
 from twin.study.reference.tube_calibration import needed
 
@@ -20,8 +21,8 @@ def doubts(
     left = [h for h in asked_s if h not in table["horizons_s"]]
     if left:
         said.append(
-            f"No voyage held helm and engine for {min(left):g} s, so there is no tube for "
-            f"{', '.join(f'{h:g}' for h in left)} s: give voyages with longer steady stretches."
+            f"No voyage held helm and engine for {as_given(min(left))} s, so there is no tube for "
+            f"{', '.join(as_given(h) for h in left)} s: give voyages with longer steady stretches."
         )
     if again := sorted(fitted & {v.name for v in voyages}):
         said.append(
@@ -36,7 +37,7 @@ def _few(table: Mapping[str, Any]) -> list[str]:
     counts = {h: table[f"cell_{h:g}s_all"]["voyages"] for h in table["horizons_s"]}
     few = {h: n for h, n in counts.items() if n < least}
     return [
-        f"{h:g} s: {n} voyage{'s' * (n > 1)} can promise {100 * n / (n + 1):.0f} % at best, and "
+        f"{as_given(h)} s: {n} voyage{'s' * (n > 1)} can promise {100 * n / (n + 1):.0f} % at best, and "
         f"{100 * level:.0f} % takes {least}: the tube is as wide as their greatest error."
         for h, n in few.items()
     ]
@@ -53,8 +54,8 @@ def _sea(table: Mapping[str, Any], L: float) -> list[str]:
     if len(known) > 1:
         return []
     return [
-        f"All voyages were sailed in one sea ({known[0]}, up to {table['highest'][4] * L / 100.0:.2g} m): "
-        "nothing is promised in a higher one."
+        f"All voyages were sailed in one sea ({known[0]}, up to {num(table['highest'][4] * L / 100.0, 2)} "
+        "m): nothing is promised in a higher one."
     ]
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from twin.live.observer.predict import usual_error
 from twin.live.prediction.calibrated import RegionTable
 from twin.live.prediction.judge import Judged
+from twin.num import num
 from twin.physics.ship import Ship
 from twin.study.reference.foretold import Errors
 from twin.study.reference.tube_calibration import regimes
@@ -52,13 +53,13 @@ def told(result: Mapping[str, Any]) -> list[str]:
     lines = [f"{result['ship']}: tube around its predictions, from {len(result['voyages'])} voyages"]
     for row in result["horizons"]:
         lines.append(
-            f"  {row['horizon_s']:4.0f} s: {100 * row['level']:.0f} % within {row['place_m']:.3g} m and "
-            f"{row['heading_deg']:.2g} deg, in the mean, if helm and engine are held "
-            f"({row['voyages']} voyages, {row['predictions']} predictions)"
+            f"  {row['horizon_s']:4.0f} s: {100 * row['level']:.0f} % within {num(row['place_m'], 3)} m and "
+            f"{num(row['heading_deg'], 2)} deg, in the mean, if helm and engine are held ({row['voyages']} "
+            f"voyages, {row['predictions']} predictions)"
         )
         lines += [
-            f"          {r['regime'].replace('_', ', sea '):<24} {r['place_m']:.3g} m, "
-            f"{r['heading_deg']:.2g} deg ({r['voyages']} voyages)"
+            f"          {r['regime'].replace('_', ', sea '):<24} {num(r['place_m'], 3)} m, "
+            f"{num(r['heading_deg'], 2)} deg ({r['voyages']} voyages)"
             for r in row["regimes"]
         ]
     return [*lines, *(f"note: {text}" for text in result["doubts"])]

@@ -1,7 +1,7 @@
 """Weather that was measured and that the model does not know: did it blow harder than on the reference
 voyages?
 
-What pushed it then as hard as now is no news: it is reckoned with in every hypothesis that gains by it, and
+What pushed it then as hard as now is unchanged: it is allowed for in every hypothesis that gains by it, and
 is never the answer."""
 
 from collections.abc import Mapping, Sequence
@@ -14,7 +14,7 @@ from twin.study.estimation.respond import respond, standard
 from twin.study.track.track import Track
 
 FAINT = 0.03  # of the standard acceleration: nobody would feel it
-HARDER = 1.5  # times the push of the reference voyages that are news; a wind 1.2 times as strong
+HARDER = 1.5  # times the push of the reference voyages that are a change; a wind 1.2 times as strong
 
 
 def strengths(

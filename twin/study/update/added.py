@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import Ship
@@ -25,10 +25,7 @@ def verdict(result: dict[str, Any], proof: HeldOutProof, shown: Fall) -> str:
     """The first sentence: is what was held out likelier, and what that is in metres."""
     names = " and ".join(result["added"])
     if proof.idle:
-        return (
-            f"{names}: fitted to nothing on these voyages; with it this ship file predicts what it did "
-            "without."
-        )
+        return f"{names}: fitted to zero on these voyages, so this ship file predicts as it did before."
     how = f"{_ratio(proof)}; {_metres(result, shown)}"
     if proof.proved:
         return f"With {names} measurements not used to fit it are likelier: {how}."
@@ -38,19 +35,17 @@ def verdict(result: dict[str, Any], proof: HeldOutProof, shown: Fall) -> str:
 def refused(proof: HeldOutProof, shown: Fall) -> str:
     """The reason, and what would tell."""
     if proof.idle:
-        return "nothing changes: the effect was fitted to nothing;"
+        return "nothing changes: the effect was fitted to zero;"
     reason = f"not proved: {_ratio(proof)}; {shown.sentence()}."
     if proof.more_s is None:
         return f"{reason} More of such voyages would not prove it."
     if proof.more_s > FOREVER_S:
         return f"{reason} Too little of it shows to be proved in a hundred hours."
-    return (
-        f"{reason} If it goes on so, about {_duration(proof.more_s)} more of held-out sailing would prove it."
-    )
+    return f"{reason} At this rate about {_duration(proof.more_s)} more of held-out sailing would prove it."
 
 
 def _ratio(proof: HeldOutProof) -> str:
-    sizes = f"{proof.log_ratio:+.3g} (95 %: {num(proof.low95, 3)} to {num(proof.high95, 3)})"
+    sizes = f"{num(proof.log_ratio, 3, sign=True)} (95 %: {num(proof.low95, 3)} to {num(proof.high95, 3)})"
     return (
         f"log likelihood ratio {sizes}, from {num(proof.needed, 2)} and with its interval above zero a proof"
     )
@@ -63,11 +58,11 @@ def _metres(result: dict[str, Any], shown: Fall) -> str:
     b, a, healthy = row["before"], row["after"], row["noise_floor"]
     turned = f"{num(b['heading_mae_deg'], 2)} to {num(a['heading_mae_deg'], 2)} deg"
     usual = (
-        f"usual for this ship: {num(healthy['position_mae_m'], 2)} m, "
+        f"expected of this ship: {num(healthy['position_mae_m'], 2)} m, "
         f"{num(healthy['heading_mae_deg'], 2)} deg"
     )
     return (
-        f"{shown.horizon_s:g} s open-loop error from {num(b['position_mae_m'], 3)} to "
+        f"{as_given(shown.horizon_s)} s open-loop error from {num(b['position_mae_m'], 3)} to "
         f"{num(a['position_mae_m'], 3)} m and {turned} ({usual})"
     )
 
@@ -96,11 +91,12 @@ def notes(
         )
     present = {type(e).__name__ for e in ship.effects}
     notes += [
-        f"{n} was in the model already: it was fitted anew." for n in sorted(present.intersection(made.names))
+        f"{n} was in the model already: it was fitted again."
+        for n in sorted(present.intersection(made.names))
     ]
     calm = [f"{n.effect}.{n.name}" for n in made.numbers if n.gained < UNTOUCHED]
     if calm:
-        notes.append(f"The voyages say little about {', '.join(calm)}: kept near what was believed before.")
+        notes.append(f"The voyages say little about {', '.join(calm)}: kept near its prior.")
     ends = [f"{n.effect}.{n.name} = {num(n.value, 3)} {n.unit}" for n in made.numbers if n.at_box_end]
     if ends:
         notes.append(
@@ -179,18 +175,21 @@ def told(result: dict[str, Any]) -> list[str]:
     out = [
         result["verdict"],
         "",
-        f"{'horizon':>8}{'before [m]':>13}{'after [m]':>12}{'usual [m]':>12}"
-        f"{'before [deg]':>15}{'after [deg]':>13}{'usual [deg]':>13}",
+        f"{'horizon':>8}{'before [m]':>13}{'after [m]':>12}{'expected [m]':>14}"
+        f"{'before [deg]':>15}{'after [deg]':>13}{'expected [deg]':>16}",
     ]
     for r in result["horizons"]:
         b, a, n = r["before"], r["after"], r["noise_floor"]
         out.append(
-            f"{r['horizon_s']:>6g} "
-            f"s{num(b['position_mae_m'], 3):>13}{num(a['position_mae_m'], 3):>12}"
-            f"{num(n['position_mae_m'], 2):>12}{num(b['heading_mae_deg'], 2):>15}"
-            f"{num(a['heading_mae_deg'], 2):>13}{num(n['heading_mae_deg'], 2):>13}"
+            f"{as_given(r['horizon_s']):>6} s"
+            f"{num(b['position_mae_m'], 3):>13}{num(a['position_mae_m'], 3):>12}"
+            f"{num(n['position_mae_m'], 2):>14}{num(b['heading_mae_deg'], 2):>15}"
+            f"{num(a['heading_mae_deg'], 2):>13}{num(n['heading_mae_deg'], 2):>16}"
         )
-    at = [f"{r['horizon_s']:.0f} s {r['log_likelihood_ratio']:+.3g}" for r in result["proof"]["by_horizon"]]
+    at = [
+        f"{r['horizon_s']:.0f} s {num(r['log_likelihood_ratio'], 3, sign=True)}"
+        for r in result["proof"]["by_horizon"]
+    ]
     out += [f"log likelihood ratio by horizon ({result['proof']['kind']}): {', '.join(at)}"]
     out += ["", "what was fitted (95 %)", *_told_numbers(result["parameters"])]
     if result["beside"]:

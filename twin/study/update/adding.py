@@ -165,7 +165,7 @@ def _beside_the_voyage(case: Case, names: Sets, progress: Progress) -> Found:
         likely = {n: w for n, w in likely.items() if w > best.hypothesis.log_weight - CLOSE}
         tried = []
         for name in sorted(likely, key=lambda n: -likely[n])[:2]:
-            progress(f"asking whether {name} was at work, too")
+            progress(f"testing whether {name} acted, too")
             tried.append(_judged(case, _set(case, (*chosen, name)), best))
         better = max(tried, key=lambda f: f.hypothesis.log_weight, default=best)
         if better.hypothesis.log_weight <= best.hypothesis.log_weight:
@@ -189,8 +189,8 @@ def _may_stand_beside(case: Case, name: str, chosen: Sets) -> bool:
 
 
 def _judged(case: Case, chosen: Sets, start: Found | None) -> Found:
-    """A set of effects about its own size, begun where a part of it was found to stand, or at its first-order
-    guess in the likeliest world."""
+    """A set of effects relinearised at its estimate, begun where a part of it was found to stand, or at its
+    first-order guess in the likeliest noise scenario."""
     if start is not None and start.reduced is not None:
         scenario, about, part = start.hypothesis.scenario, start.reduced, start
     else:

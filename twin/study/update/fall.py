@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.physics.ship import Ship
 from twin.study.prediction import locate, score
 from twin.study.prediction.expected import told_by_references
@@ -37,8 +37,7 @@ class Fall:
     def sentence(self) -> str:
         return (
             f"{self.measure} {num(self.before, 3)} -> {num(self.after, 3)} {self.unit} (change "
-            f"{self.low95:+.2g} "
-            f"to {self.high95:+.2g})"
+            f"{num(self.low95, 2, sign=True)} to {num(self.high95, 2, sign=True)})"
         )
 
     def entry(self) -> dict[str, Any]:
@@ -62,7 +61,7 @@ def fall(before: Sequence[Windows], after: Sequence[Windows], horizons_s: Sequen
     name = "position" if reading is None else list(MEASURED.values())[reading]
     unit = "m" if reading is None else UNITS[reading]
     mean_b, mean_a = (float(x.mean()) if x.size else float("nan") for x in (b, a))
-    return Fall(f"{name} error at {horizon:g} s", unit, mean_b, mean_a, low, high, b.size, horizon)
+    return Fall(f"{name} error at {as_given(horizon)} s", unit, mean_b, mean_a, low, high, b.size, horizon)
 
 
 def _reading(before: Sequence[Windows], after: Sequence[Windows]) -> int | None:

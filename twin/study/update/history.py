@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from twin.num import num
+from twin.num import as_given, num
 from twin.physics.ship import Ship
 
 SCHEMA_VERSION = 1
@@ -18,7 +18,7 @@ def told(ship: Ship) -> list[str]:
     steps = ladder(ship)
     if not steps:
         return [f"{ship.name}: nothing was added or removed yet; the core stands alone."]
-    out = [f"{ship.name}: held-out position error [m], before -> after (noise floor)"]
+    out = [f"{ship.name}: held-out position error [m], before -> after (expected error)"]
     for step in steps:
         done = " and ".join(
             f"{verb} {', '.join(step[key])}"
@@ -31,8 +31,8 @@ def told(ship: Ship) -> list[str]:
         )
         for e in step.get("errors", []):
             out.append(
-                f"{'':>12}{e['horizon_s']:>6g} s{num(e['before_m'], 3):>9} -> {num(e['after_m'], 3)}  "
-                f"({num(e['noise_floor_m'], 2)})"
+                f"{'':>12}{as_given(e['horizon_s']):>6} s{num(e['before_m'], 3):>9} -> "
+                f"{num(e['after_m'], 3)}  ({num(e['noise_floor_m'], 2)})"
             )
         if step.get("voyages"):
             out.append(
@@ -40,7 +40,10 @@ def told(ship: Ship) -> list[str]:
             )
         if "evidence" in step:
             e = step["evidence"]
-            sizes = f"{e['log_likelihood_ratio']:+.3g} ({num(e['low95'], 3)} to {num(e['high95'], 3)})"
+            sizes = (
+                f"{num(e['log_likelihood_ratio'], 3, sign=True)} ({num(e['low95'], 3)} to "
+                f"{num(e['high95'], 3)})"
+            )
             out.append(f"{'':>12}proof: {step['proof']}, log likelihood ratio {sizes}")
     return out
 

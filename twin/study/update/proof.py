@@ -26,6 +26,7 @@ import numpy as np
 from scipy.special import stdtrit
 
 from twin.errors import DataError
+from twin.num import as_given
 from twin.study.prediction.envelope import widening
 from twin.study.prediction.errors import vectors
 from twin.study.prediction.openloop import HORIZONS_S, MODEL, Windows
@@ -97,9 +98,9 @@ def prove(
     least = min(max(HORIZONS_S), LENGTHS * time_s)
     if max(asked, default=0.0) < 0.99 * least:
         raise DataError(
-            f"{', '.join(w.track.name for w in before)}: what is left to judge by does not hold {FEWEST:g} "
-            f"windows of {least:.0f} s that do "
-            "not overlap. Give a longer voyage, or another one with --held-out."
+            f"{', '.join(w.track.name for w in before)}: what is left to judge by does not hold "
+            f"{as_given(FEWEST)} windows of {least:.0f} s that do not overlap. Give a longer voyage, or "
+            "another one with --held-out."
         )
     pairs = list(zip(before, after, strict=True))
     gains = [[_gain(b, a, errors, h) for h in asked] for b, a in pairs]

@@ -1,0 +1,20 @@
+// Numbers as a person reads them, by the rule of twin/num.py, for the report's page and the workbench.
+
+/** What was measured or estimated, to so many significant digits with its known zeros; a power of ten only below 1e-4 and from 1e12 on; thousands with a thin space. */
+function num(x, digits = 3) {
+  if (x === null || x === undefined || !isFinite(x)) return "–";
+  if (x === 0) return "0";
+  const [mantissa, power] = x.toExponential(digits - 1).split("e").map(Number);
+  if (power < -4 || power >= 12) return `${mantissa.toFixed(digits - 1)}e${power}`;
+  return thin(Number(`${mantissa}e${power}`).toFixed(Math.max(digits - 1 - power, 0)));
+}
+
+/** What was declared or stands on an axis: at most so many digits, its whole part whole, no further zeros. */
+function asGiven(x, digits = 6) {
+  if (x === null || x === undefined || !isFinite(x)) return "–";
+  const whole = Math.abs(x) >= 10 ** digits && Math.abs(x) < 1e12;
+  const [head, power] = (whole ? thin(x.toFixed(0)) : num(x, digits)).split("e");
+  return (head.includes(".") ? head.replace(/\.?0+$/, "") : head) + (power ? `e${power}` : "");
+}
+
+const thin = (text) => text.replace(/\B(?<!\.\d*)(?=(\d{3})+(?!\d))/g, "\u202f");
