@@ -10,7 +10,7 @@ from twin.physics.ship import load
 def after_import(voyage: str, ship: str | None) -> str:
     """A ship that was never calibrated is, on its reference voyages, before anything is compared with it;
     whether this is one, nobody knows."""
-    if ship and "structural" not in load(ship).notes:
+    if ship and "structural" not in load(ship, arrays=False).notes:
         better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
         return (
             "its model was not calibrated yet. Import the voyages on which nothing was wrong (three or "

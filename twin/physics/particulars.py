@@ -125,6 +125,12 @@ class Ship:
         whole.not_over(str(path), [str(path)], force)
         save(self, path)
 
+    def __repr__(self) -> str:
+        """One line: name, length, effects, and whether it is calibrated."""
+        effects = ", ".join(type(e).__name__ for e in self.effects) or "no effects"
+        calibrated = "calibrated" if "structural" in self.notes else "not calibrated"
+        return f"<Ship {self.name!r}: {self.L_pp:g} m, {effects}, {calibrated}>"
+
     @cached_property
     def c(self) -> Coefficients:
         """The ship's derivatives with their units."""

@@ -19,7 +19,7 @@ from .actuators import Actuator
 from .actuators.file import read as read_actuators
 from .effect import Effect
 from .particulars import DERIVATIVES, ONE_SCREW, PARTICULARS, Derivatives, Ship
-from .ship_text import SCHEMA_VERSION, save, text, to_table
+from .ship_text import SCHEMA_VERSION, SECTIONS, save, text, to_table
 
 __all__ = [
     "DERIVATIVES",
@@ -62,6 +62,7 @@ def load(path: str | os.PathLike[str], arrays: bool = True) -> Ship:
         said = " ".join(str(error).split())[:200]
         raise SettingsError(f"{path}: not a valid TOML file: {said}. Save it as plain UTF-8 text.") from None
     if arrays:
+        ship_arrays.said_of_old(table, SECTIONS, Path(path))
         table = ship_arrays.joined(table, Path(path))
     return from_table(table, f"{path}: ")
 
