@@ -74,7 +74,7 @@ def joined(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
 
 
 def said_of_old(table: Mapping[str, Any], people: Sequence[str], path: Path) -> None:
-    """A warning in the log `twin` where a ship file holds its long arrays itself, as earlier versions wrote."""
+    """A warning in the log `twin` where a ship file holds its arrays itself, as earlier versions wrote it."""
     if SECTION in table or not divided(table, people)[1]:
         return
     import logging  # of the study: nothing on board reads these arrays
