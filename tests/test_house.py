@@ -7,6 +7,7 @@ deploy
 import ast
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -15,6 +16,7 @@ import pytest
 
 from bench.cli import BENCHES
 from twin.cli import VERBS, main
+from twin.physics.effects import BUILT_IN, OF_ACTUATORS, UNNAMED
 
 ROOT = Path(__file__).parents[1]
 ROOMS = (
@@ -228,6 +230,37 @@ def _called(node):
         if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "math"
         else ""
     )
+
+
+EFFECT_NAMED = {  # file of the study -> why the name of an effect stands in it
+    "twin/study/first_model/init.py": "the help of two areas says which effect asks for them",
+}
+
+
+def test_the_study_knows_no_effect_by_its_name():
+    """Test: every string and every import of the study. Expected: effects are asked for by what they declare
+    (owner, kind, role, needs), so that one of an installed package counts for as much as ours."""
+    names = {e.__name__ for e in (*BUILT_IN, *UNNAMED, *OF_ACTUATORS)}
+    wrong = []
+    for path in sources("twin.study"):
+        where = str(path.relative_to(ROOT))
+        said = {word for text in strings(path) for word in re.findall(r"\w+", text)} & names
+        taken = {m for m in imports(path) if m.rpartition(".")[2] in names}
+        if (said or taken) and where not in EFFECT_NAMED:
+            wrong.append(f"{where}: {', '.join(sorted(said | taken))}")
+    assert not wrong
+    assert all((ROOT / where).exists() for where in EFFECT_NAMED)
+
+
+def strings(path):
+    """The strings of a file that are no docstrings."""
+    tree = ast.parse(path.read_text())
+    holders = (ast.Module, ast.ClassDef, ast.FunctionDef)
+    bodies = [node.body[0] for node in ast.walk(tree) if isinstance(node, holders) and node.body]
+    docs = {id(first.value) for first in bodies if isinstance(first, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docs:
+            yield node.value
 
 
 LONG = 300  # lines of a file; the method fits on a page, or it is two ideas

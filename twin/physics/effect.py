@@ -5,13 +5,15 @@ Four kinds. A Force pushes the ship. A Flow changes the water that the hull, pro
 gives an actuator a state of its own. A SensorFault leaves the ship alone and changes what an instrument says
 of it."""
 
+from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self
 
 from twin.errors import SettingsError
 
 from .state import Force as ForceVector
-from .state import Number, Situation, Water
+from .state import Number, Rates, Situation, Water
 
 if TYPE_CHECKING:
     from .ship import Ship
@@ -20,6 +22,24 @@ if TYPE_CHECKING:
 FORM = 0.1
 SCALES = ("force", "moment", "speed", "time", "length")
 OWNERS = ("ship", "instrument", "voyage")
+ROLES = {  # what every ship may have one of, and by what the study asks for it
+    "stream": "water that moves alike everywhere and at all times",
+    "gear": "what stands between the rudder's order and the rudder",
+    "antenna": "where position and speed over ground are measured",
+    "wind": "how the wind that was recorded pushes the ship",
+}
+
+
+class Sailing(Protocol):
+    """What an effect asks of a model to say how strong it is: the ship, the model with the effect, and the
+    accelerations that it gives."""
+
+    @property
+    def ship(self) -> "Ship": ...
+
+    def but(self, *effects: "Effect") -> "Sailing": ...
+
+    def nu_dot(self, s: Situation) -> Rates: ...
 
 
 class Param(NamedTuple):
@@ -111,11 +131,24 @@ class Effect:
     source: ClassVar[str] = ""
     # whether it is a fault of the one propeller or rudder of a ship without actuators of its own
     one_screw: ClassVar[bool] = False
+    # one of ROLES, of which the catalogue has one effect each; "": none of them
+    role: ClassVar[str] = ""
+    # as the source of its numbers where calibration finds them together with the core; "": it does not
+    with_core: ClassVar[str] = ""
+    # whether it is of the place (its bottom, its banks): a chart knows it, and it is not fitted along with
+    # what is added on a voyage
+    of_place: ClassVar[bool] = False
+    # numbers of it that the readings alone tell, as `twin instruments` calls them, and each number's own name
+    by_readings: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    # numbers that it was given after the first residuals had been trained: a ship without them is the same
+    added_later: ClassVar[tuple[str, ...]] = ()
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         if cls.belongs_to not in OWNERS:
             raise ValueError(f"{cls.__name__}.belongs_to = {cls.belongs_to!r}: one of {OWNERS}")
+        if cls.role and cls.role not in ROLES:
+            raise ValueError(f"{cls.__name__}.role = {cls.role!r}: one of {tuple(ROLES)}, or none")
         dataclass(frozen=True)(cls)
 
     @classmethod
@@ -149,6 +182,13 @@ class Effect:
         """Whether its numbers hold on another day: those of ship and instruments, and how the ship answers to
         weather that is recorded."""
         return cls.belongs_to != "voyage" or cls.of_recorded_weather()
+
+    @classmethod
+    def strength(cls, s: Situation, model: Sailing) -> Rates:
+        """How strong its cause is in a situation: the accelerations [m/s2, m/s2, rad/s2] that it gives the
+        ship at its plausible size, beyond those of the model without it. Sets s.u_r and s.v_r."""
+        beside, alone = model.but(cls.plausible(model.ship)).nu_dot(s), model.nu_dot(s)
+        return Rates(*[a - b for a, b in zip(beside, alone, strict=True)])
 
     def values(self) -> dict[str, Number]:
         return {p.name: getattr(self, p.name) for p in self.params()}
@@ -227,6 +267,11 @@ class SensorFault(Effect):
     def read(self, s: Situation, ship: "Ship") -> Situation:
         """What the instruments say (a changed copy) of a ship that is truly in situation s."""
         raise NotImplementedError
+
+    def as_read(self, number: str, value: Number, attitude: bool) -> Self:
+        """The same fault with a number that the readings told (see `by_readings`). `attitude`: whether the
+        receiver turns its velocity by an attitude of its own, so that the compass does not turn it."""
+        return self.but(**{self.by_readings[number]: value})
 
     def prompt(self) -> "tuple[Number, SensorFault]":
         """How old place and speed over ground are when they are shown [s], and the same fault were they not:

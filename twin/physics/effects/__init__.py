@@ -83,6 +83,11 @@ UNNAMED: tuple[type[Effect], ...] = (RudderPlay, SwayingMass)
 OF_ACTUATORS: tuple[type[OfActuator], ...] = (ThrusterWear, ThrusterZero, AngleOffset, ActuatorLag)
 
 
+def of_role(role: str) -> type[Effect]:
+    """The effect of the catalogue that has this role (`effect.ROLES`) in every ship's model."""
+    return next(e for e in BUILT_IN if e.role == role)
+
+
 def of_ship(ship: "Ship") -> dict[str, type[Effect]]:
     """What may be wrong with this ship: the catalogue; of a ship with actuators of its own their effects, and
     not those of one propeller and rudder."""

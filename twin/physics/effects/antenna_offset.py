@@ -9,6 +9,7 @@ u_m = u - a r,                         v_m = v + a_x r + a_z cos(phi) p
 """
 
 from dataclasses import replace
+from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
@@ -20,6 +21,12 @@ class AntennaOffset(SensorFault):
     """The satellite antenna stands elsewhere on board than the settings say: the ship seems to swing about
     the wrong point."""
 
+    role = "antenna"
+    with_core = "the place was measured there on the reference voyages"
+    by_readings = MappingProxyType(
+        {"antenna_ahead": "ahead", "antenna_starboard": "starboard", "antenna_above": "above"}
+    )
+    added_later = ("above",)
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 2 and 13 (lever arms)"
 
     ahead: float = param(

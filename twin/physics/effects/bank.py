@@ -19,6 +19,7 @@ class Bank(Force):
 
     belongs_to = "voyage"
     needs = ("bank_port", "bank_starboard")
+    of_place = True
     source = (
         "Norrbin (1974) Bank effects on a ship moving through a short dredged channel, 10th Symp. Naval "
         "Hydrodynamics; "

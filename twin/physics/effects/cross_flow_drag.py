@@ -19,6 +19,7 @@ class CrossFlowDrag(Force):
     drifts and turns."""
 
     size = "c_d"
+    added_later = ("c_aft", "c_mid")
     source = (
         "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 6 (cross-flow drag); "
         "Faltinsen (1990) Sea Loads, ch. 6"

@@ -4,6 +4,7 @@ r_m = r + bias
 """
 
 from dataclasses import replace
+from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.particulars import Ship
@@ -15,6 +16,7 @@ class GyroBias(SensorFault):
 
     needs = ("r",)
     attitude = True
+    by_readings = MappingProxyType({"gyro_bias": "bias"})
     source = "IEEE Std 952-1997 (gyro bias); IMO A.526(13) (rate-of-turn indicators: 0.5 deg/min)"
 
     bias: float = param(

@@ -7,6 +7,7 @@ Exact in a steady turn, of first order in what changes besides.
 """
 
 from dataclasses import replace
+from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.particulars import Ship
@@ -18,6 +19,7 @@ class ReceiverSmoothing(SensorFault):
     does."""
 
     kinematic = True
+    by_readings = MappingProxyType({"smoothing": "time"})
     source = (
         "Kaplan & Hegarty (2017) Understanding GPS/GNSS, 3rd ed., ch. 8 and 13 (loop bandwidth, "
         "navigation filter); IEC 61108-1"

@@ -11,6 +11,7 @@ the receiver does so itself by an attitude of its own (an inertial unit).
 """
 
 from dataclasses import replace
+from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
@@ -21,6 +22,7 @@ from twin.physics.state import Number, Situation
 class SensorDelay(SensorFault):
     """Satellite position and velocity come late, so the ship seems to lag behind itself on the track."""
 
+    by_readings = MappingProxyType({"gnss_delay": "delay"})
     source = (
         "Skog & Haendel (2011) Time synchronization errors in loosely coupled GPS-aided INS, IEEE "
         "Trans. ITS 12, 1014-1023"

@@ -22,6 +22,7 @@ class ShallowWater(Flow):
 
     belongs_to = "voyage"
     needs = ("depth",)
+    of_place = True
     source = (
         "Kijima, Katsuno, Nakiri & Furukawa (1990) J. Soc. Naval Arch. Japan 168 (shallow-water correction); "
         "Lackenby (1963) for "

@@ -4,6 +4,7 @@ u_r,m = u_r + bias
 """
 
 from dataclasses import replace
+from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.particulars import Ship
@@ -15,6 +16,7 @@ class SpeedLogBias(SensorFault):
     it."""
 
     needs = ("u_r",)
+    by_readings = MappingProxyType({"log_bias": "bias"})
     source = "IMO MSC.96(72) (performance of speed logs: 2 % or 0.2 kn)"
 
     bias: float = param(

@@ -4,6 +4,7 @@ u_r,m = u_r cos(angle) + v_r sin(angle),   v_r,m = v_r cos(angle) - u_r sin(angl
 """
 
 from dataclasses import replace
+from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
@@ -15,6 +16,7 @@ class SpeedLogMisalignment(SensorFault):
     """The speed log is mounted askew, so speed ahead shows up as drift in proportion."""
 
     needs = ("u_r", "v_r")
+    by_readings = MappingProxyType({"log_angle": "angle"})
     source = (
         "Kinsey & Whitcomb (2007) In situ alignment calibration of attitude and Doppler sensors, IEEE "
         "J. Oceanic Eng. 32, 286-299"

@@ -23,6 +23,8 @@ class Wind(Force):
     needs = ("wind_speed", "wind_to")
     needs_ship = ("A_F", "A_L")
     lever = 0.05  # it moves along it with the direction, by more than four coefficients say
+    role = "wind"
+    with_core = "it blew on the reference voyages"
     source = (
         "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.1; Blendermann (1994) "
         "coefficient ranges"
