@@ -20,7 +20,7 @@ PUBLIC = {  # name -> the module that holds it
     "Comparison": "twin.api.comparison",
     "Diagnosis": "twin.api.diagnosis",
     "InstrumentCheck": "twin.api.instruments",
-    "Ship": "twin.physics.particulars",
+    "Ship": "twin.physics.ship",
     "Simulation": "twin.api.simulation",
     "TubeCalibration": "twin.api.tube",
     "Update": "twin.api.update",

@@ -7,7 +7,7 @@ from typing import Any
 from twin.api.result import Progress, Result, quietly
 from twin.api.voyages import several
 from twin.errors import UsageError
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.instruments.corrections import corrected

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from twin.api.result import Result
 from twin.errors import UsageError
 from twin.physics.model import Eta_nu, Model
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 from twin.study.prediction.trial import Steer, sail, shaft_speed
 
 if TYPE_CHECKING:

@@ -10,7 +10,7 @@ from twin.errors import UsageError
 from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 from twin.recording.checks import losses
 from twin.recording.voyage import Voyage
 from twin.study.reference.sailed import Sailed, sailed

@@ -8,20 +8,19 @@ of it."""
 from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field, fields, replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Protocol, Self
+from typing import Any, ClassVar, NamedTuple, Protocol, Self, TypeVar
 
 from twin.errors import SettingsError
 
+from .ship_like import ShipLike
 from .state import Force as ForceVector
 from .state import Number, Rates, Situation, Water
-
-if TYPE_CHECKING:
-    from .ship import Ship
 
 # by how much of its size a number may be off because nature writes the effect otherwise, unless more is known
 FORM = 0.1
 SCALES = ("force", "moment", "speed", "time", "length")
 OWNERS = ("ship", "instrument", "voyage")
+S = TypeVar("S", bound=ShipLike)
 ROLES = {  # what every ship may have one of, and by what the study asks for it
     "stream": "water that moves alike everywhere and at all times",
     "gear": "what stands between the rudder's order and the rudder",
@@ -35,7 +34,7 @@ class Sailing(Protocol):
     accelerations that it gives."""
 
     @property
-    def ship(self) -> "Ship": ...
+    def ship(self) -> ShipLike: ...
 
     def but(self, *effects: "Effect") -> "Sailing": ...
 
@@ -64,10 +63,10 @@ class Param(NamedTuple):
     input: str | None
     doc: str
 
-    def scale(self, ship: "Ship") -> float:
+    def scale(self, ship: ShipLike) -> float:
         return ship.scale(self.of) if self.of else 1.0
 
-    def box(self, ship: "Ship") -> tuple[float, float]:
+    def box(self, ship: ShipLike) -> tuple[float, float]:
         k = self.scale(ship)
         return self.lo * k, self.hi * k
 
@@ -156,12 +155,12 @@ class Effect:
         return tuple(Param(f.name, **f.metadata) for f in fields(cls))  # type: ignore[arg-type]
 
     @classmethod
-    def plausible(cls, ship: "Ship") -> "Effect":
+    def plausible(cls, ship: ShipLike) -> "Effect":
         """The effect at its published or typical size on this ship."""
         return cls(**{p.name: p.default * p.scale(ship) for p in cls.params()})
 
     @classmethod
-    def absent(cls, ship: "Ship") -> "Effect":
+    def absent(cls, ship: ShipLike) -> "Effect":
         """The effect at the size at which it does nothing."""
         return cls(**{p.name: p.null * p.scale(ship) for p in cls.params()})
 
@@ -197,7 +196,7 @@ class Effect:
         """The same effect with some of its numbers changed."""
         return replace(self, **values)  # type: ignore[type-var]
 
-    def check(self, ship: "Ship", where: str = "") -> None:
+    def check(self, ship: ShipLike, where: str = "") -> None:
         """Refuse a parameter outside its box, or a ship that lacks a particular it needs."""
         name = type(self).__name__
         for p in self.params():
@@ -223,11 +222,11 @@ class Force(Effect):
 
     kind = "Force"
 
-    def force(self, s: Situation, ship: "Ship") -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         """The force in body axes [N, N, N m]."""
         return ForceVector()
 
-    def alter(self, ship: "Ship") -> "Ship":
+    def alter(self, ship: S) -> S:
         """The ship as this effect leaves it (loading changes its mass); most effects leave it alone."""
         return ship
 
@@ -238,7 +237,7 @@ class Flow(Effect):
     kind = "Flow"
     stream: ClassVar[bool] = False  # whether it is nothing but moving water, which carries the ship along
 
-    def water(self, s: Situation, ship: "Ship") -> Water:
+    def water(self, s: Situation, ship: ShipLike) -> Water:
         raise NotImplementedError
 
 
@@ -264,7 +263,7 @@ class SensorFault(Effect):
     # whether it is compass or gyro that is wrong: an antenna stands where the true heading puts it
     attitude: ClassVar[bool] = False
 
-    def read(self, s: Situation, ship: "Ship") -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         """What the instruments say (a changed copy) of a ship that is truly in situation s."""
         raise NotImplementedError
 

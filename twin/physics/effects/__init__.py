@@ -5,10 +5,11 @@ An installed package adds its own by the entry point group `twin.effects`, name 
 
 import sys
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from twin.errors import SettingsError, did_you_mean
 from twin.physics.effect import Effect
+from twin.physics.plugin import GROUP, Refused, loaded
+from twin.physics.ship_like import ShipLike
 
 from .actuator_lag import ActuatorLag
 from .angle_offset import AngleOffset
@@ -44,9 +45,6 @@ from .tow_force import TowForce
 from .varying_current import VaryingCurrent
 from .wave_drift import WaveDrift
 from .wind import Wind
-
-if TYPE_CHECKING:
-    from twin.physics.particulars import Ship
 
 BUILT_IN: tuple[type[Effect], ...] = (
     Wind,
@@ -88,7 +86,7 @@ def of_role(role: str) -> type[Effect]:
     return next(e for e in BUILT_IN if e.role == role)
 
 
-def of_ship(ship: "Ship") -> dict[str, type[Effect]]:
+def of_ship(ship: ShipLike) -> dict[str, type[Effect]]:
     """What may be wrong with this ship: the catalogue; of a ship with actuators of its own their effects, and
     not those of one propeller and rudder."""
     if not ship.actuators:
@@ -103,7 +101,7 @@ def of_ship(ship: "Ship") -> dict[str, type[Effect]]:
     return known | {e.__name__: e for e in own}
 
 
-def unnamed_of(ship: "Ship") -> tuple[type[Effect], ...]:
+def unnamed_of(ship: ShipLike) -> tuple[type[Effect], ...]:
     """Of those known by their form alone, what this ship can have."""
     return tuple(e for e in UNNAMED if not (ship.actuators and e.one_screw))
 
@@ -124,9 +122,7 @@ def catalogue() -> dict[str, type[Effect]]:
 @lru_cache(maxsize=1)
 def _installed() -> tuple[dict[str, type[Effect]], dict[str, str]]:
     """Effects of installed packages, and by the name of each that cannot be used why."""
-    from importlib.metadata import entry_points
-
-    from twin.physics.plugin import GROUP, Refused, loaded
+    from importlib.metadata import entry_points  # heavy, and nothing on board asks what is installed
 
     taken = {e.__name__ for e in (*BUILT_IN, *UNNAMED)}
     good, bad = dict[str, type[Effect]](), dict[str, str]()

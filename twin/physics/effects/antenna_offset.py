@@ -13,7 +13,7 @@ from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Situation
 
 
@@ -52,7 +52,7 @@ class AntennaOffset(SensorFault):
         doc="antenna above the axis of roll, where roll was recorded",
     )
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         c, si = cos(s.psi), sin(s.psi)
         aside = self.starboard + (0.0 if s.phi is None else self.above * sin(s.phi))
         swung = 0.0 if s.phi is None or s.p is None else self.above * cos(s.phi) * s.p

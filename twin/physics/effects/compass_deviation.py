@@ -15,7 +15,7 @@ from typing import Self
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Number, Situation
 
 
@@ -57,7 +57,7 @@ class CompassDeviation(SensorFault):
     def as_read(self, number: str, value: Number, attitude: bool) -> Self:
         return super().as_read(number, value, attitude).but(turned=0.0 if attitude else 1.0)
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         e = self.error(s.psi)
         c, si = cos(self.turned * e), sin(self.turned * e)
         return replace(

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 from twin.physics.effect import Flow, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Situation, Water
 
 
@@ -25,6 +25,6 @@ class Current(Flow):
     north: float = param(0.0, unit="m/s", lo=-1.0, hi=1.0, sd=0.08, of="speed", doc="current toward north")
     east: float = param(0.0, unit="m/s", lo=-1.0, hi=1.0, sd=0.08, of="speed", doc="current toward east")
 
-    def water(self, s: Situation, ship: Ship) -> Water:
+    def water(self, s: Situation, ship: ShipLike) -> Water:
         c, si = cos(s.psi), sin(s.psi)
         return Water(u=self.north * c + self.east * si, v=self.east * c - self.north * si)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Situation
 
 
@@ -23,5 +23,5 @@ class GyroBias(SensorFault):
         0.0005, unit="rad/s", lo=-0.02, hi=0.02, sd=0.0007, doc="shown yaw rate less the true one"
     )
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         return replace(s, r=s.r + self.bias)

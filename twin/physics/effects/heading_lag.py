@@ -14,7 +14,7 @@ from typing import Self
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Number, Situation
 
 
@@ -50,6 +50,6 @@ class HeadingLag(SensorFault):
     def as_read(self, number: str, value: Number, attitude: bool) -> Self:
         return super().as_read(number, value, attitude).but(turned=0.0 if attitude else value)
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         c, si = cos(self.turned * s.r), sin(self.turned * s.r)
         return replace(s, psi=s.psi - self.lag * s.r, u=s.u * c - s.v * si, v=s.v * c + s.u * si)

@@ -10,7 +10,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Situation
 
 
@@ -34,7 +34,7 @@ class ReceiverSmoothing(SensorFault):
         doc="time constant with which course and speed over ground are smoothed",
     )
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         a = self.time * s.r
         less = 1.0 / (1.0 + a * a)
         return replace(

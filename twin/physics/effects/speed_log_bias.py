@@ -7,7 +7,7 @@ from dataclasses import replace
 from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Situation
 
 
@@ -29,5 +29,5 @@ class SpeedLogBias(SensorFault):
         doc="shown speed through water less the true one",
     )
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         return replace(s, u_r=s.u_r + self.bias)

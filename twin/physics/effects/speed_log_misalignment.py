@@ -8,7 +8,7 @@ from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Situation
 
 
@@ -31,6 +31,6 @@ class SpeedLogMisalignment(SensorFault):
         doc="how far the log's axis ahead points to starboard of the ship's",
     )
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         c, si = cos(self.angle), sin(self.angle)
         return replace(s, u_r=s.u_r * c + s.v_r * si, v_r=s.v_r * c - s.u_r * si)
