@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from twin.live.certificate import certificate as cert
-from twin.live.certificate.certificate import Tube, certify
+from twin.live.certificate.certificate import certify
 from twin.live.certificate.enclosure import _points, _situation, contribution, sampled, slopes
 from twin.live.certificate.store import kept
+from twin.live.certificate.tube import Tube
 from twin.live.learning.movable import adaptable, movable, moved
 from twin.live.observer.estimate import gain_for
 from twin.physics.effects import BUILT_IN, find
