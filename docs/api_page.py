@@ -41,8 +41,10 @@ stands in them; numbers that are not known are null. A unit "of the channel" sta
 key without a "when" is in every answer.
 """
 GROUPS = {
-    "Files": ("read_voyage", "read_voyages"),
+    "Files": ("read_voyage", "read_voyages", "suggest_map"),
     "Verbs": (
+        "first_model",
+        "check_voyage",
         "instruments",
         "calibrate",
         "tube",
@@ -52,8 +54,11 @@ GROUPS = {
         "remove",
         "simulate",
         "catalogue",
+        "check_effect",
     ),
     "Results": (
+        "FirstModel",
+        "VoyageCheck",
         "InstrumentCheck",
         "Calibration",
         "TubeCalibration",
@@ -61,6 +66,7 @@ GROUPS = {
         "Diagnosis",
         "Update",
         "Simulation",
+        "EffectCheck",
     ),
     "Ship and voyage": ("Ship", "Voyage"),
 }

@@ -7,18 +7,15 @@ deploy
 import ast
 import importlib.util
 import os
-import re
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from bench.cli import BENCHES
+from tests.sources import ROOT, called, imports, sources
 from twin.cli import VERBS, main
-from twin.physics.effects import BUILT_IN, OF_ACTUATORS, UNNAMED
 
-ROOT = Path(__file__).parents[1]
 ROOMS = (
     "twin.physics",
     "twin.live",
@@ -70,23 +67,6 @@ ONLY_IN_EXPORT = {"torch"}
 NOT_ON_BOARD = {
     "torch", "scipy", "matplotlib", "pydantic", "pandas", "filterpy", "sympy", "numpy", "tomlkit", "twin.study", "twin.recording",
 }  # fmt: skip
-
-
-def sources(room):
-    return sorted((ROOT / room.replace(".", "/")).rglob("*.py"))
-
-
-def imports(path):
-    """Full names of what a file imports, relative ones resolved: at its top, in a function, or for a type
-    checker alone."""
-    package = path.relative_to(ROOT).with_suffix("").parts[:-1]
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            above = package[: len(package) - node.level + 1] if node.level else ()
-            module = ".".join((*above, *(node.module or "").split("."))).strip(".")
-            yield from (f"{module}.{alias.name}" for alias in node.names)
 
 
 def inner_room_of(module):
@@ -228,52 +208,9 @@ def test_nothing_on_the_way_of_a_replay_is_summed_by_the_built_in_sum(room):
         f"{path.relative_to(ROOT)}, line {node.lineno}: {name}"
         for path in sources(room)
         for node in ast.walk(ast.parse(path.read_text()))
-        if (name := _called(node)) in ("sum", "fsum", "sumprod")
+        if (name := called(node)) in ("sum", "fsum", "sumprod")
     ]
     assert not wrong
-
-
-def _called(node):
-    """The bare name of a built-in or a function of `math` that is used here (called, or handed on), else
-    ""."""
-    if isinstance(node, ast.Name):
-        return node.id
-    return (
-        node.attr
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "math"
-        else ""
-    )
-
-
-EFFECT_NAMED = {  # file of the study -> why the name of an effect stands in it
-    "twin/study/first_model/init.py": "the help of two areas says which effect asks for them",
-}
-
-
-def test_the_study_knows_no_effect_by_its_name():
-    """Test: every string and every import of the study. Expected: effects are asked for by what they declare
-    (owner, kind, role, needs), so that one of an installed package counts for as much as ours."""
-    names = {e.__name__ for e in (*BUILT_IN, *UNNAMED, *OF_ACTUATORS)}
-    wrong = []
-    for path in sources("twin.study"):
-        where = str(path.relative_to(ROOT))
-        said = {word for text in strings(path) for word in re.findall(r"\w+", text)} & names
-        taken = {m for m in imports(path) if m.rpartition(".")[2] in names}
-        if (said or taken) and where not in EFFECT_NAMED:
-            wrong.append(f"{where}: {', '.join(sorted(said | taken))}")
-    assert not wrong
-    assert all((ROOT / where).exists() for where in EFFECT_NAMED)
-
-
-def strings(path):
-    """The strings of a file that are no docstrings."""
-    tree = ast.parse(path.read_text())
-    holders = (ast.Module, ast.ClassDef, ast.FunctionDef)
-    bodies = [node.body[0] for node in ast.walk(tree) if isinstance(node, holders) and node.body]
-    docs = {id(first.value) for first in bodies if isinstance(first, ast.Expr)}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in docs:
-            yield node.value
 
 
 LONG = 300  # lines of a file; the method fits on a page, or it is two ideas

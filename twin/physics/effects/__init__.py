@@ -3,7 +3,6 @@
 An installed package adds its own by the entry point group `twin.effects`, name = class.
 """
 
-import sys
 from functools import lru_cache
 
 from twin.errors import SettingsError, did_you_mean
@@ -109,13 +108,15 @@ def unnamed_of(ship: ShipLike) -> tuple[type[Effect], ...]:
 @lru_cache(maxsize=1)
 def catalogue() -> dict[str, type[Effect]]:
     """Name -> effect, built-in first, then those that installed packages bring; a broken one is left out, and
-    standard error says why."""
+    the log `twin` says why."""
     found, broken = _installed()
-    for name, why in broken.items():
-        print(
-            f"the installed effect {name} is left out: {why}. Try: twin effects --check {name}",
-            file=sys.stderr,
-        )
+    if broken:
+        import logging  # nothing on board asks what is installed
+
+        for name, why in broken.items():
+            logging.getLogger("twin").warning(
+                "the installed effect %s is left out: %s. Try: twin effects --check %s", name, why, name
+            )
     return {e.__name__: e for e in BUILT_IN} | found
 
 
