@@ -62,3 +62,16 @@ VERB_LINES = 60
 def test_a_verb_is_a_page_of_arguments_over_the_interface(path):
     """Expected: no more than sixty lines; what it does is a function that others can call."""
     assert len(path.read_text().splitlines()) <= VERB_LINES
+
+
+def test_a_test_imports_no_private_name():
+    """Expected: what a test asks for is an idea of its own, and public."""
+    private = [
+        f"{path.relative_to(ROOT)}: {name}"
+        for path in sources("tests")
+        for name in imports(path)
+        if name.partition(".")[0] in ("twin", "bench", "export")
+        and name.rpartition(".")[2].startswith("_")
+        and not name.rpartition(".")[2].startswith("__")
+    ]
+    assert not private

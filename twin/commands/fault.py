@@ -1,6 +1,6 @@
 """`twin fault`: makes a fault on purpose, in a copy of a log, on a live bus, or in a process.
 
-    twin fault heading off --listen tcp/127.0.0.1:7448             sensors connect there, the twin hears them
+twin fault heading off --listen tcp/127.0.0.1:7448             sensors connect there, the twin hears them
 """
 
 import argparse
