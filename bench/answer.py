@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from twin import whole
-from twin.recording.import_voyage import write_json
 
 HAND = "## What it says"  # from this line on a page is written by hand, and stays
 
@@ -26,7 +25,7 @@ def give(args: argparse.Namespace, result: dict[str, Any], text: str, more: str 
     if args.page:
         whole.write(args.page, f"{text}\n{more}", args.page_option)
     if args.json:
-        write_json(result, args.json)
+        whole.write_json(result, args.json)
 
 
 def kept(page: Path | None) -> str:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 
-from twin.recording.finish import finished
 from twin.recording.map_file import parse_map
 from twin.recording.raw import through
 from twin.recording.table import Table
@@ -155,4 +154,4 @@ def voyage_of(table: Export, columns: Mapping[str, Any]) -> Voyage:
         {n: np.array(table[n], float) for n in names},
         {},
     )
-    return finished(through(rows.path, rows, TimeAxis(np.array(table["t"], float)), by, [], {}))
+    return Voyage.of(through(rows.path, rows, TimeAxis(np.array(table["t"], float)), by, [], {}))

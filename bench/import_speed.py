@@ -35,12 +35,14 @@ NAMES = (
 CHILD = """
 import json, sys, time
 from pathlib import Path
-from twin.recording.read import raw_of, finished
+from twin.recording.samples_of import raw_of
+from twin.recording.voyage import Voyage
+from twin.recording.voyage import Voyage
 start = time.process_time()  # seconds of one core, whatever else the machine does
 raw = raw_of(Path(sys.argv[1]), None, {})
 read_s = time.process_time() - start
 samples = sum(x.size for x in raw.columns.values())
-voyage = finished(raw)
+voyage = Voyage.of(raw)
 print(json.dumps({"read_s": read_s, "voyage_s": time.process_time() - start, "rows": len(voyage), "samples": samples,
                   "peak_mb": int(open("/proc/self/status").read().split("VmHWM:")[1].split()[0]) / 1024.0}))
 """

@@ -26,7 +26,7 @@ from twin.live.gates.lacking import CorrectedTick
 from twin.live.gates.plausible import Plausibility
 from twin.live.gates.sensors import Sensors
 from twin.live.observer.dynamics import NONE, Dynamics
-from twin.live.observer.estimate import Observer
+from twin.live.observer.observer import Observer
 from twin.live.signals.readings import Reading
 from twin.physics.ship import Ship, load
 

@@ -17,8 +17,8 @@ from bench.instruments_plant import LATE, PAIRS, SIZES, planted
 from bench.options import positive
 from bench.reference.hulls import HULLS
 from bench.reference.voyage import Case, Recording, simulate
-from twin.recording.finish import finished
 from twin.recording.raw import Raw
+from twin.recording.voyage import Voyage
 from twin.study.instruments.estimate import Instruments, estimate
 
 EPILOG = """example: twin-bench instruments --seeds 2 --markdown docs/results/instruments.md
@@ -136,7 +136,7 @@ def asked(
         columns,
         {"velocity_frame": "course" if bridge else "body"},
     )
-    return estimate([finished(raw, controls=False)], hull.L), truth
+    return estimate([Voyage.of(raw, controls=False)], hull.L), truth
 
 
 def _plain(row: ResultRow) -> dict[str, Any]:

@@ -16,8 +16,7 @@ import numpy as np
 
 from twin import whole
 from twin.physics.actuators import Actuator
-from twin.physics.particulars import Ship
-from twin.physics.ship import load
+from twin.physics.ship import Ship, load
 from twin.recording.checks.actuators import actuators
 from twin.recording.checks.standstill import actuator_zero
 from twin.recording.checks.view import VoyageView

@@ -43,8 +43,10 @@ key without a "when" is in every answer. `twin.simulate` has no command, so that
 `to_dict()` alone.
 """
 GROUPS = {
-    "Files": ("read_voyage", "read_voyages"),
+    "Files": ("read_voyage", "read_voyages", "suggest_map"),
     "Verbs": (
+        "first_model",
+        "check_voyage",
         "instruments",
         "calibrate",
         "tube",
@@ -54,8 +56,11 @@ GROUPS = {
         "remove",
         "simulate",
         "catalogue",
+        "check_effect",
     ),
     "Results": (
+        "FirstModel",
+        "VoyageCheck",
         "InstrumentCheck",
         "Calibration",
         "TubeCalibration",
@@ -63,6 +68,7 @@ GROUPS = {
         "Diagnosis",
         "Update",
         "Simulation",
+        "EffectCheck",
     ),
     "Ship and voyage": ("Ship", "Voyage"),
 }

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from export.data import leg, model_of, split
+from twin import whole
 from twin.errors import DataError, ThresholdError, TwinError
 from twin.num import num
 from twin.physics.ship import Ship, load
-from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
 from twin.study.reference.sailed import Sailed, read_all
 from twin.study.track.track import Track, track
@@ -94,6 +94,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
 
 
+def tell(text: str) -> None:
+    """What is being done now."""
+    print(f"{text} ...", file=sys.stderr)
+
+
 def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
     output = Path(args.output)
@@ -102,11 +107,13 @@ def run(args: argparse.Namespace) -> int:
     if not output.parent.is_dir():
         raise TwinError(f"-o {output}: there is no folder {output.parent}. Make it first.")
     try:
-        result = learn(ship, read_all(args.voyages, ship), settings_of(args), args.seeds, output, args.force)
+        result = learn(
+            ship, read_all(args.voyages, ship, tell), settings_of(args), args.seeds, output, args.force
+        )
     except ModuleNotFoundError as error:
         raise TwinError(NEEDS.format(error.name)) from None
     if args.json:
-        write_json(result, args.json)
+        whole.write_json(result, args.json)
     page = sys.stderr if args.json == "-" else sys.stdout
     if not result["written"]:
         raise ThresholdError(f"{result['verdict']}; {output} was not written. Give more voyages, or --force.")

@@ -9,14 +9,13 @@ import importlib.util
 import os
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 
 from bench.cli import BENCHES
+from tests.sources import ROOT, called, imports, sources
 from twin.cli import VERBS, main
 
-ROOT = Path(__file__).parents[1]
 ROOMS = (
     "twin.physics",
     "twin.live",
@@ -70,30 +69,6 @@ NOT_ON_BOARD = {
 }  # fmt: skip
 
 
-def sources(room):
-    return sorted((ROOT / room.replace(".", "/")).rglob("*.py"))
-
-
-def imports(path):
-    """Full names of what a file imports, relative ones resolved; those for a type checker do not count."""
-    tree = ast.parse(path.read_text())
-    unused = {id(n) for top in ast.walk(tree) if _for_types_only(top) for b in top.body for n in ast.walk(b)}
-    package = path.relative_to(ROOT).with_suffix("").parts[:-1]
-    for node in ast.walk(tree):
-        if id(node) in unused:
-            continue
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            above = package[: len(package) - node.level + 1] if node.level else ()
-            module = ".".join((*above, *(node.module or "").split("."))).strip(".")
-            yield from (f"{module}.{alias.name}" for alias in node.names)
-
-
-def _for_types_only(node):
-    return isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)
-
-
 def inner_room_of(module):
     """The innermost room of ORDER that holds a module."""
     held = [room for room in ORDER if module == room or module.startswith(room + ".")]
@@ -134,6 +109,26 @@ def test_a_room_imports_only_rooms_that_stand_before_it(room):
         if inner_room_of(module) not in (None, *before)
     ]
     assert not wrong
+
+
+def test_no_import_goes_round():
+    """Test: every import of twin, export and bench, those in functions and for a type checker too. Expected:
+    from no module a way leads back to it."""
+    paths = [p for room in ("twin", "export", "bench") for p in sources(room)]
+    names = {".".join(p.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): p for p in paths}
+    knows = {
+        name: {m for i in imports(p) if (m := _module(i, names)) not in (None, name)}
+        for name, p in names.items()
+    }
+    while leaves := [name for name, known in knows.items() if not known & knows.keys()]:
+        for name in leaves:
+            del knows[name]
+    assert not {name: sorted(known & knows.keys()) for name, known in knows.items()}
+
+
+def _module(imported, names):
+    """The module that `from MODULE import NAME` takes from, or that it takes; None: none of ours."""
+    return next((m for m in (imported, imported.rpartition(".")[0]) if m in names), None)
 
 
 def test_every_module_stands_in_a_room():
@@ -213,21 +208,9 @@ def test_nothing_on_the_way_of_a_replay_is_summed_by_the_built_in_sum(room):
         f"{path.relative_to(ROOT)}, line {node.lineno}: {name}"
         for path in sources(room)
         for node in ast.walk(ast.parse(path.read_text()))
-        if (name := _called(node)) in ("sum", "fsum", "sumprod")
+        if (name := called(node)) in ("sum", "fsum", "sumprod")
     ]
     assert not wrong
-
-
-def _called(node):
-    """The bare name of a built-in or a function of `math` that is used here (called, or handed on), else
-    ""."""
-    if isinstance(node, ast.Name):
-        return node.id
-    return (
-        node.attr
-        if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id == "math"
-        else ""
-    )
 
 
 LONG = 300  # lines of a file; the method fits on a page, or it is two ideas

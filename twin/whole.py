@@ -2,11 +2,13 @@
 
 import argparse
 import errno
+import json
 import os
 import tempfile
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from twin.errors import SettingsError, TwinError
 
@@ -82,6 +84,11 @@ def put(path: str, text: str, option: str) -> None:
         print(text)
         return
     write(path, text.rstrip("\n") + "\n", option)
+
+
+def write_json(result: Any, path: str, option: str = "--json") -> None:
+    """The same of what JSON can hold."""
+    put(path, json.dumps(result, indent=2), option)
 
 
 def read(path: str | os.PathLike[str], most: int) -> bytes:

@@ -10,8 +10,7 @@ import twin
 from bench.reference.boats import CRAFT, BoatCase, sail
 from bench.reference.boats.sheet import actuators, particulars
 from twin.physics.actuators.file import read
-from twin.physics.particulars import Ship
-from twin.physics.ship import _value, load, text, to_table
+from twin.physics.ship import Ship, _value, load, text, to_table
 from twin.recording.voyage import Voyage
 from twin.study.first_model.init import OPTIONS, first_model
 

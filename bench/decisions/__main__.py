@@ -17,7 +17,7 @@ from typing import Any
 
 from bench.decisions.question import Asked
 from bench.decisions.questions import asked
-from twin.recording.import_voyage import write_json
+from twin import whole
 from twin.study.diagnosis import diagnose as verb
 from twin.study.diagnosis.consider import consider
 from twin.study.diagnosis.decision import decide
@@ -77,7 +77,7 @@ def kept_answer(folder: Path, question: Asked, tag: str, again: bool) -> dict[st
         "seconds": time.perf_counter() - ready,
         "cpu_s": time.process_time() - work,
     }
-    write_json(answer, str(path))
+    whole.write_json(answer, str(path))
     print(
         f"{question.name}: made ready in {ready - wall:.0f} s ({work - cpu:.0f} s of processor)",
         file=sys.stderr,
@@ -145,7 +145,7 @@ def main() -> int:
             mark = "right" if right(question.truth, a) else "WRONG"
             print(f"{mark} {question.name}: {a['verdict']} {a['missing']} {a['cpu_s']:.0f} s", flush=True)
     if args.decide:
-        write_json(rows, str(args.decide))
+        whole.write_json(rows, str(args.decide))
     return 0
 
 

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 import twin
+from bench.fleet.build import build
 from bench.fleet.cases import FleetCase, SailedCase, generator, plan, references, sailed
 from bench.fleet.hidden import CATALOGUE
-from bench.fleet.ship import RandomShip, build
+from bench.fleet.ship import RandomShip
 from twin.physics.ship import Ship as Model
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage

@@ -9,17 +9,15 @@
 from collections import deque
 from collections.abc import Sequence
 from math import cos, exp, hypot, pi, sin
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from bench.fleet.hidden import Flaws
 from bench.fleet.manoeuvres import FleetLeg, Helmsman
 from bench.fleet.particulars import RHO, Particulars
+from bench.fleet.ship import RandomShip
 from bench.fleet.weather import FleetWeather, Surroundings
-
-if TYPE_CHECKING:
-    from bench.fleet.ship import RandomShip
 
 HARD = np.radians(35)
 KEPT = (
@@ -42,13 +40,13 @@ KEPT = (
 FINEST = 0.5  # [s] longest step
 
 
-def step_of(ship: "RandomShip") -> float:
+def step_of(ship: RandomShip) -> float:
     """A step that the quickest motion needs, a whole part of a second [s]."""
     return 1.0 / np.ceil(1.0 / min(FINEST, ship.p.unit_s / 40))
 
 
 def sail(
-    ship: "RandomShip",
+    ship: RandomShip,
     legs: list[FleetLeg],
     weather: FleetWeather,
     duration_s: float,

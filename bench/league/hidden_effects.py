@@ -11,9 +11,9 @@ from bench.league import plan, score
 from bench.league.page import page
 from bench.league.rounds import League
 from bench.options import positive
+from twin import whole
 from twin.errors import SettingsError
 from twin.physics.effects import catalogue
-from twin.recording.import_voyage import write_json
 
 EPILOG = """example:
   twin-bench hidden-effects --quick --json -
@@ -79,7 +79,7 @@ def run(args: argparse.Namespace) -> int:
         text = page(rows, result, league.calibrations())
     answer.give(args, result, text)
     if args.page:
-        write_json(result, str(args.page.with_suffix(".json")))
+        whole.write_json(result, str(args.page.with_suffix(".json")))
     return 0
 
 

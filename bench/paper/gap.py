@@ -31,7 +31,7 @@ def gap(
         errors = {part: judge(predict(some), some) for part, some in parts.items()}
         kinds = {part: [c.name.rsplit(" ", 1)[0] for c in some] for part, some in parts.items()}
         out[name] = {
-            short: _change(errors, of, resamples) | _among_like(errors, kinds, of, resamples)
+            short: change_of(errors, of, resamples) | among_like(errors, kinds, of, resamples)
             for short, of in (("heading", "heading_deg"), ("lateral", "lateral_m"))
         }
     return out
@@ -44,7 +44,7 @@ def _everywhere(courses: Sequence[LabCourse]) -> list[LabCourse]:
     ]
 
 
-def _change(errors: dict[str, Errors], of: str, resamples: int, seed: int = 1) -> dict[str, Any]:
+def change_of(errors: dict[str, Errors], of: str, resamples: int, seed: int = 1) -> dict[str, Any]:
     rng = np.random.default_rng(seed)
     means, drawn = {}, {}
     for part, e in errors.items():
@@ -59,7 +59,7 @@ def _change(errors: dict[str, Errors], of: str, resamples: int, seed: int = 1) -
     }
 
 
-def _among_like(
+def among_like(
     errors: dict[str, Errors], kinds: dict[str, list[str]], of: str, resamples: int, seed: int = 1
 ) -> dict[str, list[float]]:
     """The same interval by voyages drawn among those of their kind (manoeuvre and sea)."""

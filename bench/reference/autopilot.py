@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from bench.reference.fleet import limit
 from bench.reference.manoeuvres import COURSE, RUDDER, ZIGZAG
+from bench.reference.mmg import limit
 
 
 def wrap(angle):

@@ -5,10 +5,7 @@ from types import SimpleNamespace
 
 import numpy as np
 
-
-def limit(x, low, high):
-    """np.clip without its overhead."""
-    return np.minimum(np.maximum(x, low), high)
+from bench.reference.mmg import open_water
 
 
 def stack(hulls) -> SimpleNamespace:
@@ -51,8 +48,6 @@ def _with_inertia(h):
 
 def propeller_rate_service(h):
     """Propeller rate [1/s] that balances the calm resistance at U0 (bisection)."""
-    from bench.reference.mmg import open_water
-
     need = 0.5 * h.rho * h.L * h.d * h.U0**2 * h.R0 / (1 - h.t_P)
     low, high = np.zeros_like(need), 5 * h.U0 / h.D_P
     for _ in range(60):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bench.reference.fleet import limit
+from bench.reference.mmg import limit
 
 
 def steer(h, rudder, order, dt, rate_share=1.0):

@@ -8,10 +8,11 @@ import numpy as np
 from bench.reference import flaws, gear, motion
 from bench.reference.autopilot import Autopilot
 from bench.reference.environment import Environment
-from bench.reference.fleet import limit, stack
+from bench.reference.fleet import stack
 from bench.reference.hidden import prepare, stack_flaws
 from bench.reference.hulls import HULLS, Hull
 from bench.reference.manoeuvres import legs
+from bench.reference.mmg import limit
 from bench.reference.sensors import COLUMNS, SensorSuite, compass_error
 from bench.reference.weather import WEATHERS, Weather, rotated
 

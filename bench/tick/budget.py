@@ -19,8 +19,7 @@ from bench.tick import table as tick_table
 from bench.tick.process import WARM_UP
 from twin.errors import TwinError, UsageError
 from twin.live.learning.residual import bundled
-from twin.physics.particulars import Ship
-from twin.physics.ship import load
+from twin.physics.ship import Ship, load
 
 SCHEMA_VERSION = 1
 PYTHON = (sys.executable, "-P", "-m")  # -P: a folder named twin/ where it is called is no package

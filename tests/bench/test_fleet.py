@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from bench.fleet import cases, hidden, instruments, sail, weather
+from bench.fleet.build import build
 from bench.fleet.hulls import FAMILIES
 from bench.fleet.judged import Share, right, wrong_names
 from bench.fleet.manoeuvres import zigzag
-from bench.fleet.ship import build
 
 SEED = 3
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from bench.paper import sea
 from bench.paper.again import PAIRS, again, page
-from bench.paper.gap import _among_like, _change
+from bench.paper.gap import among_like, change_of
 
 
 def test_what_is_sailed_again_is_the_same_but_for_seeds_that_nobody_had():
@@ -28,8 +28,8 @@ def test_voyages_drawn_among_their_like_do_not_scatter_by_kind():
     error = np.where(voyage < 3, 1.0, 10.0)
     e, kinds = SimpleNamespace(voyage=voyage, heading_deg=error), 3 * ["TS-01 mixed"] + 3 * ["TS-03 mixed"]
     both = {"validation": e, "test": e}
-    assert _among_like(both, dict.fromkeys(both, kinds), "heading_deg", 500)["among_like_95"] == [0.0, 0.0]
-    low, high = _change(both, "heading_deg", 500)["by_voyage_95"]
+    assert among_like(both, dict.fromkeys(both, kinds), "heading_deg", 500)["among_like_95"] == [0.0, 0.0]
+    low, high = change_of(both, "heading_deg", 500)["by_voyage_95"]
     assert low < -30.0 and high > 30.0
 
 

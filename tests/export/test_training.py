@@ -152,7 +152,7 @@ def _digest(network):
 
 def test_a_residual_that_does_not_help_is_refused(ship, sailed, tmp_path, monkeypatch):
     """Test: a network that was hardly trained. Expected: exit code 3, no file."""
-    monkeypatch.setattr(train, "read_all", lambda paths, ship: sailed)
+    monkeypatch.setattr(train, "read_all", lambda paths, ship, tell: sailed)
     parser = train.argparse.ArgumentParser()
     train.add_arguments(parser)
     args = parser.parse_args(

@@ -5,7 +5,8 @@ import json
 
 import pytest
 
-from twin.live.certificate.certificate import Tube, certify
+from twin.live.certificate.certificate import certify
+from twin.live.certificate.tube import Tube
 from twin.live.guard import HeldControl
 from twin.live.learning.learned import LearnedForce
 from twin.live.learning.manifest import hashed

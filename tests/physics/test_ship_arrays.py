@@ -1,10 +1,14 @@
 """The long arrays of a ship file stand in a file beside it, and neither is read without the other."""
 
 import json
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 
 import pytest
 
+import twin
 from twin.errors import SettingsError
 from twin.physics import ship as ships
 from twin.physics.ship_arrays import LONG
@@ -74,7 +78,40 @@ def test_the_loop_needs_no_arrays(calibrated, tmp_path):
     assert ships.load(path, arrays=False).derivatives == calibrated.derivatives
 
 
-def test_a_file_of_an_earlier_version_is_read_as_it_is(calibrated, tmp_path):
+def test_a_file_of_an_earlier_version_is_read_as_it_is_and_a_line_says_so(calibrated, tmp_path, caplog):
     path = tmp_path / "old.toml"
     path.write_text(ships.text(ships.to_table(calibrated)))
-    assert ships.load(path).notes["structural"]["covariance"] == LONG_ARRAY
+    old = ships.load(path)
+    assert old.notes["structural"]["covariance"] == LONG_ARRAY
+    (line,) = caplog.messages
+    assert str(path) in line and "earlier version" in line and "\n" not in line
+    caplog.clear()
+    ships.save(old, path)
+    assert ships.load(path).notes["structural"]["covariance"] == LONG_ARRAY and not caplog.messages
+
+
+def test_a_verb_says_that_a_ship_file_is_of_an_earlier_version(calibrated, tmp_path):
+    """Expected: one line on standard error, and what the verb was asked for."""
+    path = tmp_path / "old.toml"
+    path.write_text(ships.text(ships.to_table(calibrated)))
+    verb = [sys.executable, "-m", "twin", "history", str(path)]
+    done = subprocess.run(verb, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0 and done.stdout
+    assert done.stderr.count("\n") == 1 and "earlier version" in done.stderr
+
+
+def test_no_line_of_a_bundled_ship_file_is_long():
+    """Expected: each line can be read, and no bundled file is of the old form."""
+    folder = Path(twin.__file__).parent
+    files = sorted([*(folder / "ships").glob("*.toml"), *(folder / "voyages").glob("*.toml")])
+    assert "tanker.toml" in [path.name for path in files]
+    long = {path.name for path in files for line in path.read_text().splitlines() if len(line) > 1000}
+    assert not long
+
+
+@pytest.mark.parametrize("notes", [{}, {"structural": {"covariance": LONG_ARRAY}}])
+def test_a_ship_shows_itself_in_one_short_line(calibrated, notes):
+    ship = replace(calibrated, notes=notes)
+    words = "calibrated>" if notes else "not calibrated>"
+    assert repr(ship).startswith(f"<Ship {ship.name!r}: 320 m, ") and repr(ship).endswith(f", {words}")
+    assert len(repr(ship)) < 200

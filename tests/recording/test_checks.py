@@ -8,8 +8,8 @@ import pytest
 from twin.physics.ship import load
 from twin.recording.checks import CHECKS, run_checks
 from twin.recording.checks.water import factor
-from twin.recording.finish import finished
 from twin.recording.raw import Raw
+from twin.recording.voyage import Voyage
 
 SURGE, SWAY, HEADING = "surge_velocity_mps", "sway_velocity_mps", "heading_true_north_deg"
 RATE, RUDDER, TURNS = "yaw_rate_degps", "rudder_angle_deg", "propeller_rate_rpm"
@@ -22,7 +22,7 @@ KNOTS = 3600.0 / 1852.0
 def voyage(columns):
     columns = {name: np.array(x, float) for name, x in columns.items()}
     time_s = columns.pop("time_s")
-    return finished(Raw(Path("test.csv"), np.arange(2, time_s.size + 2), time_s, columns, {}))
+    return Voyage.of(Raw(Path("test.csv"), np.arange(2, time_s.size + 2), time_s, columns, {}))
 
 
 def answers(columns, ship=None):

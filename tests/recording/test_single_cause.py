@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from twin.recording.checks import run_checks
-from twin.recording.finish import finished
 from twin.recording.map_file import parse_map
 from twin.recording.raw import Raw, through
 from twin.recording.table import Table
 from twin.recording.timebase import TimeAxis
+from twin.recording.voyage import Voyage
 
 KNOT = 1852.0 / 3600.0
 H, R, D, N = "heading_true_north_deg", "yaw_rate_degps", "rudder_angle_deg", "propeller_rate_rpm"
@@ -52,7 +52,7 @@ def bridge(sail, north=0.0):
 def voyage(d, entries=BRIDGE):
     names = {c if isinstance(c, str) else c["column"] for c in entries.values()}
     table = Table(Path("b.csv"), np.arange(2, d["t"].size + 2), {n: np.array(d[n], float) for n in names}, {})
-    return finished(
+    return Voyage.of(
         through(
             table.path, table, TimeAxis(np.array(d["t"], float)), parse_map({"columns": entries}, "b"), [], {}
         )
@@ -166,7 +166,7 @@ def test_a_ship_at_her_berth_proves_no_rudder(sail):
         "sway_velocity_mps": 0.02 * rng.standard_normal(n),
         R: np.gradient(swing),
     }
-    v = finished(Raw(Path("b.csv"), np.arange(2, n + 2), t, columns, {}))
+    v = Voyage.of(Raw(Path("b.csv"), np.arange(2, n + 2), t, columns, {}))
     assert not [c.text for c in run_checks(v) if c.unusable]
 
 
@@ -189,7 +189,7 @@ def test_a_light_wind_that_veers_while_she_circles_is_not_counted_from_the_bow()
     }
     # light, and stronger: one circle after the other cannot tell a veering wind from one off the bow
     for speed in (1.0, 6.0):
-        v = finished(
+        v = Voyage.of(
             Raw(
                 Path("b.csv"),
                 np.arange(2, 902),
@@ -217,5 +217,5 @@ def test_a_constant_of_the_map_is_no_instrument_that_repeats_its_stamps(sail):
         {},
     )
     by = parse_map({"columns": entries, "constant": {N: 77}}, "b")
-    v = finished(through(table.path, table, TimeAxis(rows["t"]), by, [], {}))
+    v = Voyage.of(through(table.path, table, TimeAxis(rows["t"]), by, [], {}))
     assert {c.name: c for c in run_checks(v)}["time_stamps"].ok

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from twin.api.result import Progress, Result, frame, metres, quietly
 from twin.api.voyages import several
 from twin.num import as_given
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.voyage import Voyage
 from twin.study.calibration.calibrate import calibrate as fit_core

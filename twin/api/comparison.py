@@ -8,7 +8,7 @@ from twin.api.result import PathLike, Progress, Result, frame, metres, quietly
 from twin.api.voyages import several
 from twin.num import as_given, num
 from twin.physics.model import Model
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 from twin.study.prediction.compare import ComparedVoyages
 from twin.study.prediction.compare import compare as judged

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from twin.api.result import PathLike, Progress, Result, quietly
 from twin.api.voyages import several
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 from twin.recording.checks import losses
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage

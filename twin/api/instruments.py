@@ -7,12 +7,12 @@ from typing import Any
 from twin.api.result import Progress, Result, quietly
 from twin.api.voyages import several
 from twin.errors import UsageError
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
-from twin.study.instruments.corrections import corrected
+from twin.study.instruments.corrections import as_map, corrected
 from twin.study.instruments.estimate import Instruments, estimate
-from twin.study.instruments.told import as_json, told
+from twin.study.instruments.told import amount, as_json, told
 
 FRAMES = {"compass": "course", "receiver": "body"}  # who turned the velocity -> the frame it came in
 
@@ -38,6 +38,17 @@ class InstrumentCheck(Result):
         """The ship with the faults that were seen as effects of its instruments. SettingsError when a number
         lies outside its effect's box."""
         return corrected(ship, self.found)[0]
+
+    def not_held(self, ship: Ship) -> list[str]:
+        """The numbers that were seen and that no effect of the catalogue holds, each with its size and
+        unit."""
+        left = corrected(ship, self.found)[1]
+        return [f"{e.unknown.meaning} ({amount(e.value, e.unknown.unit)})" for e in left]
+
+    def as_map(self) -> str:
+        """The lines of a map that take the constants off that were seen. SettingsError when there are
+        none."""
+        return as_map(self.found)
 
     def text(self) -> list[str]:
         """The lines of `twin instruments`."""

@@ -9,7 +9,7 @@ from twin.api.result import Result
 from twin.errors import UsageError
 from twin.num import as_given
 from twin.physics.model import Eta_nu, Model
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 from twin.study.prediction.trial import Steer, sail, shaft_speed
 
 if TYPE_CHECKING:

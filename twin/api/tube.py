@@ -14,8 +14,7 @@ from twin.live.learning.residual import ship_hash
 from twin.live.prediction.calibrated import SECTION, calibrated_of
 from twin.live.signals import config
 from twin.num import as_given
-from twin.physics.particulars import Ship
-from twin.physics.ship import save
+from twin.physics.ship import Ship, save
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.reference.foretold import errors_of

@@ -10,7 +10,7 @@ from twin.errors import UsageError
 from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 from twin.recording.checks import losses
 from twin.recording.voyage import Voyage
 from twin.study.reference.sailed import Sailed, sailed
@@ -131,6 +131,12 @@ def add(
     return of_sailed(ship, chosen, used, kept, cross_validated, force, quietly(progress))
 
 
+def check_proof(held_out: Sequence[Any], cross_validated: bool) -> None:
+    """UsageError where a proof would rest on voyages held out and on thirds of the others alike."""
+    if held_out and cross_validated:
+        raise UsageError("--held-out and --cross-validated: a proof rests on one of them. Leave one out.")
+
+
 def of_sailed(
     ship: Ship,
     effects: Sequence[type[Effect]],
@@ -141,8 +147,7 @@ def of_sailed(
     tell: Progress,
 ) -> Update:
     """The same of voyages that are read already."""
-    if kept and cross_validated:
-        raise UsageError("--held-out and --cross-validated: a proof rests on one of them. Leave one out.")
+    check_proof(kept, cross_validated)
     made = fitted(ship, effects, used, kept, force, cross_validated, tell)
     return Update(made.ship, ship, made, tuple(s.voyage for s in kept or used), data=made.result)
 

@@ -4,8 +4,8 @@ import argparse
 import sys
 from typing import Any, TextIO
 
+from twin import whole
 from twin.api.result import Result
-from twin.recording.import_voyage import write_json
 
 
 def progress(text: str) -> None:
@@ -23,10 +23,19 @@ def asked(found: Result, command: str, **files: Any) -> Result:
     return found.with_keys(command=command, files=files)
 
 
+def files(args: argparse.Namespace, found: Result, page: TextIO) -> None:
+    """JSON and page, as they were asked for."""
+    if args.json:
+        whole.write_json(found.to_dict(), args.json)
+    if args.report:
+        found.write_page(args.report)
+        print(f"wrote {args.report}", file=page)
+
+
 def answer(args: argparse.Namespace, found: Result) -> None:
     """JSON, lines and page, as they were asked for."""
     if args.json:
-        write_json(found.to_dict(), args.json)
+        whole.write_json(found.to_dict(), args.json)
     print("\n".join(found.text()), file=lines_to(args))
     if args.report:
         found.write_page(args.report)

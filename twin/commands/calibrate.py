@@ -6,10 +6,10 @@ import sys
 
 from twin import whole
 from twin.api.calibration import of_sailed
+from twin.commands import arguments
 from twin.commands.answer import lines_to, progress
 from twin.errors import ThresholdError
 from twin.physics.ship import load
-from twin.recording.import_voyage import write_json
 from twin.recording.ship_file import save
 from twin.study.reference.sailed import read_all
 
@@ -23,38 +23,26 @@ grew, so that no ship file is written; 4: a voyage cannot be used; 5: the ship f
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = f"{parser.epilog or ''}\n\n{EPILOG}"
-    parser.add_argument(
-        "voyages",
-        metavar="VOYAGE",
-        nargs="+",
-        help="reference voyages: nothing wrong, manoeuvring, calm or with the wind recorded",
-    )
-    parser.add_argument(
-        "--ship",
-        metavar="SHIP.toml",
-        required=True,
-        help="the ship file to start from, or a bundled ship's name",
-    )
-    parser.add_argument(
-        "-o", "--output", metavar="SHIP2.toml", required=True, help="the calibrated ship file"
-    )
-    parser.add_argument(
-        "--held-out", metavar="VOYAGE", nargs="+", default=[], help="voyages on which the error is measured"
-    )
-    parser.add_argument("--force", action="store_true", help="write over a file that is there")
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+    arguments.after(parser, EPILOG)
+    reference = "reference voyages: nothing wrong, manoeuvring, calm or with the wind recorded"
+    arguments.voyages(parser, reference)
+    arguments.ship(parser, "the ship file to start from, or a bundled ship's name")
+    arguments.output(parser, "SHIP2.toml", "the calibrated ship file")
+    arguments.more_voyages(parser, "--held-out", "voyages on which the error is measured")
+    arguments.force(parser)
+    arguments.as_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     whole.not_over(args.output, [args.ship, *args.voyages, *args.held_out], args.force)
     ship = load(args.ship)
-    every = read_all(args.voyages, ship)
-    found = of_sailed(ship, every, read_all(args.held_out, ship), progress)
+    every = read_all(args.voyages, ship, progress)
+    found = of_sailed(ship, every, read_all(args.held_out, ship, progress), progress)
     if found.accepted:
         save(found.ship, args.output, args.ship)
     if args.json:
-        write_json(found.to_dict() | {"output": str(args.output) if found.accepted else None}, args.json)
+        written = str(args.output) if found.accepted else None
+        whole.write_json(found.to_dict() | {"output": written}, args.json)
     if not found.accepted:
         print("\n".join(found.text()), file=sys.stderr)
         raise ThresholdError(f"{found.refused} {args.output} was not written.")

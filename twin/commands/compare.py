@@ -3,6 +3,7 @@
 import argparse
 
 from twin.api.comparison import of_sailed
+from twin.commands import arguments
 from twin.commands.answer import answer, asked, lines_to, progress
 from twin.commands.next_command import after_compare
 from twin.errors import ThresholdError
@@ -23,39 +24,21 @@ ship file is not valid.
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = EPILOG
-    parser.add_argument(
-        "voyages",
-        metavar="VOYAGE",
-        nargs="+",
-        help="voyages: MCAP logs, or tables with the column names of docs/import.md",
-    )
-    parser.add_argument(
-        "--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name"
-    )
-    parser.add_argument(
-        "--horizon",
-        metavar="S",
-        type=positive,
-        action="append",
-        help="seconds ahead (repeat; default 10, 60, 120)",
-    )
-    parser.add_argument("--residual", metavar="FILE.onnx", help="what was learned, added as the loop adds it")
-    parser.add_argument(
-        "--fail-above",
-        metavar="METRIC=VALUE",
-        type=threshold,
-        action="append",
-        default=[],
-        help="exit 3 above VALUE",
-    )
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
-    parser.add_argument("--report", metavar="FILE.html", help="one self-contained page with the plots")
+    arguments.after(parser, EPILOG)
+    arguments.voyages(parser, "voyages: MCAP logs, or tables with the column names of docs/import.md")
+    arguments.ship(parser)
+    add, seconds = parser.add_argument, "seconds ahead (repeat; default 10, 60, 120)"
+    add("--horizon", metavar="S", type=positive, action="append", help=seconds)
+    add("--residual", metavar="FILE.onnx", help="what was learned, added as the loop adds it")
+    limits = {"type": threshold, "action": "append", "default": []}
+    add("--fail-above", metavar="METRIC=VALUE", help="exit 3 above VALUE", **limits)  # type: ignore[arg-type]
+    arguments.as_json(parser)
+    arguments.report(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
-    voyages = read_all(args.voyages, ship)
+    voyages = read_all(args.voyages, ship, progress)
     progress("predicting")
     found = of_sailed(ship, voyages, args.horizon or HORIZONS_S, args.residual)
     command = f"twin compare {' '.join(args.voyages)} --ship {args.ship}"

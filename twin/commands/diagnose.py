@@ -4,6 +4,7 @@ that is none."""
 import argparse
 
 from twin.api.diagnosis import diagnose
+from twin.commands import arguments
 from twin.commands.answer import answer, lines_to, progress
 from twin.commands.next_command import after_diagnose
 from twin.live.learning.residual import load as load_residual
@@ -21,30 +22,16 @@ an imperfect model leaves over anyway. Exit code 4: a voyage cannot be used; 5: 
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = f"{parser.epilog or ''}\n\n{EPILOG}"
-    parser.add_argument(
-        "voyages", metavar="VOYAGE", nargs="+", help="voyages on which something may be wrong"
-    )
-    parser.add_argument(
-        "--ship", metavar="SHIP.toml", required=True, help="the model: a ship file, or a bundled ship's name"
-    )
-    parser.add_argument(
-        "--reference",
-        metavar="VOYAGE",
-        nargs="+",
-        default=[],
-        help="voyages of the same ship on which nothing was wrong",
-    )
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
-    parser.add_argument("--report", metavar="FILE.html", help="one self-contained page with the plots")
-    parser.add_argument(
-        "--identifiability",
-        action="store_true",
-        help="also say what the first of these voyages can tell at all",
-    )
-    parser.add_argument(
-        "--residual", metavar="FILE.onnx", help="also say whether what was learned stands apart from the core"
-    )
+    arguments.after(parser, EPILOG)
+    arguments.voyages(parser, "voyages on which something may be wrong")
+    arguments.ship(parser)
+    healthy = "voyages of the same ship on which nothing was wrong"
+    arguments.more_voyages(parser, "--reference", healthy)
+    arguments.as_json(parser)
+    arguments.report(parser)
+    arguments.flag(parser, "--identifiability", "also say what the first of these voyages can tell at all")
+    apart = "also say whether what was learned stands apart from the core"
+    parser.add_argument("--residual", metavar="FILE.onnx", help=apart)
 
 
 def run(args: argparse.Namespace) -> int:

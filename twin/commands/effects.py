@@ -6,6 +6,8 @@ import json
 import shutil
 
 from twin import whole
+from twin.api.effect_check import check_effect
+from twin.commands import arguments
 from twin.errors import SettingsError
 from twin.physics.effects import BUILT_IN
 from twin.physics.ship import Ship, load
@@ -15,22 +17,14 @@ WIDEST = 120  # characters of a line on a terminal
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "name",
-        nargs="?",
-        metavar="NAME",
-        help="one effect, with its formula; without it, the whole catalogue",
-    )
-    parser.add_argument("--ship", metavar="SHIP.toml", help="give boxes and sizes in this ship's own units")
-    parser.add_argument("--json", metavar="FILE", help="the same as JSON; - is standard output")
-    parser.add_argument(
-        "--check",
-        metavar="NAME",
-        help="what is wrong with an effect of one's own: an installed one, or a file NAME.py",
-    )
-    parser.add_argument(
-        "--markdown", metavar="FILE", help="the whole catalogue as a page (docs/effects.md is made by it)"
-    )
+    add, page = parser.add_argument, "the whole catalogue as a page (docs/effects.md is made by it)"
+    one = "one effect, with its formula; without it, the whole catalogue"
+    add("name", nargs="?", metavar="NAME", help=one)
+    arguments.ship(parser, "give boxes and sizes in this ship's own units", required=False)
+    arguments.as_json(parser, "the same as JSON; - is standard output")
+    own = "what is wrong with an effect of one's own: an installed one, or a file NAME.py"
+    add("--check", metavar="NAME", help=own)
+    add("--markdown", metavar="FILE", help=page)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -51,15 +45,12 @@ def run(args: argparse.Namespace) -> int:
 
 def _checked(name: str, ship: Ship | None, json_path: str | None) -> int:
     """Exit code 5 when the effect must be mended."""
-    from twin.report.effect_check import answers_as_json, check, find_to_check
-
-    effect = find_to_check(name)
-    answers = check(effect, ship)
+    found = check_effect(name, ship=ship)
     if json_path:
-        text = json.dumps(answers_as_json(effect, answers), indent=2)
-        whole.put(json_path, text, "--json or --markdown")
+        whole.write_json(found.to_dict(), json_path, "--json or --markdown")
     if json_path != "-":
-        print("\n".join([effect.__name__, *(a.line() for a in answers)]))
-    if wrong := [a.question for a in answers if a.ok is False]:
-        raise SettingsError(f"{effect.__name__}: {len(wrong)} of {len(answers)} to mend: {', '.join(wrong)}.")
+        print("\n".join(found.text()))
+    if wrong := found.wrong:
+        said = f"{len(wrong)} of {len(found.answers)} to mend: {', '.join(wrong)}"
+        raise SettingsError(f"{found.effect.__name__}: {said}.")
     return 0

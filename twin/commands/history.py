@@ -1,24 +1,25 @@
 """`twin history`: the ladder of what was added to a ship's model, and how far the error fell each time."""
 
 import argparse
-import sys
 
+from twin import whole
+from twin.commands import arguments
+from twin.commands.answer import lines_to
 from twin.physics.ship import load
-from twin.recording.import_voyage import write_json
 from twin.recording.jsonable import plain
 from twin.study.update.history import SCHEMA_VERSION, ladder, told
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("ship", metavar="SHIP.toml")
-    parser.add_argument("--json", metavar="FILE", help="the same as JSON ('-': standard output)")
+    arguments.as_json(parser, "the same as JSON ('-': standard output)")
 
 
 def run(args: argparse.Namespace) -> int:
     ship = load(args.ship)
     if args.json:
         present = [type(e).__name__ for e in ship.effects]
-        write_json(
+        whole.write_json(
             plain(
                 {
                     "schema_version": SCHEMA_VERSION,
@@ -29,7 +30,7 @@ def run(args: argparse.Namespace) -> int:
             ),
             args.json,
         )
-    page = sys.stderr if args.json == "-" else sys.stdout
+    page = lines_to(args)
     print("\n".join(told(ship)), file=page)
     print(f"next: twin compare VOYAGE.mcap --ship {args.ship}", file=page)
     return 0

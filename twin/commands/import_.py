@@ -4,10 +4,12 @@ import argparse
 import sys
 
 from twin import whole
-from twin.commands.answer import progress
-from twin.commands.next_command import after_import
+from twin.api.voyage_check import import_file, suggest_map
+from twin.commands import arguments
+from twin.commands.answer import lines_to, progress
+from twin.commands.next_command import after_import, after_map
 from twin.errors import DataError, UsageError
-from twin.recording.import_voyage import import_voyage, known_checks, refusal, suggest, summary, write_json
+from twin.recording.import_voyage import known_checks
 from twin.recording.write import write_voyage
 
 EPILOG = """
@@ -18,37 +20,19 @@ write in the map; --accept CHECK imports the file as it is. The format of a map:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.epilog = (parser.epilog or "") + EPILOG
-    parser.add_argument(
-        "file",
-        metavar="FILE",
-        nargs="+",
-        help="a log or a table of any known format; several tables are joined",
-    )
-    parser.add_argument("--map", metavar="MAP.toml", help="the file's own columns, units, signs and clock")
-    parser.add_argument("--ship", metavar="SHIP.toml", help="its particulars let the checks say more")
-    parser.add_argument(
-        "--source",
-        metavar="[CHANNEL=]NAME",
-        action="append",
-        default=[],
-        help="the instrument to take of several",
-    )
-    parser.add_argument(
-        "--without-controls", action="store_true", help="import although rudder or shaft were not recorded"
-    )
-    parser.add_argument(
-        "--suggest-map", action="store_true", help="write the map of an unknown table, to be confirmed"
-    )
-    parser.add_argument(
-        "--accept", metavar="CHECK", action="append", default=[], help="import although CHECK refuses"
-    )
-    parser.add_argument(
-        "--every-check", action="store_true", help="what each check saw, those that are quiet too"
-    )
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
-    parser.add_argument(
-        "-o", "--output", metavar="VOYAGE.mcap", help="the checked voyage (with --suggest-map: the map)"
-    )
+    add = parser.add_argument
+    joined = "a log or a table of any known format; several tables are joined"
+    add("file", metavar="FILE", nargs="+", help=joined)
+    add("--map", metavar="MAP.toml", help="the file's own columns, units, signs and clock")
+    arguments.ship(parser, "its particulars let the checks say more", required=False)
+    arguments.repeated(parser, "--source", "[CHANNEL=]NAME", "the instrument to take of several")
+    arguments.flag(parser, "--without-controls", "import although rudder or shaft were not recorded")
+    arguments.flag(parser, "--suggest-map", "write the map of an unknown table, to be confirmed")
+    arguments.repeated(parser, "--accept", "CHECK", "import although CHECK refuses")
+    arguments.flag(parser, "--every-check", "what each check saw, those that are quiet too")
+    arguments.as_json(parser)
+    checked = "the checked voyage (with --suggest-map: the map)"
+    arguments.output(parser, "VOYAGE.mcap", checked, required=False)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -56,18 +40,21 @@ def run(args: argparse.Namespace) -> int:
     whole.not_onto(args.output or "", args.file, "the file that is read")
     progress(f"reading {' '.join(args.file)}")
     if args.suggest_map:
-        return suggest(args)
+        text, confirmed = suggest_map(args.file, sources=args.source), after_map(args.file, args.output)
+        whole.put(args.output or "-", text, "-o")
+        print(f"wrote {args.output}\n{confirmed}" * bool(args.output), end="\n" * bool(args.output))
+        return 0
     if not args.output:
         raise UsageError("-o VOYAGE.mcap is needed: where the checked voyage goes.")
-    found = import_voyage(args.file, args.map, args.ship, args.source, not args.without_controls)
+    found = import_file(args.file, args.map, args.ship, args.source, not args.without_controls)
     refused = found.refused(args.accept)
-    page = sys.stderr if refused or args.json == "-" else sys.stdout
-    print("\n".join(summary(found, args.every_check)), file=page)
+    page = sys.stderr if refused else lines_to(args)
+    print("\n".join(found.text(args.every_check)), file=page)
     if not refused:
         write_voyage(found.voyage, args.output)
     if args.json:
-        write_json(found.as_json() | {"output": None if refused else str(args.output)}, args.json)
+        whole.write_json(found.to_dict() | {"output": None if refused else str(args.output)}, args.json)
     if refused:
-        raise DataError(refusal(args.file[0], refused, args.map))
+        raise DataError(found.refusal(args.file[0], args.accept, args.map))
     print(f"wrote {args.output}\nnext: {after_import(args.output, args.ship)}", file=page)
     return 0

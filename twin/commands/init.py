@@ -2,66 +2,46 @@
 from."""
 
 import argparse
-import sys
 from pathlib import Path
 
 from twin import whole
+from twin.api.first_model import first_model
+from twin.commands import arguments
+from twin.commands.answer import lines_to
 from twin.num import as_given
 from twin.physics.ship import load_actuators, save
-from twin.recording.import_voyage import write_json
-from twin.study.first_model.first_trial import doubts, sea_trial, summary
-from twin.study.first_model.init import OPTIONS, REQUIRED, first_model
+from twin.study.first_model.init import OPTIONS, REQUIRED
+
+ACTUATORS = (
+    "tables [[actuators]] of what drives and steers the ship, where that is not a propeller with a rudder "
+    "(docs/actuators.md)"
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("name", metavar="NAME", help="the ship's name")
     for option, doc, lo, hi in OPTIONS:
-        parser.add_argument(
-            f"--{option}",
-            type=float,
-            required=option in REQUIRED,
-            metavar="X",
-            help=f"{doc} [{as_given(lo)} to {as_given(hi)}]",
-        )
-    parser.add_argument(
-        "--actuators",
-        metavar="FILE.toml",
-        help="tables [[actuators]] of what drives and steers the ship, where that is not a propeller with a "
-        "rudder (docs/actuators.md)",
-    )
-    parser.add_argument("-o", "--output", required=True, metavar="SHIP.toml", help="the ship file to write")
-    parser.add_argument("--force", action="store_true", help="write over a file that is there")
-    parser.add_argument("--json", metavar="FILE", help="the same as JSON; - is standard output")
+        said = f"{doc} [{as_given(lo)} to {as_given(hi)}]"
+        needed = option in REQUIRED
+        parser.add_argument(f"--{option}", type=float, required=needed, metavar="X", help=said)
+    parser.add_argument("--actuators", metavar="FILE.toml", help=ACTUATORS)
+    arguments.output(parser, "SHIP.toml", "the ship file to write")
+    arguments.force(parser)
+    arguments.as_json(parser, "the same as JSON; - is standard output")
 
 
 def run(args: argparse.Namespace) -> int:
     whole.not_over(args.output, [args.output], args.force)
-    given = {option: getattr(args, option.replace("-", "_")) for option, *_ in OPTIONS}
-    ship, warnings = first_model(args.name, given, load_actuators(args.actuators) if args.actuators else ())
-    figures = sea_trial(ship)
-    warnings += doubts(figures, ship.C_b)
-    save(ship, args.output)
-    out = sys.stderr if args.json == "-" else sys.stdout
-    print(summary(ship, figures, warnings, given), file=out)
-    print(f"\nwritten: {args.output}", file=out)
-    print(
-        f"next:    twin import each reference voyage, then twin calibrate REF-*.mcap --ship {args.output} "
-        f"-o {_next(args.output)}",
-        file=out,
-    )
+    names = [option.replace("-", "_") for option, *_ in OPTIONS]
+    known = {name: getattr(args, name) for name in names if getattr(args, name) is not None}
+    parts = load_actuators(args.actuators) if args.actuators else ()
+    made = first_model(args.name, actuators=parts, **known)
+    save(made.ship, args.output)
+    better = Path(args.output).with_name(Path(args.output).stem + "-calibrated.toml")
+    calibrate = f"twin calibrate REF-*.mcap --ship {args.output} -o {better}"
+    said = [*made.text(), "", f"written: {args.output}"]
+    said += [f"next:    twin import each reference voyage, then {calibrate}"]
+    print("\n".join(said), file=lines_to(args))
     if args.json:
-        write_json(
-            {
-                "schema_version": 1,
-                "ship": ship.name,
-                "file": str(args.output),
-                "trial": figures,
-                "warnings": warnings,
-            },
-            args.json,
-        )
+        whole.write_json(made.to_dict() | {"file": str(args.output)}, args.json)
     return 0
-
-
-def _next(path: str) -> str:
-    return str(Path(path).with_name(Path(path).stem + "-calibrated.toml"))

@@ -1,5 +1,6 @@
 """What to type after a verb: its `next:` line."""
 
+import argparse
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -10,7 +11,7 @@ from twin.physics.ship import load
 def after_import(voyage: str, ship: str | None) -> str:
     """A ship that was never calibrated is, on its reference voyages, before anything is compared with it;
     whether this is one, nobody knows."""
-    if ship and "structural" not in load(ship).notes:
+    if ship and "structural" not in load(ship, arrays=False).notes:
         better = Path(ship).with_name(f"{Path(ship).stem}-calibrated.toml")
         return (
             "its model was not calibrated yet. Import the voyages on which nothing was wrong (three or "
@@ -18,6 +19,19 @@ def after_import(voyage: str, ship: str | None) -> str:
             f"twin diagnose LATER.mcap --ship {better}"
         )
     return f"twin compare {voyage} --ship {ship or 'SHIP.toml'}"
+
+
+def after_map(files: Sequence[str], made: str | None) -> str:
+    """A map that was proposed is confirmed by a person."""
+    by = f"twin import {' '.join(files)} --map {made} -o VOYAGE.mcap"
+    return f"next: read it, correct what is marked, then {by}"
+
+
+def after_instruments(voyages: Sequence[str], ship: str | None, output: str | None) -> str:
+    """The same with the ship file to be corrected; a comparison, where one was written."""
+    if ship and output:
+        return f"twin compare {' '.join(voyages)} --ship {output}"
+    return f"twin instruments {' '.join(voyages)} --ship {ship or 'SHIP.toml'} -o corrected.toml"
 
 
 def after_compare(voyages: Sequence[str], ship: str, result: Mapping[str, Any]) -> str:
@@ -37,3 +51,10 @@ def after_diagnose(voyages: Sequence[str], ship: str, result: Mapping[str, Any])
         add = f"twin add {' '.join(lasting)} --ship {ship} --voyage {paths} -o better.toml"
         return f"{sail}; or now: {add}" if sail else add
     return sail or f"twin compare {paths} --ship {ship} --report compare.html"
+
+
+def add_typed(args: argparse.Namespace) -> str:
+    """What was typed, for the page."""
+    command = f"twin add {' '.join(args.effects)} --ship {args.ship} --voyage {' '.join(args.voyage)}"
+    held_out = f" --held-out {' '.join(args.held_out)}" * bool(args.held_out)
+    return f"{command}{held_out}{' --cross-validated' * args.cross_validated} -o {args.output}"

@@ -1,23 +1,21 @@
 """`twin remove`: take an effect out of a ship's model again; its history remembers both."""
 
 import argparse
-import sys
 
 from twin import whole
+from twin.commands import arguments
+from twin.commands.answer import lines_to
 from twin.physics.ship import load
-from twin.recording.import_voyage import write_json
 from twin.recording.ship_file import save
 from twin.study.update.remove import SCHEMA_VERSION, remove
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("effects", metavar="EFFECT", nargs="+", help="effects of the ship file")
-    parser.add_argument("--ship", metavar="SHIP.toml", required=True)
-    parser.add_argument(
-        "-o", "--output", metavar="SHIP2.toml", required=True, help="the ship file without them"
-    )
-    parser.add_argument("--force", action="store_true", help="write over a file that is there")
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+    arguments.ship(parser, None)
+    arguments.output(parser, "SHIP2.toml", "the ship file without them")
+    arguments.force(parser)
+    arguments.as_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -33,8 +31,8 @@ def run(args: argparse.Namespace) -> int:
             "effects": left,
             "output": args.output,
         }
-        write_json(answer, args.json)
-    page = sys.stderr if args.json == "-" else sys.stdout
+        whole.write_json(answer, args.json)
+    page = lines_to(args)
     print(
         f"removed {', '.join(args.effects)}; left: {', '.join(left) or 'the core alone'}\nwrote "
         f"{args.output}",

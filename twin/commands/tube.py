@@ -1,13 +1,13 @@
 """`twin tube`: how far the predictions on board may be off, from reference voyages."""
 
 import argparse
-import sys
 
 from twin import whole
 from twin.api.tube import tube
 from twin.api.voyages import read_voyage
+from twin.commands import arguments
+from twin.commands.answer import lines_to, progress
 from twin.physics.ship import load, save
-from twin.recording.import_voyage import write_json
 from twin.study.reference.tube_told import told
 
 EPILOG = """Voyages on which nothing was wrong and which the model was not calibrated to, in the seas and
@@ -21,35 +21,26 @@ file or settings are not valid.
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.epilog = f"{parser.epilog or ''}\n\n{EPILOG}"
-    parser.add_argument(
-        "voyages", metavar="VOYAGE", nargs="+", help="voyages that the model was not calibrated to"
-    )
-    parser.add_argument(
-        "--ship", metavar="SHIP.toml", required=True, help="the ship file, or a bundled ship's name"
-    )
-    parser.add_argument(
-        "--config", metavar="TWIN.toml", help="settings of `twin run` on board, if it has any"
-    )
-    parser.add_argument(
-        "-o", "--output", metavar="SHIP2.toml", required=True, help="the ship file with its tube"
-    )
-    parser.add_argument("--force", action="store_true", help="write over a file that is there")
-    parser.add_argument("--json", metavar="FILE", help="the result as JSON ('-': standard output)")
+    arguments.after(parser, EPILOG)
+    arguments.voyages(parser, "voyages that the model was not calibrated to")
+    arguments.ship(parser, "the ship file, or a bundled ship's name")
+    settings = "settings of `twin run` on board, if it has any"
+    parser.add_argument("--config", metavar="TWIN.toml", help=settings)
+    arguments.output(parser, "SHIP2.toml", "the ship file with its tube")
+    arguments.force(parser)
+    arguments.as_json(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     whole.not_over(args.output, [args.ship, *args.voyages], args.force)
     ship = load(args.ship)
     voyages = [read_voyage(path) for path in args.voyages]
-    done = tube(
-        ship, voyages, settings=args.config, progress=lambda text: print(f"{text} ...", file=sys.stderr)
-    )
+    done = tube(ship, voyages, settings=args.config, progress=progress)
     save(done.ship, args.output)
     result = done.to_dict() | {"output": str(args.output)}
     if args.json:
-        write_json(result, args.json)
-    page = sys.stderr if args.json == "-" else sys.stdout
+        whole.write_json(result, args.json)
+    page = lines_to(args)
     print("\n".join(told(result)), file=page)
     print(f"\nwrote {args.output}\nnext: twin replay VOYAGE.mcap --ship {args.output}", file=page)
     return 0

@@ -17,7 +17,7 @@ from twin.live.learning.learned import LearnedForce
 from twin.live.learning.residual import Residual, ResidualError, WrongShip
 from twin.live.loop import Ears, Loop
 from twin.live.observer.dynamics import first_current
-from twin.live.observer.estimate import Observer
+from twin.live.observer.observer import Observer
 from twin.live.observer.predict import Predictor
 from twin.live.observer.rollback import RollBack, inner_steps
 from twin.live.outbox import Outbox

@@ -18,7 +18,7 @@ from twin.live.learning.evidence import Three
 from twin.live.learning.learned import LearnedForce
 from twin.live.observer.controls import actuator_channels
 from twin.live.observer.dynamics import Dynamics
-from twin.live.observer.estimate import Observer
+from twin.live.observer.observer import Observer
 from twin.live.observer.predict import LearnedAt, Predictor
 from twin.live.outbox import Outbox
 from twin.live.parts import Parts

@@ -8,7 +8,7 @@ from twin.live.certificate.periods import TOO_LONG
 from twin.live.certificate.rolled_tube import RolledTube
 from twin.live.certificate.tube import STILL, Three, Tube
 from twin.live.guard import CONTROLS
-from twin.live.observer.estimate import Observer
+from twin.live.observer.observer import Observer
 from twin.live.observer.rollback import RollBack
 from twin.live.parity import Parity
 from twin.live.seen import Certified

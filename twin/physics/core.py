@@ -9,13 +9,10 @@ gives them back their units.
 
 from dataclasses import dataclass
 from math import pi
-from typing import TYPE_CHECKING
 
 from .maths import cos, positive, sin, sqrt
+from .ship_like import ShipLike
 from .state import LIGHT, Growth, Number
-
-if TYPE_CHECKING:
-    from .ship import Ship
 
 GRAVITY = 9.80665  # m/s2
 # flow across the rudder over that along it, about one degree, from which both sides differ in proportion to
@@ -75,7 +72,7 @@ class Coefficients:
     gamma_a: Number
 
 
-def coefficients(ship: "Ship") -> Coefficients:
+def coefficients(ship: ShipLike) -> Coefficients:
     """Prime derivatives of the ship with their units back."""
     d, L, T, rho = ship.derivatives, ship.L_pp, ship.T, ship.rho
     f = 0.5 * rho * L * T  # force for 1 m/s

@@ -5,22 +5,41 @@ Four kinds. A Force pushes the ship. A Flow changes the water that the hull, pro
 gives an actuator a state of its own. A SensorFault leaves the ship alone and changes what an instrument says
 of it."""
 
+from collections.abc import Mapping
 from dataclasses import MISSING, dataclass, field, fields, replace
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from types import MappingProxyType
+from typing import Any, ClassVar, NamedTuple, Protocol, Self, TypeVar
 
 from twin.errors import SettingsError
 from twin.num import as_given
 
+from .ship_like import ShipLike
 from .state import Force as ForceVector
-from .state import Number, Situation, Water
-
-if TYPE_CHECKING:
-    from .ship import Ship
+from .state import Number, Rates, Situation, Water
 
 # by how much of its size a number may be off because nature writes the effect otherwise, unless more is known
 FORM = 0.1
 SCALES = ("force", "moment", "speed", "time", "length")
 OWNERS = ("ship", "instrument", "voyage")
+S = TypeVar("S", bound=ShipLike)
+ROLES = {  # what every ship may have one of, and by what the study asks for it
+    "stream": "water that moves alike everywhere and at all times",
+    "gear": "what stands between the rudder's order and the rudder",
+    "antenna": "where position and speed over ground are measured",
+    "wind": "how the wind that was recorded pushes the ship",
+}
+
+
+class Sailing(Protocol):
+    """What an effect asks of a model to say how strong it is: the ship, the model with the effect, and the
+    accelerations that it gives."""
+
+    @property
+    def ship(self) -> ShipLike: ...
+
+    def but(self, *effects: "Effect") -> "Sailing": ...
+
+    def nu_dot(self, s: Situation) -> Rates: ...
 
 
 class Param(NamedTuple):
@@ -45,10 +64,10 @@ class Param(NamedTuple):
     input: str | None
     doc: str
 
-    def scale(self, ship: "Ship") -> float:
+    def scale(self, ship: ShipLike) -> float:
         return ship.scale(self.of) if self.of else 1.0
 
-    def box(self, ship: "Ship") -> tuple[float, float]:
+    def box(self, ship: ShipLike) -> tuple[float, float]:
         k = self.scale(ship)
         return self.lo * k, self.hi * k
 
@@ -112,11 +131,24 @@ class Effect:
     source: ClassVar[str] = ""
     # whether it is a fault of the one propeller or rudder of a ship without actuators of its own
     one_screw: ClassVar[bool] = False
+    # one of ROLES, of which the catalogue has one effect each; "": none of them
+    role: ClassVar[str] = ""
+    # as the source of its numbers where calibration finds them together with the core; "": it does not
+    with_core: ClassVar[str] = ""
+    # whether it is of the place (its bottom, its banks): a chart knows it, and it is not fitted along with
+    # what is added on a voyage
+    of_place: ClassVar[bool] = False
+    # numbers of it that the readings alone tell, as `twin instruments` calls them, and each number's own name
+    by_readings: ClassVar[Mapping[str, str]] = MappingProxyType({})
+    # numbers that it was given after the first residuals had been trained: a ship without them is the same
+    added_later: ClassVar[tuple[str, ...]] = ()
 
     def __init_subclass__(cls, **kwargs: Any) -> None:
         super().__init_subclass__(**kwargs)
         if cls.belongs_to not in OWNERS:
             raise ValueError(f"{cls.__name__}.belongs_to = {cls.belongs_to!r}: one of {OWNERS}")
+        if cls.role and cls.role not in ROLES:
+            raise ValueError(f"{cls.__name__}.role = {cls.role!r}: one of {tuple(ROLES)}, or none")
         dataclass(frozen=True)(cls)
 
     @classmethod
@@ -124,12 +156,12 @@ class Effect:
         return tuple(Param(f.name, **f.metadata) for f in fields(cls))  # type: ignore[arg-type]
 
     @classmethod
-    def plausible(cls, ship: "Ship") -> "Effect":
+    def plausible(cls, ship: ShipLike) -> "Effect":
         """The effect at its published or typical size on this ship."""
         return cls(**{p.name: p.default * p.scale(ship) for p in cls.params()})
 
     @classmethod
-    def absent(cls, ship: "Ship") -> "Effect":
+    def absent(cls, ship: ShipLike) -> "Effect":
         """The effect at the size at which it does nothing."""
         return cls(**{p.name: p.null * p.scale(ship) for p in cls.params()})
 
@@ -151,6 +183,13 @@ class Effect:
         weather that is recorded."""
         return cls.belongs_to != "voyage" or cls.of_recorded_weather()
 
+    @classmethod
+    def strength(cls, s: Situation, model: Sailing) -> Rates:
+        """How strong its cause is in a situation: the accelerations [m/s2, m/s2, rad/s2] that it gives the
+        ship at its plausible size, beyond those of the model without it. Sets s.u_r and s.v_r."""
+        beside, alone = model.but(cls.plausible(model.ship)).nu_dot(s), model.nu_dot(s)
+        return Rates(*[a - b for a, b in zip(beside, alone, strict=True)])
+
     def values(self) -> dict[str, Number]:
         return {p.name: getattr(self, p.name) for p in self.params()}
 
@@ -158,7 +197,7 @@ class Effect:
         """The same effect with some of its numbers changed."""
         return replace(self, **values)  # type: ignore[type-var]
 
-    def check(self, ship: "Ship", where: str = "") -> None:
+    def check(self, ship: ShipLike, where: str = "") -> None:
         """Refuse a parameter outside its box, or a ship that lacks a particular it needs."""
         name = type(self).__name__
         for p in self.params():
@@ -183,11 +222,11 @@ class Force(Effect):
 
     kind = "Force"
 
-    def force(self, s: Situation, ship: "Ship") -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         """The force in body axes [N, N, N m]."""
         return ForceVector()
 
-    def alter(self, ship: "Ship") -> "Ship":
+    def alter(self, ship: S) -> S:
         """The ship as this effect leaves it (loading changes its mass); most effects leave it alone."""
         return ship
 
@@ -198,7 +237,7 @@ class Flow(Effect):
     kind = "Flow"
     stream: ClassVar[bool] = False  # whether it is nothing but moving water, which carries the ship along
 
-    def water(self, s: Situation, ship: "Ship") -> Water:
+    def water(self, s: Situation, ship: ShipLike) -> Water:
         raise NotImplementedError
 
 
@@ -224,9 +263,14 @@ class SensorFault(Effect):
     # whether it is compass or gyro that is wrong: an antenna stands where the true heading puts it
     attitude: ClassVar[bool] = False
 
-    def read(self, s: Situation, ship: "Ship") -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         """What the instruments say (a changed copy) of a ship that is truly in situation s."""
         raise NotImplementedError
+
+    def as_read(self, number: str, value: Number, attitude: bool) -> Self:
+        """The same fault with a number that the readings told (see `by_readings`). `attitude`: whether the
+        receiver turns its velocity by an attitude of its own, so that the compass does not turn it."""
+        return self.but(**{self.by_readings[number]: value})
 
     def prompt(self) -> "tuple[Number, SensorFault]":
         """How old place and speed over ground are when they are shown [s], and the same fault were they not:

@@ -4,11 +4,12 @@
 Each number is declared once: unit, the range outside which it is a mistake, meaning, and the width of its
 prior."""
 
-import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
+
+from twin.num import as_given
 
 from .actuators import Actuator
 from .core import Coefficients, coefficients
@@ -84,8 +85,8 @@ class Derivatives:
 
 
 @dataclass(frozen=True)
-class Ship:
-    """Everything the model knows of one ship; a file of it is read with `load` and written with `save`."""
+class ShipNumbers:
+    """Everything the model knows of one ship, but how its file is read and written (`ship.Ship`)."""
 
     name: str
     L_pp: Number = number(None, "m", 0.2, 500.0, "length between perpendiculars")
@@ -108,22 +109,11 @@ class Ship:
     # sources, sd, structural, history ...
     notes: Mapping[str, Any] = field(default_factory=dict, kw_only=True, compare=False)
 
-    @staticmethod
-    def load(path: str | os.PathLike[str]) -> "Ship":
-        """The ship of a file, or a bundled one by its bare name; SettingsError says what is wrong."""
-        from .ship import load
-
-        return load(path)
-
-    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
-        """Write the ship file, whole or not at all; SettingsError when it would write over a file and `force`
-        is not set."""
-        from twin import whole
-
-        from .ship import save
-
-        whole.not_over(str(path), [str(path)], force)
-        save(self, path)
+    def __repr__(self) -> str:
+        """One line: name, length, effects, and whether it is calibrated."""
+        effects = ", ".join(type(e).__name__ for e in self.effects) or "no effects"
+        calibrated = "calibrated" if "structural" in self.notes else "not calibrated"
+        return f"<Ship {self.name!r}: {as_given(self.L_pp)} m, {effects}, {calibrated}>"
 
     @cached_property
     def c(self) -> Coefficients:
@@ -164,7 +154,7 @@ class Ship:
             return hasattr(self.derivatives, name)
         return any(a.name == owner and getattr(a, own, None) is not None for a in self.actuators)
 
-    def with_derivatives(self, **values: Number) -> "Ship":
+    def with_derivatives(self, **values: Number) -> Self:
         """The ship with some of these numbers changed (see `derivative`)."""
         own = {k: v for k, v in values.items() if "." in k}
         if not own:
@@ -176,16 +166,16 @@ class Ship:
         plain = {k: v for k, v in values.items() if k not in own}
         return replace(self, actuators=tuple(parts), derivatives=replace(self.derivatives, **plain))
 
-    def with_effects(self, *effects: Effect) -> "Ship":
+    def with_effects(self, *effects: Effect) -> Self:
         """The ship with these effects added; one of the same name is replaced."""
         names = {type(e) for e in effects}
         return replace(self, effects=(*(e for e in self.effects if type(e) not in names), *effects))
 
-    def without_effects(self, *names: str) -> "Ship":
+    def without_effects(self, *names: str) -> Self:
         return replace(self, effects=tuple(e for e in self.effects if type(e).__name__ not in names))
 
 
-PARTICULARS = tuple(f for f in fields(Ship) if f.metadata)
+PARTICULARS = tuple(f for f in fields(ShipNumbers) if f.metadata)
 DERIVATIVES = fields(Derivatives)
 # without actuators of its own a ship has one propeller and one rudder, and these are theirs
 ONE_SCREW = ("D_P", "A_R")

@@ -7,14 +7,17 @@ An effect that is let in must be declared in full and must work on floats, and o
 
 import sys
 from dataclasses import fields
-from importlib.metadata import EntryPoint
 from math import isfinite
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from twin.num import as_given
 
 from .effect import Effect, Flow, Force, Lag, SensorFault
+from .particulars import ShipNumbers
 from .state import Situation
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint  # heavy, and never used on board
 
 GROUP = "twin.effects"
 KINDS = (Force, Flow, Lag, SensorFault)
@@ -44,6 +47,21 @@ MOMENT = {  # a moment at sea in which every field is filled and nothing is zero
     "u_dot": 0.01,
     "v_dot": -0.02,
 }
+USUAL = ShipNumbers(  # a full tanker of 320 m
+    "a usual ship",
+    L_pp=320.0,
+    B=58.0,
+    T=20.8,
+    m=3.2e8,
+    C_b=0.81,
+    x_G=11.2,
+    I_z=2.0e12,
+    U_0=7.97,
+    D_P=9.86,
+    A_R=112.5,
+    A_F=1160.0,
+    A_L=3500.0,
+)
 READ = ("x", "y", "psi", "u", "v", "r", "u_r", "v_r", "wind_to")
 
 
@@ -51,7 +69,7 @@ class Refused(Exception):
     """Why an effect is left out, in words for who wrote it."""
 
 
-def loaded(point: EntryPoint) -> type[Effect]:
+def loaded(point: "EntryPoint") -> type[Effect]:
     """The effect of an entry point; Refused when it cannot be used."""
     try:
         effect = point.load()
@@ -94,9 +112,7 @@ def declared(effect: Any, name: str) -> None:
 
 def works(effect: type[Effect]) -> None:
     """Refused when it fails at a usual moment on a usual ship, for floats or for arrays."""
-    from .ship import load
-
-    ship = load("kvlcc2")
+    ship = USUAL
     numpy = sys.modules.get("numpy")
     try:
         numbers = answer(effect.plausible(ship), Situation(**MOMENT), ship)

@@ -1,26 +1,16 @@
-"""A ship and the TOML file that holds it.
-
-Every number in a ship file is a table { value, unit, source } (a fitted one has its standard error `sd` too),
-so that an owner can see where each came from. Effects stand under [effects.NAME]; what calibration found
-stands under [structural]; [[history]] is the ladder of what was added, on which voyages, and how far the
-error fell."""
+"""A ship, and how its file is read and written."""
 
 import os
-import tomllib
 from collections.abc import Mapping
-from dataclasses import replace
-from pathlib import Path
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Self
 
-from twin.errors import SettingsError, did_you_mean
-from twin.num import as_given
+from twin import whole
 
-from . import ship_arrays
-from .actuators import Actuator
-from .actuators.file import read as read_actuators
-from .effect import Effect
-from .particulars import DERIVATIVES, ONE_SCREW, PARTICULARS, Derivatives, Ship
-from .ship_text import SCHEMA_VERSION, save, text, to_table
+from . import ship_file, ship_text
+from .particulars import DERIVATIVES, PARTICULARS, Derivatives, ShipNumbers
+from .ship_file import bundled, load_actuators
+from .ship_text import save, text, to_table
 
 __all__ = [
     "DERIVATIVES",
@@ -36,165 +26,30 @@ __all__ = [
     "to_table",
 ]
 
-MAX_BYTES = 32_000_000  # of a ship file; what calibration keeps in one takes less than 1 MB
+
+@dataclass(frozen=True, repr=False)
+class Ship(ShipNumbers):
+    """Everything the model knows of one ship; a file of it is read with `load` and written with `save`."""
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> Self:
+        """The ship of a file, or a bundled one by its bare name; SettingsError says what is wrong."""
+        return ship_file.load(cls, path, arrays=True)
+
+    def save(self, path: str | os.PathLike[str], *, force: bool = False) -> None:
+        """Write the ship file, whole or not at all; SettingsError when it would write over a file and `force`
+        is not set."""
+        whole.not_over(str(path), [str(path)], force)
+        ship_text.save(self, path)
 
 
 def load(path: str | os.PathLike[str], arrays: bool = True) -> Ship:
     """Read a ship file (or a bundled ship by its bare name, such as `kvlcc2`); SettingsError says what is
     wrong and where. `arrays`: also the long arrays that calibration left beside it, which the study reads and
     nothing on board does."""
-    path = _bundled(path)
-    try:
-        with open(path, "rb") as file:
-            data = file.read(MAX_BYTES + 1)
-    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte in it
-        why = getattr(error, "strerror", None) or error
-        raise SettingsError(
-            f"{str(path)[:300]}: cannot be read ({why}). Bundled ships: {', '.join(bundled())}."
-        ) from None
-    if len(data) > MAX_BYTES:
-        raise SettingsError(
-            f"{path}: more than {MAX_BYTES // 10**6} MB cannot be a ship file. Check the path."
-        )
-    try:
-        table = tomllib.loads(data.decode())
-    # no TOML, no UTF-8, a number of thousands of digits, a thousand brackets
-    except (ValueError, RecursionError) as error:
-        said = " ".join(str(error).split())[:200]
-        raise SettingsError(f"{path}: not a valid TOML file: {said}. Save it as plain UTF-8 text.") from None
-    if arrays:
-        table = ship_arrays.joined(table, Path(path))
-    return from_table(table, f"{path}: ")
-
-
-def load_actuators(path: str | os.PathLike[str]) -> tuple[Actuator, ...]:
-    """The [[actuators]] of a TOML file; SettingsError says what is wrong and where."""
-    try:
-        with open(path, "rb") as file:
-            table = tomllib.load(file)
-    except (OSError, ValueError, RecursionError) as error:
-        why = getattr(error, "strerror", None) or " ".join(str(error).split())[:200]
-        raise SettingsError(f"{path}: cannot be read as TOML ({why}).") from None
-    if not table.get("actuators"):
-        raise SettingsError(f"{path}: holds no [[actuators]]. A sail is none that this twin knows.")
-    return read_actuators(table["actuators"], f"{path}: ", _value)[0]
-
-
-def bundled() -> list[str]:
-    """Names of the ships that come with the twin."""
-    return sorted(p.stem for p in (Path(__file__).parent.parent / "ships").glob("*.toml"))
-
-
-def _bundled(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
-    name = os.fspath(path)
-    return (
-        Path(__file__).parent.parent / "ships" / f"{name}.toml"
-        if not os.path.exists(name) and name in bundled()
-        else path
-    )
+    return ship_file.load(Ship, path, arrays)
 
 
 def from_table(table: Mapping[str, Any], where: str = "") -> Ship:
     """A ship from the content of its file; `where` begins every complaint."""
-    if not table.get("name"):
-        raise SettingsError(
-            f"{where}no `name`: this is not a ship file. `twin init` makes one from a ship's particulars."
-        )
-    if table.get("schema_version", SCHEMA_VERSION) != SCHEMA_VERSION:
-        raise SettingsError(
-            f"{where}schema_version {table['schema_version']}: this twin reads "
-            f"{SCHEMA_VERSION}. Update the twin."
-        )
-    particulars = _numbers(_section(table, "particulars", where), PARTICULARS, f"{where}particulars.")
-    actuators, noted = read_actuators(table["actuators"], where, _value) if "actuators" in table else ((), {})
-    optional = ("A_F", "A_L", *(ONE_SCREW if actuators else ()))
-    for f in PARTICULARS:
-        if f.default is None and f.name not in particulars and f.name not in optional:
-            raise SettingsError(
-                f"{where}particulars.{f.name} ({f.metadata['doc']}, {f.metadata['unit']}) is missing. Add it."
-            )
-    derivatives = Derivatives(
-        **_numbers(_section(table, "derivatives", where), DERIVATIVES, f"{where}derivatives.")
-    )
-    notes = dict(table)
-    if noted:
-        notes["derivatives"] = {**notes.get("derivatives", {}), **noted}
-    ship = replace(
-        Ship(str(table["name"]), **particulars),  # type: ignore[arg-type]
-        derivatives=derivatives,
-        actuators=actuators,
-        notes=notes,
-    )
-    effects = _section(table, "effects", where)
-    return replace(
-        ship,
-        effects=tuple(
-            _effect(name, _section(effects, name, f"{where}effects."), ship, where) for name in effects
-        ),
-    )
-
-
-def _section(table: Mapping[str, Any], name: str, where: str) -> Mapping[str, Any]:
-    found = table.get(name, {})
-    if not isinstance(found, Mapping):
-        raise SettingsError(
-            f"{where}{name} = {found!r}: a section of numbers is needed, under a line [{name}]."
-        )
-    return found
-
-
-def _effect(name: str, values: Mapping[str, Any], ship: Ship, where: str) -> Effect:
-    """One effect of a ship file, checked; a parameter that is not given has its plausible value."""
-    from .effects import find
-
-    try:
-        effect = find(name)
-    except SettingsError as error:
-        raise SettingsError(f"{where}effects.{name}: {error}") from None
-    known, numbers = {p.name: p for p in effect.params()}, {}
-    for key, entry in values.items():
-        if key not in known and key not in ("source", "learned"):
-            raise SettingsError(f"{where}effects.{name}.{key}: no such parameter.{did_you_mean(key, known)}")
-        if key in known:
-            numbers[key] = _value(entry, f"{where}effects.{name}.{key}")
-            _same_unit(entry, known[key].unit, f"{where}effects.{name}.{key}")
-    made = effect.plausible(ship).but(**numbers)
-    made.check(ship, where)
-    return made
-
-
-def _same_unit(entry: Any, unit: str, where: str) -> None:
-    given = entry.get("unit", unit) if isinstance(entry, Mapping) else unit
-    if given != unit:
-        raise SettingsError(f"{where}: unit {given!r}, but {unit!r} is expected. Convert the value.")
-
-
-def _value(entry: Any, where: str) -> float:
-    value = entry.get("value") if isinstance(entry, Mapping) else entry
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, (int, float))
-        or value != value
-        or abs(value) == float("inf")
-    ):
-        raise SettingsError(
-            f'{where} = {value!r}: a finite number is needed, as {{ value = 1.0, unit = "..." }}.'
-        )
-    return float(value)
-
-
-def _numbers(table: Mapping[str, Any], known: tuple[Any, ...], where: str) -> dict[str, float]:
-    by_name = {f.name: f.metadata for f in known}
-    out = {}
-    for key, entry in table.items():
-        if key not in by_name:
-            raise SettingsError(f"{where}{key}: no such number.{did_you_mean(key, by_name)}")
-        meta, value = by_name[key], _value(entry, where + key)
-        if not meta["lo"] <= value <= meta["hi"]:
-            raise SettingsError(
-                f"{where}{key} = {as_given(value)} {meta['unit']} lies outside [{as_given(meta['lo'])}, "
-                f"{as_given(meta['hi'])}] ({meta['doc']}). Check its unit."
-            )
-        _same_unit(entry, meta["unit"], where + key)
-        out[key] = value
-    return out
+    return ship_file.from_table(Ship, table, where)

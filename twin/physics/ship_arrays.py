@@ -2,7 +2,8 @@
 
 What a person reads and edits stays in the TOML. A list or table of many entries moves to NAME.HASH.json in
 the same folder; the TOML names that file and its SHA-256 under [arrays], so that neither can be changed or
-lost without a word. A ship file of an earlier version has its arrays in itself and is read as it is."""
+lost without a word. A ship file of an earlier version has its arrays in itself; it is read as it is, and a
+line of the log says so."""
 
 import hashlib
 import json
@@ -70,6 +71,19 @@ def joined(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
         section, _, key = where.partition(".")
         whole_table.setdefault(section, {})[key] = array
     return whole_table
+
+
+def said_of_old(table: Mapping[str, Any], people: Sequence[str], path: Path) -> None:
+    """A warning in the log `twin` where a ship file holds its arrays itself, as earlier versions wrote it."""
+    if SECTION in table or not divided(table, people)[1]:
+        return
+    import logging  # of the study: nothing on board reads these arrays
+
+    logging.getLogger("twin").warning(
+        "%s: a ship file of an earlier version, with its arrays in its own lines. It is read as it is; what "
+        "`twin calibrate` or `twin add` writes has them in a file beside it.",
+        path,
+    )
 
 
 def forget(path: Path, text: str) -> None:

@@ -13,13 +13,13 @@ from twin.num import as_given
 
 from . import ship_arrays
 from .actuators.file import tables as actuator_tables
-from .particulars import DERIVATIVES, PARTICULARS, Ship
+from .particulars import DERIVATIVES, PARTICULARS, ShipNumbers
 
 SCHEMA_VERSION = 1
 SECTIONS = ("schema_version", "name", "particulars", "derivatives", "effects", "actuators")
 
 
-def to_table(ship: Ship) -> dict[str, Any]:
+def to_table(ship: ShipNumbers) -> dict[str, Any]:
     """What the ship's file holds; sources and standard errors are kept for the numbers that did not
     change."""
     notes = ship.notes
@@ -122,7 +122,9 @@ def _inline(value: Any) -> str:
     return str(value).lower() if isinstance(value, bool) else repr(value)
 
 
-def save(ship: Ship, path: str | os.PathLike[str], said: Callable[[Mapping[str, Any]], str] = text) -> None:
+def save(
+    ship: ShipNumbers, path: str | os.PathLike[str], said: Callable[[Mapping[str, Any]], str] = text
+) -> None:
     """Write the ship file aside and rename it into place, so that no half file is ever seen; its long arrays
     go to a file beside it (`ship_arrays`), which is written first. `said`: how the rest is told."""
     place, (table, long) = Path(path), ship_arrays.divided(to_table(ship), SECTIONS)

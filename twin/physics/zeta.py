@@ -6,20 +6,18 @@ the live loop and the training use this one table. A number whose measurement is
 """
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from .maths import cos, sin
+from .ship_like import ShipLike
 from .state import Number, Situation
-
-if TYPE_CHECKING:
-    from .ship import Ship
 
 
 class Zeta(NamedTuple):
     """One input: its formula in words, and how it is worked out."""
 
     formula: str
-    of: Callable[[Situation, "Ship"], Number]
+    of: Callable[[Situation, ShipLike], Number]
     needs: tuple[str, ...] = ()
 
 
@@ -50,7 +48,7 @@ ZETA: dict[str, Zeta] = {
 }
 
 
-def inputs(names: tuple[str, ...], s: Situation, ship: "Ship") -> list[Number]:
+def inputs(names: tuple[str, ...], s: Situation, ship: ShipLike) -> list[Number]:
     """The named inputs of one situation, in order; None for each whose measurement is missing. s.u_r,
     s.v_r must be set."""
     out = []

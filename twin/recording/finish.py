@@ -1,5 +1,7 @@
-"""From a file's samples to a voyage: rows without a time left out, what no ship can do blanked, what is
-absent derived."""
+"""From a file's samples to what a voyage is made of: rows without a time left out, what no ship can do
+blanked, what is absent derived."""
+
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -14,14 +16,23 @@ from twin.recording.timebase import (
     refuse_backwards,
     refuse_leaps,
 )
-from twin.recording.voyage import Voyage
 
 FEWEST_ROWS = 10
 CONTROLS = ("rudder_angle_deg", "propeller_rate_rpm")
 
 
-def finished(raw: Raw, controls: bool = True) -> Voyage:
-    """The voyage: rows without a time left out, implausible samples blanked, what is absent derived."""
+class Finished(NamedTuple):
+    """What a `Voyage` is made of, in its order."""
+
+    name: str
+    time_s: np.ndarray
+    columns: dict[str, np.ndarray]
+    meta: dict[str, Any]
+
+
+def finished(raw: Raw, controls: bool = True) -> Finished:
+    """What a voyage is made of: rows without a time left out, implausible samples blanked, what
+    is absent derived."""
     with_time(raw)
     refuse_leaps(raw.path, raw.lines, raw.time_s)
     refuse_backwards(raw.path, raw.lines, raw.time_s)
@@ -37,7 +48,7 @@ def finished(raw: Raw, controls: bool = True) -> Voyage:
     meta["derived"] = meta.get("derived", {}) | derived
     meta["notes"] = (*meta.get("notes", ()), *raw.notes)
     meta["lost"] = (*meta.get("lost", ()), *raw.lost)
-    return Voyage(meta.pop("name", raw.path.stem), raw.time_s, columns, meta)
+    return Finished(meta.pop("name", raw.path.stem), raw.time_s, columns, meta)
 
 
 def with_time(raw: Raw) -> None:

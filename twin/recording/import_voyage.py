@@ -1,15 +1,12 @@
 """`twin import`: measurements in, checked; a file that a check proves wrong is refused."""
 
-import argparse
-import json
 from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from twin import whole
 from twin.errors import SettingsError, did_you_mean
 from twin.num import as_given
-from twin.physics.ship import load
+from twin.physics.ship import Ship, load
 from twin.recording.checks import CHECKS, Check, run_checks
 from twin.recording.formats.choose import sources_of
 from twin.recording.map_file import read_map
@@ -61,6 +58,11 @@ def import_voyage(
     one is given."""
     ship = load(ship_path) if ship_path else None
     voyage = read_voyage(path, read_map(Path(map_path)) if map_path else None, sources_of(sources), controls)
+    return checked(voyage, ship)
+
+
+def checked(voyage: Voyage, ship: Ship | None) -> Imported:
+    """A voyage that was read, and what the checks say of it, with a ship if one is given."""
     if ship:
         voyage = voyage.with_meta(ship=ship.name)
     return Imported(voyage, run_checks(voyage, ship))
@@ -72,23 +74,6 @@ def known_checks(names: Sequence[str]) -> None:
     for name in names:
         if name not in known:
             raise SettingsError(f"--accept: no check is called {name!r}.{did_you_mean(name, known)}")
-
-
-def suggest(args: argparse.Namespace) -> int:
-    """Writes the proposed map to a file, or shows it."""
-    from twin.recording.suggest_map import suggestion
-
-    text = suggestion([Path(p) for p in args.file], sources_of(args.source))
-    if not args.output:
-        print(text, end="")
-        return 0
-    whole.write(args.output, text, "-o")
-    files = " ".join(args.file)
-    print(
-        f"wrote {args.output}\nnext: read it, correct what is marked, then twin import {files} --map "
-        f"{args.output} -o VOYAGE.mcap"
-    )
-    return 0
 
 
 def summary(found: Imported, every: bool = False) -> list[str]:
@@ -138,8 +123,3 @@ def refusal(path: str, refused: Sequence[Check], map_path: str | None = None) ->
     accept = " ".join(f"--accept {c.name}" for c in refused)
     said = " ".join(f"{c.name}: {c.text}" for c in refused)
     return f"{path}: not imported. {said} {mend}, or import it as it is with {accept}."
-
-
-def write_json(result: dict[str, Any], path: str) -> None:
-    """To standard output for '-', else aside and renamed."""
-    whole.put(path, json.dumps(result, indent=2), "--json")

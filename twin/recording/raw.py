@@ -7,16 +7,20 @@ from typing import Any
 import numpy as np
 
 from twin.live.signals.channels import BY_NAME
-from twin.recording.cells import converted, earlier, sum_of, there
+from twin.recording.cells import converted, earlier, number_keys, optional_keys, sum_of, text_keys, there
+from twin.recording.formats import Format
+from twin.recording.formats.tables import Packed
 from twin.recording.mapping import Key, Map, TimeColumn
 from twin.recording.place import FRAMED, placed, scaled
-from twin.recording.table import Table
+from twin.recording.table import Table, read_packed, read_table
 from twin.recording.timebase import (
     TimeAxis,
     clock_from_numbers,
     clock_from_text,
 )
 from twin.recording.units import froude
+
+ABOUT = "shiptwin.voyage"  # the table of words in a voyage's own log; values are JSON
 
 
 @dataclass
@@ -76,3 +80,25 @@ def read_clock(path: Path, table: Table, stamps: tuple[Key, ...], spec: TimeColu
     joint = " " if spec.format else "T"
     words = [joint.join(parts) for parts in zip(*(table.texts[s] for s in stamps), strict=True)]
     return clock_from_text(path, table.lines, words, spec)
+
+
+def opened_table(kind: Format, path: Path) -> Packed:
+    """A table of this format, opened: its column names, and what reads it."""
+    assert kind.table is not None
+    return kind.table(path, kind.says)
+
+
+def stamps_of(by: Map) -> tuple[Key, ...]:
+    """The columns of a map's time."""
+    column = (by.time or TimeColumn()).column
+    return column if isinstance(column, tuple) else (column,)
+
+
+def table_of(path: Path, by: Map, packed: Packed | None) -> Table:
+    """The columns of a table that a map needs."""
+    is_text, entries = (by.time or TimeColumn()).is_text, list(by.columns.values())
+    words = list(dict.fromkeys([*(stamps_of(by) if is_text else ()), *text_keys(entries)]))
+    numbers = list(dict.fromkeys([*(() if is_text else stamps_of(by)), *number_keys(entries)]))
+    if packed:
+        return read_packed(packed, numbers, words, optional_keys(entries))
+    return read_table(path, by.layout, numbers, words, optional_keys(entries))

@@ -3,33 +3,14 @@
 What cannot be used is a DataError; what was blanked, assumed or derived stands in the voyage's `meta`.
 """
 
-import json
 from collections.abc import Sequence
-from dataclasses import replace
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
 
-import numpy as np
-
-from twin.errors import DataError, did_you_mean
-from twin.live.signals.channels import BY_NAME
-from twin.recording.cells import number_keys, optional_keys, text_keys
-from twin.recording.finish import finished
-from twin.recording.formats import Format, recognised
-from twin.recording.formats.choose import Sources, chosen
-from twin.recording.formats.rows import as_columns
-from twin.recording.formats.tables import Packed
-from twin.recording.formats.zipped import is_zip, unpacked
-from twin.recording.headers import column_names, own_names
-from twin.recording.map_file import parse_map
-from twin.recording.mapping import PLACES, Column, Key, Map, TimeColumn
-from twin.recording.place import CHART, FRAMED
-from twin.recording.raw import Raw, about, read_clock, through
-from twin.recording.table import Table, read_packed, read_table
-from twin.recording.timebase import (
-    clock_from_numbers,
-)
+from twin.errors import DataError
+from twin.recording.formats.choose import Sources
+from twin.recording.mapping import Map
+from twin.recording.samples_of import raw_of
+from twin.recording.several import joined
 from twin.recording.voyage import Voyage
 
 NO_SOURCES: Sources = {}
@@ -59,162 +40,14 @@ def read_voyage(
     if path.is_file() and path.stat().st_size == 0:
         raise DataError(f"{path}: is empty (0 bytes). Export it again.")
     try:
-        return finished(raw_of(path, by, sources), controls)
+        return Voyage.of(raw_of(path, by, sources), controls)
     except MemoryError:
         raise DataError(f"{path}: does not fit into the memory. Cut it into shorter voyages.") from None
 
 
 def read_several(paths: Sequence[Path], by: Map | None, controls: bool = True) -> Voyage:
     """The voyage in several tables, joined on their clocks."""
-    from twin.recording.several import joined
-
     try:
-        return finished(joined(paths, by), controls)
+        return Voyage.of(joined(paths, by), controls)
     except MemoryError:
         raise DataError(f"{paths[0]}: does not fit into the memory. Cut it into shorter voyages.") from None
-
-
-def raw_of(path: Path, by: Map | None, sources: Sources) -> Raw:
-    """The samples of a file in border units, by the reader of its format."""
-    if is_zip(path):
-        return of_zip(path, by, sources)
-    kind = recognised(path)
-    if kind is None and path.is_dir():
-        from twin.recording.several import joined
-
-        return joined([path], by)
-    if kind is None:
-        return from_log(path, by) if path.suffix.lower() == ".mcap" else from_text(path, by)
-    return (
-        from_series(path, kind, by, sources) if kind.series else from_text(path, by, opened_table(kind, path))
-    )
-
-
-def of_zip(path: Path, by: Map | None, sources: Sources) -> Raw:
-    """What is packed in a .zip: one log or table, or several tables that are joined."""
-    with TemporaryDirectory() as folder:
-        files = unpacked(path, Path(folder))
-        try:
-            if len(files) == 1:
-                return replace(raw_of(files[0], by, sources), path=path)
-            from twin.recording.several import joined
-
-            return replace(joined(files, by), path=path)
-        except DataError as error:
-            raise DataError(str(error).replace(folder, str(path))) from None
-
-
-def opened_table(kind: Format, path: Path) -> Packed:
-    assert kind.table is not None
-    return kind.table(path, kind.says)
-
-
-def from_log(path: Path, by: Map | None = None) -> Raw:
-    """The samples of the twin's own MCAP: an imported voyage, or the log of a run; a map may replace channels
-    of it."""
-    from twin.live.log.rows import read_rows
-
-    notes, lost = list[str](), list[str]()
-    time_s, columns = read_rows(path, notes, lost)
-    clock = clock_from_numbers(path, time_s, TimeColumn())
-    known = {name: x for name, x in columns.items() if name in BY_NAME}
-    lines, facts = np.arange(1, time_s.size + 1), words(path)
-    if by is None:
-        return Raw(
-            path, lines, clock.time_s, known, about(path, clock) | facts, notes + list(clock.notes), lost=lost
-        )
-    own = {name: Column(name) for name in known if name not in by.columns and name not in by.constant}
-    missing = [str(k) for k in number_keys(by.columns.values()) if k not in columns]
-    if missing:
-        raise DataError(
-            f"{path}: this log of the twin holds no {missing[0]!r}.{did_you_mean(missing[0], columns)}"
-        )
-    table = Table(path, lines, dict(columns.items()), {}, lost=tuple(lost))
-    return through(path, table, clock, replace(by, columns=own | dict(by.columns)), notes, facts)
-
-
-def words(path: Path) -> dict[str, Any]:
-    """What an imported voyage says about itself: where it came from, what in it is derived."""
-    from twin.live.log.mcap_read import McapReader
-    from twin.recording.write import ABOUT
-
-    reader = McapReader(path)
-    next(reader.messages(), None)
-    return {key: json.loads(value) for key, value in reader.metadata.get(ABOUT, {}).items()}
-
-
-def from_text(path: Path, by: Map | None, packed: Packed | None = None) -> Raw:
-    """The samples of a table, text or packed, through a map."""
-    by, unused = (by, ()) if by else own_names(path, packed.names if packed else column_names(path))
-    table = table_of(path, by, packed)
-    return through(
-        path,
-        table,
-        read_clock(path, table, stamps_of(by), by.time or TimeColumn()),
-        by,
-        [*table.notes, *unused],
-        {},
-    )
-
-
-def stamps_of(by: Map) -> tuple[Key, ...]:
-    """The columns of a map's time."""
-    column = (by.time or TimeColumn()).column
-    return column if isinstance(column, tuple) else (column,)
-
-
-def table_of(path: Path, by: Map, packed: Packed | None) -> Table:
-    """The columns of a table that a map needs."""
-    is_text, entries = (by.time or TimeColumn()).is_text, list(by.columns.values())
-    words = list(dict.fromkeys([*(stamps_of(by) if is_text else ()), *text_keys(entries)]))
-    numbers = list(dict.fromkeys([*(() if is_text else stamps_of(by)), *number_keys(entries)]))
-    if packed:
-        return read_packed(packed, numbers, words, optional_keys(entries))
-    return read_table(path, by.layout, numbers, words, optional_keys(entries))
-
-
-def from_series(path: Path, kind: Format, by: Map | None, sources: Sources) -> Raw:
-    """The samples of a log of messages: by its own map, in which a person's map replaces what it names."""
-    assert kind.series is not None
-    signals = kind.series(path)
-    choice = chosen(signals, sources)
-    if not choice.columns and by is None:
-        held = ", ".join(list(signals.series)[:12])
-        raise DataError(
-            f"{path}: this is {signals.says}, and nothing in it says what it is: {held} ... "
-            "--suggest-map writes a map to begin with."
-        )
-    given = by or Map(name=f"what {path.name} says itself")
-    by = replace(
-        given,
-        columns={
-            **parse_map({"columns": beside_map(choice.columns, given)}, str(path)).columns,
-            **given.columns,
-        },
-    )
-    wanted = list(dict.fromkeys(number_keys(by.columns.values())))
-    for name in wanted:
-        if name not in signals.series:
-            known = list(signals.series)
-            raise DataError(
-                f"{path}: this is {signals.says}, and it holds no "
-                f"{name!r}.{did_you_mean(str(name), known)} It holds "
-                f"{', '.join(known[:20])}."
-            )
-    time_s, columns = as_columns(signals, map(str, wanted))
-    notes = [*signals.notes, *choice.notes]
-    notes += [f"left out: {', '.join(f'{n} {what}' for what, n in signals.skipped.most_common(6))}"] * bool(
-        signals.skipped
-    )
-    table = Table(path, np.arange(1, time_s.size + 1), dict(columns.items()), {})
-    clock = clock_from_numbers(path, time_s, TimeColumn())
-    return through(path, table, clock, by, notes, {"format": signals.says})
-
-
-def beside_map(own: dict[str, Any], given: Map) -> dict[str, Any]:
-    """The log's own columns, without those that a map gives: position and velocity go by whole pairs."""
-    taken = set(given.columns) | set(given.constant)
-    for pair in (FRAMED, PLACES, CHART):
-        if taken & set(pair):
-            taken |= {*pair, *((*PLACES, *CHART) if pair != FRAMED else ())}
-    return {name: c for name, c in own.items() if name not in taken}

@@ -18,8 +18,7 @@ from twin.recording.formats.signals import Signals
 from twin.recording.formats.tables import Packed
 from twin.recording.headers import column_names, own_names
 from twin.recording.mapping import Column, Map, TimeColumn
-from twin.recording.raw import Raw, read_clock, through
-from twin.recording.read import opened_table, stamps_of, table_of
+from twin.recording.raw import Raw, opened_table, read_clock, stamps_of, table_of, through
 from twin.recording.table import Table
 from twin.recording.timebase import TimeAxis, clock_from_numbers, moment_of
 

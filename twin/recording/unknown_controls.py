@@ -3,7 +3,7 @@ there tells of the ship."""
 
 import numpy as np
 
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 
 CONTROLS = ("rudder_angle_deg", "propeller_rate_rpm")

@@ -3,8 +3,10 @@
 A missing sample is NaN and stays NaN: nothing here invents a measurement.
 """
 
+import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -12,8 +14,11 @@ import numpy as np
 from twin.errors import DataError, did_you_mean
 from twin.live.signals.channels import BY_NAME, CHANNELS, Channel
 from twin.num import as_given, num
+from twin.recording.finish import finished
 from twin.recording.holes import HOLE_S, WAITS, sailed_s, steps_on
+from twin.recording.raw import Raw
 from twin.recording.resample import continuous, resampled, wrapped
+from twin.recording.samples_of import raw_of
 
 MOST_STEPS = 3e6  # of a grid
 if TYPE_CHECKING:
@@ -45,17 +50,18 @@ class Voyage:
                 )
 
     @classmethod
+    def of(cls, raw: Raw, controls: bool = True) -> "Voyage":
+        """The voyage of a file's samples: what no ship can do is blanked, what is absent is derived.
+        DataError when too little is there (`controls`: rudder and shaft must be)."""
+        return cls(*finished(raw, controls))
+
+    @classmethod
     def from_dataframe(cls, df: "pandas.DataFrame", name: str = "dataframe") -> "Voyage":
         """A voyage of a table whose columns are channels by name (`time_s` among them, or as its index).
 
         The same reading as of a file: what is absent is derived or said to be absent, what cannot be is
         blanked. DataError names a column that is no channel, and the nearest.
         """
-        import tempfile
-        from pathlib import Path
-
-        from twin.recording.read import read_voyage
-
         table = df if "time_s" in df.columns else df.rename_axis("time_s").reset_index()
         for column in table.columns:
             if column not in ("time_s", "time_utc"):
@@ -63,7 +69,7 @@ class Voyage:
         with tempfile.TemporaryDirectory() as folder:
             path = Path(folder) / f"{name}.csv"
             table.to_csv(path, index=False, float_format="%.17g")
-            made = read_voyage(path)
+            made = cls.of(raw_of(path, None, {}))
         return replace(made, meta={**made.meta, "source": name})
 
     def to_dataframe(self) -> "pandas.DataFrame":

@@ -11,11 +11,11 @@ from twin.live.log.mcap_damage import EXTENT, extent
 from twin.live.log.mcap_index import PROVENANCE
 from twin.live.log.record import LogFile
 from twin.live.signals.channels import of_actuators
+from twin.recording.raw import ABOUT
 from twin.recording.timebase import moment_of
 from twin.recording.voyage import Voyage
 
 TOPIC = "shiptwin/voyage/row"
-ABOUT = "shiptwin.voyage"  # the table of words; values are JSON
 NS = 1_000_000_000
 LAST_NS = 2**63 - 1
 ROWS_AT_ONCE = 50_000

@@ -11,7 +11,7 @@ import numpy as np
 from twin.api.simulation import simulate
 from twin.errors import SettingsError
 from twin.num import as_given
-from twin.physics.particulars import Derivatives, Ship
+from twin.physics.ship import Derivatives, Ship
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
 from twin.study.first_model.first_trial import doubts as careful

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 
 from twin.live.certificate import certificate as cert
-from twin.live.certificate.certificate import Tube, certify
-from twin.live.certificate.enclosure import _points, _situation, contribution, sampled, slopes
+from twin.live.certificate.certificate import certify
+from twin.live.certificate.enclosure import contribution, points_of, sampled, situation_of, slopes
 from twin.live.certificate.store import kept
+from twin.live.certificate.tube import Tube
 from twin.live.learning.movable import adaptable, movable, moved
 from twin.live.observer.estimate import gain_for
 from twin.physics.effects import BUILT_IN, find
@@ -44,7 +45,7 @@ def test_slopes_and_distance_hold_for_every_number_in_its_box(Kind):
     model = Model.of(SHIP).but(Kind.plausible(SHIP))
     numbers, ranges = movable(model.effects, SHIP), {**cert.of_ship(model).ranges, "stream": (0.0, 0.0)}
     sure = slopes(model, ranges, dict.fromkeys(ranges, 3), numbers)
-    s, names = _situation(_points(ranges, 1000, 2)), frozenset((*CORE, Kind.__name__))
+    s, names = situation_of(points_of(ranges, 1000, 2)), frozenset((*CORE, Kind.__name__))
     start = [x.value for x in contribution(model, s, names)]
     furthest = np.zeros(3)
     for other in models(model, numbers, 6):

@@ -6,8 +6,8 @@ import pytest
 from bench.stability.adversaries import AdversaryCase, certified
 from bench.stability.adversary_fleet import AdversaryFleet, trial
 from bench.stability.loop import LoopCase, Loops
-from twin.live.certificate.certificate import Tube, certify
-from twin.live.certificate.tube import Highest
+from twin.live.certificate.certificate import certify
+from twin.live.certificate.tube import Highest, Tube
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load

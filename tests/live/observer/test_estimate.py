@@ -5,7 +5,8 @@ from math import hypot, pi, radians
 
 import pytest
 
-from twin.live.observer.estimate import A_MAX, CurrentFilter, Estimate, Observer, gain_for
+from twin.live.observer.estimate import A_MAX, CurrentFilter, Estimate, gain_for
+from twin.live.observer.observer import Observer
 from twin.live.signals.measured import Measured
 from twin.physics.ship import load
 from twin.physics.state import Rates

@@ -9,7 +9,7 @@ from twin.live.certificate.certificate import Certificate, certify, on_board
 from twin.live.certificate.rolled import radius
 from twin.live.certificate.rolled_tube import RolledTube
 from twin.live.observer.dynamics import KnownDynamics
-from twin.live.observer.estimate import Observer
+from twin.live.observer.observer import Observer
 from twin.live.observer.rollback import FULL, Path, Pull, RollBack, Stretch, inner_steps
 from twin.live.signals.measured import Measured
 from twin.physics.model import Model

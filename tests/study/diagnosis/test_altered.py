@@ -7,7 +7,7 @@ import pytest
 
 from twin.physics.effects import find
 from twin.study.diagnosis import altered
-from twin.study.diagnosis.altered import SCATTER, _moved, _scattered, floats, sized
+from twin.study.diagnosis.altered import SCATTER, changed_derivatives, floats, sized, widened
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.refine import Found, refine
 
@@ -35,7 +35,9 @@ def test_those_of_an_effect_that_leaves_the_ship_alone_stay_as_they_are(case):
 
 def test_a_derivative_moves_with_its_own_draught(case):
     deeper = case.model.but(find("Loading")(mass=0.0, draught=0.1, x_G=0.0))
-    moved = dict(zip([u.label for u in case.nuisance.unknowns], _moved(case, deeper), strict=True))
+    moved = dict(
+        zip([u.label for u in case.nuisance.unknowns], changed_derivatives(case, deeper), strict=True)
+    )
     d = case.model.ship.derivatives
     assert moved["core.Y_vv"] == pytest.approx(0.1 * d.Y_vv)  # cross-flow drag grows with the draught
     assert moved["core.N_uv"] == pytest.approx(0.21 * d.N_uv)  # a slender body's lift with its square
@@ -44,11 +46,11 @@ def test_a_derivative_moves_with_its_own_draught(case):
 
 def test_doubt_is_added_to_what_was_known_and_the_mean_stays(case):
     extra = np.array([SCATTER * u.sd for u in case.nuisance.unknowns])
-    wider = _scattered(case.nuisance, extra)
+    wider = widened(case.nuisance, extra)
     covariance = [np.linalg.inv(n.information) for n in (case.nuisance, wider)]
     assert np.diag(covariance[1]) == pytest.approx(np.diag(covariance[0]) + SCATTER**2)
     assert covariance[1] @ wider.pull == pytest.approx(covariance[0] @ case.nuisance.pull, abs=1e-9)
-    same = _scattered(case.nuisance, 0.0 * extra)
+    same = widened(case.nuisance, 0.0 * extra)
     assert replace(same, information=case.nuisance.information, pull=same.pull).pull == pytest.approx(
         case.nuisance.pull, abs=1e-6
     )

@@ -5,8 +5,8 @@ from types import SimpleNamespace
 import pytest
 
 from bench.fleet.asked import voyage
+from bench.fleet.build import build
 from bench.fleet.cases import generator, plan, sailed
-from bench.fleet.ship import build
 from twin.physics.effects.heading_lag import HeadingLag
 from twin.physics.model import Model
 from twin.study.diagnosis.assemble import of_tracks

@@ -11,10 +11,10 @@ from twin.study.diagnosis.open_loop_check import (
     COMPLEXITY,
     FORM,
     OpenLoopCheck,
-    _astray,
-    _measured,
     held_out_error,
     horizon_s,
+    mean_error_m,
+    measured_error_m,
     open_loop_check,
     roughly,
 )
@@ -63,10 +63,13 @@ def test_a_weather_force_that_is_in_the_model_is_known_to_a_tenth_on_the_path_to
     (without, share), *others = added(case.model)
     assert share == KNOWN and not others and added(known.model) == []
     (ahead, aft), *more = elsewhere(case.model)
-    moved = 0.5 * (_astray(case, ahead) ** 2 + _astray(case, aft) ** 2) - _astray(case, case.model) ** 2
+    moved = (
+        0.5 * (mean_error_m(case, ahead) ** 2 + mean_error_m(case, aft) ** 2)
+        - mean_error_m(case, case.model) ** 2
+    )
     assert moved > 0.0 and not more and elsewhere(known.model) == []
     assert (
-        roughly(case) == pytest.approx(np.hypot(KNOWN * _astray(case, without), moved**0.5))
+        roughly(case) == pytest.approx(np.hypot(KNOWN * mean_error_m(case, without), moved**0.5))
         and roughly(known) == 0.0
     )
     assert without.effects == tanker.effects
@@ -210,7 +213,7 @@ def test_the_floor_is_no_lower_than_what_the_calibration_measured_on_other_voyag
         notes = tanker.notes | {"structural": tanker.notes["structural"] | {"held_out": held_out}}
         ship = replace(case.model.ship, notes=notes)
         asked_of = replace(case, model=replace(case.model, ship=ship))
-        assert _measured(asked_of) == pytest.approx(measured)
+        assert measured_error_m(asked_of) == pytest.approx(measured)
     weighed, found, _ = search(case)
     floor = open_loop_check(asked_of, found, weighed).floor
     assert list(floor.values()) == pytest.approx([500.0] * len(floor))

@@ -12,12 +12,12 @@ from twin.study.diagnosis.bent import bends, bent_numbers
 from twin.study.diagnosis.refine import (
     DOUBTS,
     IRREGULAR,
-    _doubt,
-    _newton,
-    _place,
-    _told,
-    _Top,
+    BestPlace,
     about,
+    best_place,
+    form_share,
+    newton,
+    reduced_at,
     refine,
 )
 from twin.study.estimation.respond import standard
@@ -53,8 +53,8 @@ def test_what_no_day_brings_steers_no_climb(case):
     narrow, kept = case.along(case.lines, ("SteeringLag",))
     z = np.zeros(len(case.effects))
     z[rows(case, "SteeringLag")] = 1.0
-    whole = _newton(case, ("SteeringLag",), rows(case, "SteeringLag"), "usual", z)[1]
-    alone = _newton(narrow, ("SteeringLag",), rows(narrow, "SteeringLag"), "usual", z[kept])[1]
+    whole = newton(case, ("SteeringLag",), rows(case, "SteeringLag"), "usual", z)[1]
+    alone = newton(narrow, ("SteeringLag",), rows(narrow, "SteeringLag"), "usual", z[kept])[1]
     assert len(narrow.unknowns) < 0.5 * len(case.unknowns) and kept.sum() == len(narrow.effects)
     # prior widths, along a ridge of the gear's own numbers
     assert alone == pytest.approx(whole[kept], abs=0.15)
@@ -69,7 +69,7 @@ def test_a_climb_never_ends_where_the_voyages_are_less_probable_than_where_it_be
         lines = about(case, at, mine, [case.effects[i] for i in mine])[1]
         return case.reduced(lines, case.scenarios(["usual"], DOUBTS[0]), at)[0].base - 0.5 * float(at @ at)
 
-    end = _newton(case, ("SteeringLag",), mine, "usual", z)[1]
+    end = newton(case, ("SteeringLag",), mine, "usual", z)[1]
     assert probable(end) >= probable(z)
 
 
@@ -79,10 +79,10 @@ def test_a_ship_that_no_filter_can_follow_is_no_step_to_take(case):
     here = about(case, np.zeros_like(z), mine, [case.effects[i] for i in mine])[1]
     wild = [replace(line, F=line.F * 1e8) for line in here]
     assert (
-        _told(case, here, "usual", np.zeros_like(z)) is not None
-        and _told(case, wild, "usual", np.zeros_like(z)) is None
+        reduced_at(case, here, "usual", np.zeros_like(z)) is not None
+        and reduced_at(case, wild, "usual", np.zeros_like(z)) is None
     )
-    end = _newton(case, ("Loading",), mine, "usual", z)[1]
+    end = newton(case, ("Loading",), mine, "usual", z)[1]
     assert np.isfinite(end).all()
 
 
@@ -91,11 +91,11 @@ def test_a_slow_gear_is_found_however_far_out_it_stands(case):
     where it is said to stand."""
     mine, guess = rows(case, "SteeringLag"), np.zeros(len(case.effects))
     guess[mine] = [0.5, 0.2, 0.0]
-    top = _place(case, ("SteeringLag",), "usual", guess, -np.inf)
+    top = best_place(case, ("SteeringLag",), "usual", guess, -np.inf)
     for start in ([2.0, 2.0, 0.0], [0.5, 4.0, 0.0], [0.0, 0.0, 4.0], [4.0, 4.0, 4.0]):
         z = np.zeros(len(case.effects))
         z[mine] = start
-        other = _newton(case, ("SteeringLag",), mine, "usual", z)[0]
+        other = newton(case, ("SteeringLag",), mine, "usual", z)[0]
         assert other.log_weight < top.best.log_weight + 0.5
     assert top.at[mine][1] == pytest.approx(1.57, abs=0.3)  # 65 deg in as long as it sails so many lengths
 
@@ -110,7 +110,7 @@ def test_a_set_whose_climb_went_astray_stands_no_lower_than_its_part(case, monke
     guess[rows(case, "SensorDelay")] = 10.0
     monkeypatch.setattr("twin.study.diagnosis.refine.NEWTON", 1)
     alone = part.hypothesis.log_evidence + case.log_prior(both, "usual")
-    astray, again = (_place(case, both, "usual", guess, hoped, part) for hoped in (-np.inf, np.inf))
+    astray, again = (best_place(case, both, "usual", guess, hoped, part) for hoped in (-np.inf, np.inf))
     assert astray.best.log_weight < alone - 20.0 < alone - 10.0 < again.best.log_weight
 
 
@@ -118,9 +118,9 @@ def test_a_climb_that_got_no_higher_is_asked_in_no_other_world(case, monkeypatch
     mine = rows(case, "RudderWear")
     z = np.zeros(len(case.effects))
     z[mine] = 0.5
-    top = _Top.of(case, ("RudderWear",), *_newton(case, ("RudderWear",), mine, "usual", z)[1:])
+    top = BestPlace.of(case, ("RudderWear",), *newton(case, ("RudderWear",), mine, "usual", z)[1:])
     asked = []
-    monkeypatch.setattr(_Top, "of", classmethod(lambda cls, *_: asked.append(1) or top))
+    monkeypatch.setattr(BestPlace, "of", classmethod(lambda cls, *_: asked.append(1) or top))
     higher = {**top.judged, "usual": replace(top.judged["usual"], log_evidence=1e9)}
     assert replace(top, judged=higher).or_from(case, ("RudderWear",), mine, z).judged is higher and not asked
     lower = {**top.judged, "usual": replace(top.judged["usual"], log_evidence=-1e9)}
@@ -145,10 +145,10 @@ def test_what_comes_and_goes_with_wave_groups_may_be_something_else_as_a_whole(
     monkeypatch.setattr(
         "twin.study.diagnosis.refine.posterior", lambda r, chosen: SimpleNamespace(log_evidence=0.0)
     )
-    _doubt(
+    form_share(
         case,
         chosen,
-        _Top(np.zeros(len(case.effects)), case.lines, {"usual": Hypothesis(chosen, "usual", 0.0, 0.0)}),
+        BestPlace(np.zeros(len(case.effects)), case.lines, {"usual": Hypothesis(chosen, "usual", 0.0, 0.0)}),
     )
     assert max(floor.doubt for floor in asked) == most and min(floor.doubt for floor in asked) == DOUBTS[-1]
 

@@ -10,7 +10,7 @@ from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.case import SCENARIOS
 from twin.study.diagnosis.criteria import SURE
 from twin.study.diagnosis.refine import Found
-from twin.study.diagnosis.search import _Book, search
+from twin.study.diagnosis.search import Book, search
 from twin.study.diagnosis.verdict import weights
 
 PAIR = ("RudderWear", "SteeringLag")
@@ -23,7 +23,7 @@ def case(tanker, voyages):
 
 def book(case):
     names = list(SCENARIOS)
-    return _Book(case, dict(zip(names, case.reduced(case.lines, case.scenarios(names)), strict=True)))
+    return Book(case, dict(zip(names, case.reduced(case.lines, case.scenarios(names)), strict=True)))
 
 
 def weighed(case, *judged):
@@ -76,7 +76,7 @@ def test_weather_stands_beside_any_two_causes_and_takes_no_place(case):
     assert case.ordered(("Current", "RudderWear", "Wind")) in asked
     four = case.ordered(("Current", "Wind", "RudderWear", "SteeringLag"))
     day = case.ordered(("Current", "Wind"))
-    assert held._parts(four) == [day, *(case.ordered((*day, name)) for name in case.causes(four))]
+    assert held.parts(four) == [day, *(case.ordered((*day, name)) for name in case.causes(four))]
 
 
 def test_every_promising_effect_is_judged_when_what_was_found_leaves_too_much(tanker, voyages):
@@ -106,10 +106,10 @@ def test_an_effect_and_a_part_of_it_are_no_pair(case):
 
 
 def test_beside_a_stream_that_changes_a_steady_one_is_judged_too(case):
-    assert book(case)._simpler(("VaryingCurrent", "HullFouling")) == [
+    assert book(case).simpler(("VaryingCurrent", "HullFouling")) == [
         tuple(n for n in case.candidates if n in ("Current", "HullFouling"))
     ]
-    assert book(case)._simpler(("HullFouling",)) == []
+    assert book(case).simpler(("HullFouling",)) == []
 
 
 def test_what_an_effect_holds_is_in_the_catalogue():
@@ -140,7 +140,7 @@ def test_what_any_day_brings_much_of_is_judged_about_its_own_size_without_having
     for share, judged in ((0.02, []), (0.1, [("Current",)])):
         daily = {label: share * sizes[label] for label in ("Current.north", "Current.east")}
         usual = replace(case, nuisance=replace(case.nuisance, daily=daily))
-        assert book(usual)._of_the_day() == judged
+        assert book(usual).of_the_day() == judged
         assert [s for s in book(usual).first if s == ("Current",)][:1] == judged
 
 
@@ -170,14 +170,14 @@ def test_drag_that_is_none_but_lies_otherwise_along_her_is_none(case, c_d, hollo
     )
     nothing = held.found[()]
     held.found[chosen] = replace(nothing, posterior=replace(nothing.posterior, z=z))
-    assert held._hollow(chosen) is hollow
+    assert held.hollow(chosen) is hollow
 
 
 def test_what_shows_another_moment_is_judged_about_its_own_size_if_it_promises_anything(case):
     held = book(case)
     assert (
-        held._of_another_moment(("SensorDelay",))
-        and not held._of_another_moment(("HeadingBias",))
-        and not held._of_another_moment(("SteeringLag",))
+        held.of_another_moment(("SensorDelay",))
+        and not held.of_another_moment(("HeadingBias",))
+        and not held.of_another_moment(("SteeringLag",))
     )
-    assert (("SensorDelay",) in held.first) == (("SensorDelay",) in held._promising())
+    assert (("SensorDelay",) in held.first) == (("SensorDelay",) in held.promising())

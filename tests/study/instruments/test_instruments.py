@@ -13,8 +13,8 @@ from twin.api.json_keys import KEYS
 from twin.cli import main
 from twin.errors import DataError, UsageError
 from twin.physics.ship import load
-from twin.recording.finish import finished
 from twin.recording.raw import Raw
+from twin.recording.voyage import Voyage
 from twin.study.instruments.arrow import Block, reduce
 from twin.study.instruments.estimate import estimate
 from twin.study.instruments.spline import Spline
@@ -35,7 +35,7 @@ def healthy(sail):
 def voyage(columns, frame="body"):
     columns = dict(columns)
     time_s = columns.pop("time_s")
-    return finished(
+    return Voyage.of(
         Raw(Path("zigzag.csv"), np.arange(time_s.size), time_s, columns, {"velocity_frame": frame}),
         controls=False,
     )

@@ -82,7 +82,7 @@ def test_a_sea_that_was_measured_need_only_be_the_likelier(
         calm, weather=dict(calm.weather) | ({"H_s": np.full(len(calm), 3.0)} if measured else {})
     )
     monkeypatch.setattr(
-        seaway, "_likeliest", lambda *_: (replace(rough, swell=np.ones((len(calm), 6))), gain, 0.0)
+        seaway, "likeliest_waves", lambda *_: (replace(rough, swell=np.ones((len(calm), 6))), gain, 0.0)
     )
     assert (swung(recorded, Model.of(tanker)).swell is not None) is believed
 

@@ -32,7 +32,6 @@ from twin.live.certificate.plant import (
 from twin.live.certificate.recursion import Ages, Recursion
 from twin.live.certificate.rolled import assess_rolled, radius
 from twin.live.certificate.theorem import Promise, assess
-from twin.live.certificate.tube import Tube
 from twin.live.learning.movable import movable
 from twin.live.observer.estimate import fastest_gain, gain_for
 from twin.live.observer.operating import Confined, OperatingSet, of_ship
@@ -46,7 +45,6 @@ __all__ = [
     "Disturbance",
     "OperatingSet",
     "Plant",
-    "Tube",
     "assess",
     "best_gain",
     "certify",

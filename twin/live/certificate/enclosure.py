@@ -121,14 +121,14 @@ def sampled(model: Model, ranges: Ranges, count: int = 20000, seed: int = 0) -> 
     certified.
     """
     model, ranges = _seen_from_the_water(model, ranges)
-    s = _situation(_points(ranges, count, seed))
+    s = situation_of(points_of(ranges, count, seed))
     names = frozenset(name for group in GROUPS for name in _forces(model, group))
     parts = [np.broadcast_to(p, count) for p in _flat(contribution(model, s, names))]
     lo, hi = [float(p.min()) for p in parts], [float(p.max()) for p in parts]
     return Slopes.of(lo, hi, count)
 
 
-def _points(ranges: Ranges, count: int, seed: int) -> dict[str, np.ndarray]:
+def points_of(ranges: Ranges, count: int, seed: int) -> dict[str, np.ndarray]:
     """Random points of the set; half of each coordinate lies on its ends."""
     rng = np.random.default_rng(seed)
     at = {}
@@ -145,7 +145,7 @@ def boxed(ranges: Ranges, group: tuple[str, ...], pieces: Mapping[str, int], mor
     values = {name: Interval(lo, hi) for name, (lo, hi) in ranges.items()}
     values |= {name: Interval(lo[:, None], hi[:, None]) for name, lo, hi in axes[0]}
     values |= {name: Interval(lo[None, :], hi[None, :]) for name, lo, hi in axes[1]}
-    return _situation(values, more)
+    return situation_of(values, more)
 
 
 def contribution(model: Model, s: Situation, names: frozenset[str]) -> tuple[Any, Any, Any]:
@@ -192,7 +192,7 @@ def _either_way(x: float) -> Interval:
     return Interval(-x, x)
 
 
-def _situation(values: Mapping[str, Any], more: int = 0) -> Situation:
+def situation_of(values: Mapping[str, Any], more: int = 0) -> Situation:
     return Situation(**{name: _seed(name, x, more) for name, x in values.items() if name != "stream"})
 
 

@@ -7,14 +7,12 @@ What a midpoint taken for one period misses over a longer one is at most (j h)^2
 a quarter."""
 
 from math import ceil
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison import AXES, Matrix, Row, apply
 from twin.live.certificate.plant import Plant
 from twin.live.certificate.recursion import CURVE, pushed, recursion
-
-if TYPE_CHECKING:
-    from twin.live.certificate.certificate import Certificate
 
 TABLE = (1, 2, 3, 5, 10, 30)  # periods; a longer tick begins the bound anew
 TOO_LONG = 0
@@ -50,14 +48,14 @@ class Periods:
         return self._steps[count or TABLE[-1]]
 
 
-def of_certificate(c: "Certificate") -> Periods:
+def of_certificate(c: Certificate) -> Periods:
     """From the slopes that are on file."""
     return Periods(
         c.h, {j: _step(c.plant.at_period(j * c.h), c, CURVE if j == 1 else LATE_CURVE) for j in TABLE}
     )
 
 
-def _step(plant: Plant, c: "Certificate", curve: float) -> Step:
+def _step(plant: Plant, c: Certificate, curve: float) -> Step:
     push, calm = pushed(plant, 0.0, curve)
     turned: Row = tuple(plant.h * plant.heading[i] + plant.bend[i][3] for i in AXES)  # type: ignore[assignment]
     return Step(recursion(plant, c.K, c.delays, c.extra_growth).V, push, calm, turned)

@@ -6,8 +6,9 @@ moved), from the moment that no sample of the tick changes; so it holds whatever
 
 from collections import deque
 from math import ceil
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
+from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison import add, scaled_row
 from twin.live.certificate.periods import of_certificate
 from twin.live.certificate.rolled import InnerStep, inner, way
@@ -16,9 +17,6 @@ from twin.live.observer.operating import NU, WORDS
 from twin.live.observer.rollback import KEPT_S, Path, State
 from twin.num import num
 from twin.physics.state import Situation
-
-if TYPE_CHECKING:
-    from twin.live.certificate.certificate import Certificate
 
 Four = tuple[float, float, float, float]
 PSI = 2  # place of the heading among the observer's states; u, v, r follow
@@ -36,7 +34,7 @@ class RolledTube(Tube):
     """As Tube; `follow` in the place of `step`. Whether it was inside the set is asked of every inner step
     of the way."""
 
-    def __init__(self, certificate: "Certificate", start: Three | None = None) -> None:
+    def __init__(self, certificate: Certificate, start: Three | None = None) -> None:
         self.certificate = certificate
         # what a sample may look back on is inside, before anything is promised
         self.window = ceil(KEPT_S / certificate.h) + 1
@@ -152,6 +150,6 @@ def of_state(x: State) -> Four:
     return x[3], x[4], x[5], x[2]
 
 
-def tube_of(certificate: "Certificate") -> Tube:
+def tube_of(certificate: Certificate) -> Tube:
     """The tube that goes with the certificate's observer."""
     return RolledTube(certificate) if certificate.inner > 1 else Tube(certificate)

@@ -11,16 +11,13 @@ a tick that lasted longer than the certified period).
 """
 
 from collections import deque
-from typing import TYPE_CHECKING
 
+from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison import add, scaled_row
 from twin.live.certificate.periods import SURE, TABLE, Periods, of_certificate
 from twin.live.observer.operating import NU, WORDS
 from twin.num import num
 from twin.physics.state import Situation
-
-if TYPE_CHECKING:
-    from twin.live.certificate.certificate import Certificate
 
 NOTHING = 1e9  # a bound so wide that it says nothing: hours without a measurement, or no certificate
 
@@ -67,7 +64,7 @@ class Tube:
     """|nu_hat - nu| <= beta, component by component [m/s, m/s, rad/s], as long as the assumptions hold; `psi`
     the same of the heading."""
 
-    def __init__(self, certificate: "Certificate", start: Three | None = None) -> None:
+    def __init__(self, certificate: Certificate, start: Three | None = None) -> None:
         """`start` bounds the error of the first estimate; by default that is a measurement, so its noise."""
         self.certificate = certificate
         self.window = look_back(max(certificate.delays))

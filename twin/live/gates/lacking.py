@@ -13,7 +13,7 @@ from typing import NamedTuple
 from twin.live.gates.cusum import Cusum
 from twin.live.gates.helm import HULL, RUDDER, Helm
 from twin.live.observer.dynamics import Forces, KnownDynamics
-from twin.live.observer.estimate import Observer
+from twin.live.observer.observer import Observer
 from twin.live.observer.operating import propeller_rate
 from twin.live.signals.measured import Measured
 from twin.physics.model import CORE, Model

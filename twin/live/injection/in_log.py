@@ -44,7 +44,7 @@ def in_a_log(path: str, output: str, what: str, fault: InjectedFault) -> tuple[i
                 f"{path}: nothing in it is changed by {what} {fault.kind}: the channel is not in "
                 "it, or not at that time."
             )
-    return faulty.changed, list(reader.problems)
+    return faulty.changed, [f"note: {problem}" for problem in reader.problems]
 
 
 def _at_s(type_name: str, payload: bytes, log_ns: int) -> float:

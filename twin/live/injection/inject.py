@@ -11,6 +11,8 @@ from collections.abc import Callable
 from math import inf
 from typing import NamedTuple
 
+from twin.errors import UsageError
+
 
 class FaultKind(NamedTuple):
     """One way to go wrong: what happens, what `by` means and is unless it is given."""
@@ -31,7 +33,27 @@ KINDS: dict[str, FaultKind] = {
     "drift": FaultKind("every value walks off so fast", "channel per s"),
     "noise": FaultKind("random numbers of this deviation are added", "channel"),
 }
+ELSE = (
+    "what else can be at fault: bus (nobody is heard), clock (every source's clock is off --by s),\n"
+    "pause (--pid is stopped --for s), disk (no write of --pid succeeds --for s)"
+)
 NEEDS_AMOUNT = tuple(name for name, kind in KINDS.items() if kind.unit.startswith("channel"))
+
+
+def kinds_told() -> str:
+    """A line for each kind of fault: what happens, and in which unit `by` is; and what else can be at
+    fault."""
+    lines = [
+        f"  {name:13} {kind.doc}{f' (--by, [{kind.unit}])' if kind.unit else ''}"
+        for name, kind in KINDS.items()
+    ]
+    return "\n".join(["kinds:", *lines, "", ELSE])
+
+
+def check_times(start_s: float, seconds: float) -> None:
+    """UsageError unless a fault that begins then and lasts so long [s] can be."""
+    if not 0.0 <= start_s < inf or not seconds >= 0.0:
+        raise UsageError("--from and --for take seconds, 0 or more.")
 
 
 class InjectedFault(NamedTuple):

@@ -8,7 +8,7 @@ from math import inf
 
 from twin.errors import UsageError
 
-OF_A_PROCESS = ("pause", "disk")
+OF_A_PROCESS = {"pause": "stopped", "disk": "no write succeeded"}  # what, and what it then was
 
 
 def of_a_process(what: str, pid: int | None, start_s: float, seconds: float) -> None:

@@ -48,12 +48,9 @@ OPERATORS = frozenset(
 )
 MAX_BYTES = 8_000_000
 OPSETS = range(13, 26)
-# numbers that came after the first residuals, by section or effect: a ship without them is the model it was
-LATER = {
-    "derivatives": ("gamma_a", "X_uuu"),
-    "CrossFlowDrag": ("c_aft", "c_mid"),
-    "AntennaOffset": ("above",),
-}
+# derivatives that came after the first residuals: a ship without them is the model it was (of an effect's
+# numbers it says so itself)
+LATER = ("gamma_a", "X_uuu")
 MARGIN = 0.25  # how far outside its envelope the residual is shrunk to nothing
 GOLDEN = 1e-4  # how closely golden outputs must be met, relative to their size
 ABSURD = 1e6  # a feature beyond this is no feature
@@ -201,8 +198,9 @@ def ship_hash(ship: Ship) -> str:
     if ship.actuators:
         numbers["actuators"] = {a.name: repr(a) for a in ship.actuators}
     effects = {name: {k: p["value"] for k, p in entry.items()} for name, entry in table["effects"].items()}
+    later = {"derivatives": LATER} | {type(e).__name__: type(e).added_later for e in ship.effects}
     for owner, entry in (numbers | effects).items():
-        for name in LATER.get(owner, ()):
+        for name in later.get(owner, ()):
             if entry[name] == 0.0:
                 del entry[name]
     text = json.dumps([ship.name, numbers, effects], sort_keys=True)

@@ -13,7 +13,8 @@ from math import ceil, exp, hypot, log, pi
 from typing import NamedTuple
 
 from twin.live.observer.dynamics import Forces, KnownDynamics
-from twin.live.observer.estimate import MAX_GAP_S, Estimate
+from twin.live.observer.estimate import Estimate
+from twin.live.observer.observer import MAX_GAP_S
 from twin.live.observer.steering import Steering
 from twin.live.signals.derive import turn
 from twin.physics.maths import cos, sin

@@ -13,16 +13,8 @@ from math import ceil, cos, pi, sin
 from typing import NamedTuple
 
 from twin.live.observer.dynamics import KnownDynamics
-from twin.live.observer.estimate import (
-    A_MAX,
-    DELAYED,
-    HELD,
-    MAX_GAP_S,
-    STATES,
-    WATER,
-    Estimate,
-    Observer,
-)
+from twin.live.observer.estimate import A_MAX, DELAYED, HELD, STATES, Estimate
+from twin.live.observer.observer import MAX_GAP_S, WATER, Observer
 from twin.live.signals.derive import turn
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship

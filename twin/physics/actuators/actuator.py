@@ -13,14 +13,15 @@ Turns n give T = gain rho D^4 (K_T0 |n| n + K_T1 |n| u_a/D) [Fossen 2021, ch. 9]
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, Self
+from typing import Any, Self
 
+from twin.physics.core import Coefficients, Tau, coefficients
 from twin.physics.number import number
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Number
 
-if TYPE_CHECKING:
-    from twin.physics.core import Coefficients, Tau
-    from twin.physics.particulars import Ship
+from .channels import CHANNELS_OF
+from .kinds import KINDS
 
 
 @dataclass(frozen=True)
@@ -65,8 +66,6 @@ class Actuator:
     @cached_property
     def attributes(self) -> tuple[str, ...]:
         """What is recorded of it, as physics calls it."""
-        from .channels import CHANNELS_OF
-
         return tuple(CHANNELS_OF[c].attribute for c in self.channels)
 
     def columns(self) -> tuple[str, ...]:
@@ -82,12 +81,10 @@ class Actuator:
             if f.metadata["sd"] and (not f.metadata.get("of") or set(f.metadata["of"].split()) & set(has))
         )
 
-    def coefficients(self, ship: "Ship") -> "Coefficients":
+    def coefficients(self, ship: ShipLike) -> Coefficients:
         """The coefficients of the ship's propeller and rudder, with this one's numbers."""
         key = id(ship)
         if key not in self._made or self._made[key][0] is not ship:
-            from twin.physics.core import coefficients
-
             own: dict[str, Any] = {"K_T0": self.K_T0, "K_T1": self.K_T1, "x_R": self.x / ship.L_pp}
             made = replace(
                 ship,
@@ -100,15 +97,13 @@ class Actuator:
             self._made[key] = (ship, coefficients(made))
         return self._made[key][1]  # type: ignore[no-any-return]
 
-    def force(self, told: Mapping[str, Number], u: Number, v: Number, r: Number, ship: "Ship") -> "Tau":
+    def force(self, told: Mapping[str, Number], u: Number, v: Number, r: Number, ship: ShipLike) -> Tau:
         """(X [N], Y [N], N [N m]) in body axes; `told`: what is recorded of all actuators, `name.attribute`
         in SI; (u, v, r): the ship through the water."""
         return self._of_kind(self, told, u, v, r, ship)
 
     @cached_property
     def _of_kind(self) -> Any:
-        from .kinds import KINDS
-
         return KINDS[self.kind].force
 
     @cached_property

@@ -2,7 +2,7 @@
 
 from math import pi
 
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 from twin.physics.state import Number
 
 from .actuator import Actuator

@@ -1,31 +1,65 @@
 """The kinds of actuator: what each needs to be told, and the force it gives."""
 
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple, Protocol
 
 from twin.physics import core
 from twin.physics.maths import cos, positive, sin
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Number
-
-from .actuator import Actuator
-
-if TYPE_CHECKING:
-    from twin.physics.particulars import Ship
 
 Told = Mapping[str, Number]
 STOP_US, SPAN_US = 1500.0, 400.0  # a controller's pulse at stop, and from there to full
 
 
+class OneActuator(Protocol):
+    """What a kind reads of an actuator: its numbers, what is recorded of it, and the ship's with its own."""
+
+    @property
+    def x(self) -> Number: ...
+    @property
+    def y(self) -> Number: ...
+    @property
+    def gain(self) -> Number: ...
+    @property
+    def zero(self) -> Number: ...
+    @property
+    def trim(self) -> Number: ...
+    @property
+    def ahead(self) -> Number: ...
+    @property
+    def astern(self) -> Number: ...
+    @property
+    def dead(self) -> Number: ...
+    @property
+    def linear(self) -> Number: ...
+    @property
+    def slow(self) -> Number: ...
+    @property
+    def D(self) -> Number: ...
+    @property
+    def K_T0(self) -> Number: ...
+    @property
+    def K_T1(self) -> Number: ...
+    @property
+    def pitch_0(self) -> Number: ...
+    @property
+    def U_half(self) -> Number: ...
+    @property
+    def keys(self) -> Mapping[str, str]: ...
+    def coefficients(self, ship: ShipLike) -> core.Coefficients: ...
+
+
 class Kind(NamedTuple):
     """`needs`: attributes that must be recorded beside one that says how hard it pushes."""
 
-    force: Callable[[Actuator, Told, Number, Number, Number, "Ship"], core.Tau]
+    force: Callable[[OneActuator, Told, Number, Number, Number, ShipLike], core.Tau]
     needs: tuple[str, ...]
     may: tuple[str, ...]
     doc: str
 
 
-def push(a: Actuator, told: Told, u_a: Number, ship: "Ship") -> Number:
+def push(a: OneActuator, told: Told, u_a: Number, ship: ShipLike) -> Number:
     """Thrust [N] along the actuator's own axis, with the water running along it at u_a [m/s]."""
     has = a.keys
     if "thrust" in has:
@@ -41,20 +75,20 @@ def push(a: Actuator, told: Told, u_a: Number, ship: "Ship") -> Number:
     return a.gain * (at_rest - a.slow * (a.ahead * ahead + a.astern * astern) * u_a / ship.U_0)
 
 
-def _curve(a: Actuator, e: Number) -> Number:
+def _curve(a: OneActuator, e: Number) -> Number:
     return (a.linear + (1.0 - a.linear) * e) * e
 
 
-def _at(a: Actuator, X: Number, Y: Number) -> core.Tau:
+def _at(a: OneActuator, X: Number, Y: Number) -> core.Tau:
     """A force where the actuator stands, with its moment about midship."""
     return X, Y, a.x * Y - a.y * X
 
 
-def fixed(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
+def fixed(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     return _at(a, push(a, told, u - a.y * r, ship), 0.0)
 
 
-def azimuth(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
+def azimuth(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """Its angle is where the thrust pushes the ship to: 0 ahead, positive to starboard."""
     angle = told[a.keys["angle"]] + a.trim
     c, s = cos(angle), sin(angle)
@@ -62,7 +96,7 @@ def azimuth(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Shi
     return _at(a, T * c, T * s)
 
 
-def steered(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
+def steered(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """Its angle is counted like a rudder's: positive turns the ship to starboard when the jet is astern."""
     angle = told[a.keys["angle"]] + a.trim
     c, s = cos(angle), sin(angle)
@@ -70,13 +104,13 @@ def steered(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Shi
     return _at(a, T * c, -T * s)
 
 
-def tunnel(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
+def tunnel(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """Pushes to starboard when told to go ahead, the less the faster the ship: half of it at U_half."""
     share = 1.0 if a.U_half is None else 1.0 / (1.0 + (u / a.U_half) ** 2)
     return _at(a, 0.0, share * push(a, told, v + a.x * r, ship))
 
 
-def propeller(a: Actuator, told: Told, u: Number, v: Number, r: Number, ship: "Ship") -> core.Tau:
+def propeller(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """As the ship's own propeller and rudder, with the hull's wake and thrust deduction."""
     c, along = a.coefficients(ship), u - a.y * r
     T = push(a, told, c.wake_share * along, ship)

@@ -3,12 +3,12 @@
 An installed package adds its own by the entry point group `twin.effects`, name = class.
 """
 
-import sys
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 from twin.errors import SettingsError, did_you_mean
 from twin.physics.effect import Effect
+from twin.physics.plugin import GROUP, Refused, loaded
+from twin.physics.ship_like import ShipLike
 
 from .actuator_lag import ActuatorLag
 from .angle_offset import AngleOffset
@@ -45,9 +45,6 @@ from .varying_current import VaryingCurrent
 from .wave_drift import WaveDrift
 from .wind import Wind
 
-if TYPE_CHECKING:
-    from twin.physics.particulars import Ship
-
 BUILT_IN: tuple[type[Effect], ...] = (
     Wind,
     WaveDrift,
@@ -83,7 +80,12 @@ UNNAMED: tuple[type[Effect], ...] = (RudderPlay, SwayingMass)
 OF_ACTUATORS: tuple[type[OfActuator], ...] = (ThrusterWear, ThrusterZero, AngleOffset, ActuatorLag)
 
 
-def of_ship(ship: "Ship") -> dict[str, type[Effect]]:
+def of_role(role: str) -> type[Effect]:
+    """The effect of the catalogue that has this role (`effect.ROLES`) in every ship's model."""
+    return next(e for e in BUILT_IN if e.role == role)
+
+
+def of_ship(ship: ShipLike) -> dict[str, type[Effect]]:
     """What may be wrong with this ship: the catalogue; of a ship with actuators of its own their effects, and
     not those of one propeller and rudder."""
     if not ship.actuators:
@@ -98,7 +100,7 @@ def of_ship(ship: "Ship") -> dict[str, type[Effect]]:
     return known | {e.__name__: e for e in own}
 
 
-def unnamed_of(ship: "Ship") -> tuple[type[Effect], ...]:
+def unnamed_of(ship: ShipLike) -> tuple[type[Effect], ...]:
     """Of those known by their form alone, what this ship can have."""
     return tuple(e for e in UNNAMED if not (ship.actuators and e.one_screw))
 
@@ -106,22 +108,22 @@ def unnamed_of(ship: "Ship") -> tuple[type[Effect], ...]:
 @lru_cache(maxsize=1)
 def catalogue() -> dict[str, type[Effect]]:
     """Name -> effect, built-in first, then those that installed packages bring; a broken one is left out, and
-    standard error says why."""
+    the log `twin` says why."""
     found, broken = _installed()
-    for name, why in broken.items():
-        print(
-            f"the installed effect {name} is left out: {why}. Try: twin effects --check {name}",
-            file=sys.stderr,
-        )
+    if broken:
+        import logging  # nothing on board asks what is installed
+
+        for name, why in broken.items():
+            logging.getLogger("twin").warning(
+                "the installed effect %s is left out: %s. Try: twin effects --check %s", name, why, name
+            )
     return {e.__name__: e for e in BUILT_IN} | found
 
 
 @lru_cache(maxsize=1)
 def _installed() -> tuple[dict[str, type[Effect]], dict[str, str]]:
     """Effects of installed packages, and by the name of each that cannot be used why."""
-    from importlib.metadata import entry_points
-
-    from twin.physics.plugin import GROUP, Refused, loaded
+    from importlib.metadata import entry_points  # heavy, and nothing on board asks what is installed
 
     taken = {e.__name__ for e in (*BUILT_IN, *UNNAMED)}
     good, bad = dict[str, type[Effect]](), dict[str, str]()

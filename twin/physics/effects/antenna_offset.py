@@ -9,10 +9,11 @@ u_m = u - a r,                         v_m = v + a_x r + a_z cos(phi) p
 """
 
 from dataclasses import replace
+from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Situation
 
 
@@ -20,6 +21,12 @@ class AntennaOffset(SensorFault):
     """The satellite antenna stands elsewhere on board than the settings say: the ship seems to swing about
     the wrong point."""
 
+    role = "antenna"
+    with_core = "the place was measured there on the reference voyages"
+    by_readings = MappingProxyType(
+        {"antenna_ahead": "ahead", "antenna_starboard": "starboard", "antenna_above": "above"}
+    )
+    added_later = ("above",)
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 2 and 13 (lever arms)"
 
     ahead: float = param(
@@ -45,7 +52,7 @@ class AntennaOffset(SensorFault):
         doc="antenna above the axis of roll, where roll was recorded",
     )
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         c, si = cos(s.psi), sin(s.psi)
         aside = self.starboard + (0.0 if s.phi is None else self.above * sin(s.phi))
         swung = 0.0 if s.phi is None or s.p is None else self.above * cos(s.phi) * s.p

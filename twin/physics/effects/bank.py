@@ -9,7 +9,7 @@ How fast the suction falls off with the distance depends on hull and bank, and t
 with eta, or with its square; one beam off both say the same."""
 
 from twin.physics.effect import Force, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Number, Situation
 
@@ -19,6 +19,7 @@ class Bank(Force):
 
     belongs_to = "voyage"
     needs = ("bank_port", "bank_starboard")
+    of_place = True
     source = (
         "Norrbin (1974) Bank effects on a ship moving through a short dredged channel, 10th Symp. Naval "
         "Hydrodynamics; "
@@ -33,11 +34,11 @@ class Bank(Force):
         0.5, unit="-", lo=0.0, hi=1.0, sd=0.5, doc="share of both that falls off with eta squared"
     )
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         e = self._pull(s.bank_starboard, ship) - self._pull(s.bank_port, ship)
         f = 0.5 * ship.rho * ship.L_pp * ship.T * s.u_r * e
         return ForceVector(Y=f * s.u_r * self.suction, N=-f * abs(s.u_r) * ship.L_pp * self.bow_out)
 
-    def _pull(self, clearance: Number, ship: Ship) -> Number:
+    def _pull(self, clearance: Number, ship: ShipLike) -> Number:
         eta = ship.B / (ship.B + 2.0 * clearance)
         return eta * (1.0 + self.steep * (3.0 * eta - 1.0))

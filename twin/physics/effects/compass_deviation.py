@@ -10,11 +10,13 @@ over ground are, and 0 where the receiver has an attitude of its own. The chart'
 """
 
 from dataclasses import replace
+from types import MappingProxyType
+from typing import Self
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
-from twin.physics.state import Situation
+from twin.physics.ship_like import ShipLike
+from twin.physics.state import Number, Situation
 
 
 def _coefficient(default: float, sd: float, of: str) -> float:
@@ -26,6 +28,7 @@ class CompassDeviation(SensorFault):
 
     attitude = True
     kinematic = True
+    by_readings = MappingProxyType({name: name for name in "BCDE"})
     source = (
         "Admiralty Manual for the Deviation of the Compass (Evans & Smith); ISO 1069 (coefficients A "
         "to E); Bowditch (2019) ch. 7"
@@ -51,7 +54,10 @@ class CompassDeviation(SensorFault):
         c, s = cos(psi), sin(psi)
         return self.A + self.B * s + self.C * c + self.D * 2.0 * s * c + self.E * (c * c - s * s)
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def as_read(self, number: str, value: Number, attitude: bool) -> Self:
+        return super().as_read(number, value, attitude).but(turned=0.0 if attitude else 1.0)
+
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         e = self.error(s.psi)
         c, si = cos(self.turned * e), sin(self.turned * e)
         return replace(

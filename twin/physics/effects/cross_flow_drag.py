@@ -7,7 +7,7 @@ x from -L/2 to L/2 in ten strips; the mean of c over its length is c_d (but for 
 """
 
 from twin.physics.effect import Force, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -19,6 +19,7 @@ class CrossFlowDrag(Force):
     drifts and turns."""
 
     size = "c_d"
+    added_later = ("c_aft", "c_mid")
     source = (
         "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 6 (cross-flow drag); "
         "Faltinsen (1990) Sea Loads, ch. 6"
@@ -49,7 +50,7 @@ class CrossFlowDrag(Force):
         doc="how much larger it is amidships, and smaller, twice as much, at the ends",
     )
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         L, Y, N = ship.L_pp, 0.0, 0.0
         for xi in STRIPS:
             cross = s.v_r + xi * L * s.r

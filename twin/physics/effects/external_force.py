@@ -6,7 +6,7 @@ N = -M_N sin(psi) + M_E cos(psi),   M = lever times F
 
 from twin.physics.effect import Force, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -42,7 +42,7 @@ class ExternalForce(Force):
         doc="east force times its lever ahead of midship",
     )
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         c, si = cos(s.psi), sin(s.psi)
         return ForceVector(
             X=self.north * c + self.east * si,

@@ -9,11 +9,13 @@ within it.
 """
 
 from dataclasses import replace
+from types import MappingProxyType
+from typing import Self
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
-from twin.physics.state import Situation
+from twin.physics.ship_like import ShipLike
+from twin.physics.state import Number, Situation
 
 
 class HeadingLag(SensorFault):
@@ -22,6 +24,7 @@ class HeadingLag(SensorFault):
 
     attitude = True
     kinematic = True
+    by_readings = MappingProxyType({"heading_delay": "lag"})
     source = (
         "ISO 11606 and ISO 22090-3 (follow-up error of heading devices); Skog & Haendel (2011) IEEE "
         "Trans. ITS 12, 1014-1023"
@@ -44,6 +47,9 @@ class HeadingLag(SensorFault):
         doc="age of that by which speed over ground is turned: lag, or 0 (see above)",
     )
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def as_read(self, number: str, value: Number, attitude: bool) -> Self:
+        return super().as_read(number, value, attitude).but(turned=0.0 if attitude else value)
+
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         c, si = cos(self.turned * s.r), sin(self.turned * s.r)
         return replace(s, psi=s.psi - self.lag * s.r, u=s.u * c - s.v * si, v=s.v * c + s.u * si)

@@ -5,7 +5,7 @@ X = -extra R(u_r),   R = -(X_u + X_uu |u_r| + X_uuu u_r^2) u_r
 
 from twin.physics.core import resistance
 from twin.physics.effect import Force, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -22,5 +22,5 @@ class HullFouling(Force):
         0.3, unit="-", lo=0.0, hi=2.0, sd=0.25, doc="added resistance over calm-water resistance"
     )
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         return ForceVector(X=self.extra * resistance(s.u_r, ship.c))

@@ -14,9 +14,9 @@ aft with its draught:
 
 from dataclasses import replace
 
-from twin.physics.effect import Force, param
+from twin.physics.effect import Force, S, param
 from twin.physics.maths import maximum
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Number
 
 BLUNT = {
@@ -62,7 +62,7 @@ class Loading(Force):
         "computer's number is near it",
     )
 
-    def alter(self, ship: Ship) -> Ship:
+    def alter(self, ship: S) -> S:
         m, k, x_G = ship.m * (1.0 + self.mass), 1.0 + self.draught, ship.x_G + self.x_G
         d = ship.derivatives
         primes: dict[str, Number] = {name: getattr(d, name) * deeper(ship, name, k) for name in BLUNT}
@@ -87,21 +87,21 @@ class Loading(Force):
         )
 
 
-def deeper(ship: Ship, name: str, k: Number) -> Number:
+def deeper(ship: ShipLike, name: str, k: Number) -> Number:
     """Factor on a prime derivative when the draught is k times what it was."""
     a, full = BLUNT[name]
     share = (a + full * ship.C_b) * ship.B / ship.T
     return (k + share) / (1.0 + share)
 
 
-def trim_per_shift(ship: Ship) -> Number:
+def trim_per_shift(ship: ShipLike) -> Number:
     """Trim over draught for a shift of the centre of gravity of one metre: L / BM_L, BM_L = C_IL L^2 / (C_b
     T) [1/m]."""
     C_wp = waterplane(ship)
     return ship.C_b / ((0.35 * C_wp * C_wp - 0.405 * C_wp + 0.146) * ship.L_pp)
 
 
-def waterplane(ship: Ship) -> Number:
+def waterplane(ship: ShipLike) -> Number:
     """C_wp as hulls of this fullness usually have it [Schneekluth & Bertram 1998, ship design for efficiency
     and economy, sec. 1.6]."""
     return (1.0 + 2.0 * ship.C_b) / 3.0

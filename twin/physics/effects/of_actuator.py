@@ -4,16 +4,14 @@ A family is declared once, like every effect; `of(family, name)` is the effect f
 name gives the same class each time."""
 
 from functools import cache
-from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
+from typing import Any, ClassVar, TypeVar
 
 from twin.errors import SettingsError, did_you_mean
 from twin.physics.actuators import Actuator
 from twin.physics.effect import Effect, Force
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
-
-if TYPE_CHECKING:
-    from twin.physics.particulars import Ship
 
 E = TypeVar("E", bound="OfActuator")
 
@@ -29,7 +27,7 @@ class OfActuator(Effect):
         """Whether an actuator can have it."""
         return not cls.recorded or bool(set(cls.recorded) & set(a.attributes))
 
-    def check(self, ship: "Ship", where: str = "") -> None:
+    def check(self, ship: ShipLike, where: str = "") -> None:
         """Refuse an actuator that the ship has not, or that cannot have the effect."""
         name, known = type(self).__name__, [a.name for a in ship.actuators]
         if self.actuator not in known:
@@ -43,8 +41,7 @@ class OfActuator(Effect):
         super().check(ship, where)
 
     def __reduce__(self) -> Any:
-        family, _, actuator = type(self).__name__.partition(".")
-        return remade, (family, actuator, self.values())
+        return remade, (type(self).__mro__[1], self.actuator, self.values())
 
 
 class ActuatorForce(OfActuator, Force):
@@ -54,7 +51,7 @@ class ActuatorForce(OfActuator, Force):
         """The actuator as it is with the effect."""
         return a
 
-    def force(self, s: Situation, ship: "Ship") -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         a = ship.actuator(self.actuator)
         was = a.force(s.told, s.u_r, s.v_r, s.r, ship)  # type: ignore[arg-type]
         now = self._altered(a).force(s.told, s.u_r, s.v_r, s.r, ship)  # type: ignore[arg-type]
@@ -79,8 +76,6 @@ def of(family: type[E], actuator: str) -> type[E]:
     )
 
 
-def remade(family: str, actuator: str, values: dict[str, Any]) -> Effect:
+def remade(family: type[OfActuator], actuator: str, values: dict[str, Any]) -> Effect:
     """The effect again, where it was sent from one process to another."""
-    from twin.physics.effects import find
-
-    return find(f"{family}.{actuator}")(**values)
+    return of(family, actuator)(**values)  # type: ignore[arg-type]

@@ -6,7 +6,7 @@ Y = rho D^4   c_y n |n|,   N = rho D^4 L c_n n |n|
 """
 
 from twin.physics.effect import Force, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -30,6 +30,6 @@ class PropellerWalk(Force):
         doc="yaw moment, positive to starboard when going ahead",
     )
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         f = ship.rho * ship.D_P**4 * s.n * abs(s.n)
         return ForceVector(Y=f * self.c_y, N=f * ship.L_pp * self.c_n)

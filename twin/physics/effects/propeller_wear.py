@@ -6,7 +6,7 @@ X = -(1 - t) loss T(u_r, n)  +  X_rudder((1 - loss) T) - X_rudder(T),   Y, N lik
 
 from twin.physics import core
 from twin.physics.effect import Force, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -30,7 +30,7 @@ class PropellerWear(Force):
         doc="share of the thrust that is lost, alike at every advance",
     )
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         c = ship.c
         thrust = core.thrust(s.u_r, s.n, c)
         new = core.rudder(s.u_r, s.v_r, s.r, s.delta, thrust, c)

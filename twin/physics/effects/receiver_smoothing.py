@@ -7,9 +7,10 @@ Exact in a steady turn, of first order in what changes besides.
 """
 
 from dataclasses import replace
+from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Situation
 
 
@@ -18,6 +19,7 @@ class ReceiverSmoothing(SensorFault):
     does."""
 
     kinematic = True
+    by_readings = MappingProxyType({"smoothing": "time"})
     source = (
         "Kaplan & Hegarty (2017) Understanding GPS/GNSS, 3rd ed., ch. 8 and 13 (loop bandwidth, "
         "navigation filter); IEC 61108-1"
@@ -32,7 +34,7 @@ class ReceiverSmoothing(SensorFault):
         doc="time constant with which course and speed over ground are smoothed",
     )
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         a = self.time * s.r
         less = 1.0 / (1.0 + a * a)
         return replace(

@@ -6,7 +6,7 @@ N = 1/2 rho L^2 T (c_n U^2 + c_nr L^2 r^2) phi
 """
 
 from twin.physics.effect import Force, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -32,7 +32,7 @@ class RollCoupling(Force):
         -0.08, unit="1/rad", lo=-1.0, hi=1.0, sd=0.08, doc="yaw moment of heel, per (L r/U)^2"
     )
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         L, UU = ship.L_pp, s.u_r * s.u_r + s.v_r * s.v_r
         turn = L * L * s.r * s.r
         f = 0.5 * ship.rho * L * ship.T * s.phi

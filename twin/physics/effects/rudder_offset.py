@@ -5,7 +5,7 @@
 
 from twin.physics import core
 from twin.physics.effect import Force, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -26,7 +26,7 @@ class RudderOffset(Force):
         doc="true rudder angle less the indicated one, positive to starboard",
     )
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         c = ship.c
         thrust = core.thrust(s.u_r, s.n, c)
         told = core.rudder(s.u_r, s.v_r, s.r, s.delta, thrust, c)

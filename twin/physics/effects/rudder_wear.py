@@ -5,7 +5,7 @@
 
 from twin.physics import core
 from twin.physics.effect import Force, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -19,7 +19,7 @@ class RudderWear(Force):
 
     loss: float = param(0.15, unit="-", lo=0.0, hi=0.8, sd=0.15, doc="share of the rudder force that is lost")
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         c = ship.c
         X, Y, N = core.rudder(s.u_r, s.v_r, s.r, s.delta, core.thrust(s.u_r, s.n, c), c)
         return ForceVector(-self.loss * X, -self.loss * Y, -self.loss * N)

@@ -11,16 +11,18 @@ the receiver does so itself by an attitude of its own (an inertial unit).
 """
 
 from dataclasses import replace
+from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Number, Situation
 
 
 class SensorDelay(SensorFault):
     """Satellite position and velocity come late, so the ship seems to lag behind itself on the track."""
 
+    by_readings = MappingProxyType({"gnss_delay": "delay"})
     source = (
         "Skog & Haendel (2011) Time synchronization errors in loosely coupled GPS-aided INS, IEEE "
         "Trans. ITS 12, 1014-1023"
@@ -38,7 +40,7 @@ class SensorDelay(SensorFault):
         doc="age of the turning of the velocity: delay, or 0 (see above)",
     )
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         d, half, turned = self.delay, 0.5 * self.delay, self.turned * s.r
         u, v, psi = s.u - half * s.u_dot, s.v - half * s.v_dot, s.psi - half * s.r
         c, si = cos(psi), sin(psi)

@@ -12,7 +12,7 @@ thrust = 0.35 it drives it by 9, 16 and 24 % less, as (1 - t)/(1 - 0.2 F + 0.729
 
 from twin.physics.effect import Flow, param
 from twin.physics.maths import maximum
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Situation, Water
 
 
@@ -22,6 +22,7 @@ class ShallowWater(Flow):
 
     belongs_to = "voyage"
     needs = ("depth",)
+    of_place = True
     source = (
         "Kijima, Katsuno, Nakiri & Furukawa (1990) J. Soc. Naval Arch. Japan 168 (shallow-water correction); "
         "Lackenby (1963) for "
@@ -50,7 +51,7 @@ class ShallowWater(Flow):
         0.35, unit="-", lo=0.0, hi=1.0, sd=0.3, doc="share of the driving thrust that is lost, over (T/h)^2"
     )
 
-    def water(self, s: Situation, ship: Ship) -> Water:
+    def water(self, s: Situation, ship: ShipLike) -> Water:
         F = ship.T / maximum(s.depth, 1.05 * ship.T)
         g = F * F / (1.0 - F)
         return Water(

@@ -4,9 +4,10 @@ u_r,m = u_r + bias
 """
 
 from dataclasses import replace
+from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Situation
 
 
@@ -15,6 +16,7 @@ class SpeedLogBias(SensorFault):
     it."""
 
     needs = ("u_r",)
+    by_readings = MappingProxyType({"log_bias": "bias"})
     source = "IMO MSC.96(72) (performance of speed logs: 2 % or 0.2 kn)"
 
     bias: float = param(
@@ -27,5 +29,5 @@ class SpeedLogBias(SensorFault):
         doc="shown speed through water less the true one",
     )
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         return replace(s, u_r=s.u_r + self.bias)

@@ -4,10 +4,11 @@ u_r,m = u_r cos(angle) + v_r sin(angle),   v_r,m = v_r cos(angle) - u_r sin(angl
 """
 
 from dataclasses import replace
+from types import MappingProxyType
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Situation
 
 
@@ -15,6 +16,7 @@ class SpeedLogMisalignment(SensorFault):
     """The speed log is mounted askew, so speed ahead shows up as drift in proportion."""
 
     needs = ("u_r", "v_r")
+    by_readings = MappingProxyType({"log_angle": "angle"})
     source = (
         "Kinsey & Whitcomb (2007) In situ alignment calibration of attitude and Doppler sensors, IEEE "
         "J. Oceanic Eng. 32, 286-299"
@@ -29,6 +31,6 @@ class SpeedLogMisalignment(SensorFault):
         doc="how far the log's axis ahead points to starboard of the ship's",
     )
 
-    def read(self, s: Situation, ship: Ship) -> Situation:
+    def read(self, s: Situation, ship: ShipLike) -> Situation:
         c, si = cos(self.angle), sin(self.angle)
         return replace(s, u_r=s.u_r * c + s.v_r * si, v_r=s.v_r * c - s.u_r * si)

@@ -7,8 +7,7 @@ m: mass of the ship. Liquid far below the period of its tank goes with the ship'
 inertia about midship of their own. What they do to its heel is left out.
 """
 
-from twin.physics.effect import Force, param
-from twin.physics.particulars import Ship
+from twin.physics.effect import Force, S, param
 
 
 class SwayingMass(Force):
@@ -35,7 +34,7 @@ class SwayingMass(Force):
         doc="its moment of inertia about midship, as a share of m L^2",
     )
 
-    def alter(self, ship: Ship) -> Ship:
+    def alter(self, ship: S) -> S:
         mass = ship.m / (0.5 * ship.rho * ship.L_pp**2 * ship.T)
         aside, second, d = self.share * mass, self.inertia * mass, ship.derivatives
         first = aside * self.place / ship.L_pp

@@ -4,7 +4,7 @@
 """
 
 from twin.physics.effect import Force, param
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -22,5 +22,5 @@ class TowForce(Force):
         0.1, unit="N m", lo=-3.0, hi=3.0, sd=0.15, of="moment", doc="moment turning to starboard"
     )
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         return ForceVector(self.ahead, self.starboard, self.turning)

@@ -9,7 +9,7 @@ from math import pi
 
 from twin.physics.effect import Flow, param
 from twin.physics.maths import cos, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Number, Situation, Water
 
 HOUR = 3600.0  # s
@@ -78,7 +78,7 @@ class VaryingCurrent(Flow):
             + self.east_s3 * s3,
         )
 
-    def water(self, s: Situation, ship: Ship) -> Water:
+    def water(self, s: Situation, ship: ShipLike) -> Water:
         north, east = self.toward(s.t)
         c, si = cos(s.psi), sin(s.psi)
         return Water(u=north * c + east * si, v=east * c - north * si)

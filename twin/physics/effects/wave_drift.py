@@ -15,7 +15,7 @@ from math import pi
 from twin.physics.core import GRAVITY
 from twin.physics.effect import Force, param
 from twin.physics.maths import cos, exp, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Number, Situation
 
@@ -39,7 +39,7 @@ class WaveDrift(Force):
     c_y: float = param(0.8, unit="-", lo=0.0, hi=2.0, sd=0.6, doc="beam drift, in units of a reflecting wall")
     c_n: float = param(0.0, unit="-", lo=-0.3, hi=0.3, sd=0.06, doc="yaw moment of bow and quartering seas")
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         chi = s.wave_to - s.psi
         si, co = sin(chi), cos(chi)
         q = 0.0625 * ship.rho * GRAVITY * s.H_s * s.H_s * reflected(s.T_p, ship.T)

@@ -9,7 +9,7 @@ N = -1/2 rho_a A_L L (2 c_n u_rw + c_m V_rw) v_rw
 
 from twin.physics.effect import Force, param
 from twin.physics.maths import cos, hypot, sin
-from twin.physics.particulars import Ship
+from twin.physics.ship_like import ShipLike
 from twin.physics.state import Force as ForceVector
 from twin.physics.state import Situation
 
@@ -23,6 +23,8 @@ class Wind(Force):
     needs = ("wind_speed", "wind_to")
     needs_ship = ("A_F", "A_L")
     lever = 0.05  # it moves along it with the direction, by more than four coefficients say
+    role = "wind"
+    with_core = "it blew on the reference voyages"
     source = (
         "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., sec. 10.1; Blendermann (1994) "
         "coefficient ranges"
@@ -47,7 +49,7 @@ class Wind(Force):
         doc="yaw moment of beam wind: c_y times the lever of the lateral area's centre, in L",
     )
 
-    def force(self, s: Situation, ship: Ship) -> ForceVector:
+    def force(self, s: Situation, ship: ShipLike) -> ForceVector:
         u_rw = s.u - s.wind_speed * cos(s.wind_to - s.psi)  # the ship through the air, body axes [m/s]
         v_rw = s.v - s.wind_speed * sin(s.wind_to - s.psi)
         V_rw = hypot(u_rw, v_rw)

@@ -8,10 +8,7 @@ from typing import Any
 
 from twin.num import as_given, num
 from twin.physics.effect import Effect
-from twin.physics.effects import of_ship
-from twin.physics.effects.antenna_offset import AntennaOffset
-from twin.physics.effects.steering_lag import SteeringLag
-from twin.physics.effects.wind import Wind
+from twin.physics.effects import of_role, of_ship
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.checks import losses
@@ -44,14 +41,10 @@ SCHEMA_VERSION = 1
 # one step ahead through a filter, or several lengths ahead without (rollout.py)
 FITTED_BY = ("steps", "paths")
 BETTER = 0.05  # share by which paths must be better than steps: a diagnosis judges by steps
-PARTS = {  # of the ship and not of the core, found with it
-    SteeringLag.__name__: "the recorded rudder angle is its order",
-    AntennaOffset.__name__: "the place was measured there on the reference voyages",
-    Wind.__name__: "it blew on the reference voyages",
-}
+# of the ship and not of the core, found with it; their numbers stand under these keys in --json
+PARTS = {role: of_role(role) for role in ("gear", "antenna", "wind")}
 # by the probability of the voyages; the antenna by predictions
-ASKED_FOR = (SteeringLag.__name__, Wind.__name__)
-SAID = {"gear": SteeringLag, "antenna": AntennaOffset, "wind": Wind}  # their numbers in --json
+ASKED_FOR = tuple(PARTS[role].__name__ for role in ("gear", "wind"))
 
 
 @dataclass(frozen=True)
@@ -79,7 +72,7 @@ class Core:
     effects: tuple[Effect, ...]
     # of the gear, the antenna and the wind, with their standard errors
     numbers: dict[str, dict[str, dict[str, Any]]]
-    antenna: AntennaOffset | None  # where it was found, if not where the ship file has it
+    antenna: Effect | None  # where it was found, if not where the ship file has it
     floor: NoiseModel
     temper: float
 
@@ -115,19 +108,18 @@ def calibrate(
 
 
 def _with_antenna(
-    first: AntennaOffset, sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]
+    first: Effect, sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]
 ) -> Core:
     """The same with the antenna in the model from the start: what heel and turning carry it about is no sway
     of its own, and had bent the core."""
     found = _core(sailed, ship.with_effects(first), progress)
-    antenna = AntennaOffset(
-        **{name: number["value"] for name, number in found.numbers[AntennaOffset.__name__].items()}
-    )
+    of_antenna = type(first)
+    antenna = of_antenna(**{k: number["value"] for k, number in found.numbers[of_antenna.__name__].items()})
     # until predictions are better with the other (`placed`)
-    lasting_ones = (e for e in ship.effects if isinstance(e, AntennaOffset))
+    lasting_ones = (e for e in ship.effects if isinstance(e, of_antenna))
     return replace(
         found,
-        effects=(*lasting_ones, *(e for e in found.effects if not isinstance(e, AntennaOffset))),
+        effects=(*lasting_ones, *(e for e in found.effects if not isinstance(e, of_antenna))),
         antenna=antenna,
     )
 
@@ -152,7 +144,7 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, smooth=True)
     asked = tuple(e for e in found.model.effects if type(e).__name__ in ASKED_FOR)
     kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
-    numbers = {name: _numbers(found, name, why) for name, why in PARTS.items()}
+    numbers = {e.__name__: _numbers(found, e.__name__, e.with_core) for e in PARTS.values()}
     return Core(tracks, found.model, told_by(found), (*kept, *asked), numbers, clearly(found), floor, temper)
 
 
@@ -209,7 +201,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "derivatives": [_row(d, ship, after) for d in core.derivatives],
         "unexcited": [d.unknown.name for d in core.derivatives if not d.excited],
         "fitted_by": by,
-        **{key: _said(owner.__name__, after, core) for key, owner in SAID.items()},
+        **{key: _said(owner.__name__, after, core) for key, owner in PARTS.items()},
         "waves": waves_on(core.tracks),
         "too_faint": [name for name, felt in lasting_ones["weather"].items() if felt > FAINT],
         "usual": clearly_there(after, lasting_ones),
@@ -258,17 +250,17 @@ def told(result: dict[str, Any]) -> list[str]:
     if gear := result["gear"]:
         lines.append(
             "  rudder_angle_deg is the rudder order: the steering gear behind it is now part of the model "
-            f"(SteeringLag: {_sizes(gear)})"
+            f"({PARTS['gear'].__name__}: {_sizes(gear)})"
         )
     if antenna := result["antenna"]:
         lines.append(
             "  position is measured elsewhere than the ship file says: the place is now part of the model "
-            f"(AntennaOffset: {_sizes(antenna)})"
+            f"({PARTS['antenna'].__name__}: {_sizes(antenna)})"
         )
     if wind := result["wind"]:
         lines.append(
-            "  wind pushed the ship on these voyages: its force is now part of the model (Wind: "
-            f"{_sizes(wind)})"
+            "  wind pushed the ship on these voyages: its force is now part of the model "
+            f"({PARTS['wind'].__name__}: {_sizes(wind)})"
         )
     lines += [
         f"  {name} was measured, but too weak to be estimated: up to {as_given(HARDER)} times as strong, it "

@@ -6,6 +6,7 @@ from typing import Any
 
 from twin.num import num
 from twin.physics.actuators import NUMBERS
+from twin.physics.effects import of_role
 from twin.physics.ship import DERIVATIVES
 
 EDGE = 1e-6  # of the box: a value nearer than this to its end was stopped by it
@@ -106,7 +107,7 @@ def _coarse(share: Sequence[float]) -> list[str]:
 
 def _ordered(usual: Sequence[Mapping[str, Any]]) -> list[str]:
     """The ship turns later than the rudder that was recorded: then that is its order."""
-    if not any(u["name"].startswith("SteeringLag.") for u in usual):
+    if not any(u["name"].startswith(f"{of_role('gear').__name__}.") for u in usual):
         return []
     return [
         "the ship answers otherwise than rudder and steering gear of the model would have it: record the "

@@ -8,8 +8,8 @@ until it hides what is missing. Kept in mind alone, either would leave every pre
 
 from collections.abc import Sequence
 
-from twin.physics.effects.antenna_offset import AntennaOffset
-from twin.physics.effects.wind import Wind
+from twin.physics.effect import Effect
+from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.study.calibration.held_out import HeldOut, errors, size
@@ -30,27 +30,29 @@ PUSHED = 0.08
 def with_or_without_wind(tracks: Sequence[Track], without: Fit, known: Catalogue, temper: float) -> Fit:
     """The fit with wind beside the core, if it was recorded on every voyage and makes them clearly more
     probable."""
-    pushed = strengths(tracks, without.model, known).get(Wind.__name__, 0.0) > PUSHED
-    if not pushed or any(t.missing().intersection(Wind.needs) for t in tracks):
+    wind = of_role("wind")
+    pushed = strengths(tracks, without.model, known).get(wind.__name__, 0.0) > PUSHED
+    if not pushed or any(t.missing().intersection(wind.needs) for t in tracks):
         return without
-    unknowns = (*without.unknowns, *effect_unknowns(Wind, Model(without.model.ship)))
+    unknowns = (*without.unknowns, *effect_unknowns(wind, Model(without.model.ship)))
     found = fit(tracks, without.model, unknowns, known, NoiseModel(), temper=temper, smooth=True)
     return found if found.cost < without.cost - 2.0 * CLEARLY_BETTER else without
 
 
-def clearly(found: Fit) -> AntennaOffset | None:
+def clearly(found: Fit) -> Effect | None:
     """Where the antenna was found, if that is clearly not where the fit began."""
+    antenna = of_role("antenna")
     numbers = [
         (u, v, sd)
         for u, v, sd in zip(found.unknowns, found.value, found.sd, strict=True)
-        if u.owner == AntennaOffset.__name__
+        if u.owner == antenna.__name__
     ]
     if not any(abs(v - u.centre) > CLEAR * sd for u, v, sd in numbers):
         return None
-    return AntennaOffset(**{u.name: float(v) for u, v, _ in numbers})
+    return antenna(**{u.name: float(v) for u, v, _ in numbers})
 
 
-def placed(ship: Ship, antenna: AntennaOffset | None, held_out: HeldOut) -> Ship:
+def placed(ship: Ship, antenna: Effect | None, held_out: HeldOut) -> Ship:
     """The ship with its antenna there, if so it is predicted better."""
     if antenna is None:
         return ship

@@ -8,7 +8,7 @@ from math import log
 from typing import Any
 
 from twin.num import num
-from twin.physics.particulars import Ship
+from twin.physics.ship import Ship
 
 GREW = 0.05  # mean logarithm of the errors in place and heading over all horizons, from which they grew
 FASTEST = 3.0  # times service speed: a model that gets farther off than that ran away

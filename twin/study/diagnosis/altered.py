@@ -30,7 +30,7 @@ SURE = 2.5  # standard deviations beyond which they do
 def sized(case: Case, found: Found) -> Posterior:
     """What the voyages say of a hypothesis' numbers; of one that alters the ship, beside derivatives that
     scatter."""
-    moved = _moved(
+    moved = changed_derivatives(
         case,
         Model(
             found.model.ship, tuple(e for e in found.model.effects if type(e).__name__ not in case.unnamed)
@@ -39,7 +39,7 @@ def sized(case: Case, found: Found) -> Posterior:
     if not moved.any():
         return found.posterior
     lines, at = standing(case, found, case.unknowns)
-    wider = replace(case, nuisance=_scattered(case.nuisance, SCATTER * moved))
+    wider = replace(case, nuisance=widened(case.nuisance, SCATTER * moved))
     reduced = wider.reduced(lines, case.scenarios([found.hypothesis.scenario], found.doubt), at)[0]
     return posterior(reduced, found.hypothesis.effects)
 
@@ -77,7 +77,7 @@ def _alters(kind: type[Effect]) -> bool:
     return issubclass(kind, Force) and kind.alter is not Force.alter
 
 
-def _moved(case: Case, model: Model) -> np.ndarray:
+def changed_derivatives(case: Case, model: Model) -> np.ndarray:
     """(C,) how far the effects move each of the nuisance's numbers, in its own unit: derivatives over the
     draught of the ship as it was."""
     before, after = case.model.loaded, model.loaded
@@ -91,7 +91,7 @@ def _moved(case: Case, model: Model) -> np.ndarray:
     )
 
 
-def _scattered(nuisance: Nuisance, extra: np.ndarray) -> Nuisance:
+def widened(nuisance: Nuisance, extra: np.ndarray) -> Nuisance:
     """The same knowledge with so much more doubt in each number [its own unit]."""
     covariance = np.linalg.inv(nuisance.information)
     mean = covariance @ nuisance.pull

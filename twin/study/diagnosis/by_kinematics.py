@@ -18,7 +18,7 @@ from twin.study.diagnosis.criteria import SIGNIFICANT
 from twin.study.estimation.columns import lateness_unknowns
 from twin.study.instruments.estimate import estimate
 from twin.study.instruments.findings import Instruments
-from twin.study.instruments.unknowns import FAULTS
+from twin.study.instruments.unknowns import effect_of
 
 USUAL = {"heading_delay": "compass"}  # number of kinematics -> whose usual lateness is known (columns.py)
 
@@ -36,7 +36,7 @@ def asked_for(case: Case) -> tuple[type[Effect], ...]:
     except DataError:  # no heading, or too little of it: kinematics say nothing
         return ()
     catalogue = of_ship(case.model.ship)
-    names = {str(FAULTS[fault].effect) for fault in beyond_usual(found)}
+    names = {str(effect_of(fault)) for fault in beyond_usual(found)}
     return tuple(catalogue[n] for n in sorted(names) if n in catalogue and n not in case.candidates)
 
 

@@ -142,7 +142,7 @@ def _floors(case: Case) -> dict[str, float]:
         for name, floor in zip(SCENARIOS, case.scenarios(list(SCENARIOS)), strict=True)
     }
     # what is run free is a core alone, and no better than it was when nothing was wrong
-    least = max(steps["coarse"], _measured(case))
+    least = max(steps["coarse"], measured_error_m(case))
     known = roughly(case)
     return {name: float(np.hypot(max(m, least), known)) for name, m in steps.items()}
 
@@ -228,7 +228,7 @@ def _usual(case: Case, floor: NoiseModel) -> float:
 def roughly(case: Case) -> float:
     """How far off [m] the forms of effects may leave it that are in the model since it was calibrated: a
     share of where it would be without, and where it would be if their side force attacked elsewhere."""
-    left = [share * _astray(case, without) for without, share in added(case.model)]
+    left = [share * mean_error_m(case, without) for without, share in added(case.model)]
     return float(np.hypot.reduce([_levered(case, case.model), *left]))
 
 
@@ -237,11 +237,11 @@ def _levered(case: Case, model: Model, names: Collection[str] | None = None) -> 
     their forms have it."""
     left = 0.0
     for both in elsewhere(model, names):
-        left += max(0.0, 0.5 * sum(_astray(case, m) ** 2 for m in both) - _astray(case, model) ** 2)
+        left += max(0.0, 0.5 * sum(mean_error_m(case, m) ** 2 for m in both) - mean_error_m(case, model) ** 2)
     return float(np.sqrt(left))
 
 
-def _astray(case: Case, model: Model) -> float:
+def mean_error_m(case: Case, model: Model) -> float:
     """Mean position error [m] of a model over all of the voyages."""
     errors = (
         _errors(coarse(t, model.without_inputs(t.missing())[0], horizon_s(t, case.model), leads=1), MODEL)
@@ -250,7 +250,7 @@ def _astray(case: Case, model: Model) -> float:
     return float(np.nanmean(np.concatenate(list(errors))))
 
 
-def _measured(case: Case) -> float:
+def measured_error_m(case: Case) -> float:
     """Mean position error [m] of the calibrated ship on voyages that it was not fitted to; nothing where no
     calibration measured it."""
     return float(

@@ -68,11 +68,11 @@ def refine(
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     narrow, kept = case.along(case.lines, chosen)
     at = np.zeros_like(z)
-    top = _place(narrow, chosen, scenario, z[kept], hoped, part, kept)
+    top = best_place(narrow, chosen, scenario, z[kept], hoped, part, kept)
     at[kept] = top.at
     model, lines = about(case, at, mine, case.unknowns)
     whole, _ = case.along(lines)
-    doubt = _doubt(narrow, chosen, top)
+    doubt = form_share(narrow, chosen, top)
     reduced = _everywhere(whole, chosen, whole.lines, at, doubt, top.near)
     judged, own = _judged(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
@@ -86,7 +86,7 @@ def refine(
     ]
 
 
-def _place(
+def best_place(
     case: Case,
     chosen: Sets,
     scenario: str,
@@ -94,12 +94,12 @@ def _place(
     hoped: float,
     part: Found | None = None,
     kept: np.ndarray | slice = slice(None),
-) -> "_Top":
+) -> "BestPlace":
     """The best of the iterations of `refine` (`kept`: which of all effects' numbers these are)."""
     known = part.hypothesis.effects if part else ()
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     new = np.array([i for i in mine if case.effects[i].owner not in known], dtype=int)
-    top = _Top.of(case, chosen, *_newton(case, chosen, mine, scenario, z)[1:])
+    top = BestPlace.of(case, chosen, *newton(case, chosen, mine, scenario, z)[1:])
     if part and top.best.log_weight < min(hoped, _without_gain(case, part, chosen)):
         at = np.where([u.owner in known for u in case.effects], part.posterior.z[kept], 0.0)
         top = top.or_from(case, chosen, mine, at)
@@ -130,16 +130,16 @@ def _without_gain(case: Case, part: Found, chosen: Sets) -> float:
 
 
 @dataclass(frozen=True)
-class _Top:
-    """The best place that was found so far, the tracks about it, and the hypothesis there in each
-    scenario (by columns of its own alone)."""
+class BestPlace:
+    """The best place that was found so far, the tracks about it, and the hypothesis there in each scenario
+    (by columns of its own alone)."""
 
     at: np.ndarray
     lines: Sequence[Linear] = field(repr=False)
     judged: Mapping[str, Hypothesis]
 
     @classmethod
-    def of(cls, case: Case, chosen: Sets, at: np.ndarray, lines: Sequence[Linear]) -> "_Top":
+    def of(cls, case: Case, chosen: Sets, at: np.ndarray, lines: Sequence[Linear]) -> "BestPlace":
         names = [n for n in SCENARIOS if np.isfinite(case.log_prior(chosen, n))]
         return cls(
             at,
@@ -164,16 +164,16 @@ class _Top:
     def best(self) -> Hypothesis:
         return max(self.judged.values(), key=lambda h: h.log_weight)
 
-    def or_from(self, case: Case, chosen: Sets, mine: np.ndarray, z: np.ndarray) -> "_Top":
+    def or_from(self, case: Case, chosen: Sets, mine: np.ndarray, z: np.ndarray) -> "BestPlace":
         """This place, or a better one to which an iteration in the usual scenario leads from `z`; others are
         asked only if that one is better."""
-        here, at, lines = _newton(case, chosen, mine, "usual", z)
+        here, at, lines = newton(case, chosen, mine, "usual", z)
         if here.log_weight <= self.judged["usual"].log_weight:
             return self
-        return max(self, _Top.of(case, chosen, at, lines), key=lambda top: top.best.log_weight)
+        return max(self, BestPlace.of(case, chosen, at, lines), key=lambda top: top.best.log_weight)
 
 
-def _newton(
+def newton(
     case: Case, chosen: Sets, mine: np.ndarray, scenario: str, z: np.ndarray
 ) -> tuple[Hypothesis, np.ndarray, Sequence[Linear]]:
     """Where the effects' parameters come to stand: the hypothesis there (in that scenario, by columns of its
@@ -191,7 +191,7 @@ def _newton(
         at = np.zeros_like(z)
         at[mine] = clipped(case, best + share * (aim - best))[mine]
         tried = about(case, at, mine, [case.effects[i] for i in mine])[1]
-        reduced = _told(case, tried, scenario, at)
+        reduced = reduced_at(case, tried, scenario, at)
         if reduced and (now := reduced.base - 0.5 * float(at @ at)) > merit:
             own = posterior(reduced, chosen)
             here = Hypothesis(
@@ -205,7 +205,7 @@ def _newton(
     return here, best, lines
 
 
-def _told(case: Case, lines: Sequence[Linear], scenario: str, at: np.ndarray) -> Reduced | None:
+def reduced_at(case: Case, lines: Sequence[Linear], scenario: str, at: np.ndarray) -> Reduced | None:
     """What the voyages say there; nothing where no filter can follow such a ship (without its mass, it
     answers within a step)."""
     try:
@@ -231,7 +231,7 @@ def _judged(
     ], own
 
 
-def _doubt(case: Case, chosen: Sets, top: _Top) -> float:
+def form_share(case: Case, chosen: Sets, top: BestPlace) -> float:
     """The share of DOUBTS under which the voyages are most probable."""
     shares = (*IRREGULAR, *DOUBTS) if any(case.catalogue[name].irregular for name in chosen) else DOUBTS
     reduced = case.reduced(

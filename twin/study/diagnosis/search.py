@@ -52,7 +52,7 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
     seen = {name: visible(scenarios["usual"], name) for name in case.candidates if name not in case.unnamed}
     weak = [name for name in seen if not seen[name] and case.catalogue[name].needs]
     case = replace(case, odds=dict(case.odds) | dict.fromkeys(weak, ODDS_WEAK))
-    book = _Book(case, scenarios)
+    book = Book(case, scenarios)
     searched = _searched(book, progress, seen)
     if book.last and not _explained(case, *searched[:2]):
         book.wide = True
@@ -60,7 +60,7 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
     return searched
 
 
-def _searched(book: "_Book", progress: Callable[[str], None], seen: dict[str, bool]) -> Searched:
+def _searched(book: "Book", progress: Callable[[str], None], seen: dict[str, bool]) -> Searched:
     """What the book says once nothing is left to be judged."""
     for _ in range(ROUNDS):
         chosen = book.next()
@@ -112,7 +112,7 @@ def _linear(case: Case, reduced: Reduced, scenario: str) -> list[tuple[Sets, flo
     return [*told, *weigh_sets(reduced, [case.ordered((*day, *few)) for day in best for few in more])]
 
 
-class _Book:
+class Book:
     """What is known of every hypothesis so far: first about nothing, then about the sizes that were found."""
 
     def __init__(self, case: Case, scenarios: dict[str, Reduced]) -> None:
@@ -133,11 +133,11 @@ class _Book:
         ranked = self.weighed()
         quiet = not case.causes(ranked[0].effects) and SCENARIOS[ranked[0].scenario].plain
         first = 0 if quiet else SINGLES  # none when the plain answer is that nothing is there
-        singles = self._promising()
+        singles = self.promising()
         self.first = [
             day,
             *singles[:first],
-            *((*self._of_the_day(), *filter(self._of_another_moment, singles)) if first else ()),
+            *((*self.of_the_day(), *filter(self.of_another_moment, singles)) if first else ()),
         ]
         self.last = singles[first : first + LAST]
 
@@ -154,7 +154,7 @@ class _Book:
         best = max(h.log_weight for h in weighed if h.effects in self.found)
         return [h for h in weighed if h.effects in self.found or h.log_weight <= best]
 
-    def _promising(self) -> list[Sets]:
+    def promising(self) -> list[Sets]:
         """The single effects that explain something, best first."""
         ranked, case = self.weighed(), self.case
         none = {(h.effects, h.scenario): h.log_evidence for h in ranked if not case.causes(h.effects)}
@@ -169,7 +169,7 @@ class _Book:
             best.setdefault(case.causes(chosen), chosen)
         return list(best.values())
 
-    def _of_the_day(self) -> list[Sets]:
+    def of_the_day(self) -> list[Sets]:
         """What every day brings much of on this ship: to first order what is usual takes the credit, and only
         its own size tells."""
         usual = {
@@ -179,7 +179,7 @@ class _Book:
         }
         return [(name,) for name, width in usual.items() if width > MUCH]
 
-    def _of_another_moment(self, chosen: Sets) -> bool:
+    def of_another_moment(self, chosen: Sets) -> bool:
         """Whether an instrument shows what was true before: about none, slopes of this moment tell little of
         it."""
         kinds = [self.case.catalogue[name] for name in self.case.causes(chosen)]
@@ -196,8 +196,8 @@ class _Book:
             if ranked[0].log_weight - h.log_weight > CLOSE:
                 break
             if h.effects not in self.found:
-                return next((part for part in self._parts(h.effects) if part not in self.found), h.effects)
-        for simpler in self._simpler(ranked[0].effects):
+                return next((part for part in self.parts(h.effects) if part not in self.found), h.effects)
+        for simpler in self.simpler(ranked[0].effects):
             if simpler not in self.found:
                 return simpler
         while self.last and (self.wide or not SCENARIOS[ranked[0].scenario].plain):
@@ -205,14 +205,14 @@ class _Book:
                 return chosen
         return None
 
-    def _parts(self, effects: Sets) -> list[Sets]:
+    def parts(self, effects: Sets) -> list[Sets]:
         """The weather of a set by itself, each cause beside it, and what would be left of three without
         each."""
         case, day, causes = self.case, self.case.day(effects), self.case.causes(effects)
         fewer = (some for size in range(1, len(causes)) for some in combinations(causes, size))
         return [case.ordered((*day, *some)) for some in ((), *fewer)]
 
-    def _simpler(self, effects: Sets) -> list[Sets]:
+    def simpler(self, effects: Sets) -> list[Sets]:
         """The same set with a part in the place of an effect that holds it: a current that does not change is
         a steady one."""
         swaps = [
@@ -244,17 +244,17 @@ class _Book:
         z = boxed(about, chosen, posterior(about, chosen)).z
         wider = self.case.candidates if len(self.case.causes(chosen)) < MOST else self.case.weather
         self.found[chosen], judged = refine(self.case, chosen, scenario, z, wider, hoped, start)
-        if self._hollow(chosen):
+        if self.hollow(chosen):
             self.entries = {key: h for key, h in self.entries.items() if key[0] != chosen}
             judged = [h for h in judged if h.effects != chosen]
         if steady(self.case, self.found[chosen]):
             self.found[chosen] = replace(self.found[chosen], steady=True)
-            self.first = [*self._simpler(chosen), *self.first]
+            self.first = [*self.simpler(chosen), *self.first]
         for h in judged:
             if self._counts(chosen, h):
                 self._enter(h)
 
-    def _hollow(self, chosen: Sets) -> bool:
+    def hollow(self, chosen: Sets) -> bool:
         """Whether an effect of this set ended at nothing (or its size did), or is a load that cannot be: it
         would help only with sizes that cannot be, and the set says no more than the rest."""
         z = self.found[chosen].posterior.z

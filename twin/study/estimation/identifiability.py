@@ -17,8 +17,7 @@ import numpy as np
 
 from twin.errors import DataError
 from twin.num import as_given
-from twin.physics.effects import of_ship
-from twin.physics.effects.current import Current
+from twin.physics.effects import of_role, of_ship
 from twin.physics.model import Model
 from twin.physics.state import Force, Situation
 from twin.recording.voyage import Voyage
@@ -124,8 +123,9 @@ def _run(t: Track, model: Model, starts: np.ndarray, steps: int, nudges: np.ndar
     """(K, windows, 8, unknowns) readings of runs from every window's start, each with one unknown nudged."""
     first = np.repeat(starts, len(nudges))
     by = np.tile(np.diag(nudges), (len(starts), 1)).T  # (unknowns, runs)
-    now = next((e for e in model.effects if isinstance(e, Current)), Current.absent(model.ship)).values()
-    here = Current.absent(model.ship).but(north=now["north"] + by[6], east=now["east"] + by[7])
+    still = of_role("stream").absent(model.ship)
+    now = next((e for e in model.effects if type(e) is type(still)), still).values()
+    here = still.but(north=now["north"] + by[6], east=now["east"] + by[7])
     push = Force(*by[8:11])
     model = replace(model.but(here), residual=lambda s: push)
     state = tuple(t.state[first, i] + by[i] for i in range(len(STATE)))

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from twin.physics.effect import Effect
-from twin.physics.effects import find
+from twin.physics.effects import of_role
 from twin.physics.maths import total
 from twin.physics.model import Model
 from twin.study.estimation.abreast import Where, abreast, beside_each
@@ -213,7 +213,7 @@ def _bends(
 def _by_current(track: Track, model: Model) -> np.ndarray:
     """(N, 3, 2) acceleration per m/s of current to the north and to the east."""
     current, still, step = (
-        find("Current").absent(model.ship),
+        of_role("stream").absent(model.ship),
         _without_current(model),
         0.02 * float(model.ship.scale("speed")),
     )
@@ -233,7 +233,7 @@ def _reader(track: Track) -> np.ndarray:
 
 
 def _without_current(model: Model) -> Model:
-    return Model(model.ship, tuple(e for e in model.effects if type(e).__name__ != "Current"))
+    return Model(model.ship, tuple(e for e in model.effects if type(e).role != "stream"))
 
 
 def busy(track: Track, model: Model) -> np.ndarray:

@@ -3,33 +3,16 @@ map."""
 
 import datetime
 from dataclasses import replace
-from typing import Any
+from typing import Any, cast
 
 from twin.errors import SettingsError
 from twin.num import as_given, num
-from twin.physics.effect import Effect
-from twin.physics.effects import find
+from twin.physics.effect import Effect, SensorFault
+from twin.physics.effects import catalogue
 from twin.physics.ship import Ship
 from twin.study.instruments.findings import InstrumentEstimate, Instruments
 from twin.study.reference.derivatives import noted
 
-PARAMETERS = {  # number -> effect, parameter, and the one that says by what the velocity was turned
-    "gnss_delay": ("SensorDelay", "delay", None),
-    "smoothing": ("ReceiverSmoothing", "time", None),
-    "heading_delay": ("HeadingLag", "lag", "turned"),
-    "A": ("HeadingBias", "bias", "turned"),
-    "B": ("CompassDeviation", "B", None),
-    "C": ("CompassDeviation", "C", None),
-    "D": ("CompassDeviation", "D", None),
-    "E": ("CompassDeviation", "E", None),
-    "gyro_bias": ("GyroBias", "bias", None),
-    "log_scale": ("SpeedLogScale", "scale", None),
-    "log_bias": ("SpeedLogBias", "bias", None),
-    "log_angle": ("SpeedLogMisalignment", "angle", None),
-    "antenna_ahead": ("AntennaOffset", "ahead", None),
-    "antenna_starboard": ("AntennaOffset", "starboard", None),
-    "antenna_above": ("AntennaOffset", "above", None),
-}
 OFFSETS = {
     "A": ("heading_true_north_deg", 57.29577951308232),
     "gyro_bias": ("yaw_rate_degps", 57.29577951308232),
@@ -43,16 +26,15 @@ def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[InstrumentEsti
     effects: dict[str, Effect] = {type(e).__name__: e for e in ship.effects}
     entries: dict[str, Any] = {}
     left: list[InstrumentEstimate] = []
+    known = _told_by_readings()
     for e in _seen(found):
-        if e.unknown.name not in PARAMETERS:
+        number = e.unknown.name
+        if number not in known:
             left.append(e)
             continue
-        name, parameter, turned = PARAMETERS[e.unknown.name]
-        effect = effects.get(name) or find(name).absent(ship)
-        values = {parameter: e.value} | ({turned: 0.0 if all(found.own) else e.value} if turned else {})
-        if name == "CompassDeviation":
-            values["turned"] = 0.0 if all(found.own) else 1.0
-        effects[name] = _boxed(effect.but(**values), ship)
+        name, parameter = known[number].__name__, known[number].by_readings[number]
+        fault = cast(SensorFault, effects.get(name) or known[number].absent(ship))
+        effects[name] = _boxed(fault.as_read(number, e.value, all(found.own)), ship)
         source = (
             f"kinematics of {', '.join(r.name for r in found.readings)}, {datetime.date.today().isoformat()}"
         )
@@ -64,6 +46,12 @@ def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[InstrumentEsti
         }
         entries.setdefault(name, {})[parameter] = entry
     return noted(replace(ship, effects=tuple(effects.values())), "effects", entries), left
+
+
+def _told_by_readings() -> dict[str, type[SensorFault]]:
+    """The instruments' effect of the catalogue that holds each number that the readings tell."""
+    faults = [e for e in catalogue().values() if issubclass(e, SensorFault)]
+    return {number: e for e in reversed(faults) for number in e.by_readings}
 
 
 def _seen(found: Instruments) -> list[InstrumentEstimate]:

@@ -11,7 +11,7 @@ from twin.study.instruments.fit import KinematicFit, columns, fit
 from twin.study.instruments.problem import Problem
 from twin.study.instruments.readings import Readings, of_track, of_voyage
 from twin.study.instruments.select import Book, Weighed
-from twin.study.instruments.unknowns import ALWAYS, FAULTS, INDEX, UNKNOWNS
+from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, effect_of
 from twin.study.track.track import Track
 
 __all__ = ["InstrumentEstimate", "Instruments", "estimate", "evidence"]
@@ -89,7 +89,6 @@ def evidence(track: Track, length_m: float | None = None) -> dict[str, float]:
     found = estimate([track], length_m)
     out: dict[str, float] = {}
     for fault, factor in found.log_bayes_factors.items():
-        effect = FAULTS[fault].effect
-        if effect:
+        if effect := effect_of(fault):
             out[effect] = max(factor, out.get(effect, -np.inf))
     return out

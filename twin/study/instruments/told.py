@@ -6,7 +6,7 @@ from typing import Any
 
 from twin.num import num
 from twin.study.instruments.findings import InstrumentEstimate, Instruments
-from twin.study.instruments.unknowns import ALWAYS, FAULTS
+from twin.study.instruments.unknowns import ALWAYS, FAULTS, effect_of
 
 SHOWN = {"rad": ("deg", 180.0 / math.pi), "rad/s": ("deg/min", 180.0 / math.pi * 60.0), "-": ("%", 100.0)}
 PLAIN = ("leeway",)  # no percentage
@@ -40,7 +40,7 @@ def as_json(found: Instruments) -> dict[str, Any]:
         "faults": [
             {
                 "fault": f,
-                "effect": FAULTS[f].effect,
+                "effect": effect_of(f),
                 "words": FAULTS[f].words,
                 "log_bayes_factor": found.log_bayes_factors[f],
                 "or_instead": list(found.instead[f]),
@@ -64,7 +64,7 @@ def _number(e: InstrumentEstimate) -> dict[str, Any]:
     return {
         "name": e.unknown.name,
         "fault": e.unknown.fault,
-        "effect": FAULTS[e.unknown.fault].effect,
+        "effect": effect_of(e.unknown.fault),
         "unit": e.unknown.unit,
         "meaning": e.unknown.meaning,
         "seen": e.seen,
@@ -120,10 +120,14 @@ def told(found: Instruments) -> list[str]:
 
 
 def _fault(found: Instruments, fault: str) -> list[str]:
-    f, numbers = FAULTS[fault], [e for e in found.estimates if e.unknown.fault == fault]
+    f, effect, numbers = (
+        FAULTS[fault],
+        effect_of(fault),
+        [e for e in found.estimates if e.unknown.fault == fault],
+    )
     head = (
         f"{f.words}"
-        + (f" ({f.effect})" if f.effect else "")
+        + (f" ({effect})" if effect else "")
         + (f": log Bayes factor {found.log_bayes_factors[fault]:.0f}")
     )
     out = [head] + [f"  {e.unknown.name:<18}{_sized(e)}   {e.unknown.meaning}" for e in numbers]

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from twin.physics.effects import catalogue
+
 
 @dataclass(frozen=True)
 class InstrumentUnknown:
@@ -23,11 +25,9 @@ class InstrumentUnknown:
 
 @dataclass(frozen=True)
 class InstrumentFault:
-    """A group of numbers that is one mistake. `effect`: its name in the catalogue; `turn`: the manoeuvre that
-    shows it best;
-    `by`: the instrument whose disagreement shows it."""
+    """A group of numbers that is one mistake (`effect_of`: its name in the catalogue). `turn`: the manoeuvre
+    that shows it best; `by`: the instrument whose disagreement shows it."""
 
-    effect: str | None
     words: str
     by: str
     turn: str
@@ -37,36 +37,26 @@ class InstrumentFault:
 LATE = 0.5  # odds that an instrument is late by something: most are by a little
 CIRCLES = "a full circle to each side"
 FAULTS: Mapping[str, InstrumentFault] = {
-    "gnss_delay": InstrumentFault(
-        "SensorDelay", "position and velocity late", "position", "turns to both sides", LATE
-    ),
-    "smoothing": InstrumentFault(
-        "ReceiverSmoothing", "course and speed over ground smoothed", "velocity", "turns to both sides"
-    ),
+    "gnss_delay": InstrumentFault("position and velocity late", "position", "turns to both sides", LATE),
+    "smoothing": InstrumentFault("course and speed over ground smoothed", "velocity", "turns to both sides"),
     "heading_delay": InstrumentFault(
-        "HeadingLag", "heading late", "heading", "turns to both sides, with rate of turn recorded", LATE
+        "heading late", "heading", "turns to both sides, with rate of turn recorded", LATE
     ),
-    "rate_delay": InstrumentFault(None, "rate of turn late", "rate", "turns to both sides", LATE),
-    "log_delay": InstrumentFault(None, "speed log late", "log", "changes of speed", LATE),
-    "heading_bias": InstrumentFault(
-        "HeadingBias", "compass bias (variation and alignment)", "heading", CIRCLES
-    ),
-    "deviation": InstrumentFault("CompassDeviation", "compass deviation curve", "heading", CIRCLES),
-    "gyro_bias": InstrumentFault(
-        "GyroBias", "rate gyro bias", "rate", "any voyage with heading and rate of turn"
-    ),
-    "log_scale": InstrumentFault("SpeedLogScale", "speed log scale", "log", "reciprocal courses or a circle"),
-    "log_bias": InstrumentFault("SpeedLogBias", "speed log bias", "log", "reciprocal courses at two speeds"),
-    "log_angle": InstrumentFault("SpeedLogMisalignment", "speed log askew", "log aside", CIRCLES),
-    "antenna": InstrumentFault(
-        "AntennaOffset", "antenna's place", "velocity", CIRCLES + ", with a log of two axes"
-    ),
-    "mast": InstrumentFault("AntennaOffset", "antenna's height", "position", "rolling in a sea"),
-    "vane": InstrumentFault(None, "wind vane offset", "wind", CIRCLES),
-    "anemometer": InstrumentFault(None, "wind speed scale", "wind", "reciprocal courses in a steady wind"),
-    "leeway": InstrumentFault(None, "leeway by the wind", "drift", CIRCLES + " in wind"),
-    "current": InstrumentFault("Current", "stream", "drift", CIRCLES),
-    "drift": InstrumentFault(None, "drift of a turning ship", "drift", "turns"),
+    "rate_delay": InstrumentFault("rate of turn late", "rate", "turns to both sides", LATE),
+    "log_delay": InstrumentFault("speed log late", "log", "changes of speed", LATE),
+    "heading_bias": InstrumentFault("compass bias (variation and alignment)", "heading", CIRCLES),
+    "deviation": InstrumentFault("compass deviation curve", "heading", CIRCLES),
+    "gyro_bias": InstrumentFault("rate gyro bias", "rate", "any voyage with heading and rate of turn"),
+    "log_scale": InstrumentFault("speed log scale", "log", "reciprocal courses or a circle"),
+    "log_bias": InstrumentFault("speed log bias", "log", "reciprocal courses at two speeds"),
+    "log_angle": InstrumentFault("speed log askew", "log aside", CIRCLES),
+    "antenna": InstrumentFault("antenna's place", "velocity", CIRCLES + ", with a log of two axes"),
+    "mast": InstrumentFault("antenna's height", "position", "rolling in a sea"),
+    "vane": InstrumentFault("wind vane offset", "wind", CIRCLES),
+    "anemometer": InstrumentFault("wind speed scale", "wind", "reciprocal courses in a steady wind"),
+    "leeway": InstrumentFault("leeway by the wind", "drift", CIRCLES + " in wind"),
+    "current": InstrumentFault("stream", "drift", CIRCLES),
+    "drift": InstrumentFault("drift of a turning ship", "drift", "turns"),
 }
 ALWAYS = ("current", "drift")  # never left out: every voyage has a stream, and every ship drifts in a turn
 
@@ -149,6 +139,12 @@ OWN = ("current_north", "current_east")  # of each voyage; the rest is the ship'
 def members(fault: str) -> list[int]:
     """Rows of UNKNOWNS of one fault."""
     return [i for i, u in enumerate(UNKNOWNS) if u.fault == fault]
+
+
+def effect_of(fault: str) -> str | None:
+    """The effect of the catalogue that holds numbers of this fault (`by_readings`); None: none does."""
+    own = {UNKNOWNS[i].name for i in members(fault)}
+    return next((name for name, e in catalogue().items() if own & set(e.by_readings)), None)
 
 
 def widths(speed: float, length: float, time: float) -> np.ndarray:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.physics import core
-from twin.physics.effects.current import Current
+from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
@@ -236,7 +236,7 @@ class _Run:
                 self.known,
                 effects=(
                     *model.effects,
-                    Current.absent(model.ship).but(north=slow.water[0], east=slow.water[1]),
+                    of_role("stream").absent(model.ship).but(north=slow.water[0], east=slow.water[1]),
                 ),
             )
 

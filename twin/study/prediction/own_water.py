@@ -16,7 +16,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from twin.physics.effects.current import Current
+from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.study.prediction.errors import in_axes, vectors
 from twin.study.prediction.openloop import MODEL, Windows, again
@@ -66,7 +66,8 @@ def _slopes(windows: Windows, model: Model) -> np.ndarray:
     """(2, K, W, 8) what a stream of 1 m/s toward north, and toward east, changes of every promise, to first
     order."""
     step = STEP * float(model.ship.scale("speed"))
-    current = next((e for e in model.effects if isinstance(e, Current)), Current.absent(model.ship))
+    stream = of_role("stream")
+    current = next((e for e in model.effects if isinstance(e, stream)), stream.absent(model.ship))
     out = []
     for axis in ("north", "east"):
         moved = model.but(current.but(**{axis: float(getattr(current, axis)) + step}))

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from twin.physics.effects.steering_lag import SteeringLag
+from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown, effect_unknowns
 from twin.study.estimation.fit import Catalogue, Fit, evidence, fit
@@ -25,7 +25,7 @@ CLEAR = 20.0
 
 def gear_unknowns(model: Model) -> tuple[Unknown, ...]:
     """The gear's numbers, about no gear."""
-    return tuple(effect_unknowns(SteeringLag, Model(model.ship)))
+    return tuple(effect_unknowns(of_role("gear"), Model(model.ship)))
 
 
 def with_or_without_gear(
@@ -68,8 +68,10 @@ def geared(
         return model
     sd, time = np.array([u.sd for u in unknowns]), float(model.ship.scale("time"))
 
+    none_yet = of_role("gear").absent(model.ship)
+
     def with_gear(delay: float, travel: float) -> Model:
-        return model.but(SteeringLag.absent(model.ship).but(delay=delay * time, travel_time=travel * time))
+        return model.but(none_yet.but(delay=delay * time, travel_time=travel * time))
 
     def probable(m: Model) -> float:
         lines = [linearise(t, m.without_inputs(t.missing())[0], unknowns, known) for t in tracks]

@@ -2,8 +2,7 @@
 feed."""
 
 import hashlib
-import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -45,11 +44,14 @@ def samples_hash(voyage: Voyage) -> str:
     return known.hexdigest()
 
 
-def read_all(paths: Sequence[str], ship: Ship) -> list[Sailed]:
-    """Every voyage, ready; DataError names the file that cannot be used, or that was given twice."""
+def read_all(
+    paths: Sequence[str], ship: Ship, progress: Callable[[str], None] = lambda text: None
+) -> list[Sailed]:
+    """Every voyage, ready; DataError names the file that cannot be used, or that was given twice. `progress`
+    is told which file is read."""
     out: list[Sailed] = []
     for path in paths:
-        print(f"reading {path} ...", file=sys.stderr)
+        progress(f"reading {path}")
         made = sailed(read_voyage(path), ship, _sha256(path))
         twin = next((s for s in out if s.sha256 == made.sha256), None)
         if twin is not None:

@@ -48,7 +48,7 @@ def swung(track: Track, model: Model) -> Track:
     usable, known = model.without_inputs(track.missing())[0], of_ship(model.ship)
     unknowns = nuisance_unknowns(usable, known)
     try:
-        rough, sea, calm = _likeliest(track, usable, unknowns)
+        rough, sea, calm = likeliest_waves(track, usable, unknowns)
         enough = TEMPER * (0.0 if at_sea(track, model) else CLEAR)
         if rough.swell is None or (sea <= calm + enough and not at_sea(track, model)):
             return track
@@ -56,14 +56,14 @@ def swung(track: Track, model: Model) -> Track:
         # a gear that lags leaves swift accelerations, too, and is nothing to first order
         slow = geared(usable, part, unknowns, known, TEMPER)
         if slow is not usable:
-            other, more, less = _likeliest(track, slow, unknowns)
+            other, more, less = likeliest_waves(track, slow, unknowns)
             rough, sea, calm = rough if sea > more else other, max(sea, more), max(calm, less)
         return rough if sea > calm + enough else track
     except np.linalg.LinAlgError:  # a model that no filter can follow says nothing of waves
         return track
 
 
-def _likeliest(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple[Track, float, float]:
+def likeliest_waves(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple[Track, float, float]:
     """The track in waves as strong as the readings ask for, if anything swings it; log evidence of that, and
     of no waves."""
     floor, rough = floor_of(model.ship) or NoiseModel(), _swinging(track, model)

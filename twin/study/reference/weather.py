@@ -10,7 +10,7 @@ import numpy as np
 
 from twin.physics.effect import Effect
 from twin.physics.model import Model
-from twin.study.estimation.respond import respond, standard
+from twin.study.estimation.respond import standard, steered
 from twin.study.track.track import Track
 
 FAINT = 0.03  # of the standard acceleration: nobody would feel it
@@ -46,7 +46,6 @@ def _strength(track: Track, model: Model, effect: type[Effect]) -> float | None:
     ):
         return None
     here = model.without_inputs(track.missing())[0]
-    push = (respond(track, here.but(effect.plausible(model.ship)))[0] - respond(track, here)[0]) / standard(
-        here
-    )
+    rates = effect.strength(track.situation(**steered(track, here)), here)
+    push = np.column_stack([np.broadcast_to(a, track.t.shape) for a in rates]) / standard(here)
     return float(np.sqrt(np.nanmean(np.sum(push**2, axis=1))))

@@ -33,7 +33,6 @@ from twin.study.reference.structure import floor_of
 from twin.study.track.track import Track
 
 UNTOUCHED = 0.1  # a number whose doubt shrank by less was not excited
-OF_THE_VOYAGE = ("Current", "VaryingCurrent", "Wind", "WaveDrift")  # that may stand beside what is named
 CLOSE = 3.0  # log odds behind, to first order, within which one of these is judged where it would stand
 FIELDS = {c.attribute: c.name for c in BY_NAME.values()} | {
     "wind_to": "true_wind_direction_deg",
@@ -150,11 +149,7 @@ def _beside_the_voyage(case: Case, names: Sets, progress: Progress) -> Found:
     """The named effects, and of the voyage's own water and weather what makes the voyages likelier."""
     best = _judged(case, names, None)
     while True:
-        more = [
-            n
-            for n in OF_THE_VOYAGE
-            if n in case.candidates and _may_stand_beside(case, n, best.hypothesis.effects)
-        ]
+        more = [n for n in case.candidates if _may_stand_beside(case, n, best.hypothesis.effects)]
         if not more or best.reduced is None:
             return best
         chosen = best.hypothesis.effects
@@ -178,11 +173,14 @@ def _set(case: Case, names: Sequence[str]) -> Sets:
 
 
 def _may_stand_beside(case: Case, name: str, chosen: Sets) -> bool:
-    """Whether an effect of the voyage is new beside these, and neither a part of one of them nor the whole of
-    it."""
-    held = case.catalogue[name].holds
+    """Whether an effect is water or weather of the voyage (not of its place), new beside these, and neither a
+    part of one of them nor the whole of it."""
+    effect = case.catalogue[name]
+    held = effect.holds
     return (
-        name not in chosen
+        effect.is_weather()
+        and not effect.of_place
+        and name not in chosen
         and name not in case.present
         and not any(name in case.catalogue[n].holds or n in held for n in chosen)
     )

@@ -1,0 +1,82 @@
+"""`twin.check_voyage`: do the signs, units, frames and clocks of a voyage agree with each other; and
+`twin.suggest_map`: what the columns of an unknown table may be."""
+
+import os
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from twin.api.result import PathLike, Result
+from twin.physics.ship import Ship
+from twin.recording.checks import Check
+from twin.recording.formats.choose import sources_of
+from twin.recording.import_voyage import Imported, checked, import_voyage, refusal, summary
+from twin.recording.suggest_map import suggestion
+from twin.recording.voyage import Voyage
+
+
+@dataclass(frozen=True, repr=False)
+class VoyageCheck(Result):
+    """`voyage`, and what each check has seen in it. Its rows are the checks: name, whether it is content,
+    whether it proves a mistake, and its words."""
+
+    voyage: Voyage
+    checks: tuple[Check, ...] = field(repr=False)
+
+    def refused(self, accept: Collection[str] = ()) -> list[str]:
+        """The names of the checks that prove a sign, unit or frame wrong and are not accepted."""
+        return [c.name for c in self._imported.refused(accept)]
+
+    def refusal(self, path: str, accept: Collection[str] = (), map: str | None = None) -> str:
+        """Why the file at `path`, read by this `map`, is not imported, and the two ways out: one line."""
+        return refusal(path, self._imported.refused(accept), map)
+
+    def text(self, every: bool = False) -> list[str]:
+        """The lines of `twin import`; `every`: what each check saw, those that are content too."""
+        return summary(self._imported, every)
+
+    @property
+    def _imported(self) -> Imported:
+        return Imported(self.voyage, list(self.checks))
+
+    def _rows(self) -> Any:
+        return self.data["data_checks"]
+
+    def __repr__(self) -> str:
+        wrong = ", ".join(self.refused()) or "no mistake proved"
+        return f"<VoyageCheck of {self.voyage.name!r}: {len(self.checks)} checks, {wrong}>"
+
+
+def check_voyage(ship: Ship | None, voyage: Voyage) -> VoyageCheck:
+    """Ask every check of `twin import` about a voyage; a `ship` lets them say more (None: not known).
+
+    A mistake that is proved is no error here: see `refused`. Milliseconds to a second.
+    """
+    return _of(checked(voyage, ship))
+
+
+def import_file(
+    path: Sequence[PathLike],
+    map: PathLike | None = None,
+    ship: PathLike | None = None,
+    sources: Sequence[str] = (),
+    controls: bool = True,
+) -> VoyageCheck:
+    """A file or several read as one voyage, and checked: what `twin import` does."""
+    return _of(import_voyage([Path(p) for p in path], map, ship, sources, controls))  # type: ignore[arg-type]
+
+
+def _of(found: Imported) -> VoyageCheck:
+    return VoyageCheck(found.voyage, tuple(found.checks), data=found.as_json())
+
+
+def suggest_map(paths: PathLike | Iterable[PathLike], *, sources: Iterable[str] = ()) -> str:
+    """The map of one table or several whose columns are not known, as TOML to be confirmed by a person; what
+    each line rests on stands beside it.
+
+    `sources`: the instrument to take of several, as "CHANNEL=NAME" or "NAME". DataError when a file cannot be
+    used.
+    """
+    given = [paths] if isinstance(paths, str | os.PathLike) else list(paths)
+    return suggestion([Path(p) for p in given], sources_of(list(sources)))

@@ -1,0 +1,150 @@
+"""The samples of a file of any known format, by its reader: a log of the twin, a table by the documented
+names or by a map, a log of messages, and what is packed in a .zip.
+"""
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from twin.errors import DataError, did_you_mean
+from twin.live.signals.channels import BY_NAME
+from twin.recording.cells import number_keys
+from twin.recording.formats import Format, recognised
+from twin.recording.formats.choose import Sources, chosen
+from twin.recording.formats.rows import as_columns
+from twin.recording.formats.tables import Packed
+from twin.recording.formats.zipped import is_zip, unpacked
+from twin.recording.headers import column_names, own_names
+from twin.recording.map_file import parse_map
+from twin.recording.mapping import PLACES, Column, Map, TimeColumn
+from twin.recording.place import CHART, FRAMED
+from twin.recording.raw import ABOUT, Raw, about, opened_table, read_clock, stamps_of, table_of, through
+from twin.recording.several import joined
+from twin.recording.table import Table
+from twin.recording.timebase import (
+    clock_from_numbers,
+)
+
+
+def raw_of(path: Path, by: Map | None, sources: Sources) -> Raw:
+    """The samples of a file in border units, by the reader of its format."""
+    if is_zip(path):
+        return of_zip(path, by, sources)
+    kind = recognised(path)
+    if kind is None and path.is_dir():
+        return joined([path], by)
+    if kind is None:
+        return from_log(path, by) if path.suffix.lower() == ".mcap" else from_text(path, by)
+    return (
+        from_series(path, kind, by, sources) if kind.series else from_text(path, by, opened_table(kind, path))
+    )
+
+
+def of_zip(path: Path, by: Map | None, sources: Sources) -> Raw:
+    """What is packed in a .zip: one log or table, or several tables that are joined."""
+    with TemporaryDirectory() as folder:
+        files = unpacked(path, Path(folder))
+        try:
+            if len(files) == 1:
+                return replace(raw_of(files[0], by, sources), path=path)
+            return replace(joined(files, by), path=path)
+        except DataError as error:
+            raise DataError(str(error).replace(folder, str(path))) from None
+
+
+def from_log(path: Path, by: Map | None = None) -> Raw:
+    """The samples of the twin's own MCAP: an imported voyage, or the log of a run; a map may replace channels
+    of it."""
+    from twin.live.log.rows import read_rows
+
+    notes, lost = list[str](), list[str]()
+    time_s, columns = read_rows(path, notes, lost)
+    clock = clock_from_numbers(path, time_s, TimeColumn())
+    known = {name: x for name, x in columns.items() if name in BY_NAME}
+    lines, facts = np.arange(1, time_s.size + 1), words(path)
+    if by is None:
+        return Raw(
+            path, lines, clock.time_s, known, about(path, clock) | facts, notes + list(clock.notes), lost=lost
+        )
+    own = {name: Column(name) for name in known if name not in by.columns and name not in by.constant}
+    missing = [str(k) for k in number_keys(by.columns.values()) if k not in columns]
+    if missing:
+        raise DataError(
+            f"{path}: this log of the twin holds no {missing[0]!r}.{did_you_mean(missing[0], columns)}"
+        )
+    table = Table(path, lines, dict(columns.items()), {}, lost=tuple(lost))
+    return through(path, table, clock, replace(by, columns=own | dict(by.columns)), notes, facts)
+
+
+def words(path: Path) -> dict[str, Any]:
+    """What an imported voyage says about itself: where it came from, what in it is derived."""
+    from twin.live.log.mcap_read import McapReader
+
+    reader = McapReader(path)
+    next(reader.messages(), None)
+    return {key: json.loads(value) for key, value in reader.metadata.get(ABOUT, {}).items()}
+
+
+def from_text(path: Path, by: Map | None, packed: Packed | None = None) -> Raw:
+    """The samples of a table, text or packed, through a map."""
+    by, unused = (by, ()) if by else own_names(path, packed.names if packed else column_names(path))
+    table = table_of(path, by, packed)
+    return through(
+        path,
+        table,
+        read_clock(path, table, stamps_of(by), by.time or TimeColumn()),
+        by,
+        [*table.notes, *unused],
+        {},
+    )
+
+
+def from_series(path: Path, kind: Format, by: Map | None, sources: Sources) -> Raw:
+    """The samples of a log of messages: by its own map, in which a person's map replaces what it names."""
+    assert kind.series is not None
+    signals = kind.series(path)
+    choice = chosen(signals, sources)
+    if not choice.columns and by is None:
+        held = ", ".join(list(signals.series)[:12])
+        raise DataError(
+            f"{path}: this is {signals.says}, and nothing in it says what it is: {held} ... "
+            "--suggest-map writes a map to begin with."
+        )
+    given = by or Map(name=f"what {path.name} says itself")
+    by = replace(
+        given,
+        columns={
+            **parse_map({"columns": beside_map(choice.columns, given)}, str(path)).columns,
+            **given.columns,
+        },
+    )
+    wanted = list(dict.fromkeys(number_keys(by.columns.values())))
+    for name in wanted:
+        if name not in signals.series:
+            known = list(signals.series)
+            raise DataError(
+                f"{path}: this is {signals.says}, and it holds no "
+                f"{name!r}.{did_you_mean(str(name), known)} It holds "
+                f"{', '.join(known[:20])}."
+            )
+    time_s, columns = as_columns(signals, map(str, wanted))
+    notes = [*signals.notes, *choice.notes]
+    notes += [f"left out: {', '.join(f'{n} {what}' for what, n in signals.skipped.most_common(6))}"] * bool(
+        signals.skipped
+    )
+    table = Table(path, np.arange(1, time_s.size + 1), dict(columns.items()), {})
+    clock = clock_from_numbers(path, time_s, TimeColumn())
+    return through(path, table, clock, by, notes, {"format": signals.says})
+
+
+def beside_map(own: dict[str, Any], given: Map) -> dict[str, Any]:
+    """The log's own columns, without those that a map gives: position and velocity go by whole pairs."""
+    taken = set(given.columns) | set(given.constant)
+    for pair in (FRAMED, PLACES, CHART):
+        if taken & set(pair):
+            taken |= {*pair, *((*PLACES, *CHART) if pair != FRAMED else ())}
+    return {name: c for name, c in own.items() if name not in taken}
