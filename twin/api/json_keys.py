@@ -15,6 +15,7 @@ from twin.api.json_key import (
     provenance,
     under,
 )
+from twin.api.json_keys_fleet import FLEET
 
 COMPARE = (
     *ABOUT,
@@ -291,4 +292,5 @@ KEYS: dict[str, tuple[JsonKey, ...]] = {
     "add": ADD,
     "calibrate": CALIBRATE,
     "tube": TUBE,
+    "fleet": FLEET,
 }
