@@ -7,6 +7,7 @@ NAMED = "a cause is named"
 WEIGHED = "a cause is likely"
 DATED = (
     JsonKey("voyage", "", "its name"),
+    JsonKey("file", "", "its file"),
     JsonKey("start_time_utc", "", "when it began, or null where its file does not say"),
 )
 SIZE = (
@@ -50,7 +51,8 @@ FLEET = (
     JsonKey("ships[].sentence", "", "the sentence that goes with it, or null"),
     JsonKey("ships[].latest", "", "null: no voyage could be judged", "none could"),
     *when("one was judged", under("ships[].latest", DATED, "latest voyage that was judged: ")),
-    JsonKey("ships[].latest.file", "", "its file", "one was judged"),
+    JsonKey("ships[].since", "", "null: no voyage could be judged", "none could"),
+    *when("one was judged", under("ships[].since", DATED, "voyage since which its verdict is the same: ")),
     *when(NAMED, under("ships[].causes[]", CAUSE)),
     JsonKey("ships[].causes[].number", "", "null: the effect has no number", "it has none"),
     *when(NAMED, under("ships[].causes[].number", SIZE, "clearest number: ")),
@@ -74,9 +76,8 @@ FLEET = (
     JsonKey("ships[].over_months.typical_now", "-", "M of a lasting fault by so many voyages, typically"),
     JsonKey("ships[].over_months.typical_ever", "-", "the same however many voyages follow"),
     JsonKey("ships[].over_months.alarm", "", "whether its M is an alarm in this fleet"),
-    JsonKey("ships[].voyages[].file", "", "a voyage, in the order of sailing"),
     JsonKey("ships[].voyages[].tags.*", "", "what its owner noted", "something was"),
-    *under("ships[].voyages[]", DATED),
+    *under("ships[].voyages[]", DATED, "in the order of sailing: "),
     JsonKey("ships[].voyages[].failed", "", "why it could not be asked, or null"),
     JsonKey("ships[].voyages[].verdict", "", "as of `twin diagnose`; reference: the ship was calibrated on "
             "it; null: it could not be asked"),

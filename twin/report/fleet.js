@@ -2,7 +2,7 @@
 const STATES = { missing: ["bad", "missing"], weather: ["fair", "weather only"], unknown: ["fair", "unknown"], undecided: ["fair", "undecided"], nothing_missing: ["good", "nothing missing"], not_asked: ["fair", "not judged"], reference: ["good", "calibrated on"] };
 const day = (v) => (v && (v.start_time_utc ? v.start_time_utc.slice(0, 10) : v.voyage)) || "";
 const unit = (p) => (p.unit === "-" ? "" : ` ${p.unit}`);
-const size = (p) => (p ? `${p.name} ${num(p.value)}${unit(p)} (${num(p.low95)} to ${num(p.high95)}${p.at_box_end ? ", at the end of its box" : ""})` : "");
+const size = (p) => (p ? `${p.name} ${num(p.value, 2)}${unit(p)} (${num(p.low95, 2)} to ${num(p.high95, 2)}${p.at_box_end ? ", at the end of its box" : ""})` : "");
 const percent = (x) => (x === null || x === undefined ? "–" : `${Math.round(100 * x)} %`);
 const signed = (x) => `${x < 0 ? "−" : "+"}${num(Math.abs(x), 2)}`;
 const slope = (t) => (t ? `${signed(t.slope)} a ${t.per} (${signed(t.low95)} to ${signed(t.high95)})` : "");
@@ -22,11 +22,11 @@ function ranking() {
     const named = s.causes.length ? s.causes : [null];
     return named.map((c, i) => el("tr", null,
       el("td.n", null, i ? "" : String(s.rank)),
-      el("td", null, i ? "" : el("a", { href: `#ship-${s.rank}` }, s.ship)),
-      el("td", null, c ? [el("b", null, c.effect), c.belongs_to === "voyage" ? " (weather)" : ""] : badge(s.state)),
-      el("td", null, day(c ? c.since : s.latest)), el("td", null, c ? size(c.number) : ""), el("td", null, c ? slope(c.trend) : ""),
-      el("td", null, c && c.share_of_error !== null ? [el("span.bar100", null, el("i", { style: { width: `${100 * Math.min(Math.max(c.share_of_error, 0), 1)}%` } })), percent(c.share_of_error)] : ""),
-      el("td", null, i ? "" : chance(s.over_months))));
+      el("td.d", null, i ? "" : el("a", { href: `#ship-${s.rank}` }, s.ship)),
+      el("td.d", null, c ? [el("b", null, c.effect), c.belongs_to === "voyage" ? " (weather)" : ""] : badge(s.state)),
+      el("td.d", null, day(c ? c.since : s.since)), el("td", null, c ? size(c.number) : ""), el("td", null, c ? slope(c.trend) : ""),
+      el("td.d", null, c && c.share_of_error !== null ? [el("span.bar100", { style: { width: "70px" } }, el("i", { style: { width: `${100 * Math.min(Math.max(c.share_of_error, 0), 1)}%` } })), percent(c.share_of_error)] : ""),
+      el("td.d", null, i ? "" : chance(s.over_months))));
   });
   return section("Ranked by what is wrong", "by the latest voyage of each ship: causes by their share of the open-loop error, then unknown, undecided, nothing missing", table(["", "ship", "verdict", "since", "size, 95 %", "trend, 95 %", "of the error", "over the months"], rows));
 }
@@ -55,13 +55,13 @@ function history(cause) {
 }
 
 function ship(s) {
-  const voyages = s.voyages.map((v) => el("tr", null, el("td", null, v.voyage || v.file), el("td", null, v.start_time_utc ? v.start_time_utc.slice(0, 10) : ""), el("td", null, Object.entries(v.tags).map(([k, x]) => el("span.chip", null, `${k}: ${x}`))),
+  const voyages = s.voyages.map((v) => el("tr", null, el("td", null, v.voyage || v.file), el("td.d", null, v.start_time_utc ? v.start_time_utc.slice(0, 10) : ""), el("td", null, Object.entries(v.tags).map(([k, x]) => el("span.chip", null, `${k}: ${x}`))),
     el("td", null, v.failed ? el("span.fair", null, v.failed) : [badge(v.verdict), " ", v.causes.filter((c) => c.named).map((c) => `${c.effect} ${size(c.parameters[0])}`).join("; ")]),
     el("td.n", null, v.position_mae_m === null ? "" : `${num(v.position_mae_m)} (${num(v.position_expected_m)})`), el("td.n", null, v.p_value === null ? "" : num(v.p_value, 2))));
   const commands = s.latest ? [command(`twin diagnose ${quoted(s.latest.file)} --ship ${quoted(s.file)} --report diagnose.html`)] : [];
   const lasting = s.causes.filter((c) => c.lasting).map((c) => c.effect);
   if (lasting.length) commands.push(command(`twin add ${lasting.join(" ")} --ship ${quoted(s.file)} --voyage ${quoted(s.latest.file)} -o better.toml`));
-  const out = section(`${s.rank} · ${s.ship}`, s.file, el("p", { style: { margin: "0 0 10px" } }, s.sentence || "No voyage of this ship could be judged."),
+  const out = section(`${s.rank} · ${s.ship}`, s.file, el("p", { style: { margin: "0 0 10px" } }, s.latest ? s.sentence : "No voyage of this ship could be judged."),
     el(".two", null, s.causes.filter((c) => c.sizes.length).map(history)),
     table(["voyage", "began", "", "verdict", ">error (expected) [m]", ">p"], voyages), commands);
   out.id = `ship-${s.rank}`;
@@ -70,6 +70,7 @@ function ship(s) {
 
 document.documentElement.dataset.theme = (location.hash.match(/theme=(dark|light)/) || [])[1] || (matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light");
 document.title = DATA.title;
+document.getElementById("page").className = "fleet";
 const months = section("Over the months", "many ships, many voyages, many tests", RESULT.months.map((text) => el("p.note", null, text)));
 document.getElementById("page").append(head(), ranking(), months, ...RESULT.ships.map(ship), el("footer", null, "shiptwin · this page is whole: it asks nothing of any network"));
 document.documentElement.dataset.readyMs = "0";

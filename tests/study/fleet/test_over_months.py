@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from twin.study.fleet.over_months import Evidence, alarms, evidence, of_a_lasting_fault
+from twin.study.fleet.over_months import Martingale, alarms, evidence, of_a_lasting_fault
 
 
 def test_three_references_and_two_voyages_by_hand():
@@ -47,7 +47,7 @@ def test_of_fleets_in_which_a_third_is_faulty_few_alarms_are_of_healthy_ships():
 
 
 def test_an_alarm_needs_more_in_a_larger_fleet_and_less_beside_others():
-    quiet, loud = Evidence(9, 9, 1.0, 1.0, 1e6), Evidence(9, 9, 50.0, 50.0, 1e6)
+    quiet, loud = Martingale(9, 9, 1.0, 1.0, 1e6), Martingale(9, 9, 50.0, 50.0, 1e6)
     assert alarms({"a": loud}) == ["a"]
     assert alarms({"a": loud, "b": quiet, "c": quiet}) == []
     assert alarms({"a": loud, "b": loud, "c": quiet}) == ["a", "b"]

@@ -141,6 +141,6 @@ def test_what_the_references_can_never_show_is_told(of):
     result = ranked([(scored(few, 3), rows), (scored(many, 12), rows)])
     lines = "\n".join(told(result))
     assert result["over_months"] == {"level": 0.05, "ships": 2, "needed": 40.0, "alarms": []}
-    assert "few: 3 reference voyages can typically show M = 4.7 of a lasting fault" in lines
+    assert "few: by 3 reference voyages a lasting fault typically shows M = 4.7," in lines
     assert "many:" not in lines
     assert "not controlled" in "\n".join(told(ranked([(few, rows)])))

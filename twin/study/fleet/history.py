@@ -20,7 +20,8 @@ def voyages_of(asked: Sequence[tuple[str, Mapping[str, str], Sequence[Row]]]) ->
     tell; else in the order of the list."""
     found = [_voyage(file, tags, rows) for file, tags, rows in asked]
     known = all(v["start_time_utc"] for v in found if not v["failed"])
-    return sorted(found, key=lambda v: moment_of(v["start_time_utc"])) if known else found
+    when = lambda v: (bool(v["failed"]), moment_of(v["start_time_utc"]))  # noqa: E731
+    return sorted(found, key=when) if known else found
 
 
 def _voyage(file: str, tags: Mapping[str, str], rows: Sequence[Row]) -> dict[str, Any]:
@@ -60,19 +61,24 @@ def _over_time(now: Mapping[str, Any], judged: Sequence[dict[str, Any]]) -> dict
     healthy = max((i for i, v in enumerate(judged) if v["verdict"] == "nothing_missing"), default=-1)
     since = next(v for i, v, c in weighed if i > healthy and c["named"])
     sizes = [
-        {"voyage": v["voyage"], "start_time_utc": v["start_time_utc"], "named": c["named"], **p}
+        {**dated(v), "named": c["named"], **p}
         for _, v, c in weighed
         for p in c["parameters"]
         if p["name"] == number.get("name")
     ]
     return {k: v for k, v in now.items() if k not in ("parameters", "named")} | {
         "number": number or None,
-        "since": {"voyage": since["voyage"], "start_time_utc": since["start_time_utc"]},
+        "since": dated(since),
         "named_on": sum(c["named"] for *_, c in weighed),
         "of_voyages": len(judged),
         "sizes": sizes,
         "trend": trend(sizes),
     }
+
+
+def dated(voyage: Mapping[str, Any]) -> dict[str, Any]:
+    """Which voyage, and when."""
+    return {k: voyage[k] for k in ("voyage", "file", "start_time_utc")}
 
 
 def _telling(parameters: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

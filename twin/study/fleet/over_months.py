@@ -25,7 +25,7 @@ from typing import NamedTuple
 LEVEL = 0.05  # share of ships in an alarm that may be in health
 
 
-class Evidence(NamedTuple):
+class Martingale(NamedTuple):
     """What a ship's voyages say together against "all as on its reference voyages"."""
 
     references: int
@@ -35,7 +35,7 @@ class Evidence(NamedTuple):
     at_most: float  # no M of so many references and voyages is greater
 
 
-def evidence(references: Sequence[float], scores: Sequence[float]) -> Evidence:
+def evidence(references: Sequence[float], scores: Sequence[float]) -> Martingale:
     """Of voyages' scores in the order in which they were sailed."""
     known, value, highest, n = list(references), 1.0, 1.0, len(references)
     for s in scores:
@@ -43,10 +43,10 @@ def evidence(references: Sequence[float], scores: Sequence[float]) -> Evidence:
         r = sum(x >= s for x in known)  # equal scores count against the voyage
         value *= sqrt(len(known)) * (sqrt(r) - sqrt(r - 1))
         highest = max(highest, value)
-    return Evidence(n, len(scores), value, highest, prod(sqrt(n + t) for t in range(1, len(scores) + 1)))
+    return Martingale(n, len(scores), value, highest, prod(sqrt(n + t) for t in range(1, len(scores) + 1)))
 
 
-def alarms(fleet: Mapping[str, Evidence], level: float = LEVEL) -> list[str]:
+def alarms(fleet: Mapping[str, Martingale], level: float = LEVEL) -> list[str]:
     """The ships of which at most the share `level` is in health, by their M now."""
     order = sorted(fleet, key=lambda name: -fleet[name].value)
     reached = (k for k, name in enumerate(order, 1) if fleet[name].value * k * level >= len(fleet))

@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from twin.study.fleet.ask import Row
-from twin.study.fleet.history import causes_of, voyages_of
+from twin.study.fleet.history import causes_of, dated, voyages_of
 from twin.study.fleet.listing import FleetShip
-from twin.study.fleet.over_months import LEVEL, Evidence, alarms, evidence, of_a_lasting_fault
+from twin.study.fleet.over_months import LEVEL, Martingale, alarms, evidence, of_a_lasting_fault
 
 SCHEMA_VERSION = 1
 ORDER = ("missing", "weather", "unknown", "undecided", "nothing_missing", "not_asked")  # most wrong first
@@ -48,6 +48,7 @@ def _ship(ship: FleetShip, asked: Sequence[Sequence[Row]]) -> dict[str, Any]:
     judged = [v for v in voyages if v["verdict"] not in (None, "reference")]
     causes, latest = causes_of(voyages), judged[-1] if judged else {}
     healthy = ship.ship.notes["structural"].get("left_out_scores", [])
+    same = next((i for i, v in enumerate(judged[::-1]) if v["verdict"] != latest["verdict"]), len(judged))
     return {
         "ship": ship.name,
         "file": str(ship.file),
@@ -55,7 +56,8 @@ def _ship(ship: FleetShip, asked: Sequence[Sequence[Row]]) -> dict[str, Any]:
         "verdict": latest.get("verdict"),
         "reason": latest.get("reason"),
         "sentence": latest.get("sentence"),
-        "latest": {k: latest.get(k) for k in ("voyage", "file", "start_time_utc")} if latest else None,
+        "latest": dated(latest) if latest else None,
+        "since": dated(judged[-same]) if latest else None,
         "causes": sorted(causes, key=lambda c: -(c["share_of_error"] or 0.0)),
         "voyages": voyages,
         "_evidence": evidence(healthy, [v["score"] for v in judged if v["score"] is not None]),
@@ -74,7 +76,7 @@ def _share(ship: Mapping[str, Any]) -> float:
     return max((c["share_of_error"] or 0.0 for c in ship["causes"]), default=0.0)
 
 
-def _over_months(e: Evidence, alarm: bool) -> dict[str, Any]:
+def _over_months(e: Martingale, alarm: bool) -> dict[str, Any]:
     return e._asdict() | {
         "alarm": alarm,
         "typical_now": of_a_lasting_fault(e.references, e.voyages),

@@ -5,8 +5,10 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from twin.num import num
+from twin.study.fleet.over_months import of_a_lasting_fault
 
 HEADS = ("", "ship", "verdict", "since", "size (95 %)", "trend (95 %)", "of the error", "over the months")
+STATES = {"nothing_missing": "nothing missing", "not_asked": "not judged"}
 WIDEST = 44
 FAILED = 10  # lines of voyages that could not be asked
 
@@ -32,8 +34,8 @@ def _rows(ship: Mapping[str, Any]) -> list[tuple[str, ...]]:
     first = (str(ship["rank"]), ship["ship"])
     shown = chance(ship["over_months"])
     if not ship["causes"]:
-        since = day(ship["latest"]) if ship["latest"] else ""
-        return [(*first, ship["state"].replace("_", " "), since, "", "", "", shown)]
+        since = day(ship["since"]) if ship["since"] else ""
+        return [(*first, STATES.get(ship["state"], ship["state"]), since, "", "", "", shown)]
     return [
         (
             *(first if i == 0 else ("", "")),
@@ -67,7 +69,7 @@ def slope(cause: Mapping[str, Any]) -> str:
     """Where a size goes; the interval says whether it goes anywhere."""
     t = cause["trend"]
     if not t:
-        return f"{len(cause['sizes'])} of the 3 voyages that it takes" * (len(cause["sizes"]) < 3)
+        return "(three voyages make one)" * (len(cause["sizes"]) < 3)
     return f"{t['slope']:+.2g} a {t['per']} ({t['low95']:+.2g} to {t['high95']:+.2g})"
 
 
@@ -88,22 +90,27 @@ def months(result: Mapping[str, Any]) -> list[str]:
             "Over the months: not controlled, since no ship file has the scores of its reference voyages. "
             "Calibrate anew."
         ]
-    needed = control["needed"]
-    never = [s for s in ships if s["over_months"]["references"] and s["over_months"]["typical_ever"] < needed]
-    lines = [
+    needed, few = control["needed"], dict[int, list[str]]()
+    for s in ships:
+        if (m := s["over_months"])["references"] and m["typical_ever"] < needed:
+            few.setdefault(m["references"], []).append(s["ship"])
+    return [
         "Over the months: M is a test martingale of a ship's voyages against its reference voyages (Ville); "
         "on a healthy ship it ever reaches 20 with a chance of 5 % at most. Alarms by e-BH: at most "
-        f"{control['level']:.0%} of them are of healthy ships, in the mean; one of {control['ships']} ships "
-        f"alone needs M = {num(needed, 3)}."
+        f"{100.0 * control['level']:g} % of them are of healthy ships, in the mean; one of "
+        f"{control['ships']} ships alone needs M = {num(needed, 3)}.",
+        *(_never(count, names, needed) for count, names in sorted(few.items())),
     ]
-    for s in never:
-        m = s["over_months"]
-        lines.append(
-            f"  {s['ship']}: {m['references']} reference voyages can typically show M = "
-            f"{num(m['typical_ever'])} of a lasting fault, however many voyages follow: alone it never is an "
-            "alarm. Calibrate with more."
-        )
-    return lines
+
+
+def _never(count: int, names: Sequence[str], needed: float) -> str:
+    """What so many references can never show."""
+    enough = next(n for n in range(count, 10**6) if of_a_lasting_fault(n, 3 * n + 3) >= needed)
+    most = of_a_lasting_fault(count, 3 * count + 3)
+    return (
+        f"  {', '.join(names)}: by {count} reference voyages a lasting fault typically shows M = "
+        f"{num(most)}, however many voyages follow: alone it never is an alarm. {enough} references would do."
+    )
 
 
 def _failed(result: Mapping[str, Any]) -> list[str]:
