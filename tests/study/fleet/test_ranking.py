@@ -1,57 +1,16 @@
 """One ship over its voyages, and the ships in their order."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
-import twin
-from twin.commands.story import SHIP
+from tests.study.fleet.rows import named, of, plainly, size
 from twin.study.fleet.history import causes_of, trend, voyages_of
-from twin.study.fleet.listing import FleetShip, FleetVoyage
 from twin.study.fleet.ranking import ranked
 from twin.study.fleet.told import told
-
-SHARED = {
-    "failed": None, "reason": "", "sentence": "", "duration_s": 600.0, "p_value": None, "p_value_at_best": None,
-    "references": 0, "score": None, "horizon_s": 120.0, "position_mae_m": 9.0, "position_expected_m": 5.0,
-    "data_checks": [], "lasting": True, "probability": 0.9, "confidence": None, "says": "", "X_N": 0.0,
-    "Y_N": 0.0, "N_Nm": 0.0, "cannot_be_told_from": [], "belongs_to": "ship",
-}  # fmt: skip
-
-
-def size(value, half=0.1):
-    return {"name": "size", "value": value, "low95": value - half, "high95": value + half, "unit": "-",
-            "at_box_end": False, "in_ship_file": None}  # fmt: skip
-
-
-def named(voyage, day, value=0.3, effect="HullFouling", with_it=4.0, **other):
-    return [
-        SHARED
-        | {"voyage": voyage, "start_time_utc": day, "verdict": "missing", "effect": effect, "named": True}
-        | {"parameters": [size(value)], "error_without_m": 10.0, "error_with_m": with_it}
-        | other
-    ]
-
-
-def plainly(voyage, day, verdict="nothing_missing", **other):
-    return [SHARED | {"voyage": voyage, "start_time_utc": day, "verdict": verdict, "effect": None} | other]
 
 
 def sailed(*rows):
     return voyages_of([(f"{r[0]['voyage']}.mcap" if r else "none.mcap", {}, r) for r in rows])
-
-
-@pytest.fixture(scope="module")
-def of():
-    """A ship of the fleet with these rows, one list a voyage."""
-    known = twin.Ship.load(SHIP)
-
-    def made(name, *rows):
-        voyages = tuple(FleetVoyage(Path(f"{name}-{i}.mcap")) for i in range(len(rows)))
-        return FleetShip(name, Path(f"{name}.toml"), name, known, voyages), list(rows)
-
-    return made
 
 
 def test_voyages_stand_in_the_order_in_which_they_were_sailed():
@@ -94,7 +53,7 @@ def test_the_interval_of_a_trend_covers_as_often_as_it_says_although_sizes_scatt
     assert 0.92 <= inside / 300 <= 0.99
 
 
-def test_ships_stand_by_what_is_wrong(of):
+def test_ships_stand_by_what_is_wrong():
     """Expected: causes by their share of the error, weather alone, unknown, undecided, nothing, not judged."""
     day = "2026-01-01T00:00:00+00:00"
     fleet = [
@@ -115,32 +74,30 @@ def test_ships_stand_by_what_is_wrong(of):
     assert "80 %" in lines and "size 0.3 (0.2 to 0.4)" in lines and "lost: gone" in lines
 
 
-def test_a_voyage_that_the_ship_was_calibrated_on_is_not_judged(of):
+def test_a_voyage_that_the_ship_was_calibrated_on_is_not_judged():
     fleet = [of("calm", plainly("ref", "2026-01-01", "reference"))]
     (ship,) = ranked(fleet)["ships"]
     assert ship["state"] == "not_asked" and ranked(fleet)["voyages"]["references"] == 1
 
 
-def test_what_the_references_can_never_show_is_told(of):
-    """Test: two ships whose files have the scores of three and of twelve references."""
-    (few, rows), (many, _) = (
-        of("few", plainly("a", None, score=9.0)),
-        of("many", plainly("a", None, score=9.0)),
-    )
-
-    def scored(ship, count):
-        notes = {"structural": {**ship.ship.notes["structural"], "left_out_scores": [0.1] * count}}
-        return FleetShip(
-            ship.name,
-            ship.file,
-            ship.sha256,
-            type(ship.ship)(**{**vars(ship.ship), "notes": notes}),
-            ship.voyages,
-        )
-
-    result = ranked([(scored(few, 3), rows), (scored(many, 12), rows)])
+def test_what_the_references_can_never_show_is_told():
+    """Test: two ships whose files have the scores of three and of twelve references; one that has none."""
+    few = of("few", plainly("a", None, score=9.0), scores=[0.1] * 3)
+    result = ranked([few, of("many", plainly("a", None, score=9.0), scores=[0.1] * 12)])
     lines = "\n".join(told(result))
     assert result["over_months"] == {"level": 0.05, "ships": 2, "needed": 40.0, "alarms": []}
     assert "few: by 3 reference voyages a lasting fault typically shows M = 4.7," in lines
-    assert "many:" not in lines
-    assert "not controlled" in "\n".join(told(ranked([(few, rows)])))
+    assert "7 references would do" in lines and "many:" not in lines
+    assert "not controlled" in "\n".join(told(ranked([of("old", plainly("a", None, score=9.0))])))
+
+
+def test_a_lasting_fault_of_a_ship_with_many_references_is_an_alarm():
+    """Expected: scores far above twelve references, beside a ship in health."""
+    days = [f"2026-0{m}-01T00:00:00+00:00" for m in range(1, 7)]
+    worse = [9.0, 9.3, 9.1, 9.5, 9.2, 9.6]
+    healthy = [0.1 * i for i in range(12)]
+    bad = of("bad", *(named("v", d, score=s) for d, s in zip(days, worse, strict=True)), scores=healthy)
+    good = of("good", *(plainly("v", d, score=0.15 * (i + 1)) for i, d in enumerate(days)), scores=healthy)
+    result = ranked([good, bad])
+    assert result["over_months"]["alarms"] == ["bad"] and result["ships"][0]["over_months"]["alarm"]
+    assert any("ALARM, M" in line for line in told(result))

@@ -2,6 +2,7 @@
 its own, on this computer or another, and answers in rows of plain types."""
 
 import json
+import os
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -43,11 +44,11 @@ def key_of(asked: Mapping[str, Any]) -> Key:
 
 
 def job_of(ship: FleetShip, voyage: FleetVoyage) -> Job:
-    """The question of one voyage."""
-    of_map = str(voyage.map) if voyage.map else None
+    """The question of one voyage, with paths that another process finds from wherever it works."""
+    of_map = os.path.abspath(voyage.map) if voyage.map else None
     return Job(
-        ship.name, str(ship.file), ship.sha256, str(voyage.path), sha256_of(voyage.path), of_map,
-        sha256_of(voyage.map) if of_map else None, twin.__version__,
+        ship.name, os.path.abspath(ship.file), ship.sha256, os.path.abspath(voyage.path),
+        sha256_of(voyage.path), of_map, sha256_of(voyage.map), twin.__version__,
     )  # fmt: skip
 
 
