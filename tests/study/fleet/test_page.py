@@ -36,7 +36,7 @@ def test_the_page_is_drawn_without_a_word_of_complaint(tab, page, theme, width):
     tab.wait("document.documentElement?.dataset.readyMs")
     text = tab.value("document.body.innerText")
     assert "Alma & <b>Co</b>" in text and "there is no such file" in text and "not judged" in text
-    assert "+0.050 a month" in text and "by 3 reference voyages" in text
+    assert "+0.051 a month" in text and "by 3 reference voyages" in text
     assert tab.value("document.querySelectorAll('svg circle').length") == len(DAYS)
     commands = tab.value("[...document.querySelectorAll('.command code')].map((c) => c.textContent)")
     assert commands[0].startswith("twin diagnose 'Alma & <b>Co</b>-5.mcap' --ship")

@@ -86,7 +86,7 @@ def test_what_the_references_can_never_show_is_told():
     result = ranked([few, of("many", plainly("a", None, score=9.0), scores=[0.1] * 12)])
     lines = "\n".join(told(result))
     assert result["over_months"] == {"level": 0.05, "ships": 2, "needed": 40.0, "alarms": []}
-    assert "few: by 3 reference voyages a lasting fault typically shows M = 4.7," in lines
+    assert "few: by 3 reference voyages a fault that stays as it is typically shows M = 4.7," in lines
     assert "7 references would do" in lines and "many:" not in lines
     assert "not controlled" in "\n".join(told(ranked([of("old", plainly("a", None, score=9.0))])))
 

@@ -55,8 +55,11 @@ def alarms(fleet: Mapping[str, Martingale], level: float = LEVEL) -> list[str]:
 
 def of_a_lasting_fault(references: int, voyages: int) -> float:
     """What M typically reaches (by the mean of its logarithm) on so many voyages that all score above every
-    reference and are alike among themselves. The voyages become each other's references, so that it ends at
-    about twice as many voyages as there are references: what it is then, more voyages never show."""
+    reference and are alike among themselves: a fault that stays as it is.
+
+    The voyages become each other's references, so that it ends at about twice as many voyages as there are
+    references: what M is then, more voyages never show.
+    """
     highest = total = 0.0
     for t in range(1, min(voyages, 3 * references + 3) + 1):
         each = (log(sqrt(references + t) * (sqrt(r) - sqrt(r - 1))) for r in range(1, t + 1))

@@ -16,7 +16,8 @@ FAILED = 10  # lines of voyages that could not be asked
 def told(result: Mapping[str, Any]) -> list[str]:
     """The lines of `twin fleet`."""
     v = result["voyages"]
-    head = f"{len(result['ships'])} ships, {v['listed']} voyages: {v['judged']} judged"
+    count = len(result["ships"])
+    head = f"{count} ship{'s' * (count > 1)}, {v['listed']} voyages: {v['judged']} judged"
     head += f", {v['references']} calibrated on" * bool(v["references"])
     head += f", {v['failed']} not" * bool(v["failed"])
     rows = [row for ship in result["ships"] for row in _rows(ship)]
@@ -97,8 +98,8 @@ def months(result: Mapping[str, Any]) -> list[str]:
     return [
         "Over the months: M is a test martingale of a ship's voyages against its reference voyages (Ville); "
         "on a healthy ship it ever reaches 20 with a chance of 5 % at most. Alarms by e-BH: at most "
-        f"{100.0 * control['level']:g} % of them are of healthy ships, in the mean; one of "
-        f"{control['ships']} ships alone needs M = {num(needed, 3)}.",
+        f"{100.0 * control['level']:g} % of them are of healthy ships, in the mean; a ship alone among "
+        f"{control['ships']} needs M = {num(needed, 3)}.",
         *(_never(count, names, needed) for count, names in sorted(few.items())),
     ]
 
@@ -108,8 +109,9 @@ def _never(count: int, names: Sequence[str], needed: float) -> str:
     enough = next(n for n in range(count, 10**6) if of_a_lasting_fault(n, 3 * n + 3) >= needed)
     most = of_a_lasting_fault(count, 3 * count + 3)
     return (
-        f"  {', '.join(names)}: by {count} reference voyages a lasting fault typically shows M = "
-        f"{num(most)}, however many voyages follow: alone it never is an alarm. {enough} references would do."
+        f"  {', '.join(names)}: by {count} reference voyages a fault that stays as it is typically shows M = "
+        f"{num(most)}, however many voyages follow, and alone is no alarm ({enough} references would do); "
+        "one that grows may be."
     )
 
 
