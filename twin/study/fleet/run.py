@@ -37,8 +37,8 @@ def run(
         for i, one in enumerate(spread(ask, todo, workers, scheduler), 1):
             rows = one.answer or [failed(one.job, one.why, one.kind)]
             store.add(rows)
-            known[key_of(vars(one.job))] = rows
             progress(f"{i} of {len(todo)}: {one.job.ship}, {rows[0]['voyage']}: {_word(rows)}")
+    known = store.rows()
     of = lambda job: twice.get(job) or known.get(key_of(vars(job)), [])  # noqa: E731
     return Asked([(s, [of(j) for j in js]) for s, js in zip(ships, jobs, strict=True)], len(todo))
 
