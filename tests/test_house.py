@@ -57,6 +57,7 @@ ORDER = (
     "twin.study.diagnosis",
     "twin.study.update",
     "twin.study.first_model",
+    "twin.study.fleet",
     "twin.study",
     "twin.report",
     "twin.api",
@@ -65,7 +66,7 @@ ORDER = (
 )
 ONLY_IN_EXPORT = {"torch"}
 NOT_ON_BOARD = {
-    "torch", "scipy", "matplotlib", "pydantic", "pandas", "filterpy", "sympy", "numpy", "tomlkit", "twin.study", "twin.recording",
+    "torch", "scipy", "matplotlib", "pydantic", "pandas", "filterpy", "sympy", "numpy", "tomlkit", "pyarrow", "dask", "distributed", "twin.study", "twin.recording",
 }  # fmt: skip
 
 

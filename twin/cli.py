@@ -76,6 +76,11 @@ VERBS: dict[str, Verb] = {
         "which physical effect is missing",
         "twin diagnose v.mcap --ship alma2.toml --reference calm.mcap",
     ),
+    "fleet": Verb(
+        "twin.commands.fleet",
+        "many ships and voyages, one table ranked by what is wrong",
+        "twin fleet fleet.toml -o results/",
+    ),
     "add": Verb(
         "twin.commands.add",
         "adds an effect, fits it, proves the fall on held-out voyages",
@@ -113,7 +118,8 @@ VERBS: dict[str, Verb] = {
 }
 
 
-EXTRAS = {"scipy": "study", "torch": "train", "onnx": "train"}  # package -> the extra that brings it
+# package -> the extra that brings it
+EXTRAS = {"scipy": "study", "torch": "train", "onnx": "train", "pyarrow": "fleet"}
 ASIDE = ("export", "bench")  # packages of the source folder that an installation may lack
 
 

@@ -4,7 +4,6 @@ figures, `fit` the decision."""
 
 import argparse
 import json
-import multiprocessing
 import os
 import sys
 import time
@@ -18,6 +17,7 @@ for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
 
 from bench.fleet.cases import VOYAGES  # noqa: E402
 from bench.fleet.hulls import FAMILIES  # noqa: E402
+from twin.study.fleet.spread import spread  # noqa: E402
 
 ROWS = "rows.jsonl"
 
@@ -117,14 +117,7 @@ def gather(folder: Path) -> None:
 
 
 def _each(jobs: list[Any], args: argparse.Namespace) -> Iterator[list[str]]:
-    if args.scheduler:
-        from dask.distributed import Client, as_completed
-
-        with Client(args.scheduler) as client:
-            for future in as_completed(client.map(one_ship, jobs, pure=False)):
-                yield future.result()
-    elif args.workers > 1:
-        with multiprocessing.get_context("spawn").Pool(args.workers) as pool:
-            yield from pool.imap_unordered(one_ship, jobs, chunksize=1)
-    else:
-        yield from map(one_ship, jobs)
+    for one in spread(one_ship, jobs, args.workers, args.scheduler):
+        if one.why:
+            print(f"{one.job[0]} {one.job[1]}: {one.why}", file=sys.stderr, flush=True)
+        yield one.answer or []

@@ -15,6 +15,7 @@ from twin.api.json_key import (
     provenance,
     under,
 )
+from twin.api.json_keys_fleet import FLEET
 
 COMPARE = (
     *ABOUT,
@@ -299,4 +300,5 @@ KEYS: dict[str, tuple[JsonKey, ...]] = {
     "calibrate": CALIBRATE,
     "tube": TUBE,
     "simulate": SIMULATE,
+    "fleet": FLEET,
 }

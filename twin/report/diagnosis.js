@@ -46,16 +46,12 @@ function momentsSection() {
   return section("Transient disturbances", "a force pushed the ship then, and not before or after; click one to see it in the plots", table([...(DATA.voyages.length > 1 ? ["voyage"] : []), "when", ">ahead", ">to starboard", ">turning to starboard"], rows));
 }
 
-const drawings = document.createElement("template");
-drawings.innerHTML = "<svg></svg>";
-
 /** Many numbers that follow each other in time: a curve, with its 95 % band. */
 function curve(list) {
   const stems = [...new Set(list.map((p) => p.name.replace(/_?\d+$/, "")))];
   return el("div", null, stems.map((stem) => {
     const part = list.filter((p) => p.name.replace(/_?\d+$/, "") === stem), all = part.flatMap((p) => [p.low95, p.high95, 0]), low = Math.min(...all), high = Math.max(...all), wide = 320, tall = 70;
     const X = (i) => (wide * i) / Math.max(part.length - 1, 1), Y = (v) => 4 + ((tall - 8) * (high - v)) / (high - low || 1), at = (key) => part.map((p, i) => `${X(i).toFixed(1)},${Y(p[key]).toFixed(1)}`);
-    const shape = (tag, props) => { const node = document.createElementNS(drawings.content.firstChild.namespaceURI, tag); for (const [k, v] of Object.entries(props)) node.setAttribute(k, v); return node; };
     const drawing = shape("svg", { viewBox: `0 0 ${wide} ${tall}`, width: wide, height: tall, role: "img", "aria-label": `${stem} over time, ${num(Math.min(...part.map((p) => p.value)))} to ${num(Math.max(...part.map((p) => p.value)))} ${part[0].unit}` });
     drawing.style.maxWidth = "100%";
     drawing.append(shape("polygon", { points: [...at("low95"), ...at("high95").reverse()].join(" "), class: "tube" }), shape("path", { d: `M0 ${Y(0)}H${wide}`, class: "nought" }), shape("polyline", { points: at("value").join(" "), class: "middle" }));

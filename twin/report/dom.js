@@ -16,6 +16,16 @@ function el(what, props, ...children) {
   return node;
 }
 
+const drawings = document.createElement("template");
+drawings.innerHTML = "<svg></svg>";
+
+/** A part of a drawing: shape("path", {d, class}). */
+function shape(tag, props) {
+  const node = document.createElementNS(drawings.content.firstChild.namespaceURI, tag);
+  for (const [key, value] of Object.entries(props)) node.setAttribute(key, value);
+  return node;
+}
+
 function section(title, about, ...children) {
   return el("section", null, el(".head", null, el("h2", null, title), about ? el("p", null, about) : null), ...children);
 }

@@ -20,6 +20,7 @@ from twin.study.reference.structure import floor_of
 from twin.study.track.track import Track
 
 SCRIPTS = ("number.js", "dom.js", "plot.js", "track.js", "sections.js", "diagnosis.js", "main.js")
+FLEET = ("number.js", "dom.js", "fleet.js")  # of many ships: a table, and a small plot of each
 
 
 def write(
@@ -92,7 +93,7 @@ def _whole(
     return result
 
 
-def html(content: dict[str, Any]) -> str:
+def html(content: dict[str, Any], scripts: Sequence[str] = SCRIPTS) -> str:
     """One file: template, style, scripts and data."""
     here = resources.files(__package__)
     data = (
@@ -101,7 +102,7 @@ def html(content: dict[str, Any]) -> str:
         .replace("<!--", "<\\u0021--")
     )
     page = (here / "page.html").read_text(encoding="utf-8")
-    script = "\n".join((here / name).read_text(encoding="utf-8") for name in SCRIPTS)
+    script = "\n".join((here / name).read_text(encoding="utf-8") for name in scripts)
     for mark, text in (
         ("/*STYLE*/", (here / "page.css").read_text(encoding="utf-8")),
         ("/*SCRIPT*/", script),
