@@ -10,7 +10,7 @@ def main() -> None:
     import atheris
 
     # what the target imports is instrumented while it is imported: so not before
-    with atheris.instrument_imports(include=["twin"], enable_loader_override=False):
+    with atheris.instrument_imports(include=["twin", "tomllib"], enable_loader_override=False):
         from bench.fuzz.targets import TARGETS
 
         target = TARGETS[sys.argv[1]].make()
