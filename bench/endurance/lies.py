@@ -24,7 +24,7 @@ from twin.live.signals.config import Settings
 from twin.live.signals.readings import Reading
 from twin.study.reference.split import low_frequency, window
 
-SECONDS, LIE_AT_S = 840.0, 300.0
+SECONDS, LIE_AT_S = 500.0, 180.0
 
 
 def _off(name: str, by: float) -> Lie:

@@ -64,7 +64,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    import pytest  # noqa: F401  (loaded once, for all that is forked)
+    import numpy  # noqa: F401  (loaded once, for all that is forked)
+    import pytest  # noqa: F401
+    import scipy.linalg  # noqa: F401
 
     ends = time.monotonic() + (args.seconds or 1e9)
     args.kept.mkdir(exist_ok=True)
