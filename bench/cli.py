@@ -91,6 +91,21 @@ BENCHES: dict[str, Bench] = {
         "how fast logs and tables are read, in how much memory",
         "twin-bench import-speed",
     ),
+    "fuzz": Bench(
+        "bench.fuzz.run",
+        "fuzzing, guided by coverage, of all that reads the outside world",
+        "twin-bench fuzz --seconds 600",
+    ),
+    "mutants": Bench(
+        "bench.mutants.run",
+        "faults planted in the code that guards: does a test notice?",
+        "twin-bench mutants --file recursion",
+    ),
+    "endurance": Bench(
+        "bench.endurance.run",
+        "the whole service killed, paused and lied to",
+        "twin-bench endurance --kills 20",
+    ),
     "fleet": Bench(
         "bench.fleet.run",
         "random ships of many forms: a row of facts and truth for each voyage",

@@ -3,6 +3,7 @@
 #   sudo deploy/install.sh [WHEEL]              without WHEEL the version of this source folder; what it needs comes from the network,
 #                                               in the versions and with the hashes of requirements.lock
 #   sudo deploy/install.sh --wheels FOLDER      everything from a folder that deploy/wheels.sh made: no network
+# Where /etc/shiptwin/release.pem is, only a folder of wheels signed with its private half is installed.
 # For a trial without systemd: ROOT=/some/folder deploy/install.sh
 set -eu
 here="$(cd "$(dirname "$0")" && pwd)"
@@ -13,13 +14,17 @@ lock="${LOCK-$here/requirements.lock}"
 . "$here/switch.sh"
 
 wheels=""
+signer="$root/etc/shiptwin/release.pem"
 if [ "${1:-}" = --wheels ]; then
     wheels="$(cd "${2:?usage: install.sh --wheels FOLDER}" && pwd)" || exit 2
     (cd "$wheels" && sha256sum --check --quiet --strict SHA256SUMS) || { echo "$wheels is not what deploy/wheels.sh made: copy it again" >&2; exit 1; }
+    [ ! -e "$signer" ] || openssl dgst -sha256 -verify "$signer" -signature "$wheels/SHA256SUMS.sig" "$wheels/SHA256SUMS" >/dev/null 2>&1 ||
+        { echo "$wheels is not signed by $signer: sign it with deploy/wheels.sh (SIGN_KEY), or take $signer away" >&2; exit 1; }
     lock="$wheels/requirements.lock"
     source="$(find "$wheels" -name 'shiptwin-*.whl' | head -n 1)"
     [ -n "$source" ] || { echo "$wheels holds no shiptwin-*.whl" >&2; exit 1; }
 else
+    [ ! -e "$signer" ] || { echo "$signer is there: this ship installs signed wheels only (--wheels FOLDER)" >&2; exit 1; }
     source="${1:-$(dirname "$here")}"
 fi
 "$python" -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "$python is older than 3.11. Name a newer one: PYTHON=..." >&2; exit 1; }

@@ -2,6 +2,8 @@
 # A folder with everything install.sh needs, for a ship without a network:
 #   deploy/wheels.sh FOLDER             with a network, on a machine of the same kind as the ship's (or PLATFORM=manylinux_2_28_aarch64)
 #   sudo deploy/install.sh --wheels FOLDER          on the ship
+# SIGN_KEY=release.key signs the folder (openssl ecparam -genkey -name prime256v1 -noout -out release.key); a ship that holds the public
+# half as /etc/shiptwin/release.pem (openssl pkey -in release.key -pubout) installs nothing else
 set -eu
 here="$(cd "$(dirname "$0")" && pwd)"
 folder="${1:?usage: wheels.sh FOLDER}"
@@ -15,4 +17,5 @@ if [ -n "${PLATFORM:-}" ]; then other="--platform $PLATFORM --only-binary=:all:"
 "$python" -m pip wheel --quiet --disable-pip-version-check --no-deps --wheel-dir "$folder" "${SOURCE:-$(dirname "$here")}"
 cp "$lock" "$folder/requirements.lock"
 (cd "$folder" && find . -type f ! -name SHA256SUMS | sort | xargs -d '\n' sha256sum > SHA256SUMS)
+[ -z "${SIGN_KEY:-}" ] || openssl dgst -sha256 -sign "$SIGN_KEY" -out "$folder/SHA256SUMS.sig" "$folder/SHA256SUMS"
 echo "$(find "$folder" -name '*.whl' | wc -l) wheels in $folder. On the ship: sudo deploy/install.sh --wheels FOLDER"

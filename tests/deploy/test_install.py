@@ -238,6 +238,60 @@ def test_Q9_a_wheel_or_a_lock_that_was_tampered_with_is_not_installed(wheels, tm
     assert not left.exists() or not list(left.iterdir())
 
 
+def signed(folder, key):
+    command = [
+        "openssl",
+        "dgst",
+        "-sha256",
+        "-sign",
+        key,
+        "-out",
+        folder / "SHA256SUMS.sig",
+        folder / "SHA256SUMS",
+    ]
+    subprocess.run(command, check=True)
+
+
+@pytest.mark.skipif(not shutil.which("openssl"), reason="openssl is not installed")
+def test_wheels_without_the_signature_that_the_ship_asks_for_are_not_installed(wheels, tmp_path):
+    """Test: a ship with a maker's public key; wheels without a signature, with another maker's, changed after
+    it was made, from no folder at all, and as they should be. Expected: only the last are installed."""
+    folder, root = tmp_path / "wheels", tmp_path / "root"
+    shutil.copytree(wheels, folder)
+    summed(folder)
+    for name in ("maker", "other"):
+        key = ["openssl", "ecparam", "-genkey", "-name", "prime256v1", "-noout", "-out", tmp_path / name]
+        subprocess.run(key, check=True, capture_output=True)
+    (root / "etc/shiptwin").mkdir(parents=True)
+    public = [
+        "openssl",
+        "pkey",
+        "-in",
+        tmp_path / "maker",
+        "-pubout",
+        "-out",
+        root / "etc/shiptwin/release.pem",
+    ]
+    subprocess.run(public, check=True)
+
+    def refused(*arguments, words="is not signed"):
+        done = tried("install.sh", root, *arguments)
+        return done.returncode == 1 and words in done.stderr and not (root / "opt").exists()
+
+    assert refused("--wheels", folder)
+    signed(folder, tmp_path / "other")
+    assert refused("--wheels", folder)
+    signed(folder, tmp_path / "maker")
+    sums = folder / "SHA256SUMS"
+    honest = sums.read_text()
+    sums.write_text(honest.replace("  ", " *", 1))
+    assert refused("--wheels", folder)
+    assert refused(folder / "any.whl", words="signed wheels only")
+    sums.write_text(honest)
+    script("install.sh", root, "--wheels", folder)
+    assert running(root)
+
+
 def test_Q9_every_file_of_the_lock_has_a_hash_and_the_bill_of_materials_names_them_all():
     """Expected: the lock pins what pyproject.toml asks for on board, inside its bounds; sbom.json is what
     sbom.py makes of it."""

@@ -1,6 +1,7 @@
 """Damaged files: every verb that reads one says which seconds of it are lost, in words, in JSON and on the
 page; none is silent."""
 
+import gzip
 import json
 import shutil
 import struct
@@ -10,6 +11,7 @@ import pytest
 
 from twin.cli import main
 from twin.commands.story import MONDAY, SHIP
+from twin.errors import DataError
 from twin.live.log.played import PlayedLog
 from twin.live.log.recover import recover
 from twin.recording.checks import losses, of_voyages
@@ -170,3 +172,19 @@ def test_diagnose_says_it_too(whole, tmp_path, capsys):
     assert not next(c for c in json.loads(answer.read_text())["data_checks"] if c["check"] == "whole_file")[
         "ok"
     ]
+
+
+@pytest.mark.parametrize("harm", ["a byte of the middle", "cut off", "no gzip at all"])
+def test_a_packed_table_that_is_damaged_is_one_line(tmp_path, columns, write_csv, harm):
+    """Found by the fuzzer: a zlib.error of a damaged .gz."""
+    packed = bytearray(gzip.compress(write_csv(columns).read_bytes(), mtime=0))
+    if harm == "a byte of the middle":
+        for at in range(len(packed) // 2, len(packed) // 2 + 40):
+            packed[at] ^= 0xFF
+    path = tmp_path / "v.csv.gz"
+    path.write_bytes(
+        packed[: len(packed) // 2] if harm == "cut off" else b"x" * 50 if "no" in harm else packed
+    )
+    with pytest.raises(DataError) as refused:
+        read_voyage(path)
+    assert "Copy it again" in str(refused.value) and "\n" not in str(refused.value)

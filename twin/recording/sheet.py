@@ -1,15 +1,15 @@
 """An open text file: its encoding and separator found, its column names, and its rows as cells."""
 
 import csv
-import gzip
 from collections.abc import Iterator
 from dataclasses import replace
+from io import TextIOWrapper
 from itertools import chain, islice
 from pathlib import Path
 from typing import TextIO
 
 from twin.errors import DataError, SettingsError
-from twin.recording.formats.lines import opened
+from twin.recording.formats.lines import Unpacked, opened
 from twin.recording.mapping import SEPARATORS, Key, Layout
 
 Row = tuple[int, list[str]]  # line in the file, cells
@@ -112,7 +112,7 @@ def open_text(path: Path, encoding: str | None) -> TextIO:
         raise DataError(f"{path}: is not text (byte 0 at {head.index(0)}). Give a CSV or an MCAP file.")
     try:
         if path.suffix.lower() == ".gz":
-            return gzip.open(path, "rt", encoding=encoding, errors="replace", newline="")  # type: ignore[return-value]
+            return TextIOWrapper(Unpacked(path, "rb"), encoding, errors="replace", newline="")  # type: ignore[arg-type]
         return open(path, encoding=encoding, errors="replace", newline="")
     except LookupError:
         raise SettingsError(

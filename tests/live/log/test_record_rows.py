@@ -5,9 +5,10 @@ from time import process_time
 
 import numpy as np
 import pytest
+from mcap.writer import CompressionType, Writer
 
 from twin.errors import DataError
-from twin.live.keelson import messages, topics
+from twin.live.keelson import messages, proto_file, topics
 from twin.live.log.record import LogFile, read_rows
 
 START = 1_750_000_000
@@ -17,6 +18,12 @@ TICK_TOPIC = "twin/@v0/ship/pubsub/twin_tick/twin"
 
 def scalar(log: LogFile, subject: str, value: float, ns: int) -> None:
     log.add(topics.key("twin", "ship", subject, "x"), topics.FLOAT, messages.encode_float(value, ns), ns)
+
+
+def other_tick(fields: list[tuple[str, str]]) -> bytes:
+    """The schema of a message that is called Tick and is another."""
+    tick = proto_file.message("Tick", fields, "shiptwin")
+    return proto_file.set_of([proto_file.file("x.proto", "shiptwin", (), [tick])])
 
 
 def test_rows_come_back_exactly_and_what_is_absent_is_nan(tmp_path: Path) -> None:
@@ -120,3 +127,29 @@ def test_a_log_cut_short_gives_its_whole_chunks_and_says_so(tmp_path: Path) -> N
     time_s, _ = read_rows(path, notes)
     assert 1000 < time_s.size < 20_000 and time_s.tolist() == list(range(time_s.size))
     assert len(notes) == 1 and "breaks off" in notes[0]
+
+
+@pytest.mark.parametrize(
+    "type_name, schema",
+    (
+        ("shiptwin.Row", b"\x0a\x05\x22\x03\x0a\x01\x8c"),  # a name that is no UTF-8
+        ("shiptwin.Row", b"\x0a\x02\x22\x00"),  # a message without a name
+        ("shiptwin.Row", b"\x08"),  # cut off
+        ("shiptwin.Row", b""),
+        ("shiptwin.Tick", other_tick([("time_s", "double"), ("wall_s", "double")])),
+        (
+            "shiptwin.Tick",
+            other_tick([(name, "string") for name in ("time_s", "wall_s", "measured", "age_s")]),
+        ),
+    ),
+)
+def test_a_log_whose_own_schema_is_none_or_another_is_one_clear_line(tmp_path, type_name, schema):
+    """Found by the fuzzer: a UnicodeDecodeError of a log's own schema."""
+    writer = Writer(str(tmp_path / "odd.mcap"), compression=CompressionType.NONE)
+    writer.start()
+    kind = writer.register_schema(type_name, "protobuf", schema)
+    channel = writer.register_channel(ROW_TOPIC, "protobuf", kind)
+    writer.add_message(channel, 10**9, messages.Row(time_s=1.0).SerializeToString(), 10**9)
+    writer.finish()
+    with pytest.raises(DataError, match=f"its schema of {type_name} cannot be read"):
+        read_rows(tmp_path / "odd.mcap")

@@ -129,6 +129,13 @@ class Certificate(Promise):
         """The certificate that to_json wrote; ValueError, KeyError or TypeError when it is none of this
         version, when a number in it was changed since, or when what it promises does not follow from the
         slopes in it."""
+        try:
+            return cls._read(text)
+        except (ArithmeticError, AttributeError, IndexError, RecursionError) as error:
+            raise ValueError(f"no certificate: {error}") from None
+
+    @classmethod
+    def _read(cls, text: str) -> "Certificate":
         told = json.loads(text)
         if not isinstance(told, dict) or told.pop("version") != VERSION:
             raise ValueError("certificate of another version")

@@ -72,13 +72,16 @@ def _file(data: bytes) -> File:
     found: dict[int, list[bytes]] = {}
     for number, value in _fields(data):
         found.setdefault(number, []).append(value)
-    names = [
-        next(value for number, value in _fields(m) if number == NAME).decode() for m in found.get(MESSAGE, [])
-    ]
+    names = [_name(dict(reversed(list(_fields(m))))) for m in found.get(MESSAGE, [])]
     package = found.get(PACKAGE, [b""])[0].decode()
-    return File(
-        found[NAME][0].decode(), package, [need.decode() for need in found.get(DEPENDENCY, [])], names, data
-    )
+    name = _name({number: values[0] for number, values in found.items()})
+    return File(name, package, [need.decode() for need in found.get(DEPENDENCY, [])], names, data)
+
+
+def _name(fields: dict[int, bytes]) -> str:
+    if NAME not in fields:
+        raise ValueError("it has no name")
+    return fields[NAME].decode()
 
 
 def _fields(data: bytes) -> Iterator[tuple[int, bytes]]:

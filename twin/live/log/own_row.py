@@ -15,7 +15,7 @@ def own_row(reader: McapReader) -> dict[str, Any]:
     """{type name: class} where the rows read so far are no usual ones, else {}."""
     try:
         (own,) = classes_from_set(reader.schemas[ROW], [ROW])
-    except (KeyError, TypeError, DecodeError):
+    except (KeyError, TypeError, ValueError, DecodeError):
         return {}  # the rows are tried by the usual one
     of_actuators = any("." in messages.channel_name(field.name) for field in own.DESCRIPTOR.fields)
     return {ROW: own} if of_actuators else {}

@@ -23,6 +23,7 @@ from twin.live.signals.channels import BY_NAME
 from twin.live.signals.readings import WORDS, Reading
 
 UNREADABLE = "that cannot be decoded"
+OF_TICK = {"time_s": False, "wall_s": False, "measured": True, "age_s": True}  # is it a message?
 ROW, TICK, AGES = "shiptwin.Row", "shiptwin.Tick", "shiptwin.Ages"
 
 
@@ -117,9 +118,12 @@ class LogRows:
     def _class(self, type_name: str, wanted: str) -> Any:
         """A message class as the log's own schema defines it."""
         try:
-            return classes_from_set(self._reader.schemas[type_name], [wanted])[0]
-        except (KeyError, TypeError, DecodeError):
-            raise DataError(f"{self._reader.path}: its schema of {type_name} cannot be read.") from None
+            made = classes_from_set(self._reader.schemas[type_name], [wanted])[0]
+        except (KeyError, TypeError, ValueError, DecodeError):
+            made = None
+        if made is None or not _fits(made, OF_TICK if wanted == TICK else {}):
+            raise DataError(f"{self._reader.path}: its schema of {type_name} cannot be read.")
+        return made
 
     def _doubles(self, type_name: str, wanted: str, messages: list[bytes]) -> tuple[Columns, np.ndarray]:
         """Messages of numbers as columns, named by the log's own schema, and which could be decoded."""
@@ -143,6 +147,18 @@ class LogRows:
             values.append(result.value)
         elif result.channel:
             self.refused[f"{result.channel}, {WORDS[result.quality]}"] += 1
+
+
+def _fits(made: Any, needed: dict[str, bool]) -> bool:
+    """Whether a class of the log's own has the fields that are asked for: one message where True, else one
+    number."""
+    empty = made()
+    return all(
+        hasattr(getattr(empty, name, None), "SerializeToString")
+        if is_message
+        else isinstance(getattr(empty, name, None), float)
+        for name, is_message in needed.items()
+    )
 
 
 def _cell(columns: Columns, name: str, row: int, value: float, rows: int) -> None:

@@ -2,20 +2,41 @@
 one."""
 
 import gzip
-from collections.abc import Iterator
+import zlib
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import IO
+from typing import IO, Any, TypeVar
 
 from twin.errors import DataError
 
 LONGEST = 1 << 20  # bytes of one line; what is longer is no line of a log
 HEAD = 1 << 14
+T = TypeVar("T")
+
+
+class Unpacked(gzip.GzipFile):
+    """What a .gz holds; where it is damaged or cut off, a DataError says so."""
+
+    def read(self, size: int | None = -1) -> bytes:
+        return self._whole(super().read, size)
+
+    def read1(self, size: int = -1) -> bytes:
+        return self._whole(super().read1, size)
+
+    def readline(self, size: int | None = -1) -> bytes:  # type: ignore[override]
+        return self._whole(super().readline, size)
+
+    def _whole(self, read: Callable[[Any], T], size: int | None) -> T:
+        try:
+            return read(size)
+        except (OSError, EOFError, zlib.error) as error:
+            raise DataError(f"{self.name}: is damaged: {error}. Copy it again.") from None
 
 
 def opened(path: Path) -> IO[bytes]:
     """The file for reading, unpacked when it ends in .gz."""
     try:
-        return gzip.open(path, "rb") if path.suffix.lower() == ".gz" else open(path, "rb")  # type: ignore[return-value]
+        return Unpacked(path, "rb") if path.suffix.lower() == ".gz" else open(path, "rb")  # type: ignore[return-value]
     except OSError as error:
         raise DataError(f"{path}: cannot be read: {error.strerror}.") from None
 

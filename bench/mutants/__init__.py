@@ -1,0 +1,1 @@
+"""Faults planted in the code that guards: does a test notice?"""

@@ -1,0 +1,166 @@
+"""`twin-bench mutants`: a fault at a time is planted in a file that guards, and the file's tests are run
+until one fails. A fault that no test notices survives, and is listed. What was tried is kept on file, so that
+a run goes on where the last one ended."""
+
+import argparse
+import hashlib
+import importlib.util
+import json
+import os
+import random
+import signal
+import sys
+import time
+from collections.abc import Sequence
+from contextlib import suppress
+from importlib.abc import Loader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from pathlib import Path
+from types import ModuleType
+from typing import Any, NamedTuple
+
+from bench import answer
+from bench.mutants.guarded import GUARDED
+from bench.mutants.mutate import Mutant, mutants
+
+ROOT = Path(__file__).parents[2]
+KILLED, SURVIVED, HUNG = "killed", "survived", "hung"
+
+
+class Tried(NamedTuple):
+    """One mutant and what became of it; `hung` counts as noticed."""
+
+    file: str
+    line: int
+    change: str
+    fate: str
+
+
+class Planted(MetaPathFinder, Loader):
+    """Loads one module from another source."""
+
+    def __init__(self, path: Path, source: str):
+        self.name, self.source, self.path = ".".join(path.with_suffix("").parts), source, path
+
+    def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+        return importlib.util.spec_from_loader(fullname, self) if fullname == self.name else None
+
+    def exec_module(self, module: ModuleType) -> None:
+        exec(compile(self.source, str(ROOT / self.path), "exec"), module.__dict__)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--file", action="append", choices=GUARDED, help="only this one (repeat)")
+    parser.add_argument(
+        "--most", type=int, default=0, metavar="N", help="of each file, drawn by chance (default: all)"
+    )
+    parser.add_argument(
+        "--seconds", type=float, default=0.0, metavar="S", help="end after so long (default: when done)"
+    )
+    parser.add_argument(
+        "--kept", type=Path, default=Path(".mutants"), metavar="DIR", help="what was tried (.mutants)"
+    )
+    answer.add_arguments(parser)
+
+
+def run(args: argparse.Namespace) -> int:
+    import numpy  # noqa: F401  (loaded once, for all that is forked)
+    import pytest  # noqa: F401
+    import scipy.linalg  # noqa: F401
+
+    ends = time.monotonic() + (args.seconds or 1e9)
+    args.kept.mkdir(exist_ok=True)
+    rows: list[Tried] = []
+    for name in args.file or GUARDED:
+        rows += of_file(name, args.most, args.kept, ends)
+    answer.give(args, {"rows": [row._asdict() for row in rows]}, told(rows), answer.kept(args.page))
+    return 0
+
+
+def of_file(name: str, most: int, kept: Path, ends: float) -> list[Tried]:
+    """Every mutant of a file that is on file or can be tried in time."""
+    guarded = GUARDED[name]
+    source = (ROOT / guarded.source).read_text()
+    all_of = list(mutants(source))
+    chosen = list(range(len(all_of)))
+    if 0 < most < len(all_of):
+        chosen = sorted(random.Random(1).sample(chosen, most))
+    tests = "".join((ROOT / test).read_text() for test in guarded.tests)
+    memory = kept / f"{name}-{hashlib.sha256((source + tests).encode()).hexdigest()[:12]}.json"
+    fates: dict[str, str] = json.loads(memory.read_text()) if memory.exists() else {}
+    limit_s = 0.0
+    for i in chosen:
+        if str(i) in fates or time.monotonic() > ends:
+            continue
+        if not limit_s:
+            began = time.monotonic()
+            fate = tried(guarded.source, source, guarded.tests, 600.0)
+            assert fate == SURVIVED, f"the tests of {name} fail without any fault: {fate}"
+            limit_s = 4.0 * (time.monotonic() - began) + 10.0
+        fates[str(i)] = tried(guarded.source, all_of[i].source, guarded.tests, limit_s)
+        memory.write_text(json.dumps(fates))
+        answer.tell(f"{name} {len(fates)}/{len(chosen)} {fates[str(i)]} {all_of[i].line}: {all_of[i].change}")
+    return [_row(guarded.source, all_of[i], fates[str(i)]) for i in chosen if str(i) in fates]
+
+
+def _row(path: str, mutant: Mutant, fate: str) -> Tried:
+    return Tried(path, mutant.line, mutant.change, fate)
+
+
+def tried(path: str, source: str, tests: Sequence[str], limit_s: float) -> str:
+    """The tests in a process of their own that loads this source."""
+    process = os.fork()
+    if process == 0:
+        os.setpgid(0, 0)
+        os._exit(_child(path, source, tests))
+    ends = time.monotonic() + limit_s
+    while time.monotonic() < ends:
+        done, status = os.waitpid(process, os.WNOHANG)
+        if done:
+            return SURVIVED if status == 0 else KILLED
+        time.sleep(0.02)
+    with suppress(ProcessLookupError):
+        os.killpg(process, signal.SIGKILL)
+    os.waitpid(process, 0)
+    return HUNG
+
+
+def _child(path: str, source: str, tests: Sequence[str]) -> int:
+    """0 when no test noticed."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.dup2(nowhere, 2)
+    try:
+        import pytest
+
+        for loaded in [m for m in sys.modules if m.split(".")[0] == "twin"]:
+            del sys.modules[loaded]
+        os.chdir(ROOT)
+        sys.path.insert(0, str(ROOT))
+        sys.meta_path.insert(0, Planted(Path(path), source))
+        return int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", *tests]))
+    except BaseException:
+        return 1
+
+
+def told(rows: Sequence[Tried]) -> str:
+    """The page."""
+    lines = [
+        "# Mutants of what guards",
+        "",
+        (__doc__ or "").strip(),
+        "",
+        "| file | mutants | noticed | of them by hanging | survived |",
+        "|---|---|---|---|---|",
+    ]
+    for file in dict.fromkeys(row.file for row in rows):
+        fates = [row.fate for row in rows if row.file == file]
+        survived, hung = fates.count(SURVIVED), fates.count(HUNG)
+        lines.append(f"| `{file}` | {len(fates)} | {len(fates) - survived} | {hung} | {survived} |")
+    lines += ["", "## Survivors", "", "| file | line | change |", "|---|---|---|"]
+    lines += [
+        f"| `{row.file.rpartition('/')[2]}` | {row.line} | `{row.change.replace('|', '/')}` |"
+        for row in rows
+        if row.fate == SURVIVED
+    ]
+    return "\n".join(lines)

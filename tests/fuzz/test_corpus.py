@@ -1,0 +1,90 @@
+"""The inputs that the fuzzer kept, and those that once broke something, each once and without the fuzzer."""
+
+from pathlib import Path
+
+import pytest
+
+from bench.fuzz.aboard import LoopTarget, Sailing, Watched
+from bench.fuzz.run import read
+from bench.fuzz.targets import TARGETS
+
+CORPUS = Path(__file__).parent / "corpus"
+AT_MOST = 120  # inputs of a target: the suite has other things to do
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """`made(name)` is a target, made once."""
+    kept = {}
+
+    def make(name):
+        if name not in kept:
+            certificate = tmp_path_factory.mktemp("fuzz") / "certificate.json"
+            kept[name] = LoopTarget(certificate) if name == "loop" else TARGETS[name].make()
+        return kept[name]
+
+    return make
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_what_the_fuzzer_kept_breaks_nothing(made, name):
+    """Test: every input of the corpus, and the seeds. Expected: no promise of the target is broken."""
+    target, inputs = made(name), sorted((CORPUS / name).glob("*"))[:AT_MOST]
+    assert inputs, f"no corpus of {name}: twin-bench fuzz --target {name}"
+    for data in (*(path.read_bytes() for path in inputs), *TARGETS[name].seeds()):
+        target.one(data)
+
+
+def test_the_corpus_sails_through_pauses_set_clocks_and_silence_with_a_promise_in_between(made):
+    """Expected: taken together the loop's inputs come to every kind of decision, and the promise is given,
+    taken back and given again: otherwise nothing would be tried."""
+    target, fates = made("loop"), []
+    look = Sailing._look
+
+    def noted(sailing, tick):
+        fates.append((tick.certificate.inside, tick.mode))
+        look(sailing, tick)
+
+    Sailing._look = noted
+    try:
+        for path in sorted((CORPUS / "loop").glob("*"))[:AT_MOST]:
+            target.one(path.read_bytes())
+    finally:
+        Sailing._look = look
+    assert {inside for inside, _ in fates} == {True, False}
+    assert {"hybrid", "dead reckoning", "invalid"} <= {mode for _, mode in fates}
+
+
+def test_a_loop_that_forgets_to_clear_what_it_had_received_is_found(made):
+    """Test: the fault of November 2026 (a pause over 3 s with a certificate), planted again. Expected: a
+    plain pause in the corpus finds it."""
+    target = made("loop")
+    begin = type(target.loop.observer)._begin
+
+    def forgetful(observer, *arguments):
+        before = dict(observer.received)
+        begin(observer, *arguments)
+        observer.received.update(dict.fromkeys(before, True))
+        observer.innovation.clear()
+
+    type(target.loop.observer)._begin = forgetful
+    try:
+        with pytest.raises((KeyError, Watched)):
+            for data in TARGETS["loop"].seeds():
+                target.one(data)
+    finally:
+        type(target.loop.observer)._begin = begin
+
+
+def test_what_libfuzzer_says_is_read():
+    """Expected: counts of the last line of progress; what was raised, and the input that did it."""
+    said = (
+        "#2\tINITED cov: 110 ft: 227 corp: 18/16Kb exec/s: 0 rss: 69Mb\n"
+        "#1467\tREDUCE cov: 131 ft: 260 corp: 21/16Kb lim: 3808\n"
+        " === Uncaught Python exception: ===\nKeyError: 'u'\nTraceback\n"
+        "artifact_prefix='x'; Test unit written to .fuzz/broke/loop-crash-ab\n"
+    )
+    assert read("loop", 9.0, said, 77) == (
+        "loop", 9.0, 1467, 131, 21, "KeyError: 'u'", ".fuzz/broke/loop-crash-ab",
+    )  # fmt: skip
+    assert read("loop", 9.0, said, 0).broken == ""
