@@ -83,8 +83,8 @@ def of_lies(hull: str, weather: str, told: list[Told]) -> str:
     lines = [
         "## Lies",
         "",
-        f"{hull}, {weather}, zigzag 10/10; the lie begins after 180 s of 500. Wrong: ticks with a promise in which "
-        "an error of u, v or r was beyond its bound; both are shares of all ticks since.",
+        f"{hull}, {weather}, zigzag 10/10; the lie begins after 180 s of 500. Wrong: ticks with a promise in "
+        "which an error of u, v or r was beyond its bound; both are shares of all ticks since.",
         "",
         "| lie | said after s | first word | promised | wrong | greatest error / bound |",
         "|---|---|---|---|---|---|",
