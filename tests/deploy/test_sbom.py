@@ -3,13 +3,17 @@ the installed packages' own requirements."""
 
 import json
 import re
+import subprocess
+import sys
+import tomllib
 from importlib.metadata import PackageNotFoundError, requires
 from pathlib import Path
 
 from packaging.markers import default_environment
 from packaging.requirements import Requirement
 
-DEPLOY = Path(__file__).parents[2] / "deploy"
+ROOT = Path(__file__).parents[2]
+DEPLOY = ROOT / "deploy"
 
 
 def plain(name):
@@ -38,3 +42,22 @@ def test_the_bill_of_materials_lists_what_is_installed_on_board():
     bill = json.loads((DEPLOY / "sbom.json").read_text())
     assert there > {"numpy", "onnxruntime", "eclipse-zenoh", "mcap", "protobuf"}
     assert {plain(part["name"]) for part in bill["components"]} == there
+
+
+def test_Q9_every_file_of_the_lock_has_a_hash_and_the_bill_of_materials_names_them_all():
+    """Expected: the lock pins what pyproject.toml asks for on board, inside its bounds; sbom.json is what
+    sbom.py makes of it."""
+    lock = (DEPLOY / "requirements.lock").read_text()
+    bill = json.loads((DEPLOY / "sbom.json").read_text())
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    pinned = {c["name"]: c for c in bill["components"]}
+    for wanted in map(Requirement, project["dependencies"]):
+        assert wanted.specifier.contains(pinned[wanted.name]["version"]), wanted
+    assert all(c["hashes"] and f"{c['name']}=={c['version']}" in lock for c in pinned.values())
+    made = subprocess.run(
+        [sys.executable, DEPLOY / "sbom.py", DEPLOY / "requirements.lock", "/dev/stdout"],
+        capture_output=True,
+        text=True,
+    )
+    assert json.loads(made.stdout) == bill
+    assert bill["metadata"]["component"]["version"] == project["version"]

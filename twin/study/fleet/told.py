@@ -99,8 +99,8 @@ def months(result: Mapping[str, Any]) -> list[str]:
     return [
         "Over the months: M is a test martingale of a ship's voyages against its reference voyages (Ville); "
         "on a healthy ship it ever reaches 20 with a chance of 5 % at most. Alarms by e-BH: at most "
-        f"{as_given(100.0 * control['level'])} % of them are of healthy ships, in the mean; a ship alone among "
-        f"{control['ships']} needs M = {num(needed, 3)}.",
+        f"{as_given(100.0 * control['level'])} % of them are of healthy ships, in the mean; a ship alone "
+        f"among {control['ships']} needs M = {num(needed, 3)}.",
         *(_never(count, names, needed) for count, names in sorted(few.items())),
     ]
 
