@@ -2,6 +2,9 @@
 
 import os
 import signal
+import subprocess
+import sys
+import time
 
 import pytest
 
@@ -34,6 +37,32 @@ def test_a_scheduler_that_is_given_does_the_work():
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(1, processes=False, dashboard_address=None) as cluster:
         assert [one.answer for one in spread(root, [25], 1, cluster.scheduler_address)] == [5.0]
+
+
+INTERRUPTED = """
+import time
+from twin.cli import guarded
+from twin.study.fleet.spread import spread
+if __name__ == "__main__":
+    print("begins", flush=True)
+    raise SystemExit(guarded(lambda: list(spread(time.sleep, [600, 600], 2)) and 0))
+"""
+
+
+@pytest.mark.parametrize("after_s", [0.5, 5.0])
+def test_an_interrupt_ends_all_processes_with_one_word(after_s, tmp_path):
+    """Test: Ctrl-C to the whole group, while the processes begin and while they work."""
+    (tmp_path / "long.py").write_text(INTERRUPTED)
+    begun = subprocess.Popen(
+        [sys.executable, str(tmp_path / "long.py")],
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True,
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
+    )  # fmt: skip
+    begun.stdout.readline()
+    time.sleep(after_s)
+    os.killpg(begun.pid, signal.SIGINT)
+    _, said = begun.communicate(timeout=90)  # until the last process that holds the pipe has ended
+    assert begun.returncode == 130 and said.strip() == "interrupted"
 
 
 def test_a_scheduler_that_is_not_there_is_one_line():

@@ -2,7 +2,10 @@
 one question that it had."""
 
 import os
+import signal
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from multiprocessing import resource_tracker
 from typing import Any, NamedTuple
 
 from twin.errors import TwinError
@@ -39,26 +42,43 @@ def spread(
     from distributed import Client, LocalCluster
 
     # a worker holds the one question that it is asked, so that its death costs no other
-    with dask.config.set({"distributed.scheduler.worker-saturation": 1.0}):
+    with dask.config.set({"distributed.scheduler.worker-saturation": 1.0}), ExitStack() as stack:
         if scheduler:
-            try:
-                client = Client(scheduler, timeout=WAIT_S)
-            except (OSError, ValueError, TimeoutError) as error:
-                raise TwinError(
-                    f"{scheduler}: no dask scheduler answers there within {WAIT_S} s ({_line(error)}). Start "
-                    "one with `dask scheduler`, or leave --scheduler out."
-                ) from None
-            with client:
-                yield from _asked(client, ask, jobs)
-            return
-        with (
-            LocalCluster(
-                n_workers=min(workers, len(jobs)), threads_per_worker=1, dashboard_address=None,
-                silence_logs=QUIET, memory_limit=0,
-            ) as cluster,
-            Client(cluster) as client,
-        ):  # fmt: skip
-            yield from _asked(client, ask, jobs)
+            client = _client(scheduler)
+        else:
+            with _left_alone_by_interrupts():
+                cluster = LocalCluster(
+                    n_workers=min(workers, len(jobs)), threads_per_worker=1, dashboard_address=None,
+                    silence_logs=QUIET, memory_limit=0,
+                )  # fmt: skip
+                stack.enter_context(cluster)
+            client = Client(cluster)
+        stack.enter_context(client)
+        yield from _asked(client, ask, jobs)
+
+
+def _client(scheduler: str) -> Any:
+    from distributed import Client
+
+    try:
+        return Client(scheduler, timeout=WAIT_S)
+    except (OSError, ValueError, TimeoutError) as error:
+        raise TwinError(
+            f"{scheduler}: no dask scheduler answers there within {WAIT_S} s ({_line(error)}). Start one "
+            "with `dask scheduler`, or leave --scheduler out."
+        ) from None
+
+
+@contextmanager
+def _left_alone_by_interrupts() -> Iterator[None]:
+    """Processes that begin meanwhile do not hear Ctrl-C, which a terminal sends to all: this process does,
+    and ends them."""
+    resource_tracker.ensure_running()  # which would lift the mask again, were it begun later
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _here(ask: Callable[[Any], Any], job: Any) -> Answered:
