@@ -12,6 +12,7 @@ from twin.live.observer.dynamics import Gear
 from twin.live.replay import replay
 from twin.live.signals.config import Settings
 from twin.physics.effect import Lag
+from twin.physics.effects import find
 
 
 def pause(bridge, seconds):
@@ -95,3 +96,16 @@ def test_a_voyage_with_a_hole_of_a_minute_is_replayed_to_its_end(bridge, tmp_pat
     ]
     assert summary.ticks == len(ticks) > 1000 and ticks[-1].certificate.inside
     assert all(isfinite(t.certificate.bound) and all(p.horizon_s > 0.0 for p in t.predictions) for t in ticks)
+
+
+def test_a_pause_makes_no_instrument_a_liar(make_service):
+    """Test: a ship with a fouled hull and a coarse log, a pause of 4 s every 12 s under way, as when a machine
+    is short of time; found by the endurance of the service. Expected: the estimate that begins anew at one
+    noisy sample is pulled to its place, and nobody takes that for a force of shaft or rudder."""
+    bridge = make_service(seed=21, noise=4.0)
+    bridge.sailing.model = bridge.sailing.model.but(find("HullFouling").plausible(bridge.loop.ship))
+    bridge.run(30.0)
+    for _ in range(12):
+        pause(bridge, 4.0)
+        said = {reason for tick in bridge.run(12.0) for reason in tick.reasons if "against" in reason}
+        assert not said

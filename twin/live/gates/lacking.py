@@ -4,7 +4,9 @@ feedback says.
     lacking = M (nu_hat(t) - nu_hat(0) - integral of nu_dot(model)) / t          over blocks of time
 
 A model is never exact, so a share of the forces at work is allowed, and a rudder's worth of SLACK; what is
-beyond counts. Of the rudder only while its feedback stands: one that moves is not stuck.
+beyond counts. Of the rudder only while its feedback stands: one that moves is not stuck. An estimate that
+began at one noisy sample is pulled to its place for SETTLED/K, and that pull is no force: till then nothing
+counts.
 """
 
 from math import inf, radians
@@ -26,6 +28,7 @@ PROPELLER = CORE.index("propeller")
 STILL = radians(0.5)
 SLACK, OF_MOMENTS = radians(4.0), 0.15  # as in helm.py
 OF_FORCES = 0.35
+SETTLED = 3.0  # time constants of the observer: a twentieth of the first sample's noise is left
 USUAL_BLOCKS = 8.0  # over which the moment that is lacking is taken to be usual, while the rudder moves
 # blocks in L/U_0, and their least length [s]: for calm water, and to see through waves
 FAST, SLOW = (1.0 / 16.0, 0.5), (0.25, 4.0)
@@ -58,7 +61,7 @@ class Lacking:
         self._usual = 0.0  # rudder's worth of moment that was lacking while it moved
         self._start: tuple[float, ...] | None = None
         self._sums = [0.0] * 8
-        self._restarts = 0
+        self._restarts, self._settles_s = -1, 0.0
 
     @property
     def reasons(self) -> list[str]:
@@ -79,8 +82,13 @@ class Lacking:
         ):
             self._start = None
             return
-        if self._start is None or observer.restarts != self._restarts:
-            self._begin(e.u, e.v, e.r, observer.restarts)
+        if observer.restarts != self._restarts:
+            self._restarts, self._settles_s, self._start = observer.restarts, SETTLED / observer.gain, None
+        if self._settles_s > 0.0:
+            self._settles_s -= dt
+            return
+        if self._start is None:
+            self._begin(e.u, e.v, e.r)
             return
         rates, sums = observer.rates, self._sums
         at_work = abs(float(forces[HULL][0])) + abs(float(forces[PROPELLER][0]))
@@ -90,10 +98,10 @@ class Lacking:
             sums[i] += x * dt
         if sums[6] >= self.block_s - 1e-6:
             self._judge((e.u, e.v, e.r), s, physics)
-            self._begin(e.u, e.v, e.r, observer.restarts)
+            self._begin(e.u, e.v, e.r)
 
-    def _begin(self, u: float, v: float, r: float, restarts: int) -> None:
-        self._start, self._sums, self._restarts = (u, v, r), [0.0] * 8, restarts
+    def _begin(self, u: float, v: float, r: float) -> None:
+        self._start, self._sums = (u, v, r), [0.0] * 8
 
     def _judge(self, nu: tuple[float, float, float], s: Situation, physics: KnownDynamics) -> None:
         assert self._start is not None
