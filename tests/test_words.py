@@ -32,7 +32,9 @@ NAMES = frozenset(
     ]
 )
 READ = re.compile(
-    r"\b(she|her|hers|herself|nats|luxury|acquitted|accused|blamed|leftover|tossed|unrest)\b", re.I
+    r"\b(she|her|hers|herself|nats|luxury|acquitted|accused|blamed|leftover|tossed|unrest|"
+    r"about (?:its|their) own size|reckoned with)\b",
+    re.I,
 )
 FILES = sorted(
     path

@@ -1,4 +1,4 @@
-"""The league's rows as numbers: the contract's JSON, and the tables behind it."""
+"""The league's rows as numbers: the JSON of docs/json.md, and the tables behind it."""
 
 from collections import Counter
 from collections.abc import Sequence

@@ -44,6 +44,7 @@ before.plot()
 
 # %%
 found = twin.diagnose(ship, monday)
+print(found.sentence)
 print(found.verdict, found.effects, found.probabilities)
 
 # %%

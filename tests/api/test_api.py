@@ -136,6 +136,9 @@ def test_the_story_of_monday_in_four_lines(tanker, monday):
     steps: list[str] = []
     found = twin.diagnose(tanker, monday, progress=steps.append)
     assert found.verdict == "missing" and found.effects == ["HullFouling"] and steps
+    assert found.reason == found.to_dict()["reason"] == "named" and found.sentence.startswith(
+        "Missing: HullF"
+    )
     assert len(repr(found)) < 600 and 0.0 < found.probabilities["HullFouling"] <= 1.0
     better = twin.add(tanker, found.effects, monday, held_out=tuesday)
     assert better.accepted and better.error_after_m < better.error_before_m

@@ -16,7 +16,7 @@ from twin.api.json_key import (
     under,
 )
 from twin.api.json_keys_fleet import FLEET
-from twin.api.json_keys_tube import TUBE
+from twin.api.json_keys_predicted import SIMULATE, TUBE
 
 COMPARE = (
     *ABOUT,
@@ -264,12 +264,6 @@ INSTRUMENTS = (
     JsonKey("command", "", "the command that made it", CLI),
     JsonKey("files.ship", "", "the ship file that was given", CLI),
     JsonKey("files.voyages[]", "", "the voyages that were given", CLI),
-)
-SIMULATE = (
-    *ABOUT,
-    JsonKey("manoeuvre", "", "what was sailed, as it was asked for: straight, zigzag_ANGLE or circle_ANGLE"),
-    JsonKey("columns.time_s[]", "s", "times from the beginning"),
-    JsonKey("columns.*[]", "of the channel", "position, heading and speeds at these times, by channel"),
 )
 KEYS: dict[str, tuple[JsonKey, ...]] = {
     "instruments": INSTRUMENTS,

@@ -7,6 +7,7 @@ import pytest
 from twin.errors import SettingsError
 from twin.live.signals import config
 from twin.live.signals.config import KEYS, example, load
+from twin.num import as_given
 
 
 def write(tmp_path, text, encoding="utf-8"):
@@ -46,7 +47,11 @@ def test_F1_a_typo_in_any_key_is_named_with_its_line_and_the_right_word(tmp_path
 def test_F1_a_number_out_of_range_is_named_with_its_unit(tmp_path, key):
     section, _, name = key.name.partition(".")
     said = complaint(tmp_path, f"[{section}]\n{name} = 999999999\n")
-    assert "line 2" in said and f"outside {key.low:g} to {key.high:g}" in said and key.unit in said
+    assert (
+        "line 2" in said
+        and f"outside {as_given(key.low)} to {as_given(key.high)}" in said
+        and key.unit in said
+    )
 
 
 @pytest.mark.parametrize("key", KEYS, ids=lambda key: key.name)

@@ -27,7 +27,7 @@ def book(case):
 
 
 def weighed(case, *judged):
-    """The pair in every world, once these sets were judged about their own size."""
+    """The pair in every noise scenario, once these sets were relinearised at their estimates."""
     held = book(case)
     for chosen in judged:
         held.judge(chosen)

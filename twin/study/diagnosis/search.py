@@ -2,9 +2,9 @@
 then the best where they stand.
 
 The linear pass costs milliseconds a hypothesis, and is right for small effects. Then the best hypothesis that
-was not yet judged about its own size is, and with it all that have one effect more, until none is left that
-could still win. Water and weather of the voyages are a nuisance of every hypothesis: any of them may stand
-beside any cause, and takes no cause's place."""
+was not yet relinearised at its estimate is, and with it all that have one effect more, until none is left
+that could still win. Water and weather of the voyages are a nuisance of every hypothesis: any of them may
+stand beside any cause, and takes no cause's place."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -25,19 +25,19 @@ from twin.study.estimation.columns import Unknown
 from twin.study.reference.evidence import Hypothesis, Reduced, boxed, posterior, weigh_sets
 
 MOST = 3  # causes at once
-AT_FIRST = 2  # of which so many in the linear pass; one more only beside what was judged about its own size
+AT_FIRST = 2  # of which so many in the linear pass; one more only beside what was relinearised
 KINDS = 3  # of weather at once in the linear pass
 DAYS = 2  # sets of weather beside which every pair of causes is asked
-ROUNDS = 20  # hypotheses judged about their own size, at most
+ROUNDS = 20  # hypotheses relinearised at their estimates, at most
 SINGLES = 3  # of which so many single effects first, unless nothing at all explains the voyages
 # and so many more single effects, when nothing plain was found, or what was found (nothing, too) leaves too
 # much
 LAST = 6
-CLOSE = 3.0  # log odds behind the best within which a hypothesis is judged about its own size
+CLOSE = 3.0  # log odds behind the best within which a hypothesis is relinearised at its estimate
 # log odds that an effect of plausible size would have to show, or the data could not have seen it
 VISIBLE = 4.0
-# of an effect's plausible size that any day brings, from which it is judged about its own size without having
-# earned it
+# of an effect's plausible size that any day brings, from which it is relinearised at its estimate without
+# having earned it
 MUCH = 0.05
 EARNED = 1.5  # log evidence that an effect must add to deserve a second look
 
@@ -45,8 +45,8 @@ Searched = tuple[list[Hypothesis], dict[Sets, Found], dict[str, bool]]
 
 
 def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> Searched:
-    """All hypotheses with their weights, best first; the few that were judged about their own size; and
-    whether each candidate, had it its plausible size, would have shown."""
+    """All hypotheses with their weights, best first; the few that were relinearised; and whether each
+    candidate, had it its plausible size, would have shown."""
     progress("weighing every effect and every pair")
     scenarios = dict(zip(SCENARIOS, case.reduced(case.lines, case.scenarios(list(SCENARIOS))), strict=True))
     seen = {name: visible(scenarios["usual"], name) for name in case.candidates if name not in case.unnamed}
@@ -171,7 +171,7 @@ class Book:
 
     def of_the_day(self) -> list[Sets]:
         """What every day brings much of on this ship: to first order what is usual takes the credit, and only
-        its own size tells."""
+        its own estimate tells."""
         usual = {
             u.owner: self.case.nuisance.daily.get(u.label, 0.0) / u.sd
             for u in self.case.effects
@@ -186,8 +186,8 @@ class Book:
         return any(issubclass(kind, SensorFault) and kind.prompt is not SensorFault.prompt for kind in kinds)
 
     def next(self) -> Sets | None:
-        """What to judge about its own size next; each effect of a set alone before the set, and beside what
-        is unchanged: it may do what took two."""
+        """What to relinearise next; each effect of a set alone before the set, and beside what is unchanged:
+        it may do what took two."""
         while self.first:
             if (chosen := self.first.pop(0)) not in self.found:
                 return chosen
@@ -271,7 +271,7 @@ class Book:
     def _counts(self, chosen: Sets, h: Hypothesis) -> bool:
         """Whether what was said about the size of `chosen` is the better word on this hypothesis: on that set
         itself; on what leaves a part of it to what any day brings, if it is likelier so; and on a wider set
-        that was not judged about its own size, if this part is nearer."""
+        that was not relinearised at its estimate, if this part is nearer."""
         if h.effects == chosen:
             return True
         if set(h.effects) < set(chosen):

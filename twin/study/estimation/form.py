@@ -3,7 +3,7 @@ and no part of any model.
 
 A hull in Norrbin's modulus form is a good one to predict with, and not the truth. What it leaves out has the
 same sign all through a voyage, so that a diagnosis would sooner or later take it for an effect. Reference
-voyages tell how much of each term this ship has; what they leave open is kept in mind when another voyage is
+voyages tell how much of each term this ship has; what they leave open is allowed for when another voyage is
 judged.
 
 Forms: cubic hull and its scale, Yasukawa & Yoshimura (2015); wake that thins with drift, ibid.; heel, Son &

@@ -1,8 +1,8 @@
-"""What every key of `twin tube`'s JSON means."""
+"""What the keys of `twin tube` and `twin.simulate` mean: results of predictions, beside those of the study
+(json_keys.py)."""
 
 from twin.api.json_key import ABOUT, CLI, JsonKey, under
 
-MET = "45 voyages met it"
 SIZE = (
     JsonKey("voyages", "", "voyages that the promise rests on"),
     JsonKey("predictions", "", "predictions that came due on all of them"),
@@ -21,4 +21,10 @@ TUBE = (
     *(k._replace(when=MET) for k in under("horizons[].regimes[]", SIZE)),
     JsonKey("doubts[]", "", "what these voyages cannot promise, and what to do", "there is something"),
     JsonKey("output", "", "the ship file that was written", CLI),
+)
+SIMULATE = (
+    *ABOUT,
+    JsonKey("manoeuvre", "", "what was sailed, as it was asked for: straight, zigzag_ANGLE or circle_ANGLE"),
+    JsonKey("columns.time_s[]", "s", "times from the beginning"),
+    JsonKey("columns.*[]", "of the channel", "position, heading and speeds at these times, by channel"),
 )
