@@ -6,7 +6,8 @@ import pytest
 
 from twin.errors import SettingsError
 from twin.live.signals import config
-from twin.live.signals.config import KEYS, example, load
+from twin.live.signals.config import example, load
+from twin.live.signals.keys import KEYS
 
 
 def write(tmp_path, text, encoding="utf-8"):

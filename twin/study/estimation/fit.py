@@ -15,7 +15,8 @@ from twin.physics.model import Model
 from twin.study.estimation.box import within
 from twin.study.estimation.columns import LATE, Unknown, with_values
 from twin.study.estimation.dissipation import HalfSpaces, half_spaces
-from twin.study.estimation.innovations import Floor, Linear, Normal, innovate, linearise
+from twin.study.estimation.innovations import Floor, Normal, innovate
+from twin.study.estimation.linear import Linear, linearise
 from twin.study.track.track import Track
 
 Catalogue = dict[str, type[Effect]]

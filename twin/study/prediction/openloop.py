@@ -19,7 +19,8 @@ from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
-from twin.study.estimation.innovations import MEMORY_B, Floor, busy
+from twin.study.estimation.innovations import Floor
+from twin.study.estimation.linear import MEMORY_B, busy
 from twin.study.estimation.respond import readings, standard, steered
 from twin.study.estimation.start import noisy, seen, steadied, true_motion
 from twin.study.reference.structure import once_off
