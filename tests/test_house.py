@@ -65,8 +65,18 @@ ORDER = (
 )
 ONLY_IN_EXPORT = {"torch"}
 NOT_ON_BOARD = {
-    "torch", "scipy", "matplotlib", "pydantic", "pandas", "filterpy", "sympy", "numpy", "tomlkit", "twin.study", "twin.recording",
-}  # fmt: skip
+    "torch",
+    "scipy",
+    "matplotlib",
+    "pydantic",
+    "pandas",
+    "filterpy",
+    "sympy",
+    "numpy",
+    "tomlkit",
+    "twin.study",
+    "twin.recording",
+}
 
 
 def inner_room_of(module):

@@ -71,14 +71,18 @@ EXPECTED = (
         "horizons[].noise_floor.of", "", "what that expectation rests on: sensors, structure, or references"
     ),
     JsonKey(
-        "horizons[].noise_floor.limit95", "-", "times the expected error that 95 % of healthy voyages stay "
-        "below", PROOF,
+        "horizons[].noise_floor.limit95",
+        "-",
+        "times the expected error that 95 % of healthy voyages stay below",
+        PROOF,
     ),
     JsonKey(
-        "horizons[].noise_floor.widened", "-", "factor by which these voyages leave what the references "
-        "sailed", PROOF,
+        "horizons[].noise_floor.widened",
+        "-",
+        "factor by which these voyages leave what the references sailed",
+        PROOF,
     ),
-)  # fmt: skip
+)
 
 
 def paths(value: Any, path: str = "") -> Iterator[str]:

@@ -151,9 +151,10 @@ def left_over(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Fo
     scenarios = [h for h in weighed if h.effects == chosen]
     plain = next((h for h in scenarios if SCENARIOS[h.scenario].plain), None)
     return Left(
-        error=_ratio(own.off_m, own.floor_m), share=_ratio(own.off_m, nothing.off_m),
+        error=_ratio(own.off_m, own.floor_m),
+        share=_ratio(own.off_m, nothing.off_m),
         restless=scenarios[0].log_weight - plain.log_weight if plain else NO_GAP,
-    )  # fmt: skip
+    )
 
 
 def _cause(

@@ -53,9 +53,15 @@ class Fit:
 
 
 def fit(
-    tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue, floor: Floor, *,
-    temper: float = 1.0, smooth: bool = False,
-) -> Fit:  # fmt: skip
+    tracks: Sequence[Track],
+    model: Model,
+    unknowns: Sequence[Unknown],
+    catalogue: Catalogue,
+    floor: Floor,
+    *,
+    temper: float = 1.0,
+    smooth: bool = False,
+) -> Fit:
     """The most probable values of the unknowns, given the tracks and their priors, after at most STEPS steps.
 
     Each goes to where the equations at the last place are most probable, inside the boxes, where the hull

@@ -142,10 +142,16 @@ def _thinned(t: Track) -> Track:
     rows = np.flatnonzero(t.whole)
     rows = rows[:: max(1, rows.size // ROWS)]
     return replace(
-        t, t=t.t[rows], state=t.state[rows], delta=t.delta[rows], n=t.n[rows],
-        weather={k: w[rows] for k, w in t.weather.items()}, measured=t.measured[rows], whole=t.whole[rows],
+        t,
+        t=t.t[rows],
+        state=t.state[rows],
+        delta=t.delta[rows],
+        n=t.n[rows],
+        weather={k: w[rows] for k, w in t.weather.items()},
+        measured=t.measured[rows],
+        whole=t.whole[rows],
         told=None if t.told is None else {k: x[rows] for k, x in t.told.items()},
-    )  # fmt: skip
+    )
 
 
 def text(result: Mapping[str, Any]) -> list[str]:
