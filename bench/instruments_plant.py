@@ -76,8 +76,13 @@ def _satellites(out: dict, truth: Any, t: np.ndarray, get: Any) -> None:
     def shown(seconds: float) -> list[np.ndarray]:
         x, y, psi, u, v, r = (_at(truth, k, t, seconds) for k in ("north", "east", "psi", "u", "v", "r"))
         c, s = np.cos(psi), np.sin(psi)
-        return [x + ahead * c - aside * s + north * t, y + ahead * s + aside * c + east * t,
-                u - r * aside + north * c + east * s, v + r * ahead + east * c - north * s, psi]  # fmt: skip
+        return [
+            x + ahead * c - aside * s + north * t,
+            y + ahead * s + aside * c + east * t,
+            u - r * aside + north * c + east * s,
+            v + r * ahead + east * c - north * s,
+            psi,
+        ]
 
     now, then = shown(LATE["gnss"] + late), shown(LATE["gnss"])
     ahead = aside = north = east = 0.0

@@ -29,7 +29,8 @@ from twin.study.diagnosis.assemble import of_tracks
 from twin.study.diagnosis.case import SCENARIOS
 from twin.study.diagnosis.case import Case as Judged
 from twin.study.diagnosis.refine import Found
-from twin.study.estimation.innovations import NoiseModel, innovate, linearise
+from twin.study.estimation.innovations import NoiseModel, innovate
+from twin.study.estimation.linear import linearise
 from twin.study.prediction.left_out import models_without
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.reference.derivatives import first_prior

@@ -63,9 +63,15 @@ def ship_of(kind: str) -> Ship:
     base, k = load("usv"), scale(kind)
     inertia = MASS_KG * 0.06 * LENGTH_M**2 * k**5
     return replace(
-        base, L_pp=k * LENGTH_M, B=k * 1.4, T=k * 0.25, m=MASS_KG * k**3, I_z=inertia, U_0=2.0,
+        base,
+        L_pp=k * LENGTH_M,
+        B=k * 1.4,
+        T=k * 0.25,
+        m=MASS_KG * k**3,
+        I_z=inertia,
+        U_0=2.0,
         actuators=parts(kind),
-    )  # fmt: skip
+    )
 
 
 def sailed(kind: str, seed: int, duration_s: float = 240.0, boat_seed: int | None = None) -> Voyage:
@@ -78,12 +84,13 @@ def sailed(kind: str, seed: int, duration_s: float = 240.0, boat_seed: int | Non
     x, y, psi, u, v, r = np.array(rows)[::SAMPLE].T
     n = x.size
     columns = {
-        "north_m": x + 0.02 * rng.standard_normal(n), "east_m": y + 0.02 * rng.standard_normal(n),
+        "north_m": x + 0.02 * rng.standard_normal(n),
+        "east_m": y + 0.02 * rng.standard_normal(n),
         "heading_true_north_deg": np.degrees(psi) + 0.3 * rng.standard_normal(n),
         "surge_velocity_mps": u + 0.02 * rng.standard_normal(n),
         "sway_velocity_mps": v + 0.02 * rng.standard_normal(n),
         "yaw_rate_degps": np.degrees(r) + 0.3 * rng.standard_normal(n),
-    }  # fmt: skip
+    }
     columns["heading_true_north_deg"] %= 360.0
     recorded = {name: order[name][::SAMPLE] for name in order}
     return Voyage(f"{kind} {seed}", STEP_S * SAMPLE * np.arange(n), columns | recorded)
@@ -187,7 +194,7 @@ MISTAKES: tuple[tuple[str, str, Callable[[Columns], Columns], str], ...] = (
     ("azimuths", "one angle mirrored", line("bow_p.angle_deg", -1.0, 0.0), "bow_p is positive to port"),
     ("azimuths", "one angle 90 deg off", line("stern_s.angle_deg", 1.0, 90.0), "stern_s is 90 deg too large"),
     ("azimuths", "two exchanged", exchange("bow_p", "stern_s"), "bow_p and stern_s are exchanged"),
-)  # fmt: skip
+)
 
 
 def healthy(seeds: int) -> dict[str, Any]:

@@ -124,9 +124,12 @@ def windows(
             inputs[name].append(leg.inputs[name][at])
         inputs["t"].append(leg.t[at])
     return TrainingWindows(
-        _tensor(starts).float(), {n: torch.tensor(np.concatenate(x, 1)).float() for n, x in inputs.items()},
-        torch.tensor(np.concatenate(wanted, 1)).float(), _tensor(h).float(), np.concatenate(group),
-    )  # fmt: skip
+        _tensor(starts).float(),
+        {n: torch.tensor(np.concatenate(x, 1)).float() for n, x in inputs.items()},
+        torch.tensor(np.concatenate(wanted, 1)).float(),
+        _tensor(h).float(),
+        np.concatenate(group),
+    )
 
 
 def input_names(legs: Sequence[TrainingLeg]) -> tuple[str, ...]:

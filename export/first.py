@@ -245,11 +245,13 @@ def main() -> int:
     held_out, used = runs[::HELD_OUT], [run for i, run in enumerate(runs) if i % HELD_OUT]
     trunk = train(used, args.seed)
     about = {
-        "what": "first residual: calm water, filtered regression, no roll-out", "seed": args.seed,
-        "voyages": [run.name for run in used], "held_out": [run.name for run in held_out],
+        "what": "first residual: calm water, filtered regression, no roll-out",
+        "seed": args.seed,
+        "voyages": [run.name for run in used],
+        "held_out": [run.name for run in held_out],
         "explained": dict(zip(("surge", "sway", "yaw"), explained(trunk, used), strict=True)),
         "explained_held_out": dict(zip(("surge", "sway", "yaw"), explained(trunk, held_out), strict=True)),
-    }  # fmt: skip
+    }
     model = trunk_onnx(trunk)
     for path, data in (
         (

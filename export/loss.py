@@ -57,10 +57,15 @@ def acceleration(
 
 
 def paper(
-    network: ResidualNetwork, model: Model, s: Situation, ahead: torch.Tensor, h: torch.Tensor,
+    network: ResidualNetwork,
+    model: Model,
+    s: Situation,
+    ahead: torch.Tensor,
+    h: torch.Tensor,
     size: torch.Tensor,
-    lambda_data: float = 1.0, lambda_phys: float = 0.1,
-) -> tuple[torch.Tensor, dict[str, float]]:  # fmt: skip
+    lambda_data: float = 1.0,
+    lambda_phys: float = 0.1,
+) -> tuple[torch.Tensor, dict[str, float]]:
     """The literal loss of one step; `ahead` (B, 3) the measured speeds h later, `size` (3,) of one step's
     change. Diagnostics too."""
     h = h.clone().requires_grad_(True)

@@ -79,9 +79,14 @@ def worth(network: ResidualNetwork, model: Model, legs: Sequence[TrainingLeg], s
     before, after = errors(None, model, w), errors(network, model, w)
     low, high = ratio(before[:, 0], after[:, 0], w.group, seed)
     return Worth(
-        horizon, len(w), len(set(w.group.tolist())), (float(before[:, 0].mean()), float(after[:, 0].mean())),
-        (float(before[:, 1].mean()), float(after[:, 1].mean())), low, high,
-    )  # fmt: skip
+        horizon,
+        len(w),
+        len(set(w.group.tolist())),
+        (float(before[:, 0].mean()), float(after[:, 0].mean())),
+        (float(before[:, 1].mean()), float(after[:, 1].mean())),
+        low,
+        high,
+    )
 
 
 def ratio(before: np.ndarray, after: np.ndarray, group: np.ndarray, seed: int) -> tuple[float, float]:

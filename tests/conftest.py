@@ -15,16 +15,33 @@ settings.load_profile("shiptwin")
 # them all, one after the other. bench/test_tick.py runs before all of them and alone (Makefile): its loop is
 # thirty times as fast as time, and 30 ms without a processor for the bus are a second without measurements.
 BY_THE_CLOCK = (
-    "deploy/test_zenoh.py", "live/keelson/test_bus.py", "live/test_clock.py", "live/test_demo.py",
-    "live/test_realtime.py", "live/log/test_record.py", "live/log/test_record_faults.py",
-    "live/log/test_recover.py", "live/test_run.py", "live/test_overload.py",
-    "live/keelson/test_bus_hostile.py", "live/log/test_power_cut.py", "live/test_secrets.py",
-    "live/keelson/test_sockets.py", "live/test_fault.py", "live/log/test_quota.py", "test_house.py", "test_readme.py",
-)  # fmt: skip
+    "deploy/test_zenoh.py",
+    "live/keelson/test_bus.py",
+    "live/test_clock.py",
+    "live/test_demo.py",
+    "live/test_realtime.py",
+    "live/log/test_record.py",
+    "live/log/test_record_faults.py",
+    "live/log/test_recover.py",
+    "live/test_run.py",
+    "live/test_overload.py",
+    "live/keelson/test_bus_hostile.py",
+    "live/log/test_power_cut.py",
+    "live/test_secrets.py",
+    "live/keelson/test_sockets.py",
+    "live/test_fault.py",
+    "live/log/test_quota.py",
+    "test_house.py",
+    "test_readme.py",
+)
 # sailed once for these rooms: half a minute
 SAME_VOYAGES = (
-    "study/diagnosis/", "study/reference/", "study/estimation/", "study/calibration/", "study/track/",
-)  # fmt: skip
+    "study/diagnosis/",
+    "study/reference/",
+    "study/estimation/",
+    "study/calibration/",
+    "study/track/",
+)
 LONG = (
     "study/test_first_hour.py",
     "bench/test_paper.py",

@@ -208,9 +208,10 @@ def _summary(heading: np.ndarray, lateral: np.ndarray, scenario: np.ndarray) -> 
 
     since = heading[:, np.array(ROUND_S) >= CHANGE_S].mean(1)
     return {
-        "heading_deg": heading.mean(0).tolist(), "lateral_m": lateral.mean(0).tolist(),
+        "heading_deg": heading.mean(0).tolist(),
+        "lateral_m": lateral.mean(0).tolist(),
         "by_scenario_deg": by_scenario(since, scenario),
-    }  # fmt: skip
+    }
 
 
 def _noisy(streams: Sequence[Stream]) -> list[Stream]:

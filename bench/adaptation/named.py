@@ -165,11 +165,12 @@ def summary(heading: np.ndarray, lateral: np.ndarray, scenario: np.ndarray, seed
     """Of errors (V, W): by window; of the late windows by seed and by scenario."""
     end = late()
     return {
-        "heading_deg": heading.mean(0).tolist(), "lateral_m": lateral.mean(0).tolist(),
+        "heading_deg": heading.mean(0).tolist(),
+        "lateral_m": lateral.mean(0).tolist(),
         "late_heading_deg": [float(x[:, end].mean()) for x in np.split(heading, seeds)],
         "late_lateral_m": [float(x[:, end].mean()) for x in np.split(lateral, seeds)],
         "by_scenario_deg": by_scenario(heading[:, end], scenario),
-    }  # fmt: skip
+    }
 
 
 def arrival(

@@ -30,10 +30,17 @@ _SHIPS: dict[str, dict[str, Any]] = {}
 def judge(question: Question, folder: Path) -> dict[str, Any]:
     """A row of the league's log; a diagnosis that raises is a failed question, not a failed league."""
     row = {
-        "key": question.key, "hull": question.hull, "kind": question.kind, "hidden": dict(question.hidden),
-        "decoys": question.decoys, "known": question.known, "missing_truly": question.missing,
-        "manoeuvre": question.manoeuvre, "seed": question.seed, "duration_s": question.duration_s,
-    }  # fmt: skip
+        "key": question.key,
+        "hull": question.hull,
+        "kind": question.kind,
+        "hidden": dict(question.hidden),
+        "decoys": question.decoys,
+        "known": question.known,
+        "missing_truly": question.missing,
+        "manoeuvre": question.manoeuvre,
+        "seed": question.seed,
+        "duration_s": question.duration_s,
+    }
     ship, (voyage, truth) = _ship(question, folder), kept(question.case(), folder)
     wall, cpu = time.perf_counter(), time.process_time()
     try:

@@ -99,9 +99,13 @@ class League:
         planned = sum(len(r) for r in self.rounds)
         return {
             "references": self.fleet[1],
-            "hulls": list(self.hulls), "strengths": list(self.strengths), "seeds": self.seeds,
-            "planned": planned, "answered": len(rows), "failed": sum(r["verdict"] == "failed" for r in rows),
-        }  # fmt: skip
+            "hulls": list(self.hulls),
+            "strengths": list(self.strengths),
+            "seeds": self.seeds,
+            "planned": planned,
+            "answered": len(rows),
+            "failed": sum(r["verdict"] == "failed" for r in rows),
+        }
 
 
 def _answer(question: Question, folder: Path, ends: float) -> dict[str, Any] | None:

@@ -152,11 +152,15 @@ def judge(runs: Sequence[np.ndarray], courses: Sequence[LabCourse]) -> Errors:
         for column, x in zip(
             columns,
             (
-                heading.T, _across(off, psi).T, moved[..., 2].T, _across(moved, psi).T,
-                np.full(psi.size, i), np.full(psi.size, int(c.scenario[-1])),
+                heading.T,
+                _across(off, psi).T,
+                moved[..., 2].T,
+                _across(moved, psi).T,
+                np.full(psi.size, i),
+                np.full(psi.size, int(c.scenario[-1])),
             ),
             strict=True,
-        ):  # fmt: skip
+        ):
             column.append(x)
     return Errors(*(np.concatenate(x) for x in columns))
 

@@ -63,6 +63,8 @@ def cliff(ours: np.ndarray, theirs: np.ndarray) -> float:
 
 def summary(e: Errors) -> dict[str, float]:
     return {
-        "heading_mae_deg": float(e.heading_deg.mean()), "lateral_mae_m": float(e.lateral_m.mean()),
-        "r2_heading": r2(e.heading, e.true_heading), "r2_lateral": r2(e.lateral, e.true_lateral),
-    }  # fmt: skip
+        "heading_mae_deg": float(e.heading_deg.mean()),
+        "lateral_mae_m": float(e.lateral_m.mean()),
+        "r2_heading": r2(e.heading, e.true_heading),
+        "r2_lateral": r2(e.lateral, e.true_lateral),
+    }

@@ -35,10 +35,14 @@ def columns(voyage: Voyage) -> Columns:
     out = {
         n: v.si(c)
         for n, c in {
-            "x": "north_m", "y": "east_m", "psi": "heading_true_north_deg", "u": "surge_velocity_mps",
-            "v": "sway_velocity_mps", "r": "yaw_rate_degps",
+            "x": "north_m",
+            "y": "east_m",
+            "psi": "heading_true_north_deg",
+            "u": "surge_velocity_mps",
+            "v": "sway_velocity_mps",
+            "r": "yaw_rate_degps",
         }.items()
-    }  # fmt: skip
+    }
     return out | {"p": thrust(v["port.pwm_us"]), "s": thrust(v["starboard.pwm_us"])}
 
 

@@ -16,9 +16,20 @@ from twin.physics.ship import load
 SHIPS = ("kvlcc2", "container", "kvlcc2_model", "usv")
 UNITS = "m/s, m/s, deg/s"
 RUNS = (
-    "ship", "Hz", "samples late", "H_s m", "drop-outs", "K 1/s", "runs", "left", "broken", "b", "error/tube",
-    "b/seen", "numbers moved",
-)  # fmt: skip
+    "ship",
+    "Hz",
+    "samples late",
+    "H_s m",
+    "drop-outs",
+    "K 1/s",
+    "runs",
+    "left",
+    "broken",
+    "b",
+    "error/tube",
+    "b/seen",
+    "numbers moved",
+)
 
 
 LOOPS = ("ship", "Hz", "drop-outs", "K 1/s", "runs", "ticks", "inside", "broken", "b", "error/tube", "b/seen")

@@ -99,20 +99,37 @@ def judged(
     if memory["peak_mb"] > args.budget_mb:
         over.append(f"memory {memory['peak_mb']:.1f} MB (peak) is over {args.budget_mb:g} MB")
     return {
-        "schema_version": SCHEMA_VERSION, "steps": args.steps, "rate_hz": args.rate, "target": args.target,
-        "residual": residual, "step_us": step, "parts_us": parts, "computing_us": computing, "more_us": more,
+        "schema_version": SCHEMA_VERSION,
+        "steps": args.steps,
+        "rate_hz": args.rate,
+        "target": args.target,
+        "residual": residual,
+        "step_us": step,
+        "parts_us": parts,
+        "computing_us": computing,
+        "more_us": more,
         "missed_deadlines": (paced or fast)["missed_deadlines"],
         "messages_per_step": fast["messages_per_step"],
-        "cpu_us_per_step": fast["cpu_us_per_step"], "paced": _paced(paced), "rss_peak_mb": memory["peak_mb"],
-        "rss_anon_mb": memory["anon_mb"], "rss_file_mb": memory["file_mb"],
+        "cpu_us_per_step": fast["cpu_us_per_step"],
+        "paced": _paced(paced),
+        "rss_peak_mb": memory["peak_mb"],
+        "rss_anon_mb": memory["anon_mb"],
+        "rss_file_mb": memory["file_mb"],
         "rss_growth_mb": fast["growth_mb"],
-        "rss_growth_anon_mb": fast["growth_anon_mb"], "mode": fast["mode"],
-        "modes": fast["modes"], "reasons": fast["reasons"],
-        "notes": fast["notes"], "log": fast["log"], **peers, "ratios": _ratios(peers),
-        "instructions": counted, "cortex_a72": estimate,
-        "budget": {"step_ms": args.budget_ms, "rss_mb": args.budget_mb}, "over_budget": over,
+        "rss_growth_anon_mb": fast["growth_anon_mb"],
+        "mode": fast["mode"],
+        "modes": fast["modes"],
+        "reasons": fast["reasons"],
+        "notes": fast["notes"],
+        "log": fast["log"],
+        **peers,
+        "ratios": _ratios(peers),
+        "instructions": counted,
+        "cortex_a72": estimate,
+        "budget": {"step_ms": args.budget_ms, "rss_mb": args.budget_mb},
+        "over_budget": over,
         "within_budget": not over,
-    }  # fmt: skip
+    }
 
 
 class Place:
@@ -160,10 +177,13 @@ class Place:
             '{downsampling: [{messages: ["put"], flows: ["ingress"], rules: [{key_expr: "x", freq: 1.0}]}]}'
         )
         settings = {
-            "ship": {"file": ship}, "loop": {"rate_hz": self.rate}, "log": {"folder": self.folder / "logs"},
-            "bus": {"listen": self.endpoint, "file": zenoh}, "state": {"folder": self.folder / "state"},
+            "ship": {"file": ship},
+            "loop": {"rate_hz": self.rate},
+            "log": {"folder": self.folder / "logs"},
+            "bus": {"listen": self.endpoint, "file": zenoh},
+            "state": {"folder": self.folder / "state"},
             "residual": {"file": residual, "required": residual != "none"},
-        }  # fmt: skip
+        }
         sections = [
             [f"[{name}]", *(f"{key} = {json.dumps(x, default=str)}" for key, x in keys.items())]
             for name, keys in settings.items()

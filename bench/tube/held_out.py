@@ -124,8 +124,17 @@ def _row(h: float, name: str, voyages: Sequence[list[Kept]], rests: float) -> Ro
         return float(np.mean([np.mean(v) for v in values]))
 
     return Row(
-        h, name, len(voyages), sum(len(v) for v in voyages), rests,
-        float(np.mean(place)), float(np.std(place)), float(np.mean(heading)), float(np.std(heading)),
-        mean("radius"), degrees(mean("heading")), mean("radius", "error"),
+        h,
+        name,
+        len(voyages),
+        sum(len(v) for v in voyages),
+        rests,
+        float(np.mean(place)),
+        float(np.std(place)),
+        float(np.mean(heading)),
+        float(np.std(heading)),
+        mean("radius"),
+        degrees(mean("heading")),
+        mean("radius", "error"),
         degrees(mean("heading", "heading_error")),
-    )  # fmt: skip
+    )

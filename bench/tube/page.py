@@ -46,25 +46,56 @@ exchangeable.
 
 
 OWN = (
-    "ship", "s", "group", "voyages", "predictions", "on", "place inside", "heading inside", "radius m",
-    "heading deg", "score m", "score deg",
-)  # fmt: skip
+    "ship",
+    "s",
+    "group",
+    "voyages",
+    "predictions",
+    "on",
+    "place inside",
+    "heading inside",
+    "radius m",
+    "heading deg",
+    "score m",
+    "score deg",
+)
 BESIDE = (
-    "ship", "s", "inside, model", "inside, reckoning", "radius m, model", "reckoning", "heading deg, model",
+    "ship",
+    "s",
+    "inside, model",
+    "inside, reckoning",
+    "radius m, model",
     "reckoning",
-)  # fmt: skip
+    "heading deg, model",
+    "reckoning",
+)
 OTHER = (
-    "calibrated on -> judged on", "s", "voyages", "place inside", "heading inside", "radius m", "heading deg",
-)  # fmt: skip
+    "calibrated on -> judged on",
+    "s",
+    "voyages",
+    "place inside",
+    "heading inside",
+    "radius m",
+    "heading deg",
+)
 DECISION = "0021-the-tube-around-a-prediction-is-split-conformal-with-the-voyage-as-unit.md"
 
 
 def _row(hull: str, r: Row) -> list[str]:
     return [
-        hull, f"{r.horizon_s:g}", r.group, str(r.voyages), str(r.predictions), f"{r.calibrated_on:.0f}",
-        _share(r.place_inside, r.place_spread), _share(r.heading_inside, r.heading_spread),
-        f"{r.place_m:.3g}", f"{r.heading_deg:.2g}", f"{r.place_score_m:.3g}", f"{r.heading_score_deg:.2g}",
-    ]  # fmt: skip
+        hull,
+        f"{r.horizon_s:g}",
+        r.group,
+        str(r.voyages),
+        str(r.predictions),
+        f"{r.calibrated_on:.0f}",
+        _share(r.place_inside, r.place_spread),
+        _share(r.heading_inside, r.heading_spread),
+        f"{r.place_m:.3g}",
+        f"{r.heading_deg:.2g}",
+        f"{r.place_score_m:.3g}",
+        f"{r.heading_score_deg:.2g}",
+    ]
 
 
 def _beside(hull: str, by: Mapping[str, Sequence[Row]]) -> list[list[str]]:
@@ -72,18 +103,29 @@ def _beside(hull: str, by: Mapping[str, Sequence[Row]]) -> list[list[str]]:
     pairs = [(m, other[m.horizon_s]) for m in by["model"] if m.group == EVERY and m.horizon_s in other]
     return [
         [
-            hull, f"{m.horizon_s:g}", f"{100 * m.place_inside:.1f} %", f"{100 * d.place_inside:.1f} %",
-            f"{m.place_m:.3g}", f"{d.place_m:.3g}", f"{m.heading_deg:.2g}", f"{d.heading_deg:.2g}",
+            hull,
+            f"{m.horizon_s:g}",
+            f"{100 * m.place_inside:.1f} %",
+            f"{100 * d.place_inside:.1f} %",
+            f"{m.place_m:.3g}",
+            f"{d.place_m:.3g}",
+            f"{m.heading_deg:.2g}",
+            f"{d.heading_deg:.2g}",
         ]
         for m, d in pairs
-    ]  # fmt: skip
+    ]
 
 
 def _other(pair: str, r: Row) -> list[str]:
     return [
-        pair, f"{r.horizon_s:g}", str(r.voyages), _share(r.place_inside, r.place_spread),
-        _share(r.heading_inside, r.heading_spread), f"{r.place_m:.3g}", f"{r.heading_deg:.2g}",
-    ]  # fmt: skip
+        pair,
+        f"{r.horizon_s:g}",
+        str(r.voyages),
+        _share(r.place_inside, r.place_spread),
+        _share(r.heading_inside, r.heading_spread),
+        f"{r.place_m:.3g}",
+        f"{r.heading_deg:.2g}",
+    ]
 
 
 def _share(mean: float, spread: float) -> str:

@@ -71,11 +71,20 @@ def measured(step_p999_us=1000.0, peak_mb=40.0):
     step = {"median": 200.0, "p99": 300.0, "p999": step_p999_us, "max": step_p999_us}
     memory = {"peak_mb": peak_mb, "now_mb": 30.0, "anon_mb": 20.0, "file_mb": 10.0}
     return {
-        "step_us": step, "memory": memory, "growth_mb": 0.0, "growth_anon_mb": 0.0, "missed_deadlines": 0,
-        "messages_per_step": 1.0, "cpu_us_per_step": 200.0, "mode": "hybrid",
-        "modes": {"hybrid": 1}, "reasons": [], "notes": [],
-        "log": {"written": 1}, "parts_us": {"known": {"median": 9.0, "p99": 12.0, "mean": 10.0}},
-    }  # fmt: skip
+        "step_us": step,
+        "memory": memory,
+        "growth_mb": 0.0,
+        "growth_anon_mb": 0.0,
+        "missed_deadlines": 0,
+        "messages_per_step": 1.0,
+        "cpu_us_per_step": 200.0,
+        "mode": "hybrid",
+        "modes": {"hybrid": 1},
+        "reasons": [],
+        "notes": [],
+        "log": {"written": 1},
+        "parts_us": {"known": {"median": 9.0, "p99": 12.0, "mean": 10.0}},
+    }
 
 
 def judge(target="here", **numbers):

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from twin.live.signals.config import KEYS, load
+from twin.live.signals.config import load
+from twin.live.signals.keys import KEYS
 
 DEPLOY = Path(__file__).parents[2] / "deploy"
 TOML = DEPLOY / "twin.toml"

@@ -28,9 +28,16 @@ PODS = [
     for name, x, y in (("fore", 0.8, 0.0), ("port", -0.8, -0.2), ("starboard", -0.8, 0.2))
 ]
 SIDES = [
-    {"name": name, "kind": "fixed_thruster", "channels": ["pwm_us"], "y_m": y, "ahead_n": 30.0, "astern_n": 15.0}
+    {
+        "name": name,
+        "kind": "fixed_thruster",
+        "channels": ["pwm_us"],
+        "y_m": y,
+        "ahead_n": 30.0,
+        "astern_n": 15.0,
+    }
     for name, y in (("port", -0.3), ("starboard", 0.3))
-]  # fmt: skip
+]
 NOISE = {
     "north_m": 0.02,
     "east_m": 0.02,
@@ -120,8 +127,12 @@ class Service:
                 data = encode_fix(57.6 + value / 111e3, 11.6 + said["east_m"] / 60e3, ns)
                 self.put("location_fix", "gnss", data, ns)
             elif channel != "east_m":
-                self.put(f"actuator_{last}" if name else channel, f"{name}/drive" if name else "sensor",
-                         encode_float(value, ns), ns)  # fmt: skip
+                self.put(
+                    f"actuator_{last}" if name else channel,
+                    f"{name}/drive" if name else "sensor",
+                    encode_float(value, ns),
+                    ns,
+                )
 
     def put(self, subject, source, data, ns):
         self.bus.put(key("twin", "ship", subject, source), wrap(data, ns))

@@ -136,15 +136,26 @@ def test_replay_of_a_faulty_voyage_names_the_fault(tmp_path, capsys):
     assert "dead reckoning" in told and "heading_true_north_deg" in told
 
 
-@pytest.mark.parametrize("words, code, needed", (
-    (["ruder", "stuck", "--log", VOYAGE, "-o", "o.mcap"], 2, "Did you mean 'rudder'"), (["rudder", "stukc", "--log", VOYAGE, "-o", "o.mcap"], 2, "'stuck'"),
-    (["rudder", "--log", VOYAGE, "-o", "o.mcap"], 2, "no fault is called"), (["rudder", "wrong", "--log", VOYAGE, "-o", "o.mcap"], 2, "--by"),
-    (["rudder", "stuck"], 2, "--listen"), (["rudder", "stuck", "--log", VOYAGE], 2, "-o"), (["clock", "--log", VOYAGE, "-o", "o.mcap"], 2, "seconds"),
-    (["rudder", "wrong", "--by", "nan", "--log", VOYAGE, "-o", "o.mcap"], 2, "finite"), (["rudder", "off", "--log", VOYAGE, "-o", VOYAGE], 2, "itself"),
-    (["depth", "off", "--from", "99999", "--log", VOYAGE, "-o", "o.mcap"], 4, "nothing in it is changed"), (["rudder", "off", "--log", "no.mcap", "-o", "o.mcap"], 4, "no.mcap"),
-    (["rudder", "off", "--from", "-1", "--log", VOYAGE, "-o", "o.mcap"], 2, "--from"), (["pause", "--pid", "1"], 2, "--for"),
-    (["pause", "--pid", "99999999", "--for", "1"], 2, "no such process"), (["bus", "stuck", "--log", VOYAGE, "-o", "o.mcap"], 2, "bus takes no kind"),
-))  # fmt: skip
+@pytest.mark.parametrize(
+    "words, code, needed",
+    (
+        (["ruder", "stuck", "--log", VOYAGE, "-o", "o.mcap"], 2, "Did you mean 'rudder'"),
+        (["rudder", "stukc", "--log", VOYAGE, "-o", "o.mcap"], 2, "'stuck'"),
+        (["rudder", "--log", VOYAGE, "-o", "o.mcap"], 2, "no fault is called"),
+        (["rudder", "wrong", "--log", VOYAGE, "-o", "o.mcap"], 2, "--by"),
+        (["rudder", "stuck"], 2, "--listen"),
+        (["rudder", "stuck", "--log", VOYAGE], 2, "-o"),
+        (["clock", "--log", VOYAGE, "-o", "o.mcap"], 2, "seconds"),
+        (["rudder", "wrong", "--by", "nan", "--log", VOYAGE, "-o", "o.mcap"], 2, "finite"),
+        (["rudder", "off", "--log", VOYAGE, "-o", VOYAGE], 2, "itself"),
+        (["depth", "off", "--from", "99999", "--log", VOYAGE, "-o", "o.mcap"], 4, "nothing in it is changed"),
+        (["rudder", "off", "--log", "no.mcap", "-o", "o.mcap"], 4, "no.mcap"),
+        (["rudder", "off", "--from", "-1", "--log", VOYAGE, "-o", "o.mcap"], 2, "--from"),
+        (["pause", "--pid", "1"], 2, "--for"),
+        (["pause", "--pid", "99999999", "--for", "1"], 2, "no such process"),
+        (["bus", "stuck", "--log", VOYAGE, "-o", "o.mcap"], 2, "bus takes no kind"),
+    ),
+)
 def test_what_cannot_be_meant_is_one_line_and_leaves_no_file(
     words, code, needed, tmp_path, monkeypatch, capsys
 ):

@@ -106,8 +106,11 @@ def test_a_recorded_voyage_is_seen_on_the_bus_paused_and_to_its_end(voyage, tmp_
     options = ["--config", tmp_path / "twin.toml", "--to-bus", "--speed", "8", "--listen", place]
     replay = subprocess.Popen(
         [*TWIN, "replay", voyage, *options, "--json", tmp_path / "summary.json"],
-        stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     view = subprocess.Popen([*TWIN, "view", "--text", "--connect", place], stdout=subprocess.PIPE, text=True)
     feed = BusFeed(Settings({"bus.listen": "", "bus.connect": [place]}))
     try:
@@ -162,9 +165,16 @@ def test_what_cannot_be_meant_is_a_usage_error(voyage, more, said):
 
 @pytest.mark.parametrize(
     "options, code",
-    [(["{log}", "--speed", "0"], 2), (["--speed", "2", "--text"], 2), (["{log}", "--connect", "tcp/1.2.3.4:1"], 2),
-     (["none.mcap"], 4), (["{log}"], 4), (["--connect", "nonsense"], 5), (["{ticks}", "--port", "99999"], 2)],
-)  # fmt: skip
+    [
+        (["{log}", "--speed", "0"], 2),
+        (["--speed", "2", "--text"], 2),
+        (["{log}", "--connect", "tcp/1.2.3.4:1"], 2),
+        (["none.mcap"], 4),
+        (["{log}"], 4),
+        (["--connect", "nonsense"], 5),
+        (["{ticks}", "--port", "99999"], 2),
+    ],
+)
 def test_a_view_of_what_is_not_there_is_one_line(voyage, tmp_path, options, code):
     ticks = tmp_path / "ticks.mcap"
     if "{ticks}" in options:
@@ -186,8 +196,10 @@ def test_the_text_of_a_replayed_log_to_its_end(voyage, tmp_path):
     ticks = tmp_path / "ticks.mcap"
     made = subprocess.run(
         [*TWIN, "replay", voyage, "--config", tmp_path / "twin.toml", "-o", ticks],
-        capture_output=True, text=True, timeout=120,
-    )  # fmt: skip
+        capture_output=True,
+        text=True,
+        timeout=120,
+    )
     assert made.returncode == 0, made.stderr
     done = subprocess.run(
         [*TWIN, "view", ticks, "--text", "--speed", "100"], capture_output=True, text=True, timeout=60

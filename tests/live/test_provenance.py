@@ -14,7 +14,8 @@ from twin.live.log.mcap_read import McapReader
 from twin.live.log.record import Recorder
 from twin.live.log.recover import recover
 from twin.live.provenance import identity, provenance
-from twin.live.signals.config import KEYS, Settings
+from twin.live.signals.config import Settings
+from twin.live.signals.keys import KEYS
 
 TOPIC, FLOAT = "twin/@v0/ship/pubsub/rudder_angle_deg/s", "keelson.TimestampedFloat"
 

@@ -171,10 +171,11 @@ def test_C3_the_watchdog_is_fed_after_good_steps_and_not_while_the_loop_hangs(pl
     assert any(word.startswith("STATUS=starting") for word in heard)
 
 
-@pytest.mark.parametrize("text, words", (
-    ("[loop]\nrate_hzz = 10\n", "line 2"), ('[ship]\nfile = "no_such_ship"\n', "no_such_ship"),
-    ('[residual]\nfile = "no.onnx"\nrequired = true\n', "no.onnx"),
-))  # fmt: skip
+NO_SHIP, NO_RESIDUAL = '[ship]\nfile = "no_such_ship"\n', '[residual]\nfile = "no.onnx"\nrequired = true\n'
+UNUSABLE = {"[loop]\nrate_hzz = 10\n": "line 2", NO_SHIP: "no_such_ship", NO_RESIDUAL: "no.onnx"}
+
+
+@pytest.mark.parametrize("text, words", UNUSABLE.items())
 def test_F1_M1_settings_that_cannot_be_used_end_it_with_exit_code_5_and_one_line(place, text, words):
     (place / "twin.toml").write_text(
         text + f'[bus]\nlisten = "tcp/127.0.0.1:{free_port()}"\n[log]\nfolder = ""\n'

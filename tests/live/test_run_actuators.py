@@ -114,8 +114,11 @@ def test_I23_a_lost_feedback_of_one_actuator_is_held_and_named_and_never_zero(ma
     assert told.startswith("port.rate_rpm is lost") and f"{60.0 * before:.4g}" in told
     assert shown(tick)["port.rate_rpm"].quality == Quality.STALE
     assert shown(tick)["starboard.rate_rpm"].quality == Quality.OK
-    status = [messages.String.FromString(messages.unwrap(data)[1]).value
-              for key, data in service.bus.sent if "twin_status" in key][-1]  # fmt: skip
+    status = [
+        messages.String.FromString(messages.unwrap(data)[1]).value
+        for key, data in service.bus.sent
+        if "twin_status" in key
+    ][-1]
     assert "port.rate_rpm is lost" in status
     assert service.run(1.0).mode == "physics only"
 
@@ -237,8 +240,12 @@ def test_a_voyage_recorded_live_replays_to_the_same_states_and_reads_as_columns(
 def twin(place, *words):
     return subprocess.run(
         [sys.executable, "-m", "twin", *words, "--ship", "ship.toml"],
-        cwd=place, capture_output=True, text=True, timeout=60.0, check=False,
-    )  # fmt: skip
+        cwd=place,
+        capture_output=True,
+        text=True,
+        timeout=60.0,
+        check=False,
+    )
 
 
 def test_twin_replay_and_twin_run_take_the_ship_file(voyage):

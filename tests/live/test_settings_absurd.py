@@ -10,7 +10,8 @@ from twin.live import run
 from twin.live.keelson.endpoint import check
 from twin.live.keelson.zenoh_config import BusSettings, configuration
 from twin.live.signals import config
-from twin.live.signals.config import KEYS, Settings
+from twin.live.signals.config import Settings
+from twin.live.signals.keys import KEYS
 
 ABSURD = {
     "400 digits": "1" + "0" * 400,

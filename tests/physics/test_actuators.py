@@ -15,9 +15,15 @@ from twin.physics.ship import from_table, load, text, to_table
 from twin.physics.state import Situation
 
 PORT = {
-    "name": "port", "kind": "fixed_thruster", "channels": ["command"], "x_m": -0.4, "y_m": -0.3,
-    "ahead_n": 50.0, "astern_n": 25.0, "slow": 0.0,
-}  # fmt: skip
+    "name": "port",
+    "kind": "fixed_thruster",
+    "channels": ["command"],
+    "x_m": -0.4,
+    "y_m": -0.3,
+    "ahead_n": 50.0,
+    "astern_n": 25.0,
+    "slow": 0.0,
+}
 MOTION = {"u": 1.1, "v": 0.2, "r": 0.1}
 
 
@@ -30,12 +36,17 @@ def single_screw_as_part(name="kvlcc2"):
     d = s.derivatives
     return ship_with(
         {
-            "name": "main", "kind": "propeller", "channels": ["rate_rpm", "angle_deg"],
-            "x_m": d.x_R * s.L_pp, "diameter_m": s.D_P, "K_T0": d.K_T0, "K_T1": d.K_T1,
+            "name": "main",
+            "kind": "propeller",
+            "channels": ["rate_rpm", "angle_deg"],
+            "x_m": d.x_R * s.L_pp,
+            "diameter_m": s.D_P,
+            "K_T0": d.K_T0,
+            "K_T1": d.K_T1,
             "rudder_area_m2": s.A_R,
         },
         name=name,
-    )  # fmt: skip
+    )
 
 
 def test_a_propeller_with_its_rudder_as_a_part_gives_the_same_to_the_last_digit():
@@ -90,8 +101,10 @@ def told_of(a: Actuator, k=1.0):
 
 def one_of_each():
     pods = ["rate_rpm", "angle_deg"]
-    turned = {k: PORT | {"name": k, "kind": k, "channels": ["command", "angle_deg"]}
-              for k in ("azimuth", "waterjet", "outboard")}  # fmt: skip
+    turned = {
+        k: PORT | {"name": k, "kind": k, "channels": ["command", "angle_deg"]}
+        for k in ("azimuth", "waterjet", "outboard")
+    }
     own = {"diameter_m": 0.2, "rudder_area_m2": 0.02, "x_m": -1.0}
     return ship_with(
         *turned.values(),

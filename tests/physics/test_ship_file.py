@@ -26,7 +26,7 @@ def test_what_was_noted_survives_too(ship, tmp_path):
         "structural": {"surge": [0.1, 0.2], "why": 'a "quoted" word, and µ'},
         "history": [{"added": "Wind", "errors": {"before_m": 3.0}}, {"added": "Current"}],
         "remark": "calm sea",
-    }  # fmt: skip
+    }
     save(replace(ship, notes=notes), tmp_path / "a.toml")
     kept = load(tmp_path / "a.toml").notes
     assert {k: kept[k] for k in notes} == notes

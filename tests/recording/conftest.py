@@ -10,8 +10,17 @@ from twin.errors import DataError
 from twin.recording.read import read_voyage
 
 STEP_S = 0.1
-REQUIRED = ("time_s", "north_m", "east_m", "heading_true_north_deg", "rudder_angle_deg", "propeller_rate_rpm",
-            "surge_velocity_mps", "sway_velocity_mps", "yaw_rate_degps")  # fmt: skip
+REQUIRED = (
+    "time_s",
+    "north_m",
+    "east_m",
+    "heading_true_north_deg",
+    "rudder_angle_deg",
+    "propeller_rate_rpm",
+    "surge_velocity_mps",
+    "sway_velocity_mps",
+    "yaw_rate_degps",
+)
 
 
 def sail(
@@ -126,8 +135,17 @@ def motion(seconds=120, hz=1.0):
     place = np.r_[0.0, np.cumsum((way[1:] + way[:-1]) / 2.0 / hz)]
     latitude = 57.0 + place.real / 111_360.0
     longitude = 11.0 + place.imag / (111_360.0 * np.cos(np.radians(57.0)))
-    return {"t": t, "psi": psi, "rate": rate, "place": place, "latitude": latitude, "longitude": longitude, "rudder": 5.0 * np.cos(t / 15.0 + 0.5),
-            "rpm": np.full(t.size, 84.0), "sog": np.full(t.size, 6.0)}  # fmt: skip
+    return {
+        "t": t,
+        "psi": psi,
+        "rate": rate,
+        "place": place,
+        "latitude": latitude,
+        "longitude": longitude,
+        "rudder": 5.0 * np.cos(t / 15.0 + 0.5),
+        "rpm": np.full(t.size, 84.0),
+        "sog": np.full(t.size, 6.0),
+    }
 
 
 @pytest.fixture
@@ -162,7 +180,13 @@ def nmea_lines(m, i):
     clock = f"{12 + k // 3600:02d}{k // 60 % 60:02d}{k % 60:02d}.00"
     psi = m["psi"][i]
     return [
-        sentence(f"GPRMC,{clock},A,{ddmm(m['latitude'][i], 2)},N,{ddmm(m['longitude'][i], 3)},E,{6 / KNOT:.3f},{psi:.2f},251126,,,A"),
-        sentence(f"HEHDT,{psi:.2f},T"), sentence(f"TIROT,{m['rate'][i] * 60:.2f},A"), sentence(f"IIRSA,{m['rudder'][i]:.2f},A,,V"),
-        sentence("ERRPM,S,1,84.0,,A"), sentence("WIMWV,30.0,R,12.0,N,A"), "!AIVDM,1,1,,A,13aI8e?P00PGpU:NR6s00?vT2000,0*1C",
-    ]  # fmt: skip
+        sentence(
+            f"GPRMC,{clock},A,{ddmm(m['latitude'][i], 2)},N,{ddmm(m['longitude'][i], 3)},E,{6 / KNOT:.3f},{psi:.2f},251126,,,A"
+        ),
+        sentence(f"HEHDT,{psi:.2f},T"),
+        sentence(f"TIROT,{m['rate'][i] * 60:.2f},A"),
+        sentence(f"IIRSA,{m['rudder'][i]:.2f},A,,V"),
+        sentence("ERRPM,S,1,84.0,,A"),
+        sentence("WIMWV,30.0,R,12.0,N,A"),
+        "!AIVDM,1,1,,A,13aI8e?P00PGpU:NR6s00?vT2000,0*1C",
+    ]

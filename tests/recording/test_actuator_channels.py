@@ -17,9 +17,12 @@ PORT = {"name": "port", "kind": "fixed_thruster", "channels": ["command"], "ahea
 
 def voyage(**columns):
     made = {
-        "north_m": 1.2 * TIME, "east_m": 0.0 * TIME, "heading_true_north_deg": 0.0 * TIME,
-        "port.command": 0.4 + 0.1 * np.sin(0.1 * TIME), "pod_2.angle_deg": 30.0 * np.cos(0.1 * TIME),
-    }  # fmt: skip
+        "north_m": 1.2 * TIME,
+        "east_m": 0.0 * TIME,
+        "heading_true_north_deg": 0.0 * TIME,
+        "port.command": 0.4 + 0.1 * np.sin(0.1 * TIME),
+        "pod_2.angle_deg": 30.0 * np.cos(0.1 * TIME),
+    }
     return Voyage("two hulls", TIME, made | columns)
 
 

@@ -76,17 +76,28 @@ TRAPS = {
     "earth-fixed velocities called u and v": ("velocity_frame", earth_fixed, "earth-fixed"),
     "knots taken for m/s": ("velocity_frame", lambda c: times(SURGE, KNOTS)(times(SWAY, KNOTS)(c)), "knots"),
     "north and east swapped": (
-        "velocity_frame", lambda c: c | {"north_m": c["east_m"], "east_m": c["north_m"]},
-        "north and east are swapped"),
+        "velocity_frame",
+        lambda c: c | {"north_m": c["east_m"], "east_m": c["north_m"]},
+        "north and east are swapped",
+    ),
     "surge and sway swapped": ("velocity_frame", lambda c: c | {SURGE: c[SWAY], SWAY: c[SURGE]}, "swapped"),
     "sway positive to port": ("velocity_frame", times(SWAY, -1.0), "positive to port"),
     "heading in radians": ("velocity_frame", lambda c: c | {HEADING: np.radians(c[HEADING])}, "radians"),
     "heading from east, anticlockwise": (
-        "velocity_frame", lambda c: c | {HEADING: 90.0 - c[HEADING]}, "anticlockwise"),
+        "velocity_frame",
+        lambda c: c | {HEADING: 90.0 - c[HEADING]},
+        "anticlockwise",
+    ),
     "magnetic heading, 12 deg off": (
-        "velocity_frame", lambda c: c | {HEADING: c[HEADING] + 12.0}, "-12.0 deg off"),
+        "velocity_frame",
+        lambda c: c | {HEADING: c[HEADING] + 12.0},
+        "-12.0 deg off",
+    ),
     "speed through water called over ground": (
-        "velocity_frame", through_water(1.5 - 1.0j), "stream of 1.80 m/s"),
+        "velocity_frame",
+        through_water(1.5 - 1.0j),
+        "stream of 1.80 m/s",
+    ),
     "the same in a weak current": ("velocity_frame", through_water(0.3 - 0.4j), "stream of 0.50 m/s"),
     "time in milliseconds": ("velocity_frame", times("time_s", 1000.0), "milliseconds"),
     "time in minutes": ("velocity_frame", times("time_s", 1.0 / 60.0), "minutes"),
@@ -100,23 +111,34 @@ TRAPS = {
     "wind direction in radians": ("wind", lambda c: c | {WIND_FROM: np.radians(c[WIND_FROM])}, "radians"),
     "apparent angle positive to port": ("wind", times(AIR_FROM, -1.0), "positive to port"),
     "apparent wind taken as true": (
-        "wind", lambda c: c | {WIND: c[AIR], WIND_FROM: c[AIR_FROM] + c[HEADING]}, "is the apparent wind"),
+        "wind",
+        lambda c: c | {WIND: c[AIR], WIND_FROM: c[AIR_FROM] + c[HEADING]},
+        "is the apparent wind",
+    ),
     "wind in knots": ("wind", times(AIR, KNOTS), "knots"),
     "speed log in knots": ("speed_log", times(LOG, KNOTS), "kn"),
     "rounded time stamps that repeat": (
-        "time_stamps", lambda c: c | {"time_s": np.round(c["time_s"])}, "rounded"),
+        "time_stamps",
+        lambda c: c | {"time_s": np.round(c["time_s"])},
+        "rounded",
+    ),
     "a gap": ("time_gaps", without_rows(300.0, 340.0), "40"),
     "a hole in the heading": ("missing_samples", blank(HEADING, 300.0, 330.0), "has a hole"),
     "a tail without rudder": ("missing_samples", blank(RUDDER, 700.0, 1e9), "ends early"),
     "a heading that hangs": ("frozen", stuck(HEADING, 100.0, 160.0), "heading_true_north_deg stays"),
     "a position that hangs": ("frozen", stuck("north_m", 100.0, 130.0), "north_m stays"),
     "a speed that hangs at zero": (
-        "frozen", lambda c: c | {SURGE: np.where(abs(c["time_s"] - 200) < 60, 0.0, c[SURGE])},
-        "surge_velocity_mps stays"),
+        "frozen",
+        lambda c: c | {SURGE: np.where(abs(c["time_s"] - 200) < 60, 0.0, c[SURGE])},
+        "surge_velocity_mps stays",
+    ),
     "spikes in the heading": ("spikes", spike(HEADING, 25.0), "heading_true_north_deg 2"),
     "a wind sensor that says 655.35": (
-        "plausible_values", lambda c: c | {WIND: np.where(c["time_s"] > 800, 300.0, c[WIND])}, "outside"),
-}  # fmt: skip
+        "plausible_values",
+        lambda c: c | {WIND: np.where(c["time_s"] > 800, 300.0, c[WIND])},
+        "outside",
+    ),
+}
 
 
 def test_good_data_passes_every_check_in_silence(sail):

@@ -65,18 +65,37 @@ EARTH = {"surge_velocity_mps": Column(5), "sway_velocity_mps": Column(6)}
 EARTH_MARIN = {"surge_velocity_mps": Column(6), "sway_velocity_mps": Column(7)}
 TRAPS = {
     "hsva: earth-fixed velocities called u and v": (
-        "hsva", with_columns(HSVA, **EARTH), "velocity_frame", "earth-fixed"),
+        "hsva",
+        with_columns(HSVA, **EARTH),
+        "velocity_frame",
+        "earth-fixed",
+    ),
     "hsva: 1/s for rpm": ("hsva", with_columns(HSVA, propeller_rate_rpm=Column(10)), "propeller_rate", "1/s"),
     "marin: earth-fixed velocities, without position": (
-        "marin", with_columns(MARIN, **EARTH_MARIN), "velocity_frame", "earth-fixed"),
+        "marin",
+        with_columns(MARIN, **EARTH_MARIN),
+        "velocity_frame",
+        "earth-fixed",
+    ),
     "marin: earth-fixed velocities, with position": (
-        "marin", with_columns(MARIN, north_m=Column(2), east_m=Column(3), **EARTH_MARIN),
-        "velocity_frame", "earth-fixed"),
+        "marin",
+        with_columns(MARIN, north_m=Column(2), east_m=Column(3), **EARTH_MARIN),
+        "velocity_frame",
+        "earth-fixed",
+    ),
     "marin: rudder positive to port": (
-        "marin", with_columns(MARIN, rudder_angle_deg=Column(10)), "rudder_sign", "to port"),
+        "marin",
+        with_columns(MARIN, rudder_angle_deg=Column(10)),
+        "rudder_sign",
+        "to port",
+    ),
     "marin: rounded stamps that repeat": (
-        "marin", replace(MARIN, time=replace(MARIN.time, rebuild=False)), "time_stamps", "rounded"),
-}  # fmt: skip
+        "marin",
+        replace(MARIN, time=replace(MARIN.time, rebuild=False)),
+        "time_stamps",
+        "rounded",
+    ),
+}
 
 
 @pytest.mark.parametrize("trap", TRAPS)

@@ -119,10 +119,15 @@ def test_fractions_of_a_second_without_leading_zeros_are_counted(tmp_path):
     np.testing.assert_allclose(np.diff(v.time_s), 0.25, atol=1e-6)
 
 
-@pytest.mark.parametrize("entry, words", [
-    ({"column": ["a", "b"], "factors": [1]}, "factors needs 2 numbers"), ({"column": ["a", "b"], "unit": "quaternion"}, "four of them"),
-    ({"column": "a", "deviation": [1, 2, 3, 4, 5, 6]}, "at most five"), ({"column": "a", "factor": "x"}, "must be"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "entry, words",
+    [
+        ({"column": ["a", "b"], "factors": [1]}, "factors needs 2 numbers"),
+        ({"column": ["a", "b"], "unit": "quaternion"}, "four of them"),
+        ({"column": "a", "deviation": [1, 2, 3, 4, 5, 6]}, "at most five"),
+        ({"column": "a", "factor": "x"}, "must be"),
+    ],
+)
 def test_a_map_that_cannot_be_meant_so_says_why(entry, words):
     with pytest.raises(SettingsError, match=words):
         parse_map({"columns": {"heading_true_north_deg": entry}}, "m")

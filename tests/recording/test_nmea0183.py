@@ -33,13 +33,16 @@ def test_a_bridge_log_goes_in_as_it_is(tmp_path, sailed):
     assert any("AIS sentences" in note for note in v.meta["notes"])
 
 
-@pytest.mark.parametrize("front", [
-    lambda i: f"2026-11-25T12:{i // 60:02d}:{i % 60:02d}.250Z ",
-    lambda i: f"{1795608000.25 + i:.2f} ",
-    lambda i: f"{1795608000250 + 1000 * i};multiplexer;",
-    lambda i: f"\\s:bridge1,c:{1795608000 + i}*1F\\",
-    lambda i: f"UdPbC\0\\s:GP0001,c:{1795608000 + i}*1F\\",
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "front",
+    [
+        lambda i: f"2026-11-25T12:{i // 60:02d}:{i % 60:02d}.250Z ",
+        lambda i: f"{1795608000.25 + i:.2f} ",
+        lambda i: f"{1795608000250 + 1000 * i};multiplexer;",
+        lambda i: f"\\s:bridge1,c:{1795608000 + i}*1F\\",
+        lambda i: f"UdPbC\0\\s:GP0001,c:{1795608000 + i}*1F\\",
+    ],
+)
 def test_the_stamp_in_front_of_a_sentence_is_its_time(tmp_path, sailed, front):
     v = read_voyage(log(tmp_path, bridge(sailed, front)))
     assert v.meta["start_time_utc"].startswith("2026-11-25T12:00:00") and v.duration_s == pytest.approx(119.0)

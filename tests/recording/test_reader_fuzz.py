@@ -50,7 +50,7 @@ SEEDS = {
     "flash.BIN": lambda: dataflash(SHORT),
     "v.parquet": lambda: packed("parquet"),
     "v.feather": lambda: packed("feather"),
-}  # fmt: skip
+}
 
 
 def damaged(data, rng):

@@ -78,10 +78,14 @@ def test_the_page_of_diagnose_ranks_causes_in_newtons_with_the_command_beside(
 ):
     number = {"name": "east", "value": 0.8, "low95": 0.7, "high95": 0.9, "unit": "m/s", "in_ship_file": 0.2}
     cause = {
-        "effect": "Current", "probability": 0.97, "parameters": [number],
+        "effect": "Current",
+        "probability": 0.97,
+        "parameters": [number],
         "typical_force": {"X_N": 4.1e4, "Y_N": 5.12e5, "N_Nm": 3.2e7},
-        "error_without": 72.0, "error_with": 13.0, "cannot_be_told_from": ["VaryingCurrent"],
-    }  # fmt: skip
+        "error_without": 72.0,
+        "error_with": 13.0,
+        "cannot_be_told_from": ["VaryingCurrent"],
+    }
     next_one = {
         "separates": ["Current", "VaryingCurrent"],
         "manoeuvre": "reciprocal runs",

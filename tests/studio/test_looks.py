@@ -21,13 +21,26 @@ ASKED = (
     {"verb": "look", "file": "owner.csv", "ship": SHIP},
     {"verb": "compare", "ship": SHIP, "voyages": MONDAY},
     {"verb": "diagnose", "ship": SHIP, "voyages": MONDAY},
-    {"verb": "add", "ship": SHIP, "voyages": MONDAY, "held_outs": TUESDAY, "effects": ["HullFouling"], "output": "better.toml"},
-)  # fmt: skip
+    {
+        "verb": "add",
+        "ship": SHIP,
+        "voyages": MONDAY,
+        "held_outs": TUESDAY,
+        "effects": ["HullFouling"],
+        "output": "better.toml",
+    },
+)
 PAGES = {
-    "data": "#/data", "file": "#/data/owner.csv", "ship": "#/ship/tanker.toml?turn=monday.mcap", "new": "#/ship/new",
-    "compare": "#/compare/0002-compare", "diagnose": "#/diagnose/0003-diagnose", "add": "#/add/0004-add",
-    "calibrate": "#/calibrate", "live": "#/live",
-}  # fmt: skip
+    "data": "#/data",
+    "file": "#/data/owner.csv",
+    "ship": "#/ship/tanker.toml?turn=monday.mcap",
+    "new": "#/ship/new",
+    "compare": "#/compare/0002-compare",
+    "diagnose": "#/diagnose/0003-diagnose",
+    "add": "#/add/0004-add",
+    "calibrate": "#/calibrate",
+    "live": "#/live",
+}
 PICTURES = os.environ.get("STUDIO_PICTURES")
 SEEN_HEIGHT = {"data": 500, "file": 1100, "compare": 1250, "diagnose": 1300, "add": 1300, "ship": 760}
 

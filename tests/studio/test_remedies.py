@@ -13,9 +13,15 @@ from twin.studio.project import BUNDLED
 from twin.studio.remedies import edited, remedies_of
 
 COLUMNS = (
-    "north_m", "east_m", "heading_true_north_deg", "surge_velocity_mps", "sway_velocity_mps", "yaw_rate_degps",
-    "rudder_angle_deg", "propeller_rate_rpm",
-)  # fmt: skip
+    "north_m",
+    "east_m",
+    "heading_true_north_deg",
+    "surge_velocity_mps",
+    "sway_velocity_mps",
+    "yaw_rate_degps",
+    "rudder_angle_deg",
+    "propeller_rate_rpm",
+)
 
 
 def table(path, mistake):

@@ -46,9 +46,12 @@ def folder(tmp_path_factory):
             continue
         words = words if program == "python" else ["-m", "twin.cli", *words]
         done = subprocess.run(
-            [sys.executable, *words], cwd=path, capture_output=True, text=True,
+            [sys.executable, *words],
+            cwd=path,
+            capture_output=True,
+            text=True,
             env=os.environ | {"PYTHONPATH": str(ROOT)},
-        )  # fmt: skip
+        )
         assert done.returncode == int(expected or 0), f"{command}\n{done.stderr[-800:]}"
         if expected:
             (path / "refused.txt").write_text(done.stderr)

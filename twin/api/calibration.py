@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Progress, Result, frame, metres, quietly
 from twin.api.voyages import several
-from twin.num import as_given
+from twin.num import as_given, num
 from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.voyage import Voyage
@@ -18,6 +18,7 @@ from twin.study.calibration.worse import refusal
 from twin.study.reference.sailed import Sailed, sailed
 
 if TYPE_CHECKING:
+    import matplotlib.axes
     import pandas
 
 
@@ -57,17 +58,46 @@ class Calibration(Result):
         return self.data["derivatives"]
 
     def __repr__(self) -> str:
+        return f"<Calibration of {self.ship.name!r}: {self._fall()}, {len(self.warnings)} warnings>"
+
+    def _fall(self) -> str:
         last = self.data["held_out"][-1]
-        error = (
+        return (
             f"{metres(last['before_m'])} -> {metres(last['position_m'])} at {as_given(last['horizon_s'])} s"
         )
-        return f"<Calibration of {self.ship.name!r}: {error}, {len(self.warnings)} warnings>"
 
     def page(self) -> str:
-        """The lines of the terminal as a page."""
-        from html import escape
+        """The error before and after, by horizon and by what the ship did, and every derivative."""
+        from twin.report.result_page import Bars, Table, result_page
 
-        return f"<!doctype html><meta charset=utf-8><pre>{escape(chr(10).join(self.text()))}</pre>"
+        rows = [r | {"at": f"after {num(r['horizon_s'])} s"} for r in self.data["held_out"]]
+        both = {"before_m": "before", "position_m": "now"}
+        shown = {"name": "derivative", "before": "before", "value": "now", "sd": "+- (sd)", "excited": "told"}
+        regimes = {"regime": "while", "horizon_s": "horizon [s]", "position_m": "error [m]"}
+        return result_page(
+            f"{self.ship.name}: calibration",
+            self.refused or f"What was not used for the fit is predicted better: {self._fall()}.",
+            self.warnings,
+            (
+                Bars(f"Open-loop position error ({self.data['held_out_is']})", "m", "at", both, rows),
+                Table("By what the ship did", regimes, self.data["by_regime"]),
+                Table("Derivatives", shown, self.data["derivatives"]),
+            ),
+        )
+
+    def plot(self) -> "matplotlib.axes.Axes":
+        """Open-loop position error on what was not used for the fit [m] over the horizon [s], before and
+        after."""
+        from matplotlib import pyplot
+
+        _, axes = pyplot.subplots()
+        rows = [r for r in self.data["held_out"] if r["position_m"] is not None]
+        for key, label in (("before_m", "before"), ("position_m", "calibrated")):
+            axes.plot([r["horizon_s"] for r in rows], [r[key] for r in rows], "o-", label=label)
+        axes.set(xlabel="horizon [s]", ylabel="open-loop position error [m]", title=self.ship.name)
+        axes.set_ylim(bottom=0.0)
+        axes.legend()
+        return axes
 
 
 def calibrate(

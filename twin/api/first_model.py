@@ -47,6 +47,22 @@ class FirstModel(Result):
             for name, entry in notes[section].items()
         ]
 
+    def page(self) -> str:
+        """What it does in the standard manoeuvres, and every number with its source."""
+        from twin.report.result_page import Table, result_page
+
+        trial = [{"figure": k, "value": v} for k, v in self.trial.items()]
+        columns = {"section": "section", "name": "number", "value": "value", "source": "source"}
+        return result_page(
+            f"{self.ship.name}: a first model",
+            f"{self.ship.name}: a first model from its main particulars.",
+            self.warnings,
+            (
+                Table("Sea trial of this model", {"figure": "figure", "value": "value"}, trial),
+                Table("Numbers", columns, self._rows()),
+            ),
+        )
+
     def __repr__(self) -> str:
         return (
             f"<FirstModel of {self.ship.name!r}: {as_given(self.ship.L_pp)} m, {len(self.warnings)} warnings>"

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Progress, Result, quietly
 from twin.api.voyages import several
@@ -13,6 +13,9 @@ from twin.recording.voyage import Voyage
 from twin.study.instruments.corrections import as_map, corrected
 from twin.study.instruments.estimate import Instruments, estimate
 from twin.study.instruments.told import amount, as_json, told
+
+if TYPE_CHECKING:
+    import matplotlib.axes
 
 FRAMES = {"compass": "course", "receiver": "body"}  # who turned the velocity -> the frame it came in
 
@@ -62,10 +65,37 @@ class InstrumentCheck(Result):
         return f"<InstrumentCheck of {voyages}: {', '.join(self.faults) or 'no fault seen'}>"
 
     def page(self) -> str:
-        """The lines of the terminal as a page."""
-        from html import escape
+        """The faults that were seen, and every number with its 95 % interval."""
+        from twin.report.result_page import Bars, Table, result_page
 
-        return f"<!doctype html><meta charset=utf-8><pre>{escape(chr(10).join(self.text()))}</pre>"
+        faults = [f | {"called": f["effect"] or f["fault"]} for f in self.data["faults"]]
+        seen = ", ".join(f["words"] for f in faults) or "No instrument disagrees with the others"
+        columns = {"meaning": "number", "value": "value", "lo": "from", "hi": "to", "unit": "unit"}
+        more = {"seen": "seen", "unseen_below": "else less than", "hard_to_tell_from": "hard to tell from"}
+        bayes = {"log_bayes_factor": "log Bayes factor"}
+        return result_page(
+            f"Instruments of {', '.join(v['name'] for v in self.data['voyages'])}",
+            f"{seen[0].upper()}{seen[1:]}.",
+            parts=(
+                Bars("What was seen", "", "called", bayes, faults),
+                Table("Numbers (95 %)", columns | more, self.data["numbers"]),
+            ),
+        )
+
+    def plot(self) -> "matplotlib.axes.Axes":
+        """Every number in its own standard errors, with its 95 % interval; 0: nothing is wrong."""
+        from matplotlib import pyplot
+
+        _, axes = pyplot.subplots()
+        rows = [n for n in self.data["numbers"] if n["cramer_rao_sd"]][::-1]
+        for k, n in enumerate(rows):
+            at, low, high = (n[key] / n["cramer_rao_sd"] for key in ("value", "lo", "hi"))
+            axes.plot([low, high], [k, k], "-", color="C0" if n["seen"] else "0.7")
+            axes.plot([at], [k], "o", color="C0" if n["seen"] else "0.7")
+        axes.axvline(0.0, color="0.5", lw=0.8)
+        axes.set_yticks(range(len(rows)), [n["name"] for n in rows])
+        axes.set(xlabel="value over its standard error")
+        return axes
 
 
 def instruments(

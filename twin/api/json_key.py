@@ -68,18 +68,23 @@ def provenance(path: str, what: str) -> tuple[JsonKey, ...]:
 EXPECTED = (
     *under("horizons[].noise_floor", ERRORS, "expected of this ship: "),
     JsonKey(
-        "horizons[].noise_floor.of", "", "what it rests on: sensors, sensors and structure, or "
-        "reference voyages"
+        "horizons[].noise_floor.of",
+        "",
+        "what it rests on: sensors, sensors and structure, or reference voyages",
     ),
     JsonKey(
-        "horizons[].noise_floor.limit95", "-", "times the expected error that 95 % of healthy voyages stay "
-        "below", PROOF,
+        "horizons[].noise_floor.limit95",
+        "-",
+        "times the expected error that 95 % of healthy voyages stay below",
+        PROOF,
     ),
     JsonKey(
-        "horizons[].noise_floor.widened", "-", "factor by which these voyages leave what the references "
-        "sailed", PROOF,
+        "horizons[].noise_floor.widened",
+        "-",
+        "factor by which these voyages leave what the references sailed",
+        PROOF,
     ),
-)  # fmt: skip
+)
 
 
 def paths(value: Any, path: str = "") -> Iterator[str]:

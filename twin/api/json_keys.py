@@ -135,7 +135,7 @@ DIAGNOSE = (
     JsonKey("identifiability.*", "", "what a voyage can tell at all", "--identifiability"),
     *CHECKS,
     *COMMAND,
-)  # fmt: skip
+)
 NUMBER = (
     JsonKey("value", "of the number", "its estimate"),
     JsonKey("unit", "", "its unit"),

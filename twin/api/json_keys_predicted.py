@@ -3,6 +3,7 @@
 
 from twin.api.json_key import ABOUT, CLI, JsonKey, under
 
+MET = "45 voyages met it"
 SIZE = (
     JsonKey("voyages", "", "voyages that the promise rests on"),
     JsonKey("predictions", "", "predictions that came due on all of them"),

@@ -16,9 +16,14 @@ if TYPE_CHECKING:
     import matplotlib.axes
 
 COLUMNS = (
-    "time_s", "north_m", "east_m", "heading_true_north_deg", "surge_velocity_mps", "sway_velocity_mps",
+    "time_s",
+    "north_m",
+    "east_m",
+    "heading_true_north_deg",
+    "surge_velocity_mps",
+    "sway_velocity_mps",
     "yaw_rate_degps",
-)  # fmt: skip
+)
 NOT_IN_STILL_WATER = {"wind_speed", "wind_to", "depth", "H_s", "bank_port", "bank_starboard", "phi"}
 KNOWN = "straight, zigzag_ANGLE, circle_ANGLE (degrees, such as zigzag_20; a circle to port is circle_-35)"
 

@@ -5,7 +5,7 @@ import tempfile
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from twin.api.result import Progress, Result, metres, quietly
 from twin.api.voyages import several
@@ -13,7 +13,7 @@ from twin.errors import DataError
 from twin.live.learning.residual import ship_hash
 from twin.live.prediction.calibrated import SECTION, calibrated_of
 from twin.live.signals import config
-from twin.num import as_given
+from twin.num import as_given, num
 from twin.physics.ship import Ship, save
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
@@ -22,6 +22,9 @@ from twin.study.reference.sailed import samples_hash
 from twin.study.reference.tube_calibration import section
 from twin.study.reference.tube_doubts import doubts
 from twin.study.reference.tube_told import rows, told
+
+if TYPE_CHECKING:
+    import matplotlib.axes
 
 
 @dataclass(frozen=True, repr=False)
@@ -46,10 +49,43 @@ class TubeCalibration(Result):
         )
 
     def page(self) -> str:
-        """The lines of the terminal as a page."""
-        from html import escape
+        """How wide the tube is, by horizon and by what the ship does, and what it rests on."""
+        from twin.report.result_page import Bars, Table, result_page
 
-        return f"<!doctype html><meta charset=utf-8><pre>{escape(chr(10).join(told(self.data)))}</pre>"
+        rows = self._rows()
+        at = [r | {"at": f"after {num(r['horizon_s'])} s"} for r in rows]
+        regimes = [{**g, "horizon_s": r["horizon_s"]} for r in self.data["horizons"] for g in r["regimes"]]
+        sizes = {"voyages": "voyages", "predictions": "predictions", "place_m": "[m]", "heading_deg": "[deg]"}
+        return result_page(
+            f"{self.ship.name}: tube around its predictions",
+            f"{100 * rows[-1]['level']:.0f} % within {metres(rows[-1]['place_m'])} and "
+            f"{num(rows[-1]['heading_deg'])} deg after {num(rows[-1]['horizon_s'])} s, in the mean.",
+            self.warnings,
+            (
+                Bars("Place", "m", "at", {"place_m": ""}, at),
+                Bars("Heading", "deg", "at", {"heading_deg": ""}, at),
+                Table("By horizon", {"horizon_s": "horizon [s]", "level": "share", **sizes}, rows),
+                Table(
+                    "By what the ship does", {"regime": "while", "horizon_s": "horizon [s]", **sizes}, regimes
+                ),
+            ),
+        )
+
+    def text(self) -> list[str]:
+        """The lines of `twin tube`."""
+        return told(self.data)
+
+    def plot(self) -> "matplotlib.axes.Axes":
+        """Within how many metres a prediction comes true, in the mean [m], over the horizon [s]."""
+        from matplotlib import pyplot
+
+        _, axes = pyplot.subplots()
+        rows = self._rows()
+        axes.plot([r["horizon_s"] for r in rows], [r["place_m"] for r in rows], "o-")
+        level = f"{100 * rows[-1]['level']:.0f} %"
+        axes.set(xlabel="horizon [s]", ylabel=f"{level} within [m]", title=self.ship.name)
+        axes.set_ylim(bottom=0.0)
+        return axes
 
 
 def tube(

@@ -43,6 +43,16 @@ class VoyageCheck(Result):
     def _rows(self) -> Any:
         return self.data["data_checks"]
 
+    def page(self) -> str:
+        """What each check has seen."""
+        from twin.report.result_page import Table, result_page
+
+        wrong = ", ".join(self.refused())
+        said = f"{wrong}: a sign, unit or frame is wrong." if wrong else "No check proves a mistake."
+        rows = [{"name": c.name, "ok": c.ok, "unusable": c.unusable, "text": c.text} for c in self.checks]
+        columns = {"name": "check", "ok": "content", "unusable": "mistake", "text": "what it saw"}
+        return result_page(self.voyage.name, said, parts=(Table("Checks", columns, rows),))
+
     def __repr__(self) -> str:
         wrong = ", ".join(self.refused()) or "no mistake proved"
         return f"<VoyageCheck of {self.voyage.name!r}: {len(self.checks)} checks, {wrong}>"

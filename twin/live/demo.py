@@ -77,9 +77,13 @@ def run(args: argparse.Namespace) -> int:
 def settings_for(ship: str, folder: Path) -> Settings:
     """As `twin run`, on a free port, 20 times a second, without the rights of a service."""
     values = {
-        "ship.file": ship, "bus.listen": f"tcp/127.0.0.1:{free_port()}", "log.folder": str(folder),
-        "loop.rate_hz": 20.0, "loop.priority": 0, "loop.lock_memory": False,
-    }  # fmt: skip
+        "ship.file": ship,
+        "bus.listen": f"tcp/127.0.0.1:{free_port()}",
+        "log.folder": str(folder),
+        "loop.rate_hz": 20.0,
+        "loop.priority": 0,
+        "loop.lock_memory": False,
+    }
     settings = Settings()
     for name, value in values.items():
         settings = settings.but(name, value)

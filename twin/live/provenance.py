@@ -5,7 +5,8 @@ from typing import Any
 
 from twin import __version__
 from twin.live.learning.residual import ship_hash
-from twin.live.signals.config import KEYS, SOURCES, Settings
+from twin.live.signals.config import Settings
+from twin.live.signals.keys import KEYS, SOURCES
 from twin.physics.ship import Ship
 
 LIVE, REPLAY = "live", "replay"

@@ -116,8 +116,9 @@ def _channel(name: str, measured: Measured, ages: dict[str, float]) -> dict[str,
 
 def state_of(e: Estimate) -> dict[str, float]:
     return border_state(e.x, e.y, e.psi, e.u, e.v, e.r) | {
-        "current_north_mps": e.current_north, "current_east_mps": e.current_east,
-    }  # fmt: skip
+        "current_north_mps": e.current_north,
+        "current_east_mps": e.current_east,
+    }
 
 
 def learned_of(learned: Learned, share: float) -> dict[str, float]:
@@ -128,24 +129,35 @@ def learned_of(learned: Learned, share: float) -> dict[str, float]:
 def border_state(x: float, y: float, psi: float, u: float, v: float, r: float) -> dict[str, float]:
     """The six numbers of eta and nu by their names and units outside; the heading in [0, 360)."""
     return {
-        "north_m": x, "east_m": y, "heading_true_north_deg": degrees(psi) % 360.0,
-        "surge_velocity_mps": u, "sway_velocity_mps": v, "yaw_rate_degps": degrees(r),
-    }  # fmt: skip
+        "north_m": x,
+        "east_m": y,
+        "heading_true_north_deg": degrees(psi) % 360.0,
+        "surge_velocity_mps": u,
+        "sway_velocity_mps": v,
+        "yaw_rate_degps": degrees(r),
+    }
 
 
 def border_sigma(sigma: tuple[float, ...]) -> dict[str, float]:
     x, y, psi, u, v, r = sigma
     return {
-        "north_m": x, "east_m": y, "heading_true_north_deg": degrees(psi),
-        "surge_velocity_mps": u, "sway_velocity_mps": v, "yaw_rate_degps": degrees(r),
-    }  # fmt: skip
+        "north_m": x,
+        "east_m": y,
+        "heading_true_north_deg": degrees(psi),
+        "surge_velocity_mps": u,
+        "sway_velocity_mps": v,
+        "yaw_rate_degps": degrees(r),
+    }
 
 
 def border_region(r: Region) -> dict[str, float]:
     return {
-        "along_m": r.along_m, "across_m": r.across_m, "course_deg": degrees(r.course) % 360.0,
-        "heading_deg": degrees(r.heading), "level": r.level,
-    }  # fmt: skip
+        "along_m": r.along_m,
+        "across_m": r.across_m,
+        "course_deg": degrees(r.course) % 360.0,
+        "heading_deg": degrees(r.heading),
+        "level": r.level,
+    }
 
 
 def named(force: Tau) -> dict[str, float]:

@@ -33,13 +33,30 @@ WORDS: dict[type, str] = {
     list: "a list",
 }
 KINDS: dict[str, tuple[type, ...]] = {
-    "skip_lines": (int,), "header": (bool,), "skip_after_header": (int,), "separator": (str,),
-    "decimal": (str,), "encoding": (str,), "missing": (list,), 
-    "column": (str, int, list), "unit": (str,), "format": (str,),
-    "rebuild": (bool, int, float), "sign": (int,), "offset": (int, float), "frame": (str,),
-    "direction": (str,), "despike": (bool,), "optional": (bool,), "factor": (int, float), "factors": (list,),
-    "hemisphere": (str, int), "file": (str,), "late_s": (int, float), "deviation": (list,),
-}  # fmt: skip
+    "skip_lines": (int,),
+    "header": (bool,),
+    "skip_after_header": (int,),
+    "separator": (str,),
+    "decimal": (str,),
+    "encoding": (str,),
+    "missing": (list,),
+    "column": (str, int, list),
+    "unit": (str,),
+    "format": (str,),
+    "rebuild": (bool, int, float),
+    "sign": (int,),
+    "offset": (int, float),
+    "frame": (str,),
+    "direction": (str,),
+    "despike": (bool,),
+    "optional": (bool,),
+    "factor": (int, float),
+    "factors": (list,),
+    "hemisphere": (str, int),
+    "file": (str,),
+    "late_s": (int, float),
+    "deviation": (list,),
+}
 NUMBERS = ("factors", "deviation")  # lists of numbers; the others are lists of names
 
 

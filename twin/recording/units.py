@@ -17,9 +17,15 @@ UNITS: dict[str, dict[str, float]] = {
 }
 # the last part of an actuator's channel -> its unit
 OF_ACTUATORS = {
-    "command": "share", "pwm_us": "us", "rate_rpm": "rpm", "rate_rev_s": "rev_s", "thrust_n": "n",
-    "angle_deg": "deg", "angle_rad": "rad", "pitch_ratio": "ratio",
-}  # fmt: skip
+    "command": "share",
+    "pwm_us": "us",
+    "rate_rpm": "rpm",
+    "rate_rev_s": "rev_s",
+    "thrust_n": "n",
+    "angle_deg": "deg",
+    "angle_rad": "rad",
+    "pitch_ratio": "ratio",
+}
 UNITS |= {
     "share": {"share": 1.0, "%": 0.01},
     "us": {"us": 1.0, "ms": 1e3},

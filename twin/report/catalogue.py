@@ -203,7 +203,18 @@ def _entry(effect: type[Effect]) -> list[str]:
         for name, unit, size, box, sd, doc in (row(p, None) for p in effect.params())
     ]
     return [
-        f"### {effect.__name__}", "", sentence(effect), "", "```text", formula(effect), "```", "",
-        "| parameter | unit | plausible | box | prior sd | meaning |", "|---|---|---|---|---|---|", *rows, "",
-        f"Needs {needs}. Source: {effect.source}.", "",
-    ]  # fmt: skip
+        f"### {effect.__name__}",
+        "",
+        sentence(effect),
+        "",
+        "```text",
+        formula(effect),
+        "```",
+        "",
+        "| parameter | unit | plausible | box | prior sd | meaning |",
+        "|---|---|---|---|---|---|",
+        *rows,
+        "",
+        f"Needs {needs}. Source: {effect.source}.",
+        "",
+    ]

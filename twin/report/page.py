@@ -24,9 +24,15 @@ FLEET = ("number.js", "dom.js", "fleet.js")  # of many ships: a table, and a sma
 
 
 def write(
-    path: str | os.PathLike[str], kind: str, result: dict[str, Any], tracks: Sequence[Track], model: Model, *,
-    before: Model | None = None, voyages: Sequence[Voyage] = (),
-) -> None:  # fmt: skip
+    path: str | os.PathLike[str],
+    kind: str,
+    result: dict[str, Any],
+    tracks: Sequence[Track],
+    model: Model,
+    *,
+    before: Model | None = None,
+    voyages: Sequence[Voyage] = (),
+) -> None:
     """Write the page of a verb (`compare`, `diagnose`, `add`), aside and renamed.
 
     `before`: the model without what was added. `voyages`: the recordings behind the tracks, in the same

@@ -72,10 +72,17 @@ def drawn(
     ]
     inputs = _inputs(track, voyage, times, grid)
     return {
-        "name": track.name, "start_s": float(track.t[0]), "end_s": float(track.t[-1]), "grid": grid,
-        "restarts": track.t[begun].round(3).tolist(), "channels": channels, "inputs": inputs,
-        "heat": _heat(w, structural), "track": _track(track, lines), "times": times.packed,
-    }  # fmt: skip
+        "name": track.name,
+        "start_s": float(track.t[0]),
+        "end_s": float(track.t[-1]),
+        "grid": grid,
+        "restarts": track.t[begun].round(3).tolist(),
+        "channels": channels,
+        "inputs": inputs,
+        "heat": _heat(w, structural),
+        "track": _track(track, lines),
+        "times": times.packed,
+    }
 
 
 class _Times:

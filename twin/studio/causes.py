@@ -15,9 +15,13 @@ from twin.study.track.track import READINGS, STATE, Track
 
 KNOT = 1852.0 / 3600.0
 BRIDGE: dict[str, tuple[str, float]] = {  # unit of a number -> unit of the bridge, what it is multiplied by
-    "rad": ("deg", degrees(1.0)), "rad/s": ("deg/s", degrees(1.0)), "m/s": ("kn", 1.0 / KNOT),
-    "N": ("kN", 1e-3), "N m": ("MN m", 1e-6), "1/rad": ("1/deg", 1.0 / degrees(1.0)),
-}  # fmt: skip
+    "rad": ("deg", degrees(1.0)),
+    "rad/s": ("deg/s", degrees(1.0)),
+    "m/s": ("kn", 1.0 / KNOT),
+    "N": ("kN", 1e-3),
+    "N m": ("MN m", 1e-6),
+    "1/rad": ("1/deg", 1.0 / degrees(1.0)),
+}
 SHARES = ("extra", "loss", "scale", "share", "slip")  # numbers without unit that are parts of a whole
 WAYS = {  # axis -> in words, where the force is positive, and where it is negative
     "surge": ("with the motion", "against the motion"),
@@ -85,8 +89,9 @@ def cause_view(
 ) -> dict[str, Any]:
     """A cause for the page: numbers, ways, the lines predicted with it, and what it changes."""
     told: dict[str, Any] = {
-        "effect": candidate["effect"], "numbers": [number(p) for p in candidate.get("parameters", [])],
-    }  # fmt: skip
+        "effect": candidate["effect"],
+        "numbers": [number(p) for p in candidate.get("parameters", [])],
+    }
     better = with_cause(model, candidate)
     if better is None:
         return told
@@ -95,7 +100,7 @@ def cause_view(
     lines = [stitched(t, fed(better, t)[0], horizon_s)[0] for t in tracks]
     told["lines"] = [
         {name: packed(line[:, i] * _k(name)) for i, name in enumerate(READINGS)} for line in lines
-    ]  # fmt: skip
+    ]
     changes = {"value": changed(plain, lines)}
     if len(candidate["parameters"]) == 1:
         for key in ("low95", "high95"):

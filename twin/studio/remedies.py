@@ -35,10 +35,15 @@ ABOUT: dict[str, tuple[str, ...]] = {  # check -> the channels that it asks, the
     "ship_size": (SURGE, RATE),
 }
 WORDS: dict[str, tuple[str, ...]] = {  # what a fix calls channels without their names
-    "surge": (SURGE,), "sway": (SWAY,), "both": SPEEDS, "surge and sway": SPEEDS,
-    f"{SURGE} and sway": SPEEDS, "the one to the east": (SWAY,), "the one to the north": (SURGE,),
+    "surge": (SURGE,),
+    "sway": (SWAY,),
+    "both": SPEEDS,
+    "surge and sway": SPEEDS,
+    f"{SURGE} and sway": SPEEDS,
+    "the one to the east": (SWAY,),
+    "the one to the north": (SURGE,),
     "them": ("north_m", "east_m"),
-}  # fmt: skip
+}
 ASSIGNED = re.compile(
     r'(sign|unit|offset|frame|direction|despike|late_s|deviation) = ("[^"]*"|\[[^\]]*\]|true|-?[\d.]+)'
 )

@@ -43,9 +43,15 @@ def served(args: argparse.Namespace) -> int:
         if not args.no_browser:
             webbrowser.open(links[0])
         settings = uvicorn.Config(
-            app, log_level="error", access_log=False, server_header=False, timeout_graceful_shutdown=STOP_S,
-            lifespan="on", h11_max_incomplete_event_size=32 * 1024, limit_concurrency=200,
-        )  # fmt: skip
+            app,
+            log_level="error",
+            access_log=False,
+            server_header=False,
+            timeout_graceful_shutdown=STOP_S,
+            lifespan="on",
+            h11_max_incomplete_event_size=32 * 1024,
+            limit_concurrency=200,
+        )
         uvicorn.Server(settings).run(sockets=[sock])
     return 0
 

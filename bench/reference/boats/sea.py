@@ -188,10 +188,18 @@ class BoatSea:
 def columns_of(craft: Craft) -> list[str]:
     """The columns of a voyage of this craft."""
     usual = (
-        "time_s", "north_m", "east_m", "heading_true_north_deg", "surge_velocity_mps", "sway_velocity_mps",
-        "surge_velocity_through_water_mps", "sway_velocity_through_water_mps", "yaw_rate_degps",
-        "true_wind_speed_mps", "true_wind_direction_deg",
-    )  # fmt: skip
+        "time_s",
+        "north_m",
+        "east_m",
+        "heading_true_north_deg",
+        "surge_velocity_mps",
+        "sway_velocity_mps",
+        "surge_velocity_through_water_mps",
+        "sway_velocity_through_water_mps",
+        "yaw_rate_degps",
+        "true_wind_speed_mps",
+        "true_wind_direction_deg",
+    )
     return [*usual, *(f"{d.name}.{what}" for d in craft.drives for what in d.records)]
 
 

@@ -25,8 +25,12 @@ def _table(d: Drive, rho: float) -> dict[str, Any]:
     area = 0.25 * math.pi * d.D**2
     full = (1.0 if d.kind == "jet" else 0.5 * d.grip) * rho * area * (d.n_max * d.pitch) ** 2
     table: dict[str, Any] = {
-        "name": d.name, "kind": KIND[d.kind], "channels": list(d.records), "x_m": d.x, "y_m": d.y,
-    }  # fmt: skip
+        "name": d.name,
+        "kind": KIND[d.kind],
+        "channels": list(d.records),
+        "x_m": d.x,
+        "y_m": d.y,
+    }
     if "rate_rpm" in d.records:
         D = d.D * (IMPELLER if d.kind == "jet" else 1.0)
         table |= {"diameter_m": D, "K_T0": _rounded(full / (rho * d.n_max**2 * D**4))}

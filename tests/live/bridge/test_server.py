@@ -91,9 +91,17 @@ def test_another_page_is_refused_also_with_the_cookie(server, links, header):
 
 
 PATHS = [
-    "/../server.py", "/..%2fserver.py", "/server.py", "//etc/passwd", "/etc/passwd", "/%2e%2e/%2e%2e/etc/passwd",
-    "/page.css/../server.py", "/main.js%00.html", "\\..\\server.py", "/" + "a/" * 3000,
-]  # fmt: skip
+    "/../server.py",
+    "/..%2fserver.py",
+    "/server.py",
+    "//etc/passwd",
+    "/etc/passwd",
+    "/%2e%2e/%2e%2e/etc/passwd",
+    "/page.css/../server.py",
+    "/main.js%00.html",
+    "\\..\\server.py",
+    "/" + "a/" * 3000,
+]
 
 
 @pytest.mark.parametrize("path", PATHS)

@@ -11,8 +11,12 @@ from twin.live.gates.cusum import ENOUGH, Cusum, H, K
 from twin.live.gates.lacking import RUDDER_SAID, SHAFT_SAID
 
 HEADING, NORTH, SURGE, SHAFT, RUDDER = (
-    "heading_true_north_deg", "north_m", "surge_velocity_mps", "propeller_rate_rpm", "rudder_angle_deg",
-)  # fmt: skip
+    "heading_true_north_deg",
+    "north_m",
+    "surge_velocity_mps",
+    "propeller_rate_rpm",
+    "rudder_angle_deg",
+)
 EVERY = {COMPASS, POSITIONS, CURRENT, RUDDER_SAID, SHAFT_SAID}
 HEALTHY_S = 160.0
 

@@ -123,12 +123,20 @@ def test_M3_a_golden_output_that_is_not_met_is_caught(kvlcc2, parts):
     assert "another output" in refusal(edited(parts, golden=golden), kvlcc2)
 
 
-@pytest.mark.parametrize("field, value, words", (
-    ("features", 32, "W: 64 numbers, 32 expected"), ("onnx_opset", 11, "opset 17, the manifest says 11"),
-    ("output_bound", -1.0, "positive"), ("W_max", 1e-6, "norm"), ("sha256", "", "text"), ("schema_version", 2, "schema_version"),
-    ("force_scale", {"X_N": 1.0, "Y_N": 0.0, "N_Nm": 1.0}, "positive"), ("golden", {"inputs": [], "outputs": []}, "golden"),
-    ("inputs", [{"name": "sruge", "scale": 1, "offset": 0, "low": 0, "high": 1}], "Did you mean 'surge'"),
-))  # fmt: skip
+@pytest.mark.parametrize(
+    "field, value, words",
+    (
+        ("features", 32, "W: 64 numbers, 32 expected"),
+        ("onnx_opset", 11, "opset 17, the manifest says 11"),
+        ("output_bound", -1.0, "positive"),
+        ("W_max", 1e-6, "norm"),
+        ("sha256", "", "text"),
+        ("schema_version", 2, "schema_version"),
+        ("force_scale", {"X_N": 1.0, "Y_N": 0.0, "N_Nm": 1.0}, "positive"),
+        ("golden", {"inputs": [], "outputs": []}, "golden"),
+        ("inputs", [{"name": "sruge", "scale": 1, "offset": 0, "low": 0, "high": 1}], "Did you mean 'surge'"),
+    ),
+)
 def test_M3_M4_a_manifest_that_cannot_be_right_is_named_by_field(kvlcc2, parts, field, value, words):
     assert words in refusal(edited(parts, **{field: value}), kvlcc2)
 
@@ -144,12 +152,20 @@ def hand_made(make_nodes, inputs=((1, 5),), outputs=((1, 64),), kind=1, weights=
     ).SerializeToString()
 
 
-@pytest.mark.parametrize("what, words", (
-    ({"inputs": ((1, 6),)}, "input is element type 1 shape [1, 6]; one of element type 1 (float32) shape [1, "
-                            "5]"),
-    ({"outputs": ((1, 63),)}, "shape [1, 63]"), ({"inputs": ((5,),)}, "shape [5]"), ({"kind": 11}, "element type 11"),
-    ({"opset": 9}, "opset 9"), ({"inputs": ((1, 5), (1, 5))}, "shape [1, 5], element type 1 shape [1, 5]"),
-))  # fmt: skip
+@pytest.mark.parametrize(
+    "what, words",
+    (
+        (
+            {"inputs": ((1, 6),)},
+            "input is element type 1 shape [1, 6]; one of element type 1 (float32) shape [1, 5]",
+        ),
+        ({"outputs": ((1, 63),)}, "shape [1, 63]"),
+        ({"inputs": ((5,),)}, "shape [5]"),
+        ({"kind": 11}, "element type 11"),
+        ({"opset": 9}, "opset 9"),
+        ({"inputs": ((1, 5), (1, 5))}, "shape [1, 5], element type 1 shape [1, 5]"),
+    ),
+)
 def test_M4_a_model_of_the_wrong_form_is_named_with_what_is_needed(kvlcc2, parts, what, words):
     model = hand_made(lambda h: [h.make_node("Identity", ["in0"], ["out0"])], **what)
     assert words in refusal(with_model(parts, model), kvlcc2)

@@ -6,7 +6,8 @@ import pytest
 
 from twin.errors import SettingsError
 from twin.live.signals import config
-from twin.live.signals.config import KEYS, example, load
+from twin.live.signals.config import example, load
+from twin.live.signals.keys import KEYS
 from twin.num import as_given
 
 
@@ -80,10 +81,17 @@ def test_F1_broken_toml_names_the_line(tmp_path):
     assert "line 2" in complaint(tmp_path, "[loop]\nrate_hz == 10\n")
 
 
-@pytest.mark.parametrize("data, word", (
-    (b"\xef\xbb\xbf[loop]\n", "byte-order mark"), ("[loop]\n".encode("utf-16"), "byte-order mark"),
-    (b"[ship]\nfile = \"M\xf6we\"\n", "not UTF-8"), (b"", "empty"), (b"  \n", "empty"), (b"\x00\xff\x00", "not UTF-8"),
-))  # fmt: skip
+@pytest.mark.parametrize(
+    "data, word",
+    (
+        (b"\xef\xbb\xbf[loop]\n", "byte-order mark"),
+        ("[loop]\n".encode("utf-16"), "byte-order mark"),
+        (b'[ship]\nfile = "M\xf6we"\n', "not UTF-8"),
+        (b"", "empty"),
+        (b"  \n", "empty"),
+        (b"\x00\xff\x00", "not UTF-8"),
+    ),
+)
 def test_F2_a_file_that_is_no_plain_text_is_named(tmp_path, data, word):
     assert word in complaint(tmp_path, data)
 

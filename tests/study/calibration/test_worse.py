@@ -8,9 +8,13 @@ USV = load("usv")
 
 def entry(horizon_s, before_m, position_m, before_deg=4.0, heading_deg=3.0):
     return {
-        "horizon_s": horizon_s, "windows": 20, "before_m": before_m, "position_m": position_m,
-        "before_deg": before_deg, "heading_deg": heading_deg,
-    }  # fmt: skip
+        "horizon_s": horizon_s,
+        "windows": 20,
+        "before_m": before_m,
+        "position_m": position_m,
+        "before_deg": before_deg,
+        "heading_deg": heading_deg,
+    }
 
 
 def test_an_error_that_fell_is_accepted():

@@ -68,11 +68,14 @@ def loaded(case, **numbers):
     return replace(found, posterior=replace(found.posterior, z=z, covariance=covariance))
 
 
-@pytest.mark.parametrize("numbers, can_be", [
-    ({"mass": 0.12, "draught": 0.11, "x_G": 0.0}, True),
-    ({"mass": 0.12, "draught": -0.03, "x_G": 0.0}, False),  # heavier, and higher in the water
-    ({"mass": 0.001, "draught": 0.001, "x_G": 0.01}, False),  # nothing of it shows
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "numbers, can_be",
+    [
+        ({"mass": 0.12, "draught": 0.11, "x_G": 0.0}, True),
+        ({"mass": 0.12, "draught": -0.03, "x_G": 0.0}, False),  # heavier, and higher in the water
+        ({"mass": 0.001, "draught": 0.001, "x_G": 0.01}, False),  # nothing of it shows
+    ],
+)
 def test_a_load_shows_and_sinks_her_by_the_area_of_her_waterplane(monkeypatch, case, numbers, can_be):
     monkeypatch.setattr(altered, "sized", lambda _, found: found.posterior)
     assert floats(case, loaded(case, **numbers)) is can_be

@@ -61,9 +61,9 @@ def test_only_where_an_instrument_is_suspected_are_the_instruments_asked(case):
 
 
 @pytest.mark.parametrize(
-    "age_s, sd_s, seen, asked", [(2.0, 0.1, True, True), (0.6, 0.01, True, False), (2.0, 0.5, True, False),
-                                 (2.0, 0.1, False, False)]
-)  # fmt: skip
+    "age_s, sd_s, seen, asked",
+    [(2.0, 0.1, True, True), (0.6, 0.01, True, False), (2.0, 0.5, True, False), (2.0, 0.1, False, False)],
+)
 def test_a_compass_is_called_slow_beyond_what_compasses_usually_are_and_what_the_readings_tell(
     age_s, sd_s, seen, asked
 ):

@@ -87,40 +87,58 @@ def test_the_last_rule_always_holds_and_each_reason_has_one_sentence():
         assert said.setdefault(rule.reason, rule.sentence) is rule.sentence
 
 
-@pytest.mark.parametrize("changes, verdict, reason", [
-    ({}, "nothing_missing", "nothing"),
-    ({"nothing": 0.7}, "undecided", "cannot_tell"),
-    ({"power": 0.5}, "undecided", "no_power"),
-    ({"error_nothing": 1.6}, "undecided", "astray"),
-    ({"manoeuvre": False}, "undecided", "no_manoeuvre"),
-    ({"unknown": 0.6, "nothing": 0.3, "error_nothing": 2.0}, "unknown", "unexplained"),
-    ({"unknown": 0.6, "nothing": 0.3}, "undecided", "as_near_as_usual"),  # restless, but led where it went
-    ({"unknown": 0.6, "nothing": 0.3, "resembles": ("RudderPlay",)}, "unknown", "resembles"),
-    ({"unknown": 0.6, "nothing": 0.3, "sea": True}, "undecided", "weather_may_mislead"),
-    ({"transient": 40.0}, "unknown", "pushed"),
-    ({"transient": 40.0, "sea": True}, "undecided", "pushed_in_weather"),
-    ({"weather": (cause("Current", belongs_to="voyage"),)}, "missing", "weather_only"),
-    ({"weather": (cause("Current", belongs_to="voyage"),), "nothing": 0.7}, "missing", "weather"),
-    ({"weather": (cause("Current", belongs_to="voyage", error_gain=0.01),)}, "nothing_missing", "nothing"),
-    ({"weather": (cause("Wind", belongs_to="voyage"),), "as_before": ("Wind",)}, "nothing_missing", "nothing"),
-    ({"nothing": 0.1, "one_of": ("RudderWear", "PropellerWear")}, "undecided", "one_of"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "changes, verdict, reason",
+    [
+        ({}, "nothing_missing", "nothing"),
+        ({"nothing": 0.7}, "undecided", "cannot_tell"),
+        ({"power": 0.5}, "undecided", "no_power"),
+        ({"error_nothing": 1.6}, "undecided", "astray"),
+        ({"manoeuvre": False}, "undecided", "no_manoeuvre"),
+        ({"unknown": 0.6, "nothing": 0.3, "error_nothing": 2.0}, "unknown", "unexplained"),
+        (
+            {"unknown": 0.6, "nothing": 0.3},
+            "undecided",
+            "as_near_as_usual",
+        ),  # restless, but led where it went
+        ({"unknown": 0.6, "nothing": 0.3, "resembles": ("RudderPlay",)}, "unknown", "resembles"),
+        ({"unknown": 0.6, "nothing": 0.3, "sea": True}, "undecided", "weather_may_mislead"),
+        ({"transient": 40.0}, "unknown", "pushed"),
+        ({"transient": 40.0, "sea": True}, "undecided", "pushed_in_weather"),
+        ({"weather": (cause("Current", belongs_to="voyage"),)}, "missing", "weather_only"),
+        ({"weather": (cause("Current", belongs_to="voyage"),), "nothing": 0.7}, "missing", "weather"),
+        (
+            {"weather": (cause("Current", belongs_to="voyage", error_gain=0.01),)},
+            "nothing_missing",
+            "nothing",
+        ),
+        (
+            {"weather": (cause("Wind", belongs_to="voyage"),), "as_before": ("Wind",)},
+            "nothing_missing",
+            "nothing",
+        ),
+        ({"nothing": 0.1, "one_of": ("RudderWear", "PropellerWear")}, "undecided", "one_of"),
+    ],
+)
 def test_which_fact_turns_nothing_missing_into_what(changes, verdict, reason):
     answer = decide(facts(**changes))
     assert (answer.verdict, answer.reason) == (verdict, reason)
 
 
-@pytest.mark.parametrize("changes, reason", [
-    ({}, None),
-    ({"probability": 0.7, "with_rivals": 0.85}, "unlikely"),
-    ({"probability": 0.6, "with_rivals": 0.97}, None),
-    ({"error_gain": 0.02}, "no_nearer"),
-    ({"in_explanation": False}, "not_in_explanation"),
-    ({"belongs_to": "instrument", "error_gain": 0.0}, None),
-    ({"belongs_to": "instrument", "significance": 2.0}, "not_significant"),
-    ({"in_ship_file": True, "change": 1.0}, "change_within_form"),
-    ({"in_ship_file": True, "change": 3.0}, None),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "changes, reason",
+    [
+        ({}, None),
+        ({"probability": 0.7, "with_rivals": 0.85}, "unlikely"),
+        ({"probability": 0.6, "with_rivals": 0.97}, None),
+        ({"error_gain": 0.02}, "no_nearer"),
+        ({"in_explanation": False}, "not_in_explanation"),
+        ({"belongs_to": "instrument", "error_gain": 0.0}, None),
+        ({"belongs_to": "instrument", "significance": 2.0}, "not_significant"),
+        ({"in_ship_file": True, "change": 1.0}, "change_within_form"),
+        ({"in_ship_file": True, "change": 3.0}, None),
+    ],
+)
 def test_why_an_effect_is_not_named(changes, reason):
     one = cause(**changes)
     f = facts(one, explanation=("HullFouling",), likeliest=("HullFouling",))
@@ -141,14 +159,17 @@ def test_lasting_causes_stand_before_the_weather_that_the_model_lacks():
     assert decide(f).missing == ("PropellerWear", "Wind")
 
 
-@pytest.mark.parametrize("left, verdict, more", [
-    (LEFT, "missing", False),
-    (replace(LEFT, error=1.4, share=0.9), "missing", False),
-    (replace(LEFT, error=2.5, share=0.9), "unknown", False),  # leads the ship elsewhere
-    # takes away most of the error, and something more is missing
-    (replace(LEFT, error=2.5, share=0.3), "missing", True),
-    (replace(LEFT, error=None, share=None), "unknown", False),  # nobody asked where it leads
-])  # fmt: skip
+@pytest.mark.parametrize(
+    "left, verdict, more",
+    [
+        (LEFT, "missing", False),
+        (replace(LEFT, error=1.4, share=0.9), "missing", False),
+        (replace(LEFT, error=2.5, share=0.9), "unknown", False),  # leads the ship elsewhere
+        # takes away most of the error, and something more is missing
+        (replace(LEFT, error=2.5, share=0.3), "missing", True),
+        (replace(LEFT, error=None, share=None), "unknown", False),  # nobody asked where it leads
+    ],
+)
 def test_what_an_explanation_may_leave_over(left, verdict, more):
     answer = decide(facts(cause(), left=left))
     assert (answer.verdict, answer.more) == (verdict, more)

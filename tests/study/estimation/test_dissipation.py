@@ -73,8 +73,11 @@ def test_the_nearest_place_inside_box_and_half_spaces_is_the_one_another_solver_
         z = within(mean, C, np.array([np.full(5, -1.5), np.full(5, 1.5)]), (rows, least))
         P = np.linalg.inv(C)
         other = minimize(
-            lambda x, P=P, m=mean: 0.5 * (x - m) @ P @ (x - m), np.zeros(5), bounds=[(-1.5, 1.5)] * 5,
-            constraints={"type": "ineq", "fun": lambda x, R=rows, b=least: R @ x - b}, method="SLSQP",
+            lambda x, P=P, m=mean: 0.5 * (x - m) @ P @ (x - m),
+            np.zeros(5),
+            bounds=[(-1.5, 1.5)] * 5,
+            constraints={"type": "ineq", "fun": lambda x, R=rows, b=least: R @ x - b},
+            method="SLSQP",
             options={"ftol": 1e-12, "maxiter": 500},
-        )  # fmt: skip
+        )
         assert z == pytest.approx(other.x, abs=1e-4)

@@ -14,7 +14,6 @@ from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.estimation.identifiability import (
     basis,
-    gramian,
     observability,
     principal,
     report,
@@ -23,6 +22,7 @@ from twin.study.estimation.identifiability import (
     verdict,
 )
 from twin.study.estimation.learned import features, learned_force
+from twin.study.estimation.observability import gramian
 from twin.study.track.track import track
 
 STEP = 1.25

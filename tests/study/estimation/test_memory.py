@@ -8,7 +8,7 @@ from twin.physics.effects import catalogue
 from twin.physics.model import Model
 from twin.recording.voyage import Voyage
 from twin.study.estimation.columns import core_unknowns
-from twin.study.estimation.innovations import linearise
+from twin.study.estimation.linear import linearise
 from twin.study.reference.nuisance import instruments
 from twin.study.reference.sailed import read_all
 from twin.study.track.track import track

@@ -121,9 +121,16 @@ UNKNOWN = (
 
 @pytest.mark.parametrize(
     "limit, code",
-    [("position_mae_m=1000", 0), ("position_mae_m=0.001", 3), ("position_mae_m@10=1000", 0), ("noise_units=0.01", 3),
-     ("unexplained_force.yaw=0.5", 0), ("channels.yaw_rate_degps.mae=1e-9", 3), ("position_mae_m@11=1000", 3)],
-)  # fmt: skip
+    [
+        ("position_mae_m=1000", 0),
+        ("position_mae_m=0.001", 3),
+        ("position_mae_m@10=1000", 0),
+        ("noise_units=0.01", 3),
+        ("unexplained_force.yaw=0.5", 0),
+        ("channels.yaw_rate_degps.mae=1e-9", 3),
+        ("position_mae_m@11=1000", 3),
+    ],
+)
 def test_a_threshold_that_is_passed_is_exit_code_3(verb, on_disk, make, limit, code):
     assert verb("compare", on_disk(make()), "--ship", "kvlcc2", "--fail-above", limit) == code
 

@@ -116,9 +116,16 @@ class Certificate(Promise):
     def _again(self, noise: Row, d: Disturbance, heading_noise: float) -> Promise:
         """The promise of the same observer with this noise and disturbance."""
         return _promised(
-            self.plant, self.K, self.delays, noise, d, heading_noise, self.extra_growth,
-            self.estimated_heading, self.inner,
-        )  # fmt: skip
+            self.plant,
+            self.K,
+            self.delays,
+            noise,
+            d,
+            heading_noise,
+            self.extra_growth,
+            self.estimated_heading,
+            self.inner,
+        )
 
     def to_json(self) -> str:
         table = json.loads(json.dumps(asdict(self)))

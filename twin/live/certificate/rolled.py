@@ -10,6 +10,7 @@ b bounds the published estimate, which is up to h after its samples. The proof i
 
 from collections.abc import Callable, Sequence
 from math import log
+from typing import Any, cast
 
 from twin.live.certificate import comparison as c3
 from twin.live.certificate.comparison import AXES, Matrix, Row
@@ -92,9 +93,8 @@ def assess_rolled(
         f"K = {num(K[0], 3)} 1/s holds, {q} inner steps: a sample takes away {100 * a:.0f} % of an error."
     )
     decay = -log(radius(G)) / plant.h
-    return Promise(
-        True, reason, 1.0 - worst, decay, bound[:3], by_force, by_noise, G, push, calm, usual  # type: ignore[arg-type]
-    )  # fmt: skip
+    widths, matrix = cast(Row, bound[:3]), cast(Any, G)
+    return Promise(True, reason, 1.0 - worst, decay, widths, by_force, by_noise, matrix, push, calm, usual)
 
 
 def plant_turns(plant: Plant, force: Row) -> float:

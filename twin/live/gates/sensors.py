@@ -248,12 +248,18 @@ def noise_floors(ship: Ship) -> dict[str, float]:
     own scale."""
     speed = max(0.15 * ship.U_0, 0.5)
     return {
-        "north_m": 10.0, "east_m": 10.0, "heading_true_north_deg": 3.0,
-        "surge_velocity_mps": speed, "sway_velocity_mps": speed,
-        "surge_velocity_through_water_mps": speed, "sway_velocity_through_water_mps": speed,
+        "north_m": 10.0,
+        "east_m": 10.0,
+        "heading_true_north_deg": 3.0,
+        "surge_velocity_mps": speed,
+        "sway_velocity_mps": speed,
+        "surge_velocity_through_water_mps": speed,
+        "sway_velocity_through_water_mps": speed,
         "yaw_rate_degps": max(degrees(0.4 * ship.U_0 / ship.L_pp), 0.5),
-        "rudder_angle_deg": 3.0, "propeller_rate_rpm": 30.0, "roll_deg": 5.0,
-    }  # fmt: skip
+        "rudder_angle_deg": 3.0,
+        "propeller_rate_rpm": 30.0,
+        "roll_deg": 5.0,
+    }
 
 
 def _frozen(name: str, floors: dict[str, float]) -> Frozen | None:

@@ -21,12 +21,21 @@ NU = ("u", "v", "r")
 MOTION = (*NU, "stream")
 EVERYTHING = (-inf, inf)
 WORDS = {
-    "u": "surge speed through water", "v": "sway speed through water", "r": "rate of turn",
-    "stream": "current", "delta": "rudder angle", "n": "propeller rate", "wind_speed": "wind",
-    "depth": "water depth", "H_s": "wave height", "T_p": "wave period", "draught": "draught",
+    "u": "surge speed through water",
+    "v": "sway speed through water",
+    "r": "rate of turn",
+    "stream": "current",
+    "delta": "rudder angle",
+    "n": "propeller rate",
+    "wind_speed": "wind",
+    "depth": "water depth",
+    "H_s": "wave height",
+    "T_p": "wave period",
+    "draught": "draught",
     "bank_port": "distance to the port bank",
-    "bank_starboard": "distance to the starboard bank", "phi": "roll",
-}  # fmt: skip
+    "bank_starboard": "distance to the starboard bank",
+    "phi": "roll",
+}
 
 
 @dataclass(frozen=True)

@@ -86,9 +86,15 @@ class Predictor:
         }
 
     def advance(
-        self, now_s: float, e: Estimate, s: Situation, physics: KnownDynamics, learned: LearnedAt, good: bool,
+        self,
+        now_s: float,
+        e: Estimate,
+        s: Situation,
+        physics: KnownDynamics,
+        learned: LearnedAt,
+        good: bool,
         steering: Callable[[], Steering | None] = lambda: None,
-    ) -> list[Prediction]:  # fmt: skip
+    ) -> list[Prediction]:
         """Check what fell due, then carry the present round on by a few steps; `steering` gives the gear as a
         new round finds it."""
         paused, self._last_s = not 0.0 <= now_s - self._last_s <= MAX_GAP_S, now_s

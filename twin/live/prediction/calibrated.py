@@ -137,9 +137,15 @@ def _read(table: Mapping[str, Any]) -> RegionTable:
     if not horizons or any("all" not in h.cells for h in horizons.values()):
         raise ValueError("a horizon without its cell `all`")
     return RegionTable(
-        float(table["level"]), int(table["voyages"]), str(table["model"]), levels,
-        _row(table["lowest"], n + 2), _row(table["highest"], n + 2), tuple(table["seas"]), horizons,
-    )  # fmt: skip
+        float(table["level"]),
+        int(table["voyages"]),
+        str(table["model"]),
+        levels,
+        _row(table["lowest"], n + 2),
+        _row(table["highest"], n + 2),
+        tuple(table["seas"]),
+        horizons,
+    )
 
 
 def _cell(entry: Mapping[str, Any], most: int) -> Cell:

@@ -26,33 +26,72 @@ def turn(speed: np.ndarray, angle: np.ndarray) -> np.ndarray:
 # (T, theta, A, alpha, psi) -> (apparent, true), both in the ship's axes, as they read under each mistake
 MISTAKES: tuple[tuple[str, str, Callable[..., tuple[np.ndarray, np.ndarray]]], ...] = (
     ("", "", lambda t, h, a, b, p: (turn(a, b), turn(t, h - p))),
-    ("the true wind is given as where it blows to", 'direction = "to" for true_wind_direction_deg',
-     lambda t, h, a, b, p: (turn(a, b), -turn(t, h - p))),
-    ("the apparent wind is given as where it blows to", 'direction = "to" for apparent_wind_angle_deg',
-     lambda t, h, a, b, p: (-turn(a, b), turn(t, h - p))),
-    ("both winds are given as where they blow to", 'direction = "to" for both directions',
-     lambda t, h, a, b, p: (-turn(a, b), -turn(t, h - p))),
-    ("the apparent angle is positive to port", "sign = -1 for apparent_wind_angle_deg",
-     lambda t, h, a, b, p: (turn(a, -b), turn(t, h - p))),
-    ("the true direction is in radians", 'unit = "rad" for true_wind_direction_deg',
-     lambda t, h, a, b, p: (turn(a, b), turn(t, h * DEG_PER_RAD - p))),
-    ("the apparent angle is in radians", 'unit = "rad" for apparent_wind_angle_deg',
-     lambda t, h, a, b, p: (turn(a, b * DEG_PER_RAD), turn(t, h - p))),
-    ("both directions are in radians", 'unit = "rad" for both directions',
-     lambda t, h, a, b, p: (turn(a, b * DEG_PER_RAD), turn(t, h * DEG_PER_RAD - p))),
-    ("the true direction counts from the bow", "give it from north (heading + angle)",
-     lambda t, h, a, b, p: (turn(a, b), turn(t, h))),
-    ("the apparent angle counts from north", "give it from the bow (direction - heading)",
-     lambda t, h, a, b, p: (turn(a, b - p), turn(t, h - p))),
-    ("the apparent wind speed is in knots", 'unit = "kn" for apparent_wind_speed_mps',
-     lambda t, h, a, b, p: (turn(a, b) * KNOT_MPS, turn(t, h - p))),
-    ("the true wind speed is in knots", 'unit = "kn" for true_wind_speed_mps',
-     lambda t, h, a, b, p: (turn(a, b), turn(t, h - p) * KNOT_MPS)),
-    ("both wind speeds are in knots", 'unit = "kn" for both speeds',
-     lambda t, h, a, b, p: (turn(a, b) * KNOT_MPS, turn(t, h - p) * KNOT_MPS)),
-    ("true and apparent wind are swapped", "swap their columns",
-     lambda t, h, a, b, p: (turn(t, h), turn(a, b - p))),
-)  # fmt: skip
+    (
+        "the true wind is given as where it blows to",
+        'direction = "to" for true_wind_direction_deg',
+        lambda t, h, a, b, p: (turn(a, b), -turn(t, h - p)),
+    ),
+    (
+        "the apparent wind is given as where it blows to",
+        'direction = "to" for apparent_wind_angle_deg',
+        lambda t, h, a, b, p: (-turn(a, b), turn(t, h - p)),
+    ),
+    (
+        "both winds are given as where they blow to",
+        'direction = "to" for both directions',
+        lambda t, h, a, b, p: (-turn(a, b), -turn(t, h - p)),
+    ),
+    (
+        "the apparent angle is positive to port",
+        "sign = -1 for apparent_wind_angle_deg",
+        lambda t, h, a, b, p: (turn(a, -b), turn(t, h - p)),
+    ),
+    (
+        "the true direction is in radians",
+        'unit = "rad" for true_wind_direction_deg',
+        lambda t, h, a, b, p: (turn(a, b), turn(t, h * DEG_PER_RAD - p)),
+    ),
+    (
+        "the apparent angle is in radians",
+        'unit = "rad" for apparent_wind_angle_deg',
+        lambda t, h, a, b, p: (turn(a, b * DEG_PER_RAD), turn(t, h - p)),
+    ),
+    (
+        "both directions are in radians",
+        'unit = "rad" for both directions',
+        lambda t, h, a, b, p: (turn(a, b * DEG_PER_RAD), turn(t, h * DEG_PER_RAD - p)),
+    ),
+    (
+        "the true direction counts from the bow",
+        "give it from north (heading + angle)",
+        lambda t, h, a, b, p: (turn(a, b), turn(t, h)),
+    ),
+    (
+        "the apparent angle counts from north",
+        "give it from the bow (direction - heading)",
+        lambda t, h, a, b, p: (turn(a, b - p), turn(t, h - p)),
+    ),
+    (
+        "the apparent wind speed is in knots",
+        'unit = "kn" for apparent_wind_speed_mps',
+        lambda t, h, a, b, p: (turn(a, b) * KNOT_MPS, turn(t, h - p)),
+    ),
+    (
+        "the true wind speed is in knots",
+        'unit = "kn" for true_wind_speed_mps',
+        lambda t, h, a, b, p: (turn(a, b), turn(t, h - p) * KNOT_MPS),
+    ),
+    (
+        "both wind speeds are in knots",
+        'unit = "kn" for both speeds',
+        lambda t, h, a, b, p: (turn(a, b) * KNOT_MPS, turn(t, h - p) * KNOT_MPS),
+    ),
+    (
+        "true and apparent wind are swapped",
+        "swap their columns",
+        lambda t, h, a, b, p: (turn(t, h), turn(a, b - p)),
+    ),
+)
 
 
 def wind(view: VoyageView) -> Check:

@@ -33,8 +33,10 @@ FIELDS: dict[int, dict[str, tuple[str, bool, float]]] = {
 }
 KEYS = {name.replace(" ", "").lower(): name for group in FIELDS.values() for name in group}
 WIND = {"apparent": "apparent_wind", "true (ground referenced to north)": "true_wind"}
-OF_WIND = {"apparent_wind": ("apparent_wind_speed_mps", "apparent_wind_angle_deg"),
-           "true_wind": ("true_wind_speed_mps", "true_wind_direction_deg")}  # fmt: skip
+OF_WIND = {
+    "apparent_wind": ("apparent_wind_speed_mps", "apparent_wind_angle_deg"),
+    "true_wind": ("true_wind_speed_mps", "true_wind_direction_deg"),
+}
 
 
 def looks(lines: list[str], start: bytes) -> bool:

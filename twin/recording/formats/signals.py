@@ -20,9 +20,15 @@ COURSE = ("speed_over_ground_mps", "course_over_ground_deg")
 EARTH = ("velocity_north_mps", "velocity_east_mps")
 BODY = ("surge_velocity_mps", "sway_velocity_mps")
 EXTRA = (
-    *PLACE, *COURSE, *EARTH, "heading_magnetic_deg", "magnetic_variation_deg", "engine_rate_rpm",
-    "propeller_pitch_pct", "true_wind_angle_deg",
-)  # fmt: skip
+    *PLACE,
+    *COURSE,
+    *EARTH,
+    "heading_magnetic_deg",
+    "magnetic_variation_deg",
+    "engine_rate_rpm",
+    "propeller_pitch_pct",
+    "true_wind_angle_deg",
+)
 QUANTITIES = frozenset((*BY_NAME, *EXTRA))
 BACK_S = 5.0  # stamps may step back by this much: messages overtake each other on the way to the recorder
 
@@ -107,8 +113,13 @@ class Signals:
         return self
 
 
-STEPS_S = ((3600.0, "an hour"), (7200.0, "two hours"), (86400.0, "a day"), (604800.0, "a week"),
-           (1024 * 604800.0, "1024 weeks, the GPS week counter"))  # fmt: skip
+STEPS_S = (
+    (3600.0, "an hour"),
+    (7200.0, "two hours"),
+    (86400.0, "a day"),
+    (604800.0, "a week"),
+    (1024 * 604800.0, "1024 weeks, the GPS week counter"),
+)
 
 
 def step_known(seconds: float) -> str:

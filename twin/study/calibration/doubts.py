@@ -19,9 +19,12 @@ AXES = ("surge", "sway", "yaw")
 
 
 def doubts(
-    derivatives: Sequence[Mapping[str, Any]], held_out: Sequence[Mapping[str, Any]], share: Sequence[float],
-    usual: Sequence[Mapping[str, Any]] = (), between: Mapping[str, float] = MappingProxyType({}),
-) -> list[str]:  # fmt: skip
+    derivatives: Sequence[Mapping[str, Any]],
+    held_out: Sequence[Mapping[str, Any]],
+    share: Sequence[float],
+    usual: Sequence[Mapping[str, Any]] = (),
+    between: Mapping[str, float] = MappingProxyType({}),
+) -> list[str]:
     """Sentences; none when the calibration is as it should be. `usual`: lasting effects that it shows;
     `between`: by how many widths of their priors numbers differ from voyage to voyage."""
     return [

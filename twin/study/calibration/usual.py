@@ -12,7 +12,8 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.estimation.columns import Unknown
-from twin.study.estimation.innovations import Linear, NoiseModel, innovate, linearise
+from twin.study.estimation.innovations import NoiseModel, innovate
+from twin.study.estimation.linear import Linear, linearise
 from twin.study.prediction.left_out import models_without, path_error
 from twin.study.reference.derivatives import first_prior
 from twin.study.reference.healthy import left_out_scores

@@ -22,7 +22,8 @@ from twin.study.estimation.columns import (
     lateness_unknowns,
     rough_unknowns,
 )
-from twin.study.estimation.innovations import Linear, NoiseModel, innovate
+from twin.study.estimation.innovations import NoiseModel, innovate
+from twin.study.estimation.linear import Linear
 from twin.study.reference.nuisance import (
     TEMPER,
     from_references,

@@ -11,7 +11,8 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown
-from twin.study.estimation.innovations import Linear, NoiseModel, innovate
+from twin.study.estimation.innovations import NoiseModel, innovate
+from twin.study.estimation.linear import Linear
 from twin.study.reference.directions import directions
 from twin.study.reference.evidence import Nuisance, Reduced, posterior, reduce
 from twin.study.reference.reading import MOST_SEGMENTS

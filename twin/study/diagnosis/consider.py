@@ -161,7 +161,7 @@ def left_over(case: Case, weighed: Sequence[Hypothesis], found: Mapping[Sets, Fo
         error=_ratio(own.open_loop_error_m, own.expected_error_m),
         share=_ratio(own.open_loop_error_m, nothing.open_loop_error_m),
         restless=scenarios[0].log_weight - plain.log_weight if plain else NO_GAP,
-    )  # fmt: skip
+    )
 
 
 def _cause(

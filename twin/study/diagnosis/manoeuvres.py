@@ -12,7 +12,7 @@ import numpy as np
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.diagnosis.case import Case
-from twin.study.estimation.innovations import linearise
+from twin.study.estimation.linear import linearise
 from twin.study.prediction.trial import controls
 from twin.study.track.track import READINGS, Track
 

@@ -17,7 +17,8 @@ from twin.physics.model import Model
 from twin.study.diagnosis.case import MOST_SEGMENTS, Case
 from twin.study.diagnosis.open_loop_check import plain
 from twin.study.diagnosis.refine import Found, standing
-from twin.study.estimation.innovations import Linear, NoiseModel, innovate
+from twin.study.estimation.innovations import NoiseModel, innovate
+from twin.study.estimation.linear import Linear
 from twin.study.estimation.respond import standard
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import likeliest

@@ -13,7 +13,7 @@ from twin.physics.model import Model
 from twin.study.diagnosis.bent import MULTI_START, bent_numbers
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.estimation.columns import ROUGH, Unknown, with_values
-from twin.study.estimation.innovations import Linear, linearise
+from twin.study.estimation.linear import Linear, linearise
 from twin.study.estimation.respond import respond
 from twin.study.reference.evidence import (
     Hypothesis,

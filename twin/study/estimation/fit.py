@@ -15,7 +15,8 @@ from twin.physics.model import Model
 from twin.study.estimation.box import within
 from twin.study.estimation.columns import LATE, Unknown, with_values
 from twin.study.estimation.dissipation import HalfSpaces, half_spaces
-from twin.study.estimation.innovations import Linear, NoiseModel, Normal, innovate, linearise
+from twin.study.estimation.innovations import NoiseModel, Normal, innovate
+from twin.study.estimation.linear import Linear, linearise
 from twin.study.track.track import Track
 
 Catalogue = dict[str, type[Effect]]
@@ -52,9 +53,15 @@ class Fit:
 
 
 def fit(
-    tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], catalogue: Catalogue,
-    floor: NoiseModel, *, temper: float = 1.0, smooth: bool = False,
-) -> Fit:  # fmt: skip
+    tracks: Sequence[Track],
+    model: Model,
+    unknowns: Sequence[Unknown],
+    catalogue: Catalogue,
+    floor: NoiseModel,
+    *,
+    temper: float = 1.0,
+    smooth: bool = False,
+) -> Fit:
     """The most probable values of the unknowns, given the tracks and their priors, after at most STEPS steps.
 
     Each goes to where the equations at the last place are most probable, inside the boxes, where the hull

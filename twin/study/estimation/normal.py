@@ -26,9 +26,14 @@ class Normal:
         """Some of the segments."""
         rows = np.flatnonzero(keep)
         return Normal(
-            self.A[rows], self.b[rows], self.ee[rows], self.logdet[rows], self.count[rows], self.energy[rows],
+            self.A[rows],
+            self.b[rows],
+            self.ee[rows],
+            self.logdet[rows],
+            self.count[rows],
+            self.energy[rows],
             tuple(self.where[i] for i in rows),
-        )  # fmt: skip
+        )
 
 
 class Sums:

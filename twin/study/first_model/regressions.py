@@ -202,9 +202,11 @@ def propulsion(h: HullForm, pitch_ratio: float, screws: float = 1.0) -> Estimate
     K_T0 = 0.43 * pitch_ratio - 0.02
     wake = 0.5 * h.C_b - 0.05 if screws == 1.0 else 0.55 * h.C_b - 0.2
     return {
-        "K_T0": (K_T0, "WAG"), "K_T1": (-K_T0 / (1.1 * pitch_ratio), "WAG"),
-        "w": (max(0.0, wake), "TAY43"), "t": (0.2, "HAR83"),
-    }  # fmt: skip
+        "K_T0": (K_T0, "WAG"),
+        "K_T1": (-K_T0 / (1.1 * pitch_ratio), "WAG"),
+        "w": (max(0.0, wake), "TAY43"),
+        "t": (0.2, "HAR83"),
+    }
 
 
 def steering(h: HullForm, aspect: float) -> Estimates:

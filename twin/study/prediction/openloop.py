@@ -19,7 +19,8 @@ from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
-from twin.study.estimation.innovations import MEMORY_B, NoiseModel, busy
+from twin.study.estimation.innovations import NoiseModel
+from twin.study.estimation.linear import MEMORY_B, busy
 from twin.study.estimation.respond import readings, standard, steered
 from twin.study.estimation.start import noisy, seen, steadied, true_motion
 from twin.study.reference.structure import once_off
@@ -75,9 +76,15 @@ class Windows:
 
 
 def predict(
-    track: Track, model: Model, horizons_s: Sequence[float] = HORIZONS_S, *, floor: NoiseModel | None = None,
-    stride_s: float = STRIDE_S, leads: int = LEADS, seed: int = 0,
-) -> Windows:  # fmt: skip
+    track: Track,
+    model: Model,
+    horizons_s: Sequence[float] = HORIZONS_S,
+    *,
+    floor: NoiseModel | None = None,
+    stride_s: float = STRIDE_S,
+    leads: int = LEADS,
+    seed: int = 0,
+) -> Windows:
     """Run the model over the track's windows. `floor`: what calibration left unexplained, if the ship knows
     it.
 
@@ -232,13 +239,8 @@ class _Run:
         if wind_to is not None:
             self.inputs["wind_to"] = wind_to
         if slow is not None:
-            self.known = replace(
-                self.known,
-                effects=(
-                    *model.effects,
-                    of_role("stream").absent(model.ship).but(north=slow.water[0], east=slow.water[1]),
-                ),
-            )
+            stream = of_role("stream").absent(model.ship).but(north=slow.water[0], east=slow.water[1])
+            self.known = replace(self.known, effects=(*model.effects, stream))
 
     def through(self, state: tuple, lead: np.ndarray, steps: int = 1) -> np.ndarray:
         """(K, runs W, 8) readings at each lead, a multiple of `steps`: grid steps that are taken at once."""
@@ -258,9 +260,8 @@ class _Run:
         after = np.minimum(step + 1, len(self.track) - 1)
         values = {name: np.tile(w[step], self.runs) for name, w in self.inputs.items()}
         for name in ("delta", "n"):
-            values[name] = values[name] + ahead * (
-                np.tile(self.inputs[name][after], self.runs) - values[name]
-            )
+            then = np.tile(self.inputs[name][after], self.runs)
+            values[name] = values[name] + ahead * (then - values[name])
         told = {name: self._between(x, step, after, ahead) for name, x in self.told.items()} or None
         return Situation(**values, told=told, t=np.tile(self.track.t[step], self.runs) + ahead * self.track.h)
 

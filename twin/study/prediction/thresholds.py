@@ -12,9 +12,11 @@ from twin.study.track.track import MEASURED
 
 AT_HORIZON = (*score.NAMES.values(), "noise_units")  # may have @SECONDS behind
 METRICS = (
-    *AT_HORIZON, *(f"unexplained_force.{axis}" for axis in ("surge", "sway", "yaw")), "learned_share",
+    *AT_HORIZON,
+    *(f"unexplained_force.{axis}" for axis in ("surge", "sway", "yaw")),
+    "learned_share",
     *(f"channels.{column}.mae" for column in MEASURED.values()),
-)  # fmt: skip
+)
 
 
 def threshold(text: str) -> tuple[str, float]:

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.study.estimation.columns import Unknown
-from twin.study.estimation.innovations import Linear
+from twin.study.estimation.linear import Linear
 from twin.study.reference.evidence import Nuisance
 
 # information in the voyages over what is known beforehand, from which a direction is asked about

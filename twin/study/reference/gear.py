@@ -14,7 +14,8 @@ from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown, effect_unknowns
 from twin.study.estimation.fit import Catalogue, Fit, evidence, fit
-from twin.study.estimation.innovations import NoiseModel, innovate, linearise
+from twin.study.estimation.innovations import NoiseModel, innovate
+from twin.study.estimation.linear import linearise
 from twin.study.track.track import Track
 
 # L/U_0; the first is as fast as a large tanker's must be

@@ -17,7 +17,8 @@ from twin.study.estimation.columns import (
     lateness_unknowns,
     sea_unknowns,
 )
-from twin.study.estimation.innovations import Linear, NoiseModel, Normal, innovate
+from twin.study.estimation.innovations import NoiseModel, Normal, innovate
+from twin.study.estimation.linear import Linear
 from twin.study.reference.between import BetweenVoyages, scattered, ship_of, voyages
 from twin.study.reference.evidence import Nuisance
 

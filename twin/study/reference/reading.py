@@ -8,7 +8,7 @@ import numpy as np
 from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown
-from twin.study.estimation.innovations import Linear, linearise
+from twin.study.estimation.linear import Linear, linearise
 from twin.study.estimation.rough import doubted
 from twin.study.reference.seaway import excited, levelled
 from twin.study.track.segments import read_parts

@@ -17,7 +17,8 @@ from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.fit import evidence
-from twin.study.estimation.innovations import Linear, NoiseModel, innovate, linearise
+from twin.study.estimation.innovations import NoiseModel, innovate
+from twin.study.estimation.linear import Linear, linearise
 from twin.study.estimation.respond import respond
 from twin.study.estimation.start import steadied, wave_period_s
 from twin.study.reference.gear import geared

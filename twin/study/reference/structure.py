@@ -15,7 +15,8 @@ from twin.errors import SettingsError
 from twin.physics.ship import Ship
 from twin.study.estimation.columns import Unknown
 from twin.study.estimation.fit import evidence
-from twin.study.estimation.innovations import Linear, NoiseModel, Normal, innovate
+from twin.study.estimation.innovations import NoiseModel, Normal, innovate
+from twin.study.estimation.linear import Linear
 from twin.study.reference.path_error import of_ship
 
 MOST_SEGMENTS = 40

@@ -89,9 +89,15 @@ def _horizon(
     fitted = [v for v, fit in zip(voyages, chosen, strict=True) if fit]
     rows = coefficients(fitted, usual)
     only = RegionTable(
-        LEVEL, 0, "", LEVELS, tuple(table["lowest"]), tuple(table["highest"]), (),
+        LEVEL,
+        0,
+        "",
+        LEVELS,
+        tuple(table["lowest"]),
+        tuple(table["highest"]),
+        (),
         {h: Horizon(tuple(tuple(c) for c in rows), {})},
-    )  # fmt: skip
+    )
     scored = [
         [(j, *score(only, h, j, usual)) for j in v] for v, fit in zip(voyages, chosen, strict=True) if not fit
     ]

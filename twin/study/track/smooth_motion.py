@@ -51,7 +51,7 @@ def _scatter(values: np.ndarray) -> float:
 
 def _least_jerk(
     y: np.ndarray, sd: float, rate: np.ndarray, sd_rate: float, jerk: float, h: float, time: float
-) -> tuple[np.ndarray, np.ndarray]:  # fmt: skip
+) -> tuple[np.ndarray, np.ndarray]:
     """The path through each piece of the readings between long holes, with lines over these, and its
     slope."""
     there = np.isfinite(y) | np.isfinite(rate)

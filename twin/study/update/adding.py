@@ -58,9 +58,13 @@ class Number:
 
     def entry(self) -> dict[str, Any]:
         return {
-            "value": self.value, "unit": self.unit, "sd": self.sd, "low95": self.low95, "high95": self.high95,
+            "value": self.value,
+            "unit": self.unit,
+            "sd": self.sd,
+            "low95": self.low95,
+            "high95": self.high95,
             "at_box_end": self.at_box_end,
-        }  # fmt: skip
+        }
 
 
 @dataclass(frozen=True)

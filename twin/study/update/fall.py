@@ -117,8 +117,10 @@ def by_regime(
     everywhere = [{"condition": "everywhere", "time_share": 1.0, "mask": np.isfinite(b)}]
     return [
         {
-            "condition": r["condition"], "time_share": r["time_share"],
-            "before_m": float(np.nanmean(b[r["mask"]])), "after_m": float(np.nanmean(a[r["mask"]])),
+            "condition": r["condition"],
+            "time_share": r["time_share"],
+            "before_m": float(np.nanmean(b[r["mask"]])),
+            "after_m": float(np.nanmean(a[r["mask"]])),
         }
         for r in everywhere + locate.regimes(before, horizon_s, ship, structural)
-    ]  # fmt: skip
+    ]

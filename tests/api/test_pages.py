@@ -1,0 +1,83 @@
+"""The page and the plot of results that need no track: a sentence, what to heed, bars and tables."""
+
+import re
+from html import unescape
+
+import pytest
+
+import twin
+import twin.errors
+from twin.commands.story import MONDAY
+from twin.report.result_page import Bars, Table, result_page
+
+
+def words(page):
+    """What a person reads on it."""
+    return " ".join(unescape(re.sub(r"<style>.*?</style>|<[^>]+>", " ", page, flags=re.S)).split())
+
+
+@pytest.fixture(scope="module")
+def monday():
+    return twin.read_voyage(MONDAY)
+
+
+@pytest.fixture(scope="module")
+def first():
+    return twin.first_model("MV Alma", 180.0, 30.0, 10.5, block_coefficient=0.8)
+
+
+def test_a_page_says_its_sentence_what_to_heed_and_draws_every_row():
+    """Test: text that is code in HTML, a number that is not known. Expected: it is text; a bar for each number."""
+    rows = [{"at": "10 s", "old": 4.0, "new": 1.0}, {"at": "60 s", "old": 8.0, "new": None}]
+    bars = Bars("Errors", "m", "at", {"old": "before", "new": "now"}, rows)
+    table = Table("The same", {"at": "after", "old": "before [m]", "new": "now [m]"}, rows)
+    page = result_page("<Alma>", "Half & better.", ["<script>alert(1)</script>"], (bars, table))
+    assert "<script" not in page and "<script>alert(1)</script>" in words(page)
+    widths = [float(w) for w in re.findall(r'<rect [^>]*width="([\d.]+)"', page)]
+    assert len(widths) == 2 and widths[0] == pytest.approx(4.0 * widths[1])  # of the row that has both
+    for said in ("<Alma>", "Half & better.", "4 m before", "1 m now", "60 s 8 -"):
+        assert said in words(page)
+
+
+def test_a_page_asks_nobody_for_anything(first):
+    """Expected: one file; nothing of it is fetched."""
+    assert not re.findall(r"""(?:src|href)=|url\(|@import|https?://(?!www\.w3\.org)""", first.page())
+
+
+def test_a_first_model_says_what_it_does_and_where_each_number_is_from(first):
+    said = words(first.page())
+    assert "first model from its main particulars" in said and "overshoot_20_20_deg" in said
+    assert {row["source"] for row in first.to_dataframe().to_dict("records")} >= {"given"}
+    assert len(repr(first)) < 200 and first.ship.L_pp == 180.0
+    with pytest.raises(twin.errors.UsageError, match="block_coefficient"):
+        twin.first_model("MV Alma", 180.0, 30.0, 10.5, block_coeficient=0.8)
+
+
+def test_a_checked_voyage_says_what_each_check_saw(monday):
+    found = twin.check_voyage(twin.Ship.load("kvlcc2"), monday)
+    assert found.refused() == [] and "No check proves a mistake." in words(found.page())
+    assert len(found.to_dataframe()) == len(found.checks) and len(repr(found)) < 200
+    turned = dict(monday.columns) | {"rudder_angle_deg": -monday.columns["rudder_angle_deg"]}
+    wrong = twin.check_voyage(None, monday.with_rows(monday.time_s, turned))
+    assert wrong.refused() and wrong.refused()[0] in words(wrong.page())
+    assert wrong.refused(accept=wrong.refused()) == []
+
+
+def test_the_instruments_of_a_voyage_are_told_on_a_page_and_drawn(monday):
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    found = twin.instruments(None, monday)
+    assert "No instrument disagrees with the others." in words(found.page())
+    assert len(found.plot().get_yticklabels()) == sum(bool(n["cramer_rao_sd"]) for n in found.data["numbers"])
+
+
+def test_an_effect_is_checked_by_name_and_by_class():
+    sound = twin.check_effect("Wind")
+    assert sound.wrong == [] and "Sound." in words(sound.page())
+    assert twin.check_effect(twin.catalogue()["Wind"]).to_dict() == sound.to_dict()
+
+
+def test_a_map_is_proposed_for_a_table_of_unknown_columns(monday, tmp_path):
+    table = monday.to_dataframe().rename(columns={"heading_true_north_deg": "HDG"})
+    table.to_csv(tmp_path / "log.csv")
+    assert "HDG" in twin.suggest_map(tmp_path / "log.csv")

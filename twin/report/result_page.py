@@ -1,0 +1,91 @@
+"""The page of a result that needs no track: a sentence, what to heed, bars and tables, in one file without a
+script."""
+
+from collections.abc import Mapping, Sequence
+from html import escape
+from importlib import resources
+from typing import Any, NamedTuple
+
+from twin.num import num
+
+WIDE, HIGH = 640, 22  # of the drawing, and of one bar with what stands beside it [px]
+NAMED, ENDS = 210, 470  # where the bars begin, and where the longest ends
+COLOURS = ("var(--before)", "var(--model)")
+
+
+class Bars(NamedTuple):
+    """One drawing: a group of bars for each row, a bar for each of `of` (key -> what it is called)."""
+
+    caption: str
+    unit: str
+    label: str  # the key that names a row
+    of: Mapping[str, str]
+    rows: Sequence[Mapping[str, Any]]
+
+
+class Table(NamedTuple):
+    """Rows of one kind; `columns`: key -> heading, with its unit."""
+
+    caption: str
+    columns: Mapping[str, str]
+    rows: Sequence[Mapping[str, Any]]
+
+
+def result_page(
+    title: str, sentence: str, heed: Sequence[str] = (), parts: Sequence[Bars | Table] = ()
+) -> str:
+    """One self-contained HTML page. `heed`: what the owner should know of it, a line each."""
+    style = (resources.files(__package__) / "page.css").read_text(encoding="utf-8")
+    notes = "".join(f'<p class="note">{escape(text)}</p>' for text in heed)
+    body = [f'<section><div class="head"><h2>To heed</h2></div>{notes}</section>'] if heed else []
+    body += [_section(part) for part in parts if part.rows]
+    said = f'<div class="eyebrow">{escape(title)}</div><h1>{escape(sentence)}</h1>'
+    return (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{escape(title)}</title>\n<style>{style}</style>\n</head>\n<body>\n"
+        f"<main><header><div>{said}</div></header>{''.join(body)}</main>\n</body>\n</html>\n"
+    )
+
+
+def _section(part: Bars | Table) -> str:
+    drawn = _bars(part) if isinstance(part, Bars) else _table(part)
+    return f'<section><div class="head"><h2>{escape(part.caption)}</h2></div>{drawn}</section>'
+
+
+def _table(table: Table) -> str:
+    names = table.columns
+    numeric = {k for k in names if any(_is_number(row.get(k)) for row in table.rows)}
+    side = {k: " class=n" * (k in numeric) for k in names}
+    heads = "".join(f"<th{side[k]}>{escape(v)}</th>" for k, v in names.items())
+    cells = ["".join(f"<td{side[k]}>{_cell(row.get(k))}</td>" for k in names) for row in table.rows]
+    return f"<table><tr>{heads}</tr>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>"
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _cell(value: Any) -> str:
+    if value is None:
+        return "-"
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    return num(value, 3) if _is_number(value) else escape(str(value))
+
+
+def _bars(bars: Bars) -> str:
+    """Bars from the left, their numbers at their ends; a row without all of its numbers is left out."""
+    told = [row for row in bars.rows if all(_is_number(row.get(k)) for k in bars.of)]
+    most = max((abs(row[k]) for row in told for k in bars.of), default=0.0) or 1.0
+    out, y = [], 0
+    for row in told:
+        out.append(f'<text x="0" y="{y + 15}" fill="var(--soft)">{_cell(row[bars.label])}</text>')
+        for colour, (key, name) in zip(COLOURS, bars.of.items(), strict=False):
+            long = max(1.0, (ENDS - NAMED) * abs(row[key]) / most)
+            out.append(f'<rect x="{NAMED}" y="{y + 4}" width="{long:.1f}" height="14" fill="{colour}"/>')
+            said, at = f"{num(row[key], 3)} {bars.unit} {name}".strip(), f"{NAMED + long + 8:.1f}"
+            out.append(f'<text x="{at}" y="{y + 15}" fill="var(--ink)">{escape(said)}</text>')
+            y += HIGH
+        y += HIGH // 3
+    return f'<svg viewBox="0 0 {WIDE} {y}" font-size="13" role="img">' + "".join(out) + "</svg>"
