@@ -8,7 +8,7 @@ import pytest
 import twin
 import twin.errors
 from twin.commands.story import MONDAY
-from twin.report.result_page import Bars, Table, result_page
+from twin.report.result_page import Bars, PageTable, result_page
 
 
 def words(page):
@@ -30,7 +30,7 @@ def test_a_page_says_its_sentence_what_to_heed_and_draws_every_row():
     """Test: text that is code in HTML, a number that is not known. Expected: it is text; a bar for each number."""
     rows = [{"at": "10 s", "old": 4.0, "new": 1.0}, {"at": "60 s", "old": 8.0, "new": None}]
     bars = Bars("Errors", "m", "at", {"old": "before", "new": "now"}, rows)
-    table = Table("The same", {"at": "after", "old": "before [m]", "new": "now [m]"}, rows)
+    table = PageTable("The same", {"at": "after", "old": "before [m]", "new": "now [m]"}, rows)
     page = result_page("<Alma>", "Half & better.", ["<script>alert(1)</script>"], (bars, table))
     assert "<script" not in page and "<script>alert(1)</script>" in words(page)
     widths = [float(w) for w in re.findall(r'<rect [^>]*width="([\d.]+)"', page)]

@@ -68,7 +68,7 @@ class Calibration(Result):
 
     def page(self) -> str:
         """The error before and after, by horizon and by what the ship did, and every derivative."""
-        from twin.report.result_page import Bars, Table, result_page
+        from twin.report.result_page import Bars, PageTable, result_page
 
         rows = [r | {"at": f"after {num(r['horizon_s'])} s"} for r in self.data["held_out"]]
         both = {"before_m": "before", "position_m": "now"}
@@ -80,8 +80,8 @@ class Calibration(Result):
             self.warnings,
             (
                 Bars(f"Open-loop position error ({self.data['held_out_is']})", "m", "at", both, rows),
-                Table("By what the ship did", regimes, self.data["by_regime"]),
-                Table("Derivatives", shown, self.data["derivatives"]),
+                PageTable("By what the ship did", regimes, self.data["by_regime"]),
+                PageTable("Derivatives", shown, self.data["derivatives"]),
             ),
         )
 

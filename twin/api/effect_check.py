@@ -31,12 +31,12 @@ class EffectCheck(Result):
 
     def page(self) -> str:
         """Every question with its answer."""
-        from twin.report.result_page import Table, result_page
+        from twin.report.result_page import PageTable, result_page
 
         said = f"{len(self.wrong)} of {len(self.answers)} to mend." if self.wrong else "Sound."
         rows = [a._asdict() for a in self.answers]
         columns = {"question": "question", "ok": "sound", "text": "what is wrong"}
-        return result_page(self.effect.__name__, said, parts=(Table("Questions", columns, rows),))
+        return result_page(self.effect.__name__, said, parts=(PageTable("Questions", columns, rows),))
 
     def __repr__(self) -> str:
         return f"<EffectCheck of {self.effect.__name__}: {len(self.wrong)} of {len(self.answers)} to mend>"

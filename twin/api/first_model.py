@@ -49,7 +49,7 @@ class FirstModel(Result):
 
     def page(self) -> str:
         """What it does in the standard manoeuvres, and every number with its source."""
-        from twin.report.result_page import Table, result_page
+        from twin.report.result_page import PageTable, result_page
 
         trial = [{"figure": k, "value": v} for k, v in self.trial.items()]
         columns = {"section": "section", "name": "number", "value": "value", "source": "source"}
@@ -58,8 +58,8 @@ class FirstModel(Result):
             f"{self.ship.name}: a first model from its main particulars.",
             self.warnings,
             (
-                Table("Sea trial of this model", {"figure": "figure", "value": "value"}, trial),
-                Table("Numbers", columns, self._rows()),
+                PageTable("Sea trial of this model", {"figure": "figure", "value": "value"}, trial),
+                PageTable("Numbers", columns, self._rows()),
             ),
         )
 

@@ -66,7 +66,7 @@ class InstrumentCheck(Result):
 
     def page(self) -> str:
         """The faults that were seen, and every number with its 95 % interval."""
-        from twin.report.result_page import Bars, Table, result_page
+        from twin.report.result_page import Bars, PageTable, result_page
 
         faults = [f | {"called": f["effect"] or f["fault"]} for f in self.data["faults"]]
         seen = ", ".join(f["words"] for f in faults) or "No instrument disagrees with the others"
@@ -78,7 +78,7 @@ class InstrumentCheck(Result):
             f"{seen[0].upper()}{seen[1:]}.",
             parts=(
                 Bars("What was seen", "", "called", bayes, faults),
-                Table("Numbers (95 %)", columns | more, self.data["numbers"]),
+                PageTable("Numbers (95 %)", columns | more, self.data["numbers"]),
             ),
         )
 

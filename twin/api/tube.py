@@ -50,7 +50,7 @@ class TubeCalibration(Result):
 
     def page(self) -> str:
         """How wide the tube is, by horizon and by what the ship does, and what it rests on."""
-        from twin.report.result_page import Bars, Table, result_page
+        from twin.report.result_page import Bars, PageTable, result_page
 
         rows = self._rows()
         at = [r | {"at": f"after {num(r['horizon_s'])} s"} for r in rows]
@@ -64,8 +64,8 @@ class TubeCalibration(Result):
             (
                 Bars("Place", "m", "at", {"place_m": ""}, at),
                 Bars("Heading", "deg", "at", {"heading_deg": ""}, at),
-                Table("By horizon", {"horizon_s": "horizon [s]", "level": "share", **sizes}, rows),
-                Table(
+                PageTable("By horizon", {"horizon_s": "horizon [s]", "level": "share", **sizes}, rows),
+                PageTable(
                     "By what the ship does", {"regime": "while", "horizon_s": "horizon [s]", **sizes}, regimes
                 ),
             ),

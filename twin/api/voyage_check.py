@@ -45,13 +45,13 @@ class VoyageCheck(Result):
 
     def page(self) -> str:
         """What each check has seen."""
-        from twin.report.result_page import Table, result_page
+        from twin.report.result_page import PageTable, result_page
 
         wrong = ", ".join(self.refused())
         said = f"{wrong}: a sign, unit or frame is wrong." if wrong else "No check proves a mistake."
         rows = [{"name": c.name, "ok": c.ok, "unusable": c.unusable, "text": c.text} for c in self.checks]
         columns = {"name": "check", "ok": "content", "unusable": "mistake", "text": "what it saw"}
-        return result_page(self.voyage.name, said, parts=(Table("Checks", columns, rows),))
+        return result_page(self.voyage.name, said, parts=(PageTable("Checks", columns, rows),))
 
     def __repr__(self) -> str:
         wrong = ", ".join(self.refused()) or "no mistake proved"

@@ -23,7 +23,7 @@ class Bars(NamedTuple):
     rows: Sequence[Mapping[str, Any]]
 
 
-class Table(NamedTuple):
+class PageTable(NamedTuple):
     """Rows of one kind; `columns`: key -> heading, with its unit."""
 
     caption: str
@@ -32,7 +32,7 @@ class Table(NamedTuple):
 
 
 def result_page(
-    title: str, sentence: str, heed: Sequence[str] = (), parts: Sequence[Bars | Table] = ()
+    title: str, sentence: str, heed: Sequence[str] = (), parts: Sequence[Bars | PageTable] = ()
 ) -> str:
     """One self-contained HTML page. `heed`: what the owner should know of it, a line each."""
     style = (resources.files(__package__) / "page.css").read_text(encoding="utf-8")
@@ -48,12 +48,12 @@ def result_page(
     )
 
 
-def _section(part: Bars | Table) -> str:
+def _section(part: Bars | PageTable) -> str:
     drawn = _bars(part) if isinstance(part, Bars) else _table(part)
     return f'<section><div class="head"><h2>{escape(part.caption)}</h2></div>{drawn}</section>'
 
 
-def _table(table: Table) -> str:
+def _table(table: PageTable) -> str:
     names = table.columns
     numeric = {k for k in names if any(_is_number(row.get(k)) for row in table.rows)}
     side = {k: " class=n" * (k in numeric) for k in names}

@@ -10,7 +10,7 @@ from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.case import SCENARIOS
 from twin.study.diagnosis.criteria import SURE
 from twin.study.diagnosis.refine import Found
-from twin.study.diagnosis.search import Book, search
+from twin.study.diagnosis.search import Hypotheses, search
 from twin.study.diagnosis.verdict import weights
 
 PAIR = ("RudderWear", "SteeringLag")
@@ -23,7 +23,7 @@ def case(tanker, voyages):
 
 def book(case):
     names = list(SCENARIOS)
-    return Book(case, dict(zip(names, case.reduced(case.lines, case.scenarios(names)), strict=True)))
+    return Hypotheses(case, dict(zip(names, case.reduced(case.lines, case.scenarios(names)), strict=True)))
 
 
 def weighed(case, *judged):

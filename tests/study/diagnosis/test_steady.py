@@ -10,7 +10,7 @@ from twin.physics.effects.varying_current import VaryingCurrent
 from twin.physics.model import Model
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.case import SCENARIOS
-from twin.study.diagnosis.search import Book, search
+from twin.study.diagnosis.search import Hypotheses, search
 from twin.study.diagnosis.steady import EDDIES, changes, steady
 
 
@@ -45,7 +45,7 @@ def test_a_stream_that_did_not_change_stays_in_the_weighing_and_a_steady_one_is_
     case, monkeypatch
 ):
     names = list(SCENARIOS)
-    held = Book(case, dict(zip(names, case.reduced(case.lines, case.scenarios(names)), strict=True)))
+    held = Hypotheses(case, dict(zip(names, case.reduced(case.lines, case.scenarios(names)), strict=True)))
     monkeypatch.setattr(
         "twin.study.diagnosis.search.steady", lambda case, found: "VaryingCurrent" in found.hypothesis.effects
     )

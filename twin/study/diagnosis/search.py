@@ -52,7 +52,7 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
     seen = {name: visible(scenarios["usual"], name) for name in case.candidates if name not in case.unnamed}
     weak = [name for name in seen if not seen[name] and case.catalogue[name].needs]
     case = replace(case, odds=dict(case.odds) | dict.fromkeys(weak, ODDS_WEAK))
-    book = Book(case, scenarios)
+    book = Hypotheses(case, scenarios)
     searched = _searched(book, progress, seen)
     if book.last and not _explained(case, *searched[:2]):
         book.wide = True
@@ -60,7 +60,7 @@ def search(case: Case, progress: Callable[[str], None] = lambda text: None) -> S
     return searched
 
 
-def _searched(book: "Book", progress: Callable[[str], None], seen: dict[str, bool]) -> Searched:
+def _searched(book: "Hypotheses", progress: Callable[[str], None], seen: dict[str, bool]) -> Searched:
     """What the book says once nothing is left to be judged."""
     for _ in range(ROUNDS):
         chosen = book.next()
@@ -112,7 +112,7 @@ def _linear(case: Case, reduced: Reduced, scenario: str) -> list[tuple[Sets, flo
     return [*told, *weigh_sets(reduced, [case.ordered((*day, *few)) for day in best for few in more])]
 
 
-class Book:
+class Hypotheses:
     """What is known of every hypothesis so far: first about nothing, then about the sizes that were found."""
 
     def __init__(self, case: Case, scenarios: dict[str, Reduced]) -> None:

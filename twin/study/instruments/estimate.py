@@ -10,7 +10,7 @@ from twin.study.instruments.findings import CLOCKS, InstrumentEstimate, Instrume
 from twin.study.instruments.fit import KinematicFit, columns, fit
 from twin.study.instruments.problem import Problem
 from twin.study.instruments.readings import Readings, of_track, of_voyage
-from twin.study.instruments.select import Book, Weighed
+from twin.study.instruments.select import Weighed, WeighedSets
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, effect_of
 from twin.study.track.track import Track
 
@@ -34,7 +34,7 @@ def estimate(
     found, clock = _whole(problems)
     chosen: tuple[str, ...] | None = None
     for _ in range(ROUNDS):
-        book = Book(found, clock)
+        book = WeighedSets(found, clock)
         best = book.likeliest()
         if best.faults == chosen:
             break
@@ -67,7 +67,7 @@ def _whole(problems: Sequence[Problem]) -> tuple[KinematicFit, str]:
     names = [u.name for u in UNKNOWNS]
     first = fit(problems, [n for n in names if n != "heading_delay"], rounds=6)
     there = [n for n, by in CLOCKS.items() if any(b in p.by for b in by for p in problems)]
-    sd = dict(zip(Book(first, "heading_delay").names, first.sd().tolist(), strict=False))
+    sd = dict(zip(WeighedSets(first, "heading_delay").names, first.sd().tolist(), strict=False))
     value = {n: float(first.theta[0, INDEX[n]]) for n in there}
     earliest = min(there, key=lambda n: value[n] + 2.0 * sd[n])
     theta = first.theta.copy()
@@ -75,7 +75,7 @@ def _whole(problems: Sequence[Problem]) -> tuple[KinematicFit, str]:
     return fit(problems, [n for n in names if n != earliest], theta), earliest
 
 
-def _start(found: KinematicFit, book: Book, best: Weighed) -> np.ndarray:
+def _start(found: KinematicFit, book: WeighedSets, best: Weighed) -> np.ndarray:
     """(V, P) where the set of faults is expected to stand."""
     row = np.zeros(found.at.size)
     row[best.at] = best.mean

@@ -9,7 +9,7 @@ import numpy as np
 from twin.study.instruments.fit import KinematicFit, columns
 from twin.study.instruments.problem import Problem
 from twin.study.instruments.readings import Readings
-from twin.study.instruments.select import Book, Weighed
+from twin.study.instruments.select import Weighed, WeighedSets
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, InstrumentUnknown
 
 SEEN = 5.0  # log Bayes factor from which a fault is said to be seen (150 to 1)
@@ -74,7 +74,7 @@ class Instruments:
 def said(
     readings: Sequence[Readings], problems: Sequence[Problem], found: KinematicFit, clock: str
 ) -> Instruments:
-    book = Book(found, clock)
+    book = WeighedSets(found, clock)
     best = book.likeliest()
     factor = {f: book.bayes_factor(f, best) for f in book.tellable}
     everything = book.weigh(book.tellable)
@@ -105,7 +105,7 @@ def said(
 def _one(
     i: int,
     readings: Sequence[Readings],
-    book: Book,
+    book: WeighedSets,
     best: Weighed,
     faults: Sequence[str],
     factor: dict[str, float],
@@ -138,7 +138,7 @@ def _one(
 
 
 def _falls(
-    problems: Sequence[Problem], found: KinematicFit, book: Book, fault: str
+    problems: Sequence[Problem], found: KinematicFit, book: WeighedSets, fault: str
 ) -> dict[str, tuple[float, float]]:
     """Scatter of each kind of reading without this fault (all else, the paths too, made to fit) and with it,
     where it changed by a tenth."""
@@ -166,7 +166,7 @@ AGES = {"velocity": "smoothing", "heading": "heading_delay", "rate": "rate_delay
 
 
 def _relative(
-    book: Book, aged: Weighed, problems: Sequence[Problem]
+    book: WeighedSets, aged: Weighed, problems: Sequence[Problem]
 ) -> tuple[str, dict[str, tuple[float, float]]]:
     """What the others' ages are counted from (the position where its own can be told, else the prompt
     instrument), and how much later each is [s] with its sd; of the velocity: than the position."""

@@ -31,7 +31,7 @@ class Weighed:
     covariance: np.ndarray
 
 
-class Book:
+class WeighedSets:
     """The sets weighed so far about one fit. `clock`: the age that is none by definition, since a clock of
     all instruments shows nowhere."""
 
