@@ -49,7 +49,7 @@ if __name__ == "__main__":
 """
 
 
-@pytest.mark.parametrize("after_s", [0.5, 5.0])
+@pytest.mark.parametrize("after_s", [0.5, 4.0, 12.0])
 def test_an_interrupt_ends_all_processes_with_one_word(after_s, tmp_path):
     """Test: Ctrl-C to the whole group, while the processes begin and while they work."""
     (tmp_path / "long.py").write_text(INTERRUPTED)
