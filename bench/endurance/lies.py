@@ -110,6 +110,8 @@ def one(
                 begins_s = t
         tick = heard(loop, row, k)
         new = [reason for reason in tick.reasons if _kind(reason) not in before]
+        if lie is None:  # what is said of true instruments tells nothing of a lie
+            before |= {_kind(reason) for reason in new}
         if new and said_s is None:
             said_s, word = (t - begins_s if begins_s == begins_s else 0.0), new[0]
         e = loop.observer.estimate

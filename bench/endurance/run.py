@@ -8,7 +8,7 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from bench import answer
-from bench.endurance.lies import Told, lies
+from bench.endurance.lies import LIE_AT_S, SECONDS, Told, lies
 from bench.endurance.service import Place
 from bench.endurance.shocks import Killed, Shocked, clocks, kills, pauses
 
@@ -83,8 +83,8 @@ def of_lies(hull: str, weather: str, told: list[Told]) -> str:
     lines = [
         "## Lies",
         "",
-        f"{hull}, {weather}, zigzag 10/10; the lie begins after 180 s of 500. Wrong: ticks with a promise in "
-        "which an error of u, v or r was beyond its bound; both are shares of all ticks since.",
+        f"{hull}, {weather}, zigzag 10/10; the lie begins after {LIE_AT_S:.0f} s of {SECONDS:.0f}. Wrong: "
+        "ticks with a promise in which an error of u, v or r exceeded its bound; shares of the ticks since.",
         "",
         "| lie | said after s | first word | promised | wrong | greatest error / bound |",
         "|---|---|---|---|---|---|",

@@ -117,3 +117,8 @@ def test_a_hand_turned_clock_moves_both_times() -> None:
     clock = ManualClock(5.0, 1.75e9)
     clock.advance(2.0)
     assert clock.wait()[:3] == (0, 7.0, 1.75e9 + 2.0)
+
+
+def test_instants_of_a_log_and_of_a_clock_turned_by_hand_are_never_late_and_skip_nothing():
+    for instant in (ReplayClock([(3.0, 4.0)]).wait(), ManualClock(3.0, 4.0).wait()):
+        assert instant == (0, 3.0, 4.0, 0.0, 0)
