@@ -23,7 +23,7 @@ def test_an_error_that_fell_is_accepted():
 
 def test_an_error_that_grew_names_its_horizon_before_and_after_and_the_manoeuvres():
     told = refusal(USV, [entry(10.0, 2.0, 2.1), entry(60.0, 9.0, 30.0, 4.0, 12.0)], ["X_uu", "port.gain"])
-    assert "after 60 s" in told and "9 m" in told and "30 m" in told and "12 deg" in told
+    assert "after 60 s" in told and "9.00 m" in told and "30.0 m" in told and "12.0 deg" in told
     assert "speed changes" in told and "one actuator works alone" in told and "zigzags" not in told
 
 
