@@ -89,33 +89,6 @@ class RotorSail(Force):
 FILES = {"__init__": "", "derrick": DERRICK, "gyro_scale": GYRO_SCALE, "rotor_sail": ROTOR_SAIL}
 # how many prior widths of it are hidden, and the wind that is recorded [m/s]
 HIDDEN = {"Derrick": (3.0, None)}
-SAIL = '''"""A rotor sail: a lift across the air past the ship (Magnus).
-
-X = 1/2 rho_a area lift V_rw v_rw,  Y = -1/2 rho_a area lift V_rw u_rw
-"""
-from twin.physics.effect import Force, param
-from twin.physics.maths import cos, hypot, sin
-from twin.physics.state import Force as ForceVector
-
-
-class RotorSail(Force):
-    """A rotor sail pushes the ship across the wind past it."""
-
-    belongs_to = "voyage"
-    needs = ("wind_speed", "wind_to")
-    needs_ship = ("A_L",)
-    source = "a test"
-    lift: float = param(1.0, unit="-", lo=-10.0, hi=10.0, sd=1.0, doc="lift coefficient on the lateral area")
-
-    def force(self, s, ship):
-        u = s.u - s.wind_speed * cos(s.wind_to - s.psi)
-        v = s.v - s.wind_speed * sin(s.wind_to - s.psi)
-        q = 0.5 * 1.225 * ship.A_L * self.lift * hypot(u, v)
-        return ForceVector(X=q * v, Y=-q * u)
-'''
-FILES = {"__init__": "", "derrick": DERRICK, "gyro_scale": GYRO_SCALE, "rotor_sail": ROTOR_SAIL}
-# how many prior widths of it are hidden, and the wind that is recorded [m/s]
-HIDDEN = {"Derrick": (3.0, None), "GyroScale": (2.0, None), "RotorSail": (2.0, 9.0)}
 SAIL = """
 import json, sys
 import twin
