@@ -2,7 +2,7 @@
 
 The probability of a cause is Bayesian under the stated noise model, and a model that errs in form believes
 itself
-too much. What its facts are worth was measured: a logistic model, monotone in four of them, fitted to the
+too much. What its facts are worth was measured: a logistic model, monotone in three of them, fitted to the
 answers
 on random ships of several families (bench/fleet); what it says of a family that was left out of the fit
 stands in
@@ -30,10 +30,6 @@ def _clearness(f: Facts, c: Cause) -> float:
     return log(1.0 + min(c.significance, MOST))
 
 
-def _alone(f: Facts, c: Cause) -> float:
-    return 1.0 - sum(x.in_explanation for x in f.causes)
-
-
 def _left_little(f: Facts, c: Cause) -> float:
     return -log(max(1.0 if f.left.error is None else f.left.error, 0.5))
 
@@ -41,11 +37,10 @@ def _left_little(f: Facts, c: Cause) -> float:
 FACTS: dict[str, Callable[[Facts, Cause], float]] = {  # each makes a cause likelier as it grows
     "log_odds": _log_odds,  # a third of the log odds of its probability
     "clearness": _clearness,  # log of one and its significance
-    "alone": _alone,  # none but this cause in the explanation; less one for each further
     "left_little": _left_little,  # log of the expected error over what the explanation leaves
 }
-CONSTANT = -2.81
-WEIGHTS = {"log_odds": 0.83, "clearness": 0.82, "alone": 1.27, "left_little": 0.75}
+CONSTANT = -2.19
+WEIGHTS = {"log_odds": 0.72, "clearness": 0.63, "left_little": 0.57}
 
 
 def confidence(f: Facts, c: Cause) -> float | None:
