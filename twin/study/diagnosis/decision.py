@@ -28,7 +28,9 @@ SIGNIFICANT = 5.0  # standard deviations of an instrument's clearest number from
 CHANGED = (
     2.0  # standard deviations of its form by which a number must differ from what the ship's file has (95 %)
 )
-USUAL = 0.25  # share of the reference voyages that reach a voyage's score, from which it is no news
+# share of the reference voyages that reach a voyage's score, or an instrument's distance by kinematics, from
+# which it is no news
+USUAL = 0.25
 POWER = 0.75  # share of the causes that must have shown before nothing is said to be missing
 
 
@@ -106,7 +108,7 @@ CAUSE_RULES: tuple[
     tuple[str, Callable[[Facts, Cause], bool]], ...
 ] = (  # why an effect is not named, first hit wins
     ("not_in_explanation", lambda f, c: not c.in_explanation),
-    ("as_on_references", lambda f, c: f.reached is not None and f.reached >= USUAL),
+    ("as_on_references", lambda f, c: max(f.reached or 0.0, c.reached or 0.0) >= USUAL),
     ("unlikely", lambda f, c: c.probability < NAMED and c.with_rivals < CERTAIN),
     ("change_within_form", lambda f, c: c.in_ship_file and (c.alone <= CLEAR or c.change <= CHANGED)),
     ("not_significant", lambda f, c: c.belongs_to == "instrument" and c.significance <= SIGNIFICANT),

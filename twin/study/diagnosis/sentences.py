@@ -141,7 +141,9 @@ def why_not(c: Result, reason: str) -> str:
         else "nobody asked"
     )
     return {
-        "as_on_references": "single causes explained as much of healthy reference voyages of this ship",
+        "as_on_references": "single causes explained as much of healthy reference voyages of this ship"
+        if c.get("on_references") is None
+        else "position, velocity, heading and rate of turn go together as on the reference voyages",
         "not_significant": f"not one of its numbers is clearly other than {none}",
         "change_within_form": f"not one of its numbers is clearly other than {none}",
         "no_nearer": f"adding it does not reduce the open-loop error ({with_it})",

@@ -2,6 +2,7 @@
 map."""
 
 import datetime
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -10,10 +11,11 @@ from twin.physics.effect import Effect
 from twin.physics.effects import find
 from twin.physics.ship import Ship
 from twin.study.instruments.findings import InstrumentEstimate, Instruments
+from twin.study.instruments.unknowns import INDEX, UNKNOWNS
 from twin.study.reference.derivatives import noted
 
 PARAMETERS = {  # number -> effect, parameter, and the one that says by what the velocity was turned
-    "gnss_delay": ("SensorDelay", "delay", None),
+    "gnss_delay": ("SensorDelay", "delay", "turned"),
     "smoothing": ("ReceiverSmoothing", "time", None),
     "heading_delay": ("HeadingLag", "lag", "turned"),
     "A": ("HeadingBias", "bias", "turned"),
@@ -39,30 +41,35 @@ OFFSETS = {
 def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[InstrumentEstimate]]:
     """The ship with the faults that were seen as effects of its own; and the seen numbers that no effect of
     the catalogue holds."""
+    seen = _seen(found)
+    told = {e.unknown.name: (e.value, e.sd) for e in seen if e.unknown.name in PARAMETERS}
+    left = [e for e in seen if e.unknown.name not in PARAMETERS]
+    return with_numbers(ship, told, all(found.own), [r.name for r in found.readings]), left
+
+
+def with_numbers(
+    ship: Ship, told: Mapping[str, tuple[float, float]], own: bool, voyages: Sequence[str]
+) -> Ship:
+    """The ship with these numbers of PARAMETERS (value, sd) as effects of its instruments, each in the place
+    of what it had. `own`: whether the receiver turned its velocity itself; `voyages`: where they are from."""
     effects: dict[str, Effect] = {type(e).__name__: e for e in ship.effects}
     entries: dict[str, Any] = {}
-    left: list[InstrumentEstimate] = []
-    for e in _seen(found):
-        if e.unknown.name not in PARAMETERS:
-            left.append(e)
-            continue
-        name, parameter, turned = PARAMETERS[e.unknown.name]
+    source = f"kinematics of {', '.join(voyages)}, {datetime.date.today().isoformat()}"
+    for number, (value, sd) in told.items():
+        name, parameter, turned = PARAMETERS[number]
         effect = effects.get(name) or find(name).absent(ship)
-        values = {parameter: e.value} | ({turned: 0.0 if all(found.own) else e.value} if turned else {})
+        values = {parameter: value} | ({turned: 0.0 if own else value} if turned else {})
         if name == "CompassDeviation":
-            values["turned"] = 0.0 if all(found.own) else 1.0
+            values["turned"] = 0.0 if own else 1.0
         effects[name] = _boxed(effect.but(**values), ship)
-        source = (
-            f"kinematics of {', '.join(r.name for r in found.readings)}, {datetime.date.today().isoformat()}"
-        )
         entry = {
             "value": float(getattr(effects[name], parameter)),
-            "unit": e.unknown.unit,
-            "sd": e.sd,
+            "unit": UNKNOWNS[INDEX[number]].unit,
+            "sd": sd,
             "source": source,
         }
         entries.setdefault(name, {})[parameter] = entry
-    return noted(replace(ship, effects=tuple(effects.values())), "effects", entries), left
+    return noted(replace(ship, effects=tuple(effects.values())), "effects", entries)
 
 
 def _seen(found: Instruments) -> list[InstrumentEstimate]:
