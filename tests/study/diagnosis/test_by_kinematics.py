@@ -1,7 +1,9 @@
-"""Instruments first: a compass that is slow is proved without the ship, and only then a candidate."""
+"""Instruments first: a compass that is slow is proved without the ship, and only then a candidate; and what
+kinematics know to be as on the reference voyages is no change."""
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from bench.fleet.asked import voyage
@@ -10,8 +12,17 @@ from bench.fleet.cases import generator, plan, sailed
 from twin.physics.effects.heading_lag import HeadingLag
 from twin.physics.model import Model
 from twin.study.diagnosis.assemble import of_tracks
-from twin.study.diagnosis.by_kinematics import asked_for, beyond_usual, instrument_suspected
+from twin.study.diagnosis.by_kinematics import (
+    asked_for,
+    beyond_usual,
+    instrument_suspected,
+    kinematics,
+    other_than_before,
+    reached,
+)
 from twin.study.first_model.init import OPTIONS, first_model
+from twin.study.instruments.on_references import KinematicOfVoyage, KinematicRecord, KinematicUsual
+from twin.study.reference.evidence import Nuisance
 from twin.study.track.track import track
 
 SHIP, SLOW, PROMPT = ("heeling", 5), "heeling-5-5", "heeling-5-1"
@@ -25,21 +36,83 @@ def random_ship():
     return ship, first_model("heeling", given)[0]
 
 
+@pytest.fixture(scope="module")
+def slow(random_ship):
+    """What kinematics say of a voyage on which the compass is slow."""
+    return asked_of(random_ship, SLOW)[0]
+
+
 def asked_of(random_ship, key):
-    """What kinematics ask for on one of its voyages; and what is hidden there."""
+    """What kinematics say of one of its voyages; what they ask for; and what is hidden there."""
     ship, model = random_ship
     hidden = next(c for c in plan(ship, 8) if c.key == key)
-    tracks = (track(voyage(sailed(ship, hidden)), model),)
-    case = SimpleNamespace(tracks=tracks, model=Model.of(model), candidates=("Current", "SensorDelay"))
-    return asked_for(case), set(hidden.hidden)
+    asked = kinematics([voyage(sailed(ship, hidden))], model)
+    case = SimpleNamespace(model=Model.of(model), candidates=("Current", "SensorDelay"))
+    return asked, asked_for(case, asked), set(hidden.hidden)
+
+
+def record(values, sd=0.05, name="heading_delay", clock="rate_delay"):
+    """References on which kinematics had these numbers."""
+    told = tuple(KinematicOfVoyage(f"calm {i}", v, sd, 9.0) for i, v in enumerate(values))
+    between = float(np.std(values, ddof=1))
+    usual = KinematicUsual(float(np.mean(values)), sd / np.sqrt(len(values)), between, told)
+    return KinematicRecord(clock, (), True, {name: usual})
 
 
 def test_a_slow_compass_is_asked_for_whatever_the_ship_is(random_ship):
-    assert asked_of(random_ship, SLOW) == ((HeadingLag,), {"SlowCompass"})
+    assert asked_of(random_ship, SLOW)[1:] == ((HeadingLag,), {"SlowCompass"})
 
 
 def test_a_receiver_that_wanders_makes_no_compass_slow(random_ship):
-    assert asked_of(random_ship, PROMPT) == ((), {"ReceiverWander"})
+    assert asked_of(random_ship, PROMPT)[1:] == ((), {"ReceiverWander"})
+
+
+def test_a_compass_that_was_as_slow_on_the_references_is_no_other_one(slow):
+    age, sd = slow.number("heading_delay")
+    assert age > 20.0 * sd
+    before = SimpleNamespace(record=record([age - 0.02, age + 0.02], clock=slow.found.clock))
+    as_before = SimpleNamespace(found=slow.found, number=slow.number, comparable=("heading_delay",))
+    as_before.record = before.record
+    assert other_than_before(as_before) == []
+    as_before.record = record([0.0, 0.04], clock=slow.found.clock)
+    assert other_than_before(as_before) == ["heading_delay"]
+
+
+def test_ages_from_another_instrument_are_not_compared(slow):
+    other = type(slow)(slow.found, record([0.0, 0.1], clock="log_delay"))
+    same = type(slow)(slow.found, record([0.0, 0.1], clock=slow.found.clock))
+    assert other.comparable == () and same.comparable == ("heading_delay",)
+
+
+def hypothesis(bias, sd=0.002):
+    """A likeliest hypothesis with a compass that is off by so much [rad], on a ship of which nothing is
+    usual."""
+    u = SimpleNamespace(owner="HeadingBias", label="HeadingBias.bias", sd=0.02)
+    nuisance = Nuisance((u,), np.eye(1), np.zeros(1), {})
+    posterior = SimpleNamespace(z=np.array([bias / u.sd]), covariance=np.array([[(sd / u.sd) ** 2]]))
+    return SimpleNamespace(effects=(u,), nuisance=nuisance), SimpleNamespace(posterior=posterior)
+
+
+def says(seen, sd=0.002, references=(0.010, 0.012, 0.008)):
+    """Kinematics that have the compass off by so much."""
+    return SimpleNamespace(
+        record=record(references, sd=0.001, name="A"), comparable=("A",), number=lambda name: (seen, sd)
+    )
+
+
+@pytest.mark.parametrize(
+    "bias, seen, expected", [(0.03, 0.0105, True), (0.03, 0.040, None), (0.002, 0.0105, None), (0.03, 0.0, False)]
+)  # fmt: skip
+def test_what_kinematics_know_to_be_as_on_the_references_is_no_change(bias, seen, expected):
+    """Test: 0.010 rad on the references; a change of so much is accused, and so much seen. Expected: as there
+    (True), as accused or too small to say (None), as neither (False)."""
+    share = reached(*hypothesis(bias), "HeadingBias", says(seen))
+    assert share is None if expected is None else (share >= 0.25) == expected
+
+
+def test_what_kinematics_hardly_tell_contradicts_nothing():
+    assert reached(*hypothesis(0.03), "HeadingBias", says(0.0105, sd=0.03)) is None
+    assert reached(*hypothesis(0.03), "HeadingBias", SimpleNamespace(record=None)) is None
 
 
 def test_what_kinematics_ask_for_becomes_a_candidate_that_else_is_none(tanker, voyages):

@@ -14,6 +14,7 @@ from twin.physics.ship import Ship
 from twin.recording.checks import losses
 from twin.recording.jsonable import plain
 from twin.study.calibration.held_out import HeldOut, by_regime, errors, size
+from twin.study.calibration.own_instruments import own_instruments
 from twin.study.calibration.parts import clearly, placed, with_or_without_wind
 from twin.study.calibration.rollout import rolled_out
 from twin.study.calibration.usual import clearly_there, usual
@@ -84,9 +85,12 @@ def calibrate(
     progress: Callable[[str], None] = lambda text: None,
     by: str | None = None,
 ) -> Calibrated:
-    """Fit the core to the tracks. `by`: one of FITTED_BY; None: the one that predicts what was held out
-    better."""
-    sailed = [s.track for s in fitted]
+    """Fit the core to the tracks, with the ship's instruments as kinematics find them on all of these. `by`:
+    one of FITTED_BY; None: the one that predicts what was held out better."""
+    first, sailed = ship, [s.track for s in fitted]
+    progress("asking how the instruments go together, whatever the ship is")
+    own = own_instruments(fitted, ship, progress)
+    ship = own.ship
     core = _core(sailed, ship, progress)
     if core.antenna is not None:
         progress("fitting again, with the antenna where it was found")
@@ -104,7 +108,8 @@ def calibrate(
     lasting_ones = usual(ships[way], tracks, core.floor)
     judged = {"held_out": off[way], "by_regime": by_regime(Model.of(ships[way]), held_out)}
     after = noted(ships[way], "structural", lasting_ones | judged)
-    return Calibrated(after, plain(_result(ship, after, core, way, errors(Model.of(ship), held_out))))
+    result = _result(ship, after, core, way, errors(Model.of(first), held_out))
+    return Calibrated(after, plain(result | {"instruments": own.written}))
 
 
 def _with_antenna(
@@ -247,6 +252,11 @@ def told(result: dict[str, Any]) -> list[str]:
         "  fitted to "
         + ("where it went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading")
     )
+    lines += [
+        "  the instruments show it on each reference voyage alike, whatever the ship is: now part of the "
+        f"model ({name}: {_sizes(numbers)})"
+        for name, numbers in result["instruments"].items()
+    ]
     if gear := result["gear"]:
         lines.append(
             "  rudder_angle_deg is the rudder order: the steering gear behind it is now part of the model "

@@ -1,26 +1,62 @@
 """Instruments first: where an instrument is suspected, position, velocity, heading, rate of turn and log are
-checked against each other without any model of the ship (twin/study/instruments).
+checked against each other without any model of the ship (twin/study/instruments), and compared with what they
+were on the reference voyages.
 
 A slow compass looks like a late receiver, an antenna elsewhere and a slow gear together; the rate of turn
-proves it alone. What kinematics ask for, and is larger than what is usual of that instrument, becomes a
-candidate of the whole search. It brings no evidence of its own there: the same readings speak again, with
-the ship's model beside them."""
+proves it alone. What kinematics ask for, and is another than on the references, becomes a candidate of the
+whole search. It brings no evidence of its own there: the same readings speak again, with the ship's model
+beside them. And a number that kinematics know to be as it always was is not one that changed."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from twin.errors import DataError
 from twin.physics.effect import Effect
 from twin.physics.effects import of_ship
+from twin.physics.ship import Ship
+from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import Case
-from twin.study.diagnosis.criteria import SIGNIFICANT
+from twin.study.diagnosis.criteria import CLEAR, SIGNIFICANT
+from twin.study.diagnosis.refine import Found
 from twin.study.estimation.columns import lateness_unknowns
+from twin.study.instruments.by_voyage import equations
+from twin.study.instruments.corrections import told_by_readings
 from twin.study.instruments.estimate import estimate
-from twin.study.instruments.findings import Instruments
-from twin.study.instruments.unknowns import effect_of
+from twin.study.instruments.findings import CLOCKS, Instruments
+from twin.study.instruments.on_references import KinematicRecord
+from twin.study.instruments.unknowns import INDEX, UNKNOWNS, effect_of
 
 USUAL = {"heading_delay": "compass"}  # number of kinematics -> whose usual lateness is known (columns.py)
+
+
+@dataclass(frozen=True)
+class AskedKinematics:
+    """What kinematics say of the voyages that are judged, all together, and what they said of the reference
+    voyages; None: the ship file was calibrated without."""
+
+    found: Instruments
+    record: KinematicRecord | None
+
+    @cached_property
+    def comparable(self) -> tuple[str, ...]:
+        """Numbers that the references told too: ages only where they count from the same instrument."""
+        if self.record is None:
+            return ()
+        same = self.found.clock == self.record.clock
+        return tuple(n for n in self.record.numbers if same or n not in CLOCKS)
+
+    def number(self, name: str) -> tuple[float, float] | None:
+        """(value, sd) of one number beside the faults of these voyages and of the references."""
+        fault = UNKNOWNS[INDEX[name]].fault
+        before = self.record.faults if self.record else ()
+        open_ones = {*self.found.faults, *before, fault}.intersection(self.found.log_bayes_factors)
+        if fault not in open_ones:
+            return None
+        told = equations(self.found.fit, range(len(self.found.readings)), open_ones)
+        return told.number(told.at.index(INDEX[name]))
 
 
 def instrument_suspected(case: Case, effects: Sequence[str]) -> bool:
@@ -28,16 +64,37 @@ def instrument_suspected(case: Case, effects: Sequence[str]) -> bool:
     return any(case.catalogue[name].belongs_to == "instrument" for name in case.names(effects))
 
 
-def asked_for(case: Case) -> tuple[type[Effect], ...]:
-    """Effects of instruments that kinematics alone ask for on these voyages, clearly beyond what is usual of
-    such an instrument, and that are no candidates yet."""
+def kinematics(voyages: Sequence[Voyage], ship: Ship) -> AskedKinematics | None:
+    """Of these voyages; None where they lack heading, or too much of it: kinematics say nothing."""
+    record = KinematicRecord.of_notes(ship.notes)
     try:
-        found = estimate(case.tracks, float(case.model.ship.L_pp))
-    except DataError:  # no heading, or too little of it: kinematics say nothing
-        return ()
+        found = estimate(voyages, float(ship.L_pp), clock=record.clock if record else None)
+    except DataError:
+        return None
+    return AskedKinematics(found, record)
+
+
+def asked_for(case: Case, asked: AskedKinematics) -> tuple[type[Effect], ...]:
+    """Effects of instruments that kinematics alone ask for on these voyages, and that are no candidates yet:
+    clearly other than on the reference voyages, or where nothing is known of these, than is usual."""
     catalogue = of_ship(case.model.ship)
-    names = {str(effect_of(fault)) for fault in beyond_usual(found)}
+    others = other_than_before(asked) if asked.record else beyond_usual(asked.found)
+    names = {str(effect_of(fault)) for fault in others}
     return tuple(catalogue[n] for n in sorted(names) if n in catalogue and n not in case.candidates)
+
+
+def other_than_before(asked: AskedKinematics) -> list[str]:
+    """Faults that are seen, and one of whose numbers is farther from those of the references than SIGNIFICANT
+    times its own standard deviation and the scatter of those together."""
+    assert asked.record is not None
+    out = []
+    for name in asked.comparable:
+        fault, usual, now = UNKNOWNS[INDEX[name]].fault, asked.record.numbers[name], asked.number(name)
+        if now is None or fault not in asked.found.faults:
+            continue
+        if abs(now[0] - usual.value) > SIGNIFICANT * float(np.hypot(now[1], usual.next_sd)):
+            out.append(fault)
+    return list(dict.fromkeys(out))
 
 
 def beyond_usual(found: Instruments) -> list[str]:
@@ -50,3 +107,46 @@ def beyond_usual(found: Instruments) -> list[str]:
         if e and e.seen and abs(e.value) > SIGNIFICANT * float(np.hypot(e.sd, usual[whose])):
             out.append(e.unknown.fault)
     return out
+
+
+def reached(case: Case, found: Found, name: str, asked: AskedKinematics) -> float | None:
+    """Share of the reference voyages whose kinematic numbers of this instrument are as far from the others'
+    as these voyages' are from theirs; None where kinematics know too little to tell "as it was" from the
+    change that the likeliest hypothesis has (log Bayes factor CLEAR).
+
+    Of a change D +- s_D, seen as d +- s against references that scatter by s_0, the factor is
+
+        ln N(d; 0, s^2 + s_0^2) - ln N(d; D, s^2 + s_0^2 + s_D^2)        summed over its numbers
+    """
+    if asked.record is None:
+        return None
+    factor, mine, theirs, known = 0.0, 0.0, dict[str, float](), told_by_readings()
+    for number in asked.comparable:
+        effect, usual = known.get(number), asked.record.numbers[number]
+        if effect is None or effect.__name__ != name or len(usual.distances) < 2:
+            continue
+        if (now := asked.number(number)) is None:
+            continue
+        D, sd_D = changed(case, found, f"{name}.{effect.by_readings[number]}")
+        d, variance = now[0] - usual.value, now[1] ** 2 + usual.next_sd**2
+        factor += _log_normal(d, variance) - _log_normal(d - D, variance + sd_D**2)
+        mine = max(mine, abs(d) / float(np.sqrt(variance)))
+        for v, far in zip(usual.voyages, usual.distances, strict=True):
+            theirs[v.voyage] = max(far, theirs.get(v.voyage, 0.0))
+    if factor <= CLEAR:
+        return None
+    return float(np.mean([far >= mine for far in theirs.values()]))
+
+
+def changed(case: Case, found: Found, label: str) -> tuple[float, float]:
+    """By how much a number of an instrument is another than a healthy ship's, and its sd, in its own unit."""
+    i = next(i for i, u in enumerate(case.effects) if u.label == label)
+    u, known = case.effects[i], case.nuisance
+    mean = np.linalg.solve(known.information, known.pull)
+    usual = sum(float(m * n.sd) for m, n in zip(mean, known.unknowns, strict=True) if n.label == label)
+    by = float(found.posterior.z[i] * u.sd) - usual
+    return by, float(u.sd * np.sqrt(found.posterior.covariance[i, i]))
+
+
+def _log_normal(x: float, variance: float) -> float:
+    return -0.5 * (x * x / variance + float(np.log(variance)))

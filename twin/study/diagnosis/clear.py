@@ -1,28 +1,17 @@
 """How clear the numbers of an effect are, and how far from what the ship's file has."""
 
 import numpy as np
-from scipy.stats import chi2, norm
 
 from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.refine import Found
-
-LEAST = 1e-300  # probability below which the tail of a normal distribution is taken for its exponent alone
+from twin.study.estimation.rarity import deviations
 
 
 def significance(case: Case, found: Found, name: str) -> float:
-    """How many standard deviations one number would have to be from none to be as rare by chance as all
-    numbers of this effect together are.
-
-        q = z' C^-1 z ~ chi squared of k numbers,   2 Phi(-significance) = P(chi squared_k > q)
-
-    Two numbers that are known by their difference alone (a compass bias, and what of it turned the velocity)
-    are each uncertain, and together clear. Of one number it is |z| over its standard deviation.
-    """
+    """How far all numbers of this effect together are from none, as standard deviations of one (a compass
+    bias, and what of it turned the velocity, are each uncertain, and their difference clear)."""
     own = np.array([i for i, u in enumerate(case.effects) if u.owner == name])
-    z, C = found.posterior.z[own], found.posterior.covariance[np.ix_(own, own)]
-    q = float(z @ np.linalg.solve(C, z))
-    tail = float(chi2.sf(q, own.size))
-    return float(norm.isf(0.5 * tail)) if tail > LEAST else float(np.sqrt(q))
+    return deviations(found.posterior.z[own], found.posterior.covariance[np.ix_(own, own)])
 
 
 def change(case: Case, found: Found, name: str) -> float:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from twin.study.diagnosis.by_kinematics import AskedKinematics, reached
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.clear import change, significance
 from twin.study.diagnosis.criteria import CLEAR, SURE
@@ -43,7 +44,9 @@ def consider(
     found: Mapping[Sets, Found],
     seen: Mapping[str, bool],
     w: Weights,
+    asked: AskedKinematics | None = None,
 ) -> Considered:
+    """`asked`: what kinematics say of these voyages, where an instrument is suspected."""
     best, base = found[w.best.effects], without_causes(case, weighed, found)
     nothing = found[base]
     explanation, left = _explanation(case, weighed, found)
@@ -56,7 +59,7 @@ def consider(
         ]
     )
     like = {name: alike(case, weighed, name) for name in named}
-    causes = [_cause(case, weighed, found, explanation, name, w, like[name]) for name in named]
+    causes = [_cause(case, weighed, found, explanation, name, w, like[name], asked) for name in named]
     weather = [
         _cause(case, weighed, found, explanation, name, w, ()) for name, p in w.weather.items() if p >= SURE
     ]
@@ -172,6 +175,7 @@ def _cause(
     name: str,
     w: Weights,
     like: Sequence[str],
+    asked: AskedKinematics | None = None,
 ) -> Cause:
     there = [h for h in weighed if name in h.effects]
     chosen = (
@@ -202,4 +206,5 @@ def _cause(
         error_gain=gain,
         significance=significance(case, own, name) if own else 0.0,
         change=change(case, own, name) if own else 0.0,
+        reached=reached(case, own, name, asked) if own and asked else None,
     )

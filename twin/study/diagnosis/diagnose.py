@@ -14,7 +14,7 @@ from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.assemble import assemble, of_tracks, unjudged_because
-from twin.study.diagnosis.by_kinematics import asked_for, instrument_suspected
+from twin.study.diagnosis.by_kinematics import asked_for, instrument_suspected, kinematics
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.confidence import confidence
 from twin.study.diagnosis.consider import Considered, consider
@@ -60,15 +60,16 @@ def diagnose(
     """Judge all candidates jointly on these voyages."""
     case = assemble(voyages, ship, references, progress)
     weighed, found, seen = search(case, progress)
-    w = weights(case, weighed, found)
+    w, asked = weights(case, weighed, found), None
     if instrument_suspected(case, w.best.effects):
         progress("checking the instruments against each other, without the ship model")
-        if wanted := asked_for(case):
+        asked = kinematics(voyages, ship)
+        if asked and (wanted := asked_for(case, asked)):
             case = of_tracks(case.tracks, ship, references, progress, wanted)
             weighed, found, seen = search(case, progress)
             w = weights(case, weighed, found)
     progress("computing the facts")
-    considered = consider(case, weighed, found, seen, w)
+    considered = consider(case, weighed, found, seen, w, asked)
     facts, decision = considered.facts, decide(considered.facts)
     nothing = 0.0 if decision.reason == "pushed" else facts.nothing
     unknown = 1.0 - nothing if decision.verdict == "unknown" else facts.unknown
@@ -170,6 +171,7 @@ def _candidate(
         "belongs_to": case.catalogue[name].belongs_to,
         "probability": capped(probability),
         "confidence": _confidence(considered, name),
+        "on_references": _on_references(considered, name),
         "parameters": parameters(case, sized(case, best), name),
         "typical_force": typical_force(case, best.model, name),
         "error_horizon_s": horizon_s(case.tracks[0], case.model),
@@ -188,6 +190,11 @@ def _confidence(considered: Considered, name: str) -> float | None:
     """How often such a cause was there on other ships; None where that was not measured."""
     cause = next((c for c in considered.facts.causes if c.effect == name), None)
     return confidence(considered.facts, cause) if cause else None
+
+
+def _on_references(considered: Considered, name: str) -> float | None:
+    """Share of the reference voyages on which kinematics had as much of an instrument's fault."""
+    return next((c.reached for c in considered.facts.causes if c.effect == name), None)
 
 
 def _without(case: Case, found: dict[tuple[str, ...], Found], considered: Considered, name: str) -> float:

@@ -28,6 +28,9 @@ class Cause:
     error_gain: float | None  # share by which the open-loop error is less with it; None: not asked [1]
     significance: float  # how far are its numbers together from none? [standard deviations of one]
     change: float  # how far is its clearest number from the ship's file, over what its form may miss? [1]
+    # share of the reference voyages whose kinematics are as far from the others' as these voyages' are from
+    # theirs; None: kinematics cannot tell its size from none, or were not asked [1]
+    reached: float | None = None
 
 
 @dataclass(frozen=True)

@@ -140,7 +140,9 @@ def why_not(c: Result, reason: str) -> str:
     )
     return {
         "not_in_explanation": "the explanation that leaves least does without it",
-        "as_on_references": "single causes explained as much of healthy reference voyages of this ship",
+        "as_on_references": "single causes explained as much of healthy reference voyages of this ship"
+        if c.get("on_references") is None
+        else "position, velocity, heading and rate of turn go together as on the reference voyages",
         "unlikely": f"its probability, {int(100.0 * c['probability'])} %, is below the {100.0 * NAMED:.0f} % "
         "needed to name it",
         "not_significant": f"not one of its numbers is clearly other than {none}",

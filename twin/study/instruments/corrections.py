@@ -2,6 +2,7 @@
 map."""
 
 import datetime
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, cast
 
@@ -11,6 +12,7 @@ from twin.physics.effect import Effect, SensorFault
 from twin.physics.effects import catalogue
 from twin.physics.ship import Ship
 from twin.study.instruments.findings import InstrumentEstimate, Instruments
+from twin.study.instruments.unknowns import INDEX, UNKNOWNS
 from twin.study.reference.derivatives import noted
 
 OFFSETS = {
@@ -23,32 +25,38 @@ OFFSETS = {
 def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[InstrumentEstimate]]:
     """The ship with the faults that were seen as effects of its own; and the seen numbers that no effect of
     the catalogue holds."""
+    seen = _seen(found)
+    known = told_by_readings()
+    told = {e.unknown.name: (e.value, e.sd) for e in seen if e.unknown.name in known}
+    left = [e for e in seen if e.unknown.name not in known]
+    return with_numbers(ship, told, all(found.own), [r.name for r in found.readings]), left
+
+
+def with_numbers(
+    ship: Ship, told: Mapping[str, tuple[float, float]], own: bool, voyages: Sequence[str]
+) -> Ship:
+    """The ship with these numbers that the readings tell (value, sd) as effects of its instruments, each in
+    the place of what it had. `own`: whether the receiver turned its velocity itself; `voyages`: where they
+    are from."""
     effects: dict[str, Effect] = {type(e).__name__: e for e in ship.effects}
     entries: dict[str, Any] = {}
-    left: list[InstrumentEstimate] = []
-    known = _told_by_readings()
-    for e in _seen(found):
-        number = e.unknown.name
-        if number not in known:
-            left.append(e)
-            continue
+    source = f"kinematics of {', '.join(voyages)}, {datetime.date.today().isoformat()}"
+    known = told_by_readings()
+    for number, (value, sd) in told.items():
         name, parameter = known[number].__name__, known[number].by_readings[number]
         fault = cast(SensorFault, effects.get(name) or known[number].absent(ship))
-        effects[name] = _boxed(fault.as_read(number, e.value, all(found.own)), ship)
-        source = (
-            f"kinematics of {', '.join(r.name for r in found.readings)}, {datetime.date.today().isoformat()}"
-        )
+        effects[name] = _boxed(fault.as_read(number, value, own), ship)
         entry = {
             "value": float(getattr(effects[name], parameter)),
-            "unit": e.unknown.unit,
-            "sd": e.sd,
+            "unit": UNKNOWNS[INDEX[number]].unit,
+            "sd": sd,
             "source": source,
         }
         entries.setdefault(name, {})[parameter] = entry
-    return noted(replace(ship, effects=tuple(effects.values())), "effects", entries), left
+    return noted(replace(ship, effects=tuple(effects.values())), "effects", entries)
 
 
-def _told_by_readings() -> dict[str, type[SensorFault]]:
+def told_by_readings() -> dict[str, type[SensorFault]]:
     """The instruments' effect of the catalogue that holds each number that the readings tell."""
     faults = [e for e in catalogue().values() if issubclass(e, SensorFault)]
     return {number: e for e in reversed(faults) for number in e.by_readings}

@@ -24,14 +24,16 @@ def estimate(
     voyages: Sequence[Voyage | Track | Readings],
     length_m: float | None = None,
     progress: Progress = lambda text: None,
+    clock: str | None = None,
 ) -> Instruments:
     """The instruments of these voyages; `length_m` of the ship, if known, scales what is believed of antennas
-    and drift before any data."""
+    and drift before any data. `clock`: the age from which others are counted, where that instrument was
+    recorded; else the earliest."""
     readings = [_readings(v) for v in voyages]
     lengths = [length_m or r.length for r in readings]
     problems = [_problem(r, length, progress) for r, length in zip(readings, lengths, strict=True)]
     progress("fitting all numbers at once")
-    found, clock = _whole(problems)
+    found, clock = _whole(problems, clock)
     chosen: tuple[str, ...] | None = None
     for _ in range(ROUNDS):
         book = WeighedSets(found, clock)
@@ -61,7 +63,7 @@ def _problem(r: Readings, length: float, progress: Progress) -> Problem:
     return Problem(r, length, told[1] > told[0] + CLEARLY)
 
 
-def _whole(problems: Sequence[Problem]) -> tuple[KinematicFit, str]:
+def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[KinematicFit, str]:
     """All numbers at once but for one age, and which: a clock of all instruments together shows nowhere; none
     is early, so the earliest is prompt."""
     names = [u.name for u in UNKNOWNS]
@@ -69,7 +71,7 @@ def _whole(problems: Sequence[Problem]) -> tuple[KinematicFit, str]:
     there = [n for n, by in CLOCKS.items() if any(b in p.by for b in by for p in problems)]
     sd = dict(zip(WeighedSets(first, "heading_delay").names, first.sd().tolist(), strict=False))
     value = {n: float(first.theta[0, INDEX[n]]) for n in there}
-    earliest = min(there, key=lambda n: value[n] + 2.0 * sd[n])
+    earliest = clock if clock in there else min(there, key=lambda n: value[n] + 2.0 * sd[n])
     theta = first.theta.copy()
     theta[:, [INDEX[n] for n in there]] -= value[earliest]
     return fit(problems, [n for n in names if n != earliest], theta), earliest

@@ -47,6 +47,10 @@ class KinematicFit:
         """(Q,) theta as one row."""
         return np.concatenate([self.theta[0, SHARED], self.theta[:, MINE].ravel()])
 
+    def prior(self) -> np.ndarray:
+        """(P,) prior scatter of each number of UNKNOWNS, on the first voyage."""
+        return np.asarray(self.width[columns(0)])
+
     def sd(self) -> np.ndarray:
         """(Q,) scatter of each free number, with the others free; 0 of one that was held."""
         return np.sqrt(np.diag(_step(self.A, self.g, self.width, self.open, self.at)[0]))

@@ -29,8 +29,10 @@ NOTHING = 1e6  # information of what is none
 
 def lasting(model: Model, catalogue: dict[str, type[Effect]]) -> list[Unknown]:
     """The effects that belong to ship and instruments and not to the day: a healthy ship shows a little of
-    each, beside what its file says of it. Not those that are another study's (`Effect.kinematic`)."""
-    its = (e for e in catalogue.values() if e.belongs_to != "voyage" and not e.kinematic)
+    each, beside what its file says of it. Of those that kinematics find (`Effect.kinematic`) only the ones
+    that its file has."""
+    present = {type(e) for e in model.effects}
+    its = (e for e in catalogue.values() if e.belongs_to != "voyage" and (not e.kinematic or e in present))
     return [u for e in its for u in effect_unknowns(e, model) if u.name not in e.copies]
 
 

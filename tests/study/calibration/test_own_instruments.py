@@ -1,0 +1,51 @@
+"""A ship whose receiver always smoothed course and speed: calibration writes it into the ship file, and a
+voyage with that receiver, on which nothing but the stream is new, is told to have no false instrument."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from twin.recording.voyage import Voyage
+from twin.study.calibration.calibrate import calibrate, told
+from twin.study.diagnosis.diagnose import diagnose
+from twin.study.reference.sailed import sailed
+
+TIME_S = 8.0  # of the smoothing
+U, V, HEADING = "surge_velocity_mps", "sway_velocity_mps", "heading_true_north_deg"
+
+
+def smoothed(voyage: Voyage) -> Voyage:
+    """The voyage as a receiver shows it that smooths course and speed over ground."""
+    psi = np.radians(voyage.columns[HEADING])
+    earth = (voyage.columns[U] + 1j * voyage.columns[V]) * np.exp(1j * psi)
+    share, out = 1.0 - np.exp(-float(np.median(np.diff(voyage.time_s))) / TIME_S), earth.copy()
+    for k in range(1, out.size):
+        out[k] = out[k - 1] + share * (earth[k] - out[k - 1])
+    out *= np.exp(-1j * psi)
+    meta = {**voyage.meta, "velocity_frame": "course"}
+    return replace(voyage, columns={**voyage.columns, U: out.real, V: out.imag}, meta=meta)
+
+
+@pytest.fixture(scope="module")
+def calibrated(voyages, tanker):
+    """The published tanker calibrated on two voyages with such a receiver."""
+    fitted = [sailed(smoothed(voyages[name]), tanker) for name in ("calm", "nothing")]
+    return calibrate(fitted, [(fitted[1].track, 0)], tanker, by="steps")
+
+
+def test_the_smoothing_becomes_the_ships_own_and_is_said(calibrated):
+    (own,) = (e for e in calibrated.ship.effects if type(e).__name__ == "ReceiverSmoothing")
+    assert own.time == pytest.approx(TIME_S, rel=0.2)
+    assert set(calibrated.result["instruments"]) == {"ReceiverSmoothing"}
+    said = told(calibrated.result | {"held_out_is": "", "doubts": [], "data_checks": []})
+    assert sum("ReceiverSmoothing: time" in line for line in said) == 1
+    kept = calibrated.ship.notes["instruments"]["numbers"]["smoothing"]["voyages"]
+    assert [set(v) for v in kept] == 2 * [{"voyage", "value", "sd", "log_bayes_factor"}]
+
+
+def test_a_voyage_in_a_stream_with_that_receiver_has_no_false_instrument(calibrated, voyages):
+    result = diagnose([smoothed(voyages["Current"])], calibrated.ship).result
+    accused = {"SensorDelay", "AntennaOffset", "ReceiverSmoothing", "HeadingLag"}
+    assert not accused & set(result["missing"])
+    assert not accused & {c["effect"] for c in result["candidates"] if c["probability"] >= 0.5}

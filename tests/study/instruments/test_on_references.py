@@ -1,0 +1,110 @@
+"""What reference voyages establish of the instruments of a ship of kinematics alone: what each of them shows,
+and nothing that only one does."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.study.instruments.test_instruments import EVERY, HEADING, KEPT, late, voyage
+from twin.physics.effects.sensor_delay import SensorDelay
+from twin.physics.ship import load
+from twin.study.calibration.own_instruments import established, own_instruments
+from twin.study.instruments.corrections import with_numbers
+from twin.study.instruments.on_references import (
+    KinematicOfVoyage,
+    KinematicRecord,
+    KinematicUsual,
+    on_references,
+)
+from twin.study.instruments.readings import of_voyage
+
+U, V = "surge_velocity_mps", "sway_velocity_mps"
+
+
+@pytest.fixture
+def days(sail):
+    """Columns of two reference voyages, twelve minutes of zigzags each, twice a second."""
+    return [{name: sail(720.0, seed=seed)[name][::EVERY] for name in KEPT} for seed in (3, 4)]
+
+
+def smoothed(columns, time_s):
+    """Course and speed over ground with a first-order lag of this time constant, turned by the compass."""
+    psi = np.radians(columns[HEADING])
+    earth = (columns[U] + 1j * columns[V]) * np.exp(1j * psi)
+    share = 1.0 - np.exp(-np.median(np.diff(columns["time_s"])) / time_s)
+    out = earth.copy()
+    for k in range(1, out.size):
+        out[k] = out[k - 1] + share * (earth[k] - out[k - 1])
+    out *= np.exp(-1j * psi)
+    return columns | {U: out.real, V: out.imag}
+
+
+def asked(*columns):
+    return on_references([of_voyage(voyage(c, "course")) for c in columns], 100.0)
+
+
+def sailed(columns):
+    """A voyage as a calibration has it, of which all is used."""
+    made = voyage(columns, "course")
+    return SimpleNamespace(voyage=made, track=SimpleNamespace(name=made.name, t=made.time_s - made.time_s[0]))
+
+
+def test_a_receiver_that_smooths_on_every_reference_belongs_to_the_ship(days):
+    found = own_instruments([sailed(smoothed(d, 3.0)) for d in days], load("kvlcc2"))
+    effects = {type(e).__name__: e for e in found.ship.effects}
+    assert set(found.written) == {"ReceiverSmoothing"} and set(effects) >= {"ReceiverSmoothing"}
+    assert effects["ReceiverSmoothing"].time == pytest.approx(3.0, abs=0.3)
+    kept = KinematicRecord.of_notes(found.ship.notes)
+    assert kept == found.record
+    assert all(v.value == pytest.approx(3.0, abs=0.3) for v in kept.numbers["smoothing"].voyages)
+    assert found.ship.notes["effects"]["ReceiverSmoothing"]["time"]["sd"] > 0.0
+
+
+def test_a_healthy_receiver_gives_the_ship_no_effect(days):
+    ship = load("kvlcc2")
+    found = own_instruments([sailed(d) for d in days], ship)
+    assert found.written == {} and found.ship.effects == ship.effects
+    assert "smoothing" not in found.record.faults and len(found.record.numbers["smoothing"].voyages) == 2
+
+
+def test_what_only_one_reference_shows_is_not_the_ships(days):
+    found = asked(smoothed(days[0], 3.0), days[1])
+    assert found.record.numbers["smoothing"].between > 0.5
+    assert established(found) == []
+
+
+def test_one_reference_alone_establishes_nothing(days):
+    found = asked(smoothed(days[0], 3.0))
+    assert "smoothing" in found.record.faults and established(found) == []
+
+
+def test_what_the_ship_file_has_already_is_refined_and_never_there_twice(days):
+    once = own_instruments([sailed(smoothed(d, 3.0)) for d in days], load("kvlcc2")).ship
+    again = own_instruments([sailed(smoothed(d, 2.0)) for d in days], once).ship
+    (only,) = (e for e in again.effects if type(e).__name__ == "ReceiverSmoothing")
+    assert only.time == pytest.approx(2.0, abs=0.3)
+
+
+def test_a_slow_compass_on_every_reference_belongs_to_the_ship(days):
+    found = own_instruments([sailed(late(d, HEADING, 2.0)) for d in days], load("kvlcc2"))
+    (lag,) = (e for e in found.ship.effects if type(e).__name__ == "HeadingLag")
+    assert lag.lag == pytest.approx(2.0, abs=0.3) and lag.turned == lag.lag
+
+
+def test_a_late_receiver_turns_its_velocity_by_todays_compass_or_by_its_own():
+    told = {"gnss_delay": (0.5, 0.1)}
+    for own, turned in ((False, 0.5), (True, 0.0)):
+        ship = with_numbers(load("kvlcc2"), told, own, ["calm"])
+        assert SensorDelay(delay=0.5, turned=turned) in ship.effects
+
+
+def test_the_distance_of_each_reference_is_from_what_the_others_foretell():
+    usual = KinematicUsual(
+        1.0,
+        0.1,
+        0.0,
+        tuple(KinematicOfVoyage(n, x, 0.1, 0.0) for n, x in zip("abc", (1.0, 1.0, 1.5), strict=True)),
+    )
+    assert usual.distances[2] == pytest.approx(0.5 / np.sqrt(0.1**2 + 0.1**2 / 2))
+    assert usual.distances[0] == pytest.approx(0.25 / np.sqrt(0.1**2 + 0.1**2 / 2))
