@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from twin.recording.voyage import Voyage
-from twin.study.calibration.calibrate import calibrate, told
+from twin.study.calibration.calibrate import calibrate
+from twin.study.calibration.told import told
 from twin.study.diagnosis.diagnose import diagnose
 from twin.study.reference.sailed import sailed
 

@@ -41,8 +41,9 @@ CAUSE_RULES: tuple[CauseRule, ...] = (  # why an effect is not named, first hit 
     CauseRule(
         "as_on_references",
         lambda f, c: max(f.reached or 0.0, c.reached or 0.0) >= criteria.USUAL,
-        f"{percent(criteria.USUAL)} or more of the reference voyages, each left out in turn, were explained "
-        "as much by a single cause or, of an instrument, are as far from the others by kinematics (section 5)",
+        f"{percent(criteria.USUAL)} or more of the reference voyages, each left out in turn, were "
+        "explained as much by a single cause or, of an instrument, are as far from the others by kinematics "
+        "(section 5)",
     ),
     CauseRule(
         "unlikely",
