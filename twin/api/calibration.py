@@ -10,9 +10,9 @@ from twin.physics.particulars import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.voyage import Voyage
 from twin.study.calibration.calibrate import calibrate as fit_core
-from twin.study.calibration.calibrate import told
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.held_out import LAST, split
+from twin.study.calibration.tell_calibration import told
 from twin.study.calibration.worse import refusal
 from twin.study.reference.sailed import Sailed, sailed
 

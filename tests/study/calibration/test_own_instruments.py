@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from twin.recording.voyage import Voyage
-from twin.study.calibration.calibrate import calibrate, told
+from twin.study.calibration.calibrate import calibrate
+from twin.study.calibration.tell_calibration import told
 from twin.study.diagnosis.diagnose import diagnose
 from twin.study.reference.sailed import sailed
 
@@ -46,6 +47,6 @@ def test_the_smoothing_becomes_the_ships_own_and_is_said(calibrated):
 
 def test_a_voyage_in_a_stream_with_that_receiver_has_no_false_instrument(calibrated, voyages):
     result = diagnose([smoothed(voyages["Current"])], calibrated.ship).result
-    accused = {"SensorDelay", "AntennaOffset", "ReceiverSmoothing", "HeadingLag"}
-    assert not accused & set(result["missing"])
-    assert not accused & {c["effect"] for c in result["candidates"] if c["probability"] >= 0.5}
+    suspected = {"SensorDelay", "AntennaOffset", "ReceiverSmoothing", "HeadingLag"}
+    assert not suspected & set(result["missing"])
+    assert not suspected & {c["effect"] for c in result["candidates"] if c["probability"] >= 0.5}

@@ -13,12 +13,12 @@ from twin.physics.effects.heading_lag import HeadingLag
 from twin.physics.model import Model
 from twin.study.diagnosis.assemble import of_tracks
 from twin.study.diagnosis.by_kinematics import (
-    accused,
     asked_for,
     beyond_usual,
     kinematics,
     other_than_before,
     reached,
+    suspected,
 )
 from twin.study.first_model.init import OPTIONS, first_model
 from twin.study.instruments.on_references import KinematicOfVoyage, KinematicRecord, KinematicUsual
@@ -104,8 +104,8 @@ def says(seen, sd=0.002, references=(0.010, 0.012, 0.008)):
     "bias, seen, expected", [(0.03, 0.0105, True), (0.03, 0.040, None), (0.002, 0.0105, None), (0.03, 0.0, False)]
 )  # fmt: skip
 def test_what_kinematics_know_to_be_as_on_the_references_is_no_change(bias, seen, expected):
-    """Test: 0.010 rad on the references; a change of so much is accused, and so much seen. Expected: as there
-    (True), as accused or too small to say (None), as neither (False)."""
+    """Test: 0.010 rad on the references; a change of so much is suspected, and so much seen. Expected: as there
+    (True), as suspected or too small to say (None), as neither (False)."""
     share = reached(*hypothesis(bias), "HeadingBias", says(seen))
     assert share is None if expected is None else (share >= 0.25) == expected
 
@@ -127,8 +127,8 @@ def case(tanker, voyages):
 
 
 def test_only_where_an_instrument_is_accused_are_the_instruments_asked(case):
-    assert accused(case, ("Current", "SensorDelay")) and accused(case, ("HullFouling", "GyroBias"))
-    assert not accused(case, ()) and not accused(case, ("Current", "HullFouling"))
+    assert suspected(case, ("Current", "SensorDelay")) and suspected(case, ("HullFouling", "GyroBias"))
+    assert not suspected(case, ()) and not suspected(case, ("Current", "HullFouling"))
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,6 @@
-"""Instruments first: where an instrument is accused, how position, velocity, heading, rate of turn and log go
-together is asked without any model of the ship (twin/study/instruments), and compared with what the same was
-on the reference voyages.
+"""Instruments first: where an instrument is suspected, how position, velocity, heading, rate of turn and log
+go together is asked without any model of the ship (twin/study/instruments), and compared with what the same
+was on the reference voyages.
 
 A slow compass looks like a late receiver, an antenna elsewhere and a slow gear together; the rate of turn
 proves it alone. What kinematics ask for, and is another than on the references, becomes a candidate of the
@@ -59,7 +59,7 @@ class AskedKinematics:
         return told.number(told.at.index(INDEX[name]))
 
 
-def accused(case: Case, effects: Sequence[str]) -> bool:
+def suspected(case: Case, effects: Sequence[str]) -> bool:
     """Whether one of these effects is an instrument's."""
     return any(case.catalogue[name].belongs_to == "instrument" for name in case.names(effects))
 

@@ -45,7 +45,7 @@ def consider(
     w: Weights,
     asked: AskedKinematics | None = None,
 ) -> Considered:
-    """`asked`: what kinematics say of these voyages, where an instrument is accused."""
+    """`asked`: what kinematics say of these voyages, where an instrument is suspected."""
     best, base = found[w.best.effects], without_causes(case, weighed, found)
     nothing = found[base]
     explanation, left = _explanation(case, weighed, found)

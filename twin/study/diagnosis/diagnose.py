@@ -14,7 +14,7 @@ from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.assemble import assemble, of_tracks, unjudged_because
-from twin.study.diagnosis.by_kinematics import accused, asked_for, kinematics
+from twin.study.diagnosis.by_kinematics import asked_for, kinematics, suspected
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.confidence import confidence
 from twin.study.diagnosis.consider import Considered, consider
@@ -61,7 +61,7 @@ def diagnose(
     case = assemble(voyages, ship, references, progress)
     weighed, found, seen = search(case, progress)
     w, asked = weights(case, weighed, found), None
-    if accused(case, w.best.effects):
+    if suspected(case, w.best.effects):
         progress("asking how the instruments go together, whatever the ship is")
         asked = kinematics(voyages, ship)
         if asked and (wanted := asked_for(case, asked)):
