@@ -105,7 +105,7 @@ class Running:
             if piece := self.process.stdout.read(1 << 16):
                 *lines, self._rest = (self._rest + piece).split(b"\n")
                 for line in lines:
-                    self.last = _said(line.decode())
+                    self.last = said_of(line.decode())
                     yield self.last
             elif not alive:
                 return
@@ -140,7 +140,7 @@ class Running:
             return -9
 
 
-def _said(line: str) -> Said:
+def said_of(line: str) -> Said:
     head, _, reasons = line.partition("|")
     index, time_s, inside, overruns, mode = head.split(" ", 4)
     return Said(int(index), float(time_s), inside == "1", int(overruns), mode, reasons)

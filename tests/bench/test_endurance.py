@@ -2,7 +2,7 @@
 
 from bench.endurance.lies import OTHERS, Told
 from bench.endurance.run import of_kills, of_lies, of_shocks
-from bench.endurance.service import Place, Said, _said
+from bench.endurance.service import Place, Said, said_of
 from bench.endurance.shocks import Killed, Shocked, kills, whole
 from bench.lies_told import LIES
 
@@ -22,7 +22,7 @@ def test_a_service_that_is_killed_loses_at_most_half_a_second_and_all_its_logs_a
 
 
 def test_a_line_of_the_pipe_is_read():
-    said = _said("7 12.5 1 3 dead reckoning|lagging: 3 periods; x")
+    said = said_of("7 12.5 1 3 dead reckoning|lagging: 3 periods; x")
     assert said == Said(7, 12.5, True, 3, "dead reckoning", "lagging: 3 periods; x")
 
 

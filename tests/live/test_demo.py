@@ -102,7 +102,7 @@ def test_the_known_forces_are_summed():
     row = next(
         line for line in terminal.page(tick(), "t", 0.0, 1.0, "", []).splitlines() if "known, all" in line
     )
-    assert row.split()[-3:] == ["-2", "+3", "-3"]
+    assert row.split()[-3:] == ["-2.000", "+3.000", "-3.000"]
 
 
 def test_what_was_not_measured_is_a_dash_and_not_a_number():

@@ -52,9 +52,7 @@ def run(args: argparse.Namespace) -> int:
         print("\n".join([*said, f"next: twin replay {args.output}"]))
         return 0
     if args.log or not args.listen:
-        raise UsageError(
-            "say where: --log LOG.mcap -o OUT.mcap for a copy, or --listen PLACE for a live bus."
-        )
+        raise UsageError("say where: --log LOG.mcap -o OUT.mcap for a copy, --listen PLACE for a live bus.")
     from twin.live.injection.on_bus import proxy  # loads Zenoh
 
     place, lasts = (args.listen, args.connect, args.base, args.entity), args.duration

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from twin.live.certificate.certificate import Certificate, _digest, certify
+from twin.live.certificate.certificate import Certificate, certify, digest
 from twin.physics.model import Model
 
 
@@ -19,7 +19,7 @@ def true(kvlcc2):
 def text_of(table):
     """The file of a table, its checksum made to fit."""
     told = {name: value for name, value in table.items() if name != "version"}
-    return json.dumps({"version": table["version"], "sha256": _digest(told), **told})
+    return json.dumps({"version": table["version"], "sha256": digest(told), **told})
 
 
 def test_the_true_file_is_read(true):

@@ -129,7 +129,7 @@ class Certificate(Promise):
 
     def to_json(self) -> str:
         table = json.loads(json.dumps(asdict(self)))
-        return json.dumps({"version": VERSION, "sha256": _digest(table), **table}, indent=1)
+        return json.dumps({"version": VERSION, "sha256": digest(table), **table}, indent=1)
 
     @classmethod
     def from_json(cls, text: str) -> "Certificate":
@@ -146,7 +146,7 @@ class Certificate(Promise):
         told = json.loads(text)
         if not isinstance(told, dict) or told.pop("version") != VERSION:
             raise ValueError("certificate of another version")
-        if told.pop("sha256") != _digest(told):
+        if told.pop("sha256") != digest(told):
             raise ValueError("certificate changed since it was written")
         table = _tuples(told)
         plant = table.pop("plant")
@@ -287,7 +287,8 @@ def _check(K: Sequence[float], h: float, m: Sequence[int], noise: Sequence[float
         )
 
 
-def _digest(table: dict[str, Any]) -> str:
+def digest(table: dict[str, Any]) -> str:
+    """The SHA-256 that a certificate file tells of its own content."""
     return hashlib.sha256(json.dumps(table, sort_keys=True).encode()).hexdigest()
 
 
