@@ -10,7 +10,8 @@ import twin
 from bench.reference.boats import CRAFT, BoatCase, sail
 from bench.reference.boats.sheet import actuators, particulars
 from twin.physics.actuators.file import read
-from twin.physics.ship import Ship, _value, load, text, to_table
+from twin.physics.ship import Ship, load, text, to_table
+from twin.physics.ship_file import value_of
 from twin.recording.voyage import Voyage
 from twin.study.first_model.init import OPTIONS, first_model
 
@@ -60,7 +61,7 @@ def from_sheet(name: str) -> Ship:
     """The first model that `twin init` makes of a builder's sheet."""
     craft = CRAFT[name]
     given = {option: particulars(craft).get(option) for option, *_ in OPTIONS}
-    parts, _ = read(actuators(craft), f"{name}: ", _value)
+    parts, _ = read(actuators(craft), f"{name}: ", value_of)
     return first_model(name, given, parts)[0]
 
 

@@ -35,7 +35,7 @@ def test_a_page_says_its_sentence_what_to_heed_and_draws_every_row():
     assert "<script" not in page and "<script>alert(1)</script>" in words(page)
     widths = [float(w) for w in re.findall(r'<rect [^>]*width="([\d.]+)"', page)]
     assert len(widths) == 2 and widths[0] == pytest.approx(4.0 * widths[1])  # of the row that has both
-    for said in ("<Alma>", "Half & better.", "4 m before", "1 m now", "60 s 8 -"):
+    for said in ("<Alma>", "Half & better.", "4.00 m before", "1.00 m now", "60 s 8.00 -"):
         assert said in words(page)
 
 

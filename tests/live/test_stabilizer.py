@@ -126,18 +126,19 @@ def test_measurements_that_contradict_the_bound_take_the_promise_back_and_the_le
     kvlcc2, make_bridge
 ):
     """Test: the log goes off by 1.5 m/s and stays there, which is believed after a while. Expected: inside
-    before, not after, and why."""
+    before, within 3 s no more, and why: the bound, or the shaft that does not fit, whichever is seen first."""
     bridge = stabilized(kvlcc2, make_bridge)
     assert bridge.run(60.0)[-1].certificate.inside and not bridge.loop.stabilizer.broken
     off = lambda readings, b: [
         r._replace(value=r.value + 1.5) if r.channel == "surge_velocity_mps" else r for r in readings
     ]
-    why = set()
-    for _ in range(100):
-        tick = bridge.run(0.1, off)[-1]
-        why.add(bridge.loop.stabilizer.broken)
-        assert not (bridge.loop.stabilizer.broken and tick.certificate.inside)
-    assert "u is measured farther from the estimate than its bound allows" in why
+    ticks = bridge.run(10.0, off)
+    out = [t for t in ticks if not t.certificate.inside]
+    assert len(out) >= 70 and not any(t.certificate.inside for t in ticks[30:])
+    why = " ".join(out[0].reasons)
+    assert (
+        "u is measured farther from the estimate than its bound allows" in why or "against the speed" in why
+    )
 
 
 def test_a_sample_that_pulls_by_less_than_the_certified_gain_is_no_measurement_of_it(kvlcc2, make_bridge):

@@ -50,7 +50,7 @@ def test_a_stop_at_another_pulse_is_read_from_where_the_boat_lies_still():
     ship = replace(ship, actuators=tuple(replace(a, linear=1.0) for a in ship.actuators))
     moved = replace(right, columns={n: x + 16.0 * n.endswith("pwm_us") for n, x in right.columns.items()})
     found = actuator_zero(VoyageView(moved, ship))
-    assert not found.ok and "zero = 0.04 for port, 0.04 for starboard" in found.text
+    assert not found.ok and "zero = 0.0400 for port, 0.0400 for starboard" in found.text
     mended = ship.with_derivatives(**{"port.zero": 0.04, "starboard.zero": 0.04})
     assert actuator_zero(VoyageView(moved, mended)).ok
 

@@ -176,11 +176,8 @@ def _worked_out(patience_s: float | None, *arguments: object) -> tuple[Certifica
         done = subprocess.run(command, capture_output=True, text=True, timeout=patience_s, check=True)
         return Certificate.from_json(done.stdout), ""
     except subprocess.TimeoutExpired:
-        return (
-            None,
-            f"not ready after {as_given(patience_s or CERTIFY_S)} s. Start again when the machine is "
-            "less busy",
-        )
+        waited_s = as_given(CERTIFY_S if patience_s is None else patience_s)
+        return None, f"not ready after {waited_s} s. Start again when the machine is less busy"
     except subprocess.CalledProcessError as error:
         return None, (error.stderr.strip().splitlines() or ["no reason given"])[-1]
     except OSError as error:

@@ -64,7 +64,7 @@ def load_actuators(path: str | os.PathLike[str]) -> tuple[Actuator, ...]:
         raise SettingsError(f"{path}: cannot be read as TOML ({why}).") from None
     if not table.get("actuators"):
         raise SettingsError(f"{path}: holds no [[actuators]]. A sail is none that this twin knows.")
-    return read_actuators(table["actuators"], f"{path}: ", _value)[0]
+    return read_actuators(table["actuators"], f"{path}: ", value_of)[0]
 
 
 def bundled() -> list[str]:
@@ -93,7 +93,9 @@ def from_table(kind: type[S], table: Mapping[str, Any], where: str) -> S:
             f"{SCHEMA_VERSION}. Update the twin."
         )
     particulars = _numbers(_section(table, "particulars", where), PARTICULARS, f"{where}particulars.")
-    actuators, noted = read_actuators(table["actuators"], where, _value) if "actuators" in table else ((), {})
+    actuators, noted = (
+        read_actuators(table["actuators"], where, value_of) if "actuators" in table else ((), {})
+    )
     optional = ("A_F", "A_L", *(ONE_SCREW if actuators else ()))
     for f in PARTICULARS:
         if f.default is None and f.name not in particulars and f.name not in optional:
@@ -141,7 +143,7 @@ def _effect(name: str, values: Mapping[str, Any], ship: ShipNumbers, where: str)
         if key not in known and key not in ("source", "learned"):
             raise SettingsError(f"{where}effects.{name}.{key}: no such parameter.{did_you_mean(key, known)}")
         if key in known:
-            numbers[key] = _value(entry, f"{where}effects.{name}.{key}")
+            numbers[key] = value_of(entry, f"{where}effects.{name}.{key}")
             _same_unit(entry, known[key].unit, f"{where}effects.{name}.{key}")
     made = effect.plausible(ship).but(**numbers)
     made.check(ship, where)
@@ -154,7 +156,7 @@ def _same_unit(entry: Any, unit: str, where: str) -> None:
         raise SettingsError(f"{where}: unit {given!r}, but {unit!r} is expected. Convert the value.")
 
 
-def _value(entry: Any, where: str) -> float:
+def value_of(entry: Any, where: str) -> float:
     value = entry.get("value") if isinstance(entry, Mapping) else entry
     if (
         isinstance(value, bool)
@@ -174,7 +176,7 @@ def _numbers(table: Mapping[str, Any], known: tuple[Any, ...], where: str) -> di
     for key, entry in table.items():
         if key not in by_name:
             raise SettingsError(f"{where}{key}: no such number.{did_you_mean(key, by_name)}")
-        meta, value = by_name[key], _value(entry, where + key)
+        meta, value = by_name[key], value_of(entry, where + key)
         if not meta["lo"] <= value <= meta["hi"]:
             raise SettingsError(
                 f"{where}{key} = {as_given(value)} {meta['unit']} lies outside [{as_given(meta['lo'])}, "

@@ -111,9 +111,9 @@ def test_a_calibration_that_ended_badly_says_so_and_a_good_one_does_not(calibrat
     (backwards,) = doubts(flow, [fell], (0.1, 0.1, 0.1))
     assert backwards.startswith("gamma_v -0.15: ") and "sign" in backwards
     (rose,) = doubts([], [fell | {"position_m": 12.0}], (0.1, 0.1, 0.1))
-    assert "9.0 -> 12 m" in rose and "twin compare" in rose
+    assert "9.00 -> 12.0 m" in rose and "twin compare" in rose
     (turned,) = doubts([], [fell | {"heading_deg": 5.0}], (0.1, 0.1, 0.1))
-    assert "(2.0 -> 5.0 deg)" in turned
+    assert "(2.00 -> 5.00 deg)" in turned
     (coarse,) = doubts([], [fell], (0.1, 0.4, 0.1))
     assert "40 % in sway" in coarse
     assert "--held-out" in doubts([], [fell | {"windows": 0}], (0.1, 0.1, 0.1))[0]

@@ -48,7 +48,7 @@ def passed():
     return recorded("passed", sailed[0].columns, every=10)
 
 
-def test_ships_that_pass_are_seen_when_they_pass_and_nobody_is_acquitted(tanker, passed):
+def test_ships_that_pass_are_seen_when_they_pass_and_nothing_is_said_to_be_in_order(tanker, passed):
     """Test: ships that pass every 11 lengths (439 s), each for about one. Expected: unknown, and the times at
     which they did."""
     result = diagnose([passed], tanker).result
@@ -57,7 +57,7 @@ def test_ships_that_pass_are_seen_when_they_pass_and_nobody_is_acquitted(tanker,
     passes = np.array(seen) / (11.0 * float(tanker.scale("time")))
     assert abs(np.exp(2j * np.pi * passes).mean()) > 0.8 and np.unique(np.rint(passes - passes[0])).size >= 2
     assert result["probabilities"]["nothing_missing"] < 0.5
-    assert "something pushed the ship" in "\n".join(told(result)) and "missing" in result["sentence"]
+    assert "a force pushed the ship" in "\n".join(told(result)) and "missing" in result["sentence"]
 
 
 def test_where_waves_toss_her_more_is_asked_of_a_push(monkeypatch, tanker, voyages):

@@ -1,5 +1,6 @@
 """Rows of voyages as `ask` gives them, by hand, and a ship of the fleet that has them."""
 
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -13,6 +14,13 @@ SHARED = {
     "data_checks": [], "lasting": True, "probability": 0.9, "confidence": None, "says": "", "X_N": 0.0,
     "Y_N": 0.0, "N_Nm": 0.0, "cannot_be_told_from": [], "belongs_to": "ship",
 }  # fmt: skip
+
+
+def copied(ship, to):
+    """A ship file copied, with the file of its arrays."""
+    shutil.copy(ship, to)
+    for arrays in Path(ship).parent.glob(f"{Path(ship).stem}.*.json"):
+        shutil.copy(arrays, Path(to).parent)
 
 
 def size(value, half=0.1):

@@ -12,6 +12,7 @@ import pyarrow.parquet as pq
 import pytest
 
 import twin
+from tests.study.fleet.rows import copied
 from twin import cli
 from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
@@ -25,7 +26,7 @@ def yard(short, tmp_path_factory):
     folder = tmp_path_factory.mktemp("yard")
     for name in ("alma", "berta"):
         (folder / name).mkdir()
-        shutil.copy(SHIP, folder / name / "ship.toml")
+        copied(SHIP, folder / name / "ship.toml")
     shutil.copy(short / "monday.csv", folder / "alma" / "monday.csv")
     shutil.copy(short / "monday.csv", folder / "alma" / "monday-again.csv")
     (folder / "alma" / "broken.csv").write_text("time_s,heading\n0,1\n")

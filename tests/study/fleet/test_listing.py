@@ -4,6 +4,7 @@ import shutil
 
 import pytest
 
+from tests.study.fleet.rows import copied
 from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.errors import DataError, SettingsError
 from twin.study.fleet.listing import read_fleet
@@ -14,7 +15,7 @@ def yard(tmp_path):
     """Two ships, each in a folder of its own with two voyages."""
     for name in ("alma", "berta"):
         (tmp_path / name).mkdir()
-        shutil.copy(SHIP, tmp_path / name / f"{name}.toml")
+        copied(SHIP, tmp_path / name / f"{name}.toml")
         for voyage in (MONDAY, TUESDAY):
             shutil.copy(voyage, tmp_path / name)
     return tmp_path
@@ -86,7 +87,7 @@ def test_a_ship_that_was_never_calibrated_is_refused_with_the_command_that_does_
 
 
 def test_a_folder_with_two_ship_files_or_none_is_refused(yard, tmp_path_factory):
-    shutil.copy(SHIP, yard / "alma" / "second.toml")
+    copied(SHIP, yard / "alma" / "second.toml")
     with pytest.raises(SettingsError, match=r"alma: holds 2 ship files \(alma.toml, second.toml\)"):
         read_fleet(yard)
     with pytest.raises(SettingsError, match="no folder in it holds a ship file"):

@@ -71,7 +71,7 @@ def test_ships_stand_by_what_is_wrong():
     assert [s["rank"] for s in result["ships"]] == [1, 2, 3, 4, 5, 6, 7]
     assert result["voyages"] == {"listed": 7, "judged": 6, "references": 0, "failed": 1}
     lines = "\n".join(told(result))
-    assert "80 %" in lines and "size 0.3 (0.2 to 0.4)" in lines and "lost: gone" in lines
+    assert "80 %" in lines and "size 0.30 (0.20 to 0.40)" in lines and "lost: gone" in lines
 
 
 def test_a_voyage_that_the_ship_was_calibrated_on_is_not_judged():

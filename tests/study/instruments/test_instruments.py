@@ -139,7 +139,7 @@ def test_in_python_it_is_the_verbs_json_a_line_a_page_and_a_corrected_ship(healt
     assert absent_keys(KEYS["instruments"], found.to_dict()) == []
     assert found.faults == ["heading_delay"] and found.effects == ["HeadingLag"]
     assert repr(found) == "<InstrumentCheck of voyage: heading_delay>"
-    assert "heading late (HeadingLag)" in found.page()
+    assert "Heading late" in found.page() and "HeadingLag" in found.page()
     lag = next(e for e in found.corrected(ship).effects if type(e).__name__ == "HeadingLag")
     assert lag.lag == pytest.approx(2.0, abs=0.2)
 

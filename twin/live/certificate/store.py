@@ -4,7 +4,7 @@ import hashlib
 import os
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +43,7 @@ def on_file(path: str | os.PathLike[str], wanted: str) -> Certificate | None:
 def mark(model: Model, *settings: Any) -> str:
     """What the certificate depends on, as a hash: the ship's numbers, its effects, the settings and the
     theorem's version."""
-    ship = replace(model.ship, notes={})
+    ship = [(f.name, getattr(model.ship, f.name)) for f in fields(model.ship) if f.name != "notes"]
     return hashlib.sha256(
         repr((VERSION, ship, model.effects, usual_disturbance(model), *settings)).encode()
     ).hexdigest()[:16]
