@@ -4,7 +4,7 @@ stood while an error was beyond it."""
 import math
 from collections.abc import Sequence
 from copy import deepcopy
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -129,7 +129,7 @@ def _begun(lie: Lie, row: Row, true: Row) -> bool:
     return lie.since is not None and abs(row[lie.since[0]] - true[lie.since[0]]) > lie.since[1]
 
 
-def heard(loop: Loop, row: Row, k: int):  # type: ignore[no-untyped-def]
+def heard(loop: Loop, row: Row, k: int) -> Any:
     """One tick on one row."""
     now_s = BEGIN_S + k * STEP_S
     loop.ears.next = [  # type: ignore[attr-defined]

@@ -3,6 +3,7 @@ sea, killed at random instants, paused, its wall clock set; then the same loop u
 
 import argparse
 import statistics
+from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -42,7 +43,7 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def shocked(hull: str, tried, count: int):  # type: ignore[no-untyped-def]
+def shocked(hull: str, tried: Callable[[Place, int], Any], count: int) -> Any:
     """One kind of shock, in a folder of its own."""
     with TemporaryDirectory() as folder:
         place = Place(Path(folder), hull)

@@ -10,7 +10,7 @@ import struct
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
@@ -112,7 +112,7 @@ class Running:
             else:
                 time.sleep(0.01)
 
-    def until(self, wanted, seconds: float) -> float | None:  # type: ignore[no-untyped-def]
+    def until(self, wanted: Callable[[Said], bool], seconds: float) -> float | None:
         """Seconds until a tick of which `wanted(said)`; None when there is none in time."""
         began = time.monotonic()
         return next((time.monotonic() - began for said in self.heard(seconds) if wanted(said)), None)

@@ -2,10 +2,12 @@
 with certificate, residual and adaptation, over pauses, uneven ticks and clocks that are set."""
 
 import os
+from collections.abc import Iterator
 from copy import deepcopy
 from math import hypot, isfinite
 from pathlib import Path
 from tempfile import gettempdir
+from typing import Any
 
 from bench.fuzz.take import Take
 from bench.fuzz.voyage import CHANNELS, STEP_S, Sailed
@@ -179,7 +181,7 @@ def _message(sailing: Sailing, take: Take) -> None:
 DECISIONS = (_sail, _sail, _pause, _set_clock, _sources_clock, _silence, _all_silent, _lie, _message)
 
 
-def numbers(message):  # type: ignore[no-untyped-def]
+def numbers(message: Any) -> Iterator[float]:
     """Every number in a message, however deep."""
     for _, value in message.ListFields():
         plain = isinstance(value, (str, bytes, float, int)) or hasattr(value, "ListFields")
