@@ -3,7 +3,6 @@
 Every message names what, where, which number, and what to do; the command line prints it as one line.
 """
 
-import difflib
 from collections.abc import Iterable
 
 
@@ -40,6 +39,8 @@ class SettingsError(TwinError):
 def did_you_mean(name: str, known: Iterable[str]) -> str:
     """' Did you mean X? Known: A, B.' for a name that is not in the list."""
     known = sorted(known)
+    import difflib  # here and not above: the loop never needs it
+
     near = difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     hint = f" Did you mean {near[0]!r}?" if near else ""
     return f"{hint} Known: {', '.join(known)}."

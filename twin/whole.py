@@ -4,7 +4,6 @@ import argparse
 import errno
 import json
 import os
-import tempfile
 from collections.abc import Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -61,12 +60,10 @@ def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
     """Write aside, to the disk, and rename into place; TwinError (exit code 1) when that cannot be done, and
     nothing is left behind.
     `option`: what names the file on the command line."""
-    path, aside = Path(path), ""
+    path = Path(path)
+    aside = path.parent / f".{path.name}.{os.urandom(6).hex()}"
     try:
-        with tempfile.NamedTemporaryFile(
-            "w", dir=path.parent, prefix=f".{path.name}.", delete=False, encoding="utf-8"
-        ) as file:
-            aside = file.name
+        with open(aside, "x", encoding="utf-8") as file:
             file.write(text)
             file.flush()
             os.fsync(file.fileno())

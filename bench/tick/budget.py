@@ -6,6 +6,7 @@ reference sea's instruments in a process beside it), the peers, and valgrind whe
 
 import argparse
 import json
+import os
 import socket
 import subprocess
 import sys
@@ -26,6 +27,9 @@ PYTHON = (sys.executable, "-P", "-m")  # -P: a folder named twin/ where it is ca
 PARTS = 2000  # ticks with a stop-watch on each part, after the measured ones
 PACED_S = 20.0
 COUNTED_FROM = 5000  # steps: a quick look does not wait for valgrind
+# what the service imports, compiled beforehand: an installed package comes compiled, and compiling at the
+# start leaves 1 MB of holes in memory
+IMPORTS = "import bench.tick.process, subprocess, twin.live.keelson.zenoh_bus, zstandard"
 # what a peer does too: correct, force, one step on
 COMPUTING = ("correct", "known", "learned", "adapt", "step")
 MORE = ("sensors", "predict")  # what no peer does: gates, and 120 s ahead
@@ -138,6 +142,8 @@ class Place:
     def __init__(self, folder: Path, args: argparse.Namespace):
         self.folder, self.rate = folder, args.rate
         self.ship = load(args.ship)
+        self.environment = os.environ | {"PYTHONPYCACHEPREFIX": str(folder / "compiled")}
+        self.environment.pop("PYTHONDONTWRITEBYTECODE", None)
         with socket.socket() as probe:
             probe.bind(("127.0.0.1", 0))
             self.endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
@@ -153,6 +159,7 @@ class Place:
 
     def prepare(self, steps: int) -> None:
         feed.prepare(self.folder / "rows", self.seconds(steps), _hull(self.ship))
+        subprocess.run([sys.executable, "-P", "-c", IMPORTS], env=self.environment, check=True)
 
     def loop(self, steps: int, parts: int, pace: str) -> dict[str, Any]:
         """One run of the service, fed by a process beside it."""
@@ -160,7 +167,7 @@ class Place:
         measured = ["bench.tick.process", settings, str(mark.new(rows)), str(steps), str(parts), pace]
         feeder = subprocess.Popen([*PYTHON, "bench.tick.feed", str(rows), self.endpoint, "twin", "ship"])
         try:
-            return _json_of([*PYTHON, *measured], "the loop")
+            return _json_of([*PYTHON, *measured], "the loop", self.environment)
         finally:
             feeder.terminate()
             feeder.wait(10)
@@ -210,8 +217,8 @@ def _hull(ship: Ship) -> str:
     )
 
 
-def _json_of(command: list[str], who: str) -> dict[str, Any]:
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+def _json_of(command: list[str], who: str, environment: dict[str, str] | None = None) -> dict[str, Any]:
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
     if done.returncode != 0:
         said = done.stderr.strip().splitlines()[-1:] or ["nothing was said"]
         raise TwinError(f"{who} could not be measured: {said[0]}")

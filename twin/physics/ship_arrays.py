@@ -5,7 +5,6 @@ the same folder; the TOML names that file and its SHA-256 under [arrays], so tha
 lost without a word. A ship file of an earlier version has its arrays in itself; it is read as it is, and a
 line of the log says so."""
 
-import hashlib
 import json
 import os
 import re
@@ -15,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from twin import whole
+from twin.checksum import sha256_hex
 from twin.errors import SettingsError
 
 SECTION = "arrays"
@@ -41,7 +41,7 @@ def write(path: Path, arrays: Mapping[str, Any]) -> dict[str, str]:
     """Writes the arrays of the ship file `path` beside it; what the ship file says of them: the file's name
     and hash."""
     data = json.dumps(arrays, separators=(",", ":"), allow_nan=False)
-    digest = hashlib.sha256(data.encode()).hexdigest()
+    digest = sha256_hex(data.encode())
     name = f"{path.stem}.{digest[:8]}.json"
     whole.write(path.with_name(name), data)
     return {"file": name, "sha256": digest}
@@ -61,7 +61,7 @@ def joined(table: Mapping[str, Any], path: Path) -> dict[str, Any]:
             f"{path}: its calibration's arrays are in {beside.name}, which cannot be read beside it "
             f"({error.strerror}). Copy both files, or calibrate again."
         ) from None
-    if hashlib.sha256(data).hexdigest() != told.get("sha256"):
+    if sha256_hex(data) != told.get("sha256"):
         raise SettingsError(
             f"{beside}: not the file that {path.name} was written with (its SHA-256 differs). Copy both "
             "files again, or calibrate again."

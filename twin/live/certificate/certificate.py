@@ -6,13 +6,13 @@ Assumptions, proof and what is not promised: docs/stability.md. Plain floats; on
 slopes need numpy, and only when they are not on file.
 """
 
-import hashlib
 import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from math import isfinite
 from typing import Any
 
+from twin.checksum import sha256_hex
 from twin.errors import SettingsError
 from twin.live.certificate import comparison as c3
 from twin.live.certificate.comparison import Matrix, Row
@@ -289,7 +289,7 @@ def _check(K: Sequence[float], h: float, m: Sequence[int], noise: Sequence[float
 
 def digest(table: dict[str, Any]) -> str:
     """The SHA-256 that a certificate file tells of its own content."""
-    return hashlib.sha256(json.dumps(table, sort_keys=True).encode()).hexdigest()
+    return sha256_hex(json.dumps(table, sort_keys=True).encode())
 
 
 def _tuples(x: Any) -> Any:

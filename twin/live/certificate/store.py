@@ -1,6 +1,5 @@
 """Where certificates are kept: on file, by a mark of all that they depend on."""
 
-import hashlib
 import os
 from collections.abc import Sequence
 from contextlib import suppress
@@ -9,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from twin import whole
+from twin.checksum import sha256_hex
 from twin.errors import TwinError
 from twin.live.certificate.certificate import VERSION, Certificate, certify
 from twin.live.certificate.plant import usual_disturbance
@@ -44,6 +44,5 @@ def mark(model: Model, *settings: Any) -> str:
     """What the certificate depends on, as a hash: the ship's numbers, its effects, the settings and the
     theorem's version."""
     ship = [(f.name, getattr(model.ship, f.name)) for f in fields(model.ship) if f.name != "notes"]
-    return hashlib.sha256(
-        repr((VERSION, ship, model.effects, usual_disturbance(model), *settings)).encode()
-    ).hexdigest()[:16]
+    told = repr((VERSION, ship, model.effects, usual_disturbance(model), *settings))
+    return sha256_hex(told.encode())[:16]

@@ -8,12 +8,12 @@ way:
     manifest_sha256 = SHA-256 of the table without that entry, as JSON with sorted keys and no spaces
 """
 
-import hashlib
 import json
 from dataclasses import dataclass
 from math import isfinite
 from typing import Any
 
+from twin.checksum import sha256_hex
 from twin.errors import SettingsError, did_you_mean
 from twin.num import as_given
 from twin.physics.state import Force
@@ -65,7 +65,7 @@ class Manifest:
 def own_hash(table: dict[str, Any]) -> str:
     """What `manifest_sha256` must be for this table."""
     bare = {name: value for name, value in table.items() if name != OWN_HASH}
-    return hashlib.sha256(json.dumps(bare, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+    return sha256_hex(json.dumps(bare, sort_keys=True, separators=(",", ":")).encode())
 
 
 def hashed(table: dict[str, Any]) -> dict[str, Any]:

@@ -9,13 +9,13 @@ bytes, the operators, shapes, element types and opset, the ship, and that golden
 outputs.
 """
 
-import hashlib
 import json
 from math import inf, isfinite, sqrt
 from pathlib import Path
 from typing import NamedTuple
 
 from twin import whole
+from twin.checksum import sha256_hex
 from twin.errors import SettingsError
 from twin.live.learning import manifest as manifests
 from twin.live.learning.manifest import Manifest
@@ -152,7 +152,7 @@ def check(model: bytes, text: bytes, ship: Ship, where: str = "residual") -> Res
             f"{where}: its last layer has the norm {num(norm, 3)}, the manifest allows "
             f"{num(manifest.W_max, 3)}"
         )
-    digest = hashlib.sha256(model).hexdigest()
+    digest = sha256_hex(model)
     if digest != manifest.sha256:
         raise ResidualError(
             f"{where}: its bytes changed (sha256 {digest[:12]}..., the manifest says "
@@ -204,7 +204,7 @@ def ship_hash(ship: Ship) -> str:
             if entry[name] == 0.0:
                 del entry[name]
     text = json.dumps([ship.name, numbers, effects], sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()[:16]
+    return sha256_hex(text.encode())[:16]
 
 
 def _same_ship(manifest: Manifest, ship: Ship, where: str) -> None:
