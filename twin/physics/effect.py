@@ -262,6 +262,9 @@ class SensorFault(Effect):
     belongs_to = "instrument"
     # whether it is compass or gyro that is wrong: an antenna stands where the true heading puts it
     attitude: ClassVar[bool] = False
+    # the number by which the compass turns speed over ground into the ship's axes: none where the receiver
+    # does so by an attitude of its own
+    turning: ClassVar[str] = ""
 
     def read(self, s: Situation, ship: ShipLike) -> Situation:
         """What the instruments say (a changed copy) of a ship that is truly in situation s."""
@@ -270,7 +273,8 @@ class SensorFault(Effect):
     def as_read(self, number: str, value: Number, attitude: bool) -> Self:
         """The same fault with a number that the readings told (see `by_readings`). `attitude`: whether the
         receiver turns its velocity by an attitude of its own, so that the compass does not turn it."""
-        return self.but(**{self.by_readings[number]: value})
+        turned = {self.turning: 0.0 if attitude else value} if self.turning else {}
+        return self.but(**{self.by_readings[number]: value}, **turned)
 
     def prompt(self) -> "tuple[Number, SensorFault]":
         """How old place and speed over ground are when they are shown [s], and the same fault were they not:

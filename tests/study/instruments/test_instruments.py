@@ -52,6 +52,21 @@ def compass(columns, error):
     return columns | {HEADING: np.mod(np.degrees(psi + error(psi)), 360.0)}
 
 
+def straight(like):
+    """Columns of a voyage on one course at 6 m/s, sampled as `like`."""
+    t = like["time_s"]
+    rng = np.random.default_rng(5)
+    return {
+        "time_s": t,
+        "north_m": 6.0 * t + 0.3 * rng.normal(size=t.size),
+        "east_m": 0.3 * rng.normal(size=t.size),
+        HEADING: np.mod(0.1 * rng.normal(size=t.size), 360.0),
+        RATE: 0.02 * rng.normal(size=t.size),
+        "surge_velocity_mps": 6.0 + 0.05 * rng.normal(size=t.size),
+        "sway_velocity_mps": 0.05 * rng.normal(size=t.size),
+    }
+
+
 def near(found, name, truth):
     """Within three of its own scatters, and no wider than that."""
     e = found.of(name)
@@ -91,20 +106,21 @@ def test_two_faults_are_told_apart(healthy):
     near(found, "gyro_bias", 0.001)
 
 
+def test_whose_attitude_turned_the_velocity_is_the_same_on_all_voyages_of_a_ship(healthy):
+    """A compass is two seconds late and the receiver's own attitude turned a noisy velocity: a zigzag tells,
+    thirty seconds of it do not."""
+    columns, rng = late(healthy, HEADING, 2.0), np.random.default_rng(6)
+    for name in ("surge_velocity_mps", "sway_velocity_mps"):
+        columns[name] = columns[name] + 0.2 * rng.normal(size=columns[name].size)
+    short, zigzag = voyage({name: x[:60] for name, x in columns.items()}, ""), voyage(columns, "")
+    assert estimate([short], 100.0).own == (False,)
+    assert estimate([short, zigzag], 100.0).own == (True, True)
+    assert estimate([short], 100.0, own=True).own == (True,)
+
+
 def test_a_straight_course_says_that_ages_cannot_be_known(healthy):
     """Test: no turn. Expected: nothing named, and what it would take is said."""
-    t = healthy["time_s"]
-    rng = np.random.default_rng(5)
-    straight = {
-        "time_s": t,
-        "north_m": 6.0 * t + 0.3 * rng.normal(size=t.size),
-        "east_m": 0.3 * rng.normal(size=t.size),
-        HEADING: np.mod(0.1 * rng.normal(size=t.size), 360.0),
-        RATE: 0.02 * rng.normal(size=t.size),
-        "surge_velocity_mps": 6.0 + 0.05 * rng.normal(size=t.size),
-        "sway_velocity_mps": 0.05 * rng.normal(size=t.size),
-    }
-    found = estimate([voyage(straight, "course")], 100.0)
+    found = estimate([voyage(straight(healthy), "course")], 100.0)
     assert found.faults == ()
     assert all(
         (e := found.of(name)) is None or not e.known for name in ("heading_delay", "rate_delay", "A", "B")

@@ -8,12 +8,11 @@ receiver has an attitude of its own (an inertial unit, two antennas).
 
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Self
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
 from twin.physics.ship_like import ShipLike
-from twin.physics.state import Number, Situation
+from twin.physics.state import Situation
 
 
 class HeadingBias(SensorFault):
@@ -21,6 +20,7 @@ class HeadingBias(SensorFault):
     goes."""
 
     attitude = True
+    turning = "turned"
     by_readings = MappingProxyType({"A": "bias"})
     source = "ISO 8728 and IMO A.424(XI) (gyro-compass settle-point error)"
 
@@ -40,9 +40,6 @@ class HeadingBias(SensorFault):
         sd=0.02,
         doc="by what speed over ground is turned: bias, or 0 (see above)",
     )
-
-    def as_read(self, number: str, value: Number, attitude: bool) -> Self:
-        return super().as_read(number, value, attitude).but(turned=0.0 if attitude else value)
 
     def read(self, s: Situation, ship: ShipLike) -> Situation:
         c, si = cos(self.turned), sin(self.turned)

@@ -10,12 +10,11 @@ within it.
 
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Self
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
 from twin.physics.ship_like import ShipLike
-from twin.physics.state import Number, Situation
+from twin.physics.state import Situation
 
 
 class HeadingLag(SensorFault):
@@ -24,6 +23,7 @@ class HeadingLag(SensorFault):
 
     attitude = True
     kinematic = True
+    turning = "turned"
     by_readings = MappingProxyType({"heading_delay": "lag"})
     source = (
         "ISO 11606 and ISO 22090-3 (follow-up error of heading devices); Skog & Haendel (2011) IEEE "
@@ -46,9 +46,6 @@ class HeadingLag(SensorFault):
         sd=0.5,
         doc="age of that by which speed over ground is turned: lag, or 0 (see above)",
     )
-
-    def as_read(self, number: str, value: Number, attitude: bool) -> Self:
-        return super().as_read(number, value, attitude).but(turned=0.0 if attitude else value)
 
     def read(self, s: Situation, ship: ShipLike) -> Situation:
         c, si = cos(self.turned * s.r), sin(self.turned * s.r)

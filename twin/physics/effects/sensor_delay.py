@@ -12,7 +12,6 @@ the receiver does so itself by an attitude of its own (an inertial unit).
 
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Self
 
 from twin.physics.effect import SensorFault, param
 from twin.physics.maths import cos, sin
@@ -23,6 +22,7 @@ from twin.physics.state import Number, Situation
 class SensorDelay(SensorFault):
     """Satellite position and velocity come late, so the ship seems to lag behind itself on the track."""
 
+    turning = "turned"
     by_readings = MappingProxyType({"gnss_delay": "delay"})
     source = (
         "Skog & Haendel (2011) Time synchronization errors in loosely coupled GPS-aided INS, IEEE "
@@ -40,9 +40,6 @@ class SensorDelay(SensorFault):
         sd=0.6,
         doc="age of the turning of the velocity: delay, or 0 (see above)",
     )
-
-    def as_read(self, number: str, value: Number, attitude: bool) -> Self:
-        return super().as_read(number, value, attitude).but(turned=0.0 if attitude else value)
 
     def read(self, s: Situation, ship: ShipLike) -> Situation:
         d, half, turned = self.delay, 0.5 * self.delay, self.turned * s.r

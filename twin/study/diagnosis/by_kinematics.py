@@ -68,7 +68,8 @@ def kinematics(voyages: Sequence[Voyage], ship: Ship) -> AskedKinematics | None:
     """Of these voyages; None where they lack heading, or too much of it: kinematics say nothing."""
     record = KinematicRecord.of_notes(ship.notes)
     try:
-        found = estimate(voyages, float(ship.L_pp), clock=record.clock if record else None)
+        clock, own = (record.clock, record.own) if record else (None, None)
+        found = estimate(voyages, float(ship.L_pp), clock=clock, own=own)
     except DataError:
         return None
     return AskedKinematics(found, record)

@@ -25,13 +25,15 @@ def estimate(
     length_m: float | None = None,
     progress: Progress = lambda text: None,
     clock: str | None = None,
+    own: bool | None = None,
 ) -> Instruments:
-    """The instruments of these voyages; `length_m` of the ship, if known, scales what is believed of antennas
-    and drift before any data. `clock`: the age from which others are counted, where that instrument was
-    recorded; else the earliest."""
+    """The instruments of these voyages of one ship; `length_m` of the ship, if known, scales what is believed
+    of antennas and drift before any data. `clock`: the age from which others are counted, where that
+    instrument was recorded; else the earliest. `own`: whether its receiver turns its velocity by an attitude
+    of its own, if known; else what all voyages say together."""
     readings = [_readings(v) for v in voyages]
     lengths = [length_m or r.length for r in readings]
-    problems = [_problem(r, length, progress) for r, length in zip(readings, lengths, strict=True)]
+    problems = _problems(readings, lengths, own, progress)
     progress("fitting all numbers at once")
     found, clock = _whole(problems, clock)
     chosen: tuple[str, ...] | None = None
@@ -52,15 +54,30 @@ def _readings(v: Voyage | Track | Readings) -> Readings:
     return v if isinstance(v, Readings) else of_track(v) if isinstance(v, Track) else of_voyage(v)
 
 
-def _problem(r: Readings, length: float, progress: Progress) -> Problem:
-    """The voyage with its velocity turned by its own compass or not, whichever its readings say."""
-    if r.own is not None or "velocity" not in r.by:
-        return Problem(r, length, bool(r.own))
+def _problems(
+    readings: Sequence[Readings], lengths: Sequence[float], own: bool | None, progress: Progress
+) -> list[Problem]:
+    """The voyages, with their velocity turned by the ship's compass or by the receiver itself. Where the
+    samples do not show which (`Readings.own`), it is the same on all: one receiver, wired once."""
+    of_each = list(zip(readings, lengths, strict=True))
+    untold = [r.own is None and "velocity" in r.by for r in readings]
+    if own is None and any(untold):
+        by = (_itself(r, length, progress) for (r, length), ask in zip(of_each, untold, strict=True) if ask)
+        own = sum(by) > CLEARLY
+    return [
+        Problem(r, length, bool(own if ask else r.own))
+        for (r, length), ask in zip(of_each, untold, strict=True)
+    ]
+
+
+def _itself(r: Readings, length: float, progress: Progress) -> float:
+    """How much likelier (log) the readings are if the receiver turned its velocity itself than if the compass
+    did."""
     progress(f"{r.name}: whose attitude turned the velocity?")
     sides = [Problem(r, length, own) for own in (False, True)]
     told = [fit([p], [u.name for u in UNKNOWNS], rounds=4).log_likelihood for p in sides]
     progress(f"{r.name}: its own rather than the compass by {told[1] - told[0]:.1f}")
-    return Problem(r, length, told[1] > told[0] + CLEARLY)
+    return told[1] - told[0]
 
 
 def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[KinematicFit, str]:
