@@ -109,12 +109,6 @@ class ShipNumbers:
     # sources, sd, structural, history ...
     notes: Mapping[str, Any] = field(default_factory=dict, kw_only=True, compare=False)
 
-    @property
-    def receiver_turns_velocity(self) -> bool:
-        """Whether its receiver turns the velocity by an attitude of its own and not by the compass, as the
-        reference voyages told (`twin calibrate`); false where nothing is known."""
-        return bool(self.notes.get("instruments", {}).get("own", False))
-
     def __repr__(self) -> str:
         """One line: name, length, effects, and whether it is calibrated."""
         effects = ", ".join(type(e).__name__ for e in self.effects) or "no effects"

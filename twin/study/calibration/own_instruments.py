@@ -19,11 +19,11 @@ from twin.study.instruments.corrections import told_by_readings, with_numbers
 from twin.study.instruments.findings import UNINFORMATIVE
 from twin.study.instruments.on_references import NOTE, KinematicRecord, OnReferences, on_references
 from twin.study.instruments.readings import Readings, ReadingSamples, of_voyage
-from twin.study.instruments.unknowns import CIRCLES, FAULTS, INDEX, UNKNOWNS, effect_of, members
+from twin.study.instruments.unknowns import INDEX, UNKNOWNS, effect_of, members
 from twin.study.reference.sailed import Sailed
 
 AGE = "gnss_delay"  # the fault that is the receiver's age
-FEWEST = 2  # voyages that tell of a number before it is called the same on each
+FEWEST = 3  # voyages that tell of a number before it is called the same on each: two show no scatter
 
 
 @dataclass(frozen=True)
@@ -67,11 +67,9 @@ def own_instruments(
 
 
 def established(asked: OnReferences) -> list[str]:
-    """Faults that a ship file may hold as the ship's own: seen on all references together, told by two at
+    """Faults that a ship file may hold as the ship's own: seen on all references together, told by three at
     least, and clear of none on the next voyage too, by the scatter between them."""
-    clear = [
-        f for f, far in asked.clear.items() if far > CLEAR and _of_kinematics(f) and _every_turn_shows(f)
-    ]
+    clear = [f for f, far in asked.clear.items() if far > CLEAR and _of_kinematics(f)]
     return [f for f in clear if _told(asked, f) >= FEWEST]
 
 
@@ -79,12 +77,6 @@ def _of_kinematics(fault: str) -> bool:
     """Whether kinematics alone judge it: the receiver's age, and what the ship's motion hardly shows."""
     name = effect_of(fault)
     return name is not None and (fault == AGE or find(name).kinematic)
-
-
-def _every_turn_shows(fault: str) -> bool:
-    """Whether a turn on any heading tells of it. Of a deviation curve it does not: that would be carried to
-    headings on which no reference sailed."""
-    return FAULTS[fault].turn != CIRCLES
 
 
 def _told(asked: OnReferences, fault: str) -> int:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from twin.physics.actuators import NUMBERS
-from twin.physics.effect import Effect, SensorFault
+from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, Ship
 from twin.study.estimation import form, rough, wave_induced
@@ -106,13 +106,10 @@ def _told_by_voyages(ship: Ship) -> Iterator[tuple[str, float, Mapping[str, Any]
 
 def effect_unknowns(effect: type[Effect], model: Model) -> list[Unknown]:
     """The parameters of one effect on this ship, centred on what the model holds of it: on "not there" where
-    it does not. By what a compass turns the velocity is none of them where the receiver does that itself."""
-    known = effect.turning if issubclass(effect, SensorFault) and model.ship.receiver_turns_velocity else ""
+    it does not."""
     present = next((e for e in model.effects if type(e) is effect), None) or effect.absent(model.ship)
     out = []
     for p in effect.params():
-        if p.name == known:
-            continue
         k, (lo, hi) = p.scale(model.ship), p.box(model.ship)
         out.append(
             Unknown(
