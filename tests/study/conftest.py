@@ -40,8 +40,8 @@ def tanker():
 
 @pytest.fixture(scope="session")
 def voyages():
-    """One 20 min voyage for each name in HIDDEN, a straight one, and two to calibrate on; every second a
-    sample."""
+    """One 20 min voyage for each name in HIDDEN, a straight one, and three to calibrate on; every second
+    a sample."""
     cases = {
         name: Case("kvlcc2", "mixed", hidden=h, seed=900 + i, duration_s=1200.0)
         for i, (name, h) in enumerate(HIDDEN.items())
@@ -49,6 +49,7 @@ def voyages():
     cases["straight"] = Case("kvlcc2", "straight", seed=950, duration_s=1200.0)
     cases["calm"] = Case("kvlcc2", "zigzag_20", seed=960, duration_s=1200.0)
     cases["calm too"] = Case("kvlcc2", "speed_changes", seed=961, duration_s=1200.0)
+    cases["calm again"] = Case("kvlcc2", "mixed", seed=962, duration_s=1200.0)
     sailed = simulate(list(cases.values()))
     return {name: recorded(name, r.columns, every=10) for name, r in zip(cases, sailed, strict=True)}
 

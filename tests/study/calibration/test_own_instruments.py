@@ -30,8 +30,8 @@ def smoothed(voyage: Voyage) -> Voyage:
 
 @pytest.fixture(scope="module")
 def calibrated(voyages, tanker):
-    """The published tanker calibrated on two voyages with such a receiver."""
-    fitted = [sailed(smoothed(voyages[name]), tanker) for name in ("calm", "nothing")]
+    """The published tanker calibrated on three voyages with such a receiver."""
+    fitted = [sailed(smoothed(voyages[name]), tanker) for name in ("calm", "nothing", "calm again")]
     return calibrate(fitted, [(fitted[1].track, 0)], tanker, by="steps")
 
 
@@ -42,7 +42,7 @@ def test_the_smoothing_becomes_the_ships_own_and_is_said(calibrated):
     said = told(calibrated.result | {"held_out_is": "", "doubts": [], "data_checks": []})
     assert sum("ReceiverSmoothing: time" in line for line in said) == 1
     kept = calibrated.ship.notes["instruments"]["numbers"]["smoothing"]["voyages"]
-    assert [set(v) for v in kept] == 2 * [{"voyage", "value", "sd", "log_bayes_factor"}]
+    assert [set(v) for v in kept] == 3 * [{"voyage", "value", "sd", "log_bayes_factor"}]
 
 
 def test_a_voyage_in_a_stream_with_that_receiver_has_no_false_instrument(calibrated, voyages):

@@ -24,8 +24,8 @@ U, V = "surge_velocity_mps", "sway_velocity_mps"
 
 @pytest.fixture
 def days(sail):
-    """Columns of two reference voyages, twelve minutes of zigzags each, twice a second."""
-    return [{name: sail(720.0, seed=seed)[name][::EVERY] for name in KEPT} for seed in (3, 4)]
+    """Columns of three reference voyages, twelve minutes of zigzags each, twice a second."""
+    return [{name: sail(720.0, seed=seed)[name][::EVERY] for name in KEPT} for seed in (3, 4, 5)]
 
 
 def smoothed(columns, time_s):
@@ -65,17 +65,18 @@ def test_a_healthy_receiver_gives_the_ship_no_effect(days):
     ship = load("kvlcc2")
     found = own_instruments([sailed(d) for d in days], ship)
     assert found.written == {} and found.ship.effects == ship.effects
-    assert "smoothing" not in found.record.faults and len(found.record.numbers["smoothing"].voyages) == 2
+    assert "smoothing" not in found.record.faults and len(found.record.numbers["smoothing"].voyages) == 3
 
 
 def test_what_only_one_reference_shows_is_not_the_ships(days):
-    found = asked(smoothed(days[0], 3.0), days[1])
+    found = asked(smoothed(days[0], 3.0), *days[1:])
     assert found.record.numbers["smoothing"].between > 0.5
     assert established(found) == []
 
 
-def test_one_reference_alone_establishes_nothing(days):
-    found = asked(smoothed(days[0], 3.0))
+@pytest.mark.parametrize("voyages", [1, 2])
+def test_fewer_than_three_references_establish_nothing(days, voyages):
+    found = asked(*(smoothed(d, 3.0) for d in days[:voyages]))
     assert "smoothing" in found.record.faults and established(found) == []
 
 
