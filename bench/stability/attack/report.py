@@ -48,8 +48,8 @@ def section(found: Sequence[CaseAttacked], command: str) -> str:
         "### Outside",
         "",
         f"The least factor tried ({', '.join(f'{f:g}' for f in FACTORS)}) over the limit at which the "
-        "live bound was broken, and in brackets the greatest error over it at the greatest factor; samples at "
-        "most as old as allowed, but for `delay`.",
+        "live bound was broken, and in brackets the greatest error over it at the greatest factor. Samples "
+        "are at most as old as allowed, but for `delay` and `all`.",
         "",
         *_table(OUTSIDE + "".join(f" {name} |" for name in EXCESSES), [_outside(x) for x in found]),
         "",
