@@ -26,7 +26,7 @@ def section(found: Sequence[CaseAttacked], command: str) -> str:
     lines = [
         HEAD,
         "",
-        f"`{command}` ({sum(x.seconds for x in found):.0f} s here)",
+        f"`{command}` ({sum(x.seconds for x in found):.0f} s of processor time)",
         "",
         f"**{broken} violations in {runs} runs inside the assumptions** ({samples} samples), by adversaries "
         "that know ship and observer;",

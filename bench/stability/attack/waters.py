@@ -1,6 +1,6 @@
 """The ships of one batch: their true motion, and the observers' model of it, under orders."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -50,7 +50,7 @@ class Waters:
         # steps in which half a tick of the truth is made; 0: one for the whole of it
         self.cut = int(np.ceil(0.5 * c.h * steepest / ROUGH)) if c.h * steepest > ROUGH else 0
 
-    def _by_run(self, of) -> np.ndarray:
+    def _by_run(self, of: Callable[[Group], float]) -> np.ndarray:
         return np.repeat([float(of(g)) for g in self.groups], self.runs)
 
     def dt(self, k: int) -> np.ndarray:
