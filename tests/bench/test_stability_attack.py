@@ -58,16 +58,17 @@ def test_instruments_twice_as_wrong_as_stated_break_the_bound(case):
 
 def test_twice_any_limit_brings_the_error_nearer_to_the_bound_than_the_limit_does():
     groups = (OLDEST, *(Group(1.0, excess=Excess()._replace(**{name: 2.0})) for name in Excess._fields))
-    inside, *outside = attack(BOAT, 900, 7, groups).groups
-    assert all(g.of_bound.max() > 1.02 * inside.of_bound.max() for g in outside)
+    inside, *outside = attack(BOAT, 450, 7, groups).groups
+    assert all((g.of_bound / inside.of_bound).max() > 1.05 for g in outside)
 
 
 @pytest.mark.parametrize("case", [CONTAINER, ROLLED])
 def test_an_observer_that_nothing_disturbs_stays_on_the_ship(case):
     w, orders = batch(case, OLDEST)
     calm = replace(orders, start=0.0 * orders.start, force=0.0 * orders.force, noise=0.0 * orders.noise)
-    error = np.abs(sail(w, calm).error) / np.array([*w.c.bound, 1.0])[:, None]
-    assert error.max() < 0.03
+    sailed = sail(w, calm)
+    error = np.abs(sailed.error) / np.array([*w.c.bound, 1.0])[:, None]
+    assert sailed.inside.any(axis=0).any() and np.where(sailed.inside[:, None], error, 0.0).max() < 0.03
 
 
 def test_the_bound_of_full_ticks_is_that_of_the_loops_own_tube():

@@ -1,5 +1,6 @@
 """Which ships, rates and delays are attacked, inside the assumptions of the certificate and outside."""
 
+from functools import cache
 from typing import NamedTuple
 
 from bench.stability.adversaries import AdversaryCase, certified
@@ -67,6 +68,7 @@ CASES = (
 )
 
 
+@cache
 def certified_for(case: AttackCase) -> tuple[Model, Certificate]:
     """The ship in a current, and its certificate."""
     ship = load(case.ship)
