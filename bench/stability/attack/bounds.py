@@ -44,7 +44,8 @@ def _paths(w: Waters, i: int, lasts_s: np.ndarray, age: float) -> list[Path]:
     """The way of an observer whose samples are all of one age (0, a half or one tick): each tick anew from
     the moment of its samples."""
     ticks_s = np.concatenate(([0.0], np.cumsum(lasts_s)))
-    still = tuple(0.5 * sum(w.c.operating.ranges[name]) for name in ("u", "v", "r"))
+    u, v, r = (0.5 * sum(w.c.operating.ranges[name]) for name in ("u", "v", "r"))
+    still = u, v, r
     paths = []
     for k in range(w.ticks):
         pulls = [

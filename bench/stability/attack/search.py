@@ -18,7 +18,7 @@ RANDOM, GREEDY, STEEPEST, MOVED = "random", "greedy", "steepest", "moved"
 PASSES = (RANDOM, GREEDY, STEEPEST, MOVED, STEEPEST)
 LASTS = 2.2  # of the time in which the observer forgets
 STEP = 0.1  # of the range, by which a place is moved
-MOST_RUNS = 1024  # at once
+MOST_RUNS = 1200  # at once
 ROUNDING = 1e-9
 AXES = 3
 

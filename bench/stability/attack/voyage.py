@@ -42,7 +42,7 @@ def sail(w: Waters, orders: Orders, greedy: bool = False) -> Sailed:
         w.push(w.limit * orders.force[k], orders.share)
         half, x = w.sailed(x, inputs, dt)
         truth[2 * k + 1], truth[2 * k + 2] = half, x
-        if greedy and w.c.inner == 1:
+        if greedy and isinstance(follow, LateObservers):
             orders.age[k] = follow.least(truth, k, side, error[k])
         error[k + 1] = follow.step(k, inputs, dt, truth, orders) - truth[2 * k + 2]
         inside[k + 1] = inside[k] & w.within(half, x)
