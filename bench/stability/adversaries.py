@@ -27,6 +27,7 @@ NOISE = {
     "container": (0.15, 0.15, 0.0006),
     "usv": (0.06, 0.06, 0.008),
 }  # three sigma of usual sensors
+ATTACK_RUNS = 15000
 
 
 class AdversaryCase(NamedTuple):
@@ -81,7 +82,14 @@ def certified(case: AdversaryCase) -> tuple[Model, Certificate]:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--runs", type=positive, default=sum(c.runs for c in CASES), help="runs in all (default: %(default)s)"
+        "--runs",
+        type=positive,
+        help=f"runs in all (default: {sum(c.runs for c in CASES)}, of the attack {ATTACK_RUNS})",
+    )
+    parser.add_argument(
+        "--attack",
+        action="store_true",
+        help="worst-case adversaries instead of random ones, inside the assumptions and outside",
     )
     parser.add_argument("--seed", type=int, default=1)
     answer.add_arguments(parser, "--results")
@@ -89,6 +97,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """All cases; ThresholdError when a bound was broken inside the operating set."""
+    if args.attack:
+        from bench.stability.attack.run import attacked
+
+        return attacked(args, args.runs or ATTACK_RUNS)
+    args.runs = args.runs or sum(c.runs for c in CASES)
+    from bench.stability.attack.section import section_of
     from bench.stability.loop import CASES as LOOPS
     from bench.stability.loop import Loops
     from bench.stability.report import tables
@@ -116,7 +130,12 @@ def run(args: argparse.Namespace) -> int:
         [{**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o in some]
         for some in (rows, loops)
     )
-    answer.give(args, plain({"schema_version": 1, "cases": cases, "loops": own}), tables(rows, loops, args))
+    answer.give(
+        args,
+        plain({"schema_version": 1, "cases": cases, "loops": own}),
+        tables(rows, loops, args),
+        section_of(args.page),
+    )
     broken = sum(o.violations for _, _, o in (*rows, *loops))
     if broken:
         raise ThresholdError(

@@ -59,7 +59,8 @@ Numbers moved: those of these effects, by the adversary, anywhere in the boxes o
 (twin/live/learning/movable.py). With drop-outs the error may exceed b, which counts on measurements; the tube
 must hold, and does.
 
-## The loop itself The twin's own sensors, gates, observer, guard and tube (`bench/stability/loop.py`), fed
+## The loop itself
+The twin's own sensors, gates, observer, guard and tube (`bench/stability/loop.py`), fed
 with the readings of the same hostile ships once in each tick (every other ship's half a sample late), at the
 K, delay and noise that it would take on board; no wind, no current, network and adaptation off. Inside: the
 share of ticks in which it said that its certificate holds; only those are judged, for of others it promises

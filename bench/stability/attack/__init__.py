@@ -1,0 +1,1 @@
+"""The strongest adversary that we can make against the certificate: `twin-bench stability --attack`."""

@@ -1,0 +1,89 @@
+"""Which ships, rates and delays are attacked, inside the assumptions of the certificate and outside."""
+
+from functools import cache
+from typing import NamedTuple
+
+from bench.stability.adversaries import AdversaryCase, certified
+from twin.live.build import stabilizer_of
+from twin.live.certificate.certificate import Certificate
+from twin.live.signals.config import Settings
+from twin.physics.effects import find
+from twin.physics.model import Model
+from twin.physics.ship import load
+
+SHIPS = ("kvlcc2", "container", "kvlcc2_model", "usv")
+RATES_HZ = (10.0, 20.0, 50.0)
+FACTORS = (1.1, 1.25, 1.5, 2.0)  # outside: times the limit
+DELAYS = (0.0, 0.5, 1.0)  # of the greatest age that the certificate allows
+FULL, SHORT, GAPS = "full", "short", "gaps"
+
+
+class Excess(NamedTuple):
+    """How many times its limit each thing that the certificate assumes reaches; 1: inside."""
+
+    force: float = 1.0
+    noise: float = 1.0
+    delay: float = 1.0
+    tick: float = 1.0
+
+
+class Group(NamedTuple):
+    """Runs of one kind: the greatest age of a sample as a share of what is allowed, the pattern of ticks and
+    samples (full: every tick as long as allowed, every sample comes; short: ticks up to a tenth shorter;
+    gaps: samples get lost), and what is exceeded."""
+
+    delay: float
+    pattern: str = FULL
+    excess: Excess = Excess()
+
+    @property
+    def inside(self) -> bool:
+        return self.excess == Excess()
+
+
+class AttackCase(NamedTuple):
+    """One ship at one rate, with the certificate that its loop takes on board; with `late`, that of Theorem 2
+    for samples so many ticks late, as the random runs have it (bench/stability/adversaries.py)."""
+
+    ship: str
+    rate_hz: float
+    late: int | None = None
+
+
+INSIDE = tuple(Group(delay, pattern) for delay in DELAYS for pattern in (FULL, SHORT, GAPS))
+EXCESSES = {name: (name,) for name in Excess._fields} | {"all": Excess._fields}  # what is exceeded together
+OUTSIDE = tuple(
+    Group(1.0, excess=Excess()._replace(**dict.fromkeys(names, factor)))
+    for names in EXCESSES.values()
+    for factor in FACTORS
+)
+GROUPS = INSIDE + OUTSIDE
+CASES = (
+    *(AttackCase(ship, rate) for ship in SHIPS for rate in RATES_HZ),
+    AttackCase("kvlcc2", 10.0, 1),
+    AttackCase("container", 10.0, 1),
+    AttackCase("usv", 50.0, 1),
+    AttackCase("usv", 50.0, 0),
+    AttackCase("usv", 10.0, 0),
+)
+
+
+@cache
+def certified_for(case: AttackCase) -> tuple[Model, Certificate]:
+    """The ship in a current, and its certificate."""
+    ship = load(case.ship)
+    current = find("Current").plausible(ship).but(north=0.12 * ship.U_0, east=-0.08 * ship.U_0)
+    model = Model.of(ship).but(current)
+    if case.late is not None:
+        return model, certified(AdversaryCase(case.ship, case.rate_hz, (case.late,) * 3, 1))[1]
+    settings = Settings(
+        {
+            "ship.file": case.ship,
+            "loop.rate_hz": case.rate_hz,
+            "residual.file": "none",
+            "adaptation.on": False,
+        }
+    )
+    tube = stabilizer_of(settings, ship, None).tube
+    assert tube is not None and tube.certificate.ok, case
+    return model, tube.certificate
