@@ -44,6 +44,8 @@ def consider(
     seen: Mapping[str, bool],
     w: Weights,
 ) -> Considered:
+    """The facts of the likeliest hypothesis, of what is without causes, and of every cause that may be
+    named."""
     best, base = found[w.best.effects], without_causes(case, weighed, found)
     nothing = found[base]
     explanation, left = _explanation(case, weighed, found)
