@@ -59,7 +59,7 @@ def refine(
     hoped: float = -np.inf,
     part: Found | None = None,
 ) -> tuple[Found, list[Hypothesis]]:
-    """Newton steps on the effects' own parameters, begun at `z` (Q,) and taken in `scenario`, until they stand;
+    """Newton steps on the effects' own parameters, begun at z (Q,) and taken in `scenario`, until they stand;
     begun again farther out when that explains nothing plainly, or when a number whose effect is bent ended at
     nothing, or the whole below the log weight that was `hoped` for to first order (not those of effects that
     were found already, in a `part` of the set: they were looked for far out when they were); and from where
