@@ -114,7 +114,7 @@ class Case:
         return [reduce(n, self.nuisance, self.unknowns, self.effects, self.temper, at) for n in normals]
 
     def scenarios(self, names: Sequence[str], doubt: float = 0.0) -> list[NoiseModel]:
-        """The floors of these noise scenarios, with this doubt of the effects' forms."""
+        """The noise models of these scenarios, where the effects' forms are known this roughly."""
         floors = (
             (self.path if w.alone else self.floor).scaled(w.share, flow=w.flow)
             for w in map(SCENARIOS.__getitem__, names)
