@@ -3,6 +3,7 @@
 import argparse
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,23 @@ def give(args: argparse.Namespace, result: dict[str, Any], text: str, more: str 
         whole.write(args.page, f"{text}\n{more}", args.page_option)
     if args.json:
         whole.write_json(result, args.json)
+
+
+def begun(title: str, done: str | None, *columns: str) -> list[str]:
+    """A page's first lines: its title, what was done (a module's docstring), and the head of its table."""
+    return [
+        f"# {title}",
+        "",
+        (done or "").strip(),
+        "",
+        f"| {' | '.join(columns)} |",
+        "|---" * len(columns) + "|",
+    ]
+
+
+def rows(args: argparse.Namespace, found: Sequence[Any], text: str) -> None:
+    """`give` of a table's rows (named tuples), with what was written by hand on the page that is there."""
+    give(args, {"rows": [row._asdict() for row in found]}, text, kept(args.page))
 
 
 def kept(page: Path | None) -> str:

@@ -34,6 +34,7 @@ class TrainingSamples:
         return self.h.numel()
 
     def situation(self, k: torch.Tensor) -> Situation:
+        """The situations of the samples k."""
         return Situation(**{name: x[k] for name, x in self.fields.items()})
 
     def on(self, device: torch.device) -> "TrainingSamples":
@@ -70,6 +71,7 @@ class TrainingWindows:
         )
 
     def some(self, k: torch.Tensor) -> "TrainingWindows":
+        """The windows k alone."""
         inputs = {name: x[:, k] for name, x in self.inputs.items()}
         return TrainingWindows(self.start[k], inputs, self.wanted[:, k], self.h[k], self.group[k.numpy()])
 
@@ -138,6 +140,7 @@ def input_names(legs: Sequence[TrainingLeg]) -> tuple[str, ...]:
 
 
 def zeta_of(network: ResidualNetwork, data: TrainingSamples) -> torch.Tensor:
+    """(N, inputs) the network's inputs at all samples."""
     return network.zeta(Situation(**data.fields))
 
 

@@ -22,7 +22,8 @@ AGREE = 1e-6  # of the larger of 1 and the feature's size
 
 
 def answers(model: bytes, x: np.ndarray) -> np.ndarray:
-    """(N, 64) phi of scaled inputs (N, n) by ONNX Runtime, one row at a time as on board."""
+    """(N, 64) phi of scaled inputs (N, n) by ONNX Runtime, one row at a time as on board. Both are
+    dimensionless."""
     import onnxruntime as ort
 
     options = ort.SessionOptions()
@@ -56,6 +57,7 @@ def agree(network: ResidualNetwork, model: bytes) -> float:
 
 
 def main() -> int:
+    """`python -m export.check`: load the files as the twin does, and say what is in them; the exit code."""
     parser = argparse.ArgumentParser(
         prog="python -m export.check", description="Would the twin take this residual for this ship?"
     )

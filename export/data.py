@@ -58,7 +58,7 @@ class TrainingLeg:
         )
 
     def starts(self, steps: int, stride: int) -> np.ndarray:
-        """Grid steps from which `steps` more can be run through without a hole in the controls."""
+        """(K,) grid steps from which `steps` more can be run through without a hole in the controls."""
         broken = np.concatenate([[0], np.cumsum(~self.whole)])
         k = np.arange(0, max(len(self) - steps, 0), stride)
         return k[broken[k + steps + 1] == broken[k]]
@@ -92,7 +92,7 @@ def leg(track: Track, model: Model) -> TrainingLeg:
 
 
 def afloat(state: np.ndarray, water: np.ndarray, h: float) -> np.ndarray:
-    """(N, 6) the motion seen from water that moves with `water` (N, 2)."""
+    """(N, 6) the motion seen from water that moves with `water` (N, 2). All in SI, h in [s]."""
     x, y, psi, u, v, r = state.T
     c, s = np.cos(psi), np.sin(psi)
     north, east = water.T
@@ -103,7 +103,8 @@ def afloat(state: np.ndarray, water: np.ndarray, h: float) -> np.ndarray:
 
 
 def current(track: Track, state: np.ndarray) -> np.ndarray:
-    """(N, 2) the water's speed north and east: motion over ground less the log, mean of the past."""
+    """(N, 2) the water's speed north and east: motion over ground less the log, mean of the past. Both in
+    [m/s]."""
     log = track.measured[:, [LOG["u_r"], LOG["v_r"]]]
     du, dv = state[:, 3] - log[:, 0], state[:, 4] - log[:, 1]
     c, s = np.cos(state[:, 2]), np.sin(state[:, 2])

@@ -62,6 +62,7 @@ class Trunk(torch.nn.Module):
         self.register_buffer("scale", torch.tensor(scale, dtype=torch.float32))
 
     def phi(self, zeta: torch.Tensor) -> torch.Tensor:
+        """(..., 64) of zeta (..., inputs), not yet scaled."""
         x = (zeta - self.offset) / self.scale
         for layer in self.layers:
             z = layer(x)
@@ -69,6 +70,7 @@ class Trunk(torch.nn.Module):
         return x
 
     def forward(self, zeta: torch.Tensor) -> torch.Tensor:
+        """(..., 3) in units of the force scale."""
         return self.phi(zeta) @ self.W.T
 
 
@@ -234,6 +236,7 @@ def manifest(
 
 
 def main() -> int:
+    """`python -m export.first`: train, judge on held-out voyages, write; the exit code."""
     parser = argparse.ArgumentParser(prog="python -m export.first", description=__doc__.split("\n")[0])
     parser.add_argument("voyages", nargs="+", type=Path, metavar="VOYAGE.mcap")
     parser.add_argument("--ship", default="kvlcc2")

@@ -59,6 +59,7 @@ class ResidualNetwork(torch.nn.Module):
         return x
 
     def phi(self, zeta: torch.Tensor) -> torch.Tensor:
+        """(..., 64) of zeta (..., inputs), kept within the range of the data and scaled."""
         return self.trunk((torch.clamp(zeta, self.low, self.high) - self.offset) / self.scale)
 
     def weight(self, zeta: torch.Tensor) -> torch.Tensor:
@@ -79,6 +80,7 @@ class ResidualNetwork(torch.nn.Module):
         return torch.stack(values, -1)
 
     def forward(self, s: Situation) -> Force:
+        """The learned force [N, N, N m]."""
         f = self.f(self.zeta(s))
         return Force(f[..., 0] * self.S.X, f[..., 1] * self.S.Y, f[..., 2] * self.S.N)
 

@@ -42,6 +42,7 @@ class Set:
     windows: TrainingWindows
 
     def on(self, device: torch.device) -> "Set":
+        """The same where it is computed with."""
         return Set(self.samples.on(device), self.windows.on(device))
 
 

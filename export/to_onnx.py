@@ -101,7 +101,8 @@ def _unit(name: str) -> str:
 
 
 def whitening(phi: np.ndarray) -> dict[str, Any]:
-    """The features' mean and their strongest directions, each of deviation one."""
+    """The features' mean and their strongest directions, each of deviation one. phi (N, 64),
+    dimensionless."""
     mean = phi.mean(0)
     centred = phi - mean
     _, _, directions = np.linalg.svd(centred[:: max(len(centred) // 20_000, 1)], full_matrices=False)

@@ -30,6 +30,7 @@ same command is given again. Exit code 3: the residual does not help on the held
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `twin train`."""
     parser.epilog = EPILOG
     parser.add_argument(
         "voyages",
@@ -100,6 +101,8 @@ def tell(text: str) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
+    """Train, judge and write; the exit code. TwinError: the output cannot be written, or a library is not
+    there. ThresholdError: the residual is not worth having."""
     ship = load(args.ship)
     output = Path(args.output)
     if output.suffix != ".onnx":
@@ -136,8 +139,8 @@ def settings_of(args: argparse.Namespace) -> Any:
 def learn(
     ship: Ship, sailed: list[Sailed], settings: Any, seeds: list[int], output: Path, force: bool = False
 ) -> dict[str, Any]:
-    """Train for every seed, keep the best on validation, judge it on the test part, write it when it is worth
-    having."""
+    """Train for every seed, keep the best on validation, judge it on the test part, write it when it is
+    worth having. DataError: too little was recorded."""
     from export import check, to_onnx
     from export.teach import teach, zeta_of
     from export.worth import share, worth

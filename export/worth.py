@@ -40,6 +40,7 @@ class Worth:
         return self.ratio_high95 < 1.0 and self.heading_deg[1] <= 1.02 * self.heading_deg[0]
 
     def sentence(self) -> str:
+        """The verdict in words, with its numbers."""
         (p, q), (a, b) = self.position_m, self.heading_deg
         said = "is worth having" if self.proved else "is not worth having"
         return (
@@ -49,6 +50,7 @@ class Worth:
         )
 
     def told(self) -> dict[str, Any]:
+        """The same for the JSON."""
         return {
             "horizon_s": self.horizon_s,
             "windows": self.windows,
@@ -90,7 +92,8 @@ def worth(network: ResidualNetwork, model: Model, legs: Sequence[TrainingLeg], s
 
 
 def ratio(before: np.ndarray, after: np.ndarray, group: np.ndarray, seed: int) -> tuple[float, float]:
-    """The 95 % interval of mean(after)/mean(before) by the bootstrap over blocks."""
+    """The 95 % interval of mean(after)/mean(before) by the bootstrap over blocks. All (N,): errors of each
+    run in one unit, and the block that it is of."""
     blocks, index = np.unique(group, return_inverse=True)
     a, b = (np.bincount(index, x, blocks.size) for x in (before, after))
     drawn = np.random.default_rng(seed).integers(blocks.size, size=(RESAMPLES, blocks.size))

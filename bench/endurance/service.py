@@ -5,7 +5,6 @@ import json
 import os
 import shutil
 import signal
-import socket
 import struct
 import subprocess
 import sys
@@ -15,14 +14,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 from twin.errors import TwinError
+from twin.live.demo import free_port
 
 SERVE = """
 import os, sys, traceback
 from twin.live import run
 from twin.live.signals import config
 def on_tick(tick):
-    word = f"{tick.index} {tick.time_s!r} {int(tick.certificate.inside)} {tick.overruns} {tick.mode}"
-    os.write(1, f"{word}|{'; '.join(tick.reasons)}\\n".encode())
+    {hook}
 code = 1
 try:
     code = run.serve(config.load(sys.argv[1]), on_tick=on_tick)
@@ -31,7 +30,9 @@ except BaseException:
 finally:
     sys.stderr.flush()
     os._exit(code)
-"""
+"""  # a process that serves with a hook at each tick, and always ends
+TELL = """word = f"{tick.index} {tick.time_s!r} {int(tick.certificate.inside)} {tick.overruns} {tick.mode}"
+    os.write(1, f"{word}|{'; '.join(tick.reasons)}\\n".encode())"""
 
 
 PRIORITY = 20  # SCHED_FIFO, as deploy/shiptwin.service gives it; without the right the twin says so and runs
@@ -53,9 +54,7 @@ class Place:
 
     def __init__(self, folder: Path, hull: str, rate_hz: float = 10.0):
         self.folder, self.logs = folder, folder / "logs"
-        with socket.socket() as probe:
-            probe.bind(("127.0.0.1", 0))
-            self.endpoint = f"tcp/127.0.0.1:{probe.getsockname()[1]}"
+        self.endpoint = f"tcp/127.0.0.1:{free_port()}"
         self.config = folder / "twin.toml"
         self.config.write_text(
             f"[ship]\nfile = {json.dumps(hull)}\n[loop]\nrate_hz = {rate_hz}\npriority = {PRIORITY}\n"
@@ -87,7 +86,7 @@ class Running:
         self.began_s = time.monotonic()
         self.errors = open(place.folder / "errors", "a+")  # noqa: SIM115  (closed with the process)
         self.process = subprocess.Popen(
-            [sys.executable, "-c", SERVE, str(place.config)],
+            [sys.executable, "-c", SERVE.format(hook=TELL), str(place.config)],
             stdout=subprocess.PIPE,
             stderr=self.errors,
             env=os.environ | environment,

@@ -54,8 +54,7 @@ def run(args: argparse.Namespace) -> int:
         seconds = max(round(args.seconds * SHARES.get(name, 1.0) / whole_share), 1)
         answer.tell(f"{name}, {seconds} s")
         rows.append(fuzzed(name, seconds, args.corpus))
-    result = {"rows": [row._asdict() for row in rows]}
-    answer.give(args, result, told(rows), answer.kept(args.page))
+    answer.rows(args, rows, told(rows))
     return 3 if any(row.broken for row in rows) else 0
 
 
@@ -101,14 +100,9 @@ def read(name: str, seconds: float, said: str, code: int) -> Fuzzing:
 
 def told(rows: list[Fuzzing]) -> str:
     """The page."""
-    lines = [
-        "# Fuzzing with coverage",
-        "",
-        (__doc__ or "").strip(),
-        "",
-        "| target | s | inputs | edges reached | kept | broken |",
-        "|---|---|---|---|---|---|",
-    ]
+    lines = answer.begun(
+        "Fuzzing with coverage", __doc__, "target", "s", "inputs", "edges reached", "kept", "broken"
+    )
     for r in rows:
         broken = f"{r.broken} ({Path(r.found).name})" if r.broken else "no"
         lines.append(f"| {r.target} | {r.seconds:.0f} | {r.inputs} | {r.edges} | {r.kept} | {broken} |")

@@ -73,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
     rows: list[Tried] = []
     for name in args.file or GUARDED:
         rows += of_file(name, args.most, args.kept, ends)
-    answer.give(args, {"rows": [row._asdict() for row in rows]}, told(rows), answer.kept(args.page))
+    answer.rows(args, rows, told(rows))
     return 0
 
 
@@ -145,14 +145,9 @@ def _child(path: str, source: str, tests: Sequence[str]) -> int:
 
 def told(rows: Sequence[Tried]) -> str:
     """The page."""
-    lines = [
-        "# Mutants of what guards",
-        "",
-        (__doc__ or "").strip(),
-        "",
-        "| file | mutants | noticed | of them by hanging | survived |",
-        "|---|---|---|---|---|",
-    ]
+    lines = answer.begun(
+        "Mutants of what guards", __doc__, "file", "mutants", "noticed", "of them by hanging", "survived"
+    )
     for file in dict.fromkeys(row.file for row in rows):
         fates = [row.fate for row in rows if row.file == file]
         survived, hung = fates.count(SURVIVED), fates.count(HUNG)

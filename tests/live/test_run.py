@@ -12,25 +12,9 @@ import time
 
 import pytest
 
+from bench.endurance.service import SERVE
+from twin.live.demo import free_port
 from twin.live.log.mcap_read import McapReader
-
-SERVE = """
-import os, sys, traceback
-from twin.live import run
-from twin.live.signals import config
-from twin.live.signals.config import Settings
-def on_tick(tick):
-    {hook}
-code = 1
-try:
-    code = run.serve(config.load(sys.argv[1]), on_tick=on_tick)
-except BaseException:
-    traceback.print_exc()
-finally:
-    sys.stderr.flush()
-    os._exit(code)
-"""
-
 
 STARTED: list[subprocess.Popen] = []
 
@@ -48,12 +32,6 @@ def no_process_is_left():
 def popen(*words, **how):
     STARTED.append(subprocess.Popen(words, text=True, **how))
     return STARTED[-1]
-
-
-def free_port():
-    with socket.socket() as s:
-        s.bind(("127.0.0.1", 0))
-        return s.getsockname()[1]
 
 
 @pytest.fixture

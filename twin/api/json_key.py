@@ -48,6 +48,22 @@ ERRORS = (
     JsonKey("lateral_mae_m", "m", "mean absolute error across the course"),
     JsonKey("heading_mae_deg", "deg", "mean absolute error in heading"),
 )
+ESTIMATE = (
+    JsonKey("value", "of the number", "its estimate"),
+    JsonKey("low95", "of the number", "lower end of its 95 % interval"),
+    JsonKey("high95", "of the number", "upper end"),
+    JsonKey("unit", "", "its unit"),
+)
+TYPICAL_FORCE = (
+    JsonKey("typical_force.X_N", "N", "root mean square of its force ahead"),
+    JsonKey("typical_force.Y_N", "N", "root mean square of its side force"),
+    JsonKey("typical_force.N_Nm", "N m", "root mean square of its yaw moment"),
+)
+
+
+def when(condition: str, keys: tuple[JsonKey, ...]) -> tuple[JsonKey, ...]:
+    """The keys of what is not always there."""
+    return tuple(k._replace(when=k.when or condition) for k in keys)
 
 
 def under(path: str, keys: tuple[JsonKey, ...], what: str = "") -> tuple[JsonKey, ...]:

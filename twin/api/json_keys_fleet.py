@@ -1,6 +1,6 @@
 """What every key of `twin fleet --json` means."""
 
-from twin.api.json_key import CLI, JsonKey, under
+from twin.api.json_key import CLI, ESTIMATE, TYPICAL_FORCE, JsonKey, under, when
 
 JUDGED = "it was judged"
 NAMED = "a cause is named"
@@ -12,10 +12,7 @@ DATED = (
 )
 SIZE = (
     JsonKey("name", "", "a number of the cause"),
-    JsonKey("value", "of the number", "its estimate"),
-    JsonKey("low95", "of the number", "lower end of its 95 % interval"),
-    JsonKey("high95", "of the number", "upper end"),
-    JsonKey("unit", "", "its unit"),
+    *ESTIMATE,
     JsonKey("at_box_end", "", "whether the end of its box stopped the number"),
     JsonKey("in_ship_file", "of the number", "what the ship file has, or null"),
 )
@@ -27,18 +24,9 @@ CAUSE = (
     JsonKey("confidence", "1", "share of causes with such facts that were there on other ships, or null"),
     JsonKey("says", "", "what the effect is, in a sentence"),
     JsonKey("share_of_error", "-", "1 - open-loop error with it / without it, on parts not fitted, or null"),
-    JsonKey("typical_force.X_N", "N", "root mean square of its force ahead"),
-    JsonKey("typical_force.Y_N", "N", "root mean square of its side force"),
-    JsonKey("typical_force.N_Nm", "N m", "root mean square of its yaw moment"),
+    *TYPICAL_FORCE,
     JsonKey("cannot_be_told_from[]", "", "effects that would explain nearly as much"),
 )
-
-
-def when(condition: str, keys: tuple[JsonKey, ...]) -> tuple[JsonKey, ...]:
-    """The keys of what is not always there."""
-    return tuple(k._replace(when=k.when or condition) for k in keys)
-
-
 FLEET = (
     JsonKey("schema_version", "", "version of this format"),
     JsonKey("ships[].rank", "", "place, 1: most wrong"),

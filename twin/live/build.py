@@ -86,7 +86,8 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
 
 def residual_of(settings: Settings, ship: Ship) -> tuple[Residual | None, str]:
     """The residual, or None and why there is none. One made for another ship is passed over only if nobody
-    asked for it."""
+    asked for it. ResidualError: one is required and cannot be used, or the one asked for is not for this
+    ship."""
     asked = settings["residual.file"]
     if asked == "none":
         return None, "the settings want none"
@@ -113,6 +114,7 @@ def mark_of(learned: LearnedForce) -> str:
 
 
 def learned_file(settings: Settings) -> Path | None:
+    """Where adapted numbers are kept; None: nowhere."""
     folder = settings["state.folder"]
     return Path(folder) / "adaptation.json" if folder else None
 

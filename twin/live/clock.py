@@ -52,6 +52,7 @@ class MonotonicClock:
         self._woke_s = self._start_s - self.period_s
 
     def wait(self) -> Instant:
+        """The next tick, once its deadline has come; periods that are over are skipped and counted."""
         skipped = self._skip()
         deadline = self._start_s + self._period * self.period_s
         while (left := deadline - self._monotonic()) > 0.0:
@@ -65,6 +66,7 @@ class MonotonicClock:
         return instant
 
     def slack_s(self) -> float:
+        """Time left until the next deadline [s]; negative when it is over."""
         return self._start_s + self._period * self.period_s - self._monotonic()
 
     def _skip(self) -> int:
@@ -95,6 +97,7 @@ class ReplayClock:
         self._last_s = 0.0
 
     def wait(self) -> Instant | None:
+        """The log's next instant, at its pace; None behind the last."""
         try:
             time_s, wall_s = next(self._times)
         except StopIteration:
@@ -106,6 +109,7 @@ class ReplayClock:
         return instant
 
     def slack_s(self) -> None:
+        """None: a log has no deadlines."""
         return None
 
     def _keep_pace(self, time_s: float) -> None:
@@ -125,13 +129,16 @@ class ManualClock:
         self._index = 0
 
     def advance(self, seconds: float) -> None:
+        """Move the time on by so many seconds."""
         self.time_s += seconds
         self.wall_s += seconds
 
     def wait(self) -> Instant:
+        """A tick, now."""
         instant = Instant(self._index, self.time_s, self.wall_s)
         self._index += 1
         return instant
 
     def slack_s(self) -> None:
+        """None: there are no deadlines."""
         return None

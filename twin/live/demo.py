@@ -43,6 +43,7 @@ SEEN = (
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `twin demo`."""
     parser.add_argument("--seconds", type=float, default=30.0, help="how long it sails (default: 30)")
     parser.add_argument(
         "--ship", default="kvlcc2", help="a bundled ship: kvlcc2 (320 m; the default), usv (2 m, lively), ..."
@@ -54,7 +55,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(args: argparse.Namespace) -> int:
-    """Sail, look, log, replay, and say what to do next."""
+    """Sail, look, log, replay, and say what to do next. UsageError: a number of seconds that cannot be
+    shown."""
     if not 5.0 <= args.seconds <= 3600.0:
         raise UsageError(f"--seconds {as_given(args.seconds)}: 5 to 3600 can be shown.")
     ship = load(args.ship)
@@ -93,7 +95,7 @@ def settings_for(ship: str, folder: Path) -> Settings:
 @contextmanager
 def reference_sea(settings: Settings, args: argparse.Namespace, after_s: float) -> Iterator[None]:
     """The ship and its instruments, in a process of its own, until the demo is over; it is under way for
-    `after_s`."""
+    `after_s`. TwinError: the package `bench` is not there, or the sea does not start."""
     if importlib.util.find_spec("bench") is None:
         raise TwinError(
             "The reference sea (package `bench`) is not installed here. Run `make demo` in the source folder."
@@ -153,12 +155,14 @@ def compared(log: Path, again: Path) -> str:
 
 
 def ticks_of(path: Path) -> Iterator[Any]:
+    """The ticks in a log, in order."""
     for message in read(path):
         if message.type_name == "shiptwin.Tick":
             yield messages.Tick.FromString(message.data)
 
 
 def newest(folder: Path) -> Path:
+    """The last log of a folder. TwinError: there is none."""
     logs = sorted(folder.glob("*.mcap"))
     if not logs:
         raise TwinError(f"{folder}: no log was written. Is the disk full?")
@@ -166,6 +170,7 @@ def newest(folder: Path) -> Path:
 
 
 def free_port() -> int:
+    """A TCP port on loopback that nobody listens on."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return int(probe.getsockname()[1])

@@ -48,6 +48,8 @@ class HeldControl:
         self._last_s = -1e18
 
     def feed(self, why: str, now_s: float) -> str:
+        """What is wrong now ("": nothing) at `now_s` [s]; returns what counts, for `hold_s` after it
+        ended."""
         if why:
             self.why, self._last_s = why, now_s
         elif now_s - self._last_s >= self.hold_s:

@@ -20,7 +20,7 @@ SCHEMA_VERSION = 1
 
 
 def ask(args: argparse.Namespace) -> int:
-    """Listen, judge, tell; the exit code."""
+    """Listen, judge, tell; the exit code. UsageError: a timeout that is out of range."""
     if not 0.0 < args.timeout <= 3600.0:
         raise UsageError(f"--timeout {as_given(args.timeout)}: more than 0 and at most 3600 s.")
     tick = hear(config.load(args.config), args.timeout)

@@ -60,5 +60,6 @@ class Played:
         self.datum = datum
 
     def read(self, instant: Instant) -> list[Result]:
+        """What came in before this tick of the log."""
         taken, self.next = self.next, None
         return next(self._ticks, []) if taken is None else taken

@@ -18,6 +18,7 @@ class Keeper:
         self._thread.start()
 
     def put(self, text: str) -> None:
+        """Have this text written next; never waits."""
         self._queue.put(text)
 
     def close(self, timeout_s: float = 1.0) -> None:

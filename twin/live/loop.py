@@ -39,9 +39,11 @@ class Ears(Protocol):
     """Where results come from."""
 
     @property
-    def datum(self) -> Datum | None: ...
+    def datum(self) -> Datum | None:
+        """Where the chart touches the earth; None while nobody knows."""
 
-    def read(self, instant: Instant) -> list[Result]: ...
+    def read(self, instant: Instant) -> list[Result]:
+        """What came in since the last tick."""
 
 
 class Loop:

@@ -19,6 +19,7 @@ class Notifier:
             self._socket.setblocking(False)
 
     def ready(self, status: str) -> None:
+        """The service is up."""
         self._send(f"READY=1\nSTATUS={_line(status)}")
 
     def alive(self) -> None:
@@ -26,9 +27,11 @@ class Notifier:
         self._send("WATCHDOG=1")
 
     def status(self, status: str) -> None:
+        """How it goes, in words."""
         self._send(f"STATUS={_line(status)}")
 
     def stopping(self) -> None:
+        """The service ends."""
         self._send("STOPPING=1")
 
     def _send(self, text: str) -> None:

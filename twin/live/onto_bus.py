@@ -18,7 +18,8 @@ from twin.num import as_given
 def replay_onto_bus(
     log: str | Path, settings: Settings, output: str | Path | None = None, speed: float = 1.0
 ) -> Summary:
-    """The voyage on the bus of these settings; TwinError when that bus cannot be opened now."""
+    """The voyage on the bus of these settings; TwinError when that bus cannot be opened now. UsageError: a
+    speed that is out of range."""
     if not SLOWEST <= speed <= FASTEST:
         raise UsageError(
             f"--speed {as_given(speed)}: {as_given(SLOWEST)} to {as_given(FASTEST)} times the voyage's own."

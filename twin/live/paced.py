@@ -90,6 +90,8 @@ class PacedClock:
         self._due_s = 0.0  # when the last instant was due [s, monotonic]
 
     def wait(self) -> Instant | None:
+        """The voyage's next instant, at the pace asked for; None behind the last, or when it is told to
+        end."""
         try:
             time_s, wall_s = next(self._times)
         except StopIteration:
@@ -101,6 +103,7 @@ class PacedClock:
         return instant
 
     def slack_s(self) -> None:
+        """None: a voyage has no deadlines."""
         return None
 
     def _waited(self, time_s: float) -> bool:

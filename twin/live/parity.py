@@ -52,6 +52,7 @@ class Parity:
 
     @property
     def why(self) -> str:
+        """What does not confirm the motion, in words; "": nothing."""
         return self._place or self._heading
 
     def feed(self, measured: Measured, e: Estimate, beta: Bound, dt: float) -> str:

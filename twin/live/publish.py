@@ -115,6 +115,7 @@ def _channel(name: str, measured: Measured, ages: dict[str, float]) -> dict[str,
 
 
 def state_of(e: Estimate) -> dict[str, float]:
+    """The estimate by channel names, in border units."""
     return border_state(e.x, e.y, e.psi, e.u, e.v, e.r) | {
         "current_north_mps": e.current_north,
         "current_east_mps": e.current_east,
@@ -122,6 +123,7 @@ def state_of(e: Estimate) -> dict[str, float]:
 
 
 def learned_of(learned: Learned, share: float) -> dict[str, float]:
+    """The learned force, its bounds, and how far it is used."""
     bounds = {"bound_N": learned.bound_N, "bound_Nm": learned.bound_Nm}
     return named(learned.force) | bounds | {"weight": learned.weight, "share": share}
 
@@ -139,6 +141,7 @@ def border_state(x: float, y: float, psi: float, u: float, v: float, r: float) -
 
 
 def border_sigma(sigma: tuple[float, ...]) -> dict[str, float]:
+    """Standard deviations of the state by channel names, in border units."""
     x, y, psi, u, v, r = sigma
     return {
         "north_m": x,
@@ -151,6 +154,7 @@ def border_sigma(sigma: tuple[float, ...]) -> dict[str, float]:
 
 
 def border_region(r: Region) -> dict[str, float]:
+    """A predicted region in border units."""
     return {
         "along_m": r.along_m,
         "across_m": r.across_m,
@@ -161,6 +165,7 @@ def border_region(r: Region) -> dict[str, float]:
 
 
 def named(force: Tau) -> dict[str, float]:
+    """A force by component [N, N, N m]."""
     return {"X_N": force[0], "Y_N": force[1], "N_Nm": force[2]}
 
 

@@ -182,12 +182,14 @@ class Service:
 
 
 def bus_of(settings: Settings) -> Bus:
+    """The bus of these settings, not yet open."""
     from twin.live.keelson.zenoh_bus import ZenohBus
 
     return ZenohBus(BusSettings.of(settings))
 
 
 def recorder_of(settings: Settings) -> Recorder | None:
+    """The log of these settings; None where none is wanted."""
     if not settings["log.folder"]:
         return None
     quota = Quota(*(settings[f"log.{name}"] for name in Quota._fields))

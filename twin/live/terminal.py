@@ -30,6 +30,7 @@ class View:
         self._next_s = 0.0
 
     def show(self, tick: Any) -> None:
+        """Count a tick, and write it when it is time for the next page or line."""
         self.ticks += 1
         if self._start_s is None:
             self._start_s = tick.time_s

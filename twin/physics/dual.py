@@ -95,6 +95,7 @@ class Dual:
 
     @staticmethod
     def where(condition: Any, yes: Any, no: Any) -> "Dual":
+        """`where`, for `maths` to find."""
         return where(condition, yes, no)
 
 
@@ -150,24 +151,29 @@ def sqrt(x: Dual) -> Dual:
 
 
 def sin(x: Dual) -> Dual:
+    """sin x, and its slopes."""
     return Dual(maths.sin(x.value), _chain(maths.cos(x.value), x.slopes))
 
 
 def cos(x: Dual) -> Dual:
+    """cos x, and its slopes."""
     return Dual(maths.cos(x.value), _chain(-maths.sin(x.value), x.slopes))
 
 
 def tanh(x: Dual) -> Dual:
+    """tanh x, and its slopes."""
     y = maths.tanh(x.value)
     return Dual(y, _chain(1.0 - y * y, x.slopes))
 
 
 def exp(x: Dual) -> Dual:
+    """e^x, and its slopes."""
     y = maths.exp(x.value)
     return Dual(y, _chain(y, x.slopes))
 
 
 def atan2(y: Any, x: Any) -> Dual:
+    """The angle of (x, y) [rad], and its slopes; either may be a plain number."""
     a, b = _value(y), _value(x)
     count = len((y if isinstance(y, Dual) else x).slopes)
     square = a * a + b * b

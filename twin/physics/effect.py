@@ -35,11 +35,14 @@ class Sailing(Protocol):
     accelerations that it gives."""
 
     @property
-    def ship(self) -> ShipLike: ...
+    def ship(self) -> ShipLike:
+        """The ship itself."""
 
-    def but(self, *effects: "Effect") -> "Sailing": ...
+    def but(self, *effects: "Effect") -> "Sailing":
+        """The same with these effects too."""
 
-    def nu_dot(self, s: Situation) -> Rates: ...
+    def nu_dot(self, s: Situation) -> Rates:
+        """Its accelerations (u, v, r) in this situation [m/s2, m/s2, rad/s2]."""
 
 
 class Param(NamedTuple):
@@ -65,9 +68,11 @@ class Param(NamedTuple):
     doc: str
 
     def scale(self, ship: ShipLike) -> float:
+        """The ship's own size of which the numbers are multiples; 1 when of none."""
         return ship.scale(self.of) if self.of else 1.0
 
     def box(self, ship: ShipLike) -> tuple[float, float]:
+        """(lowest, highest) value for this ship, in the parameter's unit."""
         k = self.scale(ship)
         return self.lo * k, self.hi * k
 
@@ -153,6 +158,7 @@ class Effect:
 
     @classmethod
     def params(cls) -> tuple[Param, ...]:
+        """Its numbers, as declared."""
         return tuple(Param(f.name, **f.metadata) for f in fields(cls))  # type: ignore[arg-type]
 
     @classmethod
@@ -191,6 +197,7 @@ class Effect:
         return Rates(*[a - b for a, b in zip(beside, alone, strict=True)])
 
     def values(self) -> dict[str, Number]:
+        """Its numbers as they are now, by name."""
         return {p.name: getattr(self, p.name) for p in self.params()}
 
     def but(self, **values: Number) -> Self:
@@ -198,7 +205,8 @@ class Effect:
         return replace(self, **values)  # type: ignore[type-var]
 
     def check(self, ship: ShipLike, where: str = "") -> None:
-        """Refuse a parameter outside its box, or a ship that lacks a particular it needs."""
+        """Refuse a parameter outside its box, or a ship that lacks a particular it needs. SettingsError:
+        it says which."""
         name = type(self).__name__
         for p in self.params():
             lo, hi = p.box(ship)
@@ -238,6 +246,8 @@ class Flow(Effect):
     stream: ClassVar[bool] = False  # whether it is nothing but moving water, which carries the ship along
 
     def water(self, s: Situation, ship: ShipLike) -> Water:
+        """The water's velocity over ground in body axes [m/s], and by which shares it changes damping,
+        added mass and thrust."""
         raise NotImplementedError
 
 

@@ -201,6 +201,7 @@ def where(condition: Unsure, yes: Any, no: Any) -> Any:
 
 
 def sqrt(x: Interval) -> Interval:
+    """Encloses the root of all of x that is not negative."""
     root = _out(maths.sqrt(_most(x.lo, 0.0)), maths.sqrt(_most(x.hi, 0.0)))
     root.lo = _most(root.lo, 0.0)
     root.root_of = x.square_of
@@ -208,10 +209,12 @@ def sqrt(x: Interval) -> Interval:
 
 
 def exp(x: Interval) -> Interval:
+    """Encloses e^x."""
     return _out(maths.exp(x.lo), maths.exp(x.hi), LIBRARY)
 
 
 def tanh(x: Interval) -> Interval:
+    """Encloses tanh x."""
     return _out(maths.tanh(x.lo), maths.tanh(x.hi), LIBRARY)
 
 
@@ -225,6 +228,7 @@ def cos(x: Interval) -> Interval:
 
 
 def sin(x: Interval) -> Interval:
+    """Encloses sin x [rad]."""
     return cos(x - 0.5 * pi)
 
 

@@ -22,18 +22,22 @@ def _library(*values: Any) -> Any:
 
 
 def sin(x: Any) -> Any:
+    """sin x [rad]."""
     return math.sin(x) if type(x) is float else _library(x).sin(x)
 
 
 def cos(x: Any) -> Any:
+    """cos x [rad]."""
     return math.cos(x) if type(x) is float else _library(x).cos(x)
 
 
 def tanh(x: Any) -> Any:
+    """tanh x."""
     return math.tanh(x) if type(x) is float else _library(x).tanh(x)
 
 
 def exp(x: Any) -> Any:
+    """e^x."""
     return math.exp(x) if type(x) is float else _library(x).exp(x)
 
 
@@ -49,6 +53,7 @@ def hypot(x: Any, y: Any, floor: float = 1e-9) -> Any:
 
 
 def atan2(y: Any, x: Any) -> Any:
+    """The angle of (x, y) [rad], within -pi and pi."""
     library = _library(y, x)
     return library.atan2(y, x) if hasattr(library, "atan2") else library.arctan2(y, x)
 
@@ -67,14 +72,17 @@ def where(condition: Any, yes: Any, no: Any) -> Any:
 
 
 def minimum(x: Any, y: Any) -> Any:
+    """The smaller of both."""
     return where(x < y, x, y)
 
 
 def maximum(x: Any, y: Any) -> Any:
+    """The larger of both."""
     return where(x > y, x, y)
 
 
 def clip(x: Any, low: Any, high: Any) -> Any:
+    """x, within low and high."""
     return minimum(maximum(x, low), high)
 
 

@@ -172,6 +172,7 @@ class ShipNumbers:
         return replace(self, effects=(*(e for e in self.effects if type(e) not in names), *effects))
 
     def without_effects(self, *names: str) -> Self:
+        """The same without the effects of these names."""
         return replace(self, effects=tuple(e for e in self.effects if type(e).__name__ not in names))
 
 

@@ -28,7 +28,8 @@ MAX_BYTES = 32_000_000  # of a ship file; what calibration keeps in one takes le
 
 
 def load(kind: type[S], path: str | os.PathLike[str], arrays: bool) -> S:
-    """The ship, of this class, of a file (see `ship.load`)."""
+    """The ship, of this class, of a file (see `ship.load`). SettingsError: it cannot be read or is no ship
+    file."""
     path = _bundled(path)
     try:
         with open(path, "rb") as file:
@@ -82,7 +83,8 @@ def _bundled(path: str | os.PathLike[str]) -> str | os.PathLike[str]:
 
 
 def from_table(kind: type[S], table: Mapping[str, Any], where: str) -> S:
-    """A ship, of this class, from the content of its file; `where` begins every complaint."""
+    """A ship, of this class, from the content of its file; `where` begins every complaint. SettingsError:
+    it is not one."""
     if not table.get("name"):
         raise SettingsError(
             f"{where}no `name`: this is not a ship file. `twin init` makes one from a ship's particulars."
@@ -157,6 +159,7 @@ def _same_unit(entry: Any, unit: str, where: str) -> None:
 
 
 def value_of(entry: Any, where: str) -> float:
+    """A number of a ship file, a table or plain. SettingsError: it is not finite, or no number."""
     value = entry.get("value") if isinstance(entry, Mapping) else entry
     if (
         isinstance(value, bool)

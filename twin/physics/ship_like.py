@@ -14,31 +14,56 @@ class ShipLike(Protocol):
     __dataclass_fields__: ClassVar[dict[str, Field[Any]]]  # so that `replace` makes a changed one
 
     @property
-    def L_pp(self) -> Number: ...
+    def L_pp(self) -> Number:
+        """Length between perpendiculars [m]."""
+
     @property
-    def B(self) -> Number: ...
+    def B(self) -> Number:
+        """Beam [m]."""
+
     @property
-    def T(self) -> Number: ...
+    def T(self) -> Number:
+        """Draught [m]."""
+
     @property
-    def m(self) -> Number: ...
+    def m(self) -> Number:
+        """Mass [kg]."""
+
     @property
-    def C_b(self) -> Number: ...
+    def C_b(self) -> Number:
+        """Block coefficient [-]."""
+
     @property
-    def x_G(self) -> Number: ...
+    def x_G(self) -> Number:
+        """Centre of gravity, ahead of midship [m]."""
+
     @property
-    def I_z(self) -> Number: ...
+    def I_z(self) -> Number:
+        """Moment of inertia in yaw about midship [kg m2]."""
+
     @property
-    def rho(self) -> Number: ...
+    def rho(self) -> Number:
+        """Density of the water [kg/m3]."""
+
     @property
-    def U_0(self) -> Number: ...
+    def U_0(self) -> Number:
+        """Service speed [m/s]."""
+
     @property
-    def D_P(self) -> Number: ...
+    def D_P(self) -> Number:
+        """Propeller diameter [m]."""
+
     @property
-    def A_R(self) -> Number: ...
+    def A_R(self) -> Number:
+        """Rudder area [m2]."""
+
     @property
-    def A_F(self) -> Number: ...
+    def A_F(self) -> Number:
+        """Frontal area above the water [m2]."""
+
     @property
-    def A_L(self) -> Number: ...
+    def A_L(self) -> Number:
+        """Lateral area above the water [m2]."""
 
     @property
     def derivatives(self) -> Any:

@@ -95,6 +95,7 @@ class Situation:
 
     @property
     def grown(self) -> Growth:
+        """Shares by which the added mass in sway, and the added inertia in yaw, grow."""
         return self.k_m, self.k_j
 
 

@@ -35,6 +35,7 @@ def text_keys(columns: Iterable[Column]) -> list[Key]:
 
 
 def optional_keys(columns: Iterable[Column]) -> list[Key]:
+    """The columns of a file that a map may go without."""
     return [k for c in columns if c.optional for k in (*c.parts, *((c.hemisphere,) if c.hemisphere else ()))]
 
 
@@ -45,7 +46,7 @@ def there(table: Table, c: Column) -> bool:
 
 def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) -> np.ndarray:
     """One channel with its sign, unit, offset and direction as docs/import.md has them (not yet its "
-    "frame)."""
+    "frame). (N,) in the channel's unit."""
     values = raw(table, c)
     scale = 1.0 if c.unit in PLAIN_UNITS else factor(target(name, c), c.unit or "", where)
     values = values * (c.sign * scale * c.factor) + c.offset + (180.0 if c.direction == "to" else 0.0)
@@ -58,7 +59,7 @@ def converted(name: str, table: Table, c: Column, where: str, notes: list[str]) 
 
 
 def raw(table: Table, c: Column) -> np.ndarray:
-    """The cells as one number a row, before unit, sign and offset."""
+    """The cells as one number a row, before unit, sign and offset. (N,) in the file's unit."""
     if c.is_text:
         values = degrees_of_text(table, c.parts[0])
     elif c.unit in ("quaternion", "quaternion_enu"):
@@ -77,7 +78,8 @@ def raw(table: Table, c: Column) -> np.ndarray:
 
 
 def sum_of(columns: list[np.ndarray], factors: tuple[float, ...]) -> np.ndarray:
-    """The columns added up, each times its factor (1 where none is given)."""
+    """The columns added up, each times its factor (1 where none is given). All (N,), in whatever unit the
+    file has."""
     out = np.zeros(columns[0].shape)
     for values, by in zip(columns, factors or (1.0,) * len(columns), strict=True):
         out = out + values * by
@@ -86,11 +88,12 @@ def sum_of(columns: list[np.ndarray], factors: tuple[float, ...]) -> np.ndarray:
 
 def degrees_of_text(table: Table, key: Key) -> np.ndarray:
     """Degrees, minutes and seconds as people write them: 57°30.123'N, 11 05 30 W, -57 30.5; NaN for empty
-    cells."""
+    cells. (N,) [deg]."""
     return np.array([one_angle(table, key, i, text) for i, text in enumerate(table.texts[key])])
 
 
 def one_angle(table: Table, key: Key, row: int, text: str) -> float:
+    """One of them [deg], negative to the south and west. DataError: it is not degrees and minutes."""
     parts = [float(p.replace(",", ".")) for p in PARTS.findall(text)]
     if not text.strip() or not parts:
         return np.nan
@@ -104,8 +107,8 @@ def one_angle(table: Table, key: Key, row: int, text: str) -> float:
 
 
 def without_deviation(shown: np.ndarray, deviation: tuple[float, ...]) -> np.ndarray:
-    """The true heading [deg] from what the compass shows: shown = true + A + B sin + C cos + D sin 2 + E cos
-    2 (true)."""
+    """The true heading [deg] from what the compass shows: shown = true + A + B sin + C cos + D sin 2 + E
+    cos 2 (true). Both (N,)."""
     a, b, c, d, e = (*deviation, *(0.0,) * (5 - len(deviation)))
     true = shown - a
     for _ in range(20):  # a contraction while the coefficients are below a radian
@@ -117,8 +120,9 @@ def without_deviation(shown: np.ndarray, deviation: tuple[float, ...]) -> np.nda
 def earlier(
     time_s: np.ndarray, values: np.ndarray, late_s: float, period: float, longest_s: float
 ) -> np.ndarray:
-    """The same channel had its samples stood where they were true, `late_s` before their rows: lines between
-    its neighbours no more than `longest_s` apart, NaN outside."""
+    """The same channel had its samples stood where they were true, `late_s` before their rows: lines
+    between its neighbours no more than `longest_s` apart, NaN outside. `time_s` and `values` (N,), the
+    values in their own unit."""
     known = np.flatnonzero(np.isfinite(values) & np.isfinite(time_s))
     out = np.full(values.shape, np.nan)
     if known.size < 2:

@@ -31,13 +31,15 @@ class SeenColumns:
 
     @cached_property
     def rows(self) -> int:
+        """How many rows were read."""
         return max((len(c) for c in self.cells.values()), default=0)
 
     def texts(self, name: str) -> list[str]:
+        """A column as text."""
         return [str(c) for c in self.cells[name]]
 
     def numbers(self, name: str) -> np.ndarray:
-        """The column as numbers, NaN where a cell is none."""
+        """(N,) the column as numbers, NaN where a cell is none. In the file's unit."""
         cells = self.cells[name]
         if isinstance(cells, np.ndarray):
             return cells
@@ -55,7 +57,7 @@ class SeenColumns:
 
 
 def columns_seen(path: Path) -> SeenColumns:
-    """The first rows of a table of any kind."""
+    """The first rows of a table of any kind. DataError: a log of messages, or a table without rows."""
     kind = recognised(path)
     if kind is not None and kind.table is not None:
         packed = kind.table(path, kind.says)
@@ -67,6 +69,7 @@ def columns_seen(path: Path) -> SeenColumns:
 
 
 def first_pieces(pieces: Any, names: list[str]) -> dict[str, Any]:
+    """The first rows of every column. DataError: there is none."""
     first = next(iter(pieces), None)
     if first is None:
         raise DataError("a table without rows. Export it again, with the measurements.")

@@ -15,7 +15,8 @@ SMOOTH_S = 2.0  # a derivative is the slope of the line through this much time
 def chart(
     latitude_deg: np.ndarray, longitude_deg: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, dict[str, float]]:
-    """(north_m, east_m, datum) on the plane that touches the earth at the first position; NaN without one."""
+    """(north_m, east_m, datum) on the plane that touches the earth at the first position; NaN without one.
+    All (N,): [deg] in, [m] out."""
     places = list(zip(latitude_deg.tolist(), longitude_deg.tolist(), strict=True))
     good = [not (a != a or b != b or is_no_position(a, b)) for a, b in places]
     if not any(good):
@@ -31,25 +32,26 @@ def chart(
 
 
 def from_ddmm(values: np.ndarray) -> np.ndarray:
-    """Degrees from NMEA's ddmm.mmm."""
+    """Degrees from NMEA's ddmm.mmm. (N,) [deg]."""
     degrees = np.trunc(values / 100.0)
     return degrees + (values - 100.0 * degrees) / 60.0
 
 
 def body_from_earth(north: np.ndarray, east: np.ndarray, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(ahead, to starboard) of an earth-fixed velocity; psi in radians."""
+    """(ahead, to starboard) of an earth-fixed velocity; psi in radians. All (N,), velocities in one unit."""
     c, s = np.cos(psi), np.sin(psi)
     return north * c + east * s, east * c - north * s
 
 
 def earth_from_body(u: np.ndarray, v: np.ndarray, psi: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(north, east) of a velocity in the ship's axes; psi in radians."""
+    """(north, east) of a velocity in the ship's axes; psi in radians. All (N,), velocities in one unit."""
     c, s = np.cos(psi), np.sin(psi)
     return u * c - v * s, u * s + v * c
 
 
 def integral(time_s: np.ndarray, rate: np.ndarray) -> np.ndarray:
-    """From the first sample, by trapezes; over missing samples by a line, and NaN at them."""
+    """From the first sample, by trapezes; over missing samples by a line, and NaN at them. (N,) in the
+    unit of `rate` (N,) times s."""
     there = np.isfinite(rate)
     if not there.any():
         return np.full(rate.shape, np.nan)
@@ -59,7 +61,8 @@ def integral(time_s: np.ndarray, rate: np.ndarray) -> np.ndarray:
 
 
 def slope(time_s: np.ndarray, values: np.ndarray, width_s: float = SMOOTH_S) -> np.ndarray:
-    """d(values)/dt: mean of the half `width_s` [s] ahead less that of the half behind, by their distance."""
+    """d(values)/dt: mean of the half `width_s` [s] ahead less that of the half behind, by their distance.
+    All (N,)."""
     there = np.isfinite(values)
     out = np.full(values.shape, np.nan)
     if np.count_nonzero(there) < 2:

@@ -21,7 +21,8 @@ MISSPELT = 0.85  # a name this much alike is a slip of the pen, not another quan
 
 
 def own_names(path: Path, names: Sequence[str]) -> tuple[Map, tuple[str, ...]]:
-    """(the map of the documented names, one sentence for each column that is not used)."""
+    """(the map of the documented names, one sentence for each column that is not used). DataError: no
+    column is a time, or one nearly has the name of a channel."""
     columns = {n: Column(n) for n in names if n in NAMES or n in BY_NAME} | over_ground(names)
     used = {*TIMES, *(c.column for c in columns.values())}
     unused = tuple(unknown(path, name) for name in names if name and name not in used)
@@ -70,6 +71,7 @@ def unknown(path: Path, name: str) -> str:
 
 
 def is_number(text: str) -> bool:
+    """Whether a cell is a number, with a point or a decimal comma."""
     try:
         float(text.replace(",", "."))
     except ValueError:

@@ -31,7 +31,7 @@ def steps_on(time_s: np.ndarray, step_s: float, hole_s: float) -> np.ndarray:
 
 
 def sailed_s(time_s: np.ndarray, hole_s: float = HOLE_S) -> float:
-    """From the first sample to the last [s], a hole counted as no more than `hole_s`."""
+    """From the first sample to the last [s], a hole counted as no more than `hole_s`. `time_s` (N,)."""
     return float(np.minimum(np.diff(time_s), hole_s).sum())
 
 
@@ -58,8 +58,8 @@ def pieces(there: np.ndarray, most: int) -> list[tuple[int, int]]:
 
 
 def inside(found: Sequence[tuple[int, int]], size: int) -> np.ndarray:
-    """(size,) bool: the steps that lie in a piece, without the last one before a hole: what it leads to was
-    not seen."""
+    """(N,) bool, N the size: (size,) bool: the steps that lie in a piece, without the last one before a
+    hole: what it leads to was not seen."""
     out = np.zeros(size, bool)
     for a, b in found:
         out[a : b if b == size else b - 1] = True
@@ -68,13 +68,14 @@ def inside(found: Sequence[tuple[int, int]], size: int) -> np.ndarray:
 
 def lined(values: np.ndarray, found: Sequence[tuple[int, int]]) -> np.ndarray:
     """The same with straight lines from piece to piece, and level ends, in place of what stands outside of
-    them."""
+    them. (N,), in its own unit."""
     at = np.concatenate([np.arange(a, b) for a, b in found])
     return values if at.size == values.size else np.interp(np.arange(values.size), at, values[at])
 
 
 def slopes(values: np.ndarray, found: Sequence[tuple[int, int]], h: float) -> np.ndarray:
-    """d(values)/dt of each piece by itself, and lines between them."""
+    """d(values)/dt of each piece by itself, and lines between them. (N,), in the unit of `values` (N,)
+    over that of the step `h`."""
     out = np.zeros(values.size)
     for a, b in found:
         out[a:b] = np.gradient(values[a:b], h)

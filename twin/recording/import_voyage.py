@@ -27,6 +27,7 @@ class Imported(NamedTuple):
         return [c for c in self.checks if c.unusable and c.name not in accept]
 
     def as_json(self) -> dict[str, Any]:
+        """What `twin import --json` writes."""
         v = self.voyage
         return {
             "schema_version": SCHEMA_VERSION,
@@ -95,6 +96,7 @@ def summary(found: Imported, every: bool = False) -> list[str]:
 
 
 def read_as(v: Voyage) -> str:
+    """In what format it was read, for the sentence that says so."""
     return f", read as {v.meta['format']}" if "format" in v.meta else ""
 
 
@@ -110,6 +112,7 @@ def quietly(quiet: Sequence[Check]) -> str:
 
 
 def mark(check: Check) -> str:
+    """The word in front of a check's sentence."""
     return "WRONG" if check.unusable else "look" if not check.ok else "ok" if check.told else "?"
 
 

@@ -72,7 +72,8 @@ def read_map(path: Path) -> Map:
 
 
 def parse_map(data: Mapping[str, Any], where: str) -> Map:
-    """A map from its TOML table; `where` names it in messages."""
+    """A map from its TOML table; `where` names it in messages. SettingsError: something in it cannot be
+    meant."""
     known(data, ("description", "file", "time", "columns", "constant", "scale"), where)
     scale = known(data.get("scale", {}), ("froude",), f"{where}: [scale]").get("froude", 1.0)
     columns = {name: column(name, entry, where) for name, entry in data.get("columns", {}).items()}
@@ -100,7 +101,7 @@ def parse_map(data: Mapping[str, Any], where: str) -> Map:
 
 
 def column(name: str, entry: Any, where: str) -> Column:
-    """One entry: `"NAME"`, `3`, or a table."""
+    """One entry: `"NAME"`, `3`, or a table. SettingsError: its keys do not fit each other or the channel."""
     channel_name(name, where)
     table = entry if isinstance(entry, Mapping) else {"column": entry}
     out: Column = build(Column, table, f"{where}: [columns] {name}")
@@ -125,7 +126,7 @@ def special_units(name: str) -> tuple[str, ...]:
 
 
 def several_agree(out: Column, where: str) -> None:
-    """How many columns there are must fit what is made of them."""
+    """How many columns there are must fit what is made of them. SettingsError: they do not."""
     n = len(out.parts)
     if out.unit in ("quaternion", "quaternion_enu"):
         if n != 4:
@@ -139,7 +140,8 @@ def several_agree(out: Column, where: str) -> None:
 
 
 def frames_agree(columns: Mapping[str, Column], where: str) -> None:
-    """Surge and sway must be measured in the same frame, and both be there unless that frame is the ship."""
+    """Surge and sway must be measured in the same frame, and both be there unless that frame is the ship.
+    SettingsError: they are not."""
     frames = [columns[name].frame for name in FRAMED if name in columns]
     if len(set(frames)) > 1 or (len(frames) == 1 and frames[0] != "body"):
         raise SettingsError(f"{where}: {' and '.join(FRAMED)} need the same frame, both of them: {frames}.")
@@ -147,7 +149,7 @@ def frames_agree(columns: Mapping[str, Column], where: str) -> None:
 
 def places_agree(columns: Mapping[str, Column], constant: Mapping[str, float], where: str) -> None:
     """A position is one pair: one half of it beside the other pair is a sign or an offset in the wrong
-    place."""
+    place. SettingsError: it is such a half."""
     pairs = (PLACES, ("north_m", "east_m"))
     for pair, other in (pairs, pairs[::-1]):
         half = [name for name in pair if name in columns or name in constant]
@@ -160,6 +162,7 @@ def places_agree(columns: Mapping[str, Column], constant: Mapping[str, float], w
 
 
 def time_column(entry: Any, where: str) -> TimeColumn:
+    """The entry `[time]`. SettingsError: its step is not positive."""
     out: TimeColumn = build(TimeColumn, entry, f"{where}: [time]")
     one_of(out.unit, (*UNITS["s"], "iso"), f"{where}: [time] unit")
     if not isinstance(out.rebuild, bool) and not out.rebuild > 0.0:
@@ -170,7 +173,8 @@ def time_column(entry: Any, where: str) -> TimeColumn:
 
 
 def build(kind: Any, table: Any, where: str) -> Any:
-    """A dataclass from a TOML table, refusing unknown and missing keys by name."""
+    """A dataclass from a TOML table, refusing unknown and missing keys by name. SettingsError: a key is
+    missing."""
     names = [f.name for f in fields(kind)]
     table = known(table, names, where)
     if "column" in names and kind is Column and "column" not in table:
@@ -190,6 +194,7 @@ def as_tuple(key: str, values: list[Any], where: str) -> tuple[Any, ...]:
 
 
 def known(table: Any, names: Any, where: str) -> Mapping[str, Any]:
+    """The table, when it has no other keys than `names`. SettingsError: it has, or is no table."""
     if not isinstance(table, Mapping):
         raise SettingsError(f"{where}: is {table!r}; it must be a table.")
     for name in table:
@@ -199,22 +204,26 @@ def known(table: Any, names: Any, where: str) -> Mapping[str, Any]:
 
 
 def one_of(value: Any, allowed: tuple[Any, ...], where: str) -> None:
+    """SettingsError: the value is none of those allowed."""
     if value not in allowed:
         raise SettingsError(f"{where} = {value!r} is not possible. Known: {', '.join(map(str, allowed))}.")
 
 
 def right_kind(value: Any, kinds: tuple[type, ...], where: str) -> None:
+    """SettingsError: the value is of none of these types; a bool is no number."""
     if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
         raise SettingsError(f"{where} = {value!r} must be {' or '.join(WORDS[kind] for kind in kinds)}.")
 
 
 def number(value: Any, where: str) -> float:
+    """The value as a number. SettingsError: it is none."""
     if isinstance(value, bool) or not isinstance(value, int | float):
         raise SettingsError(f"{where} = {value!r} must be a number.")
     return float(value)
 
 
 def channel_name(name: str, where: str) -> None:
+    """SettingsError: no channel has this name."""
     if name not in NAMES and name not in BY_NAME:
         near = nearest(name, NAMES)
         hint = f" Did you mean {near!r}?" if near else ""

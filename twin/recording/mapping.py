@@ -43,6 +43,7 @@ class TimeColumn:
 
     @property
     def is_text(self) -> bool:
+        """Whether its stamps are text."""
         return self.unit == "iso" or bool(self.format)
 
 
@@ -74,6 +75,7 @@ class Column:
 
     @property
     def is_text(self) -> bool:
+        """Whether its cells are degrees and minutes as text."""
         return self.unit == "dms"
 
 

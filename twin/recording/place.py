@@ -22,9 +22,8 @@ def placed(time_s: np.ndarray, columns: Columns, by: Map) -> tuple[Columns, dict
     """Columns with north/east and body velocities in place of latitude/longitude, earth or course velocities.
 
     Numbers that belong together may stand in rows of their own: the others are brought to the time of the
-    first.
-    Second: what is known of the place (`datum`). Third: sentences.
-    """
+    first. Second: what is known of the place (`datum`). Third: sentences. `time_s` (N,) and every column
+    (N,), in the unit in its name."""
     facts: dict[str, Any] = {}
     notes: list[str] = []
     if set(PLACES) <= set(columns):
@@ -49,7 +48,8 @@ def _with(
 
 
 def turned(time_s: np.ndarray, columns: Columns, by: Map) -> Columns:
-    """Velocities by the earth or by the course, in the ship's own axes; they need the heading."""
+    """Velocities by the earth or by the course, in the ship's own axes; they need the heading. `time_s`
+    (N,) and every column (N,), in the unit in its name."""
     frame = by.columns[FRAMED[0]].frame if FRAMED[0] in by.columns else "body"
     if frame == "body" or HEADING not in columns:
         return columns
@@ -63,7 +63,8 @@ def turned(time_s: np.ndarray, columns: Columns, by: Map) -> Columns:
 
 
 def derive(time_s: np.ndarray, columns: Columns) -> tuple[Columns, dict[str, str]]:
-    """Position from velocity, velocity from position, yaw rate from heading; second: what was made how."""
+    """Position from velocity, velocity from position, yaw rate from heading; second: what was made how.
+    `time_s` (N,) and every column (N,), in the unit in its name."""
     columns, how = dict(columns), dict[str, str]()
     heading = continuous(columns[HEADING], 360.0)
     if not present(columns, *CHART):
@@ -89,12 +90,13 @@ def derive(time_s: np.ndarray, columns: Columns) -> tuple[Columns, dict[str, str
 
 
 def present(columns: Mapping[str, np.ndarray], *names: str) -> bool:
-    """True when every named column holds a sample."""
+    """True when every named column (N,), in whatever unit, holds a sample."""
     return all(name in columns and bool(np.isfinite(columns[name]).any()) for name in names)
 
 
 def scaled(columns: Columns, by: Map) -> Columns:
-    """Model to ship at equal Froude number; constants of a map are the ship's already."""
+    """Model to ship at equal Froude number; constants of a map are the ship's already. Columns (N,), each
+    in the unit in its name."""
     if by.froude_scale == 1.0:
         return columns
     return {n: x if n in by.constant else x * froude(n, by.froude_scale) for n, x in columns.items()}

@@ -67,6 +67,7 @@ def through(
 
 
 def about(path: Path, clock: TimeAxis) -> dict[str, Any]:
+    """Where the samples come from, and when they begin."""
     return {"source": str(path), "start_time_utc": clock.start_time_utc}
 
 

@@ -29,7 +29,8 @@ def read_voyage(
     Positions come as north and east, velocities in the ship's axes, headings in [0, 360). Absent velocities,
     yaw rate or position are derived: `meta["derived"]` says how. `meta["notes"]` lists what was blanked or
     assumed, `meta["lost"]` what of the file was damaged.
-    """
+
+    DataError: the file is not there, cannot be read, or lacks what a voyage needs."""
     if not isinstance(path, str | Path):
         if len(path) > 1:
             return read_several([Path(p) for p in path], by, controls)
@@ -46,7 +47,7 @@ def read_voyage(
 
 
 def read_several(paths: Sequence[Path], by: Map | None, controls: bool = True) -> Voyage:
-    """The voyage in several tables, joined on their clocks."""
+    """The voyage in several tables, joined on their clocks. DataError: they do not fit into the memory."""
     try:
         return Voyage.of(joined(paths, by), controls)
     except MemoryError:

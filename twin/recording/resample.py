@@ -4,7 +4,8 @@ import numpy as np
 
 
 def continuous(values: np.ndarray, period: float) -> np.ndarray:
-    """An angle without its jumps (period > 0): each sample on the turn nearest to the last one measured."""
+    """An angle without its jumps (period > 0): each sample on the turn nearest to the last one measured.
+    (N,), in the unit of the period."""
     if period <= 0.0:
         return values
     out = np.array(values, dtype=float)
@@ -14,7 +15,7 @@ def continuous(values: np.ndarray, period: float) -> np.ndarray:
 
 
 def wrapped(values: np.ndarray, period: float) -> np.ndarray:
-    """Back to [0, period); numbers on the line (period 0) as they are."""
+    """Back to [0, period); numbers on the line (period 0) as they are. (N,), in the unit of the period."""
     return np.mod(values, period) if period > 0.0 else values
 
 
@@ -23,10 +24,10 @@ def resampled(
 ) -> np.ndarray:
     """`values` at `time_s` brought to the times `grid` (a multiple of `step_s` from grid[0]).
 
-    Samples within half a step are averaged, and the mean stands at the mean of their times, so that a moving
-    quantity is not shifted; the first and the last sample stand for themselves. Between two of these points a
-    line, unless they are more than `max_gap_s` apart. Outside: the end's value for `hold_s`, then NaN.
-    """
+    Samples within half a step are averaged, and the mean stands at the mean of their times, so that a
+    moving quantity is not shifted; the first and the last sample stand for themselves. Between two of
+    these points a line, unless they are more than `max_gap_s` apart. Outside: the end's value for
+    `hold_s`, then NaN. `time_s` and `values` (N,), `grid` and the result (M,); values in their own unit."""
     there = np.isfinite(values)
     if not there.any():
         return np.full(grid.shape, np.nan)
@@ -41,8 +42,8 @@ def beside(
     """`values` with a number in these `rows` (bool) too, from a line between its own neighbours no more than
     `max_gap_s` apart.
 
-    For two quantities that belong together and were logged in rows of their own; where both stand in one row
-    nothing is made up."""
+    For two quantities that belong together and were logged in rows of their own; where both stand in one
+    row nothing is made up. All (N,), in the values' own unit."""
     there = np.isfinite(values) & np.isfinite(time_s)
     fill = rows & ~there & np.isfinite(time_s)
     if not there.any() or not fill.any():
@@ -56,7 +57,8 @@ def beside(
 
 
 def nodes(t: np.ndarray, x: np.ndarray, start: float, step_s: float) -> tuple[np.ndarray, np.ndarray]:
-    """(times, values): each step's mean at the mean of its times, and both ends as they are."""
+    """(times, values): each step's mean at the mean of its times, and both ends as they are. `t` and `x`
+    (N,) in, (M,) out; values in their own unit."""
     cell = np.floor((t - start) / step_s + 0.5).astype(np.int64)
     first = np.flatnonzero(np.r_[True, np.diff(cell) != 0])
     count = np.diff(np.r_[first, t.size])
@@ -67,7 +69,8 @@ def nodes(t: np.ndarray, x: np.ndarray, start: float, step_s: float) -> tuple[np
 
 
 def reachable(grid: np.ndarray, t: np.ndarray, max_gap_s: float, hold_s: float, near_s: float) -> np.ndarray:
-    """True where a grid time lies on a point, in a short gap, or beside an end that may be held."""
+    """True where a grid time lies on a point, in a short gap, or beside an end that may be held. `grid`
+    and the mask (M,), `t` (N,) [s]."""
     right = np.searchsorted(t, grid, side="left").clip(0, t.size - 1)
     left = (np.searchsorted(t, grid, side="right") - 1).clip(0, t.size - 1)
     outside = np.maximum(t[0] - grid, grid - t[-1])

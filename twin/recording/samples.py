@@ -13,7 +13,8 @@ FAR_M = 1e5  # positions farther from zero than this count from another origin (
 
 
 def plausible(name: str, values: np.ndarray, lines: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """The samples a ship can measure (others NaN), and a sentence for each kind that was blanked."""
+    """The samples a ship can measure (others NaN), and a sentence for each kind that was blanked. All
+    (N,), in the channel's unit."""
     ch = BY_NAME[name]
     not_available = sentinel(name, values)
     values = np.where(not_available, np.nan, values)
@@ -32,8 +33,8 @@ def plausible(name: str, values: np.ndarray, lines: np.ndarray) -> tuple[np.ndar
 
 
 def sentinel(name: str, values: np.ndarray) -> np.ndarray:
-    """True where a value is a known code for "not available"; the generic ones count only out of range, and
-    none where the ship was about to read it anyway."""
+    """True where a value is a known code for "not available"; the generic ones count only out of range,
+    and none where the ship was about to read it anyway. Both (N,)."""
     ch = BY_NAME[name]
     with np.errstate(invalid="ignore"):
         out = ~((values >= ch.low) & (values <= ch.high)) & np.isin(values, GENERIC)
@@ -55,13 +56,14 @@ def _on_the_way(values: np.ndarray, codes: np.ndarray) -> np.ndarray:
 
 
 def count(bad: np.ndarray, lines: np.ndarray) -> str:
-    """'12 samples blanked (first in line 240)'."""
+    """'12 samples blanked (first in line 240)'. Both (N,): `bad` a mask, `lines` the numbers of the file's
+    lines."""
     n = int(np.count_nonzero(bad))
     return f"{n} sample{'s' * (n > 1)} blanked (first in line {lines[int(np.flatnonzero(bad)[0])]})"
 
 
 def from_zero(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """Positions of a far grid (UTM) counted from their first sample instead."""
+    """Positions of a far grid (UTM) counted from their first sample instead. (N,) [m]."""
     there = values[np.isfinite(values)]
     if not there.size or abs(there[0]) < FAR_M:
         return values, []
@@ -73,10 +75,9 @@ def from_zero(name: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
 def spikes(values: np.ndarray, period: float = 0.0) -> np.ndarray:
     """Places where one or two samples leave the line and come back, as a sensor does and a ship does not.
 
-    Away from the median of five by more than 10 sigma, by more than 6 usual steps from sample to sample (97
-    of 100 are smaller; a wave that is sampled coarsely has large ones), and by more than five steps of the
-    sensor's resolution.
-    """
+    Away from the median of five by more than 10 sigma, by more than 6 usual steps from sample to sample
+    (97 of 100 are smaller; a wave that is sampled coarsely has large ones), and by more than five steps of
+    the sensor's resolution. Of (N,) samples in their own unit, an index (K,)."""
     at = np.flatnonzero(np.isfinite(values))
     if at.size < FEWEST:
         return at[:0]
@@ -90,7 +91,8 @@ def spikes(values: np.ndarray, period: float = 0.0) -> np.ndarray:
 
 
 def resolution(x: np.ndarray) -> float:
-    """The smallest step between two different samples; 0 when there is only one value."""
+    """The smallest step between two different samples (N,), in the unit of the samples; 0 when there is
+    only one value."""
     steps = np.diff(np.unique(x))
     steps = steps[steps > 1e-9 * max(float(np.abs(x).max()), 1e-12)]
     return float(steps.min()) if steps.size else 0.0

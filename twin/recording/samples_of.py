@@ -45,7 +45,8 @@ def raw_of(path: Path, by: Map | None, sources: Sources) -> Raw:
 
 
 def of_zip(path: Path, by: Map | None, sources: Sources) -> Raw:
-    """What is packed in a .zip: one log or table, or several tables that are joined."""
+    """What is packed in a .zip: one log or table, or several tables that are joined. DataError: what is
+    packed cannot be read."""
     with TemporaryDirectory() as folder:
         files = unpacked(path, Path(folder))
         try:
@@ -57,8 +58,8 @@ def of_zip(path: Path, by: Map | None, sources: Sources) -> Raw:
 
 
 def from_log(path: Path, by: Map | None = None) -> Raw:
-    """The samples of the twin's own MCAP: an imported voyage, or the log of a run; a map may replace channels
-    of it."""
+    """The samples of the twin's own MCAP: an imported voyage, or the log of a run; a map may replace
+    channels of it. DataError: it lacks a column of the map."""
     from twin.live.log.rows import read_rows
 
     notes, lost = list[str](), list[str]()
@@ -104,7 +105,8 @@ def from_text(path: Path, by: Map | None, packed: Packed | None = None) -> Raw:
 
 
 def from_series(path: Path, kind: Format, by: Map | None, sources: Sources) -> Raw:
-    """The samples of a log of messages: by its own map, in which a person's map replaces what it names."""
+    """The samples of a log of messages: by its own map, in which a person's map replaces what it names.
+    DataError: nothing in it says what it is."""
     assert kind.series is not None
     signals = kind.series(path)
     choice = chosen(signals, sources)

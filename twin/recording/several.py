@@ -28,7 +28,7 @@ MOST_FILES = 200
 
 
 def files_in(paths: Sequence[Path]) -> list[Path]:
-    """The tables among files and folders."""
+    """The tables among files and folders. DataError: a path is not there, or there are none or too many."""
     out = []
     for path in paths:
         if path.is_dir():

@@ -80,6 +80,7 @@ class Sheet:
 
 
 def cells(line: str, layout: Layout) -> list[str]:
+    """The cells of one line."""
     if layout.separator == " ":
         return line.split()
     if '"' not in line:
@@ -95,7 +96,7 @@ def find_separator(line: str) -> str:
 
 
 def head_of(path: Path) -> bytes:
-    """The first bytes of a file, unpacked when it ends in .gz."""
+    """The first bytes of a file, unpacked when it ends in .gz. DataError: it cannot be read."""
     try:
         with opened(path) as f:
             return f.read(1 << 16)
@@ -104,8 +105,8 @@ def head_of(path: Path) -> bytes:
 
 
 def open_text(path: Path, encoding: str | None) -> TextIO:
-    """The file as text: UTF-8, UTF-16 with its mark, or Latin-1 when it is neither; never binary. What ends
-    in .gz is unpacked."""
+    """The file as text: UTF-8, UTF-16 with its mark, or Latin-1 when it is neither; never binary. What
+    ends in .gz is unpacked. DataError: it is binary. SettingsError: nobody knows that encoding."""
     head = head_of(path)
     encoding = encoding or find_encoding(head)
     if b"\0" in head and not encoding.startswith("utf-16"):

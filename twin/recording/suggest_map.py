@@ -40,7 +40,7 @@ class Entry:
 
 
 def suggestion(paths: Sequence[Path], sources: Sources) -> str:
-    """The map as text."""
+    """The map as text. DataError: a path is not there."""
     for path in paths:
         if not path.exists():
             raise DataError(f"{path}: there is no such file. Give a table or a log.")
@@ -173,6 +173,7 @@ def framed(entries: dict[str, Entry]) -> dict[str, Entry]:
 
 
 def written(files: Sequence[SeenColumns], time: dict[str, Any], columns: dict[str, Entry]) -> str:
+    """The map as a file, each choice with its reason."""
     lines = [
         f"# proposed for {', '.join(f.path.name for f in files[:4])}: read every line, then import with it."
     ]
@@ -188,6 +189,7 @@ def written(files: Sequence[SeenColumns], time: dict[str, Any], columns: dict[st
 
 
 def lacking(columns: Any) -> list[str]:
+    """A line that says what was not found and is needed; none when nothing is."""
     missing = [name for name in NEEDED if name not in columns]
     place = any(
         all(n in columns for n in pair)
@@ -198,6 +200,7 @@ def lacking(columns: Any) -> list[str]:
 
 
 def unused_columns(files: Sequence[SeenColumns], columns: dict[str, Entry], time: dict[str, Any]) -> str:
+    """A line that names the columns that no channel took; "" when there are none."""
     used = {
         n
         for e in columns.values()

@@ -62,7 +62,7 @@ def time_entry(files: Sequence[SeenColumns]) -> dict[str, Any]:
 
 
 def clock_unit(values: np.ndarray) -> tuple[str, str]:
-    """(unit, why): since 1970 by size, else by the usual step."""
+    """(unit, why): since 1970 by size, else by the usual step. `values` (N,) in the unit of the file."""
     first = float(values[np.isfinite(values)][0])
     for least, unit in EPOCHS:
         if first > least:
@@ -104,7 +104,8 @@ def cut(stamp: str) -> str:
 def place_format(
     keys: dict[str, Any], why: list[str], seen: SeenColumns, name: str, values: np.ndarray
 ) -> None:
-    """Degrees, NMEA's ddmm.mmm, 1e-7 deg, or text; a column of letters beside it."""
+    """Degrees, NMEA's ddmm.mmm, 1e-7 deg, or text; a column of letters beside it. `values` (N,) in the
+    unit of the file."""
     if not np.isfinite(values).any():
         keys["unit"] = "dms"
         why[:] = [f"as text: {seen.texts(name)[0]!r}"]
@@ -134,7 +135,7 @@ def place_format(
 def unit_of_angle(
     keys: dict[str, Any], why: list[str], channel: str, stated: str, values: np.ndarray
 ) -> None:
-    """Degrees or radians: as the name says, else by the range."""
+    """Degrees or radians: as the name says, else by the range. `values` (N,) in the unit of the file."""
     if stated in ("rad", "deg"):
         if stated == "rad":
             keys["unit"] = "rad"
@@ -152,7 +153,7 @@ def unit_of_angle(
 
 
 def seconds_of(seen: SeenColumns, time: dict[str, Any]) -> np.ndarray | None:
-    """The clock of a file [s], where it is a number."""
+    """(N,) the clock of a file [s], where it is a number."""
     name = time["column"]
     if (
         not isinstance(name, str)

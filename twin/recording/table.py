@@ -95,8 +95,8 @@ def quickly(sheet: Sheet, numbers: Sequence[Key], texts: Sequence[Key], encoding
 def read_packed(
     packed: Packed, numbers: Sequence[Key], texts: Sequence[Key] = (), optional: Collection[Key] = ()
 ) -> Table:
-    """The same of a packed table (Parquet, Feather, Excel); a moment among `texts` comes as a number, as it
-    is kept."""
+    """The same of a packed table (Parquet, Feather, Excel); a moment among `texts` comes as a number, as
+    it is kept. DataError: it has no rows, or not such a column."""
     wanted = dict.fromkeys((*numbers, *texts))
     found = {key: packed_name(packed, key) for key in wanted if key not in optional or has(packed, key)}
     held: dict[Key, list[Any]] = {key: [] for key in found}
@@ -120,11 +120,12 @@ def read_packed(
 
 
 def has(packed: Packed, key: Key) -> bool:
+    """Whether a packed table has a column of this name or number."""
     return 1 <= key <= len(packed.names) if isinstance(key, int) else key in packed.names
 
 
 def packed_name(packed: Packed, key: Key) -> str:
-    """A column's name, by name or by number from 1."""
+    """A column's name, by name or by number from 1. DataError: there is none."""
     if not has(packed, key):
         raise DataError(
             f"{packed.path}: has no column {key!r}. Columns: {', '.join(packed.names) or 'unnamed'}."
@@ -133,6 +134,7 @@ def packed_name(packed: Packed, key: Key) -> str:
 
 
 def collect(sheet: Sheet, numbers: Sequence[Key], texts: Sequence[Key]) -> Table:
+    """All rows of the columns that are wanted, read in pieces. DataError: there is none."""
     at = {key: sheet.index(key) for key in (*numbers, *texts)}
     # each grows in its place: pieces that are joined at the end would lie there twice
     parts = {key: array("d") for key in numbers}
@@ -159,7 +161,8 @@ def collect(sheet: Sheet, numbers: Sequence[Key], texts: Sequence[Key]) -> Table
 
 
 def check_width(sheet: Sheet, piece: list[Row]) -> None:
-    """No row is wider than the header: with commas between columns that means decimal commas."""
+    """No row is wider than the header: with commas between columns that means decimal commas. DataError:
+    one is."""
     for line, row in piece:
         if len(row) > sheet.width and any(map(str.strip, row[sheet.width :])):
             hint = "Decimal commas? Export with points, or with ';' between the columns."
@@ -179,7 +182,8 @@ def with_decimal(layout: Layout, piece: list[Row], notes: list[str]) -> Layout:
 
 
 def floats(path: Path, key: Key, numbered: list[tuple[int, str]], layout: Layout) -> np.ndarray:
-    """The cells of one column as float64: quickly when all are numbers, else cell by cell."""
+    """The cells of one column as float64 (N,), in the unit of the file: quickly when all are numbers, else
+    cell by cell."""
     if layout.decimal != "," and not layout.missing:
         try:
             return np.fromiter((float(c) for _, c in numbered), float, len(numbered))

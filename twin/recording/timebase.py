@@ -30,10 +30,10 @@ class TimeAxis:
 
 
 def clock_from_numbers(path: Path, stamps: np.ndarray, spec: TimeColumn) -> TimeAxis:
-    """Numbers in the map's unit; seconds since 1970 become seconds since the first sample.
+    """Stamps (N,): numbers in the map's unit; seconds since 1970 become seconds since the first sample.
 
-    A number of seconds that only fits our century as milliseconds, microseconds or nanoseconds since 1970 is
-    read so, and a note says it; DataError when no unit gives a date."""
+    A number of seconds that only fits our century as milliseconds, microseconds or nanoseconds since 1970
+    is read so, and a note says it; DataError when no unit gives a date."""
     time_s = stamps * UNITS["s"][spec.unit]
     finite = time_s[np.isfinite(time_s)]
     if not finite.size or abs(finite[0]) <= EPOCH_S:
@@ -61,7 +61,8 @@ def clock_from_numbers(path: Path, stamps: np.ndarray, spec: TimeColumn) -> Time
 
 
 def clock_from_text(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: TimeColumn) -> TimeAxis:
-    """ISO-8601 or strptime stamps; without a zone they are taken as UTC."""
+    """ISO-8601 or strptime stamps, in the file's lines (N,); without a zone they are taken as UTC. The
+    clock is in [s]. DataError: they begin after 2100."""
     seconds = moments(path, lines, stamps, spec)
     finite = seconds[np.isfinite(seconds)]
     if finite.size and finite[0] > LATEST_S:
@@ -71,9 +72,9 @@ def clock_from_text(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: 
 
 
 def moments(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: TimeColumn) -> np.ndarray:
-    """Seconds since 1970 of all stamps. The whole second is worked out once for all stamps in it; a fraction
-    may have nine digits, or be a count of nanoseconds without its leading zeros, which is believed when only
-    so the clock runs forward."""
+    """(N,) seconds since 1970 of all stamps. The whole second is worked out once for all stamps in it; a
+    fraction may have nine digits, or be a count of nanoseconds without its leading zeros, which is
+    believed when only so the clock runs forward."""
     known: dict[str, float] = {}
     whole, parts, digits = np.empty(len(stamps)), np.zeros(len(stamps)), np.zeros(len(stamps), int)
     form = replace(spec, format=spec.format.replace(".%f", "").replace(",%f", "")) if spec.format else spec
@@ -97,12 +98,13 @@ def moments(path: Path, lines: np.ndarray, stamps: Sequence[str], spec: TimeColu
 
 
 def backwards(seconds: np.ndarray) -> int:
-    """How often a clock goes back."""
+    """How often a clock goes back. Stamps (N,) [s]."""
     return int(np.count_nonzero(np.diff(seconds[np.isfinite(seconds)]) < 0.0))
 
 
 def moment(path: Path, line: int, stamp: str, spec: TimeColumn, shown: str = "") -> float:
-    """Seconds since 1970 of one stamp; NaN for an empty cell. `shown`: as the file has it."""
+    """Seconds since 1970 of one stamp; NaN for an empty cell. `shown`: as the file has it. DataError: it
+    is no such stamp."""
     if not stamp:
         return np.nan
     try:
@@ -119,6 +121,7 @@ def moment(path: Path, line: int, stamp: str, spec: TimeColumn, shown: str = "")
 
 
 def utc(seconds: float) -> str:
+    """The moment as ISO 8601."""
     return datetime.fromtimestamp(seconds, UTC).isoformat().replace("+00:00", "Z")
 
 
@@ -128,7 +131,8 @@ def moment_of(stamp: str | None) -> float:
 
 
 def refuse_leaps(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
-    """A hole of months is one; a stamp that lies years ahead is wrong, and so is what was judged by it."""
+    """A hole of months is one; a stamp that lies years ahead is wrong, and so is what was judged by it.
+    `lines` and `time_s` (N,), the latter in [s]. DataError: time leaps by more than a year."""
     ahead = np.flatnonzero(np.diff(time_s) > YEAR_S)
     if ahead.size:
         i = int(ahead[0])
@@ -140,7 +144,8 @@ def refuse_leaps(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
 
 
 def refuse_backwards(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
-    """Time may stand still (a check says so) but not go back: nobody can tell which half is right."""
+    """Time may stand still (a check says so) but not go back: nobody can tell which half is right. `lines`
+    and `time_s` (N,), the latter in [s]. DataError: it does."""
     back = np.flatnonzero(np.diff(time_s) < 0.0)
     if not back.size:
         return
@@ -157,9 +162,8 @@ def refuse_backwards(path: Path, lines: np.ndarray, time_s: np.ndarray) -> None:
 def rebuilt(path: Path, time_s: np.ndarray, step: bool | float) -> tuple[np.ndarray, str]:
     """Even stamps in place of rounded ones, and a sentence that says so.
 
-    The step is the given one [s], or the straight line through the stamps. Refused when a stamp lies farther
-    from the line than rounding explains: then rows are missing.
-    """
+    The step is the given one [s], or the straight line through the stamps. Refused when a stamp lies
+    farther from the line than rounding explains: then rows are missing. Both (N,). DataError: so refused."""
     k = np.arange(time_s.size)
     if step is True:
         step, start = (float(c) for c in np.polyfit(k, time_s, 1)) if time_s.size > 1 else (1.0, time_s[0])

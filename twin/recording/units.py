@@ -58,7 +58,8 @@ def unit_of(name: str) -> str:
 
 
 def factor(name: str, unit: str, where: str) -> float:
-    """What a number in `unit` is multiplied by to become the channel `name`; `where` names the map."""
+    """What a number in `unit` is multiplied by to become the channel `name`; `where` names the map.
+    SettingsError: the channel cannot be in it."""
     known = UNITS[unit_of(name)]
     if unit not in known:
         raise SettingsError(f"{where}: {name} cannot be in {unit!r}.{did_you_mean(unit, known)}")

@@ -127,12 +127,12 @@ class Voyage:
     def on_grid(self, step_s: float, max_gap_s: float | None = None, hole_s: float | None = None) -> "Voyage":
         """The same voyage every `step_s` [s]: means where samples are denser, lines where they are sparser.
 
-        No line is drawn over a gap longer than `max_gap_s` (default: the channel's `stale_s`, or 1.5 steps if
-        that is longer): there it stays NaN. Angles are averaged along the circle. Slow channels (`stale_s` of
-        SLOW_S or more) keep their first and last value at the ends, for as long as they may be old. Of a hole
-        without any row for longer than `hole_s` (default: its own) the grid keeps so much, and jumps over its
-        middle.
-        """
+        No line is drawn over a gap longer than `max_gap_s` (default: the channel's `stale_s`, or 1.5 steps
+        if that is longer): there it stays NaN. Angles are averaged along the circle. Slow channels
+        (`stale_s` of SLOW_S or more) keep their first and last value at the ends, for as long as they may
+        be old. Of a hole without any row for longer than `hole_s` (default: its own) the grid keeps so
+        much, and jumps over its middle. DataError: the step is not positive, there are no samples, or the
+        grid would be too long."""
         if not step_s > 0 or not len(self):
             raise DataError(
                 f"{self.name}: cannot be put on a grid of {as_given(step_s)} s with {len(self)} samples."
@@ -161,7 +161,7 @@ class Voyage:
         return continuous(self[name], ch.wraps) * ch.to_si
 
     def with_rows(self, time_s: np.ndarray, columns: Mapping[str, np.ndarray]) -> "Voyage":
-        """The same voyage (name, meta) with other samples."""
+        """The same voyage (name, meta) with other samples. All (N,), in the unit in its name."""
         return replace(self, time_s=time_s, columns=dict(columns))
 
     def with_meta(self, **facts: Any) -> "Voyage":

@@ -150,6 +150,7 @@ def row(p: Param, ship: Ship | None) -> tuple[str, str, str, str, str, str]:
 
 
 def bold(text: str) -> str:
+    """The text, bold on a terminal."""
     return f"\033[1m{text}\033[0m" if sys.stdout.isatty() and "NO_COLOR" not in os.environ else text
 
 

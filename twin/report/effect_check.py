@@ -48,6 +48,7 @@ class Answer(NamedTuple):
     text: str
 
     def line(self) -> str:
+        """The answer as a line for a terminal."""
         mark = "?" if self.ok is None else "ok" if self.ok else "WRONG"
         return f"  {mark:6}{self.question}{': ' * bool(self.text)}{self.text}"
 
@@ -69,7 +70,8 @@ def find_to_check(name: str) -> type[Effect]:
 
 
 def of_file(path: Path) -> type[Effect]:
-    """The one effect that a file declares itself."""
+    """The one effect that a file declares itself. SettingsError: it is no such file, or declares none or
+    several."""
     if not path.is_file():
         raise SettingsError(f"--check {path}: there is no such file.")
     spec = importlib.util.spec_from_file_location(f"checked_{path.stem}", path)
@@ -140,6 +142,7 @@ def busy(effect: type[Effect], ship: Ship) -> Effect:
 
 
 def null(effect: type[Effect], ship: Ship) -> str | None:
+    """Does it do nothing at the value that is declared so? What is wrong in words; None: nothing."""
     absent, s = effect.absent(ship), Situation(**MOMENT)
     if effect.kind == "SensorFault":
         shown = absent.read(s, ship)  # type: ignore[attr-defined]
@@ -167,6 +170,7 @@ def null(effect: type[Effect], ship: Ship) -> str | None:
 
 
 def finite(effect: type[Effect], ship: Ship) -> str | None:
+    """Does it give numbers? The same."""
     got = answer(busy(effect, ship), Situation(**MOMENT), ship)
     return None if np.isfinite(np.array(got, float)).all() else f"it gives {got}"
 
@@ -193,15 +197,18 @@ def _as_floats(effect: type[Effect], ship: Ship, made: Callable[[list[float]], A
 
 
 def arrays(effect: type[Effect], ship: Ship) -> str | None:
+    """Does it give arrays what it gives floats? The same."""
     return _as_floats(effect, ship, np.array)
 
 
 def tensors(effect: type[Effect], ship: Ship) -> str | None:
+    """Does it give tensors what it gives floats? The same."""
     torch = importlib.import_module("torch")
     return _as_floats(effect, ship, lambda v: torch.tensor(v, dtype=torch.float64))
 
 
 def intervals(effect: type[Effect], ship: Ship) -> str | None:
+    """Do intervals enclose what it gives a number? The same."""
     if effect.kind not in ("Force", "Flow"):
         return None  # no force for the certificate to bound
     one, point = busy(effect, ship), Situation(**MOMENT)
@@ -216,6 +223,7 @@ def intervals(effect: type[Effect], ship: Ship) -> str | None:
 
 
 def mirrored(effect: type[Effect], ship: Ship) -> str | None:
+    """Does the mirrored ship feel the mirrored force? The same."""
     mirror = {k: -x if k in ATHWART else x for k, x in MOMENT.items()}
     mirror |= {"bank_port": MOMENT["bank_starboard"], "bank_starboard": MOMENT["bank_port"]}
     signs = np.array(SIGNS[effect.kind])
@@ -243,6 +251,7 @@ def mirrored(effect: type[Effect], ship: Ship) -> str | None:
 
 
 def gradient(effect: type[Effect], ship: Ship) -> str | None:
+    """Has it a finite gradient at rest? The same."""
     torch = importlib.import_module("torch")
     inputs = {k: torch.tensor(x, dtype=torch.float64, requires_grad=True) for k, x in STILL.items()}
     values = {

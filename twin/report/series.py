@@ -33,13 +33,13 @@ INPUTS = {  # what a track itself holds, when no voyage is given
 
 
 def packed(values: np.ndarray) -> str:
-    """float32, little-endian, base64."""
+    """Values (N, ...) as float32, little-endian, base64, in whatever unit they have."""
     return base64.b64encode(np.ascontiguousarray(values, dtype="<f4").tobytes()).decode()
 
 
 def stitched(track: Track, model: Model, longest_s: float) -> tuple[np.ndarray, np.ndarray]:
-    """(N, 8) open-loop readings along the whole track, begun anew every `longest_s`, and the steps (W,) at
-    which they begin."""
+    """(N, 8) open-loop readings in SI along the whole track, begun anew every `longest_s`, and the steps
+    (W,) at which they begin."""
     w = predict(
         track, fed(model, track)[0], (min(SHORTEST_S, longest_s), longest_s), stride_s=longest_s, leads=EVERY
     )

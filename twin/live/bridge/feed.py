@@ -101,6 +101,7 @@ class BusFeed:
         )
 
     def poll(self, now_s: float) -> list[Any]:
+        """The ticks that the bus brought since the last call; what cannot be decoded or shown is left out."""
         ticks: list[Any] = []
         while (sample := self._identity.try_recv()) is not None:
             self.about = _identity(sample.payload.to_bytes()) or self.about
@@ -143,6 +144,7 @@ class LogFeed:
         self._time_s = self._next.time_s  # of the voyage
 
     def poll(self, now_s: float) -> list[Any]:
+        """The ticks of the log up to the time that it is played to."""
         self._time_s += self.speed * (now_s - self._now_s) if self._now_s is not None else 0.0
         self._now_s = now_s
         ticks: list[Any] = []

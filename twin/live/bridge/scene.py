@@ -70,6 +70,7 @@ def scene(
 
 
 def number(message: Any, field: str, factor: float = 1.0, decimals: int = 3) -> float | None:
+    """A field times `factor`, rounded; None where the record does not hold it."""
     return round(getattr(message, field) * factor, decimals) if message.HasField(field) else None
 
 

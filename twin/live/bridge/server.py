@@ -48,6 +48,7 @@ class Doors:
         self._token = ""
 
     def new_link(self, port: int) -> None:
+        """Make a link with a new token, and say it."""
         self._token = secrets.token_urlsafe(32)
         self._said(f"http://{HOST}:{port}/?token={self._token}")
 
@@ -60,6 +61,7 @@ class Doors:
             return good
 
     def known(self, session: str) -> bool:
+        """Whether this is the session's cookie."""
         return hmac.compare_digest(session.encode(), self.session.encode())
 
 
@@ -85,10 +87,12 @@ class Server(ThreadingHTTPServer):
 
     @property
     def port(self) -> int:
+        """Where it listens."""
         return int(self.server_address[1])
 
     @property
     def cookie(self) -> str:
+        """The name of its cookie: a port each has its own."""
         return f"twin-view-{self.port}"
 
     def handle_error(self, request: object, client_address: object) -> None:
@@ -116,6 +120,7 @@ class Handler(BaseHTTPRequestHandler):
     timeout = TIMEOUT_S
 
     def do_GET(self) -> None:
+        """Let the link's holder in; then the page's files and its events."""
         address = urlsplit(self.path)
         if not self._ours():
             return
@@ -130,6 +135,7 @@ class Handler(BaseHTTPRequestHandler):
         return self._send(200, data, kind) if kind else self._say(404, "There is no such page.\n")
 
     def do_POST(self) -> None:
+        """Acknowledge an alarm."""
         if not self._ours(must_say=True):
             return
         if not self._known():

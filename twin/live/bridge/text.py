@@ -20,6 +20,7 @@ class Text:
         self._next_s: float | None = None
 
     def show(self, frame: dict[str, Any], now_s: float) -> None:
+        """Write the frame, when it is time for the next page or line."""
         if self._next_s is not None and now_s < self._next_s:
             return
         self._next_s = now_s + (PAGE_S if self.pages else LINE_S)

@@ -62,6 +62,7 @@ class BridgeWatch:
             return (self.number, self._text) if self.number > number else None
 
     def acknowledge(self, key: str) -> bool:
+        """Acknowledge an alarm by its key; whether there is such an alarm."""
         with self._changed:
             return self.alarms.acknowledge(key)
 

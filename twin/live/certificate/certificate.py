@@ -3,8 +3,7 @@ before it sails.
 
 `certify` at start (or `kept` of store.py, which looks it up in a file), `Tube.step` once a tick.
 Assumptions, proof and what is not promised: docs/stability.md. Plain floats; only the sure bounds of the
-slopes need numpy, and only when they are not on file.
-"""
+slopes need numpy, and only when they are not on file."""
 
 import json
 from collections.abc import Sequence
@@ -66,8 +65,7 @@ VERSION = 7
 @dataclass(frozen=True)
 class Certificate(Promise):
     """The promise made to one ship, with what it rests on: gain [1/s], period, delay, noise, disturbance and
-    operating set.
-    """
+    operating set."""
 
     K: Row
     delays: Ages
@@ -92,6 +90,7 @@ class Certificate(Promise):
 
     @property
     def h(self) -> float:
+        """The certified period [s]."""
         return self.plant.h
 
     @property
@@ -102,6 +101,7 @@ class Certificate(Promise):
 
     @property
     def operating(self) -> OperatingSet:
+        """The operating set for which it holds."""
         return self.plant.operating
 
     def bound_in(self, H_s: float) -> Row:
@@ -128,6 +128,7 @@ class Certificate(Promise):
         )
 
     def to_json(self) -> str:
+        """The certificate as its file, with its version and its checksum."""
         table = json.loads(json.dumps(asdict(self)))
         return json.dumps({"version": VERSION, "sha256": digest(table), **table}, indent=1)
 

@@ -22,30 +22,37 @@ def matrix(entry: Callable[[int, int], float]) -> Matrix:
 
 
 def diagonal(d: Row) -> Matrix:
+    """The matrix with this diagonal, zero elsewhere."""
     return matrix(lambda i, j: d[i] if i == j else 0.0)
 
 
 def plus(*parts: Matrix) -> Matrix:
+    """Sum of matrices."""
     return matrix(lambda i, j: total(p[i][j] for p in parts))
 
 
 def scaled(factor: float, a: Matrix) -> Matrix:
+    """A matrix times a number."""
     return matrix(lambda i, j: factor * a[i][j])
 
 
 def scaled_row(factor: float, a: Row) -> Row:
+    """A row times a number."""
     return factor * a[0], factor * a[1], factor * a[2]
 
 
 def product(a: Matrix, b: Matrix) -> Matrix:
+    """The matrix product A B."""
     return matrix(lambda i, j: total(a[i][k] * b[k][j] for k in AXES))
 
 
 def apply(a: Matrix, x: Row) -> Row:
+    """The matrix times a column, A x."""
     return tuple(a[i][0] * x[0] + a[i][1] * x[1] + a[i][2] * x[2] for i in AXES)  # type: ignore[return-value]
 
 
 def add(*rows: Row) -> Row:
+    """Sum of rows."""
     return tuple(total(r[i] for r in rows) for i in AXES)  # type: ignore[return-value]
 
 

@@ -129,7 +129,8 @@ def sampled(model: Model, ranges: Ranges, count: int = 20000, seed: int = 0) -> 
 
 
 def points_of(ranges: Ranges, count: int, seed: int) -> dict[str, np.ndarray]:
-    """Random points of the set; half of each coordinate lies on its ends."""
+    """Each (N,), N the count, in the unit of its range: random points of the set; half of each coordinate
+    lies on its ends."""
     rng = np.random.default_rng(seed)
     at = {}
     for name, (lo, hi) in ranges.items():
@@ -193,6 +194,7 @@ def _either_way(x: float) -> Interval:
 
 
 def situation_of(values: Mapping[str, Any], more: int = 0) -> Situation:
+    """The situation at these values, each with its slope; the stream is no part of it."""
     return Situation(**{name: _seed(name, x, more) for name, x in values.items() if name != "stream"})
 
 

@@ -30,6 +30,7 @@ class Step(NamedTuple):
     turned: Row
 
     def pushed(self, force: Row) -> Row:
+        """Bound of what a force [N, N, N m] adds to an error in this step [m/s, m/s, rad/s]."""
         return apply(self.push, force)
 
 
@@ -45,6 +46,7 @@ class Periods:
         return next((j for j in TABLE if j >= periods), TOO_LONG)
 
     def of(self, count: int) -> Step:
+        """The step of so many periods; for one too long for the table (0), its longest."""
         return self._steps[count or TABLE[-1]]
 
 

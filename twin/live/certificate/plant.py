@@ -77,6 +77,7 @@ class Disturbance:
     motion: tuple[float, float, float, float] = (0.0, 0.0, 0.0, 0.0)
 
     def at(self, H_s: float) -> Row:
+        """The bound in a sea of that significant wave height [N, N, N m]."""
         return tuple(a + b * H_s for a, b in zip(self.calm, self.per_metre, strict=True))  # type: ignore[return-value]
 
     def noise(self, noise: Row, H_s: float) -> Row:
@@ -84,6 +85,7 @@ class Disturbance:
         return tuple(n + a * H_s for n, a in zip(noise, self.motion, strict=False))  # type: ignore[return-value]
 
     def heading_noise(self, noise: float, H_s: float) -> float:
+        """What the compass may be off from the low-frequency heading in that sea [rad]."""
         return noise + self.motion[3] * H_s
 
 

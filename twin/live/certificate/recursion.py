@@ -31,10 +31,12 @@ class Recursion:
 
     @property
     def G(self) -> Matrix:
+        """What becomes of an error in one sample: W and what older errors do."""
         return c3.plus(self.now, self.past)
 
     @property
     def past(self) -> Matrix:
+        """The part of it that comes from late measurements."""
         return c3.matrix(lambda i, j: self.again[i] * self.V[i][j] + self.drift[i][j])
 
     @property

@@ -50,6 +50,7 @@ class InnerStep:
 
 
 def inner(plant: Plant, q: int) -> Plant:
+    """The plant over one of q inner steps."""
     return plant.at_period(plant.h / q)
 
 
@@ -98,6 +99,7 @@ def assess_rolled(
 
 
 def plant_turns(plant: Plant, force: Row) -> float:
+    """Bound of the yaw acceleration that a force [N, N, N m] makes [rad/s2]."""
     return c3.apply(plant.inertia, force)[2]
 
 
@@ -108,14 +110,17 @@ def _columns(of: Callable[[Row], Vector], alone: Vector) -> Matrix:
 
 
 def product4(a: Square, b: Square) -> Square:
+    """The matrix product A B of 4 x 4."""
     return tuple(tuple(total(row[k] * b[k][j] for k in FOUR) for j in FOUR) for row in a)
 
 
 def apply4(a: Square, x: Sequence[float]) -> Vector:
+    """The matrix times a column, A x."""
     return tuple(total(y * z for y, z in zip(row, x, strict=True)) for row in a)
 
 
 def add4(*rows: Sequence[float]) -> Vector:
+    """Sum of columns."""
     return tuple(map(total, zip(*rows, strict=True)))
 
 

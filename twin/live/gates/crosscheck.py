@@ -81,12 +81,15 @@ class Way:
 
     @property
     def alarm(self) -> bool:
+        """Whether one of its tests has found a disagreement."""
         return any(test.alarm for test in self._tests)
 
     def pause(self) -> None:
+        """The measurements have a hole: begin a new stretch."""
         self._start = None
 
     def feed(self, measured: Measured, dt: float) -> None:
+        """One tick, `dt` [s] after the last."""
         si = measured.si
         if (
             not measured.has("x", "y", "psi", "u", "v")
@@ -144,12 +147,15 @@ class Stream:
 
     @property
     def alarm(self) -> bool:
+        """Whether one of its tests has found a disagreement."""
         return any(test.alarm for test in self._tests)
 
     def pause(self) -> None:
+        """The measurements have a hole: begin a new block."""
         self._sums, self._since_s = [0.0] * 4, 0.0
 
     def feed(self, measured: Measured, dt: float) -> None:
+        """One tick, `dt` [s] after the last."""
         si = measured.si
         if not measured.has("u", "u_r", "psi") or "u" in measured.derived or "psi" in measured.derived:
             self.pause()
@@ -192,12 +198,15 @@ class Heading:
 
     @property
     def alarm(self) -> bool:
+        """Whether its test has found a disagreement."""
         return self._test.alarm
 
     def pause(self) -> None:
+        """The measurements have a hole: begin a new stretch."""
         self._start = self._r = None
 
     def feed(self, measured: Measured, dt: float) -> None:
+        """One tick, `dt` [s] after the last."""
         si = measured.si
         if not measured.has("psi", "r") or "r" in measured.derived or "psi" in measured.derived:
             self.pause()

@@ -34,6 +34,7 @@ class Cusum:
 
     @property
     def scale(self) -> float:
+        """The usual deviation of a block, never below `least`."""
         return max(USUAL * self._size, self.least)
 
     def feed(self, x: float, allowed: float = 0.0) -> bool:

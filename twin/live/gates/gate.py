@@ -62,6 +62,7 @@ class Gate:
         return min(max(10.0 * self.interval_s, 1.0), self.channel.stale_s)
 
     def lost(self, now_s: float) -> bool:
+        """Whether the last good sample is too old at `now_s` [s]."""
         return now_s > self.expires_s
 
     def quality(self, now_s: float) -> Quality:

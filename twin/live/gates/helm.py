@@ -103,10 +103,11 @@ class NoHelm:
     stuck = resting = ""
 
     def feed(self, s: Situation, forces: Forces, unexplained_Nm: float, dt: float) -> bool:
+        """Nothing is judged; False."""
         return False
 
     def pause(self) -> None:
-        pass
+        """Nothing was begun."""
 
 
 def helm_of(ship: Ship) -> Helm | NoHelm:

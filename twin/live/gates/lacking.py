@@ -65,9 +65,11 @@ class Lacking:
 
     @property
     def reasons(self) -> list[str]:
+        """Which feedback the ship contradicts, in words."""
         return [SHAFT_SAID] * self._shaft.alarm + [RUDDER_SAID] * self._rudder.alarm
 
     def pause(self) -> None:
+        """The measurements have a hole: begin a new stretch."""
         self._start = None
 
     def feed(self, now: CorrectedTick) -> None:

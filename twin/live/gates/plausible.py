@@ -34,6 +34,7 @@ class Pair:
         self.ab = self.bb = self.aa = self.heard_s = 0.0
 
     def feed(self, a: float, b: float, dt: float) -> None:
+        """One more moment of both signals, `dt` [s] after the last; what is older fades over `time_s`."""
         w = min(dt / self.time_s, 0.5)
         self.ab += w * (a * b - self.ab)
         self.bb += w * (b * b - self.bb)
@@ -42,6 +43,7 @@ class Pair:
 
     @property
     def judged(self) -> bool:
+        """Whether enough has been heard, and moved enough, for its factor to mean anything."""
         return self.heard_s > 1.5 * self.time_s and self.bb > self.enough**2
 
     def factor(self) -> float:
@@ -49,6 +51,7 @@ class Pair:
         return copysign(sqrt(self.aa / self.bb), self.ab)
 
     def correlation(self) -> float:
+        """Their correlation about zero, -1 to 1; 0 while neither moves."""
         return self.ab / sqrt(self.aa * self.bb) if self.aa > 0.0 else 0.0
 
 
@@ -100,6 +103,7 @@ class Plausibility:
             self._last["x"] = (x0, y0, total + speed, count + 1.0, t0)
 
     def reasons(self) -> list[str]:
+        """What cannot be true, in words."""
         said = []
         for pair, what, mistakes in (
             (self._turn, "yaw_rate_degps against the turning heading", TURNS),

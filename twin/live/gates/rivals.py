@@ -27,6 +27,7 @@ class Rivals:
 
     @property
     def reasons(self) -> list[str]:
+        """Which sources part, in words; a rival not heard for FORGET_S is forgotten."""
         return [
             f"{name}: {used} and {other} walk apart; one of the two is wrong"
             for (name, used, other), pair in self._pairs.items()
@@ -65,6 +66,7 @@ class RivalPair:
         self._sum, self._count, self._since_s = 0.0, 0, -1e18
 
     def feed(self, difference: float, now_s: float) -> None:
+        """One difference, measured at `now_s` [s]; a block that is full goes to the test."""
         if now_s - self.heard_s > FORGET_S:
             self._sum, self._count, self._since_s = 0.0, 0, now_s
         self.heard_s = now_s

@@ -43,7 +43,7 @@ class Sample(NamedTuple):
 
 
 def channels_of(word: str) -> tuple[str, ...]:
-    """The channels a word means: a channel's own name, or a short one."""
+    """The channels a word means: a channel's own name, or a short one. UsageError: there is no such word."""
     found = SHORT.get(word) or ((word,) if word in BY_NAME else None)
     if found is None:
         raise UsageError(

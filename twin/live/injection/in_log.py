@@ -16,8 +16,9 @@ from twin.live.log.own_row import ROW, own_row
 
 
 def in_a_log(path: str, output: str, what: str, fault: InjectedFault) -> tuple[int, list[str]]:
-    """A copy of a log with the fault in it, whole or not at all; how many messages it changed, and what was
-    wrong with the log itself."""
+    """A copy of a log with the fault in it, whole or not at all; how many messages it changed, and what
+    was wrong with the log itself. UsageError: the copy would be the log itself. DataError: the fault
+    changes nothing in it."""
     if os.path.realpath(path) == os.path.realpath(output):
         raise UsageError(f"-o {output}: is the log itself. Give another name.")
     reader, faulty, own = McapReader(path), None, dict[str, Any]()

@@ -12,8 +12,8 @@ OF_A_PROCESS = {"pause": "stopped", "disk": "no write succeeded"}  # what, and w
 
 
 def of_a_process(what: str, pid: int | None, start_s: float, seconds: float) -> None:
-    """Stop a process, or let none of its writes succeed, for a while; it is as before afterwards, also when
-    this is interrupted."""
+    """Stop a process, or let none of its writes succeed, for a while; it is as before afterwards, also
+    when this is interrupted. UsageError: no such process, or no end."""
     if pid is None or seconds == inf:
         raise UsageError(
             f"{what}: which process, and how long? --pid PID --for S. The twin's: systemctl "

@@ -40,7 +40,8 @@ class Bus(Protocol):
         ...
 
     @property
-    def state(self) -> BusState: ...
+    def state(self) -> BusState:
+        """How the connection is, with its alarm and its counts."""
 
 
 class MemoryBus:
@@ -61,16 +62,20 @@ class MemoryBus:
         """It hears all that is put."""
 
     def put(self, key: str, data: bytes) -> None:
+        """Let a message come in."""
         self.waiting.append((key, data))
 
     def drain(self, now_s: float) -> list[Incoming]:
+        """What was put since the last call, received at `now_s` [s]."""
         taken, self.waiting = self.waiting, []
         self._received += len(taken)
         return [(key, data, now_s) for key, data in taken]
 
     def publish(self, key: str, data: bytes) -> None:
+        """Keep one message in `sent`."""
         self.sent.append((key, data))
 
     @property
     def state(self) -> BusState:
+        """Connected, with its counts."""
         return BusState(True, "", 1, 0, self._received, len(self.sent), 0)

@@ -12,6 +12,7 @@ from twin.live.signals.channels import CHANNELS
 
 
 def each_channel(kind: str) -> list[Field]:
+    """A field of this kind for each channel."""
     return [(channel.name, kind) for channel in CHANNELS]
 
 

@@ -115,7 +115,8 @@ def actuator_subjects(channels: Collection[str]) -> list[str]:
 
 
 def subjects(wanted: list[str] | None = None) -> list[str]:
-    """Subjects to subscribe to: all the twin knows, or those that fill the `wanted` channels."""
+    """Subjects to subscribe to: all the twin knows, or those that fill the `wanted` channels.
+    SettingsError: no topic fills one of these."""
     if wanted is None:
         return [topic.subject for topic in INPUTS]
     known = {channel for topic in INPUTS for channel in topic.channels}

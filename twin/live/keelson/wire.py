@@ -11,7 +11,8 @@ MAX_LAYOUTS = 2000
 
 
 def double_columns(messages: list[bytes]) -> tuple[dict[int, np.ndarray], np.ndarray]:
-    """({field number: (N,) float64, NaN where absent}, (N,) which messages held anything but doubles)."""
+    """({field number: (N,) float64, NaN where absent}, (N,) which messages held anything but doubles).
+    Columns in the units of the messages' fields."""
     columns: dict[int, np.ndarray] = {}
     odd = np.zeros(len(messages), bool)
     lengths = np.array([len(message) for message in messages])

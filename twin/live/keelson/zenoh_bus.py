@@ -60,6 +60,7 @@ class ZenohBus:
             self._link.close()
 
     def drain(self, now_s: float) -> list[Incoming]:
+        """What came in since the last call, received at `now_s` [s]; none while it is not open."""
         if self._link is None:
             return []
         messages, refused = self._link.drain(now_s)
@@ -68,6 +69,7 @@ class ZenohBus:
         return messages
 
     def publish(self, key: str, data: bytes) -> None:
+        """Send one message; what cannot be sent is counted."""
         if self._link is not None and self._link.publish(key, data):
             self._published += 1
         else:
@@ -75,6 +77,7 @@ class ZenohBus:
 
     @property
     def state(self) -> BusState:
+        """How the connection is, with its alarm and its counts."""
         counts = (self._received, self._published, self._refused)
         if self._link is None:
             return BusState(
@@ -168,6 +171,7 @@ class Link:
         return messages, refused
 
     def publish(self, key: str, data: bytes) -> bool:
+        """Send one message; whether Zenoh took it."""
         try:
             publisher = self._publishers.get(key)
             if publisher is None:
@@ -195,6 +199,7 @@ class Link:
         return f"bus: {who} out of reach since {since}; it comes back by itself, the twin goes on meanwhile"
 
     def close(self) -> None:
+        """Close the session."""
         with suppress(self._error):
             self._session.close()
 

@@ -58,7 +58,8 @@ class BusSettings(NamedTuple):
 
 
 def configuration(settings: BusSettings) -> Any:
-    """The zenoh.Config for these settings; what a Zenoh file sets stays, the rest is locked down."""
+    """The zenoh.Config for these settings; what a Zenoh file sets stays, the rest is locked down.
+    SettingsError: Zenoh refuses a value, or a name or place cannot be one."""
     import zenoh
 
     _check_names(settings)
@@ -93,6 +94,7 @@ def _here(endpoint: str) -> str:
 
 
 def is_client(config: Any) -> bool:
+    """Whether the session is a client of a router."""
     return bool(json.loads(config.get_json("mode")) == "client")
 
 

@@ -194,6 +194,7 @@ class Adaptation:
         return self._proof.gate > 0.0
 
     def norm(self) -> float:
+        """Euclidean norm of all adapted numbers."""
         return sqrt(total(dot(row.a, row.a) for row in self._rows))
 
     def parameters(self) -> list[Parameter]:

@@ -24,6 +24,7 @@ class Parameter(NamedTuple):
     status: str
 
     def numbers(self) -> dict[str, float]:
+        """Value, box and standard deviation, by name, in its unit."""
         return {"value": self.value, "low": self.low, "high": self.high, "sigma": self.sigma}
 
 

@@ -46,6 +46,7 @@ class Evidence:
 
     @property
     def regressors(self) -> list[float]:
+        """The regressors, low-passed twice."""
         return self._twice[9:]
 
     def feed(

@@ -39,6 +39,7 @@ class Movable(NamedTuple):
 
     @property
     def label(self) -> str:
+        """Effect and number, as in Wind.c_x."""
         return f"{self.kind.__name__}.{self.name}"
 
     def of(self, effects: Sequence[Effect]) -> float | None:

@@ -140,7 +140,8 @@ def load(path: str | Path, ship: Ship) -> Residual:
 
 
 def check(model: bytes, text: bytes, ship: Ship, where: str = "residual") -> Residual:
-    """The residual made of these bytes, once everything about it has been checked."""
+    """The residual made of these bytes, once everything about it has been checked. ResidualError: it is
+    not usable, or another ship's."""
     try:
         manifest = manifests.parse(text)
     except manifests.ManifestError as error:

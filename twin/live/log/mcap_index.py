@@ -17,21 +17,25 @@ PROVENANCE = "shiptwin.provenance"  # the table of words that says who wrote a f
 
 
 def record(opcode: int, *parts: bytes) -> bytes:
+    """A record: its opcode, its length and its parts."""
     content = b"".join(parts)
     return HEAD.pack(opcode, len(content)) + content
 
 
 def text(value: str) -> bytes:
+    """A text with its length in front."""
     data = value.encode()
     return pack("<I", len(data)) + data
 
 
 def text_map(values: dict[str, str]) -> bytes:
+    """A table of texts, with its length in bytes in front."""
     data = b"".join(text(k) + text(v) for k, v in values.items())
     return pack("<I", len(data)) + data
 
 
 def number_map(values: dict[int, int]) -> bytes:
+    """A table of numbers, with its length in bytes in front."""
     data = b"".join(pack("<HQ", k, v) for k, v in values.items())
     return pack("<I", len(data)) + data
 

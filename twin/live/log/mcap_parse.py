@@ -28,7 +28,8 @@ class TooLarge(Broken):
 
 
 def open_log(path: Path) -> IO[bytes]:
-    """The file, placed behind its first eight bytes, which must be MCAP's."""
+    """The file, placed behind its first eight bytes, which must be MCAP's. DataError: it cannot be read,
+    or is no MCAP."""
     try:
         stream = open(path, "rb")  # noqa: SIM115 (the caller closes it)
     except OSError as failure:
@@ -119,7 +120,7 @@ def ends_well(stream: IO[bytes]) -> bool:
 
 
 def string(data: bytes, at: int) -> tuple[str, int]:
-    """A length-prefixed text and the place behind it."""
+    """A length-prefixed text and the place behind it. Broken: it claims to be longer than what is there."""
     length = unpack_from("<I", data, at)[0]
     end = at + 4 + length
     if end > len(data):

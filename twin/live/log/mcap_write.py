@@ -44,10 +44,12 @@ class OpenChunk:
         self.start_ns, self.end_ns = 2**63, 0
 
     def append(self, *data: bytes) -> None:
+        """More bytes."""
         self.parts += data
         self.size += total(map(len, data))
 
     def message(self, channel: int, data: bytes, log_ns: int, publish_ns: int) -> None:
+        """One message, entered in the index of its channel."""
         self.index[channel].append((log_ns, self.size))
         self.append(MESSAGE_HEAD.pack(MESSAGE, 22 + len(data), channel, 0, log_ns, publish_ns), data)
         self.start_ns, self.end_ns = min(self.start_ns, log_ns), max(self.end_ns, log_ns)

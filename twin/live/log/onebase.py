@@ -19,14 +19,16 @@ SAME_S = 1e-4  # stamps nearer than this are one sample
 
 
 def on_one_base(samples: Samples) -> tuple[np.ndarray, Columns]:
-    """(time_s, columns) on the stamps of the most frequent channel among position, heading and controls."""
+    """(time_s, columns) on the stamps of the most frequent channel among position, heading and controls.
+    All (N,), the time in [s], columns in the unit in their name."""
     leaders = [name for name in LEADERS if name in samples] or list(samples)
     base = np.unique(samples[max(leaders, key=lambda name: samples[name][0].size)][0])
     return base, {name: along(base, BY_NAME[name], *pair) for name, pair in samples.items()}
 
 
 def without_repeats(time_s: np.ndarray, columns: Columns, ages: Columns) -> Columns:
-    """Columns of held values as what was sampled: each sample at its own stamp (time - age)."""
+    """Columns of held values as what was sampled: each sample at its own stamp (time - age). All (N,),
+    times and ages in [s], columns in the unit in their name."""
     result = dict(columns)
     for name in columns.keys() & ages.keys():
         stamps = time_s - ages[name]
@@ -37,7 +39,8 @@ def without_repeats(time_s: np.ndarray, columns: Columns, ages: Columns) -> Colu
 
 
 def along(base: np.ndarray, channel: Channel, stamps: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """(N,) values of a channel at the times `base` from samples in any order."""
+    """(N,) values of a channel at the times `base` from samples in any order. `base` (N,) [s], `stamps`
+    and `values` (M,)."""
     stamps, first = np.unique(stamps, return_index=True)
     values = values[first]
     if not stamps.size:

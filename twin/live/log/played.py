@@ -50,6 +50,7 @@ class PlayedLog:
 
     @property
     def notes(self) -> list[str]:
+        """What is wrong with the log, and what in it was left out."""
         unread = [f"{count} {name} left out: they cannot be decoded" for name, count in self._refused.items()]
         return [*self._reader.problems, *unread]
 

@@ -100,6 +100,7 @@ class Recorder:
 
     @property
     def state(self) -> LogState:
+        """How the log is: its file, its alarm and its counts."""
         path = str(self._segment.path) if self._segment else ""
         alarm = self._alarm or (self._notice if time.monotonic() < self._notice_until else "")
         return LogState(not self._alarm, alarm, path, self._written, self._dropped, self._lost)

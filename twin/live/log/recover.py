@@ -83,7 +83,8 @@ def _recover(path: Path, stream: IO[bytes]) -> str:
 
 
 def scan(path: Path) -> Scan:
-    """Walks a file chunk by chunk as far as it is good; TooLarge when it was not written by a twin."""
+    """Walks a file chunk by chunk as far as it is good; TooLarge when it was not written by a twin.
+    DataError: it cannot be read."""
     summary, ended = IndexSummary(), False
     with open_log(path) as stream:
         cut = stream.tell()

@@ -65,6 +65,7 @@ class LogRows:
         self._speaker: dict[str, str] = {}
 
     def take(self, topic: str, type_name: str, data: bytes) -> None:
+        """One message: a row or a tick is kept; scalars only while there are neither."""
         if type_name == ROW:
             self._rows.append(data)
         elif type_name == TICK:
@@ -74,7 +75,8 @@ class LogRows:
                 self._sample(result)
 
     def columns(self) -> tuple[np.ndarray, Columns]:
-        """Rows if there are any, else what the ticks measured, else the scalars."""
+        """Rows if there are any, else what the ticks measured, else the scalars. All (N,), the time in
+        [s], columns in the unit in their name. DataError: there is nothing of all this."""
         if self._rows:
             columns, good = self._doubles(ROW, ROW, self._rows)
             time_s = columns.pop("time_s", np.zeros(len(self._rows)))

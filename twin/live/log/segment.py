@@ -59,6 +59,7 @@ class Segment:
         return self._file.broken
 
     def add(self, topic: str, type_name: str, payload: bytes, log_ns: int, publish_ns: int) -> None:
+        """One message into the file's open chunk."""
         self._writer.add(self._writer.channel(topic, type_name, schema_bytes), payload, log_ns, publish_ns)
 
     def sync(self) -> None:
@@ -84,10 +85,12 @@ class Segment:
         return self._writer.channels
 
     def finish(self) -> None:
+        """Write what is open and the index, and have the disk keep it."""
         self._writer.finish()
         self._sync(self._file.fd)
 
     def close(self) -> None:
+        """Give the file back."""
         os.close(self._file.fd)
 
     def deleted(self) -> bool:

@@ -30,14 +30,17 @@ class Estimate:
     ready: bool = False
 
     def velocity_ned(self) -> tuple[float, float]:
+        """Velocity over ground toward north and east [m/s]."""
         c, s = cos(self.psi), sin(self.psi)
         return self.u * c - self.v * s, self.u * s + self.v * c
 
     def current_body(self) -> tuple[float, float]:
+        """The current in body axes, ahead and to starboard [m/s]."""
         c, s = cos(self.psi), sin(self.psi)
         return self.current_north * c + self.current_east * s, self.current_east * c - self.current_north * s
 
     def state(self) -> tuple[float, ...]:
+        """(x, y, psi, u, v, r) [m, m, rad, m/s, m/s, rad/s]."""
         return self.x, self.y, self.psi, self.u, self.v, self.r
 
 
@@ -77,13 +80,16 @@ class Sigma:
         self._astray = push, 1.5 * push / ship.L_pp
 
     def all(self) -> tuple[float, ...]:
+        """Standard deviation of each part of the state, in SI."""
         return tuple([doubt.sigma for doubt in self.of.values()])
 
     def begin(self, measured: dict[str, float]) -> None:
+        """Start: as usual where it was measured, ten times that elsewhere."""
         for state, doubt in self.of.items():
             doubt.sigma = doubt.usual * (1.0 if state in measured else 10.0)
 
     def begin_one(self, state: str) -> None:
+        """Start one part anew, as usual."""
         self.of[state].sigma = self.of[state].usual
 
     def grow(self, dt: float, speed: float) -> None:

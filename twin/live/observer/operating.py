@@ -96,6 +96,7 @@ class Confined(Model):
 
     @classmethod
     def to(cls, model: Model, operating: OperatingSet) -> "Confined":
+        """The model, asked only within this set."""
         return cls(model.ship, model.effects, model.residual, operating)
 
     def nu_dot(self, s: Situation) -> Rates:
@@ -107,7 +108,8 @@ class Confined(Model):
 
 
 def of_ship(model: Model, **ranges: tuple[float, float]) -> OperatingSet:
-    """The set a ship is certified for unless told otherwise; named ranges replace those of the rule."""
+    """The set a ship is certified for unless told otherwise; named ranges replace those of the rule.
+    SettingsError: a range is none, or nothing has that name."""
     ship = model.loaded
     U, L, T = ship.U_0, ship.L_pp, ship.T
     n = propeller_rate(model)

@@ -246,6 +246,7 @@ class Sureness:
 
     @property
     def status(self) -> str:
+        """Whether it is learned by now, or still the prior."""
         return "learned" if self.seen >= LEARNED else "prior"
 
     def feed(self, predicted: tuple[float, ...], true: tuple[float, ...]) -> None:

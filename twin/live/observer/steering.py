@@ -20,7 +20,8 @@ class Steering(Protocol):
         """The orders of now, where they are measured."""
         ...
 
-    def copy(self) -> "Steering": ...
+    def copy(self) -> "Steering":
+        """The same gears, that can be run ahead on their own."""
 
     @property
     def late(self) -> bool:
@@ -36,6 +37,7 @@ class RudderGear:
 
     @property
     def late(self) -> bool:
+        """Whether there is a gear at all."""
         return bool(self.gears)
 
     def at(self, t: float) -> float:
@@ -46,12 +48,15 @@ class RudderGear:
         return delta
 
     def follow(self, s: Situation) -> None:
+        """Put the rudder where it is at `s.t` [s]."""
         s.delta = self.at(s.t)
 
     def take(self, si: Mapping[str, float]) -> None:
+        """Take the order, if one was measured."""
         self.order = si.get("delta", self.order)
 
     def copy(self) -> "RudderGear":
+        """The same gear, that can be run ahead on its own."""
         return RudderGear([gear.copy() for gear in self.gears], self.order)
 
 
@@ -64,9 +69,11 @@ class ActuatorGears:
 
     @property
     def late(self) -> bool:
+        """Whether any actuator has a gear."""
         return bool(self.gears)
 
     def follow(self, s: Situation) -> None:
+        """Put the actuators where they are at `s.t` [s]."""
         if not self.gears:
             s.told = self.orders
             return
@@ -77,9 +84,11 @@ class ActuatorGears:
         s.told = told
 
     def take(self, si: Mapping[str, float]) -> None:
+        """Take the orders that were measured."""
         self.orders = {k: si.get(k, x) for k, x in self.orders.items()}
 
     def copy(self) -> "ActuatorGears":
+        """The same gears, that can be run ahead on their own."""
         gears = {name: [gear.copy() for gear in many] for name, many in self.gears.items()}
         return ActuatorGears(gears, self.orders)
 
@@ -107,6 +116,7 @@ class Gear:
         return self.actual
 
     def copy(self) -> "Gear":
+        """The same gear with orders of its own."""
         other = copy(self)
         other._orders = self._orders.copy()
         return other

@@ -69,4 +69,6 @@ def coverage(horizon_s: float, entries: Sequence[JudgedRegion]) -> Coverage:
 
 
 def score(width: float, error: float, a: float) -> float:
+    """Interval score of a half-width for the level 1 - a: its size, and what an error exceeds it by over
+    a; in their unit."""
     return width + max(error - width, 0.0) / a

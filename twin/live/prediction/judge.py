@@ -48,6 +48,7 @@ class Samples:
         self._seen: deque[tuple[float, tuple[float, ...]]] = deque(maxlen=32)
 
     def add(self, time_s: float, values: tuple[float, ...]) -> None:
+        """A sample at `time_s` [s]; one that is not newer than the last is left out."""
         if not self._seen or time_s > self._seen[-1][0]:
             self._seen.append((time_s, values))
 

@@ -144,6 +144,7 @@ class ByName(dict[str, Channel]):
         return Channel(name, attribute_of(name), c.to_si, c.low, c.high, doc=f"{owner}: {c.doc}")
 
     def get(self, name: str, default: Any = None) -> Any:
+        """The channel of that name, else `default`."""
         return self[name] if name in self else default  # noqa: SIM401 (this is that get)
 
 

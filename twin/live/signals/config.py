@@ -91,6 +91,7 @@ class Lines:
                 self._at.setdefault(f"{section}.{found[1]}" if section else found[1], number)
 
     def say(self, key: str) -> str:
+        """Where a key stands, for a message: file and line."""
         return f"{self.path}, line {self._at[key]}" if key in self._at else self.path
 
 

@@ -35,7 +35,8 @@ class Datum(NamedTuple):
 
 
 def datum(latitude_deg: float, longitude_deg: float) -> Datum:
-    """The chart that touches the earth here; refuses what has no chart."""
+    """The chart that touches the earth here; refuses what has no chart. SettingsError: it is no position,
+    or too near a pole."""
     if not (isfinite(latitude_deg) and isfinite(longitude_deg)) or not -180.0 <= longitude_deg <= 360.0:
         raise SettingsError(f"Datum ({latitude_deg}, {longitude_deg}) is not a position in degrees.")
     if abs(latitude_deg) > MAX_LATITUDE_DEG:

@@ -44,12 +44,15 @@ class Measured:
         )
 
     def has(self, *attributes: str) -> bool:
+        """Whether all of these are measured now."""
         return all(a in self.si for a in attributes)
 
     def age_s(self, attribute: str) -> float:
+        """How old a measurement is [s]."""
         return self.now_s - self.time[attribute]
 
     def age_by_channel(self) -> Numbers:
+        """How old each channel's sample is [s]."""
         now_s = self.now_s
         return {name: now_s - t for name, t in self.taken.items()}
 

@@ -20,7 +20,8 @@ NAME = r"[a-z][a-z0-9_]{0,30}"
 def read(
     tables: Any, where: str, value: Callable[[Any, str], float]
 ) -> tuple[tuple[Actuator, ...], dict[str, Any]]:
-    """The actuators, and by `name.number` what the file notes of each number (its standard error ...)."""
+    """The actuators, and by `name.number` what the file notes of each number (its standard error ...).
+    SettingsError: they are no such tables, or two have one name."""
     if not isinstance(tables, list) or len(tables) > MOST or not all(isinstance(t, Mapping) for t in tables):
         raise SettingsError(f"{where}actuators: up to {MOST} tables are needed, each under [[actuators]].")
     found, notes = list[Actuator](), dict[str, Any]()

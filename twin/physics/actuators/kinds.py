@@ -16,38 +16,71 @@ class OneActuator(Protocol):
     """What a kind reads of an actuator: its numbers, what is recorded of it, and the ship's with its own."""
 
     @property
-    def x(self) -> Number: ...
+    def x(self) -> Number:
+        """Ahead of midship [m]."""
+
     @property
-    def y(self) -> Number: ...
+    def y(self) -> Number:
+        """To starboard of the centreline [m]."""
+
     @property
-    def gain(self) -> Number: ...
+    def gain(self) -> Number:
+        """Thrust over what its curve says [-]."""
+
     @property
-    def zero(self) -> Number: ...
+    def zero(self) -> Number:
+        """Command at which it gives nothing [-]."""
+
     @property
-    def trim(self) -> Number: ...
+    def trim(self) -> Number:
+        """True angle less the recorded one [rad]."""
+
     @property
-    def ahead(self) -> Number: ...
+    def ahead(self) -> Number:
+        """Greatest thrust ahead at rest [N]."""
+
     @property
-    def astern(self) -> Number: ...
+    def astern(self) -> Number:
+        """Greatest thrust astern at rest [N]."""
+
     @property
-    def dead(self) -> Number: ...
+    def dead(self) -> Number:
+        """Command up to which it stands still [-]."""
+
     @property
-    def linear(self) -> Number: ...
+    def linear(self) -> Number:
+        """Share of the bollard curve that is a straight line."""
+
     @property
-    def slow(self) -> Number: ...
+    def slow(self) -> Number:
+        """Thrust lost at the service speed U_0, as a share of the greatest [-]."""
+
     @property
-    def D(self) -> Number: ...
+    def D(self) -> Number:
+        """Propeller diameter [m]."""
+
     @property
-    def K_T0(self) -> Number: ...
+    def K_T0(self) -> Number:
+        """Thrust coefficient at J = 0 [-]."""
+
     @property
-    def K_T1(self) -> Number: ...
+    def K_T1(self) -> Number:
+        """Slope of the thrust coefficient over J [-]."""
+
     @property
-    def pitch_0(self) -> Number: ...
+    def pitch_0(self) -> Number:
+        """Pitch over diameter that K_T0 is of [-]."""
+
     @property
-    def U_half(self) -> Number: ...
+    def U_half(self) -> Number:
+        """Speed at which half of a tunnel thruster's force is left [m/s]."""
+
     @property
-    def keys(self) -> Mapping[str, str]: ...
-    def coefficients(self, ship: ShipLike) -> core.Coefficients: ...
+    def keys(self) -> Mapping[str, str]:
+        """The name under which each of its attributes is recorded."""
+
+    def coefficients(self, ship: ShipLike) -> core.Coefficients:
+        """The ship's numbers with this propeller and rudder in place of its own."""
 
 
 class Kind(NamedTuple):
@@ -85,6 +118,7 @@ def _at(a: OneActuator, X: Number, Y: Number) -> core.Tau:
 
 
 def fixed(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+    """Its thrust pushes ahead, wherever it stands."""
     return _at(a, push(a, told, u - a.y * r, ship), 0.0)
 
 

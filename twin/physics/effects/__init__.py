@@ -138,7 +138,8 @@ def _installed() -> tuple[dict[str, type[Effect]], dict[str, str]]:
 
 
 def find(name: str) -> type[Effect]:
-    """The effect of that name; a built-in one is found without looking at what is installed."""
+    """The effect of that name; a built-in one is found without looking at what is installed.
+    SettingsError: there is none that can be used."""
     for effect in BUILT_IN:
         if effect.__name__ == name:
             return effect

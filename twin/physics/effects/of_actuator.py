@@ -28,7 +28,8 @@ class OfActuator(Effect):
         return not cls.recorded or bool(set(cls.recorded) & set(a.attributes))
 
     def check(self, ship: ShipLike, where: str = "") -> None:
-        """Refuse an actuator that the ship has not, or that cannot have the effect."""
+        """Refuse an actuator that the ship has not, or that cannot have the effect. SettingsError: it says
+        which."""
         name, known = type(self).__name__, [a.name for a in ship.actuators]
         if self.actuator not in known:
             has = did_you_mean(self.actuator, known) if known else " The ship file has no [[actuators]]."

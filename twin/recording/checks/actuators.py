@@ -43,6 +43,7 @@ class TriedWiring:
 
     @property
     def total(self) -> float:
+        """Gain in log likelihood, of all three axes together."""
         return float(self.gain.sum())
 
 

@@ -26,14 +26,17 @@ class Check:
 
 
 def good(name: str, text: str) -> Check:
+    """The check passed."""
     return Check(name, True, text)
 
 
 def cannot_tell(name: str, why: str) -> Check:
+    """The check had too little to go by, and says why; it passes."""
     return Check(name, True, f"cannot tell: {why}", told=False)
 
 
 def doubtful(name: str, text: str) -> Check:
+    """Something is odd: the check does not pass, and the voyage may still be used."""
     return Check(name, False, text)
 
 

@@ -25,17 +25,21 @@ class Single:
     frame: str = ""
 
     def possible(self, view: VoyageView, given: frozenset[str]) -> bool:
+        """Whether the columns that it needs were given, in the velocity frame that it is about."""
         frame = view.voyage.meta.get("velocity_frame") or "body"
         return set(self.needs) <= given and self.frame in ("", frame)
 
 
 def said(text: str) -> Words:
+    """The same words for every voyage."""
     return lambda view: text
 
 
 def changes(undo: Undo) -> Callable[[VoyageView], Undo]:
+    """The same way back for every voyage."""
     return lambda view: undo
 
 
 def scaled(name: str, by: float) -> Undo:
+    """A way back: the column times `by`."""
     return lambda c: {name: c[name] * by}

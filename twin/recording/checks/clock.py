@@ -26,8 +26,9 @@ def whole_file(view: VoyageView) -> Check:
 
 
 def beats(voyage: Voyage) -> np.ndarray:
-    """When the instrument that speaks most often spoke [s]: every row of a table, and of a log with a row for
-    each message those of one instrument, for what two instruments say at one moment is no stamp twice."""
+    """(M,) when the instrument that speaks most often spoke [s]: every row of a table, and of a log with a
+    row for each message those of one instrument, for what two instruments say at one moment is no stamp
+    twice."""
     made = {*voyage.meta.get("derived", {}), *voyage.meta.get("constant", ())}
     heard = [np.isfinite(values) for name, values in voyage.columns.items() if name not in made]
     often = max(heard, key=np.count_nonzero, default=np.ones(len(voyage), bool))

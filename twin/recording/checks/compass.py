@@ -49,12 +49,15 @@ class CompassWindows:
 
     @property
     def independent(self) -> int:
+        """How many windows there are that do not overlap."""
         return max(self.first.size // 2, 1)
 
     def change(self, x: np.ndarray) -> np.ndarray:
+        """(W,) by how much x (N,) changes over each window, in the unit of x."""
         return x[self.last] - x[self.first]
 
     def summed(self, x: np.ndarray) -> np.ndarray:
+        """(W,) integral of a rate (N,) over each window, in the unit of x times s."""
         return self.view.summed(x, self.first, self.last)
 
 
@@ -69,6 +72,7 @@ def windows(view: VoyageView) -> CompassWindows | None:
 
 
 def compass(view: VoyageView) -> Check:
+    """Whether the heading is late, off by an angle or off by a deviation, by rate of turn and course."""
     told = by_rate(view)
     offset = by_course(told[1] if told else view)
     if told is None and offset is None:
@@ -134,7 +138,8 @@ def by_rate(view: VoyageView) -> tuple[CompassCause | None, VoyageView] | None:
 
 
 def late(w: CompassWindows, r: np.ndarray, psi: np.ndarray, base: float) -> CompassCause | None:
-    """The heading a constant time behind the rate (or ahead of it)."""
+    """The heading a constant time behind the rate (or ahead of it). `r` (N,) [rad/s] and `psi` (N,) [rad]
+    on the view's even grid; `base`: sum of squares of what is to be explained [rad2]."""
     t, swung = w.view.even.time_s, w.change(psi)
     whole = np.r_[0.0, np.cumsum(np.nan_to_num((r[1:] + r[:-1]) / 2.0) * np.diff(t))]
     holes = np.isfinite(w.summed(r)) & np.isfinite(swung)
@@ -165,12 +170,15 @@ def best_between(tried: list[tuple[float, float]]) -> tuple[float, float]:
 
 
 def left_over(odd: np.ndarray, columns: list[np.ndarray], base: float) -> float:
-    """Share of the base that stays when a bias and these columns are fitted."""
+    """Share of the base that stays when a bias and these columns are fitted. `odd` and each column (W,)
+    [rad], `base` [rad2]."""
     total = float(np.nansum(odd**2))
     return fit([np.ones(odd.size), *columns], odd)[2] * total / max(base, 1e-30)
 
 
 def curve(x: np.ndarray) -> list[np.ndarray]:
+    """Four columns like `x` [rad]: B sin x, C cos x, D sin 2x and E cos 2x, each with its coefficient 1;
+    `x` (N,)."""
     return [np.sin(x), np.cos(x), np.sin(2 * x), np.cos(2 * x)]
 
 
@@ -178,8 +186,8 @@ FORMS = ((0,), (1,), (0, 1), (0, 1, 2, 3))  # which of B, C, D, E: the fewest th
 
 
 def deviation(w: CompassWindows, r: np.ndarray, psi: np.ndarray, base: float) -> CompassCause | None:
-    """Coefficients B to E of the compass, as functions of the true heading; as many as the voyage's headings
-    can tell apart."""
+    """Coefficients B to E of the compass, as functions of the true heading; as many as the voyage's
+    headings can tell apart. `r` (N,) [rad/s] and `psi` (N,) [rad] on the view's even grid."""
     tried = [c for form in FORMS if (c := curve_of(w, r, psi, base, form)) is not None]
     if not tried:
         return None
@@ -190,7 +198,8 @@ def deviation(w: CompassWindows, r: np.ndarray, psi: np.ndarray, base: float) ->
 def curve_of(
     w: CompassWindows, r: np.ndarray, psi: np.ndarray, base: float, form: tuple[int, ...]
 ) -> CompassCause | None:
-    """The coefficients of one form, found again after each undoing."""
+    """The coefficients of one form, found again after each undoing. `r` (N,) [rad/s] and `psi` (N,) [rad]
+    on the view's even grid; `form`: which columns of `curve` it has."""
     odd, true, full = w.change(psi) - w.summed(r), psi, np.zeros(4)
     for _ in range(5):
         columns = [w.change(curve(true)[i]) for i in form]
@@ -216,7 +225,8 @@ def curve_of(
 
 
 def scale(w: CompassWindows, r: np.ndarray, psi: np.ndarray, base: float) -> CompassCause | None:
-    """The rate of turn by a factor: no matter of the compass, only a rival explanation."""
+    """The rate of turn by a factor: no matter of the compass, only a rival explanation. `r` (N,) [rad/s]
+    and `psi` (N,) [rad] on the view's even grid."""
     summed = w.summed(r)
     odd = w.change(psi) - summed
     k = fit([np.ones(odd.size), summed], odd)[0][1]
@@ -226,7 +236,7 @@ def scale(w: CompassWindows, r: np.ndarray, psi: np.ndarray, base: float) -> Com
 
 
 def heading_without(view: VoyageView, cause: CompassCause) -> np.ndarray:
-    """The heading [deg] as it would be, were this undone."""
+    """(N,) the heading [deg] as it would be, were this undone."""
     t, psi = view.even.time_s, np.degrees(view.psi)
     if "deviation" in cause.text:
         return np.mod(without_deviation(psi, (0.0, *cause.value)), 360.0)

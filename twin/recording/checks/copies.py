@@ -19,6 +19,7 @@ MAY_BE = frozenset(("bank_distance_port_m", "bank_distance_starboard_m"))
 
 
 def copies(view: VoyageView) -> Check:
+    """Whether two channels hold the same numbers, or the heading is the course over ground."""
     if text := course_as_heading(view):
         return wrong(NAME, text)
     found = [pair for pair in pairs(view) if identical(view, *pair)]
@@ -34,6 +35,7 @@ def copies(view: VoyageView) -> Check:
 
 
 def pairs(view: VoyageView) -> list[tuple[str, str]]:
+    """Two channels of one unit each, both given in the file, that could be copies."""
     derived = view.voyage.meta.get("derived", {})
     constant = view.voyage.meta.get("constant", ())
     names = [

@@ -21,7 +21,8 @@ class Mistake:
 
 
 def turned(w: np.ndarray, psi: np.ndarray) -> np.ndarray:
-    """A velocity in the ship's axes as seen from the earth."""
+    """A velocity in the ship's axes as seen from the earth. Both (N,): w complex, ahead + i to starboard
+    [m/s], psi [rad]; returns north + i east [m/s]."""
     return w * np.exp(1j * psi)
 
 

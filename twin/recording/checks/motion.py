@@ -34,13 +34,16 @@ class Legs:
 
     @property
     def noise_share(self) -> float:
+        """The position's noise, as a share of the distance moved in a window."""
         return self.noise / max(rms(self.moved), 1e-12)
 
     @property
     def allowed(self) -> float:
+        """Share of the distance by which a healthy voyage may differ."""
         return AGREES + 2.0 * self.noise_share
 
     def summed(self, rate: np.ndarray) -> np.ndarray:
+        """(W,) integral of a rate (N,) over each window, in the unit of the rate times s."""
         return self.view.summed(rate, self.first, self.last)
 
     def miss(self, mistake: Mistake, scale: float = 1.0) -> float:
@@ -81,7 +84,7 @@ def cut(view: VoyageView) -> Legs:
 
 
 def position_noise(place: np.ndarray) -> float:
-    """White noise of the position [m], from its second differences."""
+    """White noise of the position [m], from its second differences. `place` (N,): north + i east [m]."""
     bend = place[2:] - 2.0 * place[1:-1] + place[:-2]
     return rms(bend) / np.sqrt(6.0)
 
@@ -171,6 +174,7 @@ def steady_stream(legs: Legs, saw: str) -> tuple[float, Check]:
 
 
 def nothing_known(saw: str) -> Check:
+    """The answer when no known mistake explains what was seen."""
     return doubtful(
         NAME,
         f"{saw}, and no mistake that is known explains it. Look at the units, signs and frames of "

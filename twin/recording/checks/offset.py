@@ -23,10 +23,12 @@ class Offset:
 
     @property
     def shows(self) -> bool:
+        """Whether it is large enough, and known well enough, to be told."""
         return abs(self.lacks) > max(LEAST_OFFSET_DEG, SIGMAS * self.error)
 
     @property
     def text(self) -> str:
+        """The finding in words, with its angle, its uncertainty and what else could cause it."""
         several = self.spread > LEAST_SPREAD_DEG
         why = (
             f"on headings {self.spread:.0f} deg apart, so it is no stream"
@@ -76,7 +78,8 @@ def by_course(view: VoyageView) -> Offset | None:
 
 
 def mean_of(w: np.ndarray, psi: np.ndarray, r: np.ndarray) -> tuple[float, float, float, float]:
-    """(ahead, aside, heading, rate of turn) of a stretch, zeros where most of it is missing."""
+    """(ahead, aside, heading, rate of turn) of a stretch, zeros where most of it is missing. Of stretches
+    of n rows: w (n,) = ahead + i aside [m/s], psi (n,) [rad], r (n,) [rad/s]."""
     there = np.isfinite(w) & np.isfinite(psi)
     if there.sum() < 0.5 * w.size:
         return 0.0, 0.0, 0.0, 0.0
@@ -92,8 +95,9 @@ def mean_of(w: np.ndarray, psi: np.ndarray, r: np.ndarray) -> tuple[float, float
 def with_expected_stream(
     shape: np.ndarray, aside: np.ndarray, speed: float, leeway: float
 ) -> tuple[float, float]:
-    """(first coefficient, its standard error); the next two are a stream, expected within STREAM_MPS of zero,
-    and what is left is leeway."""
+    """(first coefficient, its standard error); the next two are a stream, expected within STREAM_MPS of
+    zero, and what is left is leeway. `shape` (L, 3) or (L, 4): a row a stretch, [m/s] ahead, of a stream
+    north and of one east; `aside` (L,) [m/s]."""
     expected = np.zeros((shape.shape[1],) * 2)
     expected[1, 1] = expected[2, 2] = STREAM_MPS**-2.0
     scatter = 0.02 * speed

@@ -46,8 +46,8 @@ def propeller_rate(view: VoyageView) -> Check:
 
 
 def thrust_on(view: VoyageView, n: np.ndarray) -> np.ndarray:
-    """Where the shaft turns and the ship keeps its speed: one that runs out with its shaft stopped says
-    nothing of its unit."""
+    """(N,) mask. where the shaft turns and the ship keeps its speed: one that runs out with its shaft
+    stopped says nothing of its unit."""
     usual = float(np.nanquantile(n, 0.9))
     signed = view.si("propeller_rate_rpm")
     signed = signed[np.isfinite(signed)]
@@ -62,6 +62,7 @@ def thrust_on(view: VoyageView, n: np.ndarray) -> np.ndarray:
 
 
 def advance(name: str, way: float, rate: float, diameter: float) -> Check:
+    """What an advance ratio says of the units: `way` [m/s], `rate` [1/s], `diameter` [m]."""
     low, high = ADVANCE
     j = way / (rate * diameter)
     saw = f"advance ratio J = U/(nD) = {num(way, 3)}/({num(rate, 3)} x {num(diameter, 3)}) = {num(j, 3)}"

@@ -39,6 +39,7 @@ class Relation:
 
 
 def place(view: VoyageView) -> float | None:
+    """Position against velocity and heading: the miss, over what a healthy voyage may have."""
     if view.derived("north_m", "surge_velocity_mps"):
         return None
     legs = cut(view)
@@ -46,6 +47,8 @@ def place(view: VoyageView) -> float | None:
 
 
 def turning(view: VoyageView) -> float | None:
+    """Yaw rate against heading: the worse of its factor and of what it leaves unexplained, over what is
+    healthy."""
     seen = turning_ratio(view)
     if view.derived("yaw_rate_degps") or seen is None:
         return None
@@ -54,7 +57,8 @@ def turning(view: VoyageView) -> float | None:
 
 
 def over_ground(view: VoyageView) -> np.ndarray | None:
-    """Velocity over the earth [m/s] that the heading had no part in; None where there is none."""
+    """(N,) complex. velocity over the earth [m/s] that the heading had no part in; None where there is
+    none."""
     if by_heading(view.voyage) and not view.derived("surge_velocity_mps"):
         return view.velocity * np.exp(1j * view.psi)
     if view.derived("north_m"):
@@ -67,8 +71,8 @@ def over_ground(view: VoyageView) -> np.ndarray | None:
 
 
 def drift(view: VoyageView) -> np.ndarray | None:
-    """The angle from the heading to the way over ground [rad], where it has way on; None where there is
-    none."""
+    """(N,) the angle from the heading to the way over ground [rad], where it has way on; None where there
+    is none."""
     way = over_ground(view)
     if way is None:
         way = view.velocity * np.exp(1j * view.psi)
@@ -84,6 +88,8 @@ def drift(view: VoyageView) -> np.ndarray | None:
 
 
 def course(view: VoyageView) -> float | None:
+    """Heading against the way over ground: the larger of the mean drift angle over MEAN_DRIFT and its rms
+    over USUAL_DRIFT."""
     beta = drift(view)
     if beta is None:
         return None
@@ -92,6 +98,8 @@ def course(view: VoyageView) -> float | None:
 
 
 def rudder(view: VoyageView) -> float | None:
+    """Rudder against yaw rate: 0 when the ship turns to the rudder's side, above 1 when it turns to the
+    other."""
     seen = seen_gain(view)
     if seen is None or seen[0] < RUDDER_SHARE:
         return None
@@ -100,6 +108,8 @@ def rudder(view: VoyageView) -> float | None:
 
 
 def thrust(view: VoyageView) -> float | None:
+    """Propeller rate against speed ahead: share of steady windows in which they have different signs, over
+    ASTERN."""
     n, u = view.si("propeller_rate_rpm"), view.velocity.real
     if not np.isfinite(n).any() or not view.way_on:
         return None

@@ -52,6 +52,7 @@ def seen_gain(view: VoyageView) -> tuple[float, bool] | None:
 
 
 def sign_seen(name: str, saw: str, to_own_side: bool, proved: bool) -> Check:
+    """What the side to which the ship turns says of the rudder's sign; `proved`: enough to call it wrong."""
     if to_own_side:
         return good(name, f"{saw}, always to the rudder's own side.")
     believed = "it is believed to be positive to port. In the map: sign = -1 for rudder_angle_deg."
@@ -83,7 +84,8 @@ def best_gain(view: VoyageView) -> tuple[float, float]:
 
 
 def rudder_gain(view: VoyageView, rudder: np.ndarray, r: np.ndarray, seconds: float) -> tuple[float, float]:
-    """(share of the changes of r that the rudder explains beside r itself, b)."""
+    """(share of the changes of r that the rudder explains beside r itself, b). `rudder` (N,) [rad] and `r`
+    (N,) [rad/s] on the view's even grid."""
     first, last = view.windows(seconds)
     change, speed = r[last] - r[first], np.abs(view.velocity)
     held = view.summed(rudder * speed**2, first, last)

@@ -94,6 +94,7 @@ def frozen(view: VoyageView) -> Check:
 
 
 def frozen_heading(view: VoyageView) -> str:
+    """The longest stretch on which the heading stands still while the yaw rate turns the ship; "": none."""
     turned = running(view, view.si("yaw_rate_degps")) if not view.derived("yaw_rate_degps") else None
     return standing(
         view, "heading_true_north_deg", turned, np.radians(5.0), "the yaw rate turns {:.0f} deg", 180 / np.pi
@@ -101,6 +102,7 @@ def frozen_heading(view: VoyageView) -> str:
 
 
 def frozen_yaw_rate(view: VoyageView) -> str:
+    """The same of the yaw rate, while the heading turns otherwise."""
     r = view.si("yaw_rate_degps")
     rest = view.psi - running(view, r)
     return standing(
@@ -109,6 +111,7 @@ def frozen_yaw_rate(view: VoyageView) -> str:
 
 
 def frozen_position(view: VoyageView) -> str:
+    """The same of the position, while the velocities move the ship."""
     if view.derived("north_m", "surge_velocity_mps"):
         return ""
     w = view.velocity * np.exp(1j * view.psi)
@@ -120,6 +123,7 @@ def frozen_position(view: VoyageView) -> str:
 
 
 def frozen_speed(view: VoyageView) -> str:
+    """The same of the speed, while the position moves otherwise."""
     if view.derived("north_m", "surge_velocity_mps"):
         return ""
     rest = view.place - running(view, view.velocity * np.exp(1j * view.psi))
@@ -130,14 +134,15 @@ def frozen_speed(view: VoyageView) -> str:
 
 
 def running(view: VoyageView, rate: np.ndarray) -> np.ndarray:
-    """The rate summed from the start, missing samples as zero."""
+    """(N,) the rate summed from the start, missing samples as zero. In the unit of the rate (N,) times s."""
     return np.cumsum(np.where(np.isfinite(rate), rate, 0.0)) * view.step_s
 
 
 def standing(
     view: VoyageView, name: str, other: np.ndarray | None, far: float, text: str, unit: float = 1.0
 ) -> str:
-    """The longest stretch of one same value of `name` in which `other` changes by more than `far`."""
+    """The longest stretch of one same value of `name` in which `other` changes by more than `far`. `other`
+    (N,) and `far` in one unit, which the text shows times `unit`."""
     x = view.even[name]
     if other is None or x.size < 20:
         return ""
@@ -160,6 +165,6 @@ def standing(
 
 
 def spread(x: np.ndarray) -> float:
-    """Between the largest and the smallest sample that are there."""
+    """Between the largest and the smallest sample that are there. x (N,), in its own unit."""
     x = x[np.isfinite(x)]
     return float(np.ptp(x)) if x.size else 0.0

@@ -45,6 +45,7 @@ class Explained:
 
 
 def cost(off: dict[str, float | None]) -> float:
+    """Sum over the relations of log(1 + (x/usual)^2); those that cannot be asked cost nothing."""
     return sum(float(np.log1p((x / USUAL[name]) ** 2)) for name, x in off.items() if x is not None)
 
 

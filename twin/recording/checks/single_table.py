@@ -78,20 +78,25 @@ VELOCITIES: tuple[tuple[str, Callable[[np.ndarray], np.ndarray], str, str], ...]
 
 
 def headed(turn: Callable[[np.ndarray], np.ndarray], mirrored: bool) -> Undo:
+    """A way back: the heading [deg] (N,) turned by `turn`, and the yaw rate reversed where the heading was
+    mirrored."""
     return lambda c: {HEADING: turn(c[HEADING])} | ({RATE: -c[RATE]} if mirrored and RATE in c else {})
 
 
 def sign_of_east(view: VoyageView) -> str:
+    """What the map needs, by the column of the place that was given."""
     given = view.voyage.meta.get("given", ())
     return f"sign = -1 for {'longitude_deg' if 'longitude_deg' in given else 'east_m'}"
 
 
 def sign_of_north(view: VoyageView) -> str:
+    """The same of the other column."""
     given = view.voyage.meta.get("given", ())
     return f"sign = -1 for {'latitude_deg' if 'latitude_deg' in given else 'north_m'}"
 
 
 def west(c: Columns) -> dict[str, np.ndarray]:
+    """East counted as west: the column (N,) [m] reversed."""
     return {EAST: -c[EAST]}
 
 

@@ -37,7 +37,7 @@ class StepSamples:
 
     @property
     def big(self) -> np.ndarray:
-        """Where the steps are that no compass noise makes."""
+        """(B,) where the steps are that no compass noise makes."""
         return np.flatnonzero(np.abs(self.odd) > max(LEAST_DEG, SIGMAS * self.noise))
 
 
@@ -58,8 +58,8 @@ def samples_of(view: VoyageView) -> StepSamples | None:
 
 
 def expected_steps(view: VoyageView, t: np.ndarray) -> np.ndarray:
-    """How far it turns from one sample to the next [deg]: by the rate of turn, else by the course over
-    ground, else not."""
+    """(S - 1,) how far it turns from one sample to the next [deg]: by the rate of turn, else by the course
+    over ground, else not. `t` (S,) [s]."""
     v = view.voyage
     if not view.derived("yaw_rate_degps") and v.has("yaw_rate_degps"):
         r = v["yaw_rate_degps"]
@@ -76,14 +76,15 @@ def expected_steps(view: VoyageView, t: np.ndarray) -> np.ndarray:
 
 
 def noise_of(odd: np.ndarray) -> float:
-    """Scatter of a step [deg], also when the heading alternates: over the spacing at which it comes back most
-    nearly."""
+    """Scatter of a step [deg], also when the heading alternates: over the spacing at which it comes back
+    most nearly. `odd` (S - 1,) [deg]. The steps are (S - 1,)."""
     path = np.r_[0.0, np.cumsum(odd)]
     lags = range(1, min(LONGEST_PERIOD, path.size // 3) + 1)
     return min((1.4826 * float(np.median(np.abs(path[k:] - path[:-k]))) for k in lags), default=0.0)
 
 
 def heading_steps(view: VoyageView) -> Check:
+    """Whether the heading makes a step that no ship makes, and of which kind."""
     s = samples_of(view)
     if s is None:
         return cannot_tell(NAME, "there are too few headings.")
@@ -120,7 +121,8 @@ def in_turn(view: VoyageView, s: StepSamples) -> Check | None:
 
 
 def upper_rows(s: StepSamples, big: np.ndarray) -> np.ndarray:
-    """Which samples stand on the larger of the two headings."""
+    """(S,) mask: which samples stand on the larger of the two headings. `big` (B,): the steps between the
+    two, by index."""
     state = np.zeros(s.t.size, bool)
     here = bool(s.odd[big[0]] < 0.0)
     begin = 0
@@ -132,14 +134,15 @@ def upper_rows(s: StepSamples, big: np.ndarray) -> np.ndarray:
 
 
 def nearer_course(view: VoyageView, s: StepSamples, upper: np.ndarray) -> str:
-    """What to say of how far each of the two is from the course over ground."""
+    """What to say of how far each of the two is from the course over ground. `upper` (S,): mask of the
+    larger."""
     off = off_course(view, s, upper)
     return f" (off the course over ground: {off[0]:+.1f} and {off[1]:+.1f} deg)" if off else ""
 
 
 def off_course(view: VoyageView, s: StepSamples, upper: np.ndarray) -> list[float]:
-    """How far the larger and the smaller heading are from the course over ground [deg]; empty where there is
-    none."""
+    """How far the larger and the smaller heading are from the course over ground [deg]; empty where there
+    is none. `upper` (S,): mask of the larger."""
     way = over_ground(view)
     if way is None or not view.way_on:
         return []
@@ -152,8 +155,8 @@ def off_course(view: VoyageView, s: StepSamples, upper: np.ndarray) -> list[floa
 
 
 def references(view: VoyageView, s: StepSamples) -> list[np.ndarray]:
-    """The heading [deg] as the course over ground has it, and as the summed rate of turn has it beside a slow
-    drift."""
+    """The heading [deg] as the course over ground has it, and as the summed rate of turn has it beside a
+    slow drift. Each (S,)."""
     out = []
     way = over_ground(view)
     if way is not None and view.way_on and np.isfinite(way).any():
@@ -173,12 +176,12 @@ def references(view: VoyageView, s: StepSamples) -> list[np.ndarray]:
 
 
 def turned_off(angle_deg: np.ndarray) -> np.ndarray:
-    """On [-180, 180)."""
+    """(S,) the same angle [deg], on -180 to below 180."""
     return np.mod(angle_deg + 180.0, 360.0) - 180.0
 
 
 def north_rows(view: VoyageView, s: StepSamples) -> np.ndarray:
-    """Samples far off a reference, which stood near north."""
+    """(K,) index: samples far off a reference, which stood near north."""
     for by in references(view, s):
         off = turned_off(s.psi - by)
         off = turned_off(off - np.median(off))
@@ -248,8 +251,8 @@ def stays(s: StepSamples, i: int) -> bool:
 
 
 def without_steps(view: VoyageView) -> np.ndarray | None:
-    """The heading [deg] of the voyage's rows with two headings made one and means across north left out; None
-    when neither is there."""
+    """(R,) of R rows: the heading [deg] of the voyage's rows with two headings made one and means across
+    north left out; None when neither is there."""
     s = samples_of(view)
     if s is None:
         return None

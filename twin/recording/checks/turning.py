@@ -22,11 +22,12 @@ RATES = (
 
 
 def window_s(view: VoyageView) -> float:
+    """How long a window is [s]: a fiftieth of the voyage, five samples or more, half a minute at most."""
     return float(np.clip(view.voyage.duration_s / 50.0, 5.0 * view.step_s, 30.0))
 
 
 def turned(view: VoyageView) -> tuple[np.ndarray, np.ndarray]:
-    """(change of the heading, summed rate) [rad] in each window."""
+    """(change of the heading, summed rate) [rad] in each window. Each (W,)."""
     first, last = view.windows(window_s(view))
     return view.psi[last] - view.psi[first], view.summed(view.si("yaw_rate_degps"), first, last)
 

@@ -28,7 +28,8 @@ def by_heading(voyage: Voyage) -> bool:
 
 
 def measured(voyage: Voyage) -> dict[str, np.ndarray]:
-    """The columns that were measured, velocities as they were given, and the clock."""
+    """The columns that were measured, velocities as they were given, and the clock. Each (N,), in the unit
+    in its name."""
     derived = voyage.meta.get("derived", {})
     out = {name: x for name, x in voyage.columns.items() if name not in derived and np.isfinite(x).any()}
     if AHEAD in out and ASIDE in out:
@@ -40,7 +41,8 @@ def measured(voyage: Voyage) -> dict[str, np.ndarray]:
 
 
 def remade(voyage: Voyage, columns: Columns) -> Voyage:
-    """The voyage of measured columns: velocities turned by the heading, what was derived derived again."""
+    """The voyage of measured columns: velocities turned by the heading, what was derived derived again.
+    Each column (N,), in the unit in its name."""
     out = dict(columns)
     time_s = out.pop("time_s")
     if FIRST in out:
@@ -60,9 +62,10 @@ def undone(view: VoyageView, undo: Undo) -> VoyageView:
 
 
 def velocity(c: Columns) -> np.ndarray:
-    """The velocity as it was given: ahead + i aside, or north + i east."""
+    """The velocity as it was given: ahead + i aside, or north + i east. (N,) complex [m/s]."""
     return c[FIRST] + 1j * c[SECOND]
 
 
 def as_velocity(w: np.ndarray) -> dict[str, np.ndarray]:
+    """Both columns (N,) of a velocity [m/s] as it was given: the inverse of `velocity`."""
     return {FIRST: w.real, SECOND: w.imag}

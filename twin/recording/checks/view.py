@@ -28,6 +28,7 @@ class VoyageView:
 
     @cached_property
     def step_s(self) -> float:
+        """Step of the even grid [s]."""
         return float(self.even.time_s[1] - self.even.time_s[0]) if len(self.even) > 1 else 1.0
 
     def si(self, name: str) -> np.ndarray:
@@ -40,16 +41,17 @@ class VoyageView:
 
     @cached_property
     def place(self) -> np.ndarray:
-        """Position as north + i east [m]."""
+        """(N,) position as north + i east [m]."""
         return self.si("north_m") + 1j * self.si("east_m")
 
     @cached_property
     def velocity(self) -> np.ndarray:
-        """Velocity in the ship's axes, ahead + i to starboard [m/s]."""
+        """(N,) velocity in the ship's axes, ahead + i to starboard [m/s]."""
         return self.si("surge_velocity_mps") + 1j * self.si("sway_velocity_mps")
 
     @cached_property
     def psi(self) -> np.ndarray:
+        """(N,) true heading [rad] on the even grid, unwrapped."""
         return self.si("heading_true_north_deg")
 
     @cached_property
@@ -74,13 +76,15 @@ class VoyageView:
         return way > max(LEAST_WAY_MPS, 0.3 * scatter)
 
     def windows(self, seconds: float) -> tuple[np.ndarray, np.ndarray]:
-        """(first, last) rows of windows this long, each starting half a window after the one before."""
+        """(first, last) rows of windows this long, each starting half a window after the one before. Both
+        (W,) index."""
         length = int(np.clip(round(seconds / self.step_s), 2, max(len(self.even) - 1, 2)))
         first = np.arange(0, len(self.even) - length, max(length // 2, 1))
         return first, first + length
 
     def summed(self, rate: np.ndarray, first: np.ndarray, last: np.ndarray) -> np.ndarray:
-        """Integral of a rate over each window (trapezes); NaN where a sample is missing."""
+        """(W,) integral of a rate over each window (trapezes); NaN where a sample is missing. `rate` (N,);
+        `first`, `last` (W,); in the unit of the rate times s."""
         steps = (rate[1:] + rate[:-1]) / 2.0 * self.step_s
         missing = np.r_[0, np.cumsum(~np.isfinite(steps))]
         total = np.r_[0.0, np.cumsum(np.where(np.isfinite(steps), steps, 0.0))]
@@ -91,7 +95,8 @@ def fit(columns: list[np.ndarray], target: np.ndarray) -> tuple[np.ndarray, np.n
     """Least squares: (coefficients, their standard errors, share of the target's energy left over).
 
     Real coefficients; complex columns count as two equations. Rows with a missing number are left out.
-    """
+    Columns (N,), as many as C, and target (N,), in one unit times the coefficients'; returns (C,), (C,)
+    and a share."""
     a = np.stack(columns, axis=1)
     keep = np.isfinite(a).all(axis=1) & np.isfinite(target)
     a, b = both_parts(a[keep]), both_parts(target[keep])
@@ -104,10 +109,13 @@ def fit(columns: list[np.ndarray], target: np.ndarray) -> tuple[np.ndarray, np.n
 
 
 def both_parts(x: np.ndarray) -> np.ndarray:
+    """Real and imaginary parts (2 N, ...) of complex rows (N, ...), one after the other; real rows as they
+    are."""
     return np.concatenate([x.real, x.imag]) if np.iscomplexobj(x) else x
 
 
 def rms(x: np.ndarray) -> float:
-    """Root of the mean square of the samples that are there; 0 when none is."""
+    """Root of the mean square of the samples that are there; 0 when none is. x (N,), real or complex; in
+    its unit."""
     x = x[np.isfinite(x)]
     return float(np.sqrt(np.mean(np.abs(x) ** 2))) if x.size else 0.0

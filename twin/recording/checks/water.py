@@ -47,8 +47,9 @@ def factor(
     ground: np.ndarray, water: np.ndarray, psi: np.ndarray, step_s: float, rough: bool = False
 ) -> tuple[float, float, bool]:
     """(k, size of the current [m/s], whether k stands by itself). A speed over ground that is the slope of
-    positions scatters more than a log (`rough`), and what scatters must not be the cause in a fit: it would
-    come out too small, and a current would stand in for the rest."""
+    positions scatters more than a log (`rough`), and what scatters must not be the cause in a fit: it
+    would come out too small, and a current would stand in for the rest. `ground` and `water` (N,) ahead
+    [m/s], psi (N,) [rad]."""
     if rough:
         inverse, north, east, sure = _fitted(water, ground, psi, step_s)
         return 1.0 / (inverse or np.nan), float(np.hypot(north, east)), sure

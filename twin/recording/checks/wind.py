@@ -20,6 +20,7 @@ Pair = Callable[[np.ndarray, np.ndarray, np.ndarray, np.ndarray], tuple[np.ndarr
 
 
 def turn(speed: np.ndarray, angle: np.ndarray) -> np.ndarray:
+    """(N,) a speed and an angle [rad], as a complex number in the speed's unit."""
     return speed * np.exp(1j * angle)
 
 
@@ -105,6 +106,8 @@ def wind(view: VoyageView) -> Check:
 
 
 def triangle(name: str, view: VoyageView) -> Check:
+    """Whether the true wind, the apparent wind and the ship's own motion make a triangle, and which
+    mistake would explain it if not."""
     t, h, a, b = (
         view.si(c)
         for c in (
@@ -140,7 +143,8 @@ def triangle(name: str, view: VoyageView) -> Check:
 def relative_taken_as_true(
     t: np.ndarray, h: np.ndarray, a: np.ndarray, b: np.ndarray, view: VoyageView
 ) -> bool:
-    """Both columns hold the same wind (as it is, or turned by the heading) though the ship makes way."""
+    """Both columns hold the same wind (as it is, or turned by the heading) though the ship makes way. All
+    (N,): true speed [m/s] and direction [rad], apparent speed [m/s] and angle [rad]."""
     size = max(rms(a), 1e-9)
     same = min(rms(turn(a, b) - turn(t, h)), rms(turn(a, b) - turn(t, h - view.psi))) / size
     return same < 0.1 and view.speed > 0.3 * size
@@ -183,7 +187,8 @@ def follows_heading(direction: np.ndarray, psi: np.ndarray, time_s: np.ndarray) 
     explains it).
 
     A wind may veer while the ship circles one way: only where the heading also comes back does it tell, so
-    the steady veering is fitted beside it, and both halves of the voyage must say the same."""
+    the steady veering is fitted beside it, and both halves of the voyage must say the same. `direction`
+    and `psi` (N,) [rad], `time_s` (N,)."""
     whole = slope_on(direction, psi, time_s)
     half = psi.size // 2
     halves = [
@@ -194,7 +199,8 @@ def follows_heading(direction: np.ndarray, psi: np.ndarray, time_s: np.ndarray) 
 
 
 def slope_on(direction: np.ndarray, psi: np.ndarray, time_s: np.ndarray) -> tuple[float, bool]:
-    """(slope on the heading beside a steady veering, whether it stands by itself)."""
+    """(slope on the heading beside a steady veering, whether it stands by itself). `direction` and `psi`
+    (N,) [rad], `time_s` (N,)."""
     t = time_s - time_s.mean()
     x, error, left = fit([psi - np.nanmean(psi), t, np.ones(psi.size)], direction - np.nanmean(direction))
     k, own = float(x[0]), float(error[0])

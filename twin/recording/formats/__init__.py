@@ -38,6 +38,7 @@ class Format(NamedTuple):
 
 
 def never(lines: list[str], start: bytes) -> bool:
+    """No: this format is not recognised by its head."""
     return False
 
 

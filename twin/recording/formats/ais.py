@@ -43,6 +43,8 @@ def read(path: Path) -> Signals:
 
 
 def take(out: Signals, payload: bytes, own: bool, t: float) -> None:
+    """One AIS message's position, course, speed and heading, where its type has them and it is whole; what
+    is not used is counted in `out.skipped`."""
     bits = unarmoured(payload)
     kind = bits >> (len(payload) * 6 - 6) if payload else 0
     at = {1: 50, 2: 50, 3: 50, 18: 46}.get(kind)

@@ -20,6 +20,7 @@ GROUND_STATIONS = frozenset((0, 255))
 
 
 def looks_flash(lines: list[str], start: bytes) -> bool:
+    """Whether a file starts as a DataFlash log does."""
     return start.startswith(b"\xa3\x95\x80")
 
 
@@ -29,16 +30,19 @@ def looks_tlog(lines: list[str], start: bytes) -> bool:
 
 
 def looks_ulog(lines: list[str], start: bytes) -> bool:
+    """Whether a file starts as a ULog does."""
     return start.startswith(b"ULog\x01\x12\x35")
 
 
 def ekf(m: Any) -> Iterator[Part]:
+    """Heading, velocity and position of the state estimate."""
     yield "yaw", HEADING, m.Yaw
     yield "vn", NORTH, m.VN
     yield "ve", EAST, m.VE
 
 
 def gps(m: Any) -> Iterator[Part]:
+    """Position, speed and course of a receiver that has a fix."""
     if m.Status >= 2:
         yield "latitude", "latitude_deg", m.Lat
         yield "longitude", "longitude_deg", m.Lng
@@ -47,11 +51,13 @@ def gps(m: Any) -> Iterator[Part]:
 
 
 def att(m: Any) -> Iterator[Part]:
+    """Heading and roll [deg]."""
     yield "yaw", HEADING, m.Yaw
     yield "roll", ROLL, m.Roll
 
 
 def outputs(m: Any) -> Iterator[Part]:
+    """The servo outputs as they are written, of no channel yet."""
     for i in range(1, 9):
         if hasattr(m, f"C{i}"):
             yield f"C{i}", "", float(getattr(m, f"C{i}"))
@@ -76,6 +82,7 @@ FLASHED: dict[str, tuple[int, Callable[[Any], Iterator[Part]]]] = {
 
 
 def position_int(m: Any) -> Iterator[Part]:
+    """Position [deg] and velocity [m/s] of the estimate, which are sent in 1e-7 deg and cm/s."""
     if m.lat or m.lon:
         yield "latitude", "latitude_deg", m.lat * 1e-7
         yield "longitude", "longitude_deg", m.lon * 1e-7
@@ -84,6 +91,7 @@ def position_int(m: Any) -> Iterator[Part]:
 
 
 def raw_int(m: Any) -> Iterator[Part]:
+    """Position, speed and course of a receiver that has a fix."""
     if m.fix_type >= 2:
         yield "latitude", "latitude_deg", m.lat * 1e-7
         yield "longitude", "longitude_deg", m.lon * 1e-7
@@ -93,6 +101,7 @@ def raw_int(m: Any) -> Iterator[Part]:
 
 
 def servos(m: Any) -> Iterator[Part]:
+    """The servo outputs as they are sent [us], of no channel yet."""
     for i in range(1, 9):
         yield f"servo{i}", "", float(getattr(m, f"servo{i}_raw", 0))
 
@@ -132,6 +141,7 @@ def read_flash(path: Path) -> Signals:
 
 
 def flash_source(m: Any) -> str | None:
+    """The instance that a message of a DataFlash log belongs to; never None."""
     instance = getattr(m, "I", getattr(m, "C", 0))
     return str(instance if isinstance(instance, int) else 0)
 
@@ -145,6 +155,7 @@ def read_tlog(path: Path) -> Signals:
 
 
 def tlog_source(m: Any) -> str | None:
+    """The system and component that sent a message; None for a ground station."""
     system = m.get_srcSystem()
     return None if system in GROUND_STATIONS else f"{system}.{m.get_srcComponent()}"
 
@@ -155,7 +166,8 @@ def collect(
     known: dict[str, tuple[int, Callable[[Any], Iterator[Part]]]],
     source_of: Callable[[Any], str | None],
 ) -> Signals:
-    """All known messages; what the library cannot read ends the log there, and is said."""
+    """All known messages; what the library cannot read ends the log there, and is said. DataError: nothing
+    of it can be read."""
     try:
         log = opened()
         while (m := log.recv_msg()) is not None:
@@ -179,8 +191,8 @@ def collect(
 
 
 def read_ulog(path: Path) -> Signals:
-    """Series named topic, instance and part (`vehicle_attitude0.heading`), on the UTC of the receiver where
-    it knows one."""
+    """Series named topic, instance and part (`vehicle_attitude0.heading`), on the UTC of the receiver
+    where it knows one. DataError: it cannot be read."""
     module, out = library("pyulog", path, ULOG), Signals(path, ULOG)
     try:
         log = module.ULog(str(path), list(TOPICS))
@@ -219,12 +231,14 @@ def utc_of_zero(log: Any) -> float:
 
 
 def ulog_attitude(d: Any) -> Iterator[tuple[str, str, Any]]:
+    """Heading and roll [deg] of the quaternion, from earth (NED) to body."""
     w, x, y, z = (d[f"q[{i}]"].astype(float) for i in range(4))
     yield "heading", HEADING, np.degrees(np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))) % 360.0
     yield "roll", ROLL, np.degrees(np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y)))
 
 
 def ulog_gps(d: Any) -> Iterator[tuple[str, str, Any]]:
+    """Position and velocity of a receiver; NaN where it has no fix."""
     fixed = d["fix_type"] >= 2 if "fix_type" in d else np.ones(d["timestamp"].size, bool)
     lat, lon = (
         (d["latitude_deg"], d["longitude_deg"]) if "latitude_deg" in d else (d["lat"] * 1e-7, d["lon"] * 1e-7)
@@ -236,6 +250,7 @@ def ulog_gps(d: Any) -> Iterator[tuple[str, str, Any]]:
 
 
 def ulog_local(d: Any) -> Iterator[tuple[str, str, Any]]:
+    """Position [m] and velocity [m/s] in the local frame, north and east."""
     yield "north", "north_m", d["x"]
     yield "east", "east_m", d["y"]
     yield "vn", NORTH, d["vx"]
@@ -243,6 +258,7 @@ def ulog_local(d: Any) -> Iterator[tuple[str, str, Any]]:
 
 
 def ulog_wind(d: Any) -> Iterator[tuple[str, str, Any]]:
+    """True wind: its speed [m/s], and where it comes from [deg]."""
     north, east = d["windspeed_north"].astype(float), d["windspeed_east"].astype(float)
     yield "speed", "true_wind_speed_mps", np.hypot(north, east)
     yield "from", "true_wind_direction_deg", np.degrees(np.arctan2(-east, -north)) % 360.0

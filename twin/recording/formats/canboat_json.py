@@ -40,10 +40,12 @@ OF_WIND = {
 
 
 def looks(lines: list[str], start: bytes) -> bool:
+    """Whether a line of the head is an object with a parameter group and its fields."""
     return any(s.startswith("{") and '"pgn"' in s and '"fields"' in s for s in lines[:10])
 
 
 def read(path: Path) -> Signals:
+    """All messages of a file, angles in degrees whether it says so or not; what cannot be read is counted."""
     out, stamp, units = Signals(path, SAYS), Stamp(), ""
     angles: set[str] = set()
     for number, line in numbered(path):

@@ -29,7 +29,8 @@ class SourceChoice(NamedTuple):
 
 
 def sources_of(given: Iterable[str]) -> dict[str, str]:
-    """`--source GP` and `--source heading_true_north_deg=HE` as a table."""
+    """`--source GP` and `--source heading_true_north_deg=HE` as a table. SettingsError: it names no
+    channel."""
     out: dict[str, str] = {}
     for text in given:
         quantity, found, source = text.partition("=")
@@ -43,7 +44,8 @@ def sources_of(given: Iterable[str]) -> dict[str, str]:
 
 
 def best(signals: Signals, quantity: str, sources: Sources, notes: list[str]) -> Series | None:
-    """The series taken for a quantity: of the source asked for, of the best kind, first heard."""
+    """The series taken for a quantity: of the source asked for, of the best kind, first heard.
+    SettingsError: the quantity has no such source."""
     there = [s for s in signals.series.values() if s.quantity == quantity]
     most = max((len(s) for s in there), default=0)
     wanted = sources.get(quantity, sources.get("", ""))
@@ -66,7 +68,8 @@ def best(signals: Signals, quantity: str, sources: Sources, notes: list[str]) ->
 
 
 def chosen(signals: Signals, sources: Sources) -> SourceChoice:
-    """The columns of the log's own map; every series that no channel takes is named in one sentence."""
+    """The columns of the log's own map; every series that no channel takes is named in one sentence.
+    SettingsError: the log has no such source."""
     known = {s.source for s in signals.series.values()}
     if sources.get("") and sources[""] not in known:
         raise SettingsError(f"--source {sources['']}: the log's sources are {', '.join(sorted(known))}.")

@@ -35,7 +35,8 @@ EMPTY = [
 def pieces(
     path: Path, names: Sequence[str], wanted: Sequence[str], separator: str, skip: int, encoding: str
 ) -> Iterator[dict[str, np.ndarray]] | None:
-    """The wanted columns as floats, block after block; None when this reader is not for it."""
+    """The wanted columns as floats, block after block; None when this reader is not for it. A block is a
+    column (n,) a name, in the file's units."""
     try:
         import pyarrow as pa
         from pyarrow import csv
@@ -89,6 +90,7 @@ class Thinned:
         self.every, self.held, self.seen, self.filled, self._blocks = 1, 0, 0, 0, blocks
 
     def add(self, block: dict[str, np.ndarray]) -> None:
+        """Keep every so many-th row of a block, columns (n,) by name in the file's units."""
         size = len(next(iter(block.values())))
         start, ends = (
             -self.seen % self.every,
@@ -122,6 +124,7 @@ class Thinned:
         self.filled //= 2
 
     def whole(self) -> dict[str, np.ndarray]:
+        """The columns (N,) of what was kept, in the file's units."""
         return {name: values[: self.held] for name, values in self.columns.items()}
 
 
@@ -134,8 +137,8 @@ def collected(
     encoding: str,
     notes: list[str],
 ) -> dict[str, np.ndarray] | None:
-    """The wanted columns whole (of very long tables every k-th row: `notes` says so); None when the careful
-    reader must be asked."""
+    """The wanted columns whole (of very long tables every k-th row: `notes` says so); None when the
+    careful reader must be asked. A column (N,) a name, in the file's units."""
     held = Thinned(wanted, path.stat().st_size / BLOCK + 1.0)
     try:
         found = pieces(path, names, wanted, separator, skip, encoding)

@@ -15,11 +15,13 @@ LARGEST = 200 << 20  # bytes; JSON is read whole
 
 
 def looks(lines: list[str], start: bytes) -> bool:
+    """Whether a file starts with the names that the standard's JSON uses."""
     return b'"TimeSeriesData"' in start or (b'"Package"' in start and b'"DataChannel' in start)
 
 
 def read(path: Path) -> Signals:
-    """Series named by their data channel; one whose name ends in a channel of the twin is taken for it."""
+    """Series named by their data channel; one whose name ends in a channel of the twin is taken for it.
+    DataError: it is too large, or no JSON."""
     out = Signals(path, SAYS)
     with opened(path) as stream:
         text = stream.read(LARGEST + 1)
@@ -51,6 +53,7 @@ def found(tree: Any, key: str, depth: int = 6) -> list[dict[str, Any]]:
 
 
 def tabular(out: Signals, table: dict[str, Any]) -> None:
+    """The samples of a table: a row for each time stamp, a value for each data channel."""
     names, rows = table.get("DataChannelID", []), table.get("DataSet", [])
     for row in rows if isinstance(rows, list) else ():
         t = from_iso(str(row.get("TimeStamp", ""))) if isinstance(row, dict) else None
@@ -63,6 +66,7 @@ def tabular(out: Signals, table: dict[str, Any]) -> None:
 
 
 def events(out: Signals, event: dict[str, Any]) -> None:
+    """The samples of events, each with its own data channel and time stamp."""
     for row in found(event, "DataSet") or [event]:
         t = from_iso(str(row.get("TimeStamp", "")))
         if t is not None and "DataChannelID" in row:
@@ -70,6 +74,7 @@ def events(out: Signals, event: dict[str, Any]) -> None:
 
 
 def sample(out: Signals, name: str, t: float, value: Any) -> None:
+    """One value of a data channel at `t` [s since 1970]; what is no number is counted."""
     try:
         number = float(value)
     except (TypeError, ValueError):

@@ -82,6 +82,8 @@ def fix(out: Signals, source: str, data: bytes) -> None:
 
 
 def scalar(out: Signals, subject: str, source: str, data: bytes) -> None:
+    """One message of a subject that has no channel of its own; what cannot be decoded, or has no sound
+    stamp, is counted."""
     quantity, scale = BESIDE[subject]
     try:
         message = messages.Float.FromString(data)

@@ -18,12 +18,15 @@ class Unpacked(gzip.GzipFile):
     """What a .gz holds; where it is damaged or cut off, a DataError says so."""
 
     def read(self, size: int | None = -1) -> bytes:
+        """Up to so many bytes, unpacked."""
         return self._whole(super().read, size)
 
     def read1(self, size: int = -1) -> bytes:
+        """Up to so many bytes of one reading, unpacked."""
         return self._whole(super().read1, size)
 
     def readline(self, size: int | None = -1) -> bytes:  # type: ignore[override]
+        """The next line, or so many bytes of it, unpacked."""
         return self._whole(super().readline, size)
 
     def _whole(self, read: Callable[[Any], T], size: int | None) -> T:
@@ -34,7 +37,7 @@ class Unpacked(gzip.GzipFile):
 
 
 def opened(path: Path) -> IO[bytes]:
-    """The file for reading, unpacked when it ends in .gz."""
+    """The file for reading, unpacked when it ends in .gz. DataError: it cannot be opened."""
     try:
         return Unpacked(path, "rb") if path.suffix.lower() == ".gz" else open(path, "rb")  # type: ignore[return-value]
     except OSError as error:
@@ -42,7 +45,8 @@ def opened(path: Path) -> IO[bytes]:
 
 
 def numbered(path: Path) -> Iterator[tuple[int, bytes]]:
-    """(number from 1, line) of a file; a line longer than LONGEST comes in pieces."""
+    """(number from 1, line) of a file; a line longer than LONGEST comes in pieces. DataError: what is
+    packed is damaged."""
     with opened(path) as stream:
         try:
             yield from enumerate(iter(lambda: stream.readline(LONGEST), b""), 1)

@@ -64,6 +64,8 @@ class Nmea:
         self._count: dict[str, int] = {}
 
     def line(self, number: int, line: bytes) -> None:
+        """Read one line: find its sentence, hold it against its checksum, take its stamp; what is wrong is
+        counted."""
         at = line.rfind(b"$")
         if at < 0:
             at = line.rfind(b"!")
@@ -97,6 +99,8 @@ class Nmea:
         self.sentence(number, fields, line[:at] if at else b"")
 
     def sentence(self, number: int, fields: list[str], front: bytes) -> None:
+        """Read one whole sentence: set the clock by it, and hold its values until the clock has a time for
+        them."""
         address = fields[0]
         kind = address[-3:]
         if kind in CLOCKS and not self._received:
@@ -162,6 +166,7 @@ class Nmea:
         self._now = (self._now or 0.0) + by
 
     def read_clock(self, kind: str, f: list[str]) -> float | None:
+        """The time that a sentence tells [s since 1970]; None while no sentence has told the date."""
         text = f[{"RMC": 1, "ZDA": 1, "GGA": 1, "GNS": 1, "GLL": 5}[kind]] if len(f) > 5 else ""
         try:
             seconds = int(text[:2]) * 3600.0 + int(text[2:4]) * 60.0 + float(text[4:])
@@ -179,6 +184,7 @@ class Nmea:
         return t
 
     def date(self, kind: str, f: list[str]) -> int | None:
+        """Days since 1970 of the date in RMC and ZDA; None in other sentences, or where it is empty."""
         if kind == "RMC" and len(f) > 9 and len(f[9]) == 6:
             year = int(f[9][4:])
             return days_from_civil(year + (1900 if year >= 80 else 2000), int(f[9][2:4]), int(f[9][:2]))
@@ -187,6 +193,7 @@ class Nmea:
         return None
 
     def wait(self, address: str, parts: list[Part]) -> None:
+        """Hold values back until the clock tells when they were said."""
         if parts:
             kind = address + parts[0][0]
             k = self._count.get(kind, 0)
@@ -207,6 +214,7 @@ class Nmea:
         self._waiting, self._count = [], {}
 
     def keep(self, address: str, parts: list[Part], time_s: float) -> None:
+        """Add a sentence's values, said at `time_s`, to their series."""
         for part, quantity, value in parts:
             pair = self._series.get((address, part))
             if pair is None:
@@ -217,6 +225,7 @@ class Nmea:
             pair[1](value)
 
     def done(self) -> Signals:
+        """All series, with what still waited for a time (`spread`)."""
         self.spread(None)
         if self._now is None and not self._received:
             self.out.skipped["and no sentence tells the time (RMC, ZDA, GGA, GLL, or a stamp in front)"] = 1

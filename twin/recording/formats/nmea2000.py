@@ -44,6 +44,7 @@ def of_can_id(can_id: int) -> tuple[int, int]:
 
 
 def candump(line: str, stamp: Stamp) -> Frame | None:
+    """A frame of candump's text, with a time in brackets or (an old form) without; None: it is none."""
     found = CANDUMP.match(line)
     if not found:
         old = CANDUMP_OLD.match(line)
@@ -57,6 +58,7 @@ def candump(line: str, stamp: Stamp) -> Frame | None:
 
 
 def canboat(line: str, stamp: Stamp) -> Frame | None:
+    """A message of canboat's text, put together; None: it is none."""
     found = CANBOAT.match(line)
     if not found:
         return None
@@ -65,11 +67,13 @@ def canboat(line: str, stamp: Stamp) -> Frame | None:
 
 
 def ydwg(line: str, stamp: Stamp) -> Frame | None:
+    """A frame of Yacht Devices' text; None: it is none."""
     found = YDWG.match(line)
     return Frame(stamp(found[1]), *of_can_id(int(found[2], 16)), _bytes(found[3]), False) if found else None
 
 
 def actisense(line: str, stamp: Stamp) -> Frame | None:
+    """A message of Actisense's text, put together; None: it is none."""
     found = ACTISENSE.match(line)
     if not found:
         return None
@@ -103,6 +107,7 @@ def form_of(lines: list[str]) -> tuple[str, Callable[[str, Stamp], Frame | None]
 
 
 def looks(lines: list[str], start: bytes) -> bool:
+    """Whether the head is one of the texts or Actisense's bytes."""
     return form_of(lines) is not None or looks_bytes(start)
 
 
@@ -112,6 +117,7 @@ def looks_bytes(start: bytes) -> bool:
 
 
 def read(path: Path) -> Signals:
+    """All messages of a log, in whichever of the forms it is."""
     start = head(path)
     form = form_of(head_lines(start))
     if form is None:
@@ -123,6 +129,7 @@ def read(path: Path) -> Signals:
 def frames(
     path: Path, out: Signals, form: Callable[[str, Stamp], Frame | None]
 ) -> Iterator[tuple[int, Frame]]:
+    """(number of the line, frame) of each line that is one; the others are counted."""
     stamp = Stamp()
     for number, line in numbered(path):
         text = line.decode("latin-1").strip()

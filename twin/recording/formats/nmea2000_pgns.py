@@ -22,6 +22,7 @@ def unsigned(d: bytes, at: int, size: int, scale: float) -> float | None:
 
 
 def signed(d: bytes, at: int, size: int, scale: float) -> float | None:
+    """The signed number of so many bytes, times `scale`; None: it is past the end or not available."""
     if at + size > len(d):
         return None
     raw = int.from_bytes(d[at : at + size], "little", signed=True)
@@ -29,17 +30,20 @@ def signed(d: bytes, at: int, size: int, scale: float) -> float | None:
 
 
 def one(part: str, quantity: str, value: float | None) -> Iterator[Part]:
+    """The part, if it has a value."""
     if value is not None:
         yield part, quantity, value
 
 
 def rudder(d: bytes) -> Iterator[Part]:
+    """Rudder angle, of the instance that sends it."""
     instance = d[0]
     name = "position" if instance in (0, 252, 253, 254, 255) else f"position{instance}"
     yield from one(name, "rudder_angle_deg", signed(d, 4, 2, ANGLE))
 
 
 def heading(d: bytes) -> Iterator[Part]:
+    """Heading, true or magnetic with its deviation, and the variation [deg]."""
     shown, reference = unsigned(d, 1, 2, ANGLE), d[7] & 3 if len(d) > 7 else 3
     if shown is not None and reference == 0:
         yield "heading_true", "heading_true_north_deg", shown
@@ -49,43 +53,52 @@ def heading(d: bytes) -> Iterator[Part]:
 
 
 def rate_of_turn(d: bytes) -> Iterator[Part]:
+    """Yaw rate [deg/s]."""
     yield from one("rate", "yaw_rate_degps", signed(d, 1, 4, 1e-6 / 32.0 * DEG))
 
 
 def attitude(d: bytes) -> Iterator[Part]:
+    """Yaw as true heading, and roll [deg]."""
     yaw = signed(d, 1, 2, ANGLE)
     yield from one("yaw", "heading_true_north_deg", None if yaw is None else yaw % 360.0)
     yield from one("roll", "roll_deg", signed(d, 5, 2, ANGLE))
 
 
 def variation(d: bytes) -> Iterator[Part]:
+    """Magnetic variation [deg]."""
     yield from one("variation", "magnetic_variation_deg", signed(d, 4, 2, ANGLE))
 
 
 def engine(d: bytes) -> Iterator[Part]:
+    """Engine rate [rpm], of the instance that sends it."""
     yield from one(f"engine{d[0]}", "engine_rate_rpm", unsigned(d, 1, 2, 0.25))
 
 
 def speed(d: bytes) -> Iterator[Part]:
+    """Speed through the water [m/s], ahead."""
     yield from one("water", "surge_velocity_through_water_mps", unsigned(d, 1, 2, 0.01))
 
 
 def speed_components(d: bytes) -> Iterator[Part]:
+    """Speed through the water [m/s], ahead and aside."""
     yield from one("water_ahead", "surge_velocity_through_water_mps", signed(d, 0, 2, 0.001))
     yield from one("water_aside", "sway_velocity_through_water_mps", signed(d, 2, 2, 0.001))
 
 
 def depth(d: bytes) -> Iterator[Part]:
+    """Water depth [m]: below the transducer, and how far that is under the surface."""
     below, offset = unsigned(d, 1, 4, 0.01), signed(d, 5, 2, 0.001)
     if below is not None:
         yield "depth", "water_depth_m", below + max(offset or 0.0, 0.0)
 
 
 def position(d: bytes) -> Iterator[Part]:
+    """Latitude and longitude [deg]."""
     yield from _place(signed(d, 0, 4, 1e-7), signed(d, 4, 4, 1e-7))
 
 
 def gnss(d: bytes) -> Iterator[Part]:
+    """Latitude and longitude [deg], in full resolution."""
     yield from _place(signed(d, 7, 8, 1e-16), signed(d, 15, 8, 1e-16))
 
 
@@ -96,12 +109,14 @@ def _place(latitude: float | None, longitude: float | None) -> Iterator[Part]:
 
 
 def course(d: bytes) -> Iterator[Part]:
+    """Course over ground, if it is true, and speed."""
     if d[1] & 3 == 0:
         yield from one("cog", "course_over_ground_deg", unsigned(d, 2, 2, ANGLE))
     yield from one("sog", "speed_over_ground_mps", unsigned(d, 4, 2, 0.01))
 
 
 def wind(d: bytes) -> Iterator[Part]:
+    """Wind speed and angle, by the reference that the message names."""
     speed_mps, angle, reference = unsigned(d, 1, 2, 0.01), unsigned(d, 3, 2, ANGLE), d[5] & 7
     if speed_mps is None or angle is None:
         return

@@ -21,6 +21,7 @@ def number(f: Fields, i: int) -> float | None:
 
 
 def letter(f: Fields, i: int) -> str:
+    """A field in capitals; "" where the sentence is shorter."""
     return f[i].strip().upper() if i < len(f) else ""
 
 
@@ -35,10 +36,12 @@ def degrees(f: Fields, i: int) -> float | None:
 
 
 def one(name: str, quantity: str, value: float | None, scale: float = 1.0) -> tuple[Part, ...]:
+    """The part, if it has a value, times `scale`."""
     return () if value is None else ((name, quantity, value * scale),)
 
 
 def place(f: Fields, i: int) -> Iterator[Part]:
+    """Latitude and longitude [deg], if both are there, from field `i` on."""
     latitude, longitude = degrees(f, i), degrees(f, i + 2)
     if latitude is not None and longitude is not None:
         yield "latitude", "latitude_deg", latitude
@@ -52,6 +55,7 @@ def signed(f: Fields, i: int, negative: str = "W") -> float | None:
 
 
 def rmc(f: Fields) -> Iterator[Part]:
+    """RMC: position, speed, course and variation, if valid."""
     if letter(f, 2) != "A":
         return
     yield from place(f, 3)
@@ -61,40 +65,48 @@ def rmc(f: Fields) -> Iterator[Part]:
 
 
 def gll(f: Fields) -> Iterator[Part]:
+    """GLL: position, if valid."""
     if letter(f, 6) in ("A", ""):
         yield from place(f, 1)
 
 
 def gga(f: Fields) -> Iterator[Part]:
+    """GGA: position, if there is a fix."""
     if letter(f, 6) not in ("", "0"):
         yield from place(f, 2)
 
 
 def gns(f: Fields) -> Iterator[Part]:
+    """GNS: position, if any of the systems has a fix."""
     if letter(f, 6).strip("N"):
         yield from place(f, 2)
 
 
 def vtg(f: Fields) -> Iterator[Part]:
+    """VTG: true course and speed over ground."""
     yield from one("cog", COG, number(f, 1))
     knots = number(f, 5)
     yield from one("sog", SOG, knots, KNOT) if knots is not None else one("sog", SOG, number(f, 7), 1.0 / 3.6)
 
 
 def hdt(f: Fields) -> Iterable[Part]:
+    """HDT: true heading."""
     return one("heading", HEADING, number(f, 1))
 
 
 def ths(f: Fields) -> Iterator[Part]:
+    """THS: true heading, unless simulated or not valid."""
     if letter(f, 2) in ("A", "E", "M", ""):
         yield from one("heading", HEADING, number(f, 1))
 
 
 def hdm(f: Fields) -> Iterable[Part]:
+    """HDM: magnetic heading."""
     return one("heading", MAGNETIC, number(f, 1))
 
 
 def hdg(f: Fields) -> Iterator[Part]:
+    """HDG: magnetic heading with its deviation, and the variation."""
     value = number(f, 1)
     if value is not None:
         yield "heading", MAGNETIC, value + (signed(f, 2) or 0.0)
@@ -102,6 +114,7 @@ def hdg(f: Fields) -> Iterator[Part]:
 
 
 def vhw(f: Fields) -> Iterator[Part]:
+    """VHW: heading, true and magnetic, and speed through the water."""
     yield from one("heading", HEADING, number(f, 1))
     yield from one("magnetic", MAGNETIC, number(f, 3))
     knots = number(f, 5)
@@ -113,6 +126,7 @@ def vhw(f: Fields) -> Iterator[Part]:
 
 
 def vbw(f: Fields) -> Iterator[Part]:
+    """VBW: speed through the water and over ground, ahead and aside, each if valid."""
     if letter(f, 3) == "A":
         yield from one("ahead", AHEAD_WATER, number(f, 1), KNOT)
         yield from one("aside", ASIDE_WATER, number(f, 2), KNOT)
@@ -122,10 +136,12 @@ def vbw(f: Fields) -> Iterator[Part]:
 
 
 def rot(f: Fields) -> Iterable[Part]:
+    """ROT: rate of turn [deg/s]."""
     return one("rate", "yaw_rate_degps", number(f, 1), 1.0 / 60.0) if letter(f, 2) in ("A", "") else ()
 
 
 def rsa(f: Fields) -> Iterator[Part]:
+    """RSA: rudder angle, of the starboard (or only) and of the port rudder."""
     if letter(f, 2) == "A":
         yield from one("starboard", "rudder_angle_deg", number(f, 1))
     if letter(f, 4) == "A":
@@ -133,6 +149,7 @@ def rsa(f: Fields) -> Iterator[Part]:
 
 
 def rpm(f: Fields) -> Iterator[Part]:
+    """RPM: rate of a shaft or an engine [rpm], and its pitch [%]."""
     shaft, no = letter(f, 1) == "S", letter(f, 2) or "0"
     if letter(f, 5) in ("A", ""):
         part, quantity = ("shaft", "propeller_rate_rpm") if shaft else ("engine", "engine_rate_rpm")
@@ -141,6 +158,7 @@ def rpm(f: Fields) -> Iterator[Part]:
 
 
 def mwv(f: Fields) -> Iterator[Part]:
+    """MWV: wind angle and speed, apparent or true, if valid."""
     angle, speed, scale = number(f, 1), number(f, 3), SPEED.get(letter(f, 4))
     if letter(f, 5) not in ("A", "") or angle is None or speed is None or scale is None:
         return
@@ -153,6 +171,7 @@ def mwv(f: Fields) -> Iterator[Part]:
 
 
 def mwd(f: Fields) -> Iterator[Part]:
+    """MWD: where the true wind comes from, and its speed."""
     direction, knots, metres = number(f, 1), number(f, 5), number(f, 7)
     if direction is not None and (metres is not None or knots is not None):
         yield "direction", "true_wind_direction_deg", direction
@@ -160,6 +179,7 @@ def mwd(f: Fields) -> Iterator[Part]:
 
 
 def vwr(f: Fields) -> Iterator[Part]:
+    """VWR: apparent wind angle, positive to starboard, and speed."""
     angle, knots, metres = signed(f, 1, "L"), number(f, 3), number(f, 5)
     if angle is not None and (knots is not None or metres is not None):
         yield "angle", "apparent_wind_angle_deg", angle
@@ -167,12 +187,14 @@ def vwr(f: Fields) -> Iterator[Part]:
 
 
 def dpt(f: Fields) -> Iterator[Part]:
+    """DPT: water depth, from the surface where the transducer's offset says how far that is."""
     depth = number(f, 1)
     if depth is not None:
         yield "depth", "water_depth_m", depth + max(number(f, 2) or 0.0, 0.0)
 
 
 def dbt(f: Fields) -> Iterator[Part]:
+    """DBT: water depth below the transducer."""
     feet, metres = number(f, 1), number(f, 3)
     yield from (
         one("depth", "water_depth_m", metres)
@@ -182,6 +204,7 @@ def dbt(f: Fields) -> Iterator[Part]:
 
 
 def xdr(f: Fields) -> Iterator[Part]:
+    """XDR: roll, by the transducer names that are in use."""
     for i in range(1, len(f) - 3, 4):
         if letter(f, i) == "A" and letter(f, i + 3) in ("ROLL", "PTCH_ROLL", "HEEL"):
             yield from one("roll", "roll_deg", number(f, i + 1))

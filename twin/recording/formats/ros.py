@@ -22,16 +22,20 @@ Message = tuple[str, str, float, Any]  # topic, type, when recorded [s], the mes
 
 
 def looks(lines: list[str], start: bytes) -> bool:
+    """Whether a file starts as a ROS 1 bag, or as a database of topics."""
     return start.startswith(b"#ROSBAG V") or (start.startswith(b"SQLite format 3") and b"topics" in start)
 
 
 def is_folder(path: Path) -> bool:
+    """Whether a folder holds a ROS 2 recording."""
     return path.is_dir() and (
         (path / "metadata.yaml").is_file() or any(path.glob("*.db3")) or any(path.glob("*.mcap"))
     )
 
 
 def read(path: Path) -> Signals:
+    """All messages of known types, and any sentences of NMEA 0183 among them. DataError: nothing of it can
+    be read."""
     out = Signals(path, SAYS)
     sentences = Nmea(out)
     try:
@@ -58,6 +62,8 @@ def messages(path: Path, out: Signals) -> Iterator[Message]:
 
 
 def of_bag(path: Path, out: Signals) -> Iterator[Message]:
+    """The messages of a ROS 1 bag or of a folder with its metadata; those that cannot be decoded are
+    counted."""
     highlevel = library("rosbags.highlevel", path, SAYS)
     with highlevel.AnyReader([path], default_typestore=typestore(path)) as reader:
         for connection, recorded_ns, raw in reader.messages():
@@ -70,11 +76,13 @@ def of_bag(path: Path, out: Signals) -> Iterator[Message]:
 
 
 def typestore(path: Path) -> Any:
+    """The definitions of message types that come with rosbags."""
     typesys = library("rosbags.typesys", path, SAYS)
     return typesys.get_typestore(typesys.Stores.ROS2_HUMBLE)
 
 
 def of_db3(path: Path, out: Signals) -> Iterator[Message]:
+    """The messages of a database, in order of time."""
     store = typestore(path)
     with sqlite3.connect(f"file:{path}?mode=ro", uri=True) as db:
         topics = {row[0]: (row[1], row[2]) for row in db.execute("select id, name, type from topics")}
@@ -86,6 +94,7 @@ def of_db3(path: Path, out: Signals) -> Iterator[Message]:
 
 
 def of_mcap(path: Path, out: Signals) -> Iterator[Message]:
+    """The messages of an MCAP file, with the types that it defines itself."""
     typesys, store = library("rosbags.typesys", path, SAYS), typestore(path)
     with open(path, "rb") as stream:
         for schema, channel, message in (
@@ -101,6 +110,7 @@ def of_mcap(path: Path, out: Signals) -> Iterator[Message]:
 def decoded(
     store: Any, out: Signals, topic: str, kind: str, recorded_ns: int, raw: bytes
 ) -> Iterator[Message]:
+    """The message, decoded; one that cannot be is counted."""
     try:
         yield topic, kind, recorded_ns * 1e-9, store.deserialize_cdr(raw, kind)
     except Exception:
@@ -108,6 +118,7 @@ def decoded(
 
 
 def take(out: Signals, sentences: Nmea, topic: str, kind: str, recorded_s: float, message: Any) -> None:
+    """A message's values into their series, at its own stamp or the recorder's."""
     t = stamp(message, recorded_s)
     if kind == SENTENCE:
         sentences.sentence_at(str(message.sentence), t)

@@ -15,18 +15,22 @@ EARTH = ("map", "odom", "enu", "world", "earth", "utm", "gps", "local")
 
 
 def is_down(frame: str) -> bool:
+    """Whether a frame's name says that its z points down."""
     return any(word in frame.lower() for word in DOWN)
 
 
 def is_body(frame: str) -> bool:
+    """Whether a frame's name says that its axes are the ship's."""
     return any(word in frame.lower() for word in (*BODY, "frd", "fsd", "flu"))
 
 
 def is_earth(frame: str) -> bool:
+    """Whether a frame's name says that its axes are fixed to the earth."""
     return any(word in frame.lower() for word in (*EARTH, "ned"))
 
 
 def frame_of(message: Any) -> str:
+    """The frame that a message's header names; "": none."""
     return str(getattr(getattr(message, "header", None), "frame_id", ""))
 
 
@@ -38,6 +42,7 @@ def yaw_roll(q: Any) -> tuple[float, float]:
 
 
 def attitude(q: Any, down: bool) -> Iterator[Part]:
+    """True heading and roll [deg] of a quaternion; none of one that is all zeros."""
     if q.x == q.y == q.z == q.w == 0.0:
         return
     yaw, roll = yaw_roll(q)
@@ -46,23 +51,27 @@ def attitude(q: Any, down: bool) -> Iterator[Part]:
 
 
 def place(p: Any, down: bool) -> Iterator[Part]:
+    """Position [m], north and east, of one that counts north and east or east and north."""
     yield "north", "north_m", p.x if down else p.y
     yield "east", "east_m", p.y if down else p.x
 
 
 def body_velocity(t: Any, down: bool) -> Iterator[Part]:
+    """Velocity ahead and to starboard [m/s], and yaw rate [deg/s]."""
     yield "surge", "surge_velocity_mps", t.linear.x
     yield "sway", "sway_velocity_mps", t.linear.y if down else -t.linear.y
     yield "rate", "yaw_rate_degps", degrees(t.angular.z if down else -t.angular.z)
 
 
 def fix(m: Any, frame: str) -> Iterator[Part]:
+    """Latitude and longitude [deg], if there is a fix."""
     if m.status.status >= 0:
         yield "latitude", "latitude_deg", m.latitude
         yield "longitude", "longitude_deg", m.longitude
 
 
 def odometry(m: Any, frame: str) -> Iterator[Part]:
+    """Position, heading and velocity, as its two frames have them."""
     down = is_down(frame)
     yield from place(m.pose.pose.position, down)
     yield from attitude(m.pose.pose.orientation, down)
@@ -70,6 +79,7 @@ def odometry(m: Any, frame: str) -> Iterator[Part]:
 
 
 def imu(m: Any, frame: str) -> Iterator[Part]:
+    """Heading and roll, where there is an attitude, and yaw rate."""
     down = is_down(frame)
     if m.orientation_covariance[0] >= 0.0:
         yield from attitude(m.orientation, down)
@@ -77,16 +87,19 @@ def imu(m: Any, frame: str) -> Iterator[Part]:
 
 
 def pose(m: Any, frame: str) -> Iterator[Part]:
+    """Position and heading, with a covariance or without."""
     inner = m.pose.pose if hasattr(m.pose, "pose") else m.pose
     yield from place(inner.position, is_down(frame))
     yield from attitude(inner.orientation, is_down(frame))
 
 
 def quaternion(m: Any, frame: str) -> Iterator[Part]:
+    """Heading and roll."""
     yield from attitude(m.quaternion, is_down(frame))
 
 
 def twist(m: Any, frame: str) -> Iterator[Part]:
+    """Velocity, in the axes that the frame names."""
     inner = m.twist.twist if hasattr(m.twist, "twist") else m.twist
     if is_body(frame):
         yield from body_velocity(inner, is_down(frame))

@@ -11,7 +11,8 @@ SAME_S = 1e-6  # stamps nearer than this are one instant
 
 
 def as_columns(signals: Signals, names: Iterable[str]) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """(time_s (N,), {name: (N,)}) of the named series, NaN where one was not read."""
+    """(time_s (N,), {name: (N,)}) of the named series, NaN where one was not read. The time is in [s], the
+    rest in the unit of each."""
     picked = {name: signals.series[name].arrays() for name in dict.fromkeys(names)}
     if not picked:
         return np.zeros(0), {}
@@ -24,6 +25,6 @@ def as_columns(signals: Signals, names: Iterable[str]) -> tuple[np.ndarray, dict
 
 
 def instants(stamps: list[np.ndarray]) -> np.ndarray:
-    """All stamps once, in order."""
+    """All stamps (N,) [s] once, in order; those that are nearer than SAME_S are one."""
     base = np.unique(np.concatenate(stamps))
     return base[np.r_[True, np.diff(base) > SAME_S]] if base.size else base

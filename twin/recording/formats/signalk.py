@@ -40,6 +40,7 @@ SELF = ("", "self", "vessels.self")
 
 
 def looks(lines: list[str], start: bytes) -> bool:
+    """Whether a line of the head is a delta."""
     return any('"updates"' in s and '"values"' in s and "{" in s for s in lines[:10])
 
 
@@ -69,6 +70,7 @@ def read(path: Path) -> Signals:
 
 
 def take(out: Signals, update: dict[str, Any], received: float | None, number: int) -> None:
+    """The values of one update at its own stamp, or at the recorder's; without either it is counted."""
     t = from_iso(str(update.get("timestamp", "")))
     t = received if t is None else t
     values = update.get("values")
@@ -103,6 +105,7 @@ def flat(path: str, value: Any) -> list[tuple[str, float]]:
 
 
 def sample(out: Signals, path: str, source: str, t: float, value: float) -> None:
+    """One value of a path at `t` [s since 1970], in the quantity's unit; other paths are counted."""
     parts = path.split(".")
     if parts[0] == "propulsion" and parts[-1] == "revolutions":
         shaft = "drive" in parts or "shaft" in path.lower()

@@ -48,11 +48,12 @@ class Series:
         return len(self.times)
 
     def add(self, time_s: float, value: float) -> None:
+        """One more sample."""
         self.times.append(time_s)
         self.values.append(value)
 
     def arrays(self) -> tuple[np.ndarray, np.ndarray]:
-        """(stamps [s] in order, values): a stamp that comes twice keeps its last sample."""
+        """(stamps (N,) [s] in order, values (N,)): a stamp that comes twice keeps its last sample."""
         t, x = np.frombuffer(self.times), np.frombuffer(self.values)
         good = np.isfinite(t) & np.isfinite(x)
         t, x = t[good], x[good]

@@ -20,6 +20,7 @@ def days_from_civil(year: int, month: int, day: int) -> int:
 
 
 def from_iso(text: str) -> float | None:
+    """Seconds since 1970 of an ISO 8601 date and time; None: there is none."""
     found = ISO.search(text)
     if not found:
         return None
@@ -39,6 +40,7 @@ def from_iso(text: str) -> float | None:
 
 
 def from_day(text: str) -> float | None:
+    """Seconds since midnight of a time of day; None: there is none."""
     found = DAY.search(text)
     if not found:
         return None

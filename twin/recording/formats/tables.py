@@ -19,14 +19,17 @@ Piece = dict[str, Any]  # column: float array, or a list of words
 
 
 def looks_parquet(lines: list[str], start: bytes) -> bool:
+    """Whether a file starts as Parquet does."""
     return start.startswith(b"PAR1")
 
 
 def looks_feather(lines: list[str], start: bytes) -> bool:
+    """Whether a file starts as Arrow or Feather does."""
     return start.startswith((b"ARROW1", b"FEA1"))
 
 
 def looks_excel(lines: list[str], start: bytes) -> bool:
+    """Whether a file starts as an Excel workbook does."""
     return start.startswith(b"PK") and (
         b"[Content_Types].xml" in start or b"xl/" in start or b"_rels/" in start
     )
@@ -124,7 +127,8 @@ class Excel(Packed):
 
 
 def plain(path: Path, name: str, column: Any) -> Any:
-    """An Arrow column as floats (moments as seconds since 1970), or as words."""
+    """An Arrow column as floats (moments as seconds since 1970), or as words. DataError: its cells are of
+    a kind that no reading has."""
     import pyarrow as pa
 
     kind = column.type
@@ -151,6 +155,7 @@ def cells(values: list[Any]) -> Any:
 
 
 def number(cell: Any) -> float:
+    """A cell as a number: a date or a moment as seconds since 1970, an empty cell as NaN."""
     if cell is None:
         return float("nan")
     if isinstance(cell, datetime):

@@ -10,6 +10,7 @@ PIECE = 1 << 20
 
 
 def is_zip(path: Path) -> bool:
+    """Whether a path is a .zip."""
     return path.suffix.lower() == ".zip" and path.is_file()
 
 

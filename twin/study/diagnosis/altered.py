@@ -92,7 +92,7 @@ def changed_derivatives(case: Case, model: Model) -> np.ndarray:
 
 
 def widened(nuisance: Nuisance, extra: np.ndarray) -> Nuisance:
-    """The same knowledge with so much more doubt in each number [its own unit]."""
+    """The same knowledge with so much more doubt in each number [its own unit]. `extra` (C,)."""
     covariance = np.linalg.inv(nuisance.information)
     mean = covariance @ nuisance.pull
     information = np.linalg.inv(covariance + np.diag((extra / [u.sd for u in nuisance.unknowns]) ** 2))

@@ -108,10 +108,13 @@ class Case:
     def reduced(
         self, lines: Sequence[Linear], floors: Sequence[NoiseModel], at: np.ndarray | None = None
     ) -> list[Reduced]:
+        """For each floor, what these lines say of the effects alone; `at` (Q,) in prior widths: where they
+        were linearised."""
         normals = innovate(lines, floors, MOST_SEGMENTS // (1 + len(floors) // 9))
         return [reduce(n, self.nuisance, self.unknowns, self.effects, self.temper, at) for n in normals]
 
     def scenarios(self, names: Sequence[str], doubt: float = 0.0) -> list[NoiseModel]:
+        """The noise models of these scenarios, where the effects' forms are known this roughly."""
         floors = (
             (self.path if w.alone else self.floor).scaled(w.share, flow=w.flow)
             for w in map(SCENARIOS.__getitem__, names)
@@ -120,13 +123,15 @@ class Case:
 
     @cached_property
     def told(self) -> np.ndarray:
-        """(P, P) what these voyages tell of all unknowns, where they were linearised."""
+        """(P, P) what these voyages tell of all unknowns, where they were linearised. Per unit of each
+        unknown: A, in their own units."""
         return innovate(self.lines, self.scenarios(["usual"]), MOST_SEGMENTS)[0].total()[0]
 
     def along(self, lines: Sequence[Linear], chosen: Sequence[str] = ()) -> tuple["Case", np.ndarray]:
-        """The same with these lines and few columns: the directions in the place of the nuisance's own, and
-        the numbers of all effects, or of those that are `chosen` or that any day brings (others have a
-        hundredth of a prior width each, which steers nothing); and which of `effects` are left."""
+        """The same with these lines and few columns: the directions in the place of the nuisance's own,
+        and the numbers of all effects, or of those that are `chosen` or that any day brings (others have a
+        hundredth of a prior width each, which steers nothing); and which of `effects` are left, a mask
+        (Q,)."""
         kept = np.array(
             [not chosen or u.owner in chosen or u.label in self.nuisance.daily for u in self.effects]
         )
@@ -146,6 +151,8 @@ class Case:
         ), kept
 
     def log_prior(self, chosen: Sequence[str], scenario: str) -> float:
+        """Log prior probability of a set of effects in a noise scenario; minus infinity for one that
+        cannot be."""
         changing = any(self.catalogue[name].is_weather() and self.catalogue[name].holds for name in chosen)
         if (scenario == "flooding" and not changing) or self._twice(chosen):
             return -np.inf

@@ -46,7 +46,8 @@ def consider(
     w: Weights,
     asked: AskedKinematics | None = None,
 ) -> Considered:
-    """`asked`: what kinematics say of these voyages, where an instrument is suspected."""
+    """The facts of the likeliest hypothesis, of what is without causes, and of every cause that may be
+    named. `asked`: what kinematics say of these voyages, where an instrument is suspected."""
     best, base = found[w.best.effects], without_causes(case, weighed, found)
     nothing = found[base]
     explanation, left = _explanation(case, weighed, found)

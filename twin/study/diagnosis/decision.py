@@ -70,6 +70,7 @@ def in_order(f: Facts) -> bool:
 
 
 def pushed(f: Facts) -> bool:
+    """Whether something pushed the ship for a while, and not before or after."""
     return f.transient > 0.0
 
 

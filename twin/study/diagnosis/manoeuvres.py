@@ -132,7 +132,8 @@ def _told(model: Model, orders: np.ndarray) -> dict[str, np.ndarray]:
 
 
 def separation(case: Case, model: Model, track: Track, first: str, second: str, z: np.ndarray) -> float:
-    """Log odds that this track would be expected to give for `first` (at z prior widths) against `second`."""
+    """Log odds that this track would be expected to give for `first` (at z (Q,) prior widths) against
+    `second`."""
     here, _ = case.model.without_inputs(track.missing())
     A = case.reduced([linearise(track, here, case.unknowns, case.catalogue)], [case.floor])[0]
     a, b = A.rows((first,)), A.rows((second,))
@@ -156,7 +157,7 @@ def reason(scores: Mapping[str, float], best: str) -> str:
 def next_manoeuvre(
     case: Case, model: Model, first: str, second: str, z: np.ndarray
 ) -> dict[str, object] | None:
-    """The manoeuvre that tells these two apart best, or None when none would."""
+    """The manoeuvre that tells these two apart best, or None when none would. `z` (Q,) in prior widths."""
     scores = {}
     for name, (order, _) in MANOEUVRES.items():
         track = sail(case, model, order)

@@ -106,6 +106,7 @@ def _too_small(f: Facts, c: Cause) -> bool:
 
 
 def why_not(f: Facts, c: Cause) -> str | None:
+    """Why a cause may not be named: the first rule that applies; None where none does."""
     return next((rule.reason for rule in CAUSE_RULES if rule.condition(f, c)), None)
 
 

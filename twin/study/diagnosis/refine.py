@@ -59,7 +59,7 @@ def refine(
     hoped: float = -np.inf,
     part: Found | None = None,
 ) -> tuple[Found, list[Hypothesis]]:
-    """Newton steps on the effects' own parameters, begun at `z` and taken in `scenario`, until they stand;
+    """Newton steps on the effects' own parameters, begun at z (Q,) and taken in `scenario`, until they stand;
     begun again farther out when that explains nothing plainly, or when a number whose effect is bent ended at
     nothing, or the whole below the log weight that was `hoped` for to first order (not those of effects that
     were found already, in a `part` of the set: they were looked for far out when they were); and from where
@@ -95,7 +95,7 @@ def best_place(
     part: Found | None = None,
     kept: np.ndarray | slice = slice(None),
 ) -> "BestPlace":
-    """The best of the iterations of `refine` (`kept`: which of all effects' numbers these are)."""
+    """The best of the iterations of `refine`, from z (E,) (`kept` (Q,): mask of all effects' numbers)."""
     known = part.hypothesis.effects if part else ()
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in chosen])
     new = np.array([i for i in mine if case.effects[i].owner not in known], dtype=int)
@@ -140,6 +140,7 @@ class BestPlace:
 
     @classmethod
     def of(cls, case: Case, chosen: Sets, at: np.ndarray, lines: Sequence[Linear]) -> "BestPlace":
+        """This place, `at` (E,), judged in every scenario that can be."""
         names = [n for n in SCENARIOS if np.isfinite(case.log_prior(chosen, n))]
         return cls(
             at,
@@ -162,11 +163,12 @@ class BestPlace:
 
     @property
     def best(self) -> Hypothesis:
+        """The likeliest there."""
         return max(self.judged.values(), key=lambda h: h.log_weight)
 
     def or_from(self, case: Case, chosen: Sets, mine: np.ndarray, z: np.ndarray) -> "BestPlace":
-        """This place, or a better one to which an iteration in the usual scenario leads from `z`; others are
-        asked only if that one is better."""
+        """This place, or a better one to which an iteration in the usual scenario leads from `z` (E,);
+        others are asked only if that one is better."""
         here, at, lines = newton(case, chosen, mine, "usual", z)
         if here.log_weight <= self.judged["usual"].log_weight:
             return self
@@ -176,9 +178,9 @@ class BestPlace:
 def newton(
     case: Case, chosen: Sets, mine: np.ndarray, scenario: str, z: np.ndarray
 ) -> tuple[Hypothesis, np.ndarray, Sequence[Linear]]:
-    """Where the effects' parameters come to stand: the hypothesis there (in that scenario, by columns of its
-    own alone), the place, and the tracks about it. A step after which the voyages are less probable is taken
-    back by half, and by half again: what is bent may lead a whole step astray."""
+    """Where the effects' parameters `mine` (M,) come to stand: the hypothesis there (in that scenario, by
+    columns of its own alone), the place (E,), and the tracks about it. A step after which the voyages are
+    less probable is taken back by half, and by half again: what is bent may lead a whole step astray."""
     lines: Sequence[Linear] = case.lines
     merit, best, aim, share, here = (
         -np.inf,
@@ -206,7 +208,7 @@ def newton(
 
 
 def reduced_at(case: Case, lines: Sequence[Linear], scenario: str, at: np.ndarray) -> Reduced | None:
-    """What the voyages say there; nothing where no filter can follow such a ship (without its mass, it
+    """What the voyages say at (Q,); nothing where no filter can follow such a ship (without its mass, it
     answers within a step)."""
     try:
         return case.reduced(lines, case.scenarios([scenario], DOUBTS[0]), at)[0]
@@ -258,7 +260,7 @@ def _any_day(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> list[Hypo
 
 
 def clipped(case: Case, z: np.ndarray) -> np.ndarray:
-    """Parameters kept inside their boxes, in prior widths."""
+    """Parameters (Q,) kept inside their boxes, in prior widths."""
     lo = np.array([(u.lo - u.centre) / u.sd for u in case.effects])
     hi = np.array([(u.hi - u.centre) / u.sd for u in case.effects])
     return np.clip(z, lo, hi)
@@ -267,8 +269,8 @@ def clipped(case: Case, z: np.ndarray) -> np.ndarray:
 def about(
     case: Case, z: np.ndarray, mine: np.ndarray, fresh: Sequence[Unknown]
 ) -> tuple[Model, list[Linear]]:
-    """The model with the parameters `mine` in it, and the tracks linearised about it (columns of other
-    unknowns than `fresh` stay what they were)."""
+    """The model with the parameters `mine` (M,) at z (Q,), and the tracks linearised about it (columns of
+    other unknowns than `fresh` stay what they were)."""
     own = [case.effects[i] for i in mine]
     values = [u.centre + u.sd * z[i] for i, u in zip(mine, own, strict=True)]
     model = with_values(case.model, own, values, case.catalogue)
@@ -290,8 +292,8 @@ def about(
 
 
 def standing(case: Case, found: Found, fresh: Sequence[Unknown] = ()) -> tuple[list[Linear], np.ndarray]:
-    """The tracks linearised where a hypothesis was found to stand (columns of its own numbers, or of all that
-    are to be `fresh`), and that place, in prior widths."""
+    """The tracks linearised where a hypothesis was found to stand (columns of its own numbers, or of all
+    that are to be `fresh`), and that place (Q,), in prior widths."""
     mine = np.array([i for i, u in enumerate(case.effects) if u.owner in found.hypothesis.effects], dtype=int)
     at = np.zeros(len(case.effects))
     at[mine] = found.posterior.z[mine]

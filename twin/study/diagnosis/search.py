@@ -146,6 +146,7 @@ class Hypotheses:
             self.entries[h.effects, h.scenario] = h
 
     def weighed(self) -> list[Hypothesis]:
+        """All that were entered, the likeliest first."""
         return sorted(self.entries.values(), key=lambda h: -h.log_weight)
 
     def proved(self, asked: OpenLoopCheck) -> list[Hypothesis]:

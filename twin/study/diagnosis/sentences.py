@@ -12,6 +12,7 @@ ROUGHLY = "in weather like this, whose force is known only roughly, that may be 
 
 
 def named(result: Result) -> str:
+    """Effects are named, with their force and what cannot be told from them."""
     names = [n for n in result["missing"] if not _is_weather(result, n)]
     first, beside = by_name(result)[names[0]], result["resembles"]
     size = f" Typically {force(first['typical_force'])}." if force(first["typical_force"]) else ""
@@ -29,6 +30,7 @@ def named(result: Result) -> str:
 
 
 def weather_only(result: Result) -> str:
+    """The model lacks water or weather, and no more."""
     names = " and ".join(likely(result, n) for n in result["missing"])
     return (
         f"Missing: {names}: water and weather of these voyages. Of ship and instruments nothing is "
@@ -37,6 +39,7 @@ def weather_only(result: Result) -> str:
 
 
 def weather_at_least(result: Result) -> str:
+    """The same, where the voyages cannot tell whether there is more."""
     names = " and ".join(likely(result, n) for n in result["missing"])
     return (
         f"Missing: {names}: water and weather of these voyages. Whether something of ship or instruments is "
@@ -45,6 +48,7 @@ def weather_at_least(result: Result) -> str:
 
 
 def nothing(result: Result) -> str:
+    """Nothing is missing."""
     return (
         "Nothing is missing: what the model cannot explain is no more than it left unexplained on good "
         "voyages."
@@ -52,6 +56,7 @@ def nothing(result: Result) -> str:
 
 
 def resembles(result: Result) -> str:
+    """Something is missing that resembles an effect."""
     like, near = result["resembles"][0], _near(result)
     beside = f" Beside it: {' with '.join(near)}." if near else ""
     return (
@@ -61,6 +66,7 @@ def resembles(result: Result) -> str:
 
 
 def pushed(result: Result) -> str:
+    """Something is missing that acted for a while."""
     return (
         "Something is missing that no known effect explains: a force pushed the ship "
         f"{when(result['moments'][0])}, and not before or after."
@@ -68,12 +74,14 @@ def pushed(result: Result) -> str:
 
 
 def unexplained(result: Result) -> str:
+    """Something is missing that no effect explains."""
     near = _near(result)
     nearest = f" Nearest, but not enough: {' with '.join(near)}." if near else ""
     return f"Something is missing, but none of the known effects explains it.{nearest}"
 
 
 def one_of(result: Result) -> str:
+    """One of several effects, which nobody can tell apart."""
     *others, last = [likely(result, n) for n in result["one_of"]]
     return (
         f"Undecided: something is missing, {', '.join(others)} or {last}; these voyages cannot tell them "
@@ -82,6 +90,7 @@ def one_of(result: Result) -> str:
 
 
 def no_manoeuvre(result: Result) -> str:
+    """The voyages hold no manoeuvre."""
     return (
         "Undecided: no manoeuvre was sailed, and on a ship that holds course and speed no cause can be told "
         "apart from another."
@@ -89,11 +98,13 @@ def no_manoeuvre(result: Result) -> str:
 
 
 def weather(result: Result) -> str:
+    """It may be the weather."""
     says = next((likely(result, c["effect"]) for c in result["candidates"]), "something")
     return f"Undecided: the readings point to {says}, but {ROUGHLY}. A calmer voyage would tell."
 
 
 def as_near(result: Result) -> str:
+    """The open-loop error shows no clear difference."""
     return (
         "Undecided: the readings differ from what is usual, and no effect explains how; but "
         f"{_error(result)}, which is no clear difference."
@@ -101,10 +112,12 @@ def as_near(result: Result) -> str:
 
 
 def astray(result: Result) -> str:
+    """The open-loop error is there, and no effect is likely."""
     return f"Undecided: no known effect is likely, but {_error(result)}."
 
 
 def pushed_in_weather(result: Result) -> str:
+    """A push, in waves."""
     return (
         f"Undecided: {when(result['moments'][0])} a force pushed the ship, and not before or after. "
         "In waves that may be a group of high ones."
@@ -112,6 +125,7 @@ def pushed_in_weather(result: Result) -> str:
 
 
 def not_named(result: Result) -> str:
+    """Why the likeliest effect is not named."""
     c = next(c for c in result["candidates"] if c["effect"] in result["answer"]["not_named"])
     return (
         f"Undecided: the readings ask for {likely(result, c['effect'])}, but "
@@ -120,6 +134,7 @@ def not_named(result: Result) -> str:
 
 
 def no_power(result: Result) -> str:
+    """The voyages would not have shown it."""
     return (
         "Undecided: nothing shows, but these voyages would not have shown most of what may be missing. "
         "Sail a zigzag, and change speed."
@@ -127,6 +142,7 @@ def no_power(result: Result) -> str:
 
 
 def cannot_tell(result: Result) -> str:
+    """The voyages cannot tell."""
     return "Undecided: these voyages cannot tell what, if anything, is missing."
 
 
@@ -155,6 +171,7 @@ def why_not(c: Result, reason: str) -> str:
 
 
 def by_name(result: Result) -> Result:
+    """The candidates by their effect."""
     return {c["effect"]: c for c in result["candidates"]}
 
 
@@ -183,10 +200,12 @@ def force(forces: Result) -> str:
 
 
 def when(m: Result) -> str:
+    """From when to when on which voyage."""
     return f"from {clock(m['start_s']).strip()} to {clock(m['end_s']).strip()} on {m['voyage']}"
 
 
 def clock(seconds: float) -> str:
+    """Seconds as minutes and seconds, m:ss."""
     return f"{int(seconds) // 60:>4d}:{int(seconds) % 60:02d}"
 
 

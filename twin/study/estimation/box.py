@@ -9,9 +9,10 @@ INSIDE = 1e-9  # by which a half-space may seem left, in widths of priors
 def stopped(
     mean: np.ndarray, covariance: np.ndarray, lo: np.ndarray, hi: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """(R,) the most probable place of a normal density inside a box, and which numbers stand at its edge: one
-    that would leave it stays there, and the others are what they then would be (two that do for each other
-    may not stand far out, one inside its box and one outside)."""
+    """(R,) the most probable place of a normal density inside a box, and which numbers stand at its edge:
+    one that would leave it stays there, and the others are what they then would be (two that do for each
+    other may not stand far out, one inside its box and one outside). All in one unit: `mean`, `lo`, `hi`
+    (R,), covariance (R, R)."""
     z, held, sd = mean, np.zeros(0, dtype=int), np.sqrt(np.diag(covariance))
     for _ in mean:
         beyond = np.abs(z - np.clip(z, lo, hi)) / sd
@@ -32,8 +33,8 @@ def within(
 ) -> np.ndarray:
     """(R,) the same inside the box (2, R) and where rows @ z >= least, of `hull`: (C, R), (C,).
 
-    The least distance in the density's own measure [Lawson & Hanson 1974, ch. 23: LDP by non-negative least
-    squares]; where nothing lies inside all of them, the box alone."""
+    The least distance in the density's own measure [Lawson & Hanson 1974, ch. 23: LDP by non-negative
+    least squares]; where nothing lies inside all of them, the box alone. All in one unit, as in `stopped`."""
     lo, hi = box
     rows, least = hull
     z, _ = stopped(mean, covariance, lo, hi)

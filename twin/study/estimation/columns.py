@@ -35,6 +35,7 @@ class Unknown:
 
     @property
     def label(self) -> str:
+        """Owner and name, as in core.N_r."""
         return f"{self.owner}.{self.name}"
 
 

@@ -68,7 +68,7 @@ def half_spaces(ship: Ship, unknowns: Sequence[Unknown]) -> HalfSpaces:
 
 
 def power(ship: Ship, u: np.ndarray, v: np.ndarray, r: np.ndarray) -> np.ndarray:
-    """Power [W] that the hull's damping takes out of its motion at (u, v [m/s], r [rad/s])."""
+    """(N,) power [W] that the hull's damping takes out of its motion at (u, v [m/s], r [rad/s])."""
     X, Y, N = core.damping(u, v, r, ship.c)
     return np.asarray(-(X * u + Y * v + N * r))
 

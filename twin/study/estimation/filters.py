@@ -66,8 +66,9 @@ class Filters:
         self.light = _On(told.F.astype(LIGHT), None if told.swing is None else told.swing.astype(LIGHT))
 
     def correct(self, k: int) -> tuple[np.ndarray, np.ndarray]:
-        """By the readings of step k; gives the whitened innovations with their tangents (W, S, 8, 1 + P), and
-        the diagonal of the root of their covariance (W, S, 8). RunsAway where their covariance is none."""
+        """By the readings of step k; gives the innovations with their tangents (W, S, 8, 1 + P), in
+        standard deviations, and the diagonal of the root of their covariance (W, S, 8). RunsAway where
+        their covariance is none."""
         told, H = self.told, self.told.H[k]
         E = told.shown[k] - self.H[k] @ self.X[..., SHIP, :]
         for column, turn in told.turns.items():

@@ -44,10 +44,12 @@ class Fit:
 
     @property
     def sd(self) -> np.ndarray:
+        """(P,) standard deviation of each number, in its own unit."""
         return np.sqrt(np.diag(self.covariance))
 
     @property
     def gained(self) -> np.ndarray:
+        """(P,) share of each number's prior variance that the data took away."""
         prior = np.array([u.sd for u in self.unknowns])
         return 1.0 - (self.sd / prior) ** 2
 
@@ -224,7 +226,8 @@ def _present(model: Model, unknown: Unknown) -> float:
 
 
 def evidence(normal: Normal, sd: np.ndarray, offset: np.ndarray | None = None) -> float:
-    """Log probability of the innovations with the unknowns integrated out over N(offset, sd^2)."""
+    """Log probability of the innovations with the unknowns integrated out over N(offset, sd^2). Both (P,),
+    in the unknowns' own units."""
     A, b, ee = normal.total()
     A, b = A * np.outer(sd, sd), b * sd
     if offset is not None:

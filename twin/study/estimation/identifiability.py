@@ -29,9 +29,8 @@ Features = Callable[[Situation], np.ndarray]  # (N, F) of a situation of arrays
 def report(
     voyage: Voyage, model: Model, residual: Features | None = None, W: np.ndarray | None = None
 ) -> dict[str, Any]:
-    """`observability` by set of sensors, `angles` by effect, `residual` where its features (and last layer)
-    are given; see `text`.
-    """
+    """`observability` by set of sensors, `angles` by effect, `residual` where its features (and last
+    layer) are given; see `text`. `W` (3, F): the residual's last layer, in units of the force scale."""
     t = track(voyage, model.ship)
     return {
         "voyage": voyage.name,
@@ -70,9 +69,9 @@ def angles(t: Track, model: Model) -> dict[str, dict[str, Any]]:
 def residual_angles(
     t: Track, model: Model, features: Features, W: np.ndarray | None = None
 ) -> dict[str, dict[str, Any]]:
-    """For each axis: the residual's features against the core's columns of that axis (the paper's F_theta
-    against F_D); with its last layer W (3, F) also how much of the learned force the core could give itself.
-    """
+    """For each axis: the residual's features against the core's columns of that axis [deg] (the paper's
+    F_theta against F_D); with its last layer W (3, F) also how much of the learned force the core could
+    give itself. DataError: there are not as many features as samples."""
     thin, known = _thinned(t), of_ship(model.ship)
     A = columns(thin, model, core_unknowns(model), known)[0]
     s = thin.situation()
@@ -107,9 +106,8 @@ def _inside(span: np.ndarray, core: np.ndarray) -> float:
 
 
 def principal(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Principal angles [deg] between two spans, from orthonormal bases; small ones by their sine, which keeps
-    its digits.
-    """
+    """Principal angles [deg] between two spans, from orthonormal bases; small ones by their sine, which
+    keeps its digits. The bases (N, A) and (N, B) give as many angles as the smaller has columns, (K,)."""
     if a.shape[1] > b.shape[1]:
         a, b = b, a
     cosines = np.clip(np.linalg.svd(a.T @ b, compute_uv=False), 0.0, 1.0)
@@ -119,8 +117,7 @@ def principal(a: np.ndarray, b: np.ndarray) -> np.ndarray:
 
 def basis(span: np.ndarray) -> np.ndarray:
     """(rows, d) orthonormal; columns are put to the same size first, and directions below 1e-6 of the
-    strongest dropped.
-    """
+    strongest dropped. Of a span (N, C), (N, D) with D at most C, dimensionless."""
     size = np.linalg.norm(span, axis=0)
     u, s, _ = np.linalg.svd(span[:, size > 0.0] / size[size > 0.0], full_matrices=False)
     return u[:, s > 1e-6 * s[0]]

@@ -67,6 +67,7 @@ class NoiseModel:
     doubt: float = 0.0
 
     def scaled(self, factor: float = 1.0, white: float = 1.0, flow: float = 1.0) -> "NoiseModel":
+        """The same with its slow part, its fast part and the water's flow times these factors."""
         (a, b, c), (d, e, f) = self.share, self.white
         return replace(
             self,

@@ -60,7 +60,7 @@ class Linear:
     slack: np.ndarray | float = 0.0  # (N, 3): and one that no hypothesis takes away, of effects in the model
 
     def only(self, columns: np.ndarray) -> "Linear":
-        """The same with some of the unknowns (places, in the order that is wanted)."""
+        """The same with some of the unknowns (places, in the order that is wanted). `columns` (K,): index."""
         turns = {k: self.turns[j] for k, j in enumerate(columns.tolist()) if j in self.turns}
         bends = None if self.bends is None else self.bends[..., columns]
         return replace(self, A=self.A[:, :, columns], R=self.R[:, :, columns], turns=turns, bends=bends)

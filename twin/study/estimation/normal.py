@@ -20,10 +20,11 @@ class Normal:
     where: tuple[tuple[int, int, int], ...]  # (track, first step, last step)
 
     def total(self) -> tuple[np.ndarray, np.ndarray, float]:
+        """A (P, P), b (P,) and ee of all segments together, per unit of the unknowns."""
         return self.A.sum(0), self.b.sum(0), float(self.ee.sum())
 
     def only(self, keep: np.ndarray) -> "Normal":
-        """Some of the segments."""
+        """Some of the segments. `keep` (S,): mask."""
         rows = np.flatnonzero(keep)
         return Normal(
             self.A[rows],
@@ -48,8 +49,8 @@ class Sums:
         self.held: list[tuple[np.ndarray, np.ndarray]] = []
 
     def add(self, white: np.ndarray, root: np.ndarray) -> None:
-        """One step: innovations with their tangents (W, S, 8, 1 + P), and the diagonal of the root of their
-        covariance (W, S, 8)."""
+        """One step: innovations with their tangents (W, S, 8, 1 + P), in standard deviations, and the
+        diagonal of the root of their covariance (W, S, 8)."""
         self.held.append((white, root))
         if len(self.held) == FOLD:
             self._fold()
@@ -63,7 +64,7 @@ class Sums:
             self.held = []
 
     def normals(self, here: np.ndarray, where: tuple[tuple[int, int, int], ...]) -> list[Normal]:
-        """One for each floor; `here` (T, S, 8): which readings there were."""
+        """One for each floor; `here` (T, S, 8): which readings there were. In units of the unknowns."""
         self._fold()
         count = here.sum((0, 2)).astype(float)
         told = zip(self.M, self.logdet, self.energy, strict=True)

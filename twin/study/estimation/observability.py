@@ -54,7 +54,8 @@ def observability(t: Track, model: Model) -> dict[str, Any]:
 
 
 def gramian(answer: np.ndarray) -> dict[str, Any]:
-    """(K, readings, unknowns) answers in sigmas for one prior width each -> the verdict on one window."""
+    """(K, 8, 11): (K, readings, unknowns) answers in sigmas for one prior width each -> the verdict on one
+    window."""
     S = answer.reshape(-1, answer.shape[-1])
     _, size, directions = np.linalg.svd(S, full_matrices=True)
     size = np.append(size, np.zeros(len(directions) - size.size))
@@ -71,7 +72,8 @@ def gramian(answer: np.ndarray) -> dict[str, Any]:
 
 
 def sensitivities(t: Track, model: Model) -> list[np.ndarray]:
-    """For each window (K, 8, 11): what the readings answer, in sigmas, to a prior width of each."""
+    """For each window (K, 8, 11): what the readings answer, in sigmas, to a prior width of each.
+    DataError: no window has rudder and propeller throughout."""
     steps = max(int(LENGTHS * float(model.ship.scale("time")) / t.h), 8)
     starts = [k for k in range(0, len(t) - steps, steps) if t.whole[k : k + steps].all()]
     if not starts:
@@ -86,7 +88,7 @@ def sensitivities(t: Track, model: Model) -> list[np.ndarray]:
 
 
 def prior_widths(model: Model) -> np.ndarray:
-    """(11,) what is not known of UNKNOWNS before any measurement, in the ship's own scales."""
+    """(11,) what is not known of UNKNOWNS before any measurement, in the ship's own scales: SI."""
     ship = model.ship
     L, U, time, force = (float(ship.scale(of)) for of in ("length", "speed", "time", "force"))
     return np.array(

@@ -25,7 +25,7 @@ def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
 
 
 def accelerations(track: Track, model: Model) -> np.ndarray:
-    """(N, 3) accelerations alone."""
+    """(N, 3) accelerations alone. In m/s2 and rad/s2: SI."""
     return _nu_dot(track.situation(**steered(track, model)), model)
 
 
@@ -42,8 +42,8 @@ def _nu_dot(s: Situation, model: Model) -> np.ndarray:
 
 
 def readings(s: Situation, model: Model) -> np.ndarray:
-    """(N, 8): what the instruments say of situation s (whose u_r and v_r the model has set), faults and
-    all."""
+    """(N, 8), in SI: what the instruments say of situation s (whose u_r and v_r the model has set), faults
+    and all."""
     for fault in model.faults:
         s = fault.read(replace(s), model.loaded)
     return np.column_stack([np.broadcast_to(getattr(s, name), np.shape(s.psi)) for name in READINGS])
@@ -53,8 +53,8 @@ SATELLITES = [READINGS.index(name) for name in ("x", "y", "u", "v")]
 
 
 def later(track: Track, shown: np.ndarray, late_s: float) -> np.ndarray:
-    """The readings (N, 8), those of the satellites as they were so long ago: on each stretch of consecutive
-    steps, along a straight line before its first and behind its last."""
+    """The readings (N, 8), in SI, those of the satellites as they were so long ago: on each stretch of
+    consecutive steps, along a straight line before its first and behind its last."""
     if not late_s:
         return shown
     out = shown.copy()
@@ -69,9 +69,9 @@ def later(track: Track, shown: np.ndarray, late_s: float) -> np.ndarray:
 
 
 def when_true(track: Track, e: np.ndarray, late_s: float) -> np.ndarray:
-    """What readings (N, 8) are off by, the satellites' at the step at which what they show was true, so that
-    a filter mends the motion of that step by them; on each stretch what was shown before its first step goes
-    to its last ones, that nothing is lost or won by being late."""
+    """What readings (N, 8), in SI, are off by, the satellites' at the step at which what they show was
+    true, so that a filter mends the motion of that step by them; on each stretch what was shown before its
+    first step goes to its last ones, that nothing is lost or won by being late."""
     out, steps = e.copy(), round(late_s / track.h)
     for a, b in stretches(track) if steps else ():
         out[a:b, SATELLITES] = np.roll(e[a:b, SATELLITES], -steps, axis=0)
@@ -98,7 +98,7 @@ def steered(track: Track, model: Model) -> dict[str, Any]:
 
 
 def keep_steered(track: Track, model: Model, of: Track, steps: np.ndarray) -> None:
-    """Lets a choice of steps of a track remember what lags made of all of them."""
+    """Lets a choice of steps of a track remember what lags made of all of them. `steps` (K,): index."""
     delta, told = _lagged(of, model)
     some = None if told is None else {k: x[steps] for k, x in told.items()}
     track.rudder[model.lags] = (delta[steps], some)
@@ -150,8 +150,8 @@ def _between(values: np.ndarray) -> np.ndarray:
 
 
 def jacobian(track: Track, model: Model) -> np.ndarray:
-    """(N, 3, 6) derivative of the accelerations by x, y, psi, u, v, r, by central differences (position does
-    not matter)."""
+    """(N, 3, 6) derivative of the accelerations by x, y, psi, u, v, r, by central differences (position
+    does not matter). In SI."""
     controls = steered(track, model)
     U, r = float(model.ship.scale("speed")), 1.0 / float(model.ship.scale("time"))
     out = np.zeros((len(track), 3, 6))
@@ -167,7 +167,7 @@ def jacobian(track: Track, model: Model) -> np.ndarray:
 
 def faulty(track: Track, model: Model) -> np.ndarray:
     """(N, 8, 8) derivative of what the model's faulty instruments show by what they would show were they
-    right: a compass that is off turns what is left of one speed into the other."""
+    right: a compass that is off turns what is left of one speed into the other. In SI."""
     L, U, time = float(model.ship.L_pp), float(model.ship.scale("speed")), float(model.ship.scale("time"))
     out = np.zeros((len(track), len(READINGS), len(READINGS)))
     right = track.situation()

@@ -21,8 +21,8 @@ ROUNDS = 3  # of the fixed point: faults of place, heading and wind together
 
 
 def true_motion(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray | None]:
-    """(N, 6) the smooth motion as it would be without the model's sensor faults, and the wind's direction
-    (N,) likewise.
+    """(N, 6) the smooth motion in SI as it would be without the model's sensor faults, and the wind's
+    direction (N,) [rad] likewise.
 
     Late places are shown earlier; then place and heading are corrected until the faulty instruments would
     show what they showed; speeds follow from them. What a fault depends on beyond them is taken from the
@@ -102,7 +102,7 @@ def _turned(shown: np.ndarray, place: np.ndarray) -> np.ndarray:
 
 
 def kinematics(place: np.ndarray, h: float) -> np.ndarray:
-    """(N, 6) the motion along a path of x, y, psi (N, 3)."""
+    """(N, 6) the motion along a path of x, y, psi (N, 3). In SI, `h` in [s]."""
     north, east, r = np.gradient(place, h, axis=0).T
     c, s = np.cos(place[:, 2]), np.sin(place[:, 2])
     return np.column_stack([place, north * c + east * s, east * c - north * s, r])
@@ -121,7 +121,7 @@ def _read(track: Track, model: Model, state: np.ndarray, wind_to: np.ndarray | N
 
 def noisy(track: Track, model: Model, rng: np.random.Generator) -> np.ndarray:
     """(N, 6) one draw of how far the smooth motion is off, when the readings scatter as they do: smoothed
-    like the readings."""
+    like the readings. In SI."""
     exact = np.column_stack([track.state, track.measured[:, 6:]])
     shaken = np.where(
         np.isfinite(track.measured), exact + track.sd * rng.standard_normal(exact.shape), np.nan
@@ -130,8 +130,8 @@ def noisy(track: Track, model: Model, rng: np.random.Generator) -> np.ndarray:
 
 
 def seen(track: Track) -> np.ndarray:
-    """(N, 8) the readings, each joined by straight lines over holes of at most BRIDGE_S, so that a slow one
-    can be compared."""
+    """(N, 8) the readings, each joined by straight lines over holes of at most BRIDGE_S, so that a slow
+    one can be compared. In SI."""
     out = track.measured.copy()
     steps = np.arange(len(track))
     for column in out.T:

@@ -74,8 +74,8 @@ def slipstream(
     """epsilon and kappa for which eps^2 (J^2 + kappa 8 K_T/pi) is nearest to the MMG inflow at the rudder
     [YY15 eq. (26)].
 
-    `eta`: propeller diameter over rudder height, the part of the rudder that the slipstream covers.
-    """
+    `eta`: propeller diameter over rudder height, the part of the rudder that the slipstream covers. `J`
+    (N,): the advance ratios at which it is to be, dimensionless."""
     J = J[0.95 * K_T0 + K_T1 * J > 0.0]
     loading = 8.0 / np.pi * (K_T0 + K_T1 * J)
     jet = np.sqrt(J**2 + loading)

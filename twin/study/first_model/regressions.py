@@ -68,10 +68,12 @@ class HullForm(NamedTuple):
 
     @property
     def volume(self) -> float:
+        """Displaced volume [m3]."""
         return self.C_b * self.L * self.B * self.T
 
     @property
     def ratios(self) -> dict[str, float]:
+        """The ratios by which regressions state their validity [-]."""
         return {
             "C_b": self.C_b,
             "L/B": self.L / self.B,

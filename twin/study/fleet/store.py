@@ -53,7 +53,8 @@ class Store:
 
     @contextmanager
     def alone(self) -> Iterator[None]:
-        """While rows are added; what an interrupted run left is gathered first, and all at the end."""
+        """While rows are added; what an interrupted run left is gathered first, and all at the end.
+        TwinError: another process is at work on it."""
         with open(self.folder / LOCK, "w") as lock:
             try:
                 fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

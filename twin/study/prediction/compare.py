@@ -36,7 +36,8 @@ class ComparedVoyages:
 def compare(
     sailed: Sequence[Sailed], model: Model, horizons_s: Sequence[float] = HORIZONS_S
 ) -> ComparedVoyages:
-    """Predict every voyage open loop and judge the errors together."""
+    """Predict every voyage open loop and judge the errors together. DataError: no voyage is long enough
+    for a horizon."""
     ship, floor = model.ship, floor_of(model.ship)
     models = [fed(model, s.track)[0] for s in sailed]
     windows = [

@@ -36,7 +36,7 @@ def sailed(windows: Sequence[Windows], horizon_s: float) -> dict[str, tuple[floa
 
 
 def widening(windows: Windows, horizon_s: float, ranges: Mapping[str, tuple[float, float]]) -> np.ndarray:
-    """(W,) w of every window, 1 inside all ranges and WIDEST at most."""
+    """(W,) w of every window, 1 inside all ranges and WIDEST at most. It is dimensionless."""
     found = means([windows], horizon_s).values
     out = np.ones(windows.start.size)
     for name, (low, high) in ranges.items():

@@ -14,7 +14,7 @@ def vectors(windows: Windows, run: int = MODEL) -> np.ndarray:
 
 def in_axes(windows: Windows, off: np.ndarray) -> np.ndarray:
     """(..., W, 8) differences of readings, with north and east turned into along and across the heading at
-    the start."""
+    the start. In SI."""
     psi = windows.track.state[windows.start, 2]
     c, s = np.cos(psi), np.sin(psi)
     out = np.array(off, float)

@@ -48,7 +48,7 @@ def models_without(
     known: Catalogue,
 ) -> list[Model]:
     """The ship as each voyage's others alone would have it. `normal`: equations of all voyages in these
-    unknowns; `scatter`, `pull` (P,): as between.py takes them."""
+    unknowns; `scatter`, `pull` (P,): as between.py takes them. They are in prior widths."""
     sd = np.array([u.sd for u in unknowns])
     told = voyages(normal, sd, temper)
     whole = ship_of(told, scatter, pull)[0]

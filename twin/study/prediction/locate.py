@@ -30,7 +30,8 @@ MOST = 8
 def sizes(
     windows: Sequence[Windows], horizon_s: float, run: int = MODEL, like: np.ndarray | None = None
 ) -> np.ndarray:
-    """(W,) one error for each window: position and heading, each over its mean of the model's errors."""
+    """(W,) one error for each window: position and heading, each over its mean of the model's errors. It
+    is dimensionless."""
     errors, model = pooled(windows, horizon_s, run), pooled(windows, horizon_s)
     scaled = [errors[n] / max(float(np.nanmean(model[n])), 1e-12) for n in ("position", "heading")]
     return 0.5 * (scaled[0] + scaled[1])

@@ -57,8 +57,8 @@ class Windows:
         return int(np.argmin(np.abs(self.lead * self.track.h - horizon_s)))
 
     def off(self, run: int = MODEL) -> np.ndarray:
-        """(K, W, 8) promise minus measurement of the model; of a floor, what noise alone makes of it. NaN
-        where not valid."""
+        """(K, W, 8) in SI, promise minus measurement of the model; of a floor, what noise alone makes of
+        it. NaN where not valid."""
         against = self.seen[self.step] if run == MODEL else self.promised[MODEL]
         off = self.promised[run] - against
         off[..., 2] = (off[..., 2] + np.pi) % (2.0 * np.pi) - np.pi
@@ -139,7 +139,7 @@ def coarse(
     begins: np.ndarray | None = None,
 ) -> Windows:
     """Run the model alone: `predict` without its noise floors, and in steps of L/U_0 over COARSE, as a fit
-    asks for thousands. `begins` (N,): the steps of the track at which windows may begin, if not at all."""
+    asks for thousands. `begins` (N,): mask of the steps at which windows may begin, if not at all."""
     steps = max(1, int(float(model.ship.scale("time")) / COARSE / track.h))
     lead = steps * np.unique(
         np.linspace(0.0, horizon_s / track.h / steps, leads + 1)[1:].round().clip(1).astype(int)
@@ -155,7 +155,7 @@ def coarse(
 
 
 def again(windows: Windows, model: Model) -> np.ndarray:
-    """(K, W, 8) what another model promises over the same windows, without any noise floor."""
+    """(K, W, 8) in SI, what another model promises over the same windows, without any noise floor."""
     track = windows.track
     state, wind_to = true_motion(steadied(track), model)
     with np.errstate(all="ignore"):

@@ -90,7 +90,7 @@ def _of_track(w: Windows, horizon_s: float) -> dict[str, np.ndarray]:
 
 
 def conditions(m: Means, ship: Ship) -> list[Condition]:
-    """Every condition worth asking about."""
+    """Every condition worth asking about. Each (W,): a mask of the windows."""
     U, L, T, B = (float(x) for x in (ship.U_0, ship.L_pp, ship.T, ship.B))
     rpm = float(np.nanmax(np.abs(m.values["rpm"])))
     turn = U / L * DEG  # a turn of one length's radius [deg/s]

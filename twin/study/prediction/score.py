@@ -81,7 +81,7 @@ def _explained(error: np.ndarray, against: np.ndarray) -> float:
 
 
 def reckoned(w: Windows) -> np.ndarray:
-    """(K, W, 8) error of dead reckoning: u, v, r of the start held."""
+    """(K, W, 8) error of dead reckoning: u, v, r of the start held. In SI."""
     x, y, psi, u, v, r = w.track.state[w.start].T
     t = (w.lead * w.track.h)[:, None]
     turned = 0.5 * r * t

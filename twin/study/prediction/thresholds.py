@@ -65,6 +65,7 @@ def passed(result: dict[str, Any], limits: Sequence[tuple[str, float]]) -> list[
 
 
 def positive(text: str) -> float:
+    """Seconds from the command line; argparse says what is wrong with them."""
     try:
         value = float(text)
     except ValueError:

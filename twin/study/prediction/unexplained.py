@@ -29,6 +29,7 @@ class Energy:
     learned: np.ndarray
 
     def unexplained(self) -> dict[str, float]:
+        """By axis, the share of all force that is missing."""
         share = self.missing / np.maximum(self.missing + self.known + self.learned, 1e-12)
         return dict(zip(AXES, share.tolist(), strict=True))
 

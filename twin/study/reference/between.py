@@ -36,7 +36,8 @@ class BetweenVoyages:
         return BetweenVoyages(both[:, :-1], both[:, -1], self.ee)
 
     def log_probability(self, mean: np.ndarray, covariance: np.ndarray) -> float:
-        """Of the voyage, up to a constant, when its numbers are as likely as a normal distribution says."""
+        """Of the voyage, up to a constant, when its numbers are as likely as a normal distribution says.
+        `mean` (P,), `covariance` (P, P)."""
         off = self.b - self.A @ mean
         blur = np.eye(len(off)) + self.A @ covariance
         misfit = self.ee - 2.0 * float(self.b @ mean) + float(mean @ self.A @ mean)
@@ -53,7 +54,8 @@ class BetweenVoyages:
 
 
 def voyages(normal: Normal, sd: np.ndarray, temper: float) -> list[BetweenVoyages]:
-    """Each voyage by itself; a single one in two halves."""
+    """Each voyage by itself; a single one in two halves. `sd` (P,): the priors' widths, in the unknowns'
+    own units."""
     of = np.array([track for track, _, _ in normal.where])
     if np.unique(of).size == 1:
         of = (np.arange(of.size) * 2) // of.size
@@ -68,7 +70,7 @@ def ship_of(
     told: Sequence[BetweenVoyages], scatter: np.ndarray, pull: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Mean and covariance of the ship's own numbers, from voyages that are scattered about them, and of
-    priors (precision one)."""
+    priors (precision one). `scatter` and `pull` (P,), mean (P,), covariance (P, P), in prior widths."""
     confounded = [t.of_all(scatter) for t in told]
     covariance = np.linalg.inv(np.eye(pull.size) + sum(t.A for t in confounded))
     covariance = 0.5 * (covariance + covariance.T)

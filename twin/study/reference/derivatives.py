@@ -26,10 +26,12 @@ class Derivative(NamedTuple):
 
     @property
     def excited(self) -> bool:
+        """Whether the voyages say enough of it."""
         return self.gained >= UNEXCITED
 
     @property
     def value(self) -> float:
+        """What it is taken for: as fitted, or where its prior is."""
         return self.fitted if self.excited else self.unknown.centre
 
 

@@ -49,7 +49,7 @@ def directions(
     chosen: Sequence[str] = (),
 ) -> Directions:
     """Of the information (P, P) of `unknowns`, the nuisance's among them. The usual amount of what is
-    `chosen` is as expected: how much there is of it is asked beside."""
+    `chosen` is as expected: how much there is of it is asked beside. They are in prior widths."""
     label = {u.label: i for i, u in enumerate(unknowns)}
     place, sd = [label[u.label] for u in nuisance.unknowns], np.array([u.sd for u in nuisance.unknowns])
     mean, free = (

@@ -36,6 +36,7 @@ class Hypothesis:
 
     @property
     def log_weight(self) -> float:
+        """Log of evidence times prior."""
         return self.log_evidence + self.log_prior
 
 
@@ -83,6 +84,7 @@ class Reduced:
     spike: np.ndarray | float = SPIKE  # (Q,) widths of "not there"
 
     def rows(self, effects: Sequence[str]) -> np.ndarray:
+        """(K,) index of the parameters of these effects."""
         return np.array([i for i, u in enumerate(self.unknowns) if u.owner in effects], dtype=int)
 
     @cached_property
@@ -101,8 +103,8 @@ def reduce(
     temper: float,
     at: np.ndarray | None = None,
 ) -> Reduced:
-    """Integrate the nuisance out of normal equations whose columns are `all_unknowns` (an instrument's usual
-    error and its fault share a column)."""
+    """Integrate the nuisance out of normal equations whose columns are `all_unknowns` (an instrument's
+    usual error and its fault share a column). `at` (Q,): see `Reduced`."""
     A, b, ee = normal.total()
     place = {u.label: i for i, u in enumerate(all_unknowns)}
     order = (*nuisance.unknowns, *effects)
@@ -129,7 +131,7 @@ def reduce(
 
 
 def given(reduced: Reduced, z: np.ndarray, known: np.ndarray) -> Reduced:
-    """What is left to be asked once some of the parameters (`known`: which) have the values z."""
+    """What is left to be asked once some of the parameters (`known`: which) have the values z. Both (Q,)."""
     rest = ~known
     b = reduced.b - reduced.A[:, known] @ (z - reduced.at)[known]
     unknowns = tuple(u for u, is_left in zip(reduced.unknowns, rest, strict=True) if is_left)
@@ -285,7 +287,7 @@ def _opened(
 
 
 def probabilities(weighed: Sequence[Hypothesis]) -> np.ndarray:
-    """Posterior probability of each hypothesis."""
+    """(H,) posterior probability of each hypothesis."""
     w = np.array([h.log_weight for h in weighed])
     w = np.exp(w - w.max())
     return w / w.sum()

@@ -40,7 +40,7 @@ def errors_of(voyage: Voyage, settings: Settings) -> Errors:
 
 
 def sailed_through(voyage: Voyage, settings: Settings) -> Iterator[tuple[float, Loop]]:
-    """(time [s], loop) after each tick."""
+    """(time [s], loop) after each tick. DataError: nothing in the voyage is a channel of the loop."""
     ears, period_s = Played([]), 1.0 / settings["loop.rate_hz"]
     loop = loop_of(settings, ears, Outbox(Publisher(), "twin", "ship"), None)
     columns = {name: x for name, x in voyage.columns.items() if name in loop.sensors.gates}

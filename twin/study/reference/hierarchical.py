@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 def hierarchical_quantile(voyages: Sequence[ArrayLike], level: float) -> float:
     """The score that a new voyage keeps with this probability; infinite where the voyages are too few.
 
-    voyages: scores of each, any number of them (a voyage without a score is left out)."""
+    voyages: scores (N,) of each, any number of them (a voyage without a score is left out)."""
     groups = [s for v in voyages if (s := np.sort(np.asarray(v, float))).size]
     if not groups:
         return float("inf")

@@ -137,7 +137,7 @@ def known_from(
     temper: float,
     prior: np.ndarray | None = None,
 ) -> Known:
-    """The same, voyage by voyage."""
+    """The same, voyage by voyage. `prior` (P,): their means, in the unknowns' own units."""
     sd = np.array([u.sd for u in unknowns])
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
     told = voyages(innovate(lines, [floor])[0], sd, temper)
@@ -146,7 +146,8 @@ def known_from(
 
 def of_any_day(mean: np.ndarray, variance: np.ndarray, unknowns: Sequence[Unknown]) -> np.ndarray:
     """(C,) how much of each number a day brings, when these days had such a mean and spread: alike for the
-    parts of one effect, for no wind blows from the north alone."""
+    parts of one effect, for no wind blows from the north alone. In prior widths, as `mean` and `variance`
+    (C,)."""
     square, owner = mean**2 + variance, np.array([u.owner for u in unknowns])
     shared = np.array([u.every_day for u in unknowns])
     return np.sqrt([square[(owner == u.owner) & shared].mean() if u.every_day else 0.0 for u in unknowns])

@@ -71,8 +71,8 @@ class PathError:
         return np.asarray(((1.0 - share) * R + share * R_next) * np.outer(sd, sd))
 
     def expected(self, name: str, horizon_s: Sequence[float] | np.ndarray) -> np.ndarray:
-        """Mean size of the error (one of MEANS) so far ahead on a healthy voyage; in proportion to the time
-        before the first horizon."""
+        """Mean size of the error (one of MEANS) so far ahead on a healthy voyage; in proportion to the
+        time before the first horizon. (K,) for K horizons, in the unit in its name."""
         ahead = np.asarray(horizon_s, float)
         known = np.log(np.maximum(self.mean[:, MEANS.index(name)], 1e-12))
         inside = np.exp(np.interp(np.log(ahead), np.log(self.horizons_s), known))
@@ -144,7 +144,8 @@ class PathError:
 
 
 def of_ship(ship: Ship) -> PathError | None:
-    """What the ship's calibration measured; None where it measured nothing of the kind."""
+    """What the ship's calibration measured; None where it measured nothing of the kind. SettingsError: its
+    file does not hold it as it was written."""
     table = ship.notes.get("structural", {}).get("path_error")
     if not table:
         return None

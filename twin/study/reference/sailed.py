@@ -25,6 +25,7 @@ class Sailed:
     sha256: str
 
     def provenance(self) -> dict[str, Any]:
+        """What a ship file notes of a voyage: its name, the hash of its samples, its start."""
         start = self.voyage.meta.get("start_time_utc")
         return {"name": self.track.name, "sha256": self.sha256} | (
             {"start_time_utc": str(start)} if start else {}
@@ -37,6 +38,7 @@ def sailed(voyage: Voyage, ship: Ship, sha256: str = "") -> Sailed:
 
 
 def samples_hash(voyage: Voyage) -> str:
+    """SHA-256 of a voyage's samples, that tells it from every other."""
     known = hashlib.sha256(voyage.time_s.tobytes())
     for name in sorted(voyage.columns):
         known.update(name.encode())

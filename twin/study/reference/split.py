@@ -46,7 +46,8 @@ def window(T_p: float, step_s: float) -> int:
 
 
 def low_frequency(x: Array, samples: int) -> Array:
-    """x (..., N) averaged twice over so many samples, centred; 2 x samples at either end are no use."""
+    """x (..., N) averaged twice over so many samples, centred; 2 x samples at either end are no use. In
+    the unit of x."""
     kernel = np.convolve(np.ones(samples), np.ones(samples)) / samples**2
     return np.apply_along_axis(lambda row: np.convolve(row, kernel, mode="same"), -1, x)
 

@@ -36,7 +36,8 @@ BESIDE = 0.4
 
 def floor_of(ship: Ship, name: str = "floor") -> NoiseModel | None:
     """The floor that calibration left in the ship file, None when it was never calibrated: what the model
-    alone leaves (`floor`), or what is left beside all that is usual on this ship (`beside`)."""
+    alone leaves (`floor`), or what is left beside all that is usual on this ship (`beside`).
+    SettingsError: its file does not hold it as it was written."""
     table = ship.notes.get("structural", {}).get(name)
     if not table:
         return None
@@ -52,10 +53,11 @@ def floor_of(ship: Ship, name: str = "floor") -> NoiseModel | None:
 
 
 def once_off(ship: Ship, key: str, horizon_s: np.ndarray) -> np.ndarray:
-    """How far off the calibrated ship was, so far ahead, on voyages that it was not fitted to (`position_m`,
-    `heading_deg`); 0 where no calibration measured it: as the reference voyages have it, each left out in
-    turn (reference/path_error.py), or, in an older file, the voyages that were held out. Powers of the time
-    between the measured horizons, in proportion to it before the first."""
+    """How far off the calibrated ship was, so far ahead, on voyages that it was not fitted to
+    (`position_m`, `heading_deg`); 0 where no calibration measured it: as the reference voyages have it,
+    each left out in turn (reference/path_error.py), or, in an older file, the voyages that were held out.
+    Powers of the time between the measured horizons, in proportion to it before the first. (K,), in the
+    unit of `key`."""
     if (known := of_ship(ship)) is not None:
         return (
             np.degrees(known.expected("heading_rad", horizon_s))
@@ -147,7 +149,7 @@ def predictive(normal: Normal, sd: np.ndarray) -> float:
     half, given the other).
 
     A floor that only has to explain what the core was fitted to comes out too low, and the next manoeuvre
-    then looks strange."""
+    then looks strange. `sd` (P,): the priors' widths."""
     of = np.array([track for track, _, _ in normal.where])
     if np.unique(of).size == 1:
         of = (np.arange(of.size) * 2) // of.size

@@ -129,7 +129,7 @@ def coefficients(voyages: Sequence[Sequence[Judged]], usual: tuple[float, ...]) 
 
 def ridge(phi: Array, errors: Array, weights: Array) -> Array:
     """c of log|error| = c . phi, each voyage of weight one; the penalty is that of one voyage, in units of
-    each number's own spread."""
+    each number's own spread. phi (N, F), errors and weights (N,), c (F,)."""
     y = np.log(np.maximum(errors, LEAST * max(errors.mean(), 1e-12)))
     mean = np.average(phi, axis=0, weights=weights)
     spread = np.sqrt(np.average((phi - mean) ** 2, axis=0, weights=weights))

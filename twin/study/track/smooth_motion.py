@@ -36,7 +36,8 @@ def smooth_motion(measured: np.ndarray, h: float, ship: Ship) -> tuple[np.ndarra
 
 
 def running_mean(values: np.ndarray, width: int) -> np.ndarray:
-    """Mean over the `width` about each point, of those that are there; fewer at the ends."""
+    """Mean over the `width` about each point, of those that are there; fewer at the ends. (N,), in its own
+    unit."""
     ok = np.isfinite(values)
     kernel = np.ones(min(width, values.size))
     weight = np.convolve(ok, kernel, "same")

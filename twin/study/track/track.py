@@ -99,7 +99,7 @@ class Track:
 
     def where(self, keep: slice | np.ndarray) -> "Track":
         """Some of the grid steps; where others are left out between them, `whole` must be False on one
-        side."""
+        side. `keep` (N,): mask, or an index (K,)."""
         swell, ripple = (None if x is None else x[keep] for x in (self.swell, self.ripple))
         return replace(
             self,

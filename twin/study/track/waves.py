@@ -38,9 +38,9 @@ TONES, SHAPES = np.linalg.eig(RATE)
 
 
 def as_shown(track: Track, shown: np.ndarray) -> Track:
-    """The track with waves as strong as a log must have met them that shows so much more of everything (N, 8,
-    8): how strong a sea is was only seen, and taken for more (seaway.py); a log that shows less is not
-    likelier because it shows less of that."""
+    """The track with waves as strong as a log must have met them that shows so much more of everything,
+    `shown` (N, 8, 8), dimensionless: how strong a sea is was only seen, and taken for more (seaway.py); a
+    log that shows less is not likelier because it shows less of that."""
     if track.swell is None:
         return track
     return replace(

@@ -57,6 +57,7 @@ class Number:
     at_box_end: bool
 
     def entry(self) -> dict[str, Any]:
+        """Its entry in the JSON."""
         return {
             "value": self.value,
             "unit": self.unit,
@@ -123,7 +124,8 @@ def fitted(
     tracks: Sequence[Track],
     progress: Progress = lambda text: None,
 ) -> Fitted:
-    """These effects where the voyages have them, beside the voyages' own water and weather."""
+    """These effects where the voyages have them, beside the voyages' own water and weather. SettingsError:
+    an effect is none that these voyages can be asked about."""
     case = of_tracks(tracks, ship, progress=progress, asked=effects)
     unknown = [e.__name__ for e in effects if e.__name__ not in case.candidates]
     if unknown:

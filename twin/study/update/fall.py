@@ -35,12 +35,14 @@ class Fall:
     horizon_s: float
 
     def sentence(self) -> str:
+        """The change in words, with its interval."""
         return (
             f"{self.measure} {num(self.before, 3)} -> {num(self.after, 3)} {self.unit} (change "
             f"{num(self.low95, 2, sign=True)} to {num(self.high95, 2, sign=True)})"
         )
 
     def entry(self) -> dict[str, Any]:
+        """Its entry in the JSON."""
         names = ("measure", "unit", "before", "after", "low95", "high95")
         return {name: getattr(self, name) for name in names}
 

@@ -54,10 +54,12 @@ class HeldOutProof:
 
     @property
     def needed(self) -> float:
+        """The log likelihood ratio that a change that is none reaches with probability LEVEL at most."""
         return -float(np.log(LEVEL))
 
     @property
     def proved(self) -> bool:
+        """Whether the change makes held-out measurements likelier, beyond chance."""
         return not self.idle and self.log_ratio >= self.needed and self.low95 > 0.0
 
     @property
