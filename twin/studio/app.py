@@ -283,6 +283,6 @@ class Studio:
             self.live.leave()
             return {}
         log = str(self.project.existing(str(said["log"]))) if said.get("log") else None
-        place, speed = said.get("connect"), float(said.get("speed") or 1.0)
-        name = await run_in_threadpool(self.live.attach, str(place) if place else None, log, speed)
+        place = said.get("connect")
+        name = await run_in_threadpool(self.live.attach, str(place) if place else None, log)
         return {"name": name}
