@@ -32,9 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--demo", action="store_true", help="copy the bundled tanker and its voyages into FOLDER first"
     )
-    parser.add_argument(
-        "--report", metavar="FILE.html", help="write one self-contained page of the project, and stop"
-    )
+    parser.add_argument("--report", metavar="FILE.html", help="write the project as one page, and stop")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -53,7 +51,6 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _reported(args: argparse.Namespace) -> int:
-    """The page of the project as it stands, without a server."""
     from twin.studio.project_report import write
 
     if args.demo:
