@@ -24,7 +24,7 @@ OVER = ("done", "refused")  # states of a job that has an answer
 LATER_S = 1.0  # a file changed so long after an answer is another than the one it was about
 
 
-class Answer(NamedTuple):
+class JobAnswer(NamedTuple):
     """What a job has found, of what, and when it ended [s, UTC]."""
 
     name: str
@@ -87,23 +87,23 @@ def content(project: Project) -> dict[str, Any]:
     )
 
 
-def answers(project: Project) -> list[Answer]:
+def answers(project: Project) -> list[JobAnswer]:
     """What the work done here has found, the oldest first; an answer whose files are damaged is left out."""
     jobs, out = Jobs(project), []
     for name in jobs.names():
         note, end, result = (read(jobs.at(name) / f) for f in (JOB, END, "result.json"))
         if note and end and result and jobs.state(name) in OVER:
             asked, command = note.get("asked", {}), str(note.get("command", ""))
-            out.append(Answer(name, asked, command, result, float(end.get("ended_s", 0.0))))
+            out.append(JobAnswer(name, asked, command, result, float(end.get("ended_s", 0.0))))
     return out
 
 
-def newest(found: list[Answer], verb: str, good: Callable[[Answer], bool]) -> Answer | None:
+def newest(found: list[JobAnswer], verb: str, good: Callable[[JobAnswer], bool]) -> JobAnswer | None:
     """The last answer of a verb that is good for the page."""
     return next((a for a in reversed(found) if a.asked.get("verb") == verb and good(a)), None)
 
 
-def _now(found: list[Answer], file: str) -> Answer | None:
+def _now(found: list[JobAnswer], file: str) -> JobAnswer | None:
     """What tells the error of today's ship: the proof of what was added to it, else its newest comparison,
     else the newest comparison of any ship."""
     return (
@@ -113,7 +113,7 @@ def _now(found: list[Answer], file: str) -> Answer | None:
     )
 
 
-def _sentence(now: Answer | None, ship: str) -> str:
+def _sentence(now: JobAnswer | None, ship: str) -> str:
     if now is None or not now.result.get("horizons"):
         return f"{ship}: nothing was compared with measurements yet"
     last = now.result["horizons"][-1]
@@ -126,7 +126,7 @@ def _sentence(now: Answer | None, ship: str) -> str:
     )
 
 
-def _said(project: Project, answer: Answer | None) -> dict[str, Any] | None:
+def _said(project: Project, answer: JobAnswer | None) -> dict[str, Any] | None:
     """Of what an answer is, its command, its sentence, and which of its files are others since."""
     if answer is None:
         return None
@@ -151,7 +151,7 @@ def _changed_s(project: Project, name: str) -> float:
         return float("inf")
 
 
-def _compared(project: Project, answer: Answer) -> dict[str, Any] | None:
+def _compared(project: Project, answer: JobAnswer) -> dict[str, Any] | None:
     """A row of the table of comparisons: the errors at the longest horizon."""
     if answer.asked.get("verb") != "compare" or not answer.result.get("horizons"):
         return None
@@ -168,7 +168,7 @@ def _added(diagnosis: Mapping[str, Any], ship: Mapping[str, Any]) -> list[str]:
     return missing if there.issuperset(missing) else []
 
 
-def _began(found: list[Answer]) -> dict[str, str]:
+def _began(found: list[JobAnswer]) -> dict[str, str]:
     """When each voyage began, as far as an answer has told it."""
     told = [v for a in found for key in ("voyages", "held_out") for v in a.result.get(key) or []]
     return {v["name"]: v["start_time_utc"] for v in told if isinstance(v, dict) and v.get("start_time_utc")}
