@@ -2,7 +2,7 @@
 
 import argparse
 
-from twin.errors import TwinError
+from twin.errors import TwinError, UsageError
 
 NEEDED = ("starlette", "uvicorn", "anyio", "scipy")  # what the extra brings
 
@@ -32,9 +32,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--demo", action="store_true", help="copy the bundled tanker and its voyages into FOLDER first"
     )
+    parser.add_argument("--report", metavar="FILE.html", help="write the project as one page, and stop")
 
 
 def run(args: argparse.Namespace) -> int:
+    if args.report:
+        return _reported(args)
     try:
         from twin.studio.serve import served
     except ModuleNotFoundError as error:
@@ -45,3 +48,13 @@ def run(args: argparse.Namespace) -> int:
             f"`twin studio` needs the package {package}. Run: pip install 'shiptwin[studio]'"
         ) from None
     return served(args)
+
+
+def _reported(args: argparse.Namespace) -> int:
+    from twin.studio.project_report import write
+
+    if args.demo:
+        raise UsageError("--demo begins a project, --report tells of one: ask for one at a time.")
+    write(args.folder, args.report)
+    print(f"wrote {args.report}")
+    return 0

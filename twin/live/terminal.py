@@ -102,7 +102,7 @@ def ahead(tick: Any) -> list[str]:
     return [
         f"in {p.horizon_s:.0f} s: heading {_number(p.state, 'heading_true_north_deg', 0)} deg, "
         f"{_number(p.state, 'north_m', 0)} m north, {_number(p.state, 'east_m', 0)} m east "
-        f"(+- {_number(p.sigma, 'north_m', 1)} m, {p.status})"
+        f"(± {_number(p.sigma, 'north_m', 1)} m, {p.status})"
         for p in tick.predictions
     ]
 

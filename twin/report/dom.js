@@ -78,5 +78,6 @@ function copy(text, button) {
 
 function table(heads, rows) {
   const head = el("tr", null, heads.map((h) => el(h.startsWith(">") ? "th.n" : "th", null, h.replace(">", ""))));
-  return el(".scroll", null, el("table", null, el("thead", null, head), el("tbody", null, rows)));
+  const name = heads.map((h) => h.replace(">", "")).filter(Boolean).join(", "); // a table that is wider than the screen is scrolled by keyboard, too
+  return el(".scroll", { tabIndex: 0, role: "group", "aria-label": `Table: ${name}` }, el("table", null, el("thead", null, head), el("tbody", null, rows)));
 }

@@ -24,6 +24,7 @@ from twin.studio.answers import difference
 from twin.studio.jobs import SHOWN, Jobs
 from twin.studio.live import Live
 from twin.studio.project import Project
+from twin.studio.project_report import page
 from twin.studio.remedies import edited
 from twin.studio.replies import Do, answered, body_of, page_files, toml_name
 from twin.studio.verbs import checked, files_of
@@ -48,6 +49,7 @@ class Studio:
             get("/api/project", self.told),
             get("/api/form", self.form),
             get("/api/effects", self.effects),
+            get("/api/report", self.report),
             get("/api/ships/{name}", self.ship),
             get("/api/turn", self.turn),
             get("/api/difference", self.differ),
@@ -128,6 +130,11 @@ class Studio:
 
     async def effects(self, request: Request) -> Any:
         return [as_table(effect) for effect in catalogue().values()]
+
+    async def report(self, request: Request) -> Any:
+        """The project as it stands, as one page."""
+        headers = {"Content-Disposition": 'attachment; filename="project.html"'}
+        return Response(await run_in_threadpool(page, self.project), media_type="text/html", headers=headers)
 
     async def ship(self, request: Request) -> Any:
         path = self.project.existing(request.path_params["name"])
@@ -283,6 +290,6 @@ class Studio:
             self.live.leave()
             return {}
         log = str(self.project.existing(str(said["log"]))) if said.get("log") else None
-        place, speed = said.get("connect"), float(said.get("speed") or 1.0)
-        name = await run_in_threadpool(self.live.attach, str(place) if place else None, log, speed)
+        place = said.get("connect")
+        name = await run_in_threadpool(self.live.attach, str(place) if place else None, log)
         return {"name": name}

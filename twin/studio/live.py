@@ -27,12 +27,12 @@ class Live:
         self._viewers = 0
         self.pages = pages()
 
-    def attach(self, connect: str | None, log: str | None, speed: float = 1.0) -> str:
+    def attach(self, connect: str | None, log: str | None) -> str:
         """Looks at the twin at `connect` (default: on this computer), or at a log; the feed's name."""
         self.leave()
         feed: BridgeFeed
         if log:
-            feed = LogFeed(log, speed)
+            feed = LogFeed(log)
         else:
             settings = config.load(None)
             if connect:

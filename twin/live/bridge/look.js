@@ -16,6 +16,7 @@ export function wire(changed) {
     button.addEventListener("click", () => theme(button.dataset.themeName));
   }
   theme(kept("theme", matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light"));
+  window.addEventListener("storage", (event) => { if (event.key === "theme" && event.newValue) theme(event.newValue); }); // chosen on another page
   by("up").addEventListener("click", () => {
     look.headUp = !look.headUp;
     keep("up", look.headUp ? "head" : "north");

@@ -126,13 +126,13 @@ def _surely(p: dict[str, Any]) -> str:
     tube = p["tube"]
     if tube and tube["level"]:
         return (
-            f"+- {tube['along']:.0f} m along, +- {tube['across']:.0f} m across, +- {tube['heading']:.1f}° "
+            f"± {tube['along']:.0f} m along, ± {tube['across']:.0f} m across, ± {tube['heading']:.1f}° "
             f"({tube['level']} %, on {tube['voyages']} voyages, helm held)"
         )
     if tube and p["sn"] is None:
         return f"no promise, {tube['words']}"
     why = f"; no promise, {tube['words']}" if tube else ""
-    return f"+- {_number(p['sn'], 0)} m north, +- {_number(p['se'], 0)} m east ({p['status']}{why})"
+    return f"± {_number(p['sn'], 0)} m north, ± {_number(p['se'], 0)} m east ({p['status']}{why})"
 
 
 def _forces(forces: dict[str, Any]) -> list[str]:

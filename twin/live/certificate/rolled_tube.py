@@ -13,9 +13,8 @@ from twin.live.certificate.comparison import add, scaled_row
 from twin.live.certificate.periods import of_certificate
 from twin.live.certificate.rolled import InnerStep, inner, way
 from twin.live.certificate.tube import NOTHING, Three, Tube
-from twin.live.observer.operating import NU, WORDS
+from twin.live.observer.operating import NU, told_outside
 from twin.live.observer.rollback import KEPT_S, Path, State
-from twin.num import num
 from twin.physics.state import Situation
 
 Four = tuple[float, float, float, float]
@@ -110,10 +109,7 @@ class RolledTube(Tube):
         for name, value, b, w, (low, high) in zip(NU, motion, x, self.way, self._limits, strict=False):
             most = b + self._length * w
             if not low + most <= value <= high - most:
-                return (
-                    f"{WORDS[name]} = {num(value, 3)} (+-{num(most, 3)}) outside [{num(low, 3)}, "
-                    f"{num(high, 3)}]"
-                )
+                return told_outside(name, value, most, low, high)
         return None
 
     def _on(self, x: Four) -> Four:

@@ -15,8 +15,7 @@ from collections import deque
 from twin.live.certificate.certificate import Certificate
 from twin.live.certificate.comparison import add, scaled_row
 from twin.live.certificate.periods import SURE, TABLE, Periods, of_certificate
-from twin.live.observer.operating import NU, WORDS
-from twin.num import num
+from twin.live.observer.operating import NU, WORDS, in_unit
 from twin.physics.state import Situation
 
 NOTHING = 1e9  # a bound so wide that it says nothing: hours without a measurement, or no certificate
@@ -223,5 +222,6 @@ class Tube:
         for name, b in zip(NU, self.beta, strict=True):
             low, high = ranges[name]
             if not b < 0.5 * (high - low):
-                return f"the bound of {WORDS[name]} is as wide as the operating set, +- = {num(b, 3)}"
+                wide = f"the bound of {WORDS[name]} is as wide as the operating set"
+                return f"{wide}, width = ± {in_unit(name, b)}"
         return None

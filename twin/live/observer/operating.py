@@ -36,6 +36,18 @@ WORDS = {
     "bank_starboard": "distance to the starboard bank",
     "phi": "roll",
 }
+KNOT = 1852.0 / 3600.0  # [m/s]
+TOLD_IN = {  # the unit in which a bridge reads it, and how much of it one in SI is; the others in metres
+    "u": ("kn", 1.0 / KNOT),
+    "v": ("kn", 1.0 / KNOT),
+    "stream": ("kn", 1.0 / KNOT),
+    "r": ("°/min", 60.0 * 180.0 / pi),
+    "delta": ("°", 180.0 / pi),
+    "phi": ("°", 180.0 / pi),
+    "n": ("1/min", 60.0),
+    "wind_speed": ("m/s", 1.0),
+    "T_p": ("s", 1.0),
+}
 
 
 @dataclass(frozen=True)
@@ -62,11 +74,11 @@ class OperatingSet:
         values = s.u_r, s.v_r, s.r, hypot(s.u - s.u_r, s.v - s.v_r)
         for (name, lo, hi), value, b in zip(self._motion, values, (*within, 0.0), strict=True):
             if not lo + b <= value <= hi - b:
-                return _said(name, value, b, lo, hi)
+                return told_outside(name, value, b, lo, hi)
         for name, lo, hi in self._inputs:
             value = getattr(s, name)
             if value is not None and not lo <= value <= hi:
-                return _said(name, value, 0.0, lo, hi)
+                return told_outside(name, value, 0.0, lo, hi)
         return None
 
     @cached_property
@@ -78,9 +90,17 @@ class OperatingSet:
         return [(name, *self.ranges[name]) for name in WORDS if name in self.ranges and name not in MOTION]
 
 
-def _said(name: str, value: float, bound: float, lo: float, hi: float) -> str:
-    how = f" (+-{num(bound, 3)})" if bound else ""
-    return f"{WORDS[name]} = {num(value, 3)}{how} outside [{num(lo, 3)}, {num(hi, 3)}]"
+def told_outside(name: str, value: float, bound: float, lo: float, hi: float) -> str:
+    """That a number [SI] lies outside, or may within its bound, in the bridge's units."""
+    how = f" ± {in_unit(name, bound)}" if bound else ""
+    ends = f"{in_unit(name, lo, False)} to {in_unit(name, hi)}"
+    return f"{WORDS[name]} = {in_unit(name, value, not bound)}{how}, outside {ends}"
+
+
+def in_unit(name: str, value: float, unit: bool = True) -> str:
+    """A number [SI] in the bridge's unit, with it or without."""
+    words, factor = TOLD_IN.get(name, ("m", 1.0))
+    return num(factor * value, 3) + (f" {words}" if unit else "")
 
 
 @dataclass(frozen=True)

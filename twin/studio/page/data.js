@@ -19,8 +19,10 @@ function overview() {
     f.kind === "voyage" ? tagger(f) : "", el("a", { href: `/api/files/${encodeURIComponent(f.name)}`, download: f.name, "aria-label": `Save ${f.name}` }, "save")]);
   return [el("h1", null, "Data"), dropper(),
     rows.length ? card("Files of this project", table("Plain files in the project's folder; the command line reads and writes the same", ["file", "what it is", ["size"], "kept for", "copy"], rows))
-      : card("Nothing here yet", el("p", null, "Drop a log or a table above, or begin with the tanker that comes with the twin: calibrated on calm voyages, it sails badly on Monday."), button("Copy the demo voyages here", doing(async () => { await ask("/api/demo", {}); await again(); }), { class: "main", id: "demo", disabled: state.project.read_only }))];
+      : card("Nothing here yet", el("p", null, "Drop a log or a table above, or begin with the tanker that comes with the twin: calibrated on calm voyages, it sails badly on Monday."), button("Copy the demo voyages here", doing(async () => { await ask("/api/demo", {}); await again(); }), { class: "main", id: "demo", disabled: state.project.read_only })), rows.length ? report() : null];
 }
+
+const report = () => card("The project on one page", el("p.note", null, "Ship, voyages, error before and now, diagnosis and history as they stand, in one file that opens anywhere."), el(".tools", null, el("a.button", { href: "/api/report", download: "project.html", id: "report" }, "Save as one page")), command("twin studio . --report project.html"));
 
 const size = (n) => (n > 1e6 ? `${(n / 1e6).toFixed(1)} MB` : `${Math.max(1, Math.round(n / 1e3))} kB`);
 

@@ -74,7 +74,8 @@ async function watch() {
       const before = new Map(state.jobs.map((j) => [j.name, j.state])), jobs = await ask("/api/jobs");
       const changed = jobs.length !== state.jobs.length || jobs.some((j) => before.get(j.name) !== j.state);
       state.jobs = jobs;
-      if (changed) await again();
+      if (changed && route().part === "live") { await reload(); work(); } // the bridge's picture goes on
+      else if (changed) await again();
       else work();
       if (by("said").dataset.gone) { delete by("said").dataset.gone; say(""); }
     } catch (error) { by("said").dataset.gone = "1"; say(error.message); }
