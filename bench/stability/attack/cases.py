@@ -3,7 +3,7 @@
 from functools import cache
 from typing import NamedTuple
 
-from bench.stability.adversaries import AdversaryCase, certified
+from bench.stability.adversary_case import AdversaryCase, certified
 from twin.live.build import stabilizer_of
 from twin.live.certificate.certificate import Certificate
 from twin.live.signals.config import Settings

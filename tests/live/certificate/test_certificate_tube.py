@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.stability.adversaries import AdversaryCase, certified
+from bench.stability.adversary_case import AdversaryCase, certified
 from bench.stability.adversary_fleet import AdversaryFleet, trial
 from bench.stability.loop import LoopCase, Loops
 from twin.live.certificate.certificate import certify
