@@ -64,8 +64,9 @@ def path_errors(
     between: Mapping[str, float],
 ) -> dict[str, Any]:
     """What the ship file keeps of the open-loop error on these voyages, each left out in turn
-    (reference/path_error.py). `centres` (P,): means of the unknowns' priors; `between`: by how many prior
-    widths numbers differ from voyage to voyage."""
+    (reference/path_error.py); empty where nothing can be predicted. `lines`: `tracks` linearised in
+    `unknowns`; `centres` (P,): means of the unknowns' priors, in the unknowns' own units; `between`: by how
+    many prior widths numbers differ from voyage to voyage."""
     model, sd = Model.of(ship), np.array([u.sd for u in unknowns])
     pull = (centres - np.array([u.centre for u in unknowns])) / sd
     scatter = np.array([between.get(u.label, 0.0) ** 2 for u in unknowns])

@@ -105,7 +105,9 @@ def freedom(
     rng: np.random.Generator,
 ) -> dict[str, float]:
     """How many numbers each block was bent to: the trace of its share of what is known (Hutchinson's
-    estimate; exact in small blocks)."""
+    estimate; exact in small blocks). `sd`: scatter of each kind, in the units of its residuals; `found`:
+    these blocks, reduced; `covariance` (P, P) of the shared numbers, in their own units; `rng` draws the
+    signs."""
     names, forms = [], []
     for b in blocks:
         n = b.r.size

@@ -73,7 +73,8 @@ def _boxed(effect: Effect, ship: Ship) -> Effect:
 
 
 def as_map(found: Instruments) -> str:
-    """The lines of a map that take constants off; what a map cannot say stands in it as a comment."""
+    """The lines of a map that take constants off; what a map cannot say stands in it as a comment. Each
+    offset is in the unit of its channel. SettingsError: no constant that a map can take off was seen."""
     lines = [
         "# Found by `twin instruments`: add each `offset` to the line of that channel in your own map "
         "(docs/import.md).",

@@ -74,6 +74,10 @@ class Instruments:
 def said(
     readings: Sequence[Readings], problems: Sequence[Problem], found: KinematicFit, clock: str
 ) -> Instruments:
+    """What a fit says of the instruments, number by number and fault by fault. `readings` and `problems`: one
+    for each voyage, in the order of the fit; `clock`: the age that is none by definition. A fault of the
+    likeliest set is seen when its log Bayes factor, or that of it and what would stand in its place together,
+    is above SEEN."""
     book = WeighedSets(found, clock)
     best = book.likeliest()
     factor = {f: book.bayes_factor(f, best) for f in book.tellable}

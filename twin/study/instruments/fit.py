@@ -44,20 +44,21 @@ class KinematicFit:
 
     @property
     def at(self) -> np.ndarray:
-        """(Q,) theta as one row."""
+        """(Q,) theta as one row: the shared numbers, then each voyage's own, in their own units."""
         return np.concatenate([self.theta[0, SHARED], self.theta[:, MINE].ravel()])
 
     def prior(self) -> np.ndarray:
-        """(P,) prior scatter of each number of UNKNOWNS, on the first voyage."""
+        """(P,) prior scatter of each number of UNKNOWNS, in its own unit: of a shared one the widest of all
+        voyages, of the stream that on the first."""
         return np.asarray(self.width[columns(0)])
 
     def sd(self) -> np.ndarray:
-        """(Q,) scatter of each free number, with the others free; 0 of one that was held."""
+        """(Q,) scatter of each free number in its own unit, with the others free; 0 of one that was held."""
         return np.sqrt(np.diag(_step(self.A, self.g, self.width, self.open, self.at)[0]))
 
 
 def columns(voyage: int) -> np.ndarray:
-    """(P,) where the numbers of this voyage stand among those of all."""
+    """(P,) indices: where the numbers of this voyage stand among those of all."""
     out = np.empty(P, int)
     out[SHARED] = np.arange(len(SHARED))
     out[MINE] = len(SHARED) + len(MINE) * voyage + np.arange(len(MINE))
@@ -73,8 +74,9 @@ def opened(names: Sequence[str], voyages: int) -> np.ndarray:
 def fit(
     problems: Sequence[Problem], names: Sequence[str], theta: np.ndarray | None = None, rounds: int = ROUNDS
 ) -> KinematicFit:
-    """All voyages with these numbers free and the others at nothing. The problems' states and scatters are
-    left where they end."""
+    """All voyages with these numbers free and the others at nothing. `theta` (V, P): where the numbers start,
+    in their own units (None: at nothing); `rounds`: Gauss-Newton rounds at most. The problems' states and
+    scatters are left where they end."""
     V = len(problems)
     free = opened(names, V)
     at = np.zeros((V, P)) if theta is None else theta.copy()

@@ -45,8 +45,8 @@ class Rows:
         self.n, self.row, self.col, self.data = n, [], [], []  # type: ignore[var-annotated]
 
     def add(self, first_row: int, columns: np.ndarray, w: Weights, factor: np.ndarray | float = 1.0) -> None:
-        """From `first_row` on: weights w of the coefficients whose columns these are, times a factor for each
-        row."""
+        """From `first_row` on, n rows: weights w, (n,) and (n, m), of the coefficients whose columns (K,)
+        these are, times a factor for each row (n,) or one for all."""
         first, share = w
         n, m = share.shape
         self.row.append(np.repeat(np.arange(first_row, first_row + n), m))
@@ -54,6 +54,8 @@ class Rows:
         self.data.append((share * np.broadcast_to(np.asarray(factor, float), n)[:, None]).ravel())
 
     def matrix(self, size: int):  # type: ignore[no-untyped-def]
+        """All that was added, as a sparse matrix (N, S) of S = `size` columns, by rows; what fell on one
+        place adds up."""
         at = (np.concatenate(self.row), np.concatenate(self.col))
         return coo_array((np.concatenate(self.data), at), shape=(self.n, size)).tocsr()
 
@@ -189,5 +191,6 @@ class Problem:
         return len(UNKNOWNS)
 
     def coefficients(self) -> tuple[np.ndarray, np.ndarray]:
-        """(K, 3) of the path, (M, 2) of the stream."""
+        """(K, 3) of the path, north and east [m] and heading [rad]; (M, 2) of how the stream, toward north
+        and east, differs from that in the middle of the voyage [m/s]."""
         return self.x[self.at[0]], self.x[self.at[1]]

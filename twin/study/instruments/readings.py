@@ -57,6 +57,7 @@ class Readings:
 
     @property
     def span(self) -> tuple[float, float]:
+        """The times of the first and of the last heading [s]."""
         t = self.by["heading"].t
         return float(t[0]), float(t[-1])
 

@@ -47,6 +47,8 @@ class WeighedSets:
         self.weighed: dict[Sets, Weighed] = {}
 
     def weigh(self, faults: Collection[str]) -> Weighed:
+        """The set of these faults, in any order, with the numbers of ALWAYS free beside theirs; a name that
+        is not in FAULTS does not count. Each set is worked out once and kept."""
         chosen = tuple(f for f in FAULTS if f in faults)
         if chosen not in self.weighed:
             self.weighed[chosen] = self._weigh(chosen)

@@ -1,6 +1,8 @@
 """What each instrument says of a path and a stream: prediction, and its slopes by states (exact) and by
 shared numbers (differences).
 
+`theta` (P,) holds the shared numbers in their own units; `rows`, where given, gets the slopes by the states.
+
 Frames: north-east; the ship's axes ahead and to starboard. s = t - latency; R turns ship to earth.
     place     (N, E)(s) + R(psi) (a_x, a_y + a_z sin(phi))
     velocity  d/dt of that, smoothed: int exp(-q) V(s - T q) dq;
@@ -20,6 +22,8 @@ from twin.study.instruments.problem import NODES, SHARES, Problem, Rows
 
 
 def place(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
+    """(2 N,) the antenna's place [m] at each reading: all north, then all east. Its height counts where roll
+    was read, with the roll at the reading's own time."""
     t, n = p.by["place"].t, p.by["place"].t.size
     here = Here(p, t - get(theta, "gnss_delay"))
     ahead, aside = get(theta, "antenna_ahead"), np.full(n, get(theta, "antenna_starboard"))
@@ -38,6 +42,8 @@ def place(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
 
 
 def velocity(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
+    """(2 N,) the antenna's velocity over ground [m/s] at each reading: all ahead, then all to starboard, of a
+    receiver with its own attitude; else all north, then all east."""
     t, n = p.by["velocity"].t, p.by["velocity"].t.size
     at = t - get(theta, "gnss_delay")
     now, T = Here(p, at), get(theta, "smoothing")
@@ -66,6 +72,7 @@ def velocity(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
 
 
 def heading(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
+    """(N,) heading [rad] that a late compass with a bias and a deviation shows at each reading."""
     here = Here(p, p.by["heading"].t - get(theta, "heading_delay"))
     A, B, C, D, E = (get(theta, k) for k in "ABCDE")
     c, s = here.c, here.s
@@ -76,6 +83,7 @@ def heading(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
 
 
 def rate(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
+    """(N,) rate of turn [rad/s] that a late rate gyro with a bias shows at each reading."""
     here = Here(p, p.by["rate"].t - get(theta, "rate_delay"))
     if rows:
         rows.add(0, p.at[0][:, 2], here.w[1])
@@ -120,14 +128,20 @@ def _log(p: Problem, theta: Theta, rows: Rows | None, aside: bool) -> np.ndarray
 
 
 def log(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
+    """(N,) speed through the water [m/s] along the log's axis at each reading. Of a log of one axis, what its
+    angle loses ahead is left to its scale."""
     return _log(p, theta, rows, False)
 
 
 def log_aside(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
+    """(N,) speed through the water [m/s] across the log's axis, to starboard, at each reading: scale and
+    angle are those of `log`; there is no bias."""
     return _log(p, theta, rows, True)
 
 
 def drift(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
+    """(N,) speed to starboard through the water [m/s] beyond what turning and wind make of it, at the times
+    of the grid: nothing is expected. `rows` gets no slopes of the leeway."""
     here, u, v = _through_water(p, theta, p.grid)
     r, r_dot = here.v[:, 2], here.a[:, 2]
     d1, d2, d3 = (get(theta, k) for k in ("drift_r", "drift_rr", "drift_r_r"))
@@ -142,8 +156,8 @@ def drift(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
 
 
 def blown(p: Problem, here: Here) -> np.ndarray:
-    """(grid,) apparent wind speed times its part from abeam, toward starboard, over the ship's speed [m/s],
-    beyond what it would be in still air: what a leeway of 1 would be."""
+    """(N,) at the times of the grid: apparent wind speed times its part from abeam, toward starboard, over
+    the ship's speed [m/s], beyond what it would be in still air: what a leeway of 1 would be."""
     if "wind" not in p.by:
         return np.zeros(p.grid.size)
     w = p.by["wind"]
@@ -153,6 +167,8 @@ def blown(p: Problem, here: Here) -> np.ndarray:
 
 
 def wind(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
+    """(2 N,) apparent wind [m/s] that the anemometer shows at each reading, positive from ahead and from
+    starboard: all ahead, then all to starboard. For a problem whose wind was read."""
     t, n = p.by["wind"].t, p.by["wind"].t.size
     assert p.wind is not None
     here, slow = Here(p, t), p.wind.weights(t)

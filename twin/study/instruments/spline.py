@@ -25,11 +25,12 @@ class Spline:
 
     @classmethod
     def over(cls, start: float, end: float, h: float, degree: int = 3) -> "Spline":
+        """The grid of this degree (3 cubic, 1 linear) that covers [start, end] [s] in steps of h [s]."""
         return cls(start, h, int(np.ceil((end - start) / h)) + degree, degree)
 
     @property
     def times(self) -> np.ndarray:
-        """(size,) the time in the middle of each coefficient's reach [s]."""
+        """(K,) the time in the middle of each coefficient's reach [s]."""
         return self.start + self.h * (np.arange(self.size) - 0.5 * (self.degree - 1))
 
     def weights(self, t: np.ndarray, slope: int = 0) -> Weights:
