@@ -48,6 +48,12 @@ class Actuator:
     slow: Number = number(
         0.2, "-", 0.0, 2.0, "thrust lost at service speed, of the greatest", sd=0.15, of="command pwm"
     )
+    reverse: Number = number(
+        1.0, "-", 0.05, 2.0, "thrust astern over what its curve says", sd=0.2, of="command pwm rate"
+    )
+    stall: Number = number(
+        0.0, "-", 0.0, 20.0, "thrust lost where the water runs against it", sd=1.0, of="command pwm rate"
+    )
     D: Number = number(None, "m", 0.005, 15.0, "propeller diameter", key="diameter_m")
     K_T0: Number = number(0.32, "-", 0.02, 1.5, "thrust coefficient at J = 0")
     K_T1: Number = number(-0.32, "-", -1.5, 0.0, "slope of the thrust coefficient over J", sd=0.1, of="rate")
