@@ -9,8 +9,8 @@ A command c (a share of full, or a pulse width counted from 1500 us in spans of 
 and with the water running along it, u_a, T = gain (T_0 - slow (T_ahead e_ahead + T_astern e_astern) u_a/U_0).
 Turns n give T = gain rho D^4 (K_T0 |n| n + K_T1 |n| u_a/D) [Fossen 2021, ch. 9].
 
-Of the thrust at rest astern `reverse` is there (blades are cambered for going ahead), and where the water runs
-against the thrust (second and fourth quadrant) the flow breaks down and 1/(1 + stall J^2) of it is left, with
+Of the thrust at rest astern `reverse` is there (blades are cambered for going ahead), and where the water
+runs against the thrust (second and fourth quadrant) the flow breaks down and 1/(1 + stall J^2) is left, with
 J = u_a/(n D), or of a command J^2 = (u_a/U_0)^2/g. That thrust differs by quadrant: Fossen (2021), ch. 9;
 the form of `stall` is this twin's own. reverse = 1 and stall = 0 change nothing.
 """
