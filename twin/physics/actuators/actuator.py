@@ -8,6 +8,11 @@ A command c (a share of full, or a pulse width counted from 1500 us in spans of 
 
 and with the water running along it, u_a, T = gain (T_0 - slow (T_ahead e_ahead + T_astern e_astern) u_a/U_0).
 Turns n give T = gain rho D^4 (K_T0 |n| n + K_T1 |n| u_a/D) [Fossen 2021, ch. 9].
+
+Of the thrust at rest astern `reverse` is there (blades are cambered for going ahead), and where the water
+runs against the thrust (second and fourth quadrant) the flow breaks down and 1/(1 + stall J^2) is left, with
+J = u_a/(n D), or of a command J^2 = (u_a/U_0)^2/g. That thrust differs by quadrant: Fossen (2021), ch. 9;
+the form of `stall` is this twin's own. reverse = 1 and stall = 0 change nothing.
 """
 
 from collections.abc import Mapping
@@ -47,6 +52,12 @@ class Actuator:
     linear: Number = number(0.0, "-", 0.0, 1.0, "share of the bollard curve that is a straight line")
     slow: Number = number(
         0.2, "-", 0.0, 2.0, "thrust lost at service speed, of the greatest", sd=0.15, of="command pwm"
+    )
+    reverse: Number = number(
+        1.0, "-", 0.05, 2.0, "thrust astern over what its curve says", sd=0.2, of="command pwm rate"
+    )
+    stall: Number = number(
+        0.0, "-", 0.0, 20.0, "thrust lost where the water runs against it", sd=1.0, of="command pwm rate"
     )
     D: Number = number(None, "m", 0.005, 15.0, "propeller diameter", key="diameter_m")
     K_T0: Number = number(0.32, "-", 0.02, 1.5, "thrust coefficient at J = 0")

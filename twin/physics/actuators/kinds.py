@@ -56,6 +56,14 @@ class OneActuator(Protocol):
         """Thrust lost at the service speed U_0, as a share of the greatest [-]."""
 
     @property
+    def reverse(self) -> Number:
+        """Thrust astern over what its curve says [-]."""
+
+    @property
+    def stall(self) -> Number:
+        """How fast thrust is lost where the water runs against it [-]."""
+
+    @property
     def D(self) -> Number:
         """Propeller diameter [m]."""
 
@@ -98,18 +106,39 @@ def push(a: OneActuator, told: Told, u_a: Number, ship: ShipLike) -> Number:
     if "thrust" in has:
         return a.gain * told[has["thrust"]]
     if "rate" in has:
-        n, f = told[has["rate"]], ship.rho * a.D**4
         pitch = told[has["pitch"]] / a.pitch_0 if "pitch" in has else 1.0
-        return a.gain * f * abs(n) * (a.K_T0 * n * pitch + a.K_T1 * u_a / a.D)
+        return _by_turns(a, told[has["rate"]], pitch, u_a, ship)
     c = told[has["command"]] if "command" in has else (told[has["pwm"]] - STOP_US) / SPAN_US
+    return _by_command(a, c, u_a, ship)
+
+
+def _by_turns(a: OneActuator, n: Number, pitch: Number, u_a: Number, ship: ShipLike) -> Number:
+    drive = n * pitch  # negative where it pushes astern
+    at_rest = a.K_T0 * n * pitch + a.K_T0 * (1.0 - a.reverse) * positive(-drive)
+    T = a.gain * (ship.rho * a.D**4) * abs(n) * (at_rest + a.K_T1 * u_a / a.D)
+    nD = n * a.D
+    return T * _left(a, positive(-drive * a.D * u_a) ** 2, nD**4)
+
+
+def _by_command(a: OneActuator, c: Number, u_a: Number, ship: ShipLike) -> Number:
     ahead = positive(c - a.zero - a.dead, 1e-8) / (1.0 - a.dead)
     astern = positive(a.zero - c - a.dead, 1e-8) / (1.0 - a.dead)
-    at_rest = a.ahead * _curve(a, ahead) - a.astern * _curve(a, astern)
-    return a.gain * (at_rest - a.slow * (a.ahead * ahead + a.astern * astern) * u_a / ship.U_0)
+    on, off, w = _curve(a, ahead), _curve(a, astern), u_a / ship.U_0  # shares of the greatest, at rest
+    T_ahead = a.ahead * _left(a, positive(-w) ** 2, on)
+    T_astern = a.reverse * a.astern * _left(a, positive(w) ** 2, off)
+    at_rest = T_ahead * on - T_astern * off
+    return a.gain * (at_rest - a.slow * (T_ahead * ahead + T_astern * astern) * u_a / ship.U_0)
 
 
 def _curve(a: OneActuator, e: Number) -> Number:
     return (a.linear + (1.0 - a.linear) * e) * e
+
+
+def _left(a: OneActuator, against: Number, turning: Number) -> Number:
+    """Share of the thrust that is left where the water runs against it: 1/(1 + stall J^2), of which J^2 =
+    against/turning."""
+    stalled = a.stall * against
+    return 1.0 - stalled / (turning + stalled + 1e-12)
 
 
 def _at(a: OneActuator, X: Number, Y: Number) -> core.Tau:
