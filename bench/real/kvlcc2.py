@@ -26,7 +26,7 @@ from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
 from twin.study.update import adding
 
-MAPS = Path(__file__).parents[1] / "docs" / "maps"
+MAPS = Path(__file__).parents[2] / "docs" / "maps"
 HORIZONS_S = (10.0, 60.0, 120.0)
 # of the catalogue, what could make one side differ
 ASYMMETRIC = ("RudderOffset", "PropellerWalk", "TowForce")

@@ -14,6 +14,7 @@ from bench.real.faults import (
     late_receiver,
     turned_compass,
 )
+from bench.real.kvlcc2 import BASINS, MAPS
 from twin.commands.story import SHIP
 from twin.physics.effects import find
 from twin.physics.ship import load
@@ -73,6 +74,11 @@ def test_a_rudder_that_comes_later_was_recorded_earlier(voyage):
     assert early_rudder(voyage, 7.0)["rudder_angle_deg"][:500] == pytest.approx(
         voyage["rudder_angle_deg"][7:507]
     )
+
+
+def test_each_basin_has_its_map_of_columns():
+    for basin in BASINS:
+        assert (MAPS / f"kvlcc2_{basin.folder}.toml").is_file()
 
 
 def test_every_fault_has_a_name_in_the_catalogue_and_changes_the_readings(voyage):
