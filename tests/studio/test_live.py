@@ -74,7 +74,7 @@ def page(tab, tmp_path, serve):
     """An empty project, open at Live."""
     served = serve(tmp_path)
     tab.size(1400, 900)
-    tab.said.clear()
+    tab.leave()
     tab.open(served.links[0] + "#/live")
     tab.wait("!!window.twinStudio?.drawn && !!document.getElementById('attach')", 30)
     tab.served = served

@@ -59,7 +59,7 @@ def page(tab, project, spoiled, serve):
     assert {jobs.state(name) for name in jobs.names()} == {"done"}
     served = serve(project.folder)
     tab.size(1400, 900)
-    tab.said.clear()
+    tab.leave()
     tab.open(served.links[0])
     tab.wait("window.twinStudio?.drawn > 0", 30)
     yield tab

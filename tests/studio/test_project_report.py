@@ -62,7 +62,7 @@ def test_the_page_holds_the_answers_numbers_and_is_read_in_both_lights(compared,
     shown = data_of(text)
     assert shown["verdict"] == found["verdict"] and shown["result"]["horizons"] == found["horizons"]
     assert shown["comparisons"][0]["position_mae_m"] == found["horizons"][-1]["position_mae_m"]
-    tab.said.clear()
+    tab.leave()
     for width, theme in ((1280, "light"), (1280, "dark"), (360, "light")):
         tab.size(width, 900)
         tab.open("about:blank")

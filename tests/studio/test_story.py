@@ -25,7 +25,7 @@ def page(tab, served):
     """The page, opened with the printed link; the browser has no other network."""
     tab.ask("Network.enable")
     tab.size(1400, 900)
-    tab.said.clear()
+    tab.leave()
     tab.open(served.links[0])
     tab.wait("window.twinStudio?.drawn > 0", 30)
     return tab

@@ -48,7 +48,7 @@ def sea(watch, feed, ticks):
 @pytest.fixture
 def page(tab, sea, server, links):
     tab.size(1400, 900)
-    tab.said.clear()
+    tab.leave()
     tab.open(links[-1])
     tab.wait("window.twinView?.frame()?.ahead?.shown?.length === 2")
     return tab

@@ -29,7 +29,7 @@ def page(tmp_path_factory):
 def test_the_page_is_drawn_without_a_word_of_complaint(tab, page, theme, width):
     """Expected: every ship, its history, commands; contrast of text 4.5 at least; nothing wider than the
     screen."""
-    tab.said.clear()
+    tab.leave()
     tab.size(width, 900)
     tab.open("about:blank")
     tab.open(f"{page.as_uri()}#theme={theme}")
