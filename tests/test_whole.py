@@ -1,5 +1,8 @@
 """Files that are there whole or not at all."""
 
+import os
+import stat
+
 import pytest
 
 from twin import whole
@@ -12,6 +15,17 @@ def test_what_was_there_is_replaced_and_nothing_else_stays(tmp_path):
     (tmp_path / "x.toml").write_text("old")
     whole.write(tmp_path / "x.toml", "new\n")
     assert [(p.name, p.read_text()) for p in tmp_path.iterdir()] == [("x.toml", "new\n")]
+
+
+def test_a_pipe_is_written_into_and_no_file_takes_its_place(tmp_path):
+    """As root, `-o /dev/null` put a file in the place of the device."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    whole.write(pipe, "new\n")
+    assert stat.S_ISFIFO(os.stat(pipe).st_mode) and os.read(reader, 100) == b"new\n"
+    os.close(reader)
+    assert [p.name for p in tmp_path.iterdir()] == ["pipe"]
 
 
 @pytest.mark.parametrize("where", ["none/x.toml", "folder"])

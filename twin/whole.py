@@ -61,6 +61,9 @@ def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
     nothing is left behind.
     `option`: what names the file on the command line."""
     path = Path(path)
+    if path.exists() and not path.is_file():  # a device or a pipe: a rename would put a file in its place
+        _into(path, text, option)
+        return
     aside = path.parent / f".{path.name}.{os.urandom(6).hex()}"
     try:
         with open(aside, "x", encoding="utf-8") as file:
@@ -72,6 +75,13 @@ def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
     except OSError as error:
         with suppress(OSError):
             os.unlink(aside)
+        raise _cannot(path, error.strerror, option) from None
+
+
+def _into(path: Path, text: str, option: str) -> None:
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
         raise _cannot(path, error.strerror, option) from None
 
 
