@@ -17,7 +17,7 @@ HEAD = """# Real data: KVLCC2 in two towing tanks
 Zigzags of SIMMAN 2008, imported through `docs/maps/`. All errors are open loop: the model starts from the
 measured motion and runs on the recorded rudder and propeller; mean over windows that begin every ten seconds.
 *Dead reckoning* goes on as at
-the start. *NoiseModel* is what a perfect model (or, of a calibrated ship, one as good as its calibration)
+the start. *Floor* is what a perfect model (or, of a calibrated ship, one as good as its calibration)
 would show."""
 
 
