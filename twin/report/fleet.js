@@ -28,7 +28,7 @@ function ranking() {
       el("td.d", null, c && c.share_of_error !== null ? [el("span.bar100", { style: { width: "70px" } }, el("i", { style: { width: `${100 * Math.min(Math.max(c.share_of_error, 0), 1)}%` } })), percent(c.share_of_error)] : ""),
       el("td.d", null, i ? "" : chance(s.over_months))));
   });
-  return section("Ranked by what is wrong", "by the latest voyage of each ship: causes by their share of the open-loop error, then unknown, undecided, nothing missing", table(["", "ship", "verdict", "since", "size, 95 %", "trend, 95 %", "of the error", "over the months"], rows));
+  return section("Ranked by what is wrong", "by the latest voyage of each ship: causes by their share of the open-loop error, then unknown, undecided, nothing missing", table([">rank", "ship", "verdict", "since", "size, 95 %", "trend, 95 %", "of the error", "over the months"], rows));
 }
 
 function chance(m) {
@@ -49,7 +49,7 @@ function history(cause) {
   for (const v of new Set([low, 0, high])) if (v === 0 || Math.abs(Y(v) - Y(0)) > 12) word(left - 4, Y(v) + 4, num(v, 2), "end");
   drawing.append(shape("path", { d: `M${left} ${Y(0)}H${wide}`, class: "nought" }), shape("polyline", { points: list.map((p, i) => `${X(i)},${Y(p.value)}`).join(" "), class: "way" }));
   list.forEach((p, i) => drawing.append(shape("path", { d: `M${X(i)} ${Y(p.low95)}V${Y(p.high95)}`, class: "middle" }), shape("circle", { cx: X(i), cy: Y(p.value), r: 4, class: p.named ? "named" : "weighed" })));
-  word(left + 8, tall - 3, day(list[0]), "start");
+  word(list.length > 1 ? left + 8 : X(0), tall - 3, day(list[0]), list.length > 1 ? "start" : "middle");
   if (list.length > 1) word(wide - 8, tall - 3, day(list[list.length - 1]), "end");
   return el("div", null, el("code", null, `${cause.effect}: ${list[0].name}${unit(list[0])}`), el("div", null, drawing), el("span.note", null, `named on ${cause.named_on} of ${cause.of_voyages} voyages, since ${day(cause.since)}; ${cause.trend ? slope(cause.trend) : "three sizes make a trend"}`));
 }
@@ -63,7 +63,7 @@ function ship(s) {
   if (lasting.length) commands.push(command(`twin add ${lasting.join(" ")} --ship ${quoted(s.file)} --voyage ${quoted(s.latest.file)} -o better.toml`));
   const out = section(`${s.rank} · ${s.ship}`, s.file, el("p", { style: { margin: "0 0 10px" } }, s.latest ? s.sentence : "No voyage of this ship could be judged."),
     el(".two", null, s.causes.filter((c) => c.sizes.length).map(history)),
-    table(["voyage", "began", "", "verdict", ">error (expected) [m]", ">p"], voyages), commands);
+    table(["voyage", "began", "tags", "verdict", ">error (expected) [m]", ">p"], voyages), commands);
   out.id = `ship-${s.rank}`;
   return out;
 }

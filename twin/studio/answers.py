@@ -8,7 +8,7 @@ from typing import Any
 
 from twin import whole
 from twin.api import calibration, comparison
-from twin.errors import DataError, SettingsError
+from twin.errors import DataError
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.physics.ship import load
@@ -20,6 +20,7 @@ from twin.recording.write import write_voyage
 from twin.report.page import content, html
 from twin.studio.causes import MOST, cause_view
 from twin.studio.forces import force_view
+from twin.studio.last_step import last_step, not_there
 from twin.studio.looked import looked, write_result
 from twin.studio.verbs import command_of
 from twin.study.prediction.openloop import HORIZONS_S
@@ -40,13 +41,14 @@ def look(asked: Asked, job: Path, tell: Tell) -> None:
 
 def import_(asked: Asked, job: Path, tell: Tell) -> None:
     tell(f"reading {asked['file']}")
-    _not_there(asked["output"])
+    not_there(asked["output"])
     found = import_voyage(asked["file"], asked.get("map"), asked.get("ship"))
     refused = found.refused(asked.get("accept", ()))
     write_result(job, "result.json", found.as_json() | {"output": None if refused else asked["output"]})
     if refused:
         raise DataError(refusal(asked["file"], refused, asked.get("map")))
     tell(f"writing {asked['output']}")
+    last_step(asked["output"])
     write_voyage(found.voyage, asked["output"])
 
 
@@ -88,12 +90,13 @@ def diagnose(asked: Asked, job: Path, tell: Tell) -> None:
 
 
 def calibrate(asked: Asked, job: Path, tell: Tell) -> str | None:
-    _not_there(asked["output"])
+    not_there(asked["output"])
     ship = load(asked["ship"])
     every = _read([*asked["voyages"], *asked.get("held_outs", [])], asked["ship"], tell)
     used = len(asked["voyages"])
     done = calibration.of_sailed(ship, every[:used], every[used:], tell)
     if done.accepted:
+        last_step(asked["output"])
         save(done.ship, asked["output"], asked["ship"])
     output = asked["output"] if done.accepted else None
     write_result(job, "result.json", done.to_dict() | {"output": output})
@@ -106,7 +109,7 @@ def add(asked: Asked, job: Path, tell: Tell) -> str | None:
     from twin.study.update.add import add as fitted
     from twin.study.update.added import refused
 
-    _not_there(asked["output"])
+    not_there(asked["output"])
     ship, effects = load(asked["ship"]), [find(name) for name in dict.fromkeys(asked["effects"])]
     every = _read([*asked["voyages"], *asked.get("held_outs", [])], asked["ship"], tell)
     sailed, held = every[: len(asked["voyages"])], every[len(asked["voyages"]) :]
@@ -121,14 +124,16 @@ def add(asked: Asked, job: Path, tell: Tell) -> str | None:
         },
         "output": asked["output"] if accepted else None,
     }
-    if accepted:
-        save(made.ship, asked["output"], asked["ship"])
-    write_result(job, "result.json", result)
     tell("drawing")
     told = result | {"history": made.ship.notes["history"]}
     voyages = [s.voyage for s in held or sailed]
     drawn = content("add", told, made.held, made.model, Model.of(ship), voyages)
-    whole.write(job / "report.html", html(drawn))
+    page = html(drawn)
+    if accepted:
+        last_step(asked["output"])
+        save(made.ship, asked["output"], asked["ship"])
+    write_result(job, "result.json", result)
+    whole.write(job / "report.html", page)
     changes = difference(asked["ship"], asked["output"]) if accepted else []
     write_view(job, drawn, {"difference": changes, "history": plain(list(made.ship.notes["history"]))})
     return None if accepted else f"{refused(made.proof, made.fall)} {asked['output']} was not written."
@@ -147,11 +152,6 @@ DO: dict[str, Callable[[Asked, Path, Tell], str | None]] = {
 def _read(paths: list[str], ship: str, tell: Tell) -> list[Sailed]:
     tell(f"reading {', '.join(paths)}")
     return read_all(paths, load(ship))
-
-
-def _not_there(output: str) -> None:
-    if Path(output).exists():
-        raise SettingsError(f"{output}: is there already and would be lost. Choose another name.")
 
 
 def _view(kind: str, result: Asked, job: Path, tell: Tell, model: Model, sailed: list[Sailed]) -> None:

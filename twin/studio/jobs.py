@@ -15,6 +15,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Mapping
 from contextlib import suppress
@@ -31,6 +32,7 @@ START_S = 2.0  # until a worker has loaded what it needs
 NAME = re.compile(r"\d{4}-[a-z]+")
 JOB, WORKER, PROGRESS, END = "job.json", "worker.json", "progress.jsonl", "end.json"
 CANCELLED = 130
+LAST_STEP_S = 10.0  # a worker may write its files that long after it was cancelled
 SHOWN = ("result.json", "view.json", "report.html", "series.f32")
 MOST_LINES = 400  # of progress that are read
 
@@ -42,6 +44,7 @@ class Jobs:
         self.project = project
         self.folder = project.folder / JOBS
         self._ours: dict[str, subprocess.Popen[bytes]] = {}
+        self._turning = threading.Lock()  # no job begins while one is cancelled
 
     def add(self, asked: Mapping[str, Any]) -> str:
         """Notes what is asked; it begins at the next `turn`. The job's name."""
@@ -61,6 +64,10 @@ class Jobs:
 
     def turn(self) -> None:
         """Starts what waits, as many at once as may; takes leave of our workers that ended."""
+        with self._turning:
+            self._turn()
+
+    def _turn(self) -> None:
         for name, worker in list(self._ours.items()):
             if worker.poll() is not None:
                 del self._ours[name]
@@ -136,15 +143,17 @@ class Jobs:
         return [self.told(name) for name in self.names()]
 
     def cancel(self, name: str) -> None:
-        """Ends the worker of a job, and notes it; what it had not finished is not there."""
-        folder, worker = self.at(name), read(self.folder / name / WORKER)
-        if self.state(name) not in ("waiting", "running"):
-            return
-        if worker is not None and alive(worker):
-            with suppress(ProcessLookupError):
-                os.killpg(int(worker["pid"]), signal.SIGTERM)
-        note = {"exit_code": CANCELLED, "said": "cancelled", "ended_s": round(time.time(), 3)}
-        whole.write(folder / END, json.dumps(note) + "\n")
+        """Ends the worker of a job, and notes it: it has written nothing into the project. A worker that is
+        writing already ends its `last_step` and its job is done; SettingsError when that takes long."""
+        with self._turning:
+            folder, worker = self.at(name), read(self.folder / name / WORKER)
+            if self.state(name) not in ("waiting", "running"):
+                return
+            if worker is not None:
+                _ended(worker, name)
+            if not (folder / END).exists():
+                note = {"exit_code": CANCELLED, "said": "cancelled", "ended_s": round(time.time(), 3)}
+                whole.write(folder / END, json.dumps(note) + "\n")
 
     def forget(self, name: str) -> None:
         """Takes a job that is over out of the project, with what it found."""
@@ -182,6 +191,17 @@ class Jobs:
                 with suppress(OSError, ValueError):
                     total += path.stat().st_size if path.is_file() and path.suffix != ".toml" else 0
         return total
+
+
+def _ended(worker: Mapping[str, Any], name: str) -> None:
+    """Ends a worker and waits until it is gone."""
+    with suppress(ProcessLookupError):
+        os.killpg(int(worker["pid"]), signal.SIGTERM)
+    until_s = time.monotonic() + LAST_STEP_S
+    while alive(worker):
+        if time.monotonic() > until_s:
+            raise SettingsError(f"{name}: is writing its files and is not cancelled any more. Wait for it.")
+        time.sleep(0.02)
 
 
 def read(path: Path) -> dict[str, Any] | None:

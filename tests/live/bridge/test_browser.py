@@ -9,7 +9,7 @@ from tests.chromium import CHROMIUM, FAINT
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no Chromium here")
 
-NAMELESS = """[...document.querySelectorAll("button, table, section, svg[role=img], [role=group]")]
+NAMELESS = """[...document.querySelectorAll("button, th, table, section, svg[role=img], [role=group]")]
   .filter((e) => e.checkVisibility() && !(e.getAttribute("aria-label") || e.textContent.trim()
     || document.getElementById(e.getAttribute("aria-labelledby"))?.textContent)).map((e) => e.outerHTML.slice(0, 80))"""
 THEMES = ("light", "dark", "night")

@@ -69,7 +69,7 @@ function motion(states) {
     const sigma = s.sigma === null ? "" : ` ± ${fixed(s.sigma, s.decimals)}`;
     return ["", `${s.name} [${s.unit}]`, [fixed(s.measured, s.decimals), s.lost ? "lost" : "measured"], [fixed(s.estimate, s.decimals) + sigma], [age, s.lost ? "lost" : ""]];
   });
-  table(by("motion"), "Motion, measured and estimated", ["", "measured", "estimated ± 1 sigma", "age"], rows);
+  table(by("motion"), "Motion, measured and estimated", ["motion", "measured", "estimated ± 1 sigma", "age"], rows);
 }
 
 // What each actuator is told or says of itself; a ship with one propeller and one rudder has none.
@@ -80,7 +80,7 @@ function actuators(channels) {
     const said = c.value === null ? c.words : `${fixed(c.value, 1)}${c.unit === "-" ? "" : ` ${c.unit}`}`;
     return ["", c.name, [said, lost], [c.age === null ? "–" : `${c.age.toFixed(1)} s`, lost]];
   });
-  table(by("actuators"), "What each actuator does", ["", "says", "age"], rows);
+  table(by("actuators"), "What each actuator does", ["actuator", "says", "age"], rows);
 }
 
 function ahead(next) {
@@ -89,7 +89,7 @@ function ahead(next) {
     next.old ? "old-row" : "", `${p.horizon.toFixed(0)} s`,
     [`${p.distance.toFixed(0)} m, ${bearing(p.bearing)}`], [bearing(p.psi)], [spread(p)], [surely(p)],
   ]);
-  table(by("ahead"), "Where the ship will be", ["", "from here", "heading", "within", "how sure"], rows);
+  table(by("ahead"), "Where the ship will be", ["after", "from here", "heading", "within", "how sure"], rows);
   const note = by("ahead-note");
   set(note, { class: next?.old ? "note old" : "note" });
   say(note, !next ? "No prediction yet." : !shown.length ? "No prediction for 60 or 120 s (prediction.horizons_s of the settings)." : next.old ? `OLD: said ${next.age.toFixed(0)} s ago.` : promised(shown) ? "If helm and engine are held. Along / across the course, and heading." : "± north / east: 68 % of the errors are smaller; prior: assumed, learned: from this voyage.");
@@ -110,7 +110,7 @@ function surely(p) {
 }
 
 function forces({ unit, moment_unit, rows, parts, share }) {
-  const heads = ["", `ahead [${unit}]`, `starboard [${unit}]`, `turning [${moment_unit}]`];
+  const heads = ["force", `ahead [${unit}]`, `starboard [${unit}]`, `turning [${moment_unit}]`];
   const cells = (row) => ["", row.name, [fixed(row.X, 1)], [fixed(row.Y, 1)], [fixed(row.N, 1)]];
   table(by("forces"), "Known and learned force", heads, rows.map(cells));
   table(by("parts"), "Known force by effect", heads, parts.map(cells));
@@ -179,6 +179,7 @@ export function alarms(list, acknowledge) {
     set(item, { class: alarm.acknowledged ? "seen" : "new" });
     say(when, clock(alarm.since_s));
     say(text, alarm.text);
+    set(button, { "aria-label": `Acknowledge: ${alarm.text}` });
     button.hidden = alarm.acknowledged;
     say(state, `${alarm.over ? "over" : "stands"}, ${alarm.acknowledged ? "acknowledged" : "not acknowledged"}`);
   });

@@ -45,7 +45,7 @@ function asker(item) {
 
 function answer(a) {
   const d = a.result, view = timeView(), x = d.horizons.map((h) => h.horizon_s), line = (key, name, look) => ({ name, x, y: d.horizons.map((h) => h[key].position_mae_m), look, points: true });
-  const heads = ["after", ["before [m]"], ["after [m]"], ["expected [m]"], ["heading before [deg]"], ["heading after [deg]"]], rows = d.horizons.map((h) => [`${asGiven(h.horizon_s)} s`, h.before.position_mae_m, h.after.position_mae_m, h.noise_floor?.position_mae_m, h.before.heading_mae_deg, h.after.heading_mae_deg]);
+  const heads = ["after", ["before [m]"], ["after [m]"], ["expected [m]"], ["before [deg]"], ["after [deg]"]], rows = d.horizons.map((h) => [`${asGiven(h.horizon_s)} s`, h.before.position_mae_m, h.after.position_mae_m, h.noise_floor?.position_mae_m, h.before.heading_mae_deg, h.after.heading_mae_deg]);
   const numbers = Object.entries(d.parameters).flatMap(([e, list]) => Object.entries(list).map(([n, p]) => [e, n.replaceAll("_", " "), p.value, p.low95, p.high95, p.unit]));
   const extra = { name: (key) => (key === "before" ? "before" : key === "after" ? "after" : "model"), look: (key) => (key === "before" ? "c-second" : "c-model") };
   return [el("section.card", { "aria-label": "In a sentence" }, el(".head", null, el(`span.badge.${d.accepted ? "good" : "fair"}`, null, d.accepted ? `proved, and written to ${d.output}` : "not proved, nothing was written")), el("p.big", null, d.verdict), a.job.said ? el("p", null, a.job.said) : null, undo(a)),

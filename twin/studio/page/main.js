@@ -9,6 +9,7 @@ import { compare } from "/app/compare.js";
 import { data } from "/app/data.js";
 import { diagnose } from "/app/diagnose.js";
 import { live } from "/app/live.js";
+import { steps } from "/app/shared.js";
 import { ship } from "/app/ship.js";
 
 const PARTS = { data: ["Data", data], ship: ["Ship", ship], calibrate: ["Calibrate", calibrate], compare: ["Compare", compare], diagnose: ["Diagnose", diagnose], add: ["Add", add], live: ["Live", live] };
@@ -58,6 +59,7 @@ export async function again() {
 function work() {
   const at = state.jobs.filter((j) => !over(j)), strip = by("work");
   strip.hidden = !at.length;
+  for (const j of at) document.querySelector(`[data-steps="${j.name}"]`)?.replaceChildren(...steps(j));
   strip.replaceChildren(...at.map((j) => {
     const gone = j.took_s ?? 0, left = j.usual_s ? Math.max(j.usual_s - gone, 0) : null;
     const time = j.state === "waiting" ? "waits for its turn" : `${clock(gone)} so far${left === null ? "" : left > 0 ? `, about ${clock(left)} left` : ", longer than usual"}`;

@@ -55,10 +55,13 @@ export async function answerOf(name) {
   if (!job) throw new Error(`${name}: there is no such job in this project (any more).`);
   if (over(job) && job.has.includes("result.json") && ["done", "refused"].includes(job.state)) return { job, result: await found(name), view: job.has.includes("view.json") ? await found(name, "view.json") : null };
   const retry = over(job) && !state.project.read_only ? button("Do it again", doing(async () => { const { job: next } = await ask("/api/jobs", job.asked); await again(); location.hash = location.hash.replace(name, next); }), { class: "main", id: "retry" }) : null;
-  const why = { died: "The process that worked on this is gone (killed, or the computer went down). Nothing else of the project is touched.", cancelled: "This was cancelled.", failed: job.said }[job.state];
-  const steps = el("ol", { "aria-label": "Steps so far" }, job.progress.map((p) => el("li", null, `${p.text} `, el("span.note", null, `${clock(p.s)}`))));
-  return { job, waiting: el("section.card", { "aria-label": "State" }, el(".head", null, el("h2", null, `${job.verb}: ${words(job.asked)}`), stateWord(job)), why ? el("p.big", null, why) : null, steps, command(job.command), el(".tools", null, retry)) };
+  const why = { died: "The process that worked on this is gone (killed, or the computer went down). Nothing else of the project is touched.", cancelled: "This was cancelled before it wrote anything into the project: its files are as they were.", failed: job.said }[job.state];
+  const list = el("ol", { "aria-label": "Steps so far", "data-steps": job.name }, steps(job));
+  return { job, waiting: el("section.card", { "aria-label": "State" }, el(".head", null, el("h2", null, `${job.verb}: ${words(job.asked)}`), stateWord(job)), why ? el("p.big", null, why) : null, list, command(job.command), el(".tools", null, retry)) };
 }
+
+/** What a job has told of its progress; the list goes on while it is at work (main.js). */
+export const steps = (job) => job.progress.map((p) => el("li", null, `${p.text} `, el("span.note", null, `${clock(p.s)}`)));
 
 /** The foot of an answer: command, and the files that hold it. */
 export function foot(job) {
