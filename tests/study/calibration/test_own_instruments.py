@@ -47,6 +47,6 @@ def test_the_smoothing_becomes_the_ships_own_and_is_said(calibrated):
 
 def test_a_voyage_in_a_stream_with_that_receiver_has_no_false_instrument(calibrated, voyages):
     result = diagnose([smoothed(voyages["Current"])], calibrated.ship).result
-    accused = {"SensorDelay", "AntennaOffset", "ReceiverSmoothing", "HeadingLag"}
-    assert not accused & set(result["missing"])
-    assert not accused & {c["effect"] for c in result["candidates"] if c["probability"] >= 0.5}
+    suspected = {"SensorDelay", "AntennaOffset", "ReceiverSmoothing", "HeadingLag"}
+    assert not suspected & set(result["missing"])
+    assert not suspected & {c["effect"] for c in result["candidates"] if c["probability"] >= 0.5}

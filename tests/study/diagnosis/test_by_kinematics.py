@@ -104,8 +104,8 @@ def says(seen, sd=0.002, references=(0.010, 0.012, 0.008)):
     "bias, seen, expected", [(0.03, 0.0105, True), (0.03, 0.040, None), (0.002, 0.0105, None), (0.03, 0.0, False)]
 )  # fmt: skip
 def test_what_kinematics_know_to_be_as_on_the_references_is_no_change(bias, seen, expected):
-    """Test: 0.010 rad on the references; a change of so much is accused, and so much seen. Expected: as there
-    (True), as accused or too small to say (None), as neither (False)."""
+    """Test: 0.010 rad on the references; a change of so much is suspected, and so much seen. Expected: as there
+    (True), as suspected or too small to say (None), as neither (False)."""
     share = reached(*hypothesis(bias), "HeadingBias", says(seen))
     assert share is None if expected is None else (share >= 0.25) == expected
 
