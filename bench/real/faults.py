@@ -157,15 +157,15 @@ def asked(fault: PlantedFault, voyages: Sequence[Voyage], ship: Ship) -> dict[st
     L, U = float(ship.L_pp), float(ship.scale("speed"))
     found = diagnose([fault.put(v, L, U) for v in voyages], ship).result
     numbers = [p for c in found["candidates"] if c["effect"] in found["missing"] for p in c["parameters"]]
-    keep = {k: found[k] for k in ("verdict", "missing", "one_of", "probabilities")}
+    keep = {k: found[k] for k in ("verdict", "reason", "missing", "one_of", "probabilities", "facts")}
     return {"put": fault.words, "effects": fault.effects, "numbers": numbers} | keep
 
 
 def told(rows: Sequence[dict[str, Any]]) -> str:
     """The answers as a table."""
     lines = [
-        "| put into the readings | the catalogue's name | verdict | named | numbers (95 %) |",
-        "|---|---|---|---|---|",
+        "| put into the readings | the catalogue's name | verdict | reason | named | numbers (95 %) |",
+        "|---|---|---|---|---|---|",
     ]
     for r in rows:
         few = [p for p in r["numbers"] if "_c" not in p["name"] and "_s" not in p["name"]]
@@ -175,6 +175,6 @@ def told(rows: Sequence[dict[str, Any]]) -> str:
         one_of = f"one of {', '.join(r['one_of'])}" if r["one_of"] else ""
         lines.append(
             f"| {r['put']} | {' + '.join(r['effects'])} | `{r['verdict']}` | "
-            f"{' + '.join(r['missing']) or one_of} | {sizes} |"
+            f"`{r['reason']}` | {' + '.join(r['missing']) or one_of} | {sizes} |"
         )
     return "\n".join(lines)

@@ -30,6 +30,11 @@ MAPS = Path(__file__).parents[2] / "docs" / "maps"
 HORIZONS_S = (10.0, 60.0, 120.0)
 # of the catalogue, what could make one side differ
 ASYMMETRIC = ("RudderOffset", "PropellerWalk", "TowForce")
+# of each answer, the facts that it was decided from too
+KEPT = (
+    *("verdict", "reason", "missing", "probabilities", "candidates", "next_manoeuvre", "not_judged"),
+    "facts",
+)
 EPILOG = """example:
   SHIPTWIN_DATA=DIR twin-bench real --out docs/results/real-kvlcc2.md
 
@@ -168,5 +173,4 @@ def faulty(fault: real_faults.PlantedFault, runs: Sequence[Sailed], ship: Ship) 
 def diagnosed(words: str, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
     answer.tell(f"diagnosing: {words}")
     found = diagnose([s.voyage for s in runs], ship).result
-    keep = ("verdict", "missing", "probabilities", "candidates", "next_manoeuvre", "not_judged")
-    return {"of": words} | {k: found[k] for k in keep}
+    return {"of": words} | {k: found[k] for k in KEPT}

@@ -127,8 +127,8 @@ def _diagnosis(d: dict[str, Any]) -> str:
     p = d["probabilities"]
     named = f", names {' and '.join(d['missing'])}" if d["missing"] else ""
     lines = [
-        f"**`diagnose`, {d['of']}**: `{d['verdict']}`{named} (nothing missing {p['nothing_missing']:.2f}, "
-        f"unknown {p['unknown']:.2f})."
+        f"**`diagnose`, {d['of']}**: `{d['verdict']}`, `{d['reason']}`{named} "
+        f"(nothing missing {p['nothing_missing']:.2f}, unknown {p['unknown']:.2f})."
     ]
     for c in d["candidates"]:
         sizes = "; ".join(
