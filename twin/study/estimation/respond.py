@@ -53,9 +53,18 @@ def _nu_dot(s: Situation, model: Model) -> np.ndarray:
 def readings(s: Situation, model: Model) -> np.ndarray:
     """(N, 8), in SI: what the instruments say of situation s (whose u_r and v_r the model has set), faults
     and all."""
+    s = _shown(replace(s), model)
+    out = np.empty((np.size(s.t), len(READINGS)))
+    for i, name in enumerate(READINGS):
+        out[:, i] = getattr(s, name)
+    return out
+
+
+def _shown(s: Situation, model: Model) -> Situation:
+    """What the faulty instruments make of a situation that is no one else's."""
     for fault in model.faults:
-        s = fault.read(replace(s), model.loaded)
-    return np.column_stack([np.broadcast_to(getattr(s, name), np.shape(s.psi)) for name in READINGS])
+        s = fault.read(s, model.loaded)
+    return s
 
 
 SATELLITES = [READINGS.index(name) for name in ("x", "y", "u", "v")]
@@ -215,8 +224,7 @@ def _slopes(s: Situation, model: Model) -> np.ndarray:
     size = len(READINGS)
     seeds = [tuple(float(i == j) for i in range(size)) for j in range(size)]
     s = replace(s, **{n: Dual(getattr(s, n), seed) for n, seed in zip(READINGS, seeds, strict=True)})
-    for fault in model.faults:
-        s = fault.read(replace(s), model.loaded)
+    s = _shown(s, model)
     out = np.zeros((np.size(s.t), size, size))
     for i, name in enumerate(READINGS):
         shown = getattr(s, name)
