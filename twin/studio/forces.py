@@ -4,7 +4,7 @@ from math import erfc, sqrt
 from typing import Any
 
 import numpy as np
-from scipy.stats import chi2
+from scipy.special import chdtrc
 
 from twin.physics.model import Model
 from twin.report.series import packed
@@ -89,7 +89,7 @@ def _test(
         * (y.size + 2.0)
         * float(np.sum(np.square(r[1 : LAGS + 1]) / (y.size - np.arange(1, LAGS + 1))))
     )
-    out["independent_p"] = _finite(float(chi2.sf(q, LAGS)))
+    out["independent_p"] = _finite(float(chdtrc(LAGS, q)))
     for name, cause in causes.items():
         x = cause[own][known]
         if np.isfinite(x).all() and float(np.std(x)) > 0.0:

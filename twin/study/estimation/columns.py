@@ -15,7 +15,7 @@ from twin.physics.effect import Effect
 from twin.physics.model import Model
 from twin.physics.ship import DERIVATIVES, Ship
 from twin.study.estimation import form, rough, wave_induced
-from twin.study.estimation.respond import faulty, respond
+from twin.study.estimation.respond import faulty, moving, readings, respond, sailing
 from twin.study.track.track import Track
 
 
@@ -137,7 +137,8 @@ def columns(
 ) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3, P) accelerations and (N, 8, P) readings for one unit of each unknown, about the model (or `at`
     label -> value)."""
-    acceleration, reading = respond(track, model)
+    s, acceleration = sailing(track, model)
+    reading = readings(s, model)
     A: np.ndarray = np.zeros((len(track), 3, len(unknowns)), dtype)
     R: np.ndarray = np.zeros((len(track), 8, len(unknowns)), dtype)
     missing, missed = (
@@ -164,12 +165,13 @@ def columns(
         if unknown.owner != "core" and missing.intersection(catalogue[unknown.owner].needs):
             continue  # without its input the effect does nothing on this track
         here = (at or {}).get(unknown.label)
-        step = _step(
-            unknown, here, unknown.owner != "core" and catalogue[unknown.owner].kind == "SensorFault"
-        )
-        a, r = respond(
-            track, changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue)
-        )
+        fault = unknown.owner != "core" and catalogue[unknown.owner].kind == "SensorFault"
+        step = _step(unknown, here, fault)
+        other = changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue)
+        if fault:  # it changes what is read, and not how the ship moves
+            R[:, :, j] = (readings(s, other) - reading) / step
+            continue
+        a, r = respond(track, other)
         A[:, :, j], R[:, :, j] = (a - acceleration) / step, (r - reading) / step
     return A, R
 
@@ -188,12 +190,14 @@ def turns(
     present = {type(fault).__name__ for fault in model.faults}
     if not present.intersection(u.owner for u in unknowns):
         return {}
-    shown, out = faulty(track, model), {}
+    right, out = moving(track, model), {}
+    shown = faulty(right, model)
+    undo = np.linalg.inv(shown)
     for j, unknown in ((j, u) for j, u in enumerate(unknowns) if u.owner in present):
         here = (at or {}).get(unknown.label)
         step = _step(unknown, here, True)
         other = changed(model, unknown, (unknown.centre if here is None else here) + step, catalogue)
-        out[j] = ((faulty(track, other) - shown) @ np.linalg.inv(shown) / step).astype(np.float32)
+        out[j] = ((faulty(right, other) - shown) @ undo / step).astype(np.float32)
     return out
 
 

@@ -62,6 +62,9 @@ class Filters:
         self.told, self.noise, self.C = told, noise, C
         self.X = np.zeros((*C.shape[:3], told.shown.shape[-1]), LIGHT)
         self.H, self.unread = told.H.astype(LIGHT), np.where(told.here[:, None], noise.reading, 1.0)
+        self.turned = 1 + np.array(list(told.turns), int)
+        if told.turns:  # of all columns at once
+            self.turns = np.concatenate(list(told.turns.values()), axis=-2)
         self.on = _On(told.F, told.swing)
         self.light = _On(told.F.astype(LIGHT), None if told.swing is None else told.swing.astype(LIGHT))
 
@@ -71,8 +74,9 @@ class Filters:
         their covariance is none."""
         told, H = self.told, self.told.H[k]
         E = told.shown[k] - self.H[k] @ self.X[..., SHIP, :]
-        for column, turn in told.turns.items():
-            E[..., 1 + column] += (turn[k] @ (E[..., :1] - told.shown[k][..., :1]))[..., 0]
+        if self.turned.size:
+            more = self.turns[k] @ (E[..., :1] - told.shown[k][..., :1])
+            E[..., self.turned] += more.reshape(*E.shape[:2], -1, E.shape[2]).swapaxes(-1, -2)
         HC = H @ self.C[..., SHIP, :]
         S = HC[..., SHIP] @ H.swapaxes(-1, -2)
         _diagonal(S)[...] += self.unread[k]

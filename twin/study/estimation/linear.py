@@ -7,7 +7,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from twin.physics.effect import Effect
-from twin.physics.effects import of_role
 from twin.physics.maths import total
 from twin.physics.model import Model
 from twin.study.estimation.columns import LATE, Unknown, beside, columns, turns
@@ -20,12 +19,13 @@ from twin.study.estimation.filters import (
 )
 from twin.study.estimation.respond import (
     SATELLITES,
-    accelerations,
     advance,
+    by_stream,
     faulty,
     jacobian,
     keep_steered,
     later,
+    moving,
     respond,
     steered,
     when_true,
@@ -99,7 +99,7 @@ def linearise(
     defect[-1] = 0.0
     system, reader = _system(track, model), _reader(track)
     if model.faults:
-        slopes = faulty(track, prompt)
+        slopes = faulty(moving(track, prompt), prompt)
         track, reader = waves.as_shown(track, slopes), slopes @ reader
     if late_s:  # what was true between two steps is read at the nearer one, on its way to the other
         off = round(late_s / track.h) - late_s / track.h
@@ -119,7 +119,7 @@ def _system(track: Track, model: Model) -> np.ndarray:
     rate[:, 2, 5] = 1.0
     rate[:, SPEEDS, MOTION] = jacobian(track, model)
     rate[:, SPEEDS, SLOW] = np.eye(3)
-    rate[:, SPEEDS, FLOW] = _by_current(track, model)
+    rate[:, SPEEDS, FLOW] = by_stream(track, _without_current(model))
     F = np.zeros((len(track), STATES, STATES))
     F[:, MOTION] = np.eye(6, STATES) + h * rate + 0.5 * h * h * rate[..., MOTION] @ rate
     F[:, SLOW, SLOW] = np.eye(3) * np.exp(-h / (MEMORY_B * time))
@@ -141,7 +141,7 @@ def _bends(
 
     def slopes(m: Model) -> np.ndarray:
         keep_steered(some, m, track, steps)  # a gear is stepped through all of them
-        return np.concatenate([jacobian(some, m)[:, :, 2:], _by_current(some, m)], axis=2)
+        return np.concatenate([jacobian(some, m)[:, :, 2:], by_stream(some, _without_current(m))], axis=2)
 
     out, here = np.zeros((steps.size, 3, 6, len(unknowns)), np.float32), slopes(model)
     for j, unknown in enumerate(unknowns):
@@ -152,18 +152,6 @@ def _bends(
         np.float32
     )[:, None, None, None]
     return (1.0 - share) * out[after - 1] + share * out[after]
-
-
-def _by_current(track: Track, model: Model) -> np.ndarray:
-    """(N, 3, 2) acceleration per m/s of current to the north and to the east."""
-    current, still, step = (
-        of_role("stream").absent(model.ship),
-        _without_current(model),
-        0.02 * float(model.ship.scale("speed")),
-    )
-    here = accelerations(track, still)
-    there = [accelerations(track, still.but(current.but(**{axis: step}))) for axis in ("north", "east")]
-    return np.stack([(a - here) / step for a in there], axis=2)
 
 
 def _reader(track: Track) -> np.ndarray:

@@ -1,7 +1,7 @@
 """How rare several numbers are together, told as one number's distance from none."""
 
 import numpy as np
-from scipy.stats import chi2, norm
+from scipy.special import chdtrc, ndtri
 
 LEAST = 1e-300  # probability below which the tail of a normal distribution is taken for its exponent alone
 
@@ -16,5 +16,5 @@ def deviations(z: np.ndarray, covariance: np.ndarray) -> float:
     it is |z| over its standard deviation.
     """
     q = float(z @ np.linalg.solve(covariance, z))
-    tail = float(chi2.sf(q, z.size))
-    return float(norm.isf(0.5 * tail)) if tail > LEAST else float(np.sqrt(q))
+    tail = float(chdtrc(z.size, q))
+    return float(-ndtri(0.5 * tail)) if tail > LEAST else float(np.sqrt(q))

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 
 from twin.physics import core
+from twin.physics.dual import Dual
 from twin.physics.effect import Lag
+from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.track.track import READINGS, STATE, Track
@@ -18,10 +20,17 @@ from twin.study.track.track import READINGS, STATE, Track
 def respond(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:
     """(N, 3) accelerations [m/s2, m/s2, rad/s2] and (N, 8) readings (see READINGS) of a ship that moves along
     the track."""
+    s, nu_dot = sailing(track, model)
+    return nu_dot, readings(s, model)
+
+
+def sailing(track: Track, model: Model) -> tuple[Situation, np.ndarray]:
+    """A ship that moves along the track, as an instrument that is right would have it, and its accelerations
+    (N, 3) [m/s2, m/s2, rad/s2]."""
     s = track.situation(**steered(track, model))
     nu_dot = _nu_dot(s, model)
     s.u_dot, s.v_dot, _ = nu_dot.T
-    return nu_dot, readings(s, model)
+    return s, nu_dot
 
 
 def accelerations(track: Track, model: Model) -> np.ndarray:
@@ -44,9 +53,18 @@ def _nu_dot(s: Situation, model: Model) -> np.ndarray:
 def readings(s: Situation, model: Model) -> np.ndarray:
     """(N, 8), in SI: what the instruments say of situation s (whose u_r and v_r the model has set), faults
     and all."""
+    s = _shown(replace(s), model)
+    out = np.empty((np.size(s.t), len(READINGS)))
+    for i, name in enumerate(READINGS):
+        out[:, i] = getattr(s, name)
+    return out
+
+
+def _shown(s: Situation, model: Model) -> Situation:
+    """What the faulty instruments make of a situation that is no one else's."""
     for fault in model.faults:
-        s = fault.read(replace(s), model.loaded)
-    return np.column_stack([np.broadcast_to(getattr(s, name), np.shape(s.psi)) for name in READINGS])
+        s = fault.read(s, model.loaded)
+    return s
 
 
 SATELLITES = [READINGS.index(name) for name in ("x", "y", "u", "v")]
@@ -151,30 +169,76 @@ def _between(values: np.ndarray) -> np.ndarray:
 
 def jacobian(track: Track, model: Model) -> np.ndarray:
     """(N, 3, 6) derivative of the accelerations by x, y, psi, u, v, r, by central differences (position
-    does not matter). In SI."""
-    controls = steered(track, model)
+    does not matter), all sides in one pass. In SI."""
     U, r = float(model.ship.scale("speed")), 1.0 / float(model.ship.scale("time"))
+    sizes = {2: 1e-3, 3: 1e-3 * U, 4: 1e-3 * U, 5: 1e-3 * r}
+    s = track.situation(**steered(track, model))
+    for row, (j, size) in enumerate(sizes.items()):
+        sides = np.repeat(track.state[None, :, j], 2 * len(sizes), axis=0)
+        sides[2 * row] += size
+        sides[2 * row + 1] -= size
+        setattr(s, STATE[j], sides)
+    there = _abreast(s, model, (2 * len(sizes), len(track)))
     out = np.zeros((len(track), 3, 6))
-    for j, size in ((2, 1e-3), (3, 1e-3 * U), (4, 1e-3 * U), (5, 1e-3 * r)):
-        sides = []
-        for sign in (1.0, -1.0):
-            s = track.situation(**controls)
-            setattr(s, STATE[j], getattr(s, STATE[j]) + sign * size)
-            sides.append(_nu_dot(s, model))
-        out[:, :, j] = (sides[0] - sides[1]) / (2.0 * size)
+    for row, (j, size) in enumerate(sizes.items()):
+        out[:, :, j] = ((there[:, 2 * row] - there[:, 2 * row + 1]) / (2.0 * size)).T
     return out
 
 
-def faulty(track: Track, model: Model) -> np.ndarray:
+def _abreast(s: Situation, model: Model, shape: tuple[int, int]) -> np.ndarray:
+    """(3, K, N) accelerations in K situations beside each other."""
+    return np.stack([np.broadcast_to(a, shape) for a in model.nu_dot(s)])
+
+
+def by_stream(track: Track, still: Model) -> np.ndarray:
+    """(N, 3, 2) acceleration per m/s of a stream to the north and to the east, of a model without one, as a
+    secant over a fiftieth of the usual speed."""
+    step = 0.02 * float(still.ship.scale("speed"))
+    of = np.array([[0.0, 0.0], [step, 0.0], [0.0, step]])[:, :, None]
+    stream = of_role("stream").absent(still.ship).but(north=of[:, 0], east=of[:, 1])
+    s = track.situation(**steered(track, still))
+    there = _abreast(s, still.but(stream), (3, len(track)))
+    return ((there[:, 1:] - there[:, :1]) / step).transpose(2, 0, 1)
+
+
+def moving(track: Track, model: Model) -> Situation:
+    """What the ship does along the track, its accelerations included, were the instruments right."""
+    s = track.situation()
+    s.u_dot, s.v_dot, _ = model.nu_dot(s)
+    return s
+
+
+def faulty(s: Situation, model: Model) -> np.ndarray:
     """(N, 8, 8) derivative of what the model's faulty instruments show by what they would show were they
-    right: a compass that is off turns what is left of one speed into the other. In SI."""
+    right (`moving`): a compass that is off turns what is left of one speed into the other. In SI.
+
+    A fault that is written as the catalogue's are is differentiated as it stands (physics/dual.py); one that
+    is not, by central differences."""
+    try:
+        return _slopes(s, model)
+    except (TypeError, AttributeError, ValueError):
+        return _differences(s, model)
+
+
+def _slopes(s: Situation, model: Model) -> np.ndarray:
+    size = len(READINGS)
+    seeds = [tuple(float(i == j) for i in range(size)) for j in range(size)]
+    s = replace(s, **{n: Dual(getattr(s, n), seed) for n, seed in zip(READINGS, seeds, strict=True)})
+    s = _shown(s, model)
+    out = np.zeros((np.size(s.t), size, size))
+    for i, name in enumerate(READINGS):
+        shown = getattr(s, name)
+        for j, slope in enumerate(shown.slopes if isinstance(shown, Dual) else ()):
+            out[:, i, j] = slope
+    return out
+
+
+def _differences(s: Situation, model: Model) -> np.ndarray:
     L, U, time = float(model.ship.L_pp), float(model.ship.scale("speed")), float(model.ship.scale("time"))
-    out = np.zeros((len(track), len(READINGS), len(READINGS)))
-    right = track.situation()
-    right.u_dot, right.v_dot, _ = model.nu_dot(right)
+    out = np.zeros((np.size(s.t), len(READINGS), len(READINGS)))
     for j, (name, size) in enumerate(zip(READINGS, (L, L, 1.0, U, U, 1.0 / time, U, U), strict=True)):
         sides = [
-            readings(replace(right, **{name: getattr(right, name) + sign * 1e-3 * size}), model)
+            readings(replace(s, **{name: getattr(s, name) + sign * 1e-3 * size}), model)
             for sign in (1.0, -1.0)
         ]
         out[:, :, j] = (sides[0] - sides[1]) / (2e-3 * size)

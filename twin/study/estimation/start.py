@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import Any
 
 import numpy as np
-from scipy.signal import savgol_filter
 
 from twin.num import num
 from twin.physics.model import Model
@@ -54,7 +53,11 @@ def steadied(track: Track) -> Track:
     heading that a wave turned by a degree would lead it astray. A parabola is fitted about each point, over
     so long that waves fall out of it (Savitzky & Golay 1964)."""
     steps = min(2 * round(0.5 * ABOUT * wave_period_s(track) / track.h) + 1, len(track) - 1 + len(track) % 2)
-    return replace(track, state=savgol_filter(track.state, steps, 2, axis=0)) if steps > 3 else track
+    if steps <= 3:
+        return track
+    from scipy.signal import savgol_filter  # heavy, and nothing asks for it in calm water
+
+    return replace(track, state=savgol_filter(track.state, steps, 2, axis=0))
 
 
 def wave_period_s(track: Track) -> float:

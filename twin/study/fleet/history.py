@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from scipy.stats import t as student
+from scipy.special import stdtrit
 
 from twin.recording.timebase import moment_of
 from twin.study.fleet.ask import Row
@@ -109,6 +109,6 @@ def trend(sizes: Sequence[Mapping[str, Any]]) -> dict[str, Any] | None:
     spread, mean = float(np.sum(w * x**2)), float(np.sum(w * y) / np.sum(w))
     slope = float(np.sum(w * x * y)) / spread
     birge = float(np.sqrt(np.sum(w * (y - mean - slope * x) ** 2) / (len(sizes) - 2)))
-    half = max(1.0, birge) * float(student.ppf(0.975, len(sizes) - 2)) / spread**0.5
+    half = max(1.0, birge) * float(stdtrit(len(sizes) - 2, 0.975)) / spread**0.5
     per = "month" if dated else "voyage"
     return {"slope": slope, "low95": slope - half, "high95": slope + half, "per": per, "voyages": len(sizes)}

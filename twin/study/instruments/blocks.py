@@ -6,7 +6,7 @@ import numpy as np
 from scipy.sparse import diags_array
 
 from twin.study.instruments.arrow import Block
-from twin.study.instruments.here import Theta
+from twin.study.instruments.here import Theta, remembering
 from twin.study.instruments.problem import OUTLIER, Problem, Rows
 from twin.study.instruments.sense import drift, heading, log, log_aside, place, rate, velocity, wind
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS
@@ -39,10 +39,11 @@ SENSES: dict[str, Callable[[Problem, Theta, Rows | None], np.ndarray]] = {
 def blocks(p: Problem, theta: Theta) -> list[Block]:
     """All readings and priors about the states as they are."""
     out = []
-    for name, sense in SENSES.items():
-        if name in p.by:
-            out.append(_block(p, theta, name, sense, p.by[name].y.T.ravel()))
-    out.append(_whitened(p, _block(p, theta, "drift", drift, np.zeros(p.grid.size))))
+    with remembering(p):
+        for name, sense in SENSES.items():
+            if name in p.by:
+                out.append(_block(p, theta, name, sense, p.by[name].y.T.ravel()))
+        out.append(_whitened(p, _block(p, theta, "drift", drift, np.zeros(p.grid.size))))
     return out + _priors(p)
 
 

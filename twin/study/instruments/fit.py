@@ -8,6 +8,7 @@ Numbers of the instruments are the ship's; the stream in the middle of a voyage 
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -42,7 +43,7 @@ class KinematicFit:
     log_likelihood: float
     rounds: int
 
-    @property
+    @cached_property
     def at(self) -> np.ndarray:
         """(Q,) theta as one row: the shared numbers, then each voyage's own, in their own units."""
         return np.concatenate([self.theta[0, SHARED], self.theta[:, MINE].ravel()])

@@ -8,6 +8,7 @@ and wind, and the ship's speed aside through the water, which follows its rate o
 about nothing."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -74,6 +75,9 @@ class Problem:
     # share of what drift does beside its formula that is there a grid step later
     memory: float = field(init=False, default=0.5)
     beside: np.ndarray = field(init=False, repr=False)  # and that itself, as last worked out [m/s]
+
+    # the path at the times of the readings, while the states stay where they are (here.py)
+    met: dict[Any, Any] | None = field(init=False, default=None, repr=False)
 
     def __post_init__(self) -> None:
         read = self.readings

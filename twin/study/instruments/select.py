@@ -44,6 +44,8 @@ class WeighedSets:
         self.late = np.array([u.late for u in order])
         told = np.diag(found.A) * found.width**2 > TOLD
         self.tellable = tuple(f for f in FAULTS if f not in (*ALWAYS, clock) and told[self.fault == f].any())
+        self.always = np.isin(self.fault, ALWAYS)
+        self.places = {f: self.fault == f for f in FAULTS}
         self.weighed: dict[Sets, Weighed] = {}
 
     def weigh(self, faults: Collection[str]) -> Weighed:
@@ -56,7 +58,9 @@ class WeighedSets:
 
     def _weigh(self, chosen: Sets) -> Weighed:
         A, g, at, W = self.fit.A, self.fit.g, self.fit.at, self.fit.width
-        free = np.isin(self.fault, [*chosen, *ALWAYS])
+        free = self.always.copy()
+        for fault in chosen:
+            free |= self.places[fault]
         k, c = np.flatnonzero(free), np.flatnonzero(~free)
         h = g + A[:, c] @ at[c]
         log_weight = float(-g[c] @ at[c] - 0.5 * at[c] @ A[np.ix_(c, c)] @ at[c])

@@ -17,7 +17,7 @@ Frames: north-east; the ship's axes ahead and to starboard. s = t - latency; R t
 
 import numpy as np
 
-from twin.study.instruments.here import Here, Theta, get, stream_at
+from twin.study.instruments.here import Here, Theta, at, get, stream_at
 from twin.study.instruments.problem import NODES, SHARES, Problem, Rows
 
 
@@ -25,17 +25,17 @@ def place(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
     """(2 N,) the antenna's place [m] at each reading: all north, then all east. Its height counts where roll
     was read, with the roll at the reading's own time."""
     t, n = p.by["place"].t, p.by["place"].t.size
-    here = Here(p, t - get(theta, "gnss_delay"))
+    here = at(p, t, get(theta, "gnss_delay"))
     ahead, aside = get(theta, "antenna_ahead"), np.full(n, get(theta, "antenna_starboard"))
     if "roll" in p.by:
         aside = aside + get(theta, "antenna_above") * np.sin(
             np.interp(t, p.by["roll"].t, p.by["roll"].y[:, 0])
         )
     if rows:
-        rows.add(0, p.at[0][:, 0], here.w[0])
-        rows.add(n, p.at[0][:, 1], here.w[0])
-        rows.add(0, p.at[0][:, 2], here.w[0], -ahead * here.s - aside * here.c)
-        rows.add(n, p.at[0][:, 2], here.w[0], ahead * here.c - aside * here.s)
+        rows.add(0, p.at[0][:, 0], here.weights(0))
+        rows.add(n, p.at[0][:, 1], here.weights(0))
+        rows.add(0, p.at[0][:, 2], here.weights(0), -ahead * here.s - aside * here.c)
+        rows.add(n, p.at[0][:, 2], here.weights(0), ahead * here.c - aside * here.s)
     return np.concatenate(
         [here.x[:, 0] + ahead * here.c - aside * here.s, here.x[:, 1] + ahead * here.s + aside * here.c]
     )
@@ -45,62 +45,60 @@ def velocity(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
     """(2 N,) the antenna's velocity over ground [m/s] at each reading: all ahead, then all to starboard, of a
     receiver with its own attitude; else all north, then all east."""
     t, n = p.by["velocity"].t, p.by["velocity"].t.size
-    at = t - get(theta, "gnss_delay")
-    now, T = Here(p, at), get(theta, "smoothing")
+    late, T = get(theta, "gnss_delay"), get(theta, "smoothing")
+    now = at(p, t, late)
     ahead, aside = get(theta, "antenna_ahead"), get(theta, "antenna_starboard")
     north, east = np.zeros(n), np.zeros(n)
     c, s = (now.c, now.s) if p.own else (np.ones(n), np.zeros(n))
     for q, share in zip(NODES, SHARES, strict=True) if abs(T) > 1e-9 else ((0.0, 1.0),):
-        h = Here(p, at - T * q)
+        h = at(p, t, late, float(T * q))
         r = h.v[:, 2]
         swing_n, swing_e = -ahead * h.s - aside * h.c, ahead * h.c - aside * h.s
         north, east = north + share * (h.v[:, 0] + r * swing_n), east + share * (h.v[:, 1] + r * swing_e)
         if rows:
             one, none = np.ones(n), np.zeros(n)
             for j, (dn, de) in enumerate(((one, none), (none, one), (swing_n, swing_e))):
-                rows.add(0, p.at[0][:, j], h.w[1], share * (dn * c + de * s))
-                rows.add(n, p.at[0][:, j], h.w[1], share * (de * c - dn * s))
+                rows.add(0, p.at[0][:, j], h.weights(1), share * (dn * c + de * s))
+                rows.add(n, p.at[0][:, j], h.weights(1), share * (de * c - dn * s))
             if ahead or aside:
                 dn, de = -r * swing_e, r * swing_n
-                rows.add(0, p.at[0][:, 2], h.w[0], share * (dn * c + de * s))
-                rows.add(n, p.at[0][:, 2], h.w[0], share * (de * c - dn * s))
+                rows.add(0, p.at[0][:, 2], h.weights(0), share * (dn * c + de * s))
+                rows.add(n, p.at[0][:, 2], h.weights(0), share * (de * c - dn * s))
     u, v = north * c + east * s, east * c - north * s
     if rows and p.own:
-        rows.add(0, p.at[0][:, 2], now.w[0], v)
-        rows.add(n, p.at[0][:, 2], now.w[0], -u)
+        rows.add(0, p.at[0][:, 2], now.weights(0), v)
+        rows.add(n, p.at[0][:, 2], now.weights(0), -u)
     return np.concatenate([u, v])
 
 
 def heading(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
     """(N,) heading [rad] that a late compass with a bias and a deviation shows at each reading."""
-    here = Here(p, p.by["heading"].t - get(theta, "heading_delay"))
+    here = at(p, p.by["heading"].t, get(theta, "heading_delay"))
     A, B, C, D, E = (get(theta, k) for k in "ABCDE")
     c, s = here.c, here.s
     if rows:
         bent = B * c - C * s + 2.0 * D * (c * c - s * s) - 4.0 * E * s * c
-        rows.add(0, p.at[0][:, 2], here.w[0], 1.0 + bent)
+        rows.add(0, p.at[0][:, 2], here.weights(0), 1.0 + bent)
     return np.asarray(here.x[:, 2] + A + B * s + C * c + 2.0 * D * s * c + E * (c * c - s * s))
 
 
 def rate(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
     """(N,) rate of turn [rad/s] that a late rate gyro with a bias shows at each reading."""
-    here = Here(p, p.by["rate"].t - get(theta, "rate_delay"))
+    here = at(p, p.by["rate"].t, get(theta, "rate_delay"))
     if rows:
-        rows.add(0, p.at[0][:, 2], here.w[1])
+        rows.add(0, p.at[0][:, 2], here.weights(1))
     return np.asarray(here.v[:, 2] + get(theta, "gyro_bias"))
 
 
-def _through_water(p: Problem, theta: Theta, t: np.ndarray) -> tuple[Here, np.ndarray, np.ndarray]:
-    here = Here(p, t)
-    north, east = stream_at(p, theta, t)
-    return here, *here.body(here.v[:, 0] - north, here.v[:, 1] - east)
+def _through_water(here: Here, theta: Theta) -> tuple[np.ndarray, np.ndarray]:
+    north, east = stream_at(here, theta)
+    return here.body(here.v[:, 0] - north, here.v[:, 1] - east)
 
 
 def _turned(
     p: Problem,
     rows: Rows,
     here: Here,
-    t: np.ndarray,
     u: np.ndarray,
     v: np.ndarray,
     a: float | np.ndarray,
@@ -108,22 +106,21 @@ def _turned(
 ) -> None:
     """Slopes of a u_r + b v_r by the states."""
     dn, de = a * here.c - b * here.s, a * here.s + b * here.c
-    slow = p.stream.weights(t)
     for j, d in enumerate((dn, de)):
-        rows.add(0, p.at[0][:, j], here.w[1], d)
-        rows.add(0, p.at[1][:, j], slow, -d)
-    rows.add(0, p.at[0][:, 2], here.w[0], a * v - b * u)
+        rows.add(0, p.at[0][:, j], here.weights(1), d)
+        rows.add(0, p.at[1][:, j], here.slow, -d)
+    rows.add(0, p.at[0][:, 2], here.weights(0), a * v - b * u)
 
 
 def _log(p: Problem, theta: Theta, rows: Rows | None, aside: bool) -> np.ndarray:
-    t = p.by["log aside" if aside else "log"].t - get(theta, "log_delay")
-    here, u, v = _through_water(p, theta, t)
+    here = at(p, p.by["log aside" if aside else "log"].t, get(theta, "log_delay"))
+    u, v = _through_water(here, theta)
     k, c, s = 1.0 + get(theta, "log_scale"), np.cos(get(theta, "log_angle")), np.sin(get(theta, "log_angle"))
     if "log aside" not in p.by:
         c = 1.0  # what is lost ahead is a scale to a log of one axis
     a, b = (-k * s, k * c) if aside else (k * c, k * s)
     if rows:
-        _turned(p, rows, here, t, u, v, a, b)
+        _turned(p, rows, here, u, v, a, b)
     return np.asarray(a * u + b * v + (0.0 if aside else get(theta, "log_bias")))
 
 
@@ -142,14 +139,15 @@ def log_aside(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
 def drift(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
     """(N,) speed to starboard through the water [m/s] beyond what turning and wind make of it, at the times
     of the grid: nothing is expected. `rows` gets no slopes of the leeway."""
-    here, u, v = _through_water(p, theta, p.grid)
+    here = at(p, p.grid)
+    u, v = _through_water(here, theta)
     r, r_dot = here.v[:, 2], here.a[:, 2]
     d1, d2, d3 = (get(theta, k) for k in ("drift_r", "drift_rr", "drift_r_r"))
     usual = 0.1 * p.readings.speed / p.length
     if rows:
-        _turned(p, rows, here, p.grid, u, v, 0.0, 1.0)
-        rows.add(0, p.at[0][:, 2], here.w[1], -d1 - 2.0 * d3 * np.abs(r) / usual)
-        rows.add(0, p.at[0][:, 2], here.w[2], -d2)
+        _turned(p, rows, here, u, v, 0.0, 1.0)
+        rows.add(0, p.at[0][:, 2], here.weights(1), -d1 - 2.0 * d3 * np.abs(r) / usual)
+        rows.add(0, p.at[0][:, 2], here.weights(2), -d2)
     return np.asarray(
         v - d1 * r - d2 * r_dot - d3 * r * np.abs(r) / usual - get(theta, "leeway") * blown(p, here)
     )
@@ -171,14 +169,14 @@ def wind(p: Problem, theta: Theta, rows: Rows | None) -> np.ndarray:
     starboard: all ahead, then all to starboard. For a problem whose wind was read."""
     t, n = p.by["wind"].t, p.by["wind"].t.size
     assert p.wind is not None
-    here, slow = Here(p, t), p.wind.weights(t)
+    here, slow = at(p, t), p.wind.weights(t)
     air = p.wind.value(p.x[p.at[2]], slow)
     u, v = here.body(here.v[:, 0] - air[:, 0], here.v[:, 1] - air[:, 1])
     k, c, s = 1.0 + get(theta, "wind_scale"), np.cos(get(theta, "vane")), np.sin(get(theta, "vane"))
     for first, a, b in ((0, k * c, -k * s), (n, k * s, k * c)) if rows else ():
         assert rows is not None
         for j, d in enumerate((a * here.c - b * here.s, a * here.s + b * here.c)):
-            rows.add(first, p.at[0][:, j], here.w[1], d)
+            rows.add(first, p.at[0][:, j], here.weights(1), d)
             rows.add(first, p.at[2][:, j], slow, -d)
-        rows.add(first, p.at[0][:, 2], here.w[0], a * v - b * u)
+        rows.add(first, p.at[0][:, 2], here.weights(0), a * v - b * u)
     return np.concatenate([k * (u * c - v * s), k * (u * s + v * c)])

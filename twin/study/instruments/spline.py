@@ -40,12 +40,14 @@ class Spline:
         at = np.clip((t - self.start) / self.h, 0.0, last - 1e-9)
         first = at.astype(int)
         x = at - first
+        one, none = np.ones_like(x), np.zeros_like(x)
         if self.degree == 1:
-            one = np.ones_like(x)
             return first, np.column_stack([1.0 - x, x] if slope == 0 else [-one / self.h, one / self.h])
-        powers = [np.column_stack([x**0, x, x**2, x**3]), np.column_stack([0 * x, x**0, 2 * x, 3 * x**2])]
-        powers.append(np.column_stack([0 * x, 0 * x, 2 * x**0, 6 * x]))
-        return first, powers[slope] @ CUBIC.T / self.h**slope
+        if slope == 0:
+            powers = (one, x, x**2, x**3)
+        else:
+            powers = (none, one, 2 * x, 3 * x**2) if slope == 1 else (none, none, 2 * one, 6 * x)
+        return first, np.column_stack(powers) @ CUBIC.T / self.h**slope
 
     def value(self, c: np.ndarray, w: Weights) -> np.ndarray:
         """(n, ...) values of the curve with coefficients c (size, ...)."""
