@@ -10,10 +10,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench import answer
+from bench import bench_output
 from bench.reference import Case, simulate
-from bench.seaway import sailed
-from bench.stability.loop import LoopCase, Loops
+from bench.sea_disturbance import sailed
+from bench.stability.adversary_loop import LoopCase, Loops
 from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.inbox import Played
@@ -87,12 +87,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--seconds", type=float, default=600.0, metavar="S", help="length of each voyage (default: 600)"
     )
     parser.add_argument("--runs", type=int, default=8, help="hostile ships for each lateness (default: 8)")
-    answer.add_arguments(parser)
+    bench_output.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> int:
     rows = voyages(args.seconds) + [late(j, args.runs, 0.2 * args.seconds) for j in LATE]
-    answer.give(args, {"rows": [row._asdict() for row in rows]}, told(rows))
+    bench_output.give(args, {"rows": [row._asdict() for row in rows]}, told(rows))
     return 0
 
 
@@ -108,7 +108,7 @@ def voyages(seconds: float, scenarios: Sequence[BrokenAssumption] = SCENARIOS) -
     )
     kept = []
     for scenario in scenarios:
-        answer.tell(scenario.name)
+        bench_output.tell(scenario.name)
         kept.append(judged(scenario, sailed[scenario.manoeuvre, scenario.weather]))
     return kept
 
@@ -143,7 +143,7 @@ def judged(scenario: BrokenAssumption, recording) -> KeptPromise:
 
 def late(every: int, runs: int, seconds: float) -> KeptPromise:
     """Hostile ships of one certificate, each tick so many of its periods after the last."""
-    answer.tell(f"a tick every {every} periods")
+    bench_output.tell(f"a tick every {every} periods")
     loops, score = Loops(LoopCase(SHIP, 10.0, runs), runs, 11), Score()
     loops.h *= every
     for k in range(round(seconds / loops.h)):

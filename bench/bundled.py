@@ -14,7 +14,7 @@ from bench.reference import Case, simulate
 from twin.physics.ship import load, save
 from twin.recording.voyage import Voyage
 from twin.recording.write import write_voyage
-from twin.study.calibration.calibrate import calibrate
+from twin.study.calibration.core_fit import calibrate
 from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
 

@@ -57,7 +57,7 @@ BENCHES: dict[str, Bench] = {
         "twin-bench assumptions --seconds 300",
     ),
     "seaway": Bench(
-        "bench.seaway",
+        "bench.sea_disturbance",
         "what a seaway costs the promise, and is it kept there?",
         "twin-bench seaway --ship kvlcc2",
     ),
@@ -77,7 +77,7 @@ BENCHES: dict[str, Bench] = {
         "twin-bench lies --hull usv",
     ),
     "instruments": Bench(
-        "bench.instruments",
+        "bench.instrument_faults",
         "faults of known size in the instruments, by kinematics alone",
         "twin-bench instruments --seeds 2",
     ),

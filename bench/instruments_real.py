@@ -8,8 +8,8 @@ import numpy as np
 from twin.live.signals.channels import BY_NAME
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
-from twin.study.instruments.estimate import Instruments, estimate
-from twin.study.instruments.told import told
+from twin.study.instruments.instrument_estimate import Instruments, estimate
+from twin.study.instruments.instrument_lines import told
 
 YACHT = ("furuno-130842-figure8-fast.raw", "furuno-130842-wide-turn.raw")
 SOURCES = {"": "52", "yaw_rate_degps": "27"}  # the faster of two rate sensors

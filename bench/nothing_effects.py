@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
+from bench.league.league_ships import Fleet, calibrated
+from bench.league.league_voyages import kept, sail
 from bench.league.plan import lasts
-from bench.league.sea import kept, sail
-from bench.league.ships import Fleet, calibrated
 from bench.reference import Case
 from twin.errors import DataError
 from twin.physics.effects import catalogue, find

@@ -17,11 +17,11 @@ from pathlib import Path
 import zenoh
 
 from bench.reference import HULLS, WEATHERS, Case, Sea, simulate
-from bench.reference.boats import CRAFT, BoatCase, BoatSea, sail, sheet
-from bench.reference.boats.faults import USUAL, hidden_in
+from bench.reference.boats import CRAFT, BoatCase, BoatSea, builders_sheet, sail
+from bench.reference.boats.actuator_faults import USUAL, hidden_in
+from bench.reference.boats.boat_sea import write_csv
 from bench.reference.boats.helmsman import PLANS
-from bench.reference.boats.sea import write_csv
-from bench.reference.manoeuvres import MANOEUVRES
+from bench.reference.trial_legs import MANOEUVRES
 from twin import whole
 from twin.cli import guarded
 from twin.errors import SettingsError, UsageError, did_you_mean
@@ -172,8 +172,8 @@ def _sheet(args: argparse.Namespace) -> int:
     """The tables of actuators that `twin init` takes."""
     if args.hull not in CRAFT:
         raise UsageError(f"--sheet is for a hull with several actuators: {', '.join(CRAFT)}.")
-    whole.write(args.sheet, sheet.text(args.hull), "--sheet")
-    print(sheet.command(args.hull, args.sheet))
+    whole.write(args.sheet, builders_sheet.text(args.hull), "--sheet")
+    print(builders_sheet.command(args.hull, args.sheet))
     return 0
 
 

@@ -17,9 +17,9 @@ import numpy as np
 from twin import whole
 from twin.physics.actuators import Actuator
 from twin.physics.ship import Ship, load
-from twin.recording.checks.actuators import actuators
+from twin.recording.checks.actuator_response import actuators
 from twin.recording.checks.standstill import actuator_zero
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.voyage import Voyage
 
 STEP_S, SAMPLE = 0.05, 4  # integrated so finely, recorded every fourth step

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from bench.reference.voyage import Recording
+from bench.reference.sea_voyage import Recording
 from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.inbox import Played

@@ -17,7 +17,7 @@ from twin.live.keelson.topics import ALIKE, FLOAT, INPUTS, OF_ACTUATORS, OUTPUTS
 from twin.live.keelson.zenoh_config import MAX_BYTES, MAX_HZ
 from twin.live.signals.channels import BY_NAME
 from twin.live.signals.readings import WORDS
-from twin.physics.actuators.channels import CHANNELS_OF
+from twin.physics.actuators.actuator_channels import CHANNELS_OF
 
 DOCS = Path(__file__).resolve().parent
 SHIPPED = Path(str(files(twin.live.keelson)))

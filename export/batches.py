@@ -7,9 +7,9 @@ import numpy as np
 import torch
 
 from export.data import TrainingLeg
-from export.loss import Inputs, left_over, span
-from export.network import ResidualNetwork
-from twin.live.learning.learned import scale_of
+from export.residual_network import ResidualNetwork
+from export.training_loss import Inputs, left_over, span
+from twin.live.learning.learned_force import scale_of
 from twin.physics.model import Model
 from twin.physics.state import Situation
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from export.network import ResidualNetwork
+from export.residual_network import ResidualNetwork
 from twin.cli import guarded
 from twin.errors import TwinError
 from twin.live.learning.residual import load as load_residual

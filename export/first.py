@@ -3,8 +3,8 @@ differentiating a sensor.
 
     python -m export.first VOYAGE.mcap... --ship kvlcc2 -o twin/ships/kvlcc2.residual.onnx
 
-The loss is the filtered regression the twin also uses on board (twin/live/learning/evidence.py): with (.)_f a
-first-order low-pass,
+The loss is the filtered regression the twin also uses on board (twin/live/learning/filtered_regression.py):
+with (.)_f a first-order low-pass,
     d = S^-1 M [(d nu/dt)_f - (nu_dot_known)_f],   minimise |d - (W phi(zeta))_f|^2 + ridge |W phi|^2
 The full training, with roll-outs and its protocol, is `twin train`; this one gives the loop something honest
 to run on.
@@ -21,10 +21,10 @@ from typing import Any, NamedTuple
 import numpy as np
 import torch
 
-from twin.live.learning.learned import scale_of
+from twin.live.learning.learned_force import scale_of
 from twin.live.learning.manifest import SCHEMA_VERSION, hashed
 from twin.live.learning.residual import ship_hash
-from twin.live.log.rows import read_rows
+from twin.live.log.log_rows import read_rows
 from twin.live.observer.dynamics import KnownDynamics
 from twin.physics.model import Model
 from twin.physics.ship import Ship, load

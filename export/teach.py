@@ -8,10 +8,10 @@ from pathlib import Path
 import torch
 
 from export.batches import TrainingSamples, input_names, samples, windows, zeta_of
-from export.course import TrainingCourse
 from export.data import TrainingLeg
-from export.network import ResidualNetwork, names_for
+from export.residual_network import ResidualNetwork, names_for
 from export.settings import STAGES, Progress, Set, TrainingSettings
+from export.training_course import TrainingCourse
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.physics.zeta import inputs

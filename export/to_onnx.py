@@ -11,7 +11,7 @@ import numpy as np
 import torch
 from onnx import TensorProto, checker, helper, numpy_helper
 
-from export.network import WIDTH, ResidualNetwork
+from export.residual_network import WIDTH, ResidualNetwork
 from twin.live.learning.manifest import SCHEMA_VERSION, hashed
 from twin.live.learning.residual import ship_hash
 from twin.physics.zeta import ZETA

@@ -10,8 +10,8 @@ import torch
 
 from export.batches import TrainingWindows, input_names, windows
 from export.data import TrainingLeg
-from export.loss import free_run
-from export.network import ResidualNetwork
+from export.residual_network import ResidualNetwork
+from export.training_loss import free_run
 from twin.num import num
 from twin.physics.model import Model
 from twin.physics.state import Situation

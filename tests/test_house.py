@@ -169,13 +169,13 @@ def test_torch_is_loaded_in_export_only():
 
 SERVE = """
 import socket, sys
-from twin.live import run
+from twin.live import service
 from twin.live.signals.config import Settings
 with socket.socket() as probe:
     probe.bind(("127.0.0.1", 0))
     port = probe.getsockname()[1]
 settings = Settings().but("bus.listen", f"tcp/127.0.0.1:{port}").but("loop.priority", 0)
-run.serve(settings, 1.0)
+service.serve(settings, 1.0)
 print(*sys.modules)
 """
 

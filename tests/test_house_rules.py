@@ -9,7 +9,7 @@ from tests.sources import ROOT, called, imports, sources, strings
 from twin.physics.effects import BUILT_IN, OF_ACTUATORS, UNNAMED
 
 EFFECT_NAMED = {  # file of the study -> why the name of an effect stands in it
-    "twin/study/first_model/init.py": "the help of two areas says which effect asks for them",
+    "twin/study/first_model/first_estimate.py": "the help of two areas says which effect asks for them",
 }
 
 
@@ -33,13 +33,13 @@ TELLERS = {  # outside of twin/commands: who prints, and what
     "twin/whole.py": "what was asked for as `-`",
     "twin/live/bridge/serve.py": "`twin view`: the link, and that it listens",
     "twin/live/build.py": "the certificate as JSON, for the process that asked for it",
-    "twin/live/demo.py": "the part on board of `twin demo`",
-    "twin/live/health.py": "`twin health`: its answer",
+    "twin/live/demonstration.py": "the part on board of `twin demo`",
+    "twin/live/health_check.py": "`twin health`: its answer",
     "twin/live/injection/on_bus.py": "`twin fault`, live: from where to where",
     "twin/live/onto_bus.py": "`twin replay --to-bus`: where it is, and its keys",
-    "twin/live/replay.py": "`twin replay`: how far it is",
-    "twin/live/run.py": "`twin run`: its greeting, for the journal",
-    "twin/studio/serve.py": "`twin studio`: the link",
+    "twin/live/log_replay.py": "`twin replay`: how far it is",
+    "twin/live/service.py": "`twin run`: its greeting, for the journal",
+    "twin/studio/local_server.py": "`twin studio`: the link",
 }
 
 

@@ -14,7 +14,7 @@ from bench.paper.adapted import Acting, Learning
 from bench.paper.filter import Tuning, from_states
 from bench.paper.lab import LabCourse, course, judge
 from bench.paper.models import Workshop
-from bench.paper.sea import sail
+from bench.paper.paper_voyages import sail
 from export.batches import zeta_of
 from export.teach import Taught
 from twin.physics.model import Model

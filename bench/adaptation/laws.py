@@ -16,7 +16,7 @@ from typing import Any
 
 from twin.live.learning.adapt import NOISE_S, Adaptation
 from twin.live.learning.adapted_row import Row
-from twin.live.learning.evidence import Three
+from twin.live.learning.filtered_regression import Three
 from twin.physics.maths import dot
 from twin.physics.ship import Ship
 from twin.physics.state import Force

@@ -2,7 +2,7 @@
 lie.
 
 The change has just happened when a voyage begins, and nothing is learned yet; or it comes in the middle, when
-the law on board has heard the ship as it was for five minutes (adaptation_named.py: there it is a named
+the law on board has heard the ship as it was for five minutes (effect_growth.py: there it is a named
 effect that grows). All laws see the same stream of unexplained force and regressors (from the hybrid's own
 filter, which does not use what they learn), and are judged by the free runs of 120 s that follow. Boxes, ball
 and gate are those of twin/live/learning/adapt.py for all of them."""
@@ -16,11 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from bench import answer
+from bench import bench_output
 from bench.adaptation import laws as peers
 from bench.adaptation.laws import Stream
 from bench.options import positive
-from bench.paper.sea import FULL, QUICK, changed, zigzags
+from bench.paper.paper_voyages import FULL, QUICK, changed, zigzags
 from bench.reference import HULLS, Change
 from twin.live.learning.adapt import Adaptation
 from twin.live.learning.adapted_row import BESIDE
@@ -56,34 +56,34 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=Path(".paper"),
         help="voyages and checkpoints (%(default)s)",
     )
-    answer.add_arguments(parser)
+    bench_output.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    from bench.adaptation import named_page as named
+    from bench.adaptation import growth_page
     from bench.adaptation.page import figure, page
     from bench.paper.models import Workshop
 
-    shop = Workshop.planned(FULL if args.full else QUICK, args.work, answer.tell)
+    shop = Workshop.planned(FULL if args.full else QUICK, args.work, bench_output.tell)
     result = {"schema_version": 1, "seeds": args.seeds, "full": args.full} | compare(shop, args.seeds)
     more = ""
     if args.page:
         first, second = args.page.with_suffix(".png"), args.page.with_name(f"{args.page.stem}-named.png")
         figure(result, first)
-        named.figure(result["named"], second)
+        growth_page.figure(result["named"], second)
         more = (
             f"\n![Error over time since a change]({first.name})\n\n![A named effect that "
-            f"grows]({second.name})\n{answer.kept(args.page)}"
+            f"grows]({second.name})\n{bench_output.kept(args.page)}"
         )
-    answer.give(args, result, "\n".join(page(result)), more)
+    bench_output.give(args, result, "\n".join(page(result)), more)
     return 0
 
 
 def compare(shop: Any, seeds: int) -> dict[str, Any]:
     """Every law on every ship and every lie; and the law on board where a named effect grows."""
-    from bench.adaptation import named as adaptation_named
+    from bench.adaptation import effect_growth
     from bench.adaptation.heard import Hearing
-    from bench.paper.ship import nominal
+    from bench.paper.nominal_ship import nominal
     from twin.physics.model import Model
 
     hearing = Hearing.of(shop, Model(nominal()), "hybrid")
@@ -95,7 +95,7 @@ def compare(shop: Any, seeds: int) -> dict[str, Any]:
         out["lies"][name] = {
             said: judged(law, replace(clean, streams=lie(clean.streams))) for said, lie in LIES.items()
         }
-    named = adaptation_named.compare(shop, 2 * seeds)
+    named = effect_growth.compare(shop, 2 * seeds)
     return out | {
         "voyages": len(clean.courses),
         "midway": midway(hearing, seeds),

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from bench.adaptation import named_page as adaptation_named_page
+from bench.adaptation import growth_page
 
 SAID = {"off": "learning off", "on": "learning on", "told": "learning on, told of the change"}
 
@@ -46,14 +46,14 @@ def page(r: dict[str, Any]) -> list[str]:
         "change: on board nobody says so). "
         "The run begun at the change knows nothing of it yet.",
         "",
-        *adaptation_named_page.by_window("change", r["midway"], r["starts_s"]),
+        *growth_page.by_window("change", r["midway"], r["starts_s"]),
         "",
         "Heading deg by scenario, mean of the windows begun at the change and later, learning off / on / "
         "told.",
         "",
         *_by_scenario(r["midway"]),
         "",
-        *adaptation_named_page.page(r["named"]),
+        *growth_page.page(r["named"]),
     ]
     return lines
 

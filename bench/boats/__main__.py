@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from bench.boats.asked import ASKED, calibrated, diagnosed
+from bench.boats.actuator_questions import ASKED, calibrated, diagnosed
 from bench.reference.boats import CRAFT
 
 

@@ -18,7 +18,7 @@ from typing import Any
 from bench.decisions.question import Asked
 from bench.decisions.questions import asked
 from twin import whole
-from twin.study.diagnosis import diagnose as verb
+from twin.study.diagnosis import effect_diagnosis
 from twin.study.diagnosis.consider import consider
 from twin.study.diagnosis.decision import decide
 from twin.study.diagnosis.verdict import weights
@@ -55,7 +55,7 @@ def kept_answer(folder: Path, question: Asked, tag: str, again: bool) -> dict[st
     if path.exists() and not again:
         return json.loads(path.read_text())
     store = folder / "searched" / tag / _file(question, "pickle")
-    search = verb.search
+    search = effect_diagnosis.search
     wall, cpu = time.perf_counter(), time.process_time()
     ship, voyages = question.get()
     ready, work = time.perf_counter(), time.process_time()
@@ -66,11 +66,11 @@ def kept_answer(folder: Path, question: Asked, tag: str, again: bool) -> dict[st
         store.write_bytes(pickle.dumps((case, out)))
         return out
 
-    verb.search = keeping
+    effect_diagnosis.search = keeping
     try:
-        answer = verb.diagnose(voyages, ship).result
+        answer = effect_diagnosis.diagnose(voyages, ship).result
     finally:
-        verb.search = search
+        effect_diagnosis.search = search
     path.parent.mkdir(parents=True, exist_ok=True)
     answer |= {
         "truth": question.truth,

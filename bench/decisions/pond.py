@@ -9,7 +9,7 @@ import numpy as np
 from bench.decisions.question import Asked, begun, kept
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
-from twin.study.calibration.calibrate import calibrate
+from twin.study.calibration.core_fit import calibrate
 from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
 

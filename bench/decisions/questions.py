@@ -15,7 +15,7 @@ from twin.physics.effects import find
 from twin.physics.ship import Ship, load
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
-from twin.study.calibration.calibrate import calibrate
+from twin.study.calibration.core_fit import calibrate
 from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
 from twin.study.update.adding import fitted

@@ -8,12 +8,12 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bench import answer
+from bench import bench_output
 from bench.assumptions import BEGIN_S, STEP_S, WALL
 from bench.instrument_lies import _rows
 from bench.lies_told import LIES, Lie, Row
 from bench.reference import Case, simulate
-from bench.seaway import sailed
+from bench.sea_disturbance import sailed
 from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.inbox import Played
@@ -84,7 +84,7 @@ def lies(hull: str, weather: str, only: Sequence[Lie] = (*LIES, *OTHERS)) -> lis
     for lie in (None, *only):
         copied = deepcopy(loop, {id(x): x for x in (loop.ship, loop.learned.residual)})
         made.append(one(copied, lie, rows, truth, first, last, before))
-        answer.tell(str(made[-1]))
+        bench_output.tell(str(made[-1]))
     return made
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from bench import answer
+from bench import bench_output
+from bench.endurance.killed_service import Place
 from bench.endurance.lies import LIE_AT_S, SECONDS, Told, lies
-from bench.endurance.service import Place
 from bench.endurance.shocks import Killed, Shocked, clocks, kills, pauses
 
 
@@ -21,7 +21,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--hull", default="kvlcc2", help="of the reference sea (default: kvlcc2)")
     parser.add_argument("--no-lies", action="store_true", help="leave out the instruments that lie")
     parser.add_argument("--weather", default="TS-01", help="under the lies (default: TS-01)")
-    answer.add_arguments(parser)
+    bench_output.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
         told = lies(args.hull, args.weather)
         result["lies"] = [row._asdict() for row in told]
         parts.append(of_lies(args.hull, args.weather, told))
-    answer.give(args, result, "\n\n".join(parts), answer.kept(args.page))
+    bench_output.give(args, result, "\n\n".join(parts), bench_output.kept(args.page))
     return 0
 
 

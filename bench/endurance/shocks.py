@@ -6,8 +6,8 @@ import time
 from pathlib import Path
 from typing import NamedTuple
 
-from bench import answer
-from bench.endurance.service import Place, Running, Shift
+from bench import bench_output
+from bench.endurance.killed_service import Place, Running, Shift
 from twin.errors import TwinError
 from twin.live.keelson import messages
 from twin.live.log.mcap_read import McapReader
@@ -57,7 +57,7 @@ def kills(place: Place, count: int) -> tuple[list[Killed], int, int]:
         made.append(Killed(last.time_s - first_s, max(lost_s, 0.0), time.monotonic() - running.began_s))
         first_s = running.last.time_s
         if k % 20 == 19:
-            answer.tell(f"{k + 1} kills, at most {max(m.lost_s for m in made):.3f} s lost")
+            bench_output.tell(f"{k + 1} kills, at most {max(m.lost_s for m in made):.3f} s lost")
     if running.until(lambda said: said.inside, BACK_S) is None:
         raise TwinError(f"after {count} kills no promise within {BACK_S:g} s: {running.last}")
     running.stop()
@@ -104,7 +104,7 @@ def pauses(place: Place, count: int) -> tuple[list[Shocked], int]:
             pass
         running.tell(signal.SIGCONT)
         made.append(after(running, f"pause of {pause_s:g} s", ("lagging", "began anew", "late")))
-        answer.tell(str(made[-1]))
+        bench_output.tell(str(made[-1]))
     return made, running.stop()
 
 
@@ -117,7 +117,7 @@ def clocks(place: Place, count: int) -> tuple[list[Shocked], int]:
         offset_s += step_s
         shift.to(offset_s)
         made.append(after(running, f"clock {step_s:+g} s", ("clock", "stamps")))
-        answer.tell(str(made[-1]))
+        bench_output.tell(str(made[-1]))
     return made, running.stop()
 
 

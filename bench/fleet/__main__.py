@@ -3,9 +3,8 @@
 import argparse
 import sys
 
-from bench.fleet import fit as verb_fit
+from bench.fleet import decision_fit, fleet_page
 from bench.fleet import run as verb_run
-from bench.fleet import table as verb_table
 
 
 def main() -> int:
@@ -13,7 +12,7 @@ def main() -> int:
         prog="python -m bench.fleet", description="Random ships of many forms, asked."
     )
     verbs = parser.add_subparsers(dest="verb", required=True)
-    each = {"run": verb_run, "table": verb_table, "fit": verb_fit}
+    each = {"run": verb_run, "table": fleet_page, "fit": decision_fit}
     for name, module in each.items():
         module.add_arguments(verbs.add_parser(name, description=(module.__doc__ or "").splitlines()[0]))
     args = parser.parse_args()

@@ -5,7 +5,7 @@ from math import atan2, cos, exp, pi, sin, tanh
 
 import numpy as np
 
-from bench.fleet.particulars import RHO, Particulars
+from bench.fleet.random_particulars import RHO, Particulars
 
 
 @dataclass

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bench.fleet.particulars import Particulars
+from bench.fleet.random_particulars import Particulars
 
 
 @dataclass(frozen=True)

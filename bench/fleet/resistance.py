@@ -6,7 +6,7 @@ from math import exp
 
 import numpy as np
 
-from bench.fleet.particulars import RHO, G, LinearHull, Particulars
+from bench.fleet.random_particulars import RHO, G, LinearHull, Particulars
 
 Draw = np.random.Generator
 

@@ -15,8 +15,8 @@ from typing import Any
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
-from bench.fleet.cases import VOYAGES  # noqa: E402
-from bench.fleet.hulls import FAMILIES  # noqa: E402
+from bench.fleet.hull_families import FAMILIES  # noqa: E402
+from bench.fleet.voyage_plan import VOYAGES  # noqa: E402
 from twin.study.fleet.spread import spread  # noqa: E402
 
 ROWS = "rows.jsonl"
@@ -74,7 +74,7 @@ def one_ship(job: tuple[str, int, int, str, frozenset[str], float]) -> list[str]
     if time.time() > until:
         return out
     try:
-        from bench.fleet.asked import rows
+        from bench.fleet.fact_rows import rows
 
         for row in rows(family, seed, voyages, Path(folder) / "ships", known, until):
             out.append(json.dumps(row))

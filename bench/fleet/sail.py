@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.fleet.hidden import Flaws
-from bench.fleet.manoeuvres import FleetLeg, Helmsman
-from bench.fleet.particulars import RHO, Particulars
-from bench.fleet.ship import RandomShip
-from bench.fleet.weather import FleetWeather, Surroundings
+from bench.fleet.fleet_legs import FleetLeg, Helmsman
+from bench.fleet.fleet_weather import FleetWeather, Surroundings
+from bench.fleet.hidden_causes import Flaws
+from bench.fleet.random_particulars import RHO, Particulars
+from bench.fleet.random_ship import RandomShip
 
 HARD = np.radians(35)
 KEPT = (

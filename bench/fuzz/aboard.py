@@ -9,8 +9,8 @@ from pathlib import Path
 from tempfile import gettempdir
 from typing import Any
 
+from bench.fuzz.stepped_voyage import CHANNELS, STEP_S, Sailed
 from bench.fuzz.take import Take
-from bench.fuzz.voyage import CHANNELS, STEP_S, Sailed
 from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.inbox import Played

@@ -12,11 +12,11 @@ from typing import Any
 from bench.fuzz.take import Take
 from twin.errors import TwinError
 from twin.live.certificate.certificate import Certificate, certify, on_board
+from twin.live.certificate.observer_tube import Tube
 from twin.live.certificate.rolled_tube import tube_of
-from twin.live.certificate.tube import Tube
+from twin.live.log.log_rows import read_rows
 from twin.live.log.mcap_read import McapReader
 from twin.live.log.recover import recover
-from twin.live.log.rows import read_rows
 from twin.physics.model import Model
 from twin.physics.ship import load
 from twin.physics.state import Situation

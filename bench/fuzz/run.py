@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bench import answer
+from bench import bench_output
 from bench.fuzz.targets import TARGETS
 from twin import whole
 from twin.errors import TwinError
@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--corpus", type=Path, default=Path(".fuzz"), metavar="DIR", help="inputs go on from here (.fuzz)"
     )
-    answer.add_arguments(parser)
+    bench_output.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -52,9 +52,9 @@ def run(args: argparse.Namespace) -> int:
     rows = []
     for name in names:
         seconds = max(round(args.seconds * SHARES.get(name, 1.0) / whole_share), 1)
-        answer.tell(f"{name}, {seconds} s")
+        bench_output.tell(f"{name}, {seconds} s")
         rows.append(fuzzed(name, seconds, args.corpus))
-    answer.rows(args, rows, told(rows))
+    bench_output.rows(args, rows, told(rows))
     return 3 if any(row.broken for row in rows) else 0
 
 
@@ -100,7 +100,7 @@ def read(name: str, seconds: float, said: str, code: int) -> Fuzzing:
 
 def told(rows: list[Fuzzing]) -> str:
     """The page."""
-    lines = answer.begun(
+    lines = bench_output.begun(
         "Fuzzing with coverage", __doc__, "target", "s", "inputs", "edges reached", "kept", "broken"
     )
     for r in rows:

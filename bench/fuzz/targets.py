@@ -11,7 +11,7 @@ from mcap.writer import CompressionType, Writer
 
 from bench.fuzz.aboard import LoopTarget, MessageTarget
 from bench.fuzz.ashore import CertificateTarget, LogTarget, ShipTarget, TableTarget
-from bench.fuzz.voyage import CHANNELS, STEP_S, Sailed
+from bench.fuzz.stepped_voyage import CHANNELS, STEP_S, Sailed
 from twin.live.keelson import messages, topics
 from twin.live.log.logfile import LogFile
 from twin.physics.ship import bundled, load

@@ -6,8 +6,8 @@ import os
 import tempfile
 from pathlib import Path
 
-from bench import answer
-from bench.league import plan, score
+from bench import bench_output
+from bench.league import league_score, plan
 from bench.league.page import page
 from bench.league.rounds import League
 from bench.options import positive
@@ -64,7 +64,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--minutes", type=float, help="begin no voyage after so many minutes")
     parser.add_argument("--jobs", type=positive, default=2, help="processes (default 2)")
     parser.add_argument("--resume", metavar="DIR", help="keep what is done here, and go on from it")
-    answer.add_arguments(parser, "--out")
+    bench_output.add_arguments(parser, "--out")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -75,9 +75,9 @@ def run(args: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory() as spare:
         league = League(args, Path(args.resume or spare))
         rows = league.play()
-        result = score.contract(rows) | {"run": {"command": command(args)} | league.facts(rows)}
+        result = league_score.contract(rows) | {"run": {"command": command(args)} | league.facts(rows)}
         text = page(rows, result, league.calibrations())
-    answer.give(args, result, text)
+    bench_output.give(args, result, text)
     if args.page:
         whole.write_json(result, str(args.page.with_suffix(".json")))
     return 0

@@ -4,9 +4,9 @@ and every table."""
 from collections.abc import Sequence
 from typing import Any
 
-from bench.league import score, tables
-from bench.league.score import Row
-from bench.league.tables import share, table
+from bench.league import league_score, league_tables
+from bench.league.league_score import Row
+from bench.league.league_tables import share, table
 
 GOALS = {
     "named": ("named first", ">= 85 %"),
@@ -44,15 +44,21 @@ file.
 def page(rows: Sequence[Row], result: dict[str, Any], calibrations: dict[str, Any]) -> str:
     """The whole page."""
     parts = [head(result["run"]), goals(rows, result)]
-    parts += [tables.by(what, rows) for what in ("hull", "strength", "manoeuvre", "seed")]
+    parts += [league_tables.by(what, rows) for what in ("hull", "strength", "manoeuvre", "seed")]
     parts += [
-        tables.effects(rows),
-        tables.gain(rows),
-        tables.parameters(rows),
-        tables.nothing(rows),
-        tables.outside(rows),
+        league_tables.effects(rows),
+        league_tables.gain(rows),
+        league_tables.parameters(rows),
+        league_tables.nothing(rows),
+        league_tables.outside(rows),
     ]
-    parts += [tables.pairs(rows), tables.straight(rows), cost(rows), peer(rows), ships(calibrations)]
+    parts += [
+        league_tables.pairs(rows),
+        league_tables.straight(rows),
+        cost(rows),
+        peer(rows),
+        ships(calibrations),
+    ]
     parts += [failed(rows)]
     return "\n\n".join(p for p in parts if p) + "\n"
 
@@ -71,19 +77,26 @@ def head(run: dict[str, Any]) -> str:
 def goals(rows: Sequence[Row], result: dict[str, Any]) -> str:
     """What was found beside what was wanted; shares of few cases say little, so their number stands beside
     them."""
-    single, lines = score.of_kind(rows, "effect"), []
+    single, lines = league_score.of_kind(rows, "effect"), []
     intervals = sum(len(r.get("parameters", [])) for r in rows)
     for key, (words, goal) in GOALS.items():
         value, cases = (
             result[key],
             intervals if key == "coverage95" else result[COUNTED[key]] if key in COUNTED else len(single),
         )
-        shown = tables.number(value) if key.endswith("oracle") else share(value)
+        shown = league_tables.number(value) if key.endswith("oracle") else share(value)
         lines += [[words, f"**{shown}**", goal, cases]] if cases else []
     if single:
-        lines.append(["a wrong effect first", share(score.share(single, tables.wrong)), "", len(single)])
         lines.append(
-            ["no effect named", share(score.share(single, lambda r: not r["missing"])), "", len(single)]
+            ["a wrong effect first", share(league_score.share(single, league_tables.wrong)), "", len(single)]
+        )
+        lines.append(
+            [
+                "no effect named",
+                share(league_score.share(single, lambda r: not r["missing"])),
+                "",
+                len(single),
+            ]
         )
     return table("## In total", ["measure", "found", "goal", "cases"], lines)
 
@@ -94,8 +107,8 @@ def cost(rows: Sequence[Row]) -> str:
         mine = [r for r in rows if r["hull"] == hull and "seconds" in r]
         if mine:
             wall, cpu = ([r[k] for r in mine] for k in ("seconds", "cpu_seconds"))
-            hour = score.middle([r["cpu_seconds"] * 3600.0 / r["duration_s"] for r in mine])
-            seconds = (score.middle(wall), max(wall), score.middle(cpu), hour)
+            hour = league_score.middle([r["cpu_seconds"] * 3600.0 / r["duration_s"] for r in mine])
+            seconds = (league_score.middle(wall), max(wall), league_score.middle(cpu), hour)
             lines.append([hull, *(f"{s:.1f}" for s in seconds)])
     columns = ["hull", "median s a case", "greatest", "median CPU s a case", "CPU s for an hour of voyage"]
     words = (
@@ -109,8 +122,11 @@ def peer(rows: Sequence[Row]) -> str:
     mine = [r for r in rows if "peer" in r]
     if not mine:
         return "## pysindy\n\nIt was not installed in this run (`pip install pysindy`)."
-    right, own = score.share(mine, lambda r: r["peer"]["right"]), score.share(mine, score.named)
-    seconds = score.middle([r["peer"]["seconds"] for r in mine])
+    right, own = (
+        league_score.share(mine, lambda r: r["peer"]["right"]),
+        league_score.share(mine, league_score.named),
+    )
+    seconds = league_score.middle([r["peer"]["seconds"] for r in mine])
     return f"""## pysindy
 
 Sparse regression (STLSQ) of the residual accelerations of the same {len(mine)} voyages on 13 terms that an

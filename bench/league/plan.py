@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from bench.reference import Case
-from bench.reference.hidden import CATALOGUE, OUTSIDE
+from bench.reference.hidden_catalogue import CATALOGUE, OUTSIDE
 
 HULLS = ("kvlcc2", "usv", "container")
 KINDS = ("effect", "none", "decoy", "pair", "outside", "straight")

@@ -10,11 +10,11 @@ from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any
 
-from bench.league import plan, score
-from bench.league.judge import judge
+from bench.league import league_score, plan
+from bench.league.examiner import judge
+from bench.league.league_ships import Fleet, make, ships_of
+from bench.league.league_voyages import BATCH, forget, sail
 from bench.league.plan import Question
-from bench.league.sea import BATCH, forget, sail
-from bench.league.ships import Fleet, make, ships_of
 
 PART = 60  # questions whose voyages are sailed before they are judged
 FULL: dict[str, Any] = {"hulls": plan.HULLS, "seeds": 5, "strengths": plan.STRENGTHS}
@@ -76,7 +76,7 @@ class League:
             self.done[row["key"]] = row
             with open(self.log, "a") as log:
                 log.write(json.dumps(row) + "\n")
-            print(f"{where} {row['key']}: {score.called(row)}", file=sys.stderr, flush=True)
+            print(f"{where} {row['key']}: {league_score.called(row)}", file=sys.stderr, flush=True)
 
     def _sail(self, pool: ProcessPoolExecutor, cases: list[Any]) -> None:
         parts = _parts(cases, max(1, min(BATCH, -(-len(cases) // self.jobs))))

@@ -15,16 +15,16 @@ class Guarded(NamedTuple):
 BY_HAND = (f"{LIVE}/certificate/test_theorem_by_hand.py",)
 CERTIFICATE = (
     f"{LIVE}/certificate/test_certificate.py",
-    f"{LIVE}/certificate/test_certificate_tube.py",
+    f"{LIVE}/certificate/test_observer_tube.py",
 )
 LOOP = (f"{LIVE}/test_stabilizer.py", f"{LIVE}/test_pause.py", f"{LIVE}/test_assumptions.py")
 
 GUARDED = {
     "recursion": Guarded("twin/live/certificate/recursion.py", BY_HAND),
     "theorem": Guarded("twin/live/certificate/theorem.py", BY_HAND),
-    "comparison": Guarded("twin/live/certificate/comparison.py", BY_HAND),
+    "comparison": Guarded("twin/live/certificate/comparison_systems.py", BY_HAND),
     "periods": Guarded("twin/live/certificate/periods.py", BY_HAND),
-    "tube": Guarded("twin/live/certificate/tube.py", (*CERTIFICATE, *LOOP)),
+    "tube": Guarded("twin/live/certificate/observer_tube.py", (*CERTIFICATE, *LOOP)),
     "store": Guarded("twin/live/certificate/store.py", (f"{LIVE}/test_build.py", *CERTIFICATE[:1])),
     "stabilizer": Guarded("twin/live/stabilizer.py", LOOP),
     "parity": Guarded("twin/live/parity.py", LOOP[2:]),

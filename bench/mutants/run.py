@@ -19,7 +19,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
-from bench import answer
+from bench import bench_output
 from bench.mutants.guarded import GUARDED
 from bench.mutants.mutate import Mutant, mutants
 
@@ -60,7 +60,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--kept", type=Path, default=Path(".mutants"), metavar="DIR", help="what was tried (.mutants)"
     )
-    answer.add_arguments(parser)
+    bench_output.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -73,7 +73,7 @@ def run(args: argparse.Namespace) -> int:
     rows: list[Tried] = []
     for name in args.file or GUARDED:
         rows += of_file(name, args.most, args.kept, ends)
-    answer.rows(args, rows, told(rows))
+    bench_output.rows(args, rows, told(rows))
     return 0
 
 
@@ -99,7 +99,9 @@ def of_file(name: str, most: int, kept: Path, ends: float) -> list[Tried]:
             limit_s = 4.0 * (time.monotonic() - began) + 10.0
         fates[str(i)] = tried(guarded.source, all_of[i].source, guarded.tests, limit_s)
         memory.write_text(json.dumps(fates))
-        answer.tell(f"{name} {len(fates)}/{len(chosen)} {fates[str(i)]} {all_of[i].line}: {all_of[i].change}")
+        bench_output.tell(
+            f"{name} {len(fates)}/{len(chosen)} {fates[str(i)]} {all_of[i].line}: {all_of[i].change}"
+        )
     return [_row(guarded.source, all_of[i], fates[str(i)]) for i in chosen if str(i) in fates]
 
 
@@ -145,7 +147,7 @@ def _child(path: str, source: str, tests: Sequence[str]) -> int:
 
 def told(rows: Sequence[Tried]) -> str:
     """The page."""
-    lines = answer.begun(
+    lines = bench_output.begun(
         "Mutants of what guards", __doc__, "file", "mutants", "noticed", "of them by hanging", "survived"
     )
     for file in dict.fromkeys(row.file for row in rows):

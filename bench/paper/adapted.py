@@ -15,12 +15,12 @@ import torch
 
 from bench.paper.filter import EAST, NORTH, PSI, Filter, Tuning, from_states
 from bench.paper.lab import LabCourse
-from export.loss import known
-from export.network import ResidualNetwork
+from export.residual_network import ResidualNetwork
 from export.to_onnx import whitening
+from export.training_loss import known
 from twin.live.learning.adapt import LARGEST, Adaptation
 from twin.live.learning.adapted_row import BESIDE, CORES
-from twin.live.learning.evidence import Evidence
+from twin.live.learning.filtered_regression import Evidence
 from twin.live.learning.movable import Columns, movable
 from twin.live.observer.dynamics import KnownDynamics
 from twin.physics.model import Model

@@ -11,9 +11,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from bench import answer
+from bench import bench_output
 from bench.options import positive
-from bench.paper import sea
+from bench.paper import paper_voyages
 
 EPILOG = """example: twin-bench gap --work .paper --markdown docs/results/gap.md
 
@@ -47,29 +47,33 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=Path(".paper"),
         help="voyages and checkpoints (%(default)s)",
     )
-    answer.add_arguments(parser)
+    bench_output.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> int:
-    result = compare(args.work, sea.FULL if args.full else sea.QUICK, args.times)
-    answer.give(args, result, "\n".join(page(result, args.full)))
+    result = compare(args.work, paper_voyages.FULL if args.full else paper_voyages.QUICK, args.times)
+    bench_output.give(args, result, "\n".join(page(result, args.full)))
     return 0
 
 
-def compare(work: Path, plan: sea.PaperPlan, times: int) -> dict[str, Any]:
+def compare(work: Path, plan: paper_voyages.PaperPlan, times: int) -> dict[str, Any]:
     """Sail, predict, count."""
     from bench.paper.filter import predict
     from bench.paper.gap import gap
     from bench.paper.lab import course, free
     from bench.paper.models import Workshop
-    from bench.paper.ship import nominal
+    from bench.paper.nominal_ship import nominal
     from twin.physics.model import Model
 
-    model, shop = Model(nominal()), Workshop.planned(plan, work, answer.tell)
+    model, shop = Model(nominal()), Workshop.planned(plan, work, bench_output.tell)
     network = shop.taught(model, plan.seeds[0], "hybrid").network
     tuning = shop.tuned(model, network)
-    others = again(sea.lessons(plan), len(shop.parts["train"]), len(shop.parts["validation"]), times)
-    sailed = {name: sea.sail(cases, work / "voyages", answer.tell) for name, cases in others.items()}
+    others = again(
+        paper_voyages.lessons(plan), len(shop.parts["train"]), len(shop.parts["validation"]), times
+    )
+    sailed = {
+        name: paper_voyages.sail(cases, work / "voyages", bench_output.tell) for name, cases in others.items()
+    }
     parts = shop.parts | {name: [course(one, model.ship) for one in some] for name, some in sailed.items()}
     models = {
         "hybrid": lambda cs: predict(cs, model, network, tuning),

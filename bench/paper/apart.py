@@ -10,7 +10,7 @@ import numpy as np
 import torch
 
 from bench.paper.lab import LabCourse
-from export.network import ResidualNetwork
+from export.residual_network import ResidualNetwork
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.estimation.identifiability import Features, residual_angles

@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 import torch
 
-from bench.paper.sea import SCENARIOS
+from bench.paper.paper_voyages import SCENARIOS
 from bench.reference import Case, Sea
-from export.network import ResidualNetwork
+from export.residual_network import ResidualNetwork
 from twin.physics import core
 from twin.physics.model import Model
 from twin.physics.state import Situation

@@ -12,7 +12,7 @@ from bench.paper import filter as paper_filter
 from bench.paper import lstm as paper_lstm
 from bench.paper.lab import LabCourse, judge
 from bench.paper.models import Workshop, named
-from bench.paper.ship import nominal
+from bench.paper.nominal_ship import nominal
 from bench.paper.stats import summary
 from twin.physics.model import Model
 

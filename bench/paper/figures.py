@@ -161,7 +161,7 @@ def ahead_ms(once: Callable[[], object], steps: int) -> float:
 def _predictors() -> dict[str, Callable[[], object]]:
     """One step of 1 s of each."""
     from bench.tick import peers
-    from twin.live.learning.learned import LearnedForce
+    from twin.live.learning.learned_force import LearnedForce
     from twin.live.learning.residual import bundled, load
     from twin.live.observer.dynamics import KnownDynamics
     from twin.physics.model import Model

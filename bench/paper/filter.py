@@ -17,7 +17,7 @@ import torch
 
 from bench.paper.lab import LabCourse, judge
 from export.batches import STRIDE
-from export.loss import HeldOutLoss, free_run
+from export.training_loss import HeldOutLoss, free_run
 from twin.physics.model import Model
 from twin.physics.state import Force, Situation
 from twin.study.track.track import READINGS

@@ -10,11 +10,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 import torch
 
-from bench.paper.sea import STARTS_S, PaperVoyage
+from bench.paper.paper_voyages import STARTS_S, PaperVoyage
 from export.batches import STRIDE
 from export.data import LOG, TrainingLeg, afloat, current, leg
-from export.loss import free_run
-from export.network import ResidualNetwork
+from export.residual_network import ResidualNetwork
+from export.training_loss import free_run
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.study.track.track import READINGS, Track, track

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 from bench.options import positive
-from bench.paper.sea import QUICK, lessons, sail, zigzags
-from bench.paper.ship import nominal
+from bench.paper.nominal_ship import nominal
+from bench.paper.paper_voyages import QUICK, lessons, sail, zigzags
 from twin.study.track.track import track
 
 VARIANTS: dict[str, dict[str, Any]] = {

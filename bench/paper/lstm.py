@@ -10,9 +10,9 @@ from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from bench.paper.lab import LabCourse, grounded
 from export.batches import STRIDE, shuffled
-from export.course import FEWEST
 from export.data import TrainingLeg
 from export.settings import TrainingSettings
+from export.training_course import FEWEST
 
 WARM, FREE, HIDDEN, BATCH = 12, 24, 64, 64  # steps of 2.5 s for KVLCC2: 30 s and 60 s
 # in an epoch at least, as the hybrid has them: batches are smaller where there is less to learn from

@@ -10,20 +10,19 @@ import numpy as np
 import torch
 
 from bench.paper import adapted as paper_adapted
-from bench.paper import ekf as paper_ekf
 from bench.paper import filter as paper_filter
 from bench.paper import lstm as paper_lstm
 from bench.paper import lstm_onnx as paper_lstm_onnx
-from bench.paper import sea
+from bench.paper import paper_voyages, tuned_ekf
 from bench.paper.adapted import Acting
 from bench.paper.apart import apart
 from bench.paper.filter import Push, Tuning
 from bench.paper.gap import gap
 from bench.paper.lab import LabCourse, course, free
-from bench.paper.ship import nominal
+from bench.paper.nominal_ship import nominal
 from export.batches import zeta_of
 from export.data import TrainingLeg, split
-from export.network import ResidualNetwork
+from export.residual_network import ResidualNetwork
 from export.settings import TrainingSettings
 from export.teach import Taught, teach
 from export.worth import share
@@ -85,10 +84,11 @@ class Workshop:
         return cls(split(lessons), split([c.water for c in lessons]), settings, work, tell)  # type: ignore[type-var,arg-type]
 
     @classmethod
-    def planned(cls, plan: sea.PaperPlan, work: Path, tell: Callable[[str], None]) -> "Workshop":
+    def planned(cls, plan: paper_voyages.PaperPlan, work: Path, tell: Callable[[str], None]) -> "Workshop":
         """Of a plan whose lessons are not yet sailed."""
         lessons = [
-            course(one, nominal()) for one in sea.sail(sea.lessons(plan), work / "voyages", tell, plan.tick_s)
+            course(one, nominal())
+            for one in paper_voyages.sail(paper_voyages.lessons(plan), work / "voyages", tell, plan.tick_s)
         ]
         return cls.of(lessons, settings_for(plan), work, tell)
 
@@ -108,7 +108,7 @@ class Workshop:
         return paper_filter.tuned(self.parts["validation"], model, push)
 
 
-def settings_for(plan: sea.PaperPlan) -> TrainingSettings:
+def settings_for(plan: paper_voyages.PaperPlan) -> TrainingSettings:
     """Of the training."""
     return TrainingSettings(
         epochs=plan.epochs, rollout_epochs=plan.rollout_epochs, rollout_batch=plan.rollout_batch
@@ -139,9 +139,9 @@ def build(
 def _filtered(out: Models, shop: Workshop, plain: Model) -> None:
     """The EKF of the paper's comparison."""
     shop.tell("tuning the EKF")
-    walk, keep = paper_ekf.tuned(shop.parts["validation"], plain)  # type: ignore[arg-type]
+    walk, keep = tuned_ekf.tuned(shop.parts["validation"], plain)  # type: ignore[arg-type]
     out.told["ekf"] = {"walk": walk, "disturbance_kept_in_prediction": keep}
-    out.predict["ekf"] = lambda cs: paper_ekf.predict(cs, plain, walk, keep)
+    out.predict["ekf"] = lambda cs: tuned_ekf.predict(cs, plain, walk, keep)
 
 
 def _sequence(out: Models, shop: Workshop, epochs: int, seed: int) -> None:

@@ -109,8 +109,8 @@ def tuning(r: dict[str, Any]) -> list[str]:
         "",
         "## How each was tuned",
         "",
-        "* Nominal: literature coefficients, off by 4 to 20 % (bench/paper/ship.py), fixed before any result "
-        "was seen.",
+        "* Nominal: literature coefficients, off by 4 to 20 % (bench/paper/nominal_ship.py), fixed before "
+        "any result was seen.",
         "* EKF: three sizes of the disturbance's walk, disturbance kept or dropped in the prediction; best "
         "on the validation runs: "
         f"walk {ekf['walk']:g}, {kept}.",

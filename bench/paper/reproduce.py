@@ -7,8 +7,8 @@ import time
 from pathlib import Path
 from typing import Any
 
-from bench import answer
-from bench.paper import sea
+from bench import bench_output
+from bench.paper import paper_voyages
 
 EPILOG = """example: twin-bench paper --quick
 
@@ -35,7 +35,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--tick", metavar="FILE.json", type=Path, help="what `twin-bench --json` wrote, for Table 9"
     )
-    answer.add_arguments(parser)
+    bench_output.add_arguments(parser)
 
 
 def run(args: argparse.Namespace) -> int:
@@ -44,32 +44,45 @@ def run(args: argparse.Namespace) -> int:
     tick = json.loads(args.tick.read_text()) if args.tick else None  # before the hours, not after them
     with tempfile.TemporaryDirectory() as nowhere:
         work = args.work or (Path(".paper") if args.full else Path(nowhere))
-        result = reproduce(sea.FULL if args.full else sea.QUICK, work, not args.full, args.figures)
+        result = reproduce(
+            paper_voyages.FULL if args.full else paper_voyages.QUICK, work, not args.full, args.figures
+        )
     if tick:
         result["tables"]["9"] = tick
-    answer.give(args, result, "\n".join(page(result)), answer.kept(args.page))
+    bench_output.give(args, result, "\n".join(page(result)), bench_output.kept(args.page))
     return 0
 
 
-def reproduce(plan: sea.PaperPlan, work: Path, quick: bool, figures: Path | None = None) -> dict[str, Any]:
+def reproduce(
+    plan: paper_voyages.PaperPlan, work: Path, quick: bool, figures: Path | None = None
+) -> dict[str, Any]:
     """Sail, train, tune, predict, and count."""
     from bench.paper import closed as paper_closed
     from bench.paper import models as paper_models
-    from bench.paper import tables as paper_tables
+    from bench.paper import paper_tables
     from bench.paper.curve import curve
     from bench.paper.lab import course
-    from bench.paper.ship import nominal
+    from bench.paper.nominal_ship import nominal
 
     began, wall = time.process_time(), time.monotonic()
     work.mkdir(parents=True, exist_ok=True)
-    ship, tell = nominal(), answer.tell
-    changed, speeds = sea.changed(plan), sea.by_speed(plan)
-    groups = {"lessons": sea.lessons(plan), "zigzags": sea.unseen(plan), **changed, **speeds}
+    ship, tell = nominal(), bench_output.tell
+    changed, speeds = paper_voyages.changed(plan), paper_voyages.by_speed(plan)
+    groups = {
+        "lessons": paper_voyages.lessons(plan),
+        "zigzags": paper_voyages.unseen(plan),
+        **changed,
+        **speeds,
+    }
     sailed = iter(
-        sea.sail([c for cases in groups.values() for c in cases], work / "voyages", tell, plan.tick_s)
+        paper_voyages.sail(
+            [c for cases in groups.values() for c in cases], work / "voyages", tell, plan.tick_s
+        )
     )
     voyages = {name: [next(sailed) for _ in cases] for name, cases in groups.items()}
-    voyages[paper_tables.EXACT] = [sea.without_gnss_noise(one) for one in voyages[next(iter(changed))]]
+    voyages[paper_tables.EXACT] = [
+        paper_voyages.without_gnss_noise(one) for one in voyages[next(iter(changed))]
+    ]
     courses = {name: [course(one, ship, plan.starts_s) for one in some] for name, some in voyages.items()}
     models = paper_models.build(
         courses["lessons"], paper_models.settings_for(plan), plan.lstm_epochs, plan.seeds, work, tell
@@ -94,7 +107,7 @@ def reproduce(plan: sea.PaperPlan, work: Path, quick: bool, figures: Path | None
         "ratios": paper_tables.ratios(tables["3"]),
         "models": models.told,
         "counts": {name: len(some) for name, some in courses.items()},
-        "scenarios": list(sea.SCENARIOS),
+        "scenarios": list(paper_voyages.SCENARIOS),
         "cpu_seconds": round(time.process_time() - began, 1),
         "seconds": round(time.monotonic() - wall, 1),
     }

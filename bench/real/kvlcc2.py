@@ -9,8 +9,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bench import answer
-from bench.real import faults as real_faults
+from bench import bench_output
+from bench.real import planted_faults
 from bench.real.page import page
 from twin.errors import SettingsError
 from twin.physics.effects import find
@@ -18,9 +18,9 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship, load
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
-from twin.study.calibration.calibrate import calibrate
-from twin.study.diagnosis.diagnose import diagnose
-from twin.study.prediction.compare import compare
+from twin.study.calibration.core_fit import calibrate
+from twin.study.diagnosis.effect_diagnosis import diagnose
+from twin.study.prediction.open_loop_comparison import compare
 from twin.study.prediction.score import reckoned
 from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
@@ -72,7 +72,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--data", metavar="DIR", default=os.environ.get("SHIPTWIN_DATA"), help="default: $SHIPTWIN_DATA"
     )
-    answer.add_arguments(parser, "--out")
+    bench_output.add_arguments(parser, "--out")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -82,17 +82,17 @@ def run(args: argparse.Namespace) -> int:
             f"{root}: the SIMMAN files are not there. Set SHIPTWIN_DATA to the folder above kvlcc2_simman."
         )
     result = {"schema_version": 1, "basins": [judged(basin, root) for basin in BASINS]}
-    answer.give(args, result, page(result))
+    bench_output.give(args, result, page(result))
     return 0
 
 
 def judged(basin: Basin, root: Path) -> dict[str, Any]:
     """Everything about one basin's runs."""
-    answer.tell(f"{basin.name}: reading")
+    bench_output.tell(f"{basin.name}: reading")
     ship, runs = load(basin.ship), voyages(basin, root)
     fitted = [s for s in runs if any(w in s.voyage.name for w in basin.fitted)]
     others = [s for s in runs if s not in fitted]
-    answer.tell(f"{basin.name}: calibrating")
+    bench_output.tell(f"{basin.name}: calibrating")
     after = calibrate(fitted, [(s.track, 0) for s in others], ship)
     return {
         "basin": basin.name,
@@ -112,7 +112,7 @@ def judged(basin: Basin, root: Path) -> dict[str, Any]:
             diagnosed("published coefficients, all runs", runs, ship),
             diagnosed("calibrated ship, the runs that it was not fitted to", others, after.ship),
         ],
-        "faults": [faulty(fault, others, after.ship) for fault in real_faults.FAULTS],
+        "faults": [faulty(fault, others, after.ship) for fault in planted_faults.FAULTS],
     }
 
 
@@ -154,7 +154,7 @@ def helm(s: Sailed) -> dict[str, Any]:
 def asked(name: str, fitted: Sequence[Sailed], others: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
     """The effect as if it had been named: fitted on the calibration's runs, judged on the others at the
     longest horizon."""
-    answer.tell(f"adding {name}")
+    bench_output.tell(f"adding {name}")
     made = adding.fitted(ship, [find(name)], [s.track for s in fitted])
     before, after = (ladder(others, s)[-1] for s in (ship, ship.with_effects(*made.model.effects)))
     return {
@@ -165,12 +165,12 @@ def asked(name: str, fitted: Sequence[Sailed], others: Sequence[Sailed], ship: S
     }
 
 
-def faulty(fault: real_faults.PlantedFault, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
-    answer.tell(f"putting into the readings: {fault.words}")
-    return real_faults.asked(fault, [s.voyage for s in runs], ship)
+def faulty(fault: planted_faults.PlantedFault, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
+    bench_output.tell(f"putting into the readings: {fault.words}")
+    return planted_faults.asked(fault, [s.voyage for s in runs], ship)
 
 
 def diagnosed(words: str, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
-    answer.tell(f"diagnosing: {words}")
+    bench_output.tell(f"diagnosing: {words}")
     found = diagnose([s.voyage for s in runs], ship).result
     return {"of": words} | {k: found[k] for k in KEPT}

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from bench.real import faults as real_faults
+from bench.real import planted_faults
 
 OTHERS = (
     "On the other runs together (which also chose between two ways of fitting, and whether an antenna "
@@ -39,7 +39,7 @@ def _basin(b: dict[str, Any]) -> str:
         *(_diagnosis(d) for d in b["diagnoses"]),
         _asked(b["asked"]),
         "### Known faults put into the readings of the runs that it was not fitted "
-        "to\n\n" + real_faults.told(b["faults"]),
+        "to\n\n" + planted_faults.told(b["faults"]),
     ]
     return "\n\n".join(parts)
 

@@ -6,7 +6,7 @@ recording.columns["heading_true_north_deg"], recording.truth["u"], recording.hid
 
 from bench.reference.hulls import HULLS, Hull
 from bench.reference.sea import Sea
-from bench.reference.voyage import Case, Change, Recording, simulate
+from bench.reference.sea_voyage import Case, Change, Recording, simulate
 from bench.reference.weather import WEATHERS, Weather
 
 __all__ = ["HULLS", "WEATHERS", "Case", "Change", "Hull", "Recording", "Sea", "Weather", "simulate"]

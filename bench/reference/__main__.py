@@ -4,11 +4,11 @@ import argparse
 import json
 from pathlib import Path
 
-from bench.reference import check
-from bench.reference.hidden import CATALOGUE, DECOYS, OUTSIDE
+from bench.reference import sea_trials
+from bench.reference.hidden_catalogue import CATALOGUE, DECOYS, OUTSIDE
 from bench.reference.hulls import HULLS
-from bench.reference.manoeuvres import MANOEUVRES
-from bench.reference.voyage import Case, simulate
+from bench.reference.sea_voyage import Case, simulate
+from bench.reference.trial_legs import MANOEUVRES
 from bench.reference.weather import WEATHERS
 
 
@@ -67,7 +67,7 @@ def main():
     sail.add_argument("--duration", type=float, default=1800.0, metavar="S")
     sail.add_argument("-o", "--output", default="voyages")
     args = parser.parse_args()
-    return {"list": show, "check": check.main, "run": lambda: run(args)}[args.verb]()
+    return {"list": show, "check": sea_trials.main, "run": lambda: run(args)}[args.verb]()
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from bench.reference.manoeuvres import COURSE, RUDDER, ZIGZAG
 from bench.reference.mmg import limit
+from bench.reference.trial_legs import COURSE, RUDDER, ZIGZAG
 
 
 def wrap(angle):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bench.reference import flaws, waves, wind
+from bench.reference import flaws, isherwood, jonswap
 from bench.reference.chance import Wander
 
 ANSWER_TICKS = 4  # the answer to waves follows the heading every fourth tick, the phase every tick
@@ -39,8 +39,11 @@ class Environment:
         ]
         self.wander = Wander(seeds, times, dt)
         self.take(hulls)
-        self.sea = waves.stack_seas(
-            [waves.components(w, np.random.default_rng([s, 4])) for w, s in zip(weathers, seeds, strict=True)]
+        self.sea = jonswap.stack_seas(
+            [
+                jonswap.components(w, np.random.default_rng([s, 4]))
+                for w, s in zip(weathers, seeds, strict=True)
+            ]
         )
         self.has_waves = bool(self.sea.a.any())
         self.current, self.has_tide, self.has_squall = None, bool(f.tide_mps.any()), bool(f.squall_mps.any())
@@ -48,8 +51,8 @@ class Environment:
 
     def take(self, hulls):
         """What wind and waves must know of these hulls (`h` holds their numbers)."""
-        self.tables = np.stack([wind.table(x) for x in hulls])
-        self.oscillator = waves.oscillator(self.h)
+        self.tables = np.stack([isherwood.table(x) for x in hulls])
+        self.oscillator = jonswap.oscillator(self.h)
 
     def step(self, tick, t, north, east, psi):
         """Bring the surroundings to this tick."""
@@ -77,8 +80,8 @@ class Environment:
         self.wave_force, self.drift, self.heave, self.pitch = (zero,) * 4, (zero,) * 3, zero, zero
         if self.has_waves:
             if tick % ANSWER_TICKS == 0:
-                self.answer = waves.transfer(self.h, self.sea, psi)
-            (X, Y, N, K, self.heave, self.pitch), drift = waves.loads(self.sea, self.answer, t, north, east)
+                self.answer = jonswap.transfer(self.h, self.sea, psi)
+            (X, Y, N, K, self.heave, self.pitch), drift = jonswap.loads(self.sea, self.answer, t, north, east)
             there = 1 - self.f.waveless
             self.wave_force = tuple(there * c for c in (X, Y, N, K))
             self.drift = tuple(there * c for c in drift)
@@ -94,12 +97,12 @@ class Environment:
         v = s[4] + self.current[1] * cos - self.current[0] * sin
         ua, va = self.apparent(u, v, cos, sin)
         there = 1 - self.f.windless
-        steady = wind.force(self.h, self.tables, ua, va)
+        steady = isherwood.force(self.h, self.tables, ua, va)
         out = {"wind": [there * c for c in steady]}
         if self.has_squall:
             gust = flaws.squall(self.f, self.t)
             ahead, aside = gust * np.cos(self.f.squall_from), gust * np.sin(self.f.squall_from)
-            blown = wind.force(
+            blown = isherwood.force(
                 self.h, self.tables, ua + ahead * cos + aside * sin, va + aside * cos - ahead * sin
             )
             out["hidden"] = [a - b for a, b in zip(blown, steady, strict=True)]

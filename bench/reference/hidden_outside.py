@@ -2,7 +2,7 @@
 
 from math import pi, radians, sqrt
 
-from bench.reference.plan import FULL_SCALE, Plan, either
+from bench.reference.hidden_plan import FULL_SCALE, Plan, either
 
 
 def ice_like(hull, rng, s):

@@ -5,15 +5,15 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from bench.reference import flaws, gear, motion
+from bench.reference import flaws, kinetics, machinery
 from bench.reference.autopilot import Autopilot
 from bench.reference.environment import Environment
-from bench.reference.fleet import stack
-from bench.reference.hidden import prepare, stack_flaws
+from bench.reference.hidden_catalogue import prepare, stack_flaws
+from bench.reference.hull_arrays import stack
 from bench.reference.hulls import HULLS, Hull
-from bench.reference.manoeuvres import legs
 from bench.reference.mmg import limit
-from bench.reference.sensors import COLUMNS, SensorSuite, compass_error
+from bench.reference.sensor_suite import COLUMNS, SensorSuite, compass_error
+from bench.reference.trial_legs import legs
 from bench.reference.weather import WEATHERS, Weather, rotated
 
 ORIGINS = ("hull", "propeller", "rudder", "wind", "waves", "hidden", "known")
@@ -148,22 +148,22 @@ class Sea:
     def _rest(self, share, n_start):
         count = len(self.cases)
         self.s, self.old = np.zeros((14, count)), None
-        self.s[motion.PSI], self.s[motion.U] = self.heading, self.h.U0 * share
+        self.s[kinetics.PSI], self.s[kinetics.U] = self.heading, self.h.U0 * share
         self.n, self.gear, self.blade = n_start.copy(), np.zeros(count), np.zeros(count)
         self.orders = np.zeros((LAG_TICKS, count))
-        self.tally = motion.Tally(count)
+        self.tally = kinetics.Tally(count)
 
     def _controls(self, t):
         """Orders from the helmsman, through gear and engine, to blade and shaft."""
         s, f, h = self.s, self.f, self.h
-        heading = s[motion.PSI] + compass_error(f, s[motion.PSI])
-        order, rate = self.pilot.order(t, heading, s[motion.R], s[motion.U], self.dt)
+        heading = s[kinetics.PSI] + compass_error(f, s[kinetics.PSI])
+        order, rate = self.pilot.order(t, heading, s[kinetics.R], s[kinetics.U], self.dt)
         self.orders[self.tick % LAG_TICKS] = order
         back = np.minimum(np.rint(f.lag_time / self.dt).astype(int), min(self.tick, LAG_TICKS - 1))
         late = self.orders[(self.tick - back) % LAG_TICKS, np.arange(len(back))]
-        self.gear = gear.steer(h, self.gear, late, self.dt, f.lag_rate)
-        self.blade = gear.play(self.blade, flaws.blade_angle(f, h, self.gear), f.backlash)
-        self.n = gear.turn_engine(h, self.n, rate, self.dt)
+        self.gear = machinery.steer(h, self.gear, late, self.dt, f.lag_rate)
+        self.blade = machinery.play(self.blade, flaws.blade_angle(f, h, self.gear), f.backlash)
+        self.n = machinery.turn_engine(h, self.n, rate, self.dt)
         self.order = limit(order, -np.radians(h.rudder_max), np.radians(h.rudder_max))
 
     def _tick(self):
@@ -171,7 +171,13 @@ class Sea:
         t, s = self.tick * self.dt, self.s
         self._change()
         self.env.t = t
-        self.env.step(self.tick, t, s[motion.NORTH], s[motion.EAST], s[motion.PSI])
+        self.env.step(
+            self.tick,
+            t,
+            s[kinetics.NORTH],
+            s[kinetics.EAST],
+            s[kinetics.PSI],
+        )
         self._controls(t)
         self.slope = self._slope(t)
         self.forces = self._forces()
@@ -179,8 +185,8 @@ class Sea:
         self.row = self.instruments.read(self.tick, t, self.true, self.env)
 
     def _slope(self, t):
-        sway = 0.0 if self.old is None else self.old[motion.V] + self.s[motion.U] * self.s[motion.R]
-        return motion.rate(
+        sway = 0.0 if self.old is None else self.old[kinetics.V] + self.s[kinetics.U] * self.s[kinetics.R]
+        return kinetics.rate(
             self.tally, self.f, self.on, self.h, self.s, sway, self.env, t, self.n, self.blade, self.gear
         )
 
@@ -201,7 +207,7 @@ class Sea:
 
     def _true(self):
         s, env = self.s, self.env
-        cos, sin = np.cos(s[motion.PSI]), np.sin(s[motion.PSI])
+        cos, sin = np.cos(s[kinetics.PSI]), np.sin(s[kinetics.PSI])
         north, east = env.current
         recorded = np.where(self.f.lag_time > 0, self.order, self.gear)
         values = (

@@ -4,12 +4,12 @@ Truth is the ship's own equations with a bounded force added, integrated twice a
 late, noisy, missing measurements and a hostile network. Disturbance, noise and network are chosen against it
 (along its error, held in one corner, square waves, white), all within their bounds. A run that leaves the
 operating set is judged until it leaves, and counted. Beside them a few of the twin's own loops
-(loop.py)."""
+(adversary_loop.py)."""
 
 import argparse
 from dataclasses import asdict
 
-from bench import answer
+from bench import bench_output
 from bench.options import positive
 from bench.stability.adversary_case import AdversaryCase, certified
 from bench.stability.adversary_fleet import AdversaryFleet, AdversaryOutcome, trial
@@ -47,7 +47,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="worst-case adversaries instead of random ones, inside the assumptions and outside",
     )
     parser.add_argument("--seed", type=int, default=1)
-    answer.add_arguments(parser, "--results")
+    bench_output.add_arguments(parser, "--results")
 
 
 def run(args: argparse.Namespace) -> int:
@@ -57,10 +57,10 @@ def run(args: argparse.Namespace) -> int:
 
         return attacked(args, args.runs or ATTACK_RUNS)
     args.runs = args.runs or sum(c.runs for c in CASES)
+    from bench.stability.adversary_loop import CASES as LOOPS
+    from bench.stability.adversary_loop import Loops
     from bench.stability.attack.section import section_of
-    from bench.stability.loop import CASES as LOOPS
-    from bench.stability.loop import Loops
-    from bench.stability.report import tables
+    from bench.stability.stability_tables import tables
 
     share = args.runs / sum(c.runs for c in CASES)
     rows, loops = [], []
@@ -85,7 +85,7 @@ def run(args: argparse.Namespace) -> int:
         [{**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o in some]
         for some in (rows, loops)
     )
-    answer.give(
+    bench_output.give(
         args,
         plain({"schema_version": 1, "cases": cases, "loops": own}),
         tables(rows, loops, args),
@@ -100,5 +100,5 @@ def run(args: argparse.Namespace) -> int:
 
 
 def _told(what: str, o: AdversaryOutcome) -> AdversaryOutcome:
-    answer.tell(f"{what}: {o.violations} violations in {o.runs} runs")
+    bench_output.tell(f"{what}: {o.violations} violations in {o.runs} runs")
     return o

@@ -8,9 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from twin.live.certificate import comparison as c3
+from twin.live.certificate import comparison_systems as c3
 from twin.live.certificate.certificate import Certificate, Confined
-from twin.live.certificate.tube import look_back
+from twin.live.certificate.observer_tube import look_back
 from twin.live.learning.movable import Movable, movable, moved
 from twin.physics import core
 from twin.physics.model import Model

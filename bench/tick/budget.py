@@ -14,9 +14,8 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from bench import answer
-from bench.tick import cortex, feed, instructions, mark
-from bench.tick import table as tick_table
+from bench import bench_output
+from bench.tick import cortex, instructions, instrument_feed, mark, terminal_table
 from bench.tick.process import WARM_UP
 from twin.errors import TwinError, UsageError
 from twin.live.learning.residual import bundled
@@ -58,7 +57,7 @@ def run(args: argparse.Namespace) -> int:
     if args.steps < 10:
         raise UsageError(f"--steps {args.steps}: at least 10 are needed for a median and a tail.")
     result = measure(args)
-    answer.give(args, result, tick_table.text(result))
+    bench_output.give(args, result, terminal_table.text(result))
     return 0 if result["within_budget"] else 3
 
 
@@ -67,20 +66,20 @@ def measure(args: argparse.Namespace) -> dict[str, Any]:
     paced_steps = int(PACED_S * args.rate) if args.paced is None else args.paced
     with tempfile.TemporaryDirectory(prefix="twin-bench-") as folder:
         place = Place(Path(folder), args)
-        answer.tell(f"sailing the voyage that is fed ({place.seconds(args.steps):.0f} s at sea) ...")
+        bench_output.tell(f"sailing the voyage that is fed ({place.seconds(args.steps):.0f} s at sea) ...")
         place.prepare(max(args.steps, paced_steps))
-        answer.tell(f"the loop as fast as it can, {args.steps} steps ...")
+        bench_output.tell(f"the loop as fast as it can, {args.steps} steps ...")
         fast = place.loop(args.steps, PARTS, "fast")
         if paced_steps:
-            answer.tell(f"the loop on time, {paced_steps} steps at {args.rate:g} Hz ...")
+            bench_output.tell(f"the loop on time, {paced_steps} steps at {args.rate:g} Hz ...")
         paced = place.loop(paced_steps, 0, "paced") if paced_steps else None
         peers = {"hybrid": {}, "peers": {}, "look_ahead": {}}
         if not args.no_peers:
-            answer.tell("the peers ...")
+            bench_output.tell("the peers ...")
             peers = _json_of([*PYTHON, "bench.tick.peers"], "the peers")
         counted = {}
         if args.steps >= COUNTED_FROM and not args.no_instructions and instructions.available():
-            answer.tell("counting instructions with valgrind ...")
+            bench_output.tell("counting instructions with valgrind ...")
             counted = instructions.counts()
         residual = place.residual
     return judged(args, fast, paced, peers, counted, residual)
@@ -158,14 +157,16 @@ class Place:
         return (WARM_UP + steps + PARTS) / self.rate + 2.0
 
     def prepare(self, steps: int) -> None:
-        feed.prepare(self.folder / "rows", self.seconds(steps), _hull(self.ship))
+        instrument_feed.prepare(self.folder / "rows", self.seconds(steps), _hull(self.ship))
         subprocess.run([sys.executable, "-P", "-c", IMPORTS], env=self.environment, check=True)
 
     def loop(self, steps: int, parts: int, pace: str) -> dict[str, Any]:
         """One run of the service, fed by a process beside it."""
         rows, settings = self.folder / "rows", str(self.folder / "twin.toml")
         measured = ["bench.tick.process", settings, str(mark.new(rows)), str(steps), str(parts), pace]
-        feeder = subprocess.Popen([*PYTHON, "bench.tick.feed", str(rows), self.endpoint, "twin", "ship"])
+        feeder = subprocess.Popen(
+            [*PYTHON, "bench.tick.instrument_feed", str(rows), self.endpoint, "twin", "ship"]
+        )
         try:
             return _json_of([*PYTHON, *measured], "the loop", self.environment)
         finally:

@@ -19,8 +19,8 @@ import numpy as np
 from bench.options import positive
 from bench.tick import counted
 from bench.tick.ekf import ShipFilter
-from bench.tick.lstm import HIDDEN, INPUTS, LAYERS, lstm_bytes
 from bench.tick.ort import session
+from bench.tick.random_lstm import HIDDEN, INPUTS, LAYERS, lstm_bytes
 from bench.tick.timing import hot_us, quantiles
 from twin.live.observer.dynamics import NONE, KnownDynamics
 from twin.live.observer.predict import ensemble

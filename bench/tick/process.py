@@ -19,8 +19,8 @@ from typing import Any
 from bench.tick.mark import Mark
 from bench.tick.memory import ProcessMemory, memory
 from bench.tick.timing import quantiles
-from twin.live import run
 from twin.live.clock import Clock, Instant, MonotonicClock
+from twin.live.service import Stop, opened
 from twin.live.signals import config
 
 # ticks before anything is counted: the feed is heard, gates open, the first prediction is made, the log is
@@ -117,12 +117,12 @@ class MeasuredLoop:
         self.last: Any = None
 
     def run(self) -> dict[str, Any]:
-        with run.opened(self.settings, self._clock) as service:
+        with opened(self.settings, self._clock) as service:
             self.loop, self.bus = service.loop, service.bus
             end = WARM_UP + self.steps
             self.watch.at = {WARM_UP: self._look, WARM_UP + self.steps // 10: self._look, end: self._finish}
             _connect(self.bus)
-            service.run(run.Stop(), None, self._keep)
+            service.run(Stop(), None, self._keep)
             if not self.parts:
                 self._look()
         assert service.recorder is not None

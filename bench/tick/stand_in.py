@@ -12,7 +12,7 @@ import onnx
 from onnx import TensorProto, helper, numpy_helper
 
 from bench.tick.ort import session
-from twin.live.learning.learned import scale_of
+from twin.live.learning.learned_force import scale_of
 from twin.live.learning.manifest import SCHEMA_VERSION, hashed
 from twin.live.learning.residual import ship_hash
 from twin.physics.ship import Ship

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from bench.tube.held_out import EVERY, Row
+from bench.tube.interval_score import EVERY, Row
 
 
 def page(

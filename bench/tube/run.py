@@ -9,9 +9,9 @@ import argparse
 from itertools import permutations
 from pathlib import Path
 
-from bench import answer
+from bench import bench_output
 from bench.options import positive
-from bench.tube.held_out import Row, across, left_out
+from bench.tube.interval_score import Row, across, left_out
 from bench.tube.page import page
 from bench.tube.sailing import voyages
 from twin.recording.jsonable import plain
@@ -36,7 +36,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=Path(".tube"),
         help="what was sailed is kept here, and taken from here",
     )
-    answer.add_arguments(parser)
+    bench_output.add_arguments(parser)
 
 
 def ship(text: str) -> tuple[str, int]:
@@ -51,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
     sailed = {hull: voyages(hull, count, args.work) for hull, count in args.ships}
     own: dict[str, dict[str, list[Row]]] = {}
     for hull, found in sailed.items():
-        answer.tell(f"{hull}: each voyage by the tube of the others")
+        bench_output.tell(f"{hull}: each voyage by the tube of the others")
         own[hull] = {who: left_out(hull, found, who) for who in ("model", "reckoning")}
     others = {f"{a} -> {b}": across(a, b, sailed) for a, b in permutations(sailed, 2)}
     result = {
@@ -63,5 +63,5 @@ def run(args: argparse.Namespace) -> int:
         "other_hull": {pair: [r._asdict() for r in rows] for pair, rows in others.items()},
     }
     text = page({hull: len(found) for hull, found in sailed.items()}, own, others)
-    answer.give(args, plain(result), text, answer.kept(args.page))
+    bench_output.give(args, plain(result), text, bench_output.kept(args.page))
     return 0

@@ -10,19 +10,19 @@ from typing import Any
 
 import numpy as np
 
-from bench import answer
+from bench import bench_output
 from bench.reference import Case, Weather, simulate
 from bench.reference.hulls import HULLS
-from bench.reference.voyage import Recording
-from bench.seaway import HIGHEST
+from bench.reference.sea_voyage import Recording
+from bench.sea_disturbance import HIGHEST
 from bench.through_loop import through
 from twin import whole
 from twin.live.guard import INVALID
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction
 from twin.live.prediction.circumstances import Regressors
+from twin.live.prediction.due_predictions import Watch
 from twin.live.prediction.judge import Foretold, Judged
-from twin.live.prediction.watch import Watch
 from twin.study.reference.foretold import Errors
 
 HORIZONS_S = (10.0, 60.0, 120.0)
@@ -68,10 +68,10 @@ def voyages(hull: str, count: int, folder: Path) -> list[Sailed]:
     missing = [k for k in range(count) if not _path(folder, hull, k).exists()]
     for first in range(0, len(missing), BATCH):
         batch = missing[first : first + BATCH]
-        answer.tell(f"{hull}: sailing voyages {batch[0]} to {batch[-1]} of {count}")
+        bench_output.tell(f"{hull}: sailing voyages {batch[0]} to {batch[-1]} of {count}")
         for k, r in zip(batch, simulate([case(hull, k) for k in batch], STEP_S[hull]), strict=True):
             whole.write(_path(folder, hull, k), json.dumps(looked_at(hull, r)))
-            answer.tell(f"{hull} {k}")
+            bench_output.tell(f"{hull} {k}")
     return [on_file(folder, hull, k) for k in range(count)]
 
 

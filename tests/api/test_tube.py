@@ -11,7 +11,7 @@ from twin import cli
 from twin.api.json_key import unknown_paths
 from twin.api.json_keys import KEYS
 from twin.errors import DataError
-from twin.live.replay import replay
+from twin.live.log_replay import replay
 from twin.live.signals.config import Settings
 from twin.physics.model import Model
 from twin.physics.state import Situation

@@ -5,13 +5,13 @@ from math import sin
 import numpy as np
 import pytest
 
-from bench import answer
+from bench import bench_output
 from bench.adaptation import laws
 from bench.adaptation.laws_compared import CHANGE_S, LIES, ROUND_S, changes
 from bench.adaptation.page import figure, page
 from twin.live.learning.adapt import A_MAX, Adaptation
 from twin.live.learning.adapted_row import SIZES
-from twin.live.learning.learned import scale_of
+from twin.live.learning.learned_force import scale_of
 from twin.physics.ship import load
 
 ALL = (laws.Gradient, laws.EModified, laws.DeadZone, laws.Recursive, laws.Kalman, Adaptation)
@@ -122,8 +122,8 @@ def test_the_page_holds_every_change_and_keeps_what_was_written_by_hand(tmp_path
     assert (tmp_path / "a.png").read_bytes()[:4] == b"\x89PNG"
     (tmp_path / "a.md").write_text("old tables\n## What it says\n\nmine\n")
     assert (
-        answer.kept(tmp_path / "a.md") == "\n## What it says\n\nmine\n"
-        and answer.kept(tmp_path / "none.md") == ""
+        bench_output.kept(tmp_path / "a.md") == "\n## What it says\n\nmine\n"
+        and bench_output.kept(tmp_path / "none.md") == ""
     )
 
 

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 import bench.reference.boats as boats
-from bench.boats.asked import ASKED, from_sheet
+from bench.boats.actuator_questions import ASKED, from_sheet
 from bench.cli import main
-from bench.reference.boats import CRAFT, BoatCase, BoatSea, sail, sheet
+from bench.reference.boats import CRAFT, BoatCase, BoatSea, builders_sheet, sail
 from bench.reference.boats.drives import screw
 from bench.reference.boats.helmsman import Leg
-from twin.live.replay import replay
+from twin.live.log_replay import replay
 from twin.live.signals.config import Settings
 from twin.physics.ship import load, save
 
@@ -118,8 +118,8 @@ def test_a_builders_sheet_makes_a_ship_that_the_loop_sails_with(name, tmp_path):
     ship = from_sheet(name)
     save(ship, tmp_path / "ship.toml")
     assert {a.name for a in load(tmp_path / "ship.toml").actuators} == {d.name for d in CRAFT[name].drives}
-    assert (tmp_path / "a.toml").read_text() == sheet.text(name)
-    from bench.boats.asked import voyage
+    assert (tmp_path / "a.toml").read_text() == builders_sheet.text(name)
+    from bench.boats.actuator_questions import voyage
     from twin.recording.write import write_voyage
 
     sailed = voyage(name, 3)

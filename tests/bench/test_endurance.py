@@ -1,8 +1,8 @@
 """The shocks of the service, once each and short: what is counted is what happened."""
 
+from bench.endurance.killed_service import Place, Said, said_of
 from bench.endurance.lies import OTHERS, Told
 from bench.endurance.run import of_kills, of_lies, of_shocks
-from bench.endurance.service import Place, Said, said_of
 from bench.endurance.shocks import Killed, Shocked, kills, whole
 from bench.lies_told import LIES
 

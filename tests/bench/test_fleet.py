@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from bench.fleet import cases, hidden, instruments, sail, weather
-from bench.fleet.build import build
-from bench.fleet.hulls import FAMILIES
-from bench.fleet.judged import Share, right, wrong_names
-from bench.fleet.manoeuvres import zigzag
+from bench.fleet import fleet_weather, hidden_causes, instrument_recording, sail, voyage_plan
+from bench.fleet.answer_score import Share, right, wrong_names
+from bench.fleet.fleet_legs import zigzag
+from bench.fleet.hull_families import FAMILIES
+from bench.fleet.plausibility import build
 
 SEED = 3
 
@@ -38,25 +38,30 @@ def test_port_and_starboard_are_alike(ships, family):
 def test_a_ship_goes_as_fast_as_its_shaft_was_balanced_for(ships, family):
     """Test: straight ahead in calm water, from service speed. Expected: it stays there within a tenth."""
     ship = ships[family]
-    true = sail.sail(ship, [], weather.FleetWeather(), 20 * ship.p.unit_s, 1)
+    true = sail.sail(ship, [], fleet_weather.FleetWeather(), 20 * ship.p.unit_s, 1)
     assert true["u"][-1] == pytest.approx(ship.p.U0, rel=0.1)
 
 
-@pytest.mark.parametrize("name", hidden.EVERY)
+@pytest.mark.parametrize("name", hidden_causes.EVERY)
 def test_what_is_hidden_shows_at_a_plain_size(ships, name):
     """Test: the same zigzag and noise with it and without. Expected: a column that a bridge reads differs by more
     than rounding."""
     ship = next(s for f, s in ships.items() if f != "planing")
     kit = ship.kit
     ship = type(ship)(**{**ship.__dict__, "kit": type(kit)(**{**vars(kit), "has_log": True})})
-    change = hidden.EVERY[name](ship.p, ship.drive, np.random.default_rng(1), 1.5)
-    flaws = hidden.Flaws(**change.flaws)
+    change = hidden_causes.EVERY[name](ship.p, ship.drive, np.random.default_rng(1), 1.5)
+    flaws = hidden_causes.Flaws(**change.flaws)
     read = []
-    for f, w in ((hidden.Flaws(), {}), (flaws, change.weather)):
+    for f, w in ((hidden_causes.Flaws(), {}), (flaws, change.weather)):
         true = sail.sail(
-            ship, zigzag(20), weather.stronger(weather.FleetWeather(), **w), 40 * ship.p.unit_s, 7, f
+            ship,
+            zigzag(20),
+            fleet_weather.stronger(fleet_weather.FleetWeather(), **w),
+            40 * ship.p.unit_s,
+            7,
+            f,
         )
-        read.append(instruments.record(ship, true, weather.FleetWeather(), 7, f)[1])
+        read.append(instrument_recording.record(ship, true, fleet_weather.FleetWeather(), 7, f)[1])
     most = max(
         float(np.nanmax(np.abs(read[0][c] - read[1][c])) / (np.nanstd(read[0][c]) + 1e-9))
         for c in read[0]
@@ -69,8 +74,8 @@ def test_what_is_hidden_shows_at_a_plain_size(ships, name):
 
 def test_a_case_is_the_same_whenever_it_is_sailed(ships):
     ship = ships["modulus"]
-    case = cases.plan(ship)[0]
-    one, two = cases.sailed(ship, case), cases.sailed(ship, case)
+    case = voyage_plan.plan(ship)[0]
+    one, two = voyage_plan.sailed(ship, case), voyage_plan.sailed(ship, case)
     assert all(np.array_equal(one.columns[c], two.columns[c], equal_nan=True) for c in one.columns)
 
 

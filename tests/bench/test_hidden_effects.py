@@ -6,10 +6,10 @@ from collections import Counter
 import pytest
 
 from bench.cli import main
-from bench.league import plan, score, tables
+from bench.league import league_score, league_tables, plan
 from bench.league.page import page
 from bench.league.truth import TABLE, beside
-from bench.reference.hidden import CATALOGUE, prepare
+from bench.reference.hidden_catalogue import CATALOGUE, prepare
 from bench.reference.hulls import HULLS
 from bench.reference.weather import CALM
 from twin.physics.effects import catalogue, find
@@ -117,25 +117,25 @@ def test_scores_by_hand():
         row("pair", ("Wind", "Bank"), ["Bank", "Wind"]),
         row("pair", ("Wind", "Bank"), ["Wind"]),
     ]
-    found = score.contract(rows)
+    found = league_score.contract(rows)
     assert (found["cases"], found["named"], found["named_in_group"]) == (10, 0.25, 0.5)
     assert (found["false_alarms"], found["nothing_cases"]) == (0.5, 2)
     assert (found["unknown_recognised"], found["pairs_found"]) == (0.5, 0.5)
     assert found["error_after_over_oracle"] == pytest.approx(2.0)
-    assert score.confusion(score.of_kind(rows, "effect")) == {"Bank": 2, "nothing_missing": 1}
+    assert league_score.confusion(league_score.of_kind(rows, "effect")) == {"Bank": 2, "nothing_missing": 1}
 
 
 def test_effects_that_the_true_one_mends_little_are_counted_apart():
     visible = row(hidden=("Wind",), before=10.0, oracle=4.0, after=4.0)
     hardly = row(hidden=("Wind",), missing=(), before=10.0, oracle=9.9, after=10.0)
     log = row(hidden=("SpeedLogBias",), missing=("SpeedLogBias",), before=10.0, oracle=10.0, after=10.0)
-    lines = tables.gain([visible, hardly, log]).splitlines()
+    lines = league_tables.gain([visible, hardly, log]).splitlines()
     assert "| less than 5 % | 1 | 0 % |" in lines[-2] and "| more | 1 | 100 % |" in lines[-1]
 
 
 def test_an_answer_that_failed_is_an_alarm_and_not_a_name():
     failed = row("none", (), [], "failed", why="x")
-    assert score.alarm(failed) and not score.named(row(missing=[], verdict="failed"))
+    assert league_score.alarm(failed) and not league_score.named(row(missing=[], verdict="failed"))
 
 
 def test_three_short_voyages_go_through_the_whole_league(tmp_path, capsys):
@@ -171,7 +171,7 @@ def test_three_short_voyages_go_through_the_whole_league(tmp_path, capsys):
 
 def test_the_page_stands_without_a_single_answer():
     run = {"command": "x", "answered": 0, "planned": 0, "seeds": [], "hulls": [], "strengths": []}
-    assert "# The hidden-effect league" in page([], score.contract([]) | {"run": run}, {})
+    assert "# The hidden-effect league" in page([], league_score.contract([]) | {"run": run}, {})
 
 
 def test_an_unknown_effect_is_refused_with_the_known_ones(capsys):

@@ -10,15 +10,15 @@ import pytest
 torch = pytest.importorskip("torch", reason="torch is not installed: pip install 'shiptwin[train]'")
 pytest.importorskip("filterpy", reason="filterpy is not installed: pip install 'shiptwin[dev]'")
 
-from bench.paper import ekf as paper_ekf  # noqa: E402
 from bench.paper import filter as paper_filter  # noqa: E402
 from bench.paper import gap as paper_gap  # noqa: E402
+from bench.paper import paper_voyages as paper_sea  # noqa: E402
 from bench.paper import reproduce as paper  # noqa: E402
-from bench.paper import sea as paper_sea  # noqa: E402
 from bench.paper import stats as paper_stats  # noqa: E402
+from bench.paper import tuned_ekf as paper_ekf  # noqa: E402
 from bench.paper.lab import course, free, judge  # noqa: E402
+from bench.paper.nominal_ship import OFF, nominal  # noqa: E402
 from bench.paper.page import page  # noqa: E402
-from bench.paper.ship import OFF, nominal  # noqa: E402
 from export.data import split  # noqa: E402
 from twin.physics.model import Model  # noqa: E402
 

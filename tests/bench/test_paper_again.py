@@ -6,13 +6,13 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from bench.paper import sea
+from bench.paper import paper_voyages
 from bench.paper.again import PAIRS, again, page
 from bench.paper.gap import among_like, change_of
 
 
 def test_what_is_sailed_again_is_the_same_but_for_seeds_that_nobody_had():
-    cases = sea.lessons(sea.FULL)
+    cases = paper_voyages.lessons(paper_voyages.FULL)
     made = again(cases, 45, 13, 3)
     assert len(made["validation again"]) == 39 and len(made["test again"]) == 42
     for part, some in (("validation again", cases[45:58]), ("test again", cases[58:])):

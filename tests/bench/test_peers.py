@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from bench.tick import cortex, counted, instructions, lstm, nbody, peers
+from bench.tick import cortex, counted, instructions, nbody, peers, random_lstm
 from bench.tick.ekf import ShipFilter
 from bench.tick.memory import memory
 from bench.tick.ort import session
@@ -22,11 +22,11 @@ def ship():
 
 def test_an_lstm_that_carries_its_state_says_what_one_that_is_re_run_says():
     """Test: 50 inputs at once and one by one. Expected: the same output, so both are the same network."""
-    x = np.random.default_rng(3).standard_normal((50, 1, lstm.INPUTS)).astype(np.float32)
-    whole = session(lstm.lstm_bytes(False)).run(["y"], {"x": x})[0]
-    one = session(lstm.lstm_bytes(True))
-    names = [f"{s}{layer}" for layer in range(lstm.LAYERS) for s in "hc"]
-    carried = {name: np.zeros((1, 1, lstm.HIDDEN), np.float32) for name in names}
+    x = np.random.default_rng(3).standard_normal((50, 1, random_lstm.INPUTS)).astype(np.float32)
+    whole = session(random_lstm.lstm_bytes(False)).run(["y"], {"x": x})[0]
+    one = session(random_lstm.lstm_bytes(True))
+    names = [f"{s}{layer}" for layer in range(random_lstm.LAYERS) for s in "hc"]
+    carried = {name: np.zeros((1, 1, random_lstm.HIDDEN), np.float32) for name in names}
     for row in x:
         y, *state = one.run(["y", *(f"{n}_out" for n in names)], {"x": row[None]} | carried)
         carried = dict(zip(names, state, strict=True))
@@ -38,11 +38,11 @@ def test_the_lstm_has_two_layers_of_128():
     import onnx
     from onnx import numpy_helper
 
-    tensors = onnx.load_from_string(lstm.lstm_bytes(False)).graph.initializer
+    tensors = onnx.load_from_string(random_lstm.lstm_bytes(False)).graph.initializer
     numbers = sum(numpy_helper.to_array(t).size for t in tensors if not t.name.startswith("axis"))
-    n = lstm.HIDDEN
-    layers = 4 * n * (lstm.INPUTS + n) + 8 * n + 4 * n * (n + n) + 8 * n
-    assert numbers == layers + lstm.OUTPUTS * n + lstm.OUTPUTS
+    n = random_lstm.HIDDEN
+    layers = 4 * n * (random_lstm.INPUTS + n) + 8 * n + 4 * n * (n + n) + 8 * n
+    assert numbers == layers + random_lstm.OUTPUTS * n + random_lstm.OUTPUTS
 
 
 def test_the_filter_finds_a_disturbance_that_no_known_force_explains(ship):

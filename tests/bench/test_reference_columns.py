@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from bench.reference import HULLS, Case, Weather, simulate
-from bench.reference.manoeuvres import RUDDER, Leg
-from bench.reference.sensors import COLUMNS
-from bench.reference.wind import table
+from bench.reference.isherwood import table
+from bench.reference.sensor_suite import COLUMNS
+from bench.reference.trial_legs import RUDDER, Leg
 
 TURN = (Leg(RUDDER, 99, 15),)
 WINDY = Weather(8.0, 60.0, 0.0, 0.0, 8.0, 0.0, 0.3, 120.0)

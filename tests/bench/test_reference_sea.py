@@ -9,8 +9,8 @@ import pytest
 
 import bench.reference
 from bench.reference import HULLS, Case, Change, Sea, Weather, simulate
-from bench.reference.manoeuvres import MANOEUVRES, RUDDER, ZIGZAG, Leg
-from bench.reference.sensors import COLUMNS
+from bench.reference.sensor_suite import COLUMNS
+from bench.reference.trial_legs import MANOEUVRES, RUDDER, ZIGZAG, Leg
 
 FOLDER = Path(bench.reference.__file__).parent
 STILL = Weather()

@@ -5,14 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bench.stability.attack.adversary_search import GREEDY, PASSES, RANDOM, STEEPEST, attack, horizon
 from bench.stability.attack.bounds import bounds
 from bench.stability.attack.cases import FULL, INSIDE, AttackCase, Excess, Group, certified_for
 from bench.stability.attack.orders import ages_of, random_orders
-from bench.stability.attack.search import GREEDY, PASSES, RANDOM, STEEPEST, attack, horizon
+from bench.stability.attack.run_batch import sail
 from bench.stability.attack.section import HEAD, section_of, with_section
-from bench.stability.attack.voyage import sail
 from bench.stability.attack.waters import Waters
-from twin.live.certificate.tube import Tube
+from twin.live.certificate.observer_tube import Tube
 
 CONTAINER, BOAT, ROLLED = (
     AttackCase("container", 10.0, 1),

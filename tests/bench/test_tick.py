@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-from bench.tick import table as tick_table
+from bench.tick import terminal_table as tick_table
 from bench.tick.budget import judged
 
 SHORT = ["--steps", "120", "--paced", "30", "--no-peers", "--no-instructions"]

@@ -13,10 +13,10 @@ pytest.importorskip("onnx", reason="onnx is not installed: pip install 'shiptwin
 
 from export import to_onnx, train  # noqa: E402
 from export.batches import shuffled, zeta_of  # noqa: E402
-from export.course import TrainingCourse  # noqa: E402
-from export.network import ResidualNetwork  # noqa: E402
+from export.residual_network import ResidualNetwork  # noqa: E402
 from export.settings import TrainingSettings  # noqa: E402
 from export.teach import device, prepared, teach  # noqa: E402
+from export.training_course import TrainingCourse  # noqa: E402
 from twin.cli import main  # noqa: E402
 from twin.errors import ThresholdError  # noqa: E402
 from twin.live.learning import residual as live  # noqa: E402
@@ -103,7 +103,7 @@ def test_a_training_moves_to_the_chosen_device_and_comes_back(parts, monkeypatch
     never left."""
     seen = []
     monkeypatch.setattr("export.teach.device", lambda: torch.device("meta"))
-    monkeypatch.setattr("export.course._key", lambda settings, data: "")
+    monkeypatch.setattr("export.training_course._key", lambda settings, data: "")
     monkeypatch.setattr(
         TrainingCourse, "run", lambda course, stage: seen.append((course.network, course.data["train"]))
     )
@@ -111,7 +111,7 @@ def test_a_training_moves_to_the_chosen_device_and_comes_back(parts, monkeypatch
         ResidualNetwork, "cpu", lambda network: seen.append({p.device.type for p in network.parameters()})
     )
     monkeypatch.setattr(ResidualNetwork, "bind", lambda network, zeta: None)
-    for place in ("export.teach.zeta_of", "export.course.zeta_of"):
+    for place in ("export.teach.zeta_of", "export.training_course.zeta_of"):
         monkeypatch.setattr(place, lambda network, data: data.d)
     taught = teach(*parts, replace(FEW, loss="acceleration"))
     network, data = seen[0]

@@ -11,7 +11,7 @@ import pytest
 from twin.live.build import loop_of
 from twin.live.clock import Instant
 from twin.live.inbox import Played
-from twin.live.learning.learned import LearnedForce
+from twin.live.learning.learned_force import LearnedForce
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
 from twin.live.publish import Publisher

@@ -7,7 +7,7 @@ import pytest
 
 from twin.live.build import saturation_of
 from twin.live.certificate.certificate import certify
-from twin.live.certificate.tube import NOTHING, Tube
+from twin.live.certificate.observer_tube import NOTHING, Tube
 from twin.live.keelson import messages
 from twin.live.learning.residual import bundled
 from twin.live.learning.residual import load as load_residual

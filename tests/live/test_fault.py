@@ -190,7 +190,7 @@ def test_a_process_is_paused_and_goes_on_and_its_writes_fail_and_succeed_again(t
 def test_between_a_sensor_and_a_twin_the_live_bus_has_the_fault(tmp_path):
     """Test: a sensor speaks to the verb, the verb to the twin's bus. Expected: the rudder is off by 5, the
     heading is as it was."""
-    from twin.live.demo import free_port
+    from twin.live.demonstration import free_port
     from twin.live.keelson.zenoh_bus import ZenohBus
     from twin.live.keelson.zenoh_config import BusSettings
 

@@ -13,7 +13,7 @@ from twin.live.keelson.decode import Decoder
 from twin.live.keelson.messages import encode_fix, encode_float, wrap
 from twin.live.keelson.topics import INPUTS, key
 from twin.live.learning.adapt import A_MAX
-from twin.live.learning.learned import LearnedForce
+from twin.live.learning.learned_force import LearnedForce
 from twin.live.learning.residual import bundled, load
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox

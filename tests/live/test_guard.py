@@ -6,9 +6,9 @@ import json
 import pytest
 
 from twin.live.certificate.certificate import certify
-from twin.live.certificate.tube import Tube
+from twin.live.certificate.observer_tube import Tube
 from twin.live.guard import HeldControl
-from twin.live.learning.learned import LearnedForce
+from twin.live.learning.learned_force import LearnedForce
 from twin.live.learning.manifest import hashed
 from twin.live.learning.residual import bundled, check, load
 from twin.live.stabilizer import Stabilizer

@@ -15,7 +15,7 @@ from twin.live.log.recover import recover_folder
 
 SERVE = """
 import os, resource, sys, time, traceback
-from twin.live import run
+from twin.live import service
 from twin.live.learning import network
 from twin.live.signals import config
 {before}
@@ -23,7 +23,7 @@ def on_tick(tick):
     {hook}
 code = 1
 try:
-    code = run.serve(config.load(sys.argv[1]), float(sys.argv[2]), on_tick=on_tick)
+    code = service.serve(config.load(sys.argv[1]), float(sys.argv[2]), on_tick=on_tick)
 except BaseException:
     traceback.print_exc()
 finally:
@@ -98,7 +98,7 @@ def test_M8_a_network_that_takes_longer_than_a_period_costs_periods_and_is_said(
         "answer(self, values))[1]"
     )
     with_speed = (
-        "run.build.LearnedForce.at = lambda self, s, forces, use, at=run.build.LearnedForce.at: "
+        "service.build.LearnedForce.at = lambda self, s, forces, use, at=service.build.LearnedForce.at: "
         "(self.residual.network.run([0.0] * 5), at(self, s, forces, use))[1]"
     )
     code, made, error = served(tmp_path, 8.0, before=f"{slow}\n{with_speed}")
@@ -110,9 +110,9 @@ def test_M8_a_network_that_never_answers_feeds_no_watchdog(tmp_path):
     """Test: it hangs from the second second on. Expected: WATCHDOG until then, then silence, which systemd
     ends after 2 s."""
     hang = (
-        "count = [0]\ndef hang(self, s, forces, use, at=run.build.LearnedForce.at):\n    count[0] += 1\n"
+        "count = [0]\ndef hang(self, s, forces, use, at=service.build.LearnedForce.at):\n    count[0] += 1\n"
         "    time.sleep(60.0) if count[0] > 40 else None\n    return at(self, s, forces, "
-        "use)\nrun.build.LearnedForce.at = hang"
+        "use)\nservice.build.LearnedForce.at = hang"
     )
     address = str(tmp_path / "notify")
     with socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as manager:

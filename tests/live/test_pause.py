@@ -8,8 +8,8 @@ import pytest
 from twin.live.keelson import messages
 from twin.live.log.mcap_read import McapReader
 from twin.live.log.record import LogFile
+from twin.live.log_replay import replay
 from twin.live.observer.dynamics import Gear
-from twin.live.replay import replay
 from twin.live.signals.config import Settings
 from twin.physics.effect import Lag
 from twin.physics.effects import find

@@ -14,7 +14,7 @@ from twin.live.keelson import messages
 from twin.live.keelson.messages import encode_float
 from twin.live.log.mcap_read import McapReader
 from twin.live.log.record import LogFile, read_rows
-from twin.live.replay import replay
+from twin.live.log_replay import replay
 from twin.live.signals.config import Settings
 from twin.live.signals.readings import Quality
 from twin.physics.model import Model

@@ -6,9 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from twin.errors import SettingsError, TwinError
-from twin.live import run
 from twin.live.keelson.endpoint import check
 from twin.live.keelson.zenoh_config import BusSettings, configuration
+from twin.live.service import opened
 from twin.live.signals import config
 from twin.live.signals.config import Settings
 from twin.live.signals.keys import KEYS
@@ -107,7 +107,7 @@ def test_F1_the_service_opens_with_any_text_or_says_in_one_line_why_not(name, tm
     for text in STRANGE if name != "observer.certificate" else STRANGE[:2]:
         chosen = Settings(QUIET | {"state.folder": str(tmp_path / "state")}).but(name, text)
         try:
-            with run.opened(chosen) as service:
+            with opened(chosen) as service:
                 service.loop.tick(service.clock.wait())
         except TwinError as error:
             assert "\n" not in str(error) and len(str(error)) < 900, (text, error)

@@ -4,8 +4,8 @@ where nothing holds."""
 from math import hypot
 
 from twin.live.certificate.certificate import certify
-from twin.live.certificate.tube import Tube
-from twin.live.learning.learned import LearnedForce
+from twin.live.certificate.observer_tube import Tube
+from twin.live.learning.learned_force import LearnedForce
 from twin.live.stabilizer import USELESS, Stabilizer
 from twin.physics.model import Model
 

@@ -12,7 +12,7 @@ import pytest
 from twin.cli import main
 from twin.errors import SettingsError
 from twin.physics.effects import BUILT_IN, UNNAMED
-from twin.report.effect_check import QUESTIONS, check, of_file
+from twin.report.effect_contract import QUESTIONS, check, of_file
 
 ROOT = Path(__file__).parents[2]
 HEAD = '''"""A drag: X = -k u_r |u_r|."""

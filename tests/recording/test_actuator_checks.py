@@ -6,9 +6,9 @@ import pytest
 
 from bench.small_boats import KINDS, MISTAKES, healthy, sailed, ship_of
 from twin.recording.checks import run_checks
-from twin.recording.checks.actuators import actuators
+from twin.recording.checks.actuator_response import actuators
 from twin.recording.checks.standstill import actuator_zero
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 
 SEED = 4242
 

@@ -11,7 +11,7 @@ import pytest
 from twin.cli import main
 from twin.physics.effects import find
 from twin.physics.ship import load, text, to_table
-from twin.recording.ship_file import kept, save
+from twin.recording.ship_file_writer import kept, save
 
 PERSONS = """# Alma, as the yard told us on 3 May
 name = "Alma"  # call sign WXYZ

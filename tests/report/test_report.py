@@ -12,7 +12,7 @@ from twin.errors import TwinError
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.report.page import content
-from twin.study.prediction.compare import compare
+from twin.study.prediction.open_loop_comparison import compare
 
 BROWSER = CHROMIUM
 FLAGS = (

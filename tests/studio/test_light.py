@@ -14,7 +14,7 @@ LOADS = {
     "the interface": "import twin; twin.__version__; twin.PUBLIC",
     "a verb": "from twin.cli import main\ntry:\n    main(['compare', '--help'])\nexcept SystemExit:\n    pass",
     "the help of the workbench": "from twin.cli import main\ntry:\n    main(['studio', '--help'])\nexcept SystemExit:\n    pass",
-    "the loop": "import twin.live.run, twin.live.loop",
+    "the loop": "import twin.live.service, twin.live.loop",
     "a worker's own start": "import twin.studio.work",
 }
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from twin.live.demo import UNDER_WAY, ticks_of
+from twin.live.demonstration import UNDER_WAY, ticks_of
 
 HULL = "kvlcc2"
 FRAME = "document.querySelector('iframe')?.contentWindow.twinView?.frame()"

@@ -10,10 +10,10 @@ from twin.num import as_given, num
 from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.voyage import Voyage
-from twin.study.calibration.calibrate import calibrate as fit_core
+from twin.study.calibration.calibration_lines import told
+from twin.study.calibration.core_fit import calibrate as fit_core
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.held_out import LAST, split
-from twin.study.calibration.told import told
 from twin.study.calibration.worse import refusal
 from twin.study.reference.sailed import Sailed, sailed
 

@@ -10,8 +10,8 @@ from twin.num import as_given, num
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
-from twin.study.prediction.compare import ComparedVoyages
-from twin.study.prediction.compare import compare as judged
+from twin.study.prediction.open_loop_comparison import ComparedVoyages
+from twin.study.prediction.open_loop_comparison import compare as judged
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.prediction.tell import told
 from twin.study.reference.sailed import Sailed, sailed
@@ -111,7 +111,7 @@ def of_sailed(
     """The same of voyages that are read already."""
     model = Model.of(ship)
     if residual is not None:
-        from twin.study.estimation.learned import learned_force
+        from twin.study.estimation.residual_arrays import learned_force
 
         model = replace(model, residual=learned_force(str(residual), ship))
     done = judged(found, model, sorted(set(horizons_s)))

@@ -12,10 +12,10 @@ from twin.recording.checks import losses
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import Case
-from twin.study.diagnosis.diagnose import diagnose as judged
+from twin.study.diagnosis.effect_diagnosis import diagnose as judged
 from twin.study.diagnosis.tell_diagnosis import told
 from twin.study.estimation import identifiability
-from twin.study.estimation.learned import features
+from twin.study.estimation.residual_arrays import features
 
 if TYPE_CHECKING:
     import matplotlib.axes

@@ -7,7 +7,7 @@ from typing import Any
 from twin.api.result import Result
 from twin.physics.effect import Effect
 from twin.physics.ship import Ship
-from twin.report.effect_check import Answer, answers_as_json, check, find_to_check
+from twin.report.effect_contract import Answer, answers_as_json, check, find_to_check
 
 
 @dataclass(frozen=True, repr=False)

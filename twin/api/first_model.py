@@ -9,9 +9,9 @@ from twin.errors import UsageError, did_you_mean
 from twin.num import as_given
 from twin.physics.actuators import Actuator
 from twin.physics.ship import Ship
+from twin.study.first_model.first_estimate import OPTIONS, Given
+from twin.study.first_model.first_estimate import first_model as estimated
 from twin.study.first_model.first_trial import doubts, sea_trial, summary
-from twin.study.first_model.init import OPTIONS, Given
-from twin.study.first_model.init import first_model as estimated
 
 SCHEMA_VERSION = 1
 

@@ -6,11 +6,11 @@ from typing import Any
 from twin.api.result import PathLike, Progress, Result, quietly
 from twin.errors import DataError
 from twin.recording.jsonable import plain
+from twin.study.fleet.fleet_lines import months, told
+from twin.study.fleet.fleet_run import run
 from twin.study.fleet.listing import read_fleet
 from twin.study.fleet.ranking import ranked
-from twin.study.fleet.run import run
-from twin.study.fleet.store import Store
-from twin.study.fleet.told import months, told
+from twin.study.fleet.row_store import Store
 
 
 @dataclass(frozen=True, repr=False)

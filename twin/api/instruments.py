@@ -11,8 +11,8 @@ from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.instruments.corrections import as_map, corrected
-from twin.study.instruments.estimate import Instruments, estimate
-from twin.study.instruments.told import amount, as_json, told
+from twin.study.instruments.instrument_estimate import Instruments, estimate
+from twin.study.instruments.instrument_lines import amount, as_json, told
 
 if TYPE_CHECKING:
     import matplotlib.axes

@@ -14,10 +14,10 @@ from twin.physics.ship import Ship
 from twin.recording.checks import losses
 from twin.recording.voyage import Voyage
 from twin.study.reference.sailed import Sailed, sailed
-from twin.study.update.add import Added
-from twin.study.update.add import add as fitted
 from twin.study.update.added import refused, told
-from twin.study.update.remove import remove as taken_out
+from twin.study.update.addition import Added
+from twin.study.update.addition import add as fitted
+from twin.study.update.removal import remove as taken_out
 
 if TYPE_CHECKING:
     import matplotlib.axes

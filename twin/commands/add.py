@@ -7,12 +7,12 @@ import sys
 from twin import whole
 from twin.api.update import check_proof, of_sailed
 from twin.commands import arguments
-from twin.commands.answer import asked, files, lines_to, progress
 from twin.commands.next_command import add_typed
+from twin.commands.verb_output import asked, files, lines_to, progress
 from twin.errors import ThresholdError
 from twin.physics.effects import find
 from twin.physics.ship import load
-from twin.recording.ship_file import save
+from twin.recording.ship_file_writer import save
 from twin.study.reference.sailed import read_all
 
 EPILOG = """example:

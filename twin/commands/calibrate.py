@@ -7,10 +7,10 @@ import sys
 from twin import whole
 from twin.api.calibration import of_sailed
 from twin.commands import arguments
-from twin.commands.answer import lines_to, progress
+from twin.commands.verb_output import lines_to, progress
 from twin.errors import ThresholdError
 from twin.physics.ship import load
-from twin.recording.ship_file import save
+from twin.recording.ship_file_writer import save
 from twin.study.reference.sailed import read_all
 
 EPILOG = """Reference voyages are ones on which nothing was wrong, in calm weather or with the wind recorded:

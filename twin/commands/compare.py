@@ -4,8 +4,8 @@ import argparse
 
 from twin.api.comparison import of_sailed
 from twin.commands import arguments
-from twin.commands.answer import answer, asked, lines_to, progress
 from twin.commands.next_command import after_compare
+from twin.commands.verb_output import answer, asked, lines_to, progress
 from twin.errors import ThresholdError
 from twin.physics.ship import load
 from twin.study.prediction.openloop import HORIZONS_S

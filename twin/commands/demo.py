@@ -5,7 +5,7 @@ import argparse
 import importlib.util
 from pathlib import Path
 
-from twin.live import demo as alive
+from twin.live import demonstration as alive
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -5,8 +5,8 @@ import argparse
 
 from twin.api.diagnosis import diagnose
 from twin.commands import arguments
-from twin.commands.answer import answer, lines_to, progress
 from twin.commands.next_command import after_diagnose
+from twin.commands.verb_output import answer, lines_to, progress
 from twin.live.learning.residual import load as load_residual
 from twin.physics.ship import load
 from twin.recording.read import read_voyage

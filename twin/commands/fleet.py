@@ -5,7 +5,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from twin.api.fleet import fleet
-from twin.commands.answer import answer, lines_to, progress
+from twin.commands.verb_output import answer, lines_to, progress
 from twin.errors import TwinError, UsageError
 from twin.study.fleet.spread import cores
 

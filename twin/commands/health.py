@@ -6,7 +6,7 @@ import sys
 import traceback
 
 from twin.cli import guarded
-from twin.live.health import ask
+from twin.live.health_check import ask
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

@@ -4,10 +4,10 @@ import argparse
 
 from twin import whole
 from twin.commands import arguments
-from twin.commands.answer import lines_to
+from twin.commands.verb_output import lines_to
 from twin.physics.ship import load
 from twin.recording.jsonable import plain
-from twin.study.update.history import SCHEMA_VERSION, ladder, told
+from twin.study.update.ladder import SCHEMA_VERSION, ladder, told
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

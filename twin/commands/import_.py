@@ -6,8 +6,8 @@ import sys
 from twin import whole
 from twin.api.voyage_check import import_file, suggest_map
 from twin.commands import arguments
-from twin.commands.answer import lines_to, progress
 from twin.commands.next_command import after_import, after_map
+from twin.commands.verb_output import lines_to, progress
 from twin.errors import DataError, UsageError
 from twin.recording.import_voyage import known_checks
 from twin.recording.write import write_voyage

@@ -7,10 +7,10 @@ from pathlib import Path
 from twin import whole
 from twin.api.first_model import first_model
 from twin.commands import arguments
-from twin.commands.answer import lines_to
+from twin.commands.verb_output import lines_to
 from twin.num import as_given
 from twin.physics.ship import load_actuators, save
-from twin.study.first_model.init import OPTIONS, REQUIRED
+from twin.study.first_model.first_estimate import OPTIONS, REQUIRED
 
 ACTUATORS = (
     "tables [[actuators]] of what drives and steers the ship, where that is not a propeller with a rudder "

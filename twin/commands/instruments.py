@@ -7,13 +7,13 @@ from pathlib import Path
 from twin import whole
 from twin.api.instruments import FRAMES, InstrumentCheck, instruments
 from twin.commands import arguments
-from twin.commands.answer import asked, lines_to, progress
 from twin.commands.next_command import after_instruments
+from twin.commands.verb_output import asked, lines_to, progress
 from twin.errors import SettingsError
 from twin.physics.ship import Ship, load
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
-from twin.recording.ship_file import save
+from twin.recording.ship_file_writer import save
 
 NOTHING = "no fault of an instrument was seen: nothing to write. Leave out -o."
 EPILOG = """A circle to each side or a figure eight of ten minutes or more says most; rudder and shaft need

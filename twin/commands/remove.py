@@ -4,10 +4,10 @@ import argparse
 
 from twin import whole
 from twin.commands import arguments
-from twin.commands.answer import lines_to
+from twin.commands.verb_output import lines_to
 from twin.physics.ship import load
-from twin.recording.ship_file import save
-from twin.study.update.remove import SCHEMA_VERSION, remove
+from twin.recording.ship_file_writer import save
+from twin.study.update.removal import SCHEMA_VERSION, remove
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:

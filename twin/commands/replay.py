@@ -8,7 +8,7 @@ from twin.cli import guarded
 from twin.commands import arguments
 from twin.errors import UsageError
 from twin.live import ending
-from twin.live.replay import Summary, replay, told
+from twin.live.log_replay import Summary, replay, told
 from twin.live.signals import config
 from twin.live.signals.config import Settings
 

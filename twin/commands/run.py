@@ -9,7 +9,7 @@ import argparse
 
 from twin.cli import guarded
 from twin.live import ending
-from twin.live.run import _served
+from twin.live.service import _served
 from twin.live.signals import config
 
 

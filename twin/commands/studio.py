@@ -39,7 +39,7 @@ def run(args: argparse.Namespace) -> int:
     if args.report:
         return _reported(args)
     try:
-        from twin.studio.serve import served
+        from twin.studio.local_server import served
     except ModuleNotFoundError as error:
         package = (error.name or "").partition(".")[0]
         if package not in NEEDED:

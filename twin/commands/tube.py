@@ -6,7 +6,7 @@ from twin import whole
 from twin.api.tube import tube
 from twin.api.voyages import read_voyage
 from twin.commands import arguments
-from twin.commands.answer import lines_to, progress
+from twin.commands.verb_output import lines_to, progress
 from twin.physics.ship import load, save
 from twin.study.reference.tube_told import told
 

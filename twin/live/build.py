@@ -13,7 +13,7 @@ from twin.live.gates.sensors import Sensors
 from twin.live.guard import Guard
 from twin.live.learning import network
 from twin.live.learning import residual as residuals
-from twin.live.learning.learned import LearnedForce
+from twin.live.learning.learned_force import LearnedForce
 from twin.live.learning.residual import Residual, ResidualError, WrongShip
 from twin.live.loop import Ears, Loop
 from twin.live.observer.dynamics import first_current

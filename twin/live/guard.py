@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from twin.live.gates.plausible import Plausibility
-from twin.live.learning.learned import Learned, LearnedForce
+from twin.live.learning.learned_force import Learned, LearnedForce
 from twin.live.observer.controls import ONE_SCREW, controls_of
 from twin.live.observer.estimate import Estimate
 from twin.live.signals.measured import Measured

@@ -14,14 +14,13 @@ from twin.live.gates.lacking import CorrectedTick
 from twin.live.gates.sensors import Sensors
 from twin.live.guard import CONTROLS, INVALID, NO_HEADING, Guard
 from twin.live.keelson.decode import Result
-from twin.live.learning.evidence import Three
-from twin.live.learning.learned import LearnedForce
+from twin.live.learning.filtered_regression import Three
+from twin.live.learning.learned_force import LearnedForce
 from twin.live.observer.controls import actuator_channels
 from twin.live.observer.dynamics import Dynamics
 from twin.live.observer.observer import Observer
 from twin.live.observer.predict import LearnedAt, Predictor
 from twin.live.outbox import Outbox
-from twin.live.parts import Parts
 from twin.live.prediction.prediction_tube import PredictionTube
 from twin.live.provenance import identity
 from twin.live.seen import Pace, Seen, Standing
@@ -29,6 +28,7 @@ from twin.live.signals.channels import BY_NAME
 from twin.live.signals.geodesy import Datum
 from twin.live.signals.measured import Measured
 from twin.live.stabilizer import Stabilizer
+from twin.live.stopwatch import Parts
 from twin.num import as_given
 from twin.physics.ship import Ship
 

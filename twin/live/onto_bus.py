@@ -9,8 +9,8 @@ from pathlib import Path
 from twin.errors import TwinError, UsageError
 from twin.live.keelson.zenoh_bus import ZenohBus
 from twin.live.keelson.zenoh_config import BusSettings
+from twin.live.log_replay import Summary, replay
 from twin.live.paced import FASTEST, KEYS, SLOWEST, Player
-from twin.live.replay import Summary, replay
 from twin.live.signals.config import Settings
 from twin.num import as_given
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from twin.live.keelson import messages
 from twin.live.keelson.topics import OUTPUTS, Output
-from twin.live.learning.learned import Learned
+from twin.live.learning.learned_force import Learned
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction, Region
 from twin.live.seen import Seen, Standing

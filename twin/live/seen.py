@@ -6,7 +6,7 @@ from typing import NamedTuple
 from twin.live.clock import Instant
 from twin.live.guard import Verdict
 from twin.live.learning.adapted_row import Parameter
-from twin.live.learning.learned import Learned
+from twin.live.learning.learned_force import Learned
 from twin.live.observer.dynamics import KnownDynamics
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction

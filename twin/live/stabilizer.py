@@ -4,9 +4,9 @@ the bound of the observer's error and says whether the assumptions of its proof 
 
 from math import degrees, hypot, pi
 
+from twin.live.certificate.observer_tube import STILL, Three, Tube
 from twin.live.certificate.periods import TOO_LONG
 from twin.live.certificate.rolled_tube import RolledTube
-from twin.live.certificate.tube import STILL, Three, Tube
 from twin.live.guard import CONTROLS
 from twin.live.observer.observer import Observer
 from twin.live.observer.rollback import RollBack

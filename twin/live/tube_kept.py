@@ -4,7 +4,7 @@ promise, against what the instruments measured when it came due."""
 from twin.live.guard import INVALID
 from twin.live.loop import Loop
 from twin.live.prediction.coverage import Coverage, JudgedRegion, coverage, entry
-from twin.live.prediction.watch import Watch
+from twin.live.prediction.due_predictions import Watch
 
 
 class TubeKept:

@@ -9,7 +9,7 @@ import numpy as np
 from twin.live.signals.channels import BY_NAME
 from twin.recording.cells import converted, earlier, number_keys, optional_keys, sum_of, text_keys, there
 from twin.recording.formats import Format
-from twin.recording.formats.tables import Packed
+from twin.recording.formats.binary_tables import Packed
 from twin.recording.mapping import Key, Map, TimeColumn
 from twin.recording.place import FRAMED, placed, scaled
 from twin.recording.table import Table, read_packed, read_table

@@ -14,9 +14,9 @@ from twin.errors import DataError, did_you_mean
 from twin.live.signals.channels import BY_NAME
 from twin.recording.cells import number_keys
 from twin.recording.formats import Format, recognised
+from twin.recording.formats.binary_tables import Packed
 from twin.recording.formats.choose import Sources, chosen
-from twin.recording.formats.rows import as_columns
-from twin.recording.formats.tables import Packed
+from twin.recording.formats.series_table import as_columns
 from twin.recording.formats.zipped import is_zip, unpacked
 from twin.recording.headers import column_names, own_names
 from twin.recording.map_file import parse_map
@@ -60,7 +60,7 @@ def of_zip(path: Path, by: Map | None, sources: Sources) -> Raw:
 def from_log(path: Path, by: Map | None = None) -> Raw:
     """The samples of the twin's own MCAP: an imported voyage, or the log of a run; a map may replace
     channels of it. DataError: it lacks a column of the map."""
-    from twin.live.log.rows import read_rows
+    from twin.live.log.log_rows import read_rows
 
     notes, lost = list[str](), list[str]()
     time_s, columns = read_rows(path, notes, lost)

@@ -13,9 +13,9 @@ import numpy as np
 from twin.errors import DataError
 from twin.recording.cells import converted, earlier, there
 from twin.recording.formats import recognised
-from twin.recording.formats.rows import as_columns
+from twin.recording.formats.binary_tables import Packed
+from twin.recording.formats.series_table import as_columns
 from twin.recording.formats.signals import Signals
-from twin.recording.formats.tables import Packed
 from twin.recording.headers import column_names, own_names
 from twin.recording.mapping import Column, Map, TimeColumn
 from twin.recording.raw import Raw, opened_table, read_clock, stamps_of, table_of, through

@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from twin.errors import DataError
+from twin.recording.formats.binary_tables import Packed
 from twin.recording.formats.fast_csv import LEAST_BYTES, collected
-from twin.recording.formats.tables import Packed
 from twin.recording.mapping import Key, Layout
 from twin.recording.sheet import Row, Sheet, find_encoding, head_of, open_text
 

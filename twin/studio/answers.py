@@ -15,7 +15,7 @@ from twin.physics.ship import load
 from twin.recording.import_voyage import import_voyage, refusal
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
-from twin.recording.ship_file import save
+from twin.recording.ship_file_writer import save
 from twin.recording.write import write_voyage
 from twin.report.page import content, html
 from twin.studio.causes import MOST, cause_view
@@ -65,7 +65,7 @@ def compare(asked: Asked, job: Path, tell: Tell) -> None:
 
 
 def diagnose(asked: Asked, job: Path, tell: Tell) -> None:
-    from twin.study.diagnosis.diagnose import diagnose as judged
+    from twin.study.diagnosis.effect_diagnosis import diagnose as judged
 
     ship = load(asked["ship"])
     tell("reading")
@@ -106,8 +106,8 @@ def calibrate(asked: Asked, job: Path, tell: Tell) -> str | None:
 
 
 def add(asked: Asked, job: Path, tell: Tell) -> str | None:
-    from twin.study.update.add import add as fitted
     from twin.study.update.added import refused
+    from twin.study.update.addition import add as fitted
 
     not_there(asked["output"])
     ship, effects = load(asked["ship"]), [find(name) for name in dict.fromkeys(asked["effects"])]

@@ -28,7 +28,7 @@ from twin.studio.project_report import page
 from twin.studio.remedies import edited
 from twin.studio.replies import Do, answered, body_of, page_files, toml_name
 from twin.studio.verbs import checked, files_of
-from twin.study.update.remove import remove
+from twin.study.update.removal import remove
 
 MAX_UPLOAD = 1 << 30  # bytes of a file
 TURN_S = 0.2  # between two looks at what waits

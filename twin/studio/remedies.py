@@ -8,7 +8,7 @@ import re
 import tomllib
 from typing import Any
 
-from twin.recording.checks.answer import Check
+from twin.recording.checks.check_result import Check
 from twin.recording.mapping import NAMES
 from twin.recording.suggest_map import toml
 

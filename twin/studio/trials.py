@@ -14,10 +14,10 @@ from twin.num import as_given
 from twin.physics.ship import Derivatives, Ship
 from twin.recording.jsonable import plain
 from twin.recording.read import read_voyage
+from twin.study.first_model.first_estimate import OPTIONS, REQUIRED, first_model
 from twin.study.first_model.first_trial import doubts as careful
 from twin.study.first_model.first_trial import sea_trial
-from twin.study.first_model.init import OPTIONS, REQUIRED, first_model
-from twin.study.update.history import ladder
+from twin.study.update.ladder import ladder
 
 UNITS = ("kgm2", "kg-m3", "mps", "rpm", "m2", "kg", "m")  # that the name of an option ends in
 SHOWN = {"kgm2": "kg m2", "kg-m3": "kg/m3", "mps": "m/s", "rpm": "1/min"}

@@ -3,10 +3,10 @@
 import argparse
 from typing import Any
 
-from bench import answer
+from bench import bench_output
+from bench.stability.attack.adversary_search import Attacked, CaseAttacked, attack
+from bench.stability.attack.attack_section import section
 from bench.stability.attack.cases import CASES
-from bench.stability.attack.report import section
-from bench.stability.attack.search import Attacked, CaseAttacked, attack
 from bench.stability.attack.section import with_section
 from twin import whole
 from twin.errors import ThresholdError
@@ -18,10 +18,10 @@ def attacked(args: argparse.Namespace, runs: int) -> int:
     found = []
     for i, case in enumerate(CASES):
         found.append(attack(case, round(runs / len(CASES)), args.seed + i))
-        answer.tell(_told(found[-1]))
+        bench_output.tell(_told(found[-1]))
     text = section(found, f"twin-bench stability --attack --runs {runs} --seed {args.seed}")
     result = {"schema_version": 1, "seed": args.seed, "cases": [as_table(x) for x in found]}
-    answer.give(argparse.Namespace(**{**vars(args), "page": None}), plain(result), text)
+    bench_output.give(argparse.Namespace(**{**vars(args), "page": None}), plain(result), text)
     if args.page:
         whole.write(args.page, with_section(args.page, text), args.page_option)
     broken = [g for x in found for g in x.groups if g.group.inside and g.violations]

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from bench.stability.attack.orders import Orders
-from bench.stability.attack.voyage import AXES, Sailed, along, by_group
+from bench.stability.attack.run_batch import AXES, Sailed, along, by_group
 from bench.stability.attack.waters import Waters
 from twin.physics.dual import Dual
 from twin.physics.state import Situation

@@ -7,7 +7,7 @@ import numpy as np
 
 from bench.stability.attack.cases import GAPS, SHORT, Group
 from bench.stability.attack.orders import PLACES, Orders, hidden_age
-from twin.live.certificate import comparison as c3
+from twin.live.certificate import comparison_systems as c3
 from twin.live.certificate.certificate import Certificate, Confined
 from twin.physics import core
 from twin.physics.model import Model

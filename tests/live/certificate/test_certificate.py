@@ -10,7 +10,7 @@ import pytest
 
 from twin.errors import SettingsError
 from twin.live.certificate import certificate as cert
-from twin.live.certificate import comparison as c3
+from twin.live.certificate import comparison_systems as c3
 from twin.live.certificate import store
 from twin.live.certificate.certificate import Certificate, Confined, Disturbance, certify
 from twin.live.certificate.enclosure import sampled, slopes
@@ -249,7 +249,7 @@ def test_the_loop_reads_a_certificate_without_numpy(vlcc, tmp_path):
     path = tmp_path / "c.json"
     path.write_text(vlcc[1].to_json())
     code = (
-        "import sys; from twin.live.certificate.certificate import Certificate; from twin.live.certificate.tube import Tube; from pathlib import "
+        "import sys; from twin.live.certificate.certificate import Certificate; from twin.live.certificate.observer_tube import Tube; from pathlib import "
         "Path;"
         f"t = Tube(Certificate.from_json(Path({str(path)!r}).read_text())); t.step((True, True, False)); "
         "print('numpy' in sys.modules)"

@@ -9,8 +9,8 @@ import pytest
 from twin.live.certificate import certificate as cert
 from twin.live.certificate.certificate import certify
 from twin.live.certificate.enclosure import contribution, points_of, sampled, situation_of, slopes
+from twin.live.certificate.observer_tube import Tube
 from twin.live.certificate.store import kept
-from twin.live.certificate.tube import Tube
 from twin.live.learning.movable import adaptable, movable, moved
 from twin.live.observer.estimate import gain_for
 from twin.physics.effects import BUILT_IN, find

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from twin.live.certificate import comparison as c3
+from twin.live.certificate import comparison_systems as c3
 from twin.live.certificate.periods import TABLE, TOO_LONG, of_certificate
 from twin.live.certificate.plant import Disturbance, Plant
 from twin.live.certificate.recursion import pushed, recursion

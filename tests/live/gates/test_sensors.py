@@ -4,7 +4,7 @@ from math import isfinite, nan
 
 import pytest
 
-from twin.live.learning.learned import LearnedForce
+from twin.live.learning.learned_force import LearnedForce
 from twin.live.learning.residual import bundled, load
 from twin.live.signals.readings import Quality, Rejected
 

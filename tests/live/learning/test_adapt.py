@@ -8,7 +8,7 @@ from math import isfinite, sin
 import pytest
 
 from twin.live.learning.adapt import A_MAX, Adaptation
-from twin.live.learning.learned import LearnedForce, scale_of
+from twin.live.learning.learned_force import LearnedForce, scale_of
 from twin.live.learning.residual import bundled, load
 from twin.physics.state import Force
 

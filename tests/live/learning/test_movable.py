@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from twin.live.learning.learned import scale_of
+from twin.live.learning.learned_force import scale_of
 from twin.live.learning.movable import Columns, movable, moved
 from twin.live.learning.ridge import LARGEST
 from twin.live.observer.dynamics import KnownDynamics

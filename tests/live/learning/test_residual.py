@@ -10,7 +10,7 @@ import pytest
 
 from twin.live.learning import manifest as manifests
 from twin.live.learning import residual as residuals
-from twin.live.learning.learned import LearnedForce
+from twin.live.learning.learned_force import LearnedForce
 from twin.live.learning.manifest import hashed
 from twin.live.learning.onnx_file import look
 from twin.live.learning.residual import MARGIN, ResidualError, WrongShip, check, load, ship_hash

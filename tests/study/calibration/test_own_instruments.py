@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from twin.recording.voyage import Voyage
-from twin.study.calibration.calibrate import calibrate
-from twin.study.calibration.told import told
-from twin.study.diagnosis.diagnose import diagnose
+from twin.study.calibration.calibration_lines import told
+from twin.study.calibration.core_fit import calibrate
+from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.reference.sailed import sailed
 
 TIME_S = 8.0  # of the smoothing

@@ -11,7 +11,7 @@ from twin.physics.model import Model
 from twin.physics.state import Force as ForceVector
 from twin.study.diagnosis.assemble import of_tracks
 from twin.study.reference.nuisance import daily, lasting, of_known_weather
-from twin.study.reference.weather import strengths
+from twin.study.reference.weather_baseline import strengths
 from twin.study.track.track import track
 
 

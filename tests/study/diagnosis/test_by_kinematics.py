@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bench.fleet.asked import voyage
-from bench.fleet.build import build
-from bench.fleet.cases import generator, plan, sailed
+from bench.fleet.fact_rows import voyage
+from bench.fleet.plausibility import build
+from bench.fleet.voyage_plan import generator, plan, sailed
 from twin.physics.effects.heading_lag import HeadingLag
 from twin.physics.model import Model
 from twin.study.diagnosis.assemble import of_tracks
@@ -20,7 +20,7 @@ from twin.study.diagnosis.by_kinematics import (
     other_than_before,
     reached,
 )
-from twin.study.first_model.init import OPTIONS, first_model
+from twin.study.first_model.first_estimate import OPTIONS, first_model
 from twin.study.instruments.on_references import KinematicOfVoyage, KinematicRecord, KinematicUsual
 from twin.study.reference.evidence import Nuisance
 from twin.study.track.track import track

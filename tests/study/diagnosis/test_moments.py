@@ -10,7 +10,7 @@ from bench.bundled import recorded
 from bench.reference import Case, simulate
 from twin.study.diagnosis import moments as moment_of
 from twin.study.diagnosis.assemble import assemble
-from twin.study.diagnosis.diagnose import diagnose
+from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.diagnosis.moments import CLEAR, Moment, moments, stretches
 from twin.study.diagnosis.refine import Found, refine
 from twin.study.diagnosis.tell_diagnosis import told

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from twin.study.diagnosis.diagnose import diagnose
+from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.diagnosis.overtime import changes
 from twin.study.diagnosis.tell_diagnosis import told
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from twin.errors import DataError
-from twin.live.learning.learned import scale_of
+from twin.live.learning.learned_force import scale_of
 from twin.live.learning.residual import bundled
 from twin.physics.effects import find
 from twin.physics.model import Model
@@ -21,8 +21,8 @@ from twin.study.estimation.identifiability import (
     text,
     verdict,
 )
-from twin.study.estimation.learned import features, learned_force
 from twin.study.estimation.observability import gramian
+from twin.study.estimation.residual_arrays import features, learned_force
 from twin.study.track.track import track
 
 STEP = 1.25

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from tests.study.fleet.rows import named, of, plainly, size
-from twin.study.fleet.history import causes_of, trend, voyages_of
+from twin.study.fleet.fleet_lines import told
 from twin.study.fleet.ranking import ranked
-from twin.study.fleet.told import told
+from twin.study.fleet.trend import causes_of, trend, voyages_of
 
 
 def sailed(*rows):

@@ -16,9 +16,9 @@ from twin.physics.ship import load
 from twin.recording.raw import Raw
 from twin.recording.voyage import Voyage
 from twin.study.instruments.arrow import Block, reduce
-from twin.study.instruments.estimate import estimate
+from twin.study.instruments.instrument_estimate import estimate
+from twin.study.instruments.instrument_lines import as_json, told
 from twin.study.instruments.spline import Spline
-from twin.study.instruments.told import as_json, told
 
 HEADING, RATE, LOG = "heading_true_north_deg", "yaw_rate_degps", "surge_velocity_through_water_mps"
 EVERY = 5  # of the samples of the healthy ship, so that a test is quick

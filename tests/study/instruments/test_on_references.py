@@ -11,13 +11,13 @@ from twin.physics.effects.sensor_delay import SensorDelay
 from twin.physics.ship import load
 from twin.study.calibration.own_instruments import established, own_instruments
 from twin.study.instruments.corrections import with_numbers
+from twin.study.instruments.instrument_samples import of_voyage
 from twin.study.instruments.on_references import (
     KinematicOfVoyage,
     KinematicRecord,
     KinematicUsual,
     on_references,
 )
-from twin.study.instruments.readings import of_voyage
 
 U, V = "surge_velocity_mps", "sway_velocity_mps"
 

@@ -9,8 +9,8 @@ import pytest
 from twin.num import as_given
 from twin.physics.model import Model
 from twin.recording.holes import pieces, slopes, steps_on
-from twin.study.diagnosis.diagnose import diagnose
-from twin.study.prediction.compare import compare
+from twin.study.diagnosis.effect_diagnosis import diagnose
+from twin.study.prediction.open_loop_comparison import compare
 from twin.study.reference.seaway import swung
 from twin.study.track.track import moved_as_read, track
 

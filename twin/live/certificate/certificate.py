@@ -13,8 +13,8 @@ from typing import Any
 
 from twin.checksum import sha256_hex
 from twin.errors import SettingsError
-from twin.live.certificate import comparison as c3
-from twin.live.certificate.comparison import Matrix, Row
+from twin.live.certificate import comparison_systems as c3
+from twin.live.certificate.comparison_systems import Matrix, Row
 from twin.live.certificate.gains import best_gain, gains_that_do, suited_gain, usual_gain
 from twin.live.certificate.heading_bound import with_heading
 from twin.live.certificate.plant import (

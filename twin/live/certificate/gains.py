@@ -3,8 +3,8 @@
 from math import sqrt
 from typing import Any
 
-from twin.live.certificate import comparison as c3
-from twin.live.certificate.comparison import AXES, Matrix, Row
+from twin.live.certificate import comparison_systems as c3
+from twin.live.certificate.comparison_systems import AXES, Matrix, Row
 from twin.live.certificate.plant import Disturbance, Plant
 from twin.live.certificate.recursion import NEVER, Ages, pushed, recursion
 from twin.live.observer.operating import NU

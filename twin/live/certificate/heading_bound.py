@@ -6,8 +6,8 @@ certificate.
 
 from dataclasses import replace
 
-from twin.live.certificate import comparison as c3
-from twin.live.certificate.comparison import Matrix, Row
+from twin.live.certificate import comparison_systems as c3
+from twin.live.certificate.comparison_systems import Matrix, Row
 from twin.live.certificate.plant import Disturbance, Plant
 from twin.live.certificate.recursion import Ages
 from twin.live.certificate.theorem import NEVER, Promise, assess

@@ -10,7 +10,7 @@ from math import ceil
 from typing import NamedTuple
 
 from twin.live.certificate.certificate import Certificate
-from twin.live.certificate.comparison import AXES, Matrix, Row, apply
+from twin.live.certificate.comparison_systems import AXES, Matrix, Row, apply
 from twin.live.certificate.plant import Plant
 from twin.live.certificate.recursion import CURVE, pushed, recursion
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from twin.errors import SettingsError
-from twin.live.certificate import comparison as c3
-from twin.live.certificate.comparison import AXES, Matrix, Row
+from twin.live.certificate import comparison_systems as c3
+from twin.live.certificate.comparison_systems import AXES, Matrix, Row
 from twin.live.learning.movable import Movable
 from twin.live.observer.operating import OperatingSet
 from twin.physics import core

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from twin.live.certificate import comparison as c3
-from twin.live.certificate.comparison import Matrix, Row
+from twin.live.certificate import comparison_systems as c3
+from twin.live.certificate.comparison_systems import Matrix, Row
 from twin.live.certificate.plant import Plant
 from twin.physics.maths import total
 

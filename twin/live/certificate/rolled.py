@@ -12,8 +12,8 @@ from collections.abc import Callable, Sequence
 from math import log
 from typing import Any, cast
 
-from twin.live.certificate import comparison as c3
-from twin.live.certificate.comparison import AXES, Matrix, Row
+from twin.live.certificate import comparison_systems as c3
+from twin.live.certificate.comparison_systems import AXES, Matrix, Row
 from twin.live.certificate.plant import Disturbance, Plant
 from twin.live.certificate.recursion import Ages, pushed, recursion
 from twin.live.certificate.theorem import NEVER, NOWHERE, Promise, ratio

@@ -9,10 +9,10 @@ from math import ceil
 from typing import NamedTuple
 
 from twin.live.certificate.certificate import Certificate
-from twin.live.certificate.comparison import add, scaled_row
+from twin.live.certificate.comparison_systems import add, scaled_row
+from twin.live.certificate.observer_tube import NOTHING, Three, Tube
 from twin.live.certificate.periods import of_certificate
 from twin.live.certificate.rolled import InnerStep, inner, way
-from twin.live.certificate.tube import NOTHING, Three, Tube
 from twin.live.observer.operating import NU, told_outside
 from twin.live.observer.rollback import KEPT_S, Path, State
 from twin.physics.state import Situation

@@ -11,8 +11,8 @@ The proof is in docs/stability.md.
 from dataclasses import dataclass
 from math import log
 
-from twin.live.certificate import comparison as c3
-from twin.live.certificate.comparison import Matrix, Row
+from twin.live.certificate import comparison_systems as c3
+from twin.live.certificate.comparison_systems import Matrix, Row
 from twin.live.certificate.gains import gains_that_do
 from twin.live.certificate.plant import Disturbance, Plant
 from twin.live.certificate.recursion import NEVER, Ages, Recursion, pushed, recursion

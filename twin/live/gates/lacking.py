@@ -13,7 +13,7 @@ from math import inf, radians
 from typing import NamedTuple
 
 from twin.live.gates.cusum import Cusum
-from twin.live.gates.helm import HULL, RUDDER, Helm
+from twin.live.gates.rudder_feedback import HULL, RUDDER, Helm
 from twin.live.observer.dynamics import Forces, KnownDynamics
 from twin.live.observer.observer import Observer
 from twin.live.observer.operating import propeller_rate
@@ -26,7 +26,7 @@ SHAFT_SAID = "propeller_rate_rpm against the speed: the ship moves as if the sha
 RUDDER_SAID = "rudder_angle_deg against the turning: the ship turns as if the rudder stood otherwise"
 PROPELLER = CORE.index("propeller")
 STILL = radians(0.5)
-SLACK, OF_MOMENTS = radians(4.0), 0.15  # as in helm.py
+SLACK, OF_MOMENTS = radians(4.0), 0.15  # as in rudder_feedback.py
 OF_FORCES = 0.35
 SETTLED = 3.0  # time constants of the observer: a twentieth of the first sample's noise is left
 USUAL_BLOCKS = 8.0  # over which the moment that is lacking is taken to be usual, while the rudder moves

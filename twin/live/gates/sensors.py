@@ -8,7 +8,7 @@ derived.
 from collections.abc import Sequence
 from math import degrees, inf, pi
 
-from twin.live.gates.actuators import gates_of
+from twin.live.gates.actuator_rates import gates_of
 from twin.live.gates.frozen import Frozen
 from twin.live.gates.gate import Gate
 from twin.live.gates.noise import NoiseWatch

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 from twin.errors import SettingsError, did_you_mean
 from twin.live.signals.channels import BY_NAME, CHANNELS
-from twin.physics.actuators.channels import CHANNELS_OF
+from twin.physics.actuators.actuator_channels import CHANNELS_OF
 
 OWN_SOURCE = "twin"  # what the twin says carries this source id; it never listens to it
 KNOT = 1852.0 / 3600.0  # [m/s]

@@ -5,12 +5,13 @@ not help; and the numbers of the named effects (`twin add`), inside their boxes.
         q_r = [whitened components of phi | known forces of row r | 1]
     a_r = argmin  sum_k exp(-(t - t_k)/MEMORY) h (d_r - c_r x - a_r q_f)^2/(NOISE_S s_r^2) + |a_r/usual|^2
 
-each row a ridge regression on fading evidence (evidence.py): what nothing teaches fades back to the trained
-weights. What usually changes are the known forces' sizes; features only fill in, else they would explain the
-noise of ten minutes. x are the numbers of the named effects and c_r what they do (named.py): they explain
-first, and what the rows learned of the same force before is taken off them as x moves. d_r is cut at three
-usual errors s_r from what is expected; A is projected on boxes and on ||A|| <= A_MAX. The gate g, one
-for all rows, opens as far as what the numbers of a while ago promised has come true (proof.py).
+each row a ridge regression on fading evidence (filtered_regression.py): what nothing teaches fades back to
+the trained weights. What usually changes are the known forces' sizes; features only fill in, else they
+would explain the noise of ten minutes. x are the numbers of the named effects and c_r what they do
+(effect_numbers.py): they explain first, and what the rows learned of the same force before is taken off
+them as x moves. d_r is cut at three usual errors s_r from what is expected; A is projected on boxes and on
+||A|| <= A_MAX. The gate g, one for all rows, opens as far as what the numbers of a while ago promised has
+come true (skill.py).
 """
 
 import json
@@ -21,10 +22,10 @@ from typing import Any
 
 from twin import whole
 from twin.live.learning.adapted_row import BESIDE, COLUMNS, CORES, ROWS, SIZES, Parameter, Row
-from twin.live.learning.evidence import Three
-from twin.live.learning.named import Named
-from twin.live.learning.proof import Proof
+from twin.live.learning.effect_numbers import Named
+from twin.live.learning.filtered_regression import Three
 from twin.live.learning.ridge import HINDSIGHT, LARGEST, MEMORY, NOISE_S, SPREAD, deviations, factor, solve
+from twin.live.learning.skill import Proof
 from twin.live.observer.dynamics import Forces
 from twin.physics.maths import dot, total
 from twin.physics.ship import Ship

@@ -87,6 +87,6 @@ def read(path: str | Path, notes: list[str] | None = None) -> Iterator[Message]:
 def read_rows(path: str | Path, notes: list[str] | None = None) -> "tuple[np.ndarray, dict[str, np.ndarray]]":
     """(time_s (N,), {channel: (N,)}) of a log, NaN where nothing was measured; see `rows.read_rows`. Time
     in [s], channels in the unit in their name."""
-    from twin.live.log.rows import read_rows as rows
+    from twin.live.log.log_rows import read_rows as rows
 
     return rows(path, notes)

@@ -127,7 +127,7 @@ class Dynamics:
         self._steering = gears_of(self.full.lags, self._rest)
 
     def adopt(self, effects: Sequence[Effect]) -> None:
-        """The ship's effects with the numbers that act from now on (twin/live/learning/named.py)."""
+        """The ship's effects with the numbers that act from now on (twin/live/learning/effect_numbers.py)."""
         if effects is not self._adopted:
             self._adopted, new = effects, {type(e): e for e in effects}
             self.full = Model(self.ship, tuple([new[type(e)] for e in self.full.effects]))

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from math import inf, pi
 from typing import Any
 
-from twin.physics.actuators.channels import CHANNELS_OF, attribute_of
+from twin.physics.actuators.actuator_channels import CHANNELS_OF, attribute_of
 
 
 @dataclass(frozen=True, slots=True)

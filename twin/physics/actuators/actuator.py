@@ -25,7 +25,7 @@ from twin.physics.number import number
 from twin.physics.ship_like import ShipLike
 from twin.physics.state import Number
 
-from .channels import CHANNELS_OF
+from .actuator_channels import CHANNELS_OF
 from .kinds import KINDS
 
 

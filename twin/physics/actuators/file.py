@@ -8,7 +8,7 @@ from twin.errors import SettingsError, did_you_mean
 from twin.num import as_given
 
 from .actuator import NUMBERS, Actuator
-from .channels import CHANNELS_OF, DRIVES
+from .actuator_channels import CHANNELS_OF, DRIVES
 from .kinds import KINDS
 
 KEYS = {f.metadata.get("key", f.name): f for f in NUMBERS.values()}

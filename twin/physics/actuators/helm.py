@@ -6,7 +6,7 @@ from twin.physics.ship import Ship
 from twin.physics.state import Number
 
 from .actuator import Actuator
-from .channels import DRIVES
+from .actuator_channels import DRIVES
 from .kinds import SPAN_US, STOP_US
 
 FULL = 35.0 * pi / 180.0  # helm at which thrusters that cannot turn give all and nothing

@@ -10,23 +10,23 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from twin.physics.ship import Ship
-from twin.recording.checks.actuators import actuators
-from twin.recording.checks.answer import Check
-from twin.recording.checks.clock import clock_steps, control_gaps, time_gaps, time_stamps, whole_file
+from twin.recording.checks.actuator_response import actuators
+from twin.recording.checks.channel_samples import frozen, missing_samples, plausible_values, spikes
+from twin.recording.checks.check_result import Check
 from twin.recording.checks.compass import compass
 from twin.recording.checks.copies import copies
-from twin.recording.checks.judged import judged
+from twin.recording.checks.joint_checks import judged
 from twin.recording.checks.motion import velocity_frame
 from twin.recording.checks.propeller import propeller_rate
 from twin.recording.checks.rudder import rudder_sign, rudder_unit
-from twin.recording.checks.samples import frozen, missing_samples, plausible_values, spikes
 from twin.recording.checks.size import duration, ship_size
 from twin.recording.checks.standstill import actuator_zero
 from twin.recording.checks.steps import heading_steps
+from twin.recording.checks.timekeeping import clock_steps, control_gaps, time_gaps, time_stamps, whole_file
 from twin.recording.checks.turning import yaw_rate
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.checks.water import speed_log
-from twin.recording.checks.wind import wind
+from twin.recording.checks.wind_triangle import wind
 from twin.recording.voyage import Voyage
 
 __all__ = ["CHECKS", "Check", "run_checks"]

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from twin.recording.checks.undo import (
     Undo,
 )
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 
 Words = Callable[[VoyageView], str]
 

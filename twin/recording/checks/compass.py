@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.recording.cells import without_deviation
-from twin.recording.checks.answer import Check, cannot_tell, doubtful, good
 from twin.recording.checks.candidate_mistake import Single
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good
 from twin.recording.checks.offset import by_course
 from twin.recording.checks.undo import HEADING, undone
-from twin.recording.checks.view import VoyageView, fit, rms
+from twin.recording.checks.voyage_view import VoyageView, fit, rms
 
 NAME = "compass"
 LATE_S = np.arange(-10.0, 10.01, 0.25)

@@ -5,9 +5,9 @@ from itertools import combinations
 import numpy as np
 
 from twin.live.signals.channels import BY_NAME
-from twin.recording.checks.answer import Check, doubtful, good, wrong
+from twin.recording.checks.check_result import Check, doubtful, good, wrong
 from twin.recording.checks.undo import by_heading
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.units import unit_of
 
 NAME = "copies"

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.units import DEG_PER_RAD, KNOT_MPS
 
 Flow = Callable[[VoyageView], np.ndarray]

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.num import num
-from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.recording.checks.course import course_against_heading
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good, wrong
+from twin.recording.checks.course_and_heading import course_against_heading
 from twin.recording.checks.mistakes import AS_THEY_ARE, GEOMETRY, SCALES, Mistake, turned
-from twin.recording.checks.view import VoyageView, fit, rms
+from twin.recording.checks.voyage_view import VoyageView, fit, rms
 
 NAME = "velocity_frame"
 AGREES = 0.12  # share of the distance by which position and velocities may differ

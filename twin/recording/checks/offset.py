@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.recording.checks.relations import over_ground
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 
 LEAST_OFFSET_DEG, LEAST_SPREAD_DEG, ALIKE_S = 4.0, 60.0, 30.0
 STREAM_MPS, LEEWAY, SIGMAS = 0.5, 0.015, 3.0  # an expected stream; leeway in parts of the speed

@@ -3,8 +3,8 @@
 import numpy as np
 
 from twin.num import as_given, num
-from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good, wrong
+from twin.recording.checks.voyage_view import VoyageView
 
 SLOWEST_RPM = 20.0  # no propeller drives a ship with fewer turns
 ADVANCE = (0.08, 2.0)  # plausible J = U / (n D) of a ship under way

@@ -18,7 +18,7 @@ from twin.recording.checks.motion import cut, enough_way
 from twin.recording.checks.rudder import RUDDER_SHARE, seen_gain
 from twin.recording.checks.turning import turning_ratio
 from twin.recording.checks.undo import by_heading
-from twin.recording.checks.view import VoyageView, rms
+from twin.recording.checks.voyage_view import VoyageView, rms
 
 MEAN_DRIFT, USUAL_DRIFT = np.radians(45.0), np.radians(40.0)  # more is no drift of a ship under way
 ASTERN = 0.25  # share of the time under way, steady, that may go against the shaft

@@ -8,8 +8,8 @@ Nomoto's first order, its gains as they grow with speed, and Norrbin's cubic dam
 import numpy as np
 
 from twin.num import num
-from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.recording.checks.view import VoyageView, fit
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good, wrong
+from twin.recording.checks.voyage_view import VoyageView, fit
 
 RUDDER_SHARE = 0.15  # the rudder must explain this share of the changes of yaw rate to be asked for its sign
 HELD_RUDDER_DEG, HELD_TURN_DEG = 5.0, 30.0

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.recording.checks.answer import Check, doubtful, wrong
 from twin.recording.checks.candidate_mistake import Single
+from twin.recording.checks.check_result import Check, doubtful, wrong
 from twin.recording.checks.compass import fitted
 from twin.recording.checks.relations import USUAL, offs
 from twin.recording.checks.single_table import singles
 from twin.recording.checks.undo import measured, undone
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 
 BROKEN = 1.5  # a relation this far off asks for an explanation
 MENDED = 1.0

@@ -19,7 +19,7 @@ from twin.recording.checks.undo import (
     velocity,
 )
 from twin.recording.checks.unit_mistakes import of_rate, of_speed
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.units import DEG_PER_RAD
 
 HEADINGS: tuple[tuple[str, Callable[[np.ndarray], np.ndarray], str], ...] = (

@@ -3,8 +3,8 @@
 import numpy as np
 
 from twin.num import as_given, num
-from twin.recording.checks.answer import Check, cannot_tell, doubtful, good
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good
+from twin.recording.checks.voyage_view import VoyageView
 
 G = 9.81  # [m/s2]
 FASTEST_FROUDE = 0.7  # U / sqrt(g L); a displacement hull stays below 0.5

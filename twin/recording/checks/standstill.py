@@ -10,11 +10,11 @@ import numpy as np
 
 from twin.num import as_given, num
 from twin.physics.actuators import Actuator
-from twin.physics.actuators.channels import DRIVES
+from twin.physics.actuators.actuator_channels import DRIVES
 from twin.physics.actuators.kinds import SPAN_US, STOP_US
 from twin.physics.ship import Ship
-from twin.recording.checks.answer import Check, cannot_tell, doubtful, good
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good
+from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.checks.wirings import Told
 
 LONG_S = 8.0  # told the same for so long, and so many ship lengths at service speed

@@ -9,9 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.num import as_given, num
-from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.relations import over_ground
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.resample import continuous
 
 NAME = "heading_steps"

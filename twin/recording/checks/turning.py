@@ -3,8 +3,8 @@
 import numpy as np
 
 from twin.num import num
-from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.recording.checks.view import VoyageView, fit, rms
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good, wrong
+from twin.recording.checks.voyage_view import VoyageView, fit, rms
 from twin.recording.units import DEG_PER_RAD
 
 RATES = (

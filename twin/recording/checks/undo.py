@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.place import derive
 from twin.recording.voyage import Voyage
 

@@ -2,7 +2,7 @@
 
 from twin.recording.checks.candidate_mistake import Single, Words, changes, said, scaled
 from twin.recording.checks.undo import AHEAD, FIRST, RATE, Undo, as_velocity, velocity
-from twin.recording.checks.view import VoyageView
+from twin.recording.checks.voyage_view import VoyageView
 from twin.recording.units import UNITS
 
 SPEED_NAMES = {"kn": "knots"}

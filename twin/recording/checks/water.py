@@ -5,8 +5,8 @@ u_w = k (u - c_north cos psi - c_east sin psi)
 
 import numpy as np
 
-from twin.recording.checks.answer import Check, cannot_tell, doubtful, good, wrong
-from twin.recording.checks.view import VoyageView, fit
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good, wrong
+from twin.recording.checks.voyage_view import VoyageView, fit
 
 FASTEST_CURRENT_MPS = 4.0
 ALIKE_S = 30.0  # neighbours within this time carry the same wave and the same gust

@@ -13,7 +13,7 @@ import numpy as np
 
 from twin.num import as_given
 from twin.physics.actuators import Actuator
-from twin.physics.actuators.channels import DRIVES
+from twin.physics.actuators.actuator_channels import DRIVES
 from twin.physics.actuators.kinds import SPAN_US, STOP_US
 
 Told = Mapping[str, np.ndarray]

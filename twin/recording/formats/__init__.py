@@ -12,6 +12,7 @@ from twin.errors import DataError
 from twin.recording.formats import (
     ais,
     autopilots,
+    binary_tables,
     canboat_json,
     iso19848,
     keelson,
@@ -19,7 +20,6 @@ from twin.recording.formats import (
     nmea2000,
     ros,
     signalk,
-    tables,
 )
 from twin.recording.formats.lines import head, head_lines
 from twin.recording.formats.signals import Signals
@@ -34,7 +34,7 @@ class Format(NamedTuple):
     says: str
     looks: Callable[[list[str], bytes], bool]
     series: Callable[[Path], Signals] | None = None
-    table: type[tables.Packed] | None = None
+    table: type[binary_tables.Packed] | None = None
 
 
 def never(lines: list[str], start: bytes) -> bool:
@@ -43,9 +43,9 @@ def never(lines: list[str], start: bytes) -> bool:
 
 
 FORMATS: tuple[Format, ...] = (
-    Format("parquet", tables.PARQUET, tables.looks_parquet, table=tables.Parquet),
-    Format("feather", tables.FEATHER, tables.looks_feather, table=tables.Feather),
-    Format("excel", tables.EXCEL, tables.looks_excel, table=tables.Excel),
+    Format("parquet", binary_tables.PARQUET, binary_tables.looks_parquet, table=binary_tables.Parquet),
+    Format("feather", binary_tables.FEATHER, binary_tables.looks_feather, table=binary_tables.Feather),
+    Format("excel", binary_tables.EXCEL, binary_tables.looks_excel, table=binary_tables.Excel),
     Format("ros", ros.SAYS, ros.looks, ros.read),
     Format("ulog", autopilots.ULOG, autopilots.looks_ulog, autopilots.read_ulog),
     Format("dataflash", autopilots.FLASH, autopilots.looks_flash, autopilots.read_flash),

@@ -8,8 +8,8 @@ from pathlib import Path
 
 from twin.recording.formats.lines import numbered
 from twin.recording.formats.nmea0183 import TAG_TIME, checksum
+from twin.recording.formats.recorder_stamps import Stamp
 from twin.recording.formats.signals import Signals
-from twin.recording.formats.stamps import Stamp
 
 SAYS = "an AIS log (it holds no rudder and no shaft)"
 PLAIN = re.compile(rb"!([A-Z]{2})VD([MO]),1,1,[^,]*,[^,]*,([^,]+),\d\*([0-9A-Fa-f]{2})")

@@ -11,8 +11,8 @@ import numpy as np
 
 from twin.recording.formats.lines import numbered
 from twin.recording.formats.nmea2000_pgns import DEG
+from twin.recording.formats.recorder_stamps import Stamp
 from twin.recording.formats.signals import Signals
-from twin.recording.formats.stamps import Stamp
 
 SAYS = "an NMEA 2000 log as canboat's JSON"
 FULL = 2.0 * pi + 0.01  # directions never above this are in radians

@@ -7,8 +7,8 @@ from typing import Any
 
 from twin.errors import DataError
 from twin.recording.formats.lines import opened
+from twin.recording.formats.recorder_stamps import from_iso
 from twin.recording.formats.signals import QUANTITIES, Signals
-from twin.recording.formats.stamps import from_iso
 
 SAYS = "an ISO 19848 package"
 LARGEST = 200 << 20  # bytes; JSON is read whole

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from twin.recording.formats.lines import numbered
 from twin.recording.formats.nmea_sentences import CLOCKS, SENTENCES, Part
+from twin.recording.formats.recorder_stamps import DAY_S, Stamp, days_from_civil
 from twin.recording.formats.signals import Signals
-from twin.recording.formats.stamps import DAY_S, Stamp, days_from_civil
 
 SAYS = "an NMEA 0183 log"
 SENTENCE = re.compile(r"[$!]([A-Z]{2}[A-Z]{3}|P[A-Z]{3,}),[^$!]*")

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 from twin.recording.formats.lines import head, head_lines, numbered, opened
 from twin.recording.formats.nmea2000_pgns import AIS, FAST, GROUPS, FastPackets
+from twin.recording.formats.recorder_stamps import Stamp
 from twin.recording.formats.signals import Signals
-from twin.recording.formats.stamps import Stamp
 
 
 class Frame(NamedTuple):

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Any
 
 from twin.recording.formats.lines import numbered
+from twin.recording.formats.recorder_stamps import from_epoch, from_iso
 from twin.recording.formats.signals import Signals
-from twin.recording.formats.stamps import from_epoch, from_iso
 
 SAYS = "a Signal K delta log"
 DEG = 180.0 / pi

@@ -17,8 +17,8 @@ from twin.recording.jsonable import plain
 from twin.study.calibration.usual import CLEAR
 from twin.study.instruments.corrections import told_by_readings, with_numbers
 from twin.study.instruments.findings import UNINFORMATIVE
+from twin.study.instruments.instrument_samples import Readings, ReadingSamples, of_voyage
 from twin.study.instruments.on_references import NOTE, KinematicRecord, OnReferences, on_references
-from twin.study.instruments.readings import Readings, ReadingSamples, of_voyage
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS, effect_of, members
 from twin.study.reference.sailed import Sailed
 

@@ -16,8 +16,8 @@ from twin.study.calibration.held_out import HeldOut, errors, size
 from twin.study.estimation.columns import effect_unknowns
 from twin.study.estimation.fit import Catalogue, Fit, fit
 from twin.study.estimation.innovations import NoiseModel
-from twin.study.reference.gear import CLEAR as CLEARLY_BETTER
-from twin.study.reference.weather import strengths
+from twin.study.reference.steering_gear import CLEAR as CLEARLY_BETTER
+from twin.study.reference.weather_baseline import strengths
 from twin.study.track.track import Track
 
 CLEAR = 4.0  # standard errors

@@ -20,7 +20,7 @@ from twin.study.reference.healthy import left_out_scores
 from twin.study.reference.nuisance import known_from, nuisance_unknowns, temper_of, usual_unknowns
 from twin.study.reference.sailed import fed
 from twin.study.reference.structure import floor_beside
-from twin.study.reference.weather import strengths
+from twin.study.reference.weather_baseline import strengths
 from twin.study.track.track import Track
 
 CLEAR = 4.0  # standard errors

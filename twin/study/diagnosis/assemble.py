@@ -37,7 +37,7 @@ from twin.study.reference.nuisance import (
 from twin.study.reference.reading import read_lines
 from twin.study.reference.seaway import swung
 from twin.study.reference.structure import floor_beside, floor_of, structural_floor
-from twin.study.reference.weather import as_usual, strengths
+from twin.study.reference.weather_baseline import as_usual, strengths
 from twin.study.track.excitation import manoeuvred
 from twin.study.track.track import Track, track
 

@@ -24,8 +24,8 @@ from twin.study.diagnosis.refine import Found
 from twin.study.estimation.columns import lateness_unknowns
 from twin.study.instruments.by_voyage import equations
 from twin.study.instruments.corrections import told_by_readings
-from twin.study.instruments.estimate import estimate
 from twin.study.instruments.findings import CLOCKS, Instruments
+from twin.study.instruments.instrument_estimate import estimate
 from twin.study.instruments.on_references import KinematicRecord
 from twin.study.instruments.unknowns import INDEX, UNKNOWNS, effect_of
 

@@ -8,7 +8,7 @@ from twin.num import as_given, num, percent
 from twin.physics.model import Model
 from twin.physics.ship import PARTICULARS, Ship
 from twin.study.first_model import regressions as reg
-from twin.study.first_model.init import Given
+from twin.study.first_model.first_estimate import Given
 from twin.study.prediction.trial import shaft_speed, straight_line_stability, turning_circle, zigzag
 
 # what is given, and is no particular of the ship file

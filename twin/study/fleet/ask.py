@@ -80,8 +80,8 @@ def _asked(job: Job) -> tuple[Row, list[Row]]:
     from twin.physics.ship import load
     from twin.recording.map_file import read_map
     from twin.recording.read import read_voyage
-    from twin.study.diagnosis.diagnose import diagnose
-    from twin.study.prediction.compare import compare
+    from twin.study.diagnosis.effect_diagnosis import diagnose
+    from twin.study.prediction.open_loop_comparison import compare
     from twin.study.reference.sailed import sailed
 
     if job.version != twin.__version__:

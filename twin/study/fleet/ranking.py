@@ -4,9 +4,9 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from twin.study.fleet.ask import Row
-from twin.study.fleet.history import causes_of, dated, voyages_of
 from twin.study.fleet.listing import FleetShip
 from twin.study.fleet.over_months import LEVEL, Martingale, alarms, evidence, of_a_lasting_fault
+from twin.study.fleet.trend import causes_of, dated, voyages_of
 
 SCHEMA_VERSION = 1
 ORDER = ("missing", "weather", "unknown", "undecided", "nothing_missing", "not_asked")  # most wrong first

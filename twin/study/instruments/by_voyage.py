@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.study.instruments.fit import MINE, SHARED, KinematicFit, columns
+from twin.study.instruments.kinematic_fit import MINE, SHARED, KinematicFit, columns
 from twin.study.instruments.unknowns import FAULTS, UNKNOWNS
 from twin.study.reference.between import BetweenVoyages
 

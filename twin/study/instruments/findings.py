@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.study.instruments.fit import KinematicFit, columns
+from twin.study.instruments.instrument_samples import Readings
+from twin.study.instruments.kinematic_fit import KinematicFit, columns
 from twin.study.instruments.problem import Problem
-from twin.study.instruments.readings import Readings
 from twin.study.instruments.select import Weighed, WeighedSets
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, InstrumentUnknown
 

@@ -14,9 +14,9 @@ import numpy as np
 
 from twin.study.estimation.rarity import deviations
 from twin.study.instruments.by_voyage import equations, tellable
-from twin.study.instruments.estimate import Progress, estimate
 from twin.study.instruments.findings import Instruments
-from twin.study.instruments.readings import Readings
+from twin.study.instruments.instrument_estimate import Progress, estimate
+from twin.study.instruments.instrument_samples import Readings
 from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS
 from twin.study.reference.between import scattered, ship_of
 

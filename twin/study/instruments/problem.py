@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from scipy.sparse import coo_array
 
-from twin.study.instruments.readings import PER_MOTION, Readings, ReadingSamples
+from twin.study.instruments.instrument_samples import PER_MOTION, Readings, ReadingSamples
 from twin.study.instruments.spline import Spline, Weights
 from twin.study.instruments.unknowns import UNKNOWNS, widths
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import log_ndtr
 
-from twin.study.instruments.fit import MINE, SHARED, KinematicFit
+from twin.study.instruments.kinematic_fit import MINE, SHARED, KinematicFit
 from twin.study.instruments.unknowns import ALWAYS, FAULTS, UNKNOWNS
 
 Sets = tuple[str, ...]

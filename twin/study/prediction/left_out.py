@@ -13,7 +13,7 @@ from twin.study.estimation.columns import NO_MODEL, Unknown, with_values
 from twin.study.estimation.fit import Catalogue
 from twin.study.estimation.innovations import Normal
 from twin.study.prediction.envelope import sailed
-from twin.study.prediction.errors import vectors
+from twin.study.prediction.error_vectors import vectors
 from twin.study.prediction.openloop import HORIZONS_S, MODEL, STRUCTURE, Windows, predict
 from twin.study.prediction.own_water import LENGTHS, settled
 from twin.study.reference.between import ship_of, voyages

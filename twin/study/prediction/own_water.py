@@ -18,7 +18,7 @@ import numpy as np
 
 from twin.physics.effects import of_role
 from twin.physics.model import Model
-from twin.study.prediction.errors import in_axes, vectors
+from twin.study.prediction.error_vectors import in_axes, vectors
 from twin.study.prediction.openloop import MODEL, Windows, again
 
 STREAM = 0.05  # of U_0, how fast the water usually moves when nobody has told

@@ -8,7 +8,7 @@ import numpy as np
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.study.estimation.innovations import NoiseModel
-from twin.study.prediction.errors import vectors
+from twin.study.prediction.error_vectors import vectors
 from twin.study.prediction.left_out import ALIKE
 from twin.study.prediction.openloop import STRUCTURE, Windows, predict
 from twin.study.reference.path_error import SCATTER, PathError, of_ship, tail

@@ -12,8 +12,8 @@ from twin.live.guard import INVALID
 from twin.live.inbox import Played
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
+from twin.live.prediction.due_predictions import Watch
 from twin.live.prediction.judge import Judged
-from twin.live.prediction.watch import Watch
 from twin.live.publish import Publisher
 from twin.live.signals.config import Settings
 from twin.live.signals.readings import Reading

@@ -21,8 +21,8 @@ from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import Linear, linearise
 from twin.study.estimation.respond import respond
 from twin.study.estimation.start import steadied, wave_period_s
-from twin.study.reference.gear import geared
 from twin.study.reference.nuisance import TEMPER, nuisance_unknowns
+from twin.study.reference.steering_gear import geared
 from twin.study.reference.structure import floor_of
 from twin.study.track.segments import read_parts, segments
 from twin.study.track.smooth_motion import running_mean

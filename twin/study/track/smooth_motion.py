@@ -5,7 +5,7 @@ from scipy.linalg import solveh_banded
 
 from twin.physics.ship import Ship
 from twin.recording.holes import lined, longest, pieces, slopes
-from twin.study.track.readings import READINGS
+from twin.study.track.motion_channels import READINGS
 
 JERK = 0.15  # rad in (L/U_0)^3: how suddenly a ship turns; what is faster is the sea's doing
 

@@ -17,7 +17,7 @@ from twin.physics.state import WEATHER, Situation
 from twin.recording.holes import HOLE_S, inside, longest, pieces
 from twin.recording.unknown_controls import known, of_ship
 from twin.recording.voyage import Voyage
-from twin.study.track.readings import MEASURED, READINGS
+from twin.study.track.motion_channels import MEASURED, READINGS
 from twin.study.track.smooth_motion import running_mean, smooth_motion
 
 PLACE = ("north_m", "east_m")

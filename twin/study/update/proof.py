@@ -28,7 +28,7 @@ from scipy.special import stdtrit
 from twin.errors import DataError
 from twin.num import as_given
 from twin.study.prediction.envelope import widening
-from twin.study.prediction.errors import vectors
+from twin.study.prediction.error_vectors import vectors
 from twin.study.prediction.openloop import HORIZONS_S, MODEL, Windows
 from twin.study.reference.path_error import PathError
 

@@ -1,0 +1,136 @@
+"""What a row's answer is worth, held against what was hidden."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from math import sqrt
+from typing import Any
+
+from bench.fleet.hidden_causes import CATALOGUE, OF_THE_VOYAGE
+
+Row = Mapping[str, Any]
+GAINS = 0.10  # share by which its oracle must bring the ship nearer, for a cause to count as one to be found
+SAME = {"Current": {"Current", "VaryingCurrent"}, "VaryingCurrent": {"Current", "VaryingCurrent"}}
+# kinds that were outside the catalogue when the fleet was made -> the effect that is one by now
+BY_NOW = {"SlowCompass": {"HeadingLag"}}
+TOLD = 0.5  # probability from which weather is told as today's
+
+
+@dataclass(frozen=True)
+class Share:
+    """So many of so many, with its 95 % interval (Wilson 1927)."""
+
+    k: int
+    n: int
+
+    def interval(self) -> tuple[float, float]:
+        if not self.n:
+            return 0.0, 1.0
+        z, p, n = 1.96, self.k / self.n, self.n
+        middle, half = p + z * z / (2 * n), z * sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+        return (middle - half) / (1 + z * z / n), (middle + half) / (1 + z * z / n)
+
+    def __str__(self) -> str:
+        if not self.n:
+            return "-"
+        lo, hi = self.interval()
+        return f"{self.k} of {self.n}, {self.k / self.n:.0%} ({lo:.0%} to {hi:.0%})"
+
+
+def share(marks: Sequence[bool]) -> Share:
+    return Share(sum(map(bool, marks)), len(marks))
+
+
+def causes(names: Sequence[str]) -> set[str]:
+    """Those of a list of effects that belong to ship or instruments."""
+    return {n for n in names if n not in OF_THE_VOYAGE}
+
+
+def told_weather(row: Row) -> set[str]:
+    """Water and weather that an answer tells, as missing or as today's."""
+    today = {w["effect"] for w in row.get("weather", ()) if w["probability"] >= TOLD}
+    return today | {n for n in row["missing"] if n in OF_THE_VOYAGE}
+
+
+def right(row: Row, missing: Sequence[str] | None = None, verdict: str | None = None) -> bool:
+    """Whether an answer says what the truth is: every hidden cause of ship and instruments and no other,
+    every
+    hidden weather; no cause is named on a healthy ship; what is in no catalogue has no name."""
+    missing, verdict = row["missing"] if missing is None else missing, verdict or row["verdict"]
+    named, hidden = causes(missing), set(row["hidden"])
+    if row["kind"] == "outside":
+        known = set().union(*(BY_NOW.get(n, set()) for n in hidden))
+        return named == known if named and known else not named and verdict in ("unknown", "undecided")
+    if row["kind"] == "nothing":
+        return not named and verdict != "unknown"
+    seen = told_weather(row) | set(missing)
+    return named == causes(list(hidden)) and all(
+        SAME.get(n, {n}) & seen for n in hidden if n in OF_THE_VOYAGE
+    )
+
+
+def alarm(row: Row) -> bool:
+    """Whether an answer accuses ship or instruments: a cause is named, or something unknown."""
+    return bool(causes(row["missing"])) or row["verdict"] == "unknown"
+
+
+def gains(row: Row) -> bool:
+    """Whether the truth, known, would bring the ship a tenth nearer to where it went."""
+    oracle = row.get("oracle")
+    return oracle is not None and bool(oracle["with_m"] <= (1 - GAINS) * oracle["without_m"])
+
+
+def wrong_names(row: Row) -> set[str]:
+    return causes(row["missing"]) - set(row["hidden"]).union(*(BY_NOW.get(n, ()) for n in row["hidden"]))
+
+
+def astray(row: Row, limit: float = 1.5) -> bool:
+    """Whether the model with the day's weather ends clearly farther off than is usual on this ship."""
+    return bool(row["facts"]["error_nothing"] > limit)
+
+
+def truths(row: Row) -> dict[str, float]:
+    """Numbers of what is hidden, as the twin's effects have them; a foreign form at service speed."""
+    f, hidden = row["flaws"], row["hidden"]
+    one = {
+        "HeadingBias.bias": f.get("heading"),
+        "GyroBias.bias": f.get("gyro"),
+        "SpeedLogBias.bias": f.get("log_bias"),
+        "SpeedLogScale.scale": f.get("log_scale"),
+        "SensorDelay.delay": f.get("late_s"),
+        "RudderOffset.offset": f.get("rudder_offset"),
+        "PropellerWear.loss": f.get("prop_wear"),
+        "RudderWear.loss": f.get("rudder_wear"),
+        "Loading.mass": f.get("mass"),
+        "HullFouling.extra": 0.4 * hidden["HullFouling"] if "HullFouling" in hidden else None,
+    }
+    pairs = {
+        "AntennaOffset": (("ahead", "starboard"), "antenna"),
+        "TowForce": (("ahead", "starboard", "turning"), "tow"),
+        "ExternalForce": (("north", "east"), "pull"),
+    }
+    for name, (keys, flaw) in pairs.items():
+        if flaw in f:
+            one |= {f"{name}.{k}": v for k, v in zip(keys, f[flaw], strict=True)}
+    return {k: float(v) for k, v in one.items() if v is not None and k.split(".")[0] in hidden}
+
+
+def intervals(row: Row) -> list[tuple[str, bool]]:
+    """Of every number of a cause that is rightly named: which, and whether its 95 % interval holds the
+    truth."""
+    true, out = truths(row), []
+    for c in row["candidates"]:
+        if c["effect"] in row["missing"] and c["effect"] in row["hidden"]:
+            for p in c["parameters"]:
+                label = f"{c['effect']}.{p['name']}"
+                if label in true:
+                    out.append((label, p["low95"] <= true[label] <= p["high95"]))
+    return out
+
+
+def told_probabilities(row: Row) -> list[tuple[float, bool]]:
+    """Every probability that an answer tells of a cause, and whether the cause is there."""
+    return [
+        (c["probability"], c["effect"] in row["hidden"])
+        for c in row["candidates"]
+        if c["effect"] in CATALOGUE and c["effect"] not in OF_THE_VOYAGE
+    ]

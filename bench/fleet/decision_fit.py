@@ -1,0 +1,270 @@
+"""The decision fitted, with each family of ships held out in turn: `python -m bench.fleet fit FOLDER`.
+
+Two forms are asked. The table of rules as it is (twin/study/diagnosis/decision.py) with its thresholds moved,
+one at a time, as long as the ships of the other families gain by it. And a logistic model that is monotone in
+a few facts, which says of each cause of the explanation how likely it is there, in the place of the rules
+that name."""
+
+import argparse
+import json
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize
+
+from bench.fleet import answer_score
+from bench.fleet.answer_score import Row, Share, share
+from bench.fleet.fleet_page import lines, read_facts, rows_of
+from twin.study.diagnosis import criteria, decision, naming
+from twin.study.diagnosis.confidence import FACTS
+from twin.study.diagnosis.facts import Cause, Facts
+
+GRID = {  # what is tried of each threshold that acts on facts alone (others steer the search as well)
+    "NAMED": (0.7, 0.8, 0.9, 0.95),
+    "CERTAIN": (0.7, 0.8, 0.9, 0.95, 0.99),
+    "LOST": (0.3, 0.5, 0.7, 0.9),
+    "BETTER": (0.0, 0.05, 0.1, 0.15, 0.2),
+    "SIGNIFICANT": (2.0, 3.0, 4.0, 5.0, 6.0, 8.0),
+    "USUAL": (0.1, 0.25, 0.5, 2.0),
+    "CHANGED": (1.0, 2.0, 3.0, 4.0),
+    "POWER": (0.5, 0.6, 0.75),
+}
+BEFORE = {
+    "NAMED": 0.8,
+    "SIGNIFICANT": 3.0,
+    "USUAL": 2.0,
+}  # before the fleet was asked; the others stand as they did
+ALARMS = 0.04  # share of healthy voyages on which an alarm may be raised, at the working point
+COST = 5.0  # of a false alarm beyond that, in hidden causes that are named
+WRONG = 0.5  # of a wrong name
+RIDGE = 1.0
+BINS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 1.0)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("folder", type=Path, nargs="+", help="folders with rows.jsonl")
+    parser.add_argument("--json", type=Path, metavar="FILE.json", default=Path("fit.json"))
+
+
+@contextmanager
+def thresholds(values: Mapping[str, float]) -> Iterator[None]:
+    """The table with these thresholds."""
+    before = {k: getattr(criteria, k) for k in values}
+    try:
+        for k, v in values.items():
+            setattr(criteria, k, v)
+        yield
+    finally:
+        for k, v in before.items():
+            setattr(criteria, k, v)
+
+
+Answer = tuple[tuple[str, ...], str]
+Decide = Callable[[Row], Answer]
+
+
+def by_table(row: Row) -> Answer:
+    d = decision.decide(row["read"])
+    return d.missing, d.verdict
+
+
+def worth(rows: Sequence[Row], decide: Decide) -> float:
+    """What an answer is worth on average: right ones, less wrong names, less alarms beyond what may be."""
+    said = [(r, *decide(r)) for r in rows]
+    right = [answer_score.right(r, m, v) for r, m, v in said if r["kind"] != "nothing" and asked(r)]
+    wrong = [bool(answer_score.causes(m) - set(r["hidden"])) for r, m, _ in said if r["kind"] != "nothing"]
+    alarm = [bool(answer_score.causes(m)) or v == "unknown" for r, m, v in said if r["kind"] == "nothing"]
+    return _mean(right) - WRONG * _mean(wrong) - COST * max(0.0, _mean(alarm) - ALARMS)
+
+
+def _mean(some: Sequence[bool]) -> float:
+    return float(np.mean(some)) if some else 0.0
+
+
+def asked(row: Row) -> bool:
+    """Whether it can be asked that a cause is named at all: its oracle gains, or it has no oracle."""
+    return row["kind"] == "outside" or answer_score.gains(row)
+
+
+def moved(rows: Sequence[Row]) -> dict[str, float]:
+    """Thresholds by coordinate ascent from today's; a move must be worth a case in a hundred."""
+    best = {k: float(getattr(criteria, k)) for k in GRID} | BEFORE
+    with thresholds(best):
+        top = worth(rows, by_table)
+    for _ in range(2):
+        for name, grid in GRID.items():
+            for value in grid:
+                with thresholds(best | {name: value}):
+                    new = worth(rows, by_table)
+                if new > top + 0.01:
+                    top, best = new, best | {name: value}
+    return best
+
+
+def examples(rows: Sequence[Row]) -> tuple[np.ndarray, np.ndarray]:
+    """(M, F) facts and (M,) truth of every cause of every explanation."""
+    x, y = [], []
+    for row in rows:
+        for c in row["read"].causes:
+            if c.in_explanation:
+                x.append(values(row["read"], c))
+                y.append(c.effect in row["hidden"])
+    return np.array(x).reshape(-1, len(FACTS)), np.array(y, float)
+
+
+def values(f: Facts, c: Cause) -> list[float]:
+    return [feature(f, c) for feature in FACTS.values()]
+
+
+def logistic(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Weights of a constant and of each fact, none below zero, by penalised likelihood."""
+    X = np.column_stack([np.ones(len(x)), x])
+
+    def loss(w: np.ndarray) -> tuple[float, np.ndarray]:
+        s = X @ w
+        p = 1 / (1 + np.exp(-s))
+        value = float(np.sum(np.logaddexp(0, s) - y * s) + 0.5 * RIDGE * w[1:] @ w[1:])
+        return value, X.T @ (p - y) + RIDGE * np.concatenate([[0], w[1:]])
+
+    start = np.concatenate([[-1.0], np.full(x.shape[1], 0.2)])
+    bounds = [(None, None), *((0.0, None) for _ in range(x.shape[1]))]
+    return np.asarray(minimize(loss, start, jac=True, bounds=bounds, method="L-BFGS-B").x)
+
+
+def probability(w: np.ndarray, f: Facts, c: Cause) -> float:
+    return float(1 / (1 + np.exp(-(w[0] + np.dot(w[1:], values(f, c))))))
+
+
+def by_logistic(w: np.ndarray, limit: float) -> Decide:
+    """Causes of the explanation that are likelier than the limit are named; where none is, the table without
+    its names."""
+
+    def decide(row: Row) -> Answer:
+        f: Facts = row["read"]
+        named = [c.effect for c in f.causes if c.in_explanation and probability(w, f, c) >= limit]
+        if named:
+            return (*named, *naming.weather_named(f)), "missing"
+        d = decision.decide(f)
+        if answer_score.causes(d.missing):
+            return tuple(n for n in d.missing if n in answer_score.OF_THE_VOYAGE), "undecided"
+        return d.missing, d.verdict
+
+    return decide
+
+
+def foretold(rows: Sequence[Row], family: str) -> list[tuple[float, bool]]:
+    """What ships of the other families say of each cause of this family's explanations, and whether it is
+    there."""
+    w = logistic(*examples([r for r in rows if r["family"] != family]))
+    return [
+        (probability(w, r["read"], c), c.effect in r["hidden"])
+        for r in rows
+        if r["family"] == family
+        for c in r["read"].causes
+        if c.in_explanation
+    ]
+
+
+def working_point(rows: Sequence[Row], w: np.ndarray) -> float:
+    limits = np.round(np.arange(0.3, 0.96, 0.05), 2)
+    return float(max(limits, key=lambda t: worth(rows, by_logistic(w, float(t)))))
+
+
+def outcome(rows: Sequence[Row], decide: Decide) -> dict[str, tuple[int, int]]:
+    """Counts of the figures under a decision."""
+    said = [(r, *decide(r)) for r in rows]
+
+    def of(
+        which: Callable[[Row], bool], what: Callable[[Row, tuple[str, ...], str], bool]
+    ) -> tuple[int, int]:
+        return _pair(share([what(r, m, v) for r, m, v in said if which(r)]))
+
+    return {
+        "single, gains": of(lambda r: r["kind"] == "single" and answer_score.gains(r), answer_score.right),
+        "single, all": of(lambda r: r["kind"] == "single", answer_score.right),
+        "pair and triple, gains": of(
+            lambda r: r["kind"] in ("pair", "triple") and answer_score.gains(r), answer_score.right
+        ),
+        "outside": of(lambda r: r["kind"] == "outside", answer_score.right),
+        "wrong name": of(
+            lambda r: r["kind"] != "nothing", lambda r, m, v: bool(answer_score.causes(m) - set(r["hidden"]))
+        ),
+        "healthy, named": of(lambda r: r["kind"] == "nothing", lambda r, m, v: bool(answer_score.causes(m))),
+        "healthy, alarm": of(
+            lambda r: r["kind"] == "nothing", lambda r, m, v: bool(answer_score.causes(m)) or v == "unknown"
+        ),
+    }
+
+
+def _pair(s: Share) -> tuple[int, int]:
+    return s.k, s.n
+
+
+def added(all_of: Sequence[dict[str, tuple[int, int]]]) -> dict[str, str]:
+    return {k: str(Share(sum(o[k][0] for o in all_of), sum(o[k][1] for o in all_of))) for k in all_of[0]}
+
+
+def run(args: argparse.Namespace) -> int:
+    rows = [r | {"read": read_facts(r)} for r in rows_of(args.folder)]
+    families = sorted({r["family"] for r in rows})
+    held: dict[str, list[dict[str, tuple[int, int]]]] = {"before": [], "thresholds moved": [], "logistic": []}
+    chosen: dict[str, Any] = {}
+    curve: dict[float, list[dict[str, tuple[int, int]]]] = {}
+    for family in families:
+        own, others = [r for r in rows if r["family"] == family], [r for r in rows if r["family"] != family]
+        with thresholds(BEFORE):
+            held["before"].append(outcome(own, by_table))
+        best = moved(others)
+        with thresholds(best):
+            held["thresholds moved"].append(outcome(own, by_table))
+        w = logistic(*examples(others))
+        limit = working_point(others, w)
+        held["logistic"].append(outcome(own, by_logistic(w, limit)))
+        chosen[family] = {"thresholds": _changed(best), "limit": limit, "weights": _weights(w)}
+        for t in np.round(np.arange(0.2, 0.99, 0.05), 2).tolist():
+            curve.setdefault(t, []).append(outcome(own, by_logistic(w, t)))
+    w = logistic(*examples(rows))
+    told_of = [x for f in families for x in foretold(rows, f)]
+    result = {
+        "voyages": len(rows),
+        "held_out": {name: added(each) for name, each in held.items()},
+        "chosen_by_family_held_out": chosen,
+        "reliability": [
+            [lo, hi, str(share([there for p, there in told_of if lo <= p < hi]))] for lo, hi in pairwise(BINS)
+        ],
+        "curve": {str(t): added(each) for t, each in curve.items()},
+        "of_all": {"thresholds": moved(rows), "limit": working_point(rows, w), "weights": _weights(w)},
+    }
+    result["page"] = told(result)
+    args.json.write_text(json.dumps(result, indent=1))
+    print("\n".join(told(result)))
+    return 0
+
+
+def _changed(best: Mapping[str, float]) -> dict[str, float]:
+    return {k: v for k, v in best.items() if v != BEFORE.get(k, getattr(criteria, k))}
+
+
+def _weights(w: np.ndarray) -> dict[str, float]:
+    return dict(zip(["constant", *FACTS], [round(float(v), 3) for v in w], strict=True))
+
+
+def told(result: Mapping[str, Any]) -> list[str]:
+    """What was fitted, for the page."""
+    held: Mapping[str, Mapping[str, str]] = result["held_out"]
+    body = [(figure, *(held[name][figure] for name in held)) for figure in held["before"]]
+    out = lines("The decision fitted, each family held out in turn", "", ("", *held), body)
+    keys = ("single, gains", "pair and triple, gains", "wrong name", "healthy, named")
+    text = "Of the logistic model with each family held out, by the probability from which a cause is named."
+    curve = [(t, *(c[k] for k in keys)) for t, c in result["curve"].items()]
+    out += lines("Names against false alarms", text, ("from", *keys), curve)
+    text = (
+        "What the fit to the other families says of each cause of an explanation (`confidence` in the "
+        "answer), and how often it is there."
+    )
+    body = [(f"{lo:g} to {hi:g}", there) for lo, hi, there in result["reliability"]]
+    return out + lines("Confidence, each family held out in turn", text, ("said", "there"), body)

@@ -1,0 +1,285 @@
+"""The figures of a fleet as a page, from its rows: `python -m bench.fleet table FOLDER --page FILE.md`."""
+
+import argparse
+import json
+from collections import Counter
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+from textwrap import wrap
+from typing import Any
+
+import numpy as np
+
+from bench.fleet import answer_score
+from bench.fleet.answer_score import Row, Share, share
+from bench.fleet.hidden_causes import OF_THE_VOYAGE
+from bench.fleet.run import ROWS, read
+from bench.fleet.voyage_plan import practice
+from twin.study.diagnosis.decision import decide
+from twin.study.diagnosis.facts import Facts
+
+RIGHT = (
+    "**Right**: every hidden cause of ship and instruments is named and no other; hidden weather is named or "
+    "told; no cause is named on a healthy ship. **Its oracle gains**: the truth, fitted by the twin's own "
+    "form of it, brings the open-loop error down by a tenth."
+)
+BY_HAND = "## What it says"  # from this title on
+BINS = (0.05, 0.2, 0.5, 0.8, 0.9, 0.95, 1.0)
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("folder", type=Path, nargs="+", help="folders with rows.jsonl")
+    parser.add_argument("--page", type=Path, metavar="FILE.md")
+    parser.add_argument("--json", type=Path, metavar="FILE.json")
+    parser.add_argument(
+        "--fit", type=Path, metavar="FILE.json", help="what `fit` wrote, told on the same page"
+    )
+
+
+def rows_of(folders: Sequence[Path]) -> list[dict[str, Any]]:
+    """Rows of several folders, each key once, those that failed left out."""
+    found = {row["key"]: row for folder in folders for row in read(folder / ROWS)}
+    return [row for row in found.values() if "failed" not in row]
+
+
+FIGURES: dict[
+    str, tuple[str, Callable[[Row], bool], Callable[[Row], bool]]
+] = {  # goal, which rows, what is counted
+    "single cause named, alone and right": ("", lambda r: r["kind"] == "single", answer_score.right),
+    "the same where its oracle gains 10 % or more": (
+        ">= 90 %",
+        lambda r: r["kind"] == "single" and answer_score.gains(r),
+        answer_score.right,
+    ),
+    "a wrong name beside or in its place": (
+        "",
+        lambda r: r["kind"] == "single",
+        lambda r: bool(answer_score.wrong_names(r)),
+    ),
+    "healthy voyages with an alarm (a cause named, or `unknown`)": (
+        "<= 2 %",
+        lambda r: r["kind"] == "nothing",
+        answer_score.alarm,
+    ),
+    "healthy voyages on which a cause is named": (
+        "",
+        lambda r: r["kind"] == "nothing",
+        lambda r: bool(answer_score.causes(r["missing"])),
+    ),
+    "two causes, both named": (">= 85 %", lambda r: r["kind"] == "pair", answer_score.right),
+    "two causes, both named, where their oracle gains 10 %": (
+        "",
+        lambda r: r["kind"] == "pair" and answer_score.gains(r),
+        answer_score.right,
+    ),
+    "three causes, all named": (">= 70 %", lambda r: r["kind"] == "triple", answer_score.right),
+    "outside the catalogue: `unknown`, or undecided without a name": (
+        ">= 85 %",
+        lambda r: r["kind"] == "outside",
+        answer_score.right,
+    ),
+    "the same where the model ends clearly astray": (
+        "",
+        lambda r: r["kind"] == "outside" and answer_score.astray(r),
+        answer_score.right,
+    ),
+    "outside the catalogue: a name is given": (
+        "<= 15 %",
+        lambda r: r["kind"] == "outside",
+        lambda r: bool(answer_score.causes(r["missing"])),
+    ),
+}
+
+
+def figures(rows: Sequence[Row]) -> dict[str, Share]:
+    return {name: share([what(r) for r in rows if which(r)]) for name, (_, which, what) in FIGURES.items()}
+
+
+def page(rows: Sequence[Row], fit: dict[str, Any] | None = None) -> str:
+    """The whole page."""
+    again = [decided(r) for r in rows]
+    out = [*_head(rows), *_figures(rows)]
+    for part in (_families, _effects, _reliability, _reasons, _conformal):
+        out += part(again)
+    return "\n".join([*out, *(fit["page"] if fit else []), *_cost(rows)]) + "\n"
+
+
+def lines(title: str, text: str, head: Sequence[str], body: Sequence[Sequence[object]]) -> list[str]:
+    """A section with a table."""
+    out = ["", f"## {title}", "", *([text, ""] if text else [])]
+    out += [f"| {' | '.join(head)} |", "|" + "---|" * len(head)]
+    return out + [f"| {' | '.join(str(cell) for cell in row)} |" for row in body]
+
+
+def _head(rows: Sequence[Row]) -> list[str]:
+    ships, families = len({(r["family"], r["seed"]) for r in rows}), len({r["family"] for r in rows})
+    about = (
+        f"{len(rows)} voyages of {ships} random ships of {families} families (`bench/fleet`). Wind, stream "
+        "and swell on every voyage, a third of it not recorded; instruments with faults of their own; two "
+        "to six reference voyages; no force in the twin's form. Weather that is named or told as today's "
+        "never counts against an answer. Intervals: 95 % (Wilson). Made from the rows of the first command:"
+    )
+    return [
+        "# The decision on ships of many forms",
+        "",
+        *wrap(about, 108),
+        "",
+        "```sh",
+        "python -m bench.fleet run FOLDER --seeds 0-7 --voyages 8 --workers 16",
+        "python -m bench.fleet fit FOLDER --json fit.json",
+        "python -m bench.fleet table FOLDER --fit fit.json --page docs/results/judgement.md",
+        "```",
+        "",
+        *wrap(RIGHT, 108),
+    ]
+
+
+def _figures(rows: Sequence[Row]) -> list[str]:
+    near = [there for r in rows for p, there in answer_score.told_probabilities(r) if 0.85 <= p < 0.95]
+    held = [inside for r in rows for _, inside in answer_score.intervals(r)]
+    now = figures([decided(r) for r in rows])
+    body: list[tuple[object, ...]] = [(n, FIGURES[n][0], s, now[n]) for n, s in figures(rows).items()]
+    body.append(("causes told with 0.85 to 0.95 that are there", "85 to 95 %", share(near), ""))
+    body.append(("95 % intervals of rightly named causes that hold the truth", "90 to 98 %", share(held), ""))
+    text = (
+        "As answered when they were asked, with the thresholds that were conventions; and decided again from "
+        "the same facts by the table of today, three thresholds of which were fitted to these ships. What "
+        "that is worth on families left out of the fit stands below."
+    )
+    return lines("Figures", text, ("", "goal", "as answered", "decided again"), body)
+
+
+def read_facts(row: Row) -> Facts:
+    """The facts of a row; how many references reach its score is got from p where the row is older than the
+    fact."""
+    facts, p, least = Facts.read(row["facts"]), row.get("p_value"), row.get("p_value_at_best")
+    if facts.reached is not None or p is None or least is None:
+        return facts
+    n = round(1 / least) - 1
+    return replace(facts, reached=round(p * (n + 1) - 1) / n)
+
+
+def decided(row: Row) -> dict[str, Any]:
+    """The row with the answer that the decision of today gives to its facts."""
+    d = decide(read_facts(row))
+    return {**row, "missing": list(d.missing), "verdict": d.verdict, "reason": d.reason}
+
+
+SHORT = {
+    "single, gains": "the same where its oracle gains 10 % or more",
+    "single, all": "single cause named, alone and right",
+    "healthy, alarm": "healthy voyages with an alarm (a cause named, or `unknown`)",
+    "pair": "two causes, both named",
+    "outside": "outside the catalogue: `unknown`, or undecided without a name",
+}
+
+
+def _short(s: Share) -> str:
+    return f"{s.k}/{s.n}" if s.n else "-"
+
+
+def _families(rows: Sequence[Row]) -> list[str]:
+    body = []
+    for family in sorted({r["family"] for r in rows}):
+        own = [r for r in rows if r["family"] == family]
+        told, ships = figures(own), len({r["seed"] for r in own})
+        body.append([family, ships, *(_short(told[name]) for name in SHORT.values())])
+    return lines("By family", "", ("family", "ships", *SHORT), body)
+
+
+def _effects(rows: Sequence[Row]) -> list[str]:
+    """Single effects: how often right, and what is said otherwise."""
+    body = []
+    for name in sorted({n for r in rows if r["kind"] in ("single", "outside") for n in r["hidden"]}):
+        own = [r for r in rows if list(r["hidden"]) == [name]]
+        marks = share([answer_score.right(r) for r in own])
+        gain = share([answer_score.right(r) for r in own if answer_score.gains(r)])
+        said = Counter(_said(r) for r in own if not answer_score.right(r)).most_common(5)
+        body.append((name, _short(marks), _short(gain), ", ".join(f"{w} {k}" for w, k in said)))
+    head = ("hidden alone", "right", "right where its oracle gains 10 %", "said otherwise")
+    return lines("By effect", "", head, body)
+
+
+def _said(r: Row) -> str:
+    named = [n for n in r["missing"] if n not in OF_THE_VOYAGE]
+    return "+".join(named) if named else f"`{r['reason']}`"
+
+
+def _reliability(rows: Sequence[Row]) -> list[str]:
+    told, body = [x for r in rows for x in answer_score.told_probabilities(r)], []
+    for lo, hi in pairwise(BINS):
+        own = [(p, there) for p, there in told if lo <= p < hi]
+        if own:
+            mean = float(np.mean([p for p, _ in own]))
+            body.append((f"{lo:.2f} to {hi:.2f}", f"{mean:.2f}", share([there for _, there in own])))
+    text = (
+        "Each probability of 5 % or more that an answer tells of a cause, and how often the cause is there."
+    )
+    return lines("Reliability", text, ("told", "mean told", "there"), body)
+
+
+def _reasons(rows: Sequence[Row]) -> list[str]:
+    """Reasons by what is hidden."""
+    kinds = ("nothing", "single", "pair", "triple", "outside")
+    count = Counter((r["reason"], r["kind"]) for r in rows)
+    reasons = [reason for reason, _ in Counter(r["reason"] for r in rows).most_common()]
+    body = [(f"`{reason}`", *(count[reason, kind] for kind in kinds)) for reason in reasons]
+    return lines("Reasons", "", ("reason", *kinds), body)
+
+
+def _conformal(rows: Sequence[Row]) -> list[str]:
+    """The p-value on healthy voyages, where the ship file had the scores of its references."""
+    known, body = [r for r in rows if r.get("p_value") is not None], []
+    for calm in (False, True):
+        own = [r for r in known if practice(r["family"], r["seed"])[1] == calm]
+        healthy = [r for r in own if r["kind"] == "nothing"]
+        may = f"{np.mean([r['p_value_at_best'] for r in healthy]):.0%}" if healthy else "-"
+        others = _at_least([r for r in own if r["kind"] != "nothing"])
+        body.append(("calm days chosen" if calm else "days as they come", may, _at_least(healthy), others))
+    text = (
+        "Voyages whose p is the least that the ship's two to six references can show. `May be`: how often on "
+        "healthy ones, where references and voyage could have come in any order. Days that were chosen for "
+        "being calm break that order, and p is then too small."
+    )
+    head = ("reference voyages", "may be", "healthy voyages", "voyages with something hidden")
+    return lines("Conformal p-value", text, head, body) if known else []
+
+
+def _at_least(rows: Sequence[Row]) -> Share:
+    """How often p is the least that the references can show."""
+    return share([r["p_value"] <= r["p_value_at_best"] for r in rows])
+
+
+def _cost(rows: Sequence[Row]) -> list[str]:
+    own, first = [r["cpu_s"] for r in rows], [r["calibration_s"] for r in rows]
+    return [
+        "",
+        "## Cost",
+        "",
+        f"Processor seconds of a diagnosis: {np.median(own):.0f} in the median, "
+        f"{np.percentile(own, 90):.0f} at the 90th percentile, {max(own):.0f} at most; of a calibration: "
+        f"{np.median(first):.0f} in the median.",
+    ]
+
+
+def by_hand(path: Path) -> str:
+    """What was written by hand at the end of a page that is there: kept when the page is made again."""
+    before = path.read_text() if path.exists() else ""
+    place = before.find(f"\n{BY_HAND}\n")
+    return before[place:] if place >= 0 else ""
+
+
+def run(args: argparse.Namespace) -> int:
+    rows = rows_of(args.folder)
+    text = page(rows, json.loads(args.fit.read_text()) if args.fit else None)
+    if args.page:
+        args.page.write_text(text + by_hand(args.page))
+    else:
+        print(text)
+    if args.json:
+        args.json.write_text(
+            json.dumps({n: [s.k, s.n, *s.interval()] for n, s in figures(rows).items()}, indent=1)
+        )
+    return 0

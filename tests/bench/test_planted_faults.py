@@ -1,0 +1,100 @@
+"""Faults of a known size in the readings of a voyage."""
+
+import numpy as np
+import pytest
+
+from bench.real import planted_faults as real_faults
+from bench.real.kvlcc2 import BASINS, MAPS
+from bench.real.planted_faults import (
+    FAULTS,
+    PlantedReadings,
+    antenna_elsewhere,
+    asked,
+    early_rudder,
+    in_a_stream,
+    late_receiver,
+    turned_compass,
+)
+from twin.commands.story import SHIP
+from twin.physics.effects import find
+from twin.physics.ship import load
+from twin.recording.voyage import Voyage
+
+U, R = 7.0, 0.005  # speed [m/s] and yaw rate [rad/s] of a ship that turns
+
+
+@pytest.fixture
+def voyage():
+    t = np.arange(0.0, 600.0, 1.0)
+    psi = R * t
+    columns = {
+        "north_m": U / R * np.sin(psi),
+        "east_m": U / R * (1.0 - np.cos(psi)),
+        "heading_true_north_deg": np.degrees(psi),
+        "surge_velocity_mps": np.full_like(t, U),
+        "sway_velocity_mps": np.zeros_like(t),
+        "yaw_rate_degps": np.full_like(t, np.degrees(R)),
+        "rudder_angle_deg": 10.0 * np.sin(0.02 * t),
+        "propeller_rate_rpm": np.full_like(t, 100.0),
+    }
+    return Voyage("a turn", t, columns)
+
+
+def moves_as_it_says(v):
+    """Place and velocity over ground of a voyage whose compass is right must agree."""
+    q = PlantedReadings.of(v)
+    assert np.gradient(q.x, v.time_s)[2:-2] == pytest.approx(q.north[2:-2], abs=2e-3)
+    assert np.gradient(q.y, v.time_s)[2:-2] == pytest.approx(q.east[2:-2], abs=2e-3)
+
+
+def test_the_readings_of_a_voyage_come_back_as_they_were(voyage):
+    back = PlantedReadings.of(voyage).into(voyage)
+    for name, values in voyage.columns.items():
+        assert back[name] == pytest.approx(values, abs=1e-9)
+
+
+def test_place_and_velocity_still_belong_together_behind_an_antenna_a_stream_and_a_delay(voyage):
+    for v in (voyage, antenna_elsewhere(voyage, 40.0), in_a_stream(voyage, 0.5, -0.3)):
+        moves_as_it_says(v)
+    late = late_receiver(voyage, 5.0)
+    assert late["north_m"] == pytest.approx(voyage["north_m"][: len(late)]) and late[
+        "heading_true_north_deg"
+    ][0] == pytest.approx(np.degrees(R * 5))
+
+
+def test_a_turned_compass_moves_the_ship_nowhere_and_makes_her_drift(voyage):
+    v = turned_compass(voyage, 0.05)
+    assert v["north_m"] == pytest.approx(voyage["north_m"])
+    assert v["sway_velocity_mps"] == pytest.approx(-U * np.sin(0.05)) and v[
+        "surge_velocity_mps"
+    ] == pytest.approx(U * np.cos(0.05))
+
+
+def test_a_rudder_that_comes_later_was_recorded_earlier(voyage):
+    assert early_rudder(voyage, 7.0)["rudder_angle_deg"][:500] == pytest.approx(
+        voyage["rudder_angle_deg"][7:507]
+    )
+
+
+def test_each_basin_has_its_map_of_columns():
+    for basin in BASINS:
+        assert (MAPS / f"kvlcc2_{basin.folder}.toml").is_file()
+
+
+def test_every_fault_has_a_name_in_the_catalogue_and_changes_the_readings(voyage):
+    for fault in FAULTS:
+        assert all(find(name) for name in fault.effects)
+        put = fault.put(voyage, 320.0, 7.97)
+        assert (put is voyage) == (not fault.effects)
+    assert len({fault.words for fault in FAULTS}) == len(FAULTS)
+
+
+def test_the_table_says_what_was_put_and_what_was_named():
+    ship = load(SHIP)
+    from twin.commands.story import TUESDAY
+    from twin.recording.read import read_voyage
+
+    gyro = next(f for f in FAULTS if f.effects == ("GyroBias",))
+    row = asked(gyro, [read_voyage(TUESDAY)], ship)
+    line = real_faults.told([row]).splitlines()[-1]
+    assert gyro.words in line and "GyroBias" in row["missing"] and f"`{row['verdict']}`" in line

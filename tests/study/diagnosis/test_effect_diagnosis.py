@@ -1,0 +1,175 @@
+"""Plant and find: an effect hidden in a truth of another form is named; with nothing hidden the answer is
+nothing."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bench.bundled import recorded
+from bench.reference import Case, simulate
+from twin import cli
+from twin.commands.story import MONDAY, SHIP, TUESDAY
+from twin.physics.effects import catalogue
+from twin.recording.read import read_voyage
+from twin.recording.voyage import Voyage
+from twin.study.diagnosis.effect_diagnosis import diagnose
+from twin.study.diagnosis.tell_diagnosis import told
+
+
+@pytest.fixture(scope="module")
+def monday(tmp_path_factory):
+    """What the command says of the bundled voyage."""
+    out = tmp_path_factory.mktemp("diagnosis") / "d.json"
+    assert cli.main(["diagnose", str(MONDAY), "--ship", str(SHIP), "--json", str(out)]) == 0
+    return json.loads(out.read_text())
+
+
+def test_the_hidden_effect_of_the_bundled_voyage_is_named(monday):
+    assert monday["verdict"] == "missing"
+    assert monday["missing"] == ["HullFouling"]
+
+
+def test_the_answer_has_the_keys_of_the_contract(monday):
+    assert {"schema_version", "verdict", "missing", "candidates", "next_manoeuvre"} <= monday.keys()
+    first = monday["candidates"][0]
+    assert {
+        "effect",
+        "probability",
+        "parameters",
+        "typical_force",
+        "error_without",
+        "error_with",
+        "cannot_be_told_from",
+    } <= first.keys()
+    assert {"name", "value", "low95", "high95", "unit"} <= first["parameters"][0].keys()
+    assert first["typical_force"].keys() == {"X_N", "Y_N", "N_Nm"}
+
+
+def test_the_size_comes_with_an_interval_and_a_force_in_newtons(monday):
+    first = monday["candidates"][0]
+    extra = first["parameters"][0]
+    assert extra["low95"] < extra["value"] < extra["high95"]
+    assert extra["low95"] > 0.05
+    assert 1e5 < first["typical_force"]["X_N"] < 2e6
+
+
+def test_the_error_falls_on_parts_not_used_for_the_fit(monday):
+    first = monday["candidates"][0]
+    assert first["error_with"] < 0.8 * first["error_without"]
+    assert 0.0 < first["error_floor"] < first["error_without"]
+
+
+def test_two_voyages_together_say_it_more_clearly_than_one(tanker, monday):
+    both = diagnose([read_voyage(MONDAY), read_voyage(TUESDAY)], tanker).result
+    assert both["missing"] == ["HullFouling"]
+    one, two = (r["candidates"][0]["parameters"][0] for r in (monday, both))
+    assert two["high95"] - two["low95"] < one["high95"] - one["low95"]
+
+
+@pytest.mark.parametrize("name", ["HeadingBias", "Current", "RudderWear"])
+def test_an_effect_hidden_in_the_reference_sea_is_named(tanker, voyages, name):
+    result = diagnose([voyages[name]], tanker).result
+    assert result["verdict"] == "missing"
+    assert result["missing"][0] == name, "\n".join(told(result))
+
+
+def test_nothing_hidden_means_nothing_missing(tanker, voyages):
+    result = diagnose([voyages["nothing"]], tanker).result
+    assert result["verdict"] == "nothing_missing", "\n".join(told(result))
+    assert result["missing"] == []
+
+
+def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_resembles_is_said(
+    tanker, voyages
+):
+    """Test: a rudder that hangs loose by 2.5 deg to either side. Expected: unknown, and not a worn rudder;
+    what it looks like, with its size."""
+    result = diagnose([voyages["RudderBacklash"]], tanker).result
+    assert result["verdict"] == "unknown" and result["missing"] == []
+    (like,) = result["resembles"]
+    assert like["effect"] == "RudderPlay" and "RudderPlay" not in catalogue()
+    (gap,) = like["parameters"]
+    assert gap["low95"] <= np.radians(2.5) <= gap["high95"] and gap["unit"] == "rad"
+    assert ("resembles RudderPlay: The rudder hangs loose") in result["sentence"] and any(
+        "gap" in line for line in told(result)
+    )
+
+
+def test_liquid_that_swings_in_a_slack_tank_is_no_load(tanker, voyages):
+    """Test: a tank of an eighth of its mass, forward or aft, whose liquid swings aside. Expected: unknown, no
+    name, and what it looks like."""
+    result = diagnose([voyages["Sloshing"]], tanker).result
+    assert result["verdict"] == "unknown" and result["missing"] == [], "\n".join(told(result))
+    (like,) = result["resembles"]
+    share, *_ = like["parameters"]
+    assert like["effect"] == "SwayingMass" and share["name"] == "share" and 0.06 < share["value"] < 0.2
+
+
+def test_what_stands_clear_of_what_calibration_left_unexplained_is_named_all_the_same(tanker, voyages):
+    """Test: a strong stream, asked of a ship file that leaves half of what turns the ship unexplained.
+    Expected: it is the answer, for a log shows the water without any model of turning."""
+    notes = tanker.notes["structural"]
+    coarse = notes | {name: notes[name] | {"share": [0.02, 0.05, 0.52]} for name in ("floor", "beside")}
+    result = diagnose(
+        [voyages["Current"]], replace(tanker, notes={**tanker.notes, "structural": coarse})
+    ).result
+    assert result["missing"] == ["Current"], "\n".join(told(result))
+
+
+def test_a_straight_voyage_is_not_enough_to_acquit_a_ship(tanker, voyages):
+    """Test: a calm, straight, steady voyage. Expected: undecided, and no name."""
+    result = diagnose([voyages["straight"]], tanker).result
+    assert result["verdict"] == "undecided", "\n".join(told(result))
+    assert result["missing"] == []
+
+
+def test_what_was_not_recorded_cannot_be_judged_and_the_answer_says_so(tanker, voyages):
+    whole = voyages["nothing"]
+    blind = Voyage("blind", whole.time_s, {n: x for n, x in whole.columns.items() if "wind" not in n})
+    result = diagnose([blind], tanker).result
+    assert {"effect": "Wind", "lacks": ["true_wind_speed_mps", "true_wind_direction_deg"]} in result[
+        "not_judged"
+    ]
+    assert any("Wind cannot be judged: no true_wind_speed_mps and no" in line for line in told(result))
+
+
+def test_a_voyage_too_short_to_judge_exits_with_4_and_one_line(tanker, voyages, tmp_path, capsys):
+    from twin.recording.write import write_voyage
+
+    write_voyage(voyages["nothing"].between(0.0, 60.0), tmp_path / "short.mcap")
+    assert cli.main(["diagnose", str(tmp_path / "short.mcap"), "--ship", str(SHIP)]) == 4
+    said = capsys.readouterr().err.strip().splitlines()[-1]
+    assert "nothing: 59 s" in said and "ship lengths" in said
+
+
+def test_a_wind_is_news_unless_it_blew_as_hard_on_the_reference_voyages(tanker, voyages):
+    news = diagnose([voyages["Wind"]], tanker).result
+    assert (news["missing"], news["as_on_references"]) == (["Wind"], []), "\n".join(told(news))
+    known = diagnose([voyages["Wind"]], tanker, [voyages["calm"], voyages["Wind again"]]).result
+    assert "Wind" not in known["missing"] and known["as_on_references"] == ["Wind"], "\n".join(told(known))
+    assert (
+        "Wind was no stronger than on the reference voyages: it is allowed for, and not called missing."
+    ) in told(known)
+
+
+def test_references_given_on_the_command_count_like_a_calibration(tanker, voyages):
+    result = diagnose([voyages["HeadingBias"]], tanker, [voyages["calm"], voyages["calm too"]]).result
+    assert result["missing"][:1] == ["HeadingBias"], "\n".join(told(result))
+    assert np.isfinite(result["floor"]["temper"])
+
+
+def test_a_cause_is_named_beside_the_weather_of_an_ordinary_day(tanker):
+    """Test: wind and stream that the model does not know, and a fouled hull. Expected: the hull first, the
+    weather in a part of its own; only what lasts is offered for the ship file."""
+    hidden = (("Wind", 0.5), ("Current", 0.5), ("HullFouling", 1.0))
+    (sailed,) = simulate([Case("kvlcc2", "mixed", hidden=hidden, seed=909, duration_s=1200.0)])
+    result = diagnose([recorded("june", sailed.columns, every=10)], tanker).result
+    assert result["missing"][0] == "HullFouling" and result["answer"]["lasting"] == ["HullFouling"], (
+        "\n".join(told(result))
+    )
+    assert "Current" in {w["effect"] for w in result["weather"]}
+    assert "today's water and wind:" in told(result) and result["sentence"].startswith("Missing: HullFouling")
+    assert all(0.0 < c["probability"] <= 0.99 for c in result["candidates"]) and result["reason"] == "named"
+    assert result["rivals"][0]["log_bayes_factor"] == 0.0 and len(result["rivals"]) > 1

@@ -1,0 +1,227 @@
+"""The live bound of the observer's error, tick by tick, through measurements, drop-outs, late ticks and
+changing seas.
+
+    before the measurements of a tick:   E = V p + push d(H_s) + calm + turned psi
+    with one (row by row):               p = W p + again max(E) + drift max(p) + c + (h - dt) K E
+    without:                             p = E, and what a sample that does not count was allowed to pull
+
+psi: the bound of the estimated heading's error, a fourth state. The matrices are those of
+    twin/live/certificate/theorem.py (twin/live/periods.py for
+a tick that lasted longer than the certified period).
+"""
+
+from collections import deque
+
+from twin.live.certificate.certificate import Certificate
+from twin.live.certificate.comparison_systems import add, scaled_row
+from twin.live.certificate.periods import SURE, TABLE, Periods, of_certificate
+from twin.live.observer.operating import NU, WORDS, in_unit
+from twin.physics.state import Situation
+
+NOTHING = 1e9  # a bound so wide that it says nothing: hours without a measurement, or no certificate
+
+Three = tuple[float, float, float]
+Rows = tuple[tuple[float, ...], ...]
+STILL = (0.0, 0.0, 0.0)
+NONE = (False, False, False)
+
+
+def look_back(m: int) -> int:
+    """Samples that a measurement of age m can still show."""
+    return 2 * m + 1
+
+
+class Highest:
+    """The greatest of the last so many values, in a time that does not grow with their number."""
+
+    __slots__ = ("count", "kept", "size")
+
+    def __init__(self, size: int, *first: float) -> None:
+        self.size, self.count = size, 0
+        self.kept: deque[tuple[int, float]] = deque()  # falling values with the number each came as
+        for x in first:
+            self.push(x)
+
+    def push(self, x: float) -> float:
+        """Take one more; the greatest of the window with it."""
+        kept = self.kept
+        while kept and kept[-1][1] <= x:
+            kept.pop()
+        kept.append((self.count, x))
+        self.count += 1
+        if kept[0][0] <= self.count - 1 - self.size:
+            kept.popleft()
+        return kept[0][1]
+
+    def raised(self, x: float) -> float:
+        """The newest value is at least this, after all."""
+        self.count -= 1
+        return self.push(x)
+
+
+class Tube:
+    """|nu_hat - nu| <= beta, component by component [m/s, m/s, rad/s], as long as the assumptions hold; `psi`
+    the same of the heading."""
+
+    def __init__(self, certificate: Certificate, start: Three | None = None) -> None:
+        """`start` bounds the error of the first estimate; by default that is a measurement, so its noise."""
+        self.certificate = certificate
+        self.window = look_back(max(certificate.delays))
+        self.periods: Periods = of_certificate(certificate)
+        self.oldest_s = (1.0 + SURE) * max(certificate.delays) * certificate.h
+        first = self.beta = certificate.noise if start is None else start
+        self.psi = certificate.heading_noise
+        self._after, self._before = ([Highest(self.window, b) for b in first] for _ in range(2))
+        self._headings = Highest(self.window, self.psi)
+        self._widest: Three = first  # greatest after of the window
+        self._seas, self._acted = Highest(self.window), Highest(self.window)
+        self._pulls: deque[Three] = deque(maxlen=self.window)
+        # the highest in the window, and whether the learned force acted, for which the rows were made
+        self._sea = (-1.0, -1.0)
+        self._look(0.0, True)
+
+    def reset(self, start: Three | None = None, psi: float | None = None) -> None:
+        """Begin anew from what the instruments leave open. What a late measurement looks back on stays in the
+        windows."""
+        self.beta = self.noise if start is None else start
+        self.psi = psi if psi is not None and self.certificate.estimated_heading else self.heading_noise
+        first, second, third = self._after
+        u, v, r = self.beta
+        self._widest = first.raised(u), second.raised(v), third.raised(r)
+        self._headings.raised(self.psi)
+        for before, b in zip(self._before, self.beta, strict=True):
+            before.raised(b)
+
+    def step(
+        self,
+        received: tuple[bool, bool, bool],
+        H_s: float = 0.0,
+        pulled: Three = STILL,
+        dt: float | None = None,
+        acts: bool = True,
+        heading: bool = True,
+        turned: float = 0.0,
+    ) -> Three:
+        """The bound after this tick of dt seconds (the certified period by default); `received` says which of
+        u, v, r was measured and accepted, `heading` whether psi was, `acts` whether a learned force acts.
+
+        `pulled`, `turned`: by how much a sample that was not accepted may have moved the estimate all the
+        same."""
+        h, K = self.certificate.h, self.certificate.K
+        dt = h if dt is None else dt
+        late = self.periods.count(dt)
+        self._look(self._seas.push(H_s), self._acted.push(float(acts)) > 0.0)
+        pu, pv, pr = self._widest
+        (u, v, r), psi = self.beta, self.psi
+        if late == 1:
+            short, table = max(h - dt, 0.0), self._table
+        else:
+            late = late or TABLE[-1]
+            short, table, received, heading = 0.0, self._late_rows(late), NONE, False
+        beta, E = [], 0.0
+        for i, (v0, v1, v2, d, t, w0, w1, w2, again, d0, d1, d2, c) in enumerate(table):
+            E = min(v0 * u + v1 * v + v2 * r + d + t * psi, NOTHING)
+            widest = self._before[i].push(E)
+            if received[i]:
+                p = (
+                    w0 * u
+                    + w1 * v
+                    + w2 * r
+                    + again * widest
+                    + d0 * pu
+                    + d1 * pv
+                    + d2 * pr
+                    + c
+                    + self.certificate.step.pushed[i] * t * psi
+                )
+                beta.append(min(p + short * K[i] * E, NOTHING))
+            else:
+                beta.append(E)
+        if self.certificate.estimated_heading:
+            self._turn(E, late * h, short, heading, turned)
+        if pulled is not STILL or self._pulls:
+            beta = self._and_pulled(beta, received, pulled)
+        u, v, r = self.beta = beta[0], beta[1], beta[2]
+        first, second, third = self._after
+        self._widest = first.push(u), second.push(v), third.push(r)
+        return self.beta
+
+    def _turn(self, E_r: float, h: float, short: float, heading: bool, turned: float) -> None:
+        """The heading's bound: turned at the error of r, pulled by a measurement of it as the motion is."""
+        c = self.certificate
+        curve = 0.25 * h * h * self.way[2]
+        E = min(self.psi + 0.5 * h * (self.beta[2] + E_r) + curve, NOTHING)
+        if not heading:
+            self.psi = E + turned
+        else:
+            pull, back = c.step.pull[2], c.step.before[2]
+            again = back * pull * (h * self._widest[2] + pull * self._headings.kept[0][1]) + pull * curve
+            self.psi = (
+                (1.0 - pull + short * c.K[2]) * E + again + pull * (1.0 + back * pull) * self.heading_noise
+            )
+        self._headings.push(self.psi)
+
+    def _and_pulled(self, beta: list[float], received: tuple[bool, bool, bool], pulled: Three) -> list[float]:
+        """A rejected sample's pull counts in full now, and shows in late measurements for a while."""
+        step = self.certificate.step
+        late = [
+            step.before[i] * step.pull[i] * max((p[i] for p in self._pulls), default=0.0) for i in (0, 1, 2)
+        ]
+        self._pulls.append(pulled)
+        if not any(any(p) for p in self._pulls):
+            self._pulls.clear()
+        return [b + (late[i] if received[i] else pulled[i]) for i, b in enumerate(beta)]
+
+    def _look(self, H_s: float, acts: bool) -> None:
+        """The rows for this sea: for each axis (V, d, turned, W, again, drift, c)."""
+        if self._sea == (H_s, float(acts)):
+            return
+        self._sea = H_s, float(acts)
+        c, step, one = self.certificate, self.certificate.step, self.periods.of(1)
+        self._disturbance = (
+            c.disturbance.at(H_s) if acts else add(c.disturbance.at(H_s), scaled_row(-1.0, c.saturation))
+        )
+        # how fast it can change its motion
+        self.way: Three = add(c.plant.most, scaled_row(1.0 / c.h, one.pushed(self._disturbance)))
+        d = add(one.pushed(self._disturbance), one.calm)
+        self.noise: Three = c.disturbance.noise(c.noise, H_s)
+        self.heading_noise = c.disturbance.heading_noise(c.heading_noise, H_s)
+        if not c.estimated_heading:
+            self.psi = self.heading_noise
+        told = step.told(d, self.noise)
+        self._table: Rows = tuple(
+            (*one.V[i], d[i], one.turned[i], *step.now[i], step.again[i], *step.drift[i], told[i])
+            for i in (0, 1, 2)
+        )
+        self._late: dict[int, Rows] = {}
+
+    def _late_rows(self, late: int) -> Rows:
+        """The rows of a tick that lasted so many periods: no measurement counts in it."""
+        if late not in self._late:
+            many = self.periods.of(late)
+            d = add(many.pushed(self._disturbance), many.calm)
+            self._late[late] = tuple((*many.V[i], d[i], many.turned[i], *(0.0,) * 8) for i in (0, 1, 2))
+        return self._late[late]
+
+    @property
+    def widest(self) -> Three:
+        """The greatest bound of the window that a measurement of greatest age looks back on."""
+        return self._widest
+
+    def outside(self, s: Situation, within: Three | None = None, dt: float = 0.0) -> str | None:
+        """What leaves the operating set, or may within a sample, in words; None when the ship is surely in
+        it. `within`: how far it may be from the estimate, where that is known better than by the tube; dt:
+        how long the last tick was, if longer than a sample."""
+        return self.certificate.operating.outside(
+            s, add(within or self.beta, scaled_row(max(self.certificate.h, dt), self.way))
+        )
+
+    def says_nothing(self) -> str | None:
+        """In words, while the bound is as wide as the operating set itself; else None."""
+        ranges = self.certificate.operating.ranges
+        for name, b in zip(NU, self.beta, strict=True):
+            low, high = ranges[name]
+            if not b < 0.5 * (high - low):
+                wide = f"the bound of {WORDS[name]} is as wide as the operating set"
+                return f"{wide}, width = ± {in_unit(name, b)}"
+        return None

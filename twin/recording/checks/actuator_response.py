@@ -1,0 +1,161 @@
+"""Do the ship's actuators push and turn it as the ship file has them?
+
+    du = a (motion of the hull) + sum of b_i X_i/m,  b_i >= 0;  dv and dr likewise with Y_i/m and N_i/I_z
+
+over windows, i each actuator ahead and each astern: how strong they are nobody needs to know here, only which
+way they push and turn it. Asked once for the record as it is and once for every way in which it may be wired
+otherwise (wirings.py); the one under which thrust explains most of what surge, sway and yaw do is believed.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import nnls
+
+from twin.physics.actuators import Actuator
+from twin.physics.actuators.actuator_channels import DRIVES
+from twin.physics.ship import Ship
+from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good, wrong
+from twin.recording.checks.voyage_view import VoyageView
+from twin.recording.checks.wirings import RIGHT, Told, Wiring, stop, wirings
+
+AXES = ("surge", "sway", "yaw")
+LENGTHS = (3, 6, 12, 24, 48)  # of windows, in steps of STEP_S at least
+STEP_S = 0.2
+FEWEST = 12  # windows that do not overlap
+SEEN = 0.1  # share of an axis' motion that thrust must explain to tell anything of it
+LEAD = 10.0  # log likelihood ratio that proves another wiring than the recorded one
+# models of hulls are off by less: of an axis' motion, what the other wiring must explain more, or the most
+# that it may leave of what is not explained as recorded; to be believed, and to be told
+PROOF, HINT = (0.15, 0.6), (0.1, 0.75)
+RIVAL = 5.0  # and to the next that is not the same, or needs fewer mistakes
+ALIKE = 0.02  # share of the force by which two wirings that mean the same may differ
+
+
+@dataclass(frozen=True)
+class TriedWiring:
+    """One wiring: by how much log likelihood thrust explains each axis, and which share of it."""
+
+    wiring: Wiring
+    columns: np.ndarray  # (3, N, C) over mass and inertia
+    gain: np.ndarray  # (3,)
+    share: np.ndarray  # (3,)
+
+    @property
+    def total(self) -> float:
+        """Gain in log likelihood, of all three axes together."""
+        return float(self.gain.sum())
+
+
+def actuators(view: VoyageView) -> Check:
+    """Which wiring of its actuators explains its motion."""
+    name = "actuators"
+    ship = view.ship
+    if ship is None or not ship.actuators:
+        return cannot_tell(name, "no ship file with actuators was given (--ship).")
+    missing = [c for a in ship.actuators for c in a.columns() if not view.voyage.has(c)]
+    if missing:
+        return cannot_tell(name, f"{', '.join(missing)} was not recorded.")
+    tried = best_window(view, ship)
+    if not tried:
+        return cannot_tell(name, "it hardly moves under thrust that changes.")
+    as_is = next(t for t in tried if t.wiring.text == RIGHT)
+    best = max(tried, key=lambda t: t.total - RIVAL * max(t.wiring.mistakes - 1, 0))
+    if best is as_is or best.total - as_is.total < RIVAL or not _better(best, as_is, HINT):
+        return good(name, f"thrust explains {_shares(as_is)}, as the ship file has its actuators.")
+    return _judged(name, best, as_is, tried)
+
+
+def _judged(name: str, best: TriedWiring, as_is: TriedWiring, tried: list[TriedWiring]) -> Check:
+    rivals = [t for t in tried if t.wiring.mistakes <= best.wiring.mistakes and not _alike(t, best)]
+    rival = max(rivals, key=lambda t: t.total)
+    saw = (
+        f"if {best.wiring.text}, thrust explains {_shares(best)}; as recorded {_shares(as_is)}; "
+        f"the next best, {rival.wiring.text}, {_shares(rival)}"
+    )
+    sides = " (or exchange their x_m and y_m in the ship file)" * ("exchange" in best.wiring.fix)
+    fix = f"In the map: {best.wiring.fix}{sides}"
+    if best.total - max(as_is.total, rival.total) >= LEAD and _better(best, as_is, PROOF):
+        return wrong(name, f"{saw}: {best.wiring.text}, that is believed. {fix}.")
+    return doubtful(name, f"{saw}. Not proved: more turning under thrust would tell. {fix}.")
+
+
+def _better(a: TriedWiring, b: TriedWiring, by: tuple[float, float]) -> bool:
+    """Whether one explains so much more of an axis than the other."""
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return bool(np.any((a.share - b.share >= by[0]) | ((1.0 - a.share) / (1.0 - b.share) <= by[1])))
+
+
+def _shares(t: TriedWiring) -> str:
+    told = [f"{100 * s:.0f} % of {axis}" for s, axis in zip(t.share, AXES, strict=True) if np.isfinite(s)]
+    return ", ".join(told)
+
+
+def _alike(a: TriedWiring, b: TriedWiring) -> bool:
+    """Whether two wirings give the same force, up to a little."""
+    x, y = a.columns.sum(2), b.columns.sum(2)
+    size = np.nanmax(np.abs(x), axis=1)
+    moved = size > 1e-9 * np.nanmax(size)
+    return bool(np.nanmax(np.abs(x - y)[moved] / size[moved, None]) < ALIKE)
+
+
+def best_window(view: VoyageView, ship: Ship) -> list[TriedWiring]:
+    """All wirings, over windows of the length at which one of them explains most; none where nothing
+    tells."""
+    motion = np.array([view.velocity.real, view.velocity.imag, view.si("yaw_rate_degps")])
+    columns = [(w, _columns(view, ship, motion, w)) for w in wirings(ship.actuators)]
+    step = max(view.step_s, STEP_S)
+    seconds = [k * step for k in LENGTHS if k * step * FEWEST < view.voyage.duration_s]
+    found = [[_tried(view, motion, w, c, s) for w, c in columns] for s in seconds]
+    clear = [ts for ts in found if max(t.total for t in ts) > LEAD]
+    return max(clear, key=lambda ts: max(t.total for t in ts), default=[])
+
+
+def _columns(view: VoyageView, ship: Ship, motion: np.ndarray, wiring: Wiring) -> np.ndarray:
+    """(3, N, C) of every actuator ahead and astern, over mass and inertia."""
+    names = [
+        (f"{a.name}.{n}", c) for a in ship.actuators for n, c in zip(a.attributes, a.columns(), strict=True)
+    ]
+    told = wiring.undo({n: view.si(c) for n, c in names})
+    u, v, r = motion
+    mass = np.array([ship.m, ship.m, ship.I_z], float)[:, None]
+    out = []
+    for a in ship.actuators:
+        force = np.array([np.broadcast_to(f, motion[0].shape) for f in a.force(told, u, v, r, ship)]) / mass
+        ahead = _ahead(a, told)
+        out += [np.where(side, force, 0.0 * force) for side in (ahead, ~ahead)]
+    return np.stack(out, axis=2)
+
+
+def _ahead(a: Actuator, told: Told) -> np.ndarray:
+    """(N,) whether it is told to push ahead."""
+    drive = next(n for n in a.attributes if n in DRIVES)
+    return np.asarray(told[f"{a.name}.{drive}"] > stop(a, drive))
+
+
+def _tried(
+    view: VoyageView, motion: np.ndarray, wiring: Wiring, columns: np.ndarray, seconds: float
+) -> TriedWiring:
+    first, last = view.windows(seconds)
+    u, v, r = motion
+    hull = ((v * r, u, abs(u) * u), (u * r, v, abs(v) * v, r), (u * v, r, abs(r) * r, abs(u) * r, v))
+    gain, share = np.zeros(3), np.full(3, np.nan)
+    for i in range(3):
+        change = motion[i][last] - motion[i][first]
+        push = np.stack([view.summed(columns[i, :, k], first, last) for k in range(columns.shape[2])], axis=1)
+        others = np.stack([*(view.summed(x, first, last) for x in hull[i]), np.ones(first.size)], axis=1)
+        ok = np.isfinite(change) & np.isfinite(push).all(1) & np.isfinite(others).all(1)
+        if np.count_nonzero(ok) / 2 < FEWEST or not np.ptp(push[ok], axis=0).any():
+            continue
+        both = _beside(others[ok], np.column_stack([change, push])[ok])
+        y, size = both[:, 0], float(both[:, 0] @ both[:, 0])
+        if size > 0.0:
+            left = nnls(both[:, 1:], y)[1] ** 2 / size
+            share[i] = max(0.0, 1.0 - left)
+            gain[i] = -0.25 * y.size * np.log(max(left, 1e-12)) if share[i] > SEEN else 0.0
+    return TriedWiring(wiring, columns, gain, share)
+
+
+def _beside(others: np.ndarray, columns: np.ndarray) -> np.ndarray:
+    """What the hull's own motion does not explain of each column, by least squares."""
+    return columns - others @ np.linalg.lstsq(others, columns, rcond=None)[0]

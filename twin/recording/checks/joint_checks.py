@@ -1,0 +1,88 @@
+"""All checks together: one mistake is told once, and a channel that another check doubts is no witness."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from twin.recording.checks.check_result import Check, doubtful
+from twin.recording.checks.relations import offs
+from twin.recording.checks.single import BROKEN, Explained, coarse, explain
+from twin.recording.checks.steps import without_steps
+from twin.recording.checks.undo import HEADING, measured, remade
+from twin.recording.checks.voyage_view import VoyageView
+from twin.recording.voyage import Voyage
+
+MOST = 3  # mistakes that are told one after the other
+OF_MOTION = (
+    "velocity_frame",
+    "yaw_rate",
+    "compass",
+    "rudder_sign",
+    "rudder_unit",
+    "propeller_rate",
+    "actuators",
+    "speed_log",
+    "wind",
+)
+# which relations a check's proof rests on beside its own: where one of them is broken it proves nothing
+WITNESSES: dict[str, tuple[str, ...]] = {
+    "velocity_frame": ("turning",),
+    "yaw_rate": ("course",),
+    "rudder_sign": ("turning", "course"),
+    "propeller_rate": ("place", "course"),
+    "speed_log": ("place", "course"),
+    "wind": ("turning", "course"),
+    "rudder_unit": ("turning",),
+    "actuators": ("turning", "place"),
+}
+Checks = Sequence[Callable[[VoyageView], Check]]
+
+
+def judged(view: VoyageView, checks: Checks) -> list[Check]:
+    """The answers in the table's order."""
+    answers = {check.__name__: check(view) for check in checks}
+    named, without = named_mistakes(view, answers)
+    if without is not view:
+        again = {check.__name__: check(without) for check in checks if check.__name__ in OF_MOTION}
+        answers |= {name: a for name, a in again.items() if name not in named}
+    answers |= named
+    broken = {name for name, off in offs(coarse(without)).items() if off is not None and off > BROKEN}
+    return [not_proved_beside(a, broken) if name not in named else a for name, a in answers.items()]
+
+
+def named_mistakes(view: VoyageView, answers: dict[str, Check]) -> tuple[dict[str, Check], VoyageView]:
+    """(the mistakes that explain what disagrees, by the check they belong to; the view without them)."""
+    named: dict[str, Check] = {}
+    here = view
+    if answers["heading_steps"].unusable:
+        psi = without_steps(view)
+        if psi is not None:
+            voyage = view.voyage
+            changed = replace(voyage, columns={**voyage.columns, HEADING: psi})
+            here = VoyageView(remade_by(voyage, changed), view.ship)
+    for _ in range(MOST):
+        found: Explained | None = explain(here)
+        if found is None or (found.check.name in named and named[found.check.name].unusable):
+            break
+        named[found.check.name] = found.check
+        if found.view is None:
+            break
+        here = found.view
+    return named, here
+
+
+def remade_by(voyage: Voyage, changed: Voyage) -> Voyage:
+    """The voyage with another heading: what the old one turned is turned back by the old, and by the new
+    again."""
+    return remade(voyage, {**measured(voyage), HEADING: changed[HEADING]})
+
+
+def not_proved_beside(answer: Check, broken: set[str]) -> Check:
+    """A proof that rests on what another check doubts is a doubt itself."""
+    doubted = [name for name in WITNESSES.get(answer.name, ()) if name in broken]
+    if not answer.unusable or not doubted:
+        return answer
+    return doubtful(
+        answer.name,
+        f"{answer.text} Not proved: {' and '.join(doubted)} of the same channels do not agree either; see "
+        "the other checks.",
+    )

@@ -1,0 +1,79 @@
+"""What a calibration tells on the terminal, line by line."""
+
+from typing import Any
+
+from twin.num import as_given, num
+from twin.recording.checks import losses
+from twin.study.calibration.core_fit import PARTS
+from twin.study.estimation.start import told_of_waves
+from twin.study.reference.weather_baseline import HARDER
+
+
+def told(result: dict[str, Any]) -> list[str]:
+    """Lines for the terminal: the error first."""
+    lines = [f"{result['ship']}: open-loop error on what was not used for the fit ({result['held_out_is']})"]
+    for e in result["held_out"]:
+        if e["position_m"] is not None:
+            lines.append(
+                f"  {e['horizon_s']:>4.0f} s   {num(e['before_m'], 3):>8} m -> {num(e['position_m'], 3):<8} "
+                "m    "
+                f"{num(e['before_deg'], 3):>7} deg -> {num(e['heading_deg'], 3):<7} deg   ({e['windows']} "
+                "windows)"
+            )
+    lines += [
+        f"  after {r['horizon_s']:.0f} s while {r['regime']}: {num(r['position_m'], 3)} m ({r['windows']} "
+        "windows)"
+        for r in result["by_regime"]
+    ]
+    lines.append(
+        "  fitted to "
+        + ("where it went, three lengths ahead" if result["fitted_by"] == "paths" else "each next reading")
+    )
+    lines += [
+        "  the instruments show it on each reference voyage alike, whatever the ship is: now part of the "
+        f"model ({name}: {_sizes(numbers)})"
+        for name, numbers in result["instruments"].items()
+    ]
+    if gear := result["gear"]:
+        lines.append(
+            "  rudder_angle_deg is the rudder order: the steering gear behind it is now part of the model "
+            f"({PARTS['gear'].__name__}: {_sizes(gear)})"
+        )
+    if antenna := result["antenna"]:
+        lines.append(
+            "  position is measured elsewhere than the ship file says: the place is now part of the model "
+            f"({PARTS['antenna'].__name__}: {_sizes(antenna)})"
+        )
+    if wind := result["wind"]:
+        lines.append(
+            "  wind pushed the ship on these voyages: its force is now part of the model "
+            f"({PARTS['wind'].__name__}: {_sizes(wind)})"
+        )
+    lines += [
+        f"  {name} was measured, but too weak to be estimated: up to {as_given(HARDER)} times as strong, it "
+        "is allowed for and not called missing"
+        for name in result["too_faint"]
+    ]
+    lines += [f"  {text}" for text in told_of_waves(result["waves"])]
+    share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
+    lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
+    lines += [
+        f"baseline of this ship: {i['name']} {num(i['value'], 3)} +- {num(i['sd'], 1)} {i['unit']} (allowed "
+        "for by twin diagnose)"
+        for i in result["usual"]
+    ]
+    lines += ["", f"{'derivative':<10}{'before':>11}{'now':>11}{'+-':>9}"]
+    lines += [
+        f"{d['name']:<10}{num(d['before'], 4):>11}{num(d['value'], 4):>11}{num(d['sd'], 2):>9}"
+        for d in result["derivatives"]
+        if d["excited"]
+    ]
+    if result["unexcited"]:
+        lines.append(f"not excited by these voyages, prior kept: {', '.join(result['unexcited'])}")
+    return lines + [f"careful: {text}" for text in result["doubts"]] + losses(result["data_checks"])
+
+
+def _sizes(numbers: dict[str, dict[str, Any]]) -> str:
+    return ", ".join(
+        f"{name} {num(n['value'], 3)} +- {num(n['sd'], 1)} {n['unit']}" for name, n in numbers.items()
+    )

@@ -1,0 +1,230 @@
+"""`twin calibrate`: fits the core to reference voyages, and learns what a model of this kind still leaves
+unexplained."""
+
+import datetime
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass, replace
+from typing import Any
+
+from twin.physics.effect import Effect
+from twin.physics.effects import of_role, of_ship
+from twin.physics.model import Model
+from twin.physics.ship import Ship
+from twin.recording.jsonable import plain
+from twin.study.calibration.held_out import HeldOut, by_regime, errors, size
+from twin.study.calibration.own_instruments import own_instruments
+from twin.study.calibration.parts import clearly, placed, with_or_without_wind
+from twin.study.calibration.rollout import rolled_out
+from twin.study.calibration.usual import clearly_there, usual
+from twin.study.estimation.columns import core_unknowns
+from twin.study.estimation.fit import Fit, fit
+from twin.study.estimation.innovations import NoiseModel
+from twin.study.estimation.start import waves_on
+from twin.study.reference.derivatives import (
+    Derivative,
+    first_prior,
+    noted,
+    told_by,
+    with_core_of,
+    with_derivatives,
+)
+from twin.study.reference.nuisance import TEMPER, instruments, temper_of
+from twin.study.reference.sailed import Sailed
+from twin.study.reference.seaway import levelled, swung
+from twin.study.reference.steering_gear import with_or_without_gear
+from twin.study.reference.structure import structural_floor
+from twin.study.reference.weather_baseline import FAINT
+from twin.study.track.track import Track
+
+SCHEMA_VERSION = 1
+# one step ahead through a filter, or several lengths ahead without (rollout.py)
+FITTED_BY = ("steps", "paths")
+BETTER = 0.05  # share by which paths must be better than steps: a diagnosis judges by steps
+# of the ship and not of the core, found with it; their numbers stand under these keys in --json
+PARTS = {role: of_role(role) for role in ("gear", "antenna", "wind")}
+# by the probability of the voyages; the antenna by predictions
+ASKED_FOR = tuple(PARTS[role].__name__ for role in ("gear", "wind"))
+
+
+@dataclass(frozen=True)
+class Calibrated:
+    """The calibrated ship, and the numbers of how it came about."""
+
+    ship: Ship
+    result: dict[str, Any]
+
+    def with_errors_of(self, other: "Calibrated") -> "Calibrated":
+        """The same ship with the errors as they were measured when not every voyage was used yet."""
+        measured = {name: other.result[name] for name in ("held_out", "by_regime")}
+        remembered = {name: other.ship.notes["structural"][name] for name in measured}
+        return Calibrated(noted(self.ship, "structural", remembered), self.result | measured)
+
+
+@dataclass(frozen=True)
+class Core:
+    """What a filter one step ahead makes of the voyages: the derivatives, and what they leave over."""
+
+    tracks: list[Track]  # with what waves do to it taken for that
+    model: Model
+    derivatives: list[Derivative]
+    # of the ship file; a steering gear and wind among them if the voyages asked for these
+    effects: tuple[Effect, ...]
+    # of the gear, the antenna and the wind, with their standard errors
+    numbers: dict[str, dict[str, dict[str, Any]]]
+    antenna: Effect | None  # where it was found, if not where the ship file has it
+    floor: NoiseModel
+    temper: float
+
+
+def calibrate(
+    fitted: Sequence[Sailed],
+    held_out: HeldOut,
+    ship: Ship,
+    progress: Callable[[str], None] = lambda text: None,
+    by: str | None = None,
+) -> Calibrated:
+    """Fit the core to the tracks, with the ship's instruments as kinematics find them on all of these. `by`:
+    one of FITTED_BY; None: the one that predicts what was held out better."""
+    first, sailed = ship, [s.track for s in fitted]
+    progress("asking how the instruments go together, whatever the ship is")
+    own = own_instruments(fitted, ship, progress)
+    ship = own.ship
+    core = _core(sailed, ship, progress)
+    if core.antenna is not None:
+        progress("fitting again, with the antenna where it was found")
+        core = _with_antenna(core.antenna, sailed, ship, progress)
+    tracks = core.tracks
+    held_out = [(swung(t, core.model), first) for t, first in held_out]
+    ships = {"steps": _remembering(placed(_beside(ship, core), core.antenna, held_out), core, fitted)}
+    if by != "steps" and (excited := [d.unknown for d in core.derivatives if d.excited]):
+        progress("fitting along the path")
+        open_loop_check = rolled_out(tracks, Model.of(ships["steps"]), excited, of_ship(ship)).ship
+        ships["paths"] = with_core_of(ships["steps"], open_loop_check)
+    off = {way: errors(Model.of(s), held_out) for way, s in ships.items()}
+    way = by if by in ships else min(ships, key=lambda way: size(off[way]) - BETTER * (way == "steps"))
+    progress("estimating the baseline of this ship")
+    lasting_ones = usual(ships[way], tracks, core.floor)
+    judged = {"held_out": off[way], "by_regime": by_regime(Model.of(ships[way]), held_out)}
+    after = noted(ships[way], "structural", lasting_ones | judged)
+    result = _result(ship, after, core, way, errors(Model.of(first), held_out))
+    return Calibrated(after, plain(result | {"instruments": own.written}))
+
+
+def _with_antenna(
+    first: Effect, sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]
+) -> Core:
+    """The same with the antenna in the model from the start: what heel and turning carry it about is no sway
+    of its own, and had bent the core."""
+    found = _core(sailed, ship.with_effects(first), progress)
+    of_antenna = type(first)
+    antenna = of_antenna(**{k: number["value"] for k, number in found.numbers[of_antenna.__name__].items()})
+    # until predictions are better with the other (`placed`)
+    lasting_ones = (e for e in ship.effects if isinstance(e, of_antenna))
+    return replace(
+        found,
+        effects=(*lasting_ones, *(e for e in found.effects if not isinstance(e, of_antenna))),
+        antenna=antenna,
+    )
+
+
+def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
+    model, known = Model.of(ship), of_ship(ship)
+    unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
+    progress("fitting the core, and testing whether the recorded rudder angle is the order")
+    tracks = [levelled(t) for t in sailed]
+    rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
+    progress("testing again whether waves move the ship")
+    again = [swung(t, rough.model) for t in sailed]
+    if [t.swell is None for t in again] != [t.swell is None for t in sailed]:
+        tracks = [levelled(t) for t in again]
+        rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
+    progress("testing whether wind pushed the ship")
+    rough = with_or_without_wind(tracks, rough, known, TEMPER)
+    unknowns = rough.unknowns
+    progress("estimating the noise model")
+    floor, temper = structural_floor(rough.lines, unknowns), temper_of(rough.normal, unknowns)
+    progress("fitting again with this noise model")
+    found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, smooth=True)
+    asked = tuple(e for e in found.model.effects if type(e).__name__ in ASKED_FOR)
+    kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
+    numbers = {e.__name__: _numbers(found, e.__name__, e.with_core) for e in PARTS.values()}
+    return Core(tracks, found.model, told_by(found), (*kept, *asked), numbers, clearly(found), floor, temper)
+
+
+def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
+    """What the ship file keeps of the numbers of a part of it that was found with the core."""
+    source = f"calibrated {datetime.date.today().isoformat()}: {why}"
+    return {
+        u.name: {"value": float(value), "unit": u.unit, "sd": float(sd), "source": source}
+        for u, value, sd in zip(found.unknowns, found.value, found.sd, strict=True)
+        if u.owner == owner
+    }
+
+
+def _beside(ship: Ship, core: Core) -> Ship:
+    """The ship with the fitted derivatives, and the steering gear and the wind if they were found."""
+    return replace(with_derivatives(ship, core.derivatives), effects=core.effects)
+
+
+def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
+    """The ship with what remains of these voyages, in place of what an earlier calibration left."""
+    today, voyages = datetime.date.today().isoformat(), [s.provenance() for s in fitted]
+    # tomorrow's wind is another one
+    names = [type(e).__name__ for e in ship.effects if not e.of_recorded_weather()]
+    structural = {
+        "floor": plain(asdict(core.floor)),
+        "temper": core.temper,
+        "date": today,
+        "voyages": voyages,
+        "beside_effects": names,
+    }
+    after = noted(
+        ship,
+        "effects",
+        {
+            name: numbers
+            for name, numbers in core.numbers.items()
+            if numbers and _found_here(name, ship, core)
+        },
+    )
+    return replace(after, notes={**after.notes, "structural": structural})
+
+
+def _found_here(name: str, ship: Ship, core: Core) -> bool:
+    """Whether a part of it is in the ship file as this calibration found it."""
+    return name in ASKED_FOR or (core.antenna is not None and core.antenna in ship.effects)
+
+
+def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str, float]]) -> dict[str, Any]:
+    """What --json holds."""
+    lasting_ones = after.notes["structural"]
+    return {
+        "schema_version": SCHEMA_VERSION,
+        "ship": ship.name,
+        "derivatives": [_row(d, ship, after) for d in core.derivatives],
+        "unexcited": [d.unknown.name for d in core.derivatives if not d.excited],
+        "fitted_by": by,
+        **{key: _said(owner.__name__, after, core) for key, owner in PARTS.items()},
+        "waves": waves_on(core.tracks),
+        "too_faint": [name for name, felt in lasting_ones["weather"].items() if felt > FAINT],
+        "usual": clearly_there(after, lasting_ones),
+        "between_voyages": lasting_ones["between_voyages"],
+        "floor": asdict(core.floor),
+        "temper": core.temper,
+        "by_regime": lasting_ones["by_regime"],
+        "held_out": [
+            e | {"before_m": b["position_m"], "before_deg": b["heading_deg"]}
+            for b, e in zip(before, lasting_ones["held_out"], strict=True)
+        ],
+    }
+
+
+def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
+    """The numbers of a part of it that this calibration put into the ship file."""
+    numbers = core.numbers[owner] if _found_here(owner, after, core) else {}
+    return {name: {k: v for k, v in number.items() if k != "source"} for name, number in numbers.items()}
+
+
+def _row(d: Derivative, ship: Ship, after: Ship) -> dict[str, Any]:
+    before, value = (float(s.derivative(d.unknown.name)) for s in (ship, after))
+    return {"name": d.unknown.name, "before": before, "value": value, "sd": d.sd, "excited": d.excited}

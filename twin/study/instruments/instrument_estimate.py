@@ -1,0 +1,113 @@
+"""`estimate`: from voyages to what is wrong with each instrument, how much, how surely, and what cannot be
+known from them."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from twin.recording.voyage import Voyage
+from twin.study.instruments.findings import CLOCKS, InstrumentEstimate, Instruments, said
+from twin.study.instruments.instrument_samples import Readings, of_track, of_voyage
+from twin.study.instruments.kinematic_fit import KinematicFit, columns, fit
+from twin.study.instruments.problem import Problem
+from twin.study.instruments.select import Weighed, WeighedSets
+from twin.study.instruments.unknowns import ALWAYS, INDEX, UNKNOWNS, effect_of
+from twin.study.track.track import Track
+
+__all__ = ["InstrumentEstimate", "Instruments", "estimate", "evidence"]
+ROUNDS = 4  # selections, each about a new fit
+CLEARLY = 30.0  # log evidence from which a receiver is said to have turned its velocity itself
+Progress = Callable[[str], None]
+
+
+def estimate(
+    voyages: Sequence[Voyage | Track | Readings],
+    length_m: float | None = None,
+    progress: Progress = lambda text: None,
+    clock: str | None = None,
+    own: bool | None = None,
+) -> Instruments:
+    """The instruments of these voyages of one ship; `length_m` of the ship, if known, scales what is believed
+    of antennas and drift before any data. `clock`: the age from which others are counted, where that
+    instrument was recorded; else the earliest. `own`: whether its receiver turns its velocity by an attitude
+    of its own, if known; else what all voyages say together."""
+    readings = [_readings(v) for v in voyages]
+    lengths = [length_m or r.length for r in readings]
+    problems = _problems(readings, lengths, own, progress)
+    progress("fitting all numbers at once")
+    found, clock = _whole(problems, clock)
+    chosen: tuple[str, ...] | None = None
+    for _ in range(ROUNDS):
+        book = WeighedSets(found, clock)
+        best = book.likeliest()
+        if best.faults == chosen:
+            break
+        chosen = best.faults
+        progress("fitting " + (", ".join(chosen) or "no fault"))
+        found = fit(
+            problems, [u.name for u in UNKNOWNS if u.fault in (*chosen, *ALWAYS)], _start(found, book, best)
+        )
+    return said(readings, problems, found, clock)
+
+
+def _readings(v: Voyage | Track | Readings) -> Readings:
+    return v if isinstance(v, Readings) else of_track(v) if isinstance(v, Track) else of_voyage(v)
+
+
+def _problems(
+    readings: Sequence[Readings], lengths: Sequence[float], own: bool | None, progress: Progress
+) -> list[Problem]:
+    """The voyages, with their velocity turned by the ship's compass or by the receiver itself. Where the
+    samples do not show which (`Readings.own`), it is the same on all: one receiver, wired once."""
+    of_each = list(zip(readings, lengths, strict=True))
+    untold = [r.own is None and "velocity" in r.by for r in readings]
+    if own is None and any(untold):
+        by = (_itself(r, length, progress) for (r, length), ask in zip(of_each, untold, strict=True) if ask)
+        own = sum(by) > CLEARLY
+    return [
+        Problem(r, length, bool(own if ask else r.own))
+        for (r, length), ask in zip(of_each, untold, strict=True)
+    ]
+
+
+def _itself(r: Readings, length: float, progress: Progress) -> float:
+    """How much likelier (log) the readings are if the receiver turned its velocity itself than if the compass
+    did."""
+    progress(f"{r.name}: whose attitude turned the velocity?")
+    sides = [Problem(r, length, own) for own in (False, True)]
+    told = [fit([p], [u.name for u in UNKNOWNS], rounds=4).log_likelihood for p in sides]
+    progress(f"{r.name}: its own rather than the compass by {told[1] - told[0]:.1f}")
+    return told[1] - told[0]
+
+
+def _whole(problems: Sequence[Problem], clock: str | None = None) -> tuple[KinematicFit, str]:
+    """All numbers at once but for one age, and which: a clock of all instruments together shows nowhere; none
+    is early, so the earliest is prompt."""
+    names = [u.name for u in UNKNOWNS]
+    first = fit(problems, [n for n in names if n != "heading_delay"], rounds=6)
+    there = [n for n, by in CLOCKS.items() if any(b in p.by for b in by for p in problems)]
+    sd = dict(zip(WeighedSets(first, "heading_delay").names, first.sd().tolist(), strict=False))
+    value = {n: float(first.theta[0, INDEX[n]]) for n in there}
+    earliest = clock if clock in there else min(there, key=lambda n: value[n] + 2.0 * sd[n])
+    theta = first.theta.copy()
+    theta[:, [INDEX[n] for n in there]] -= value[earliest]
+    return fit(problems, [n for n in names if n != earliest], theta), earliest
+
+
+def _start(found: KinematicFit, book: WeighedSets, best: Weighed) -> np.ndarray:
+    """(V, P) where the set of faults is expected to stand."""
+    row = np.zeros(found.at.size)
+    row[best.at] = best.mean
+    return np.array([row[columns(v)] for v in range(found.theta.shape[0])])
+
+
+def evidence(track: Track, length_m: float | None = None) -> dict[str, float]:
+    """Log Bayes factors by instrument effect of the catalogue, from kinematics alone: is this fault asked for
+    by how position, velocity, heading, rate of turn and log go together? An effect of which the track tells
+    nothing is not there."""
+    found = estimate([track], length_m)
+    out: dict[str, float] = {}
+    for fault, factor in found.log_bayes_factors.items():
+        if effect := effect_of(fault):
+            out[effect] = max(factor, out.get(effect, -np.inf))
+    return out
