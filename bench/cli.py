@@ -91,6 +91,11 @@ BENCHES: dict[str, Bench] = {
         "how fast logs and tables are read, in how much memory",
         "twin-bench import-speed",
     ),
+    "calibrate-memory": Bench(
+        "bench.calibrate_memory",
+        "how much memory `twin calibrate` takes at its highest",
+        "twin-bench calibrate-memory",
+    ),
     "fuzz": Bench(
         "bench.fuzz.run",
         "fuzzing, guided by coverage, of all that reads the outside world",

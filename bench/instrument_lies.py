@@ -163,10 +163,10 @@ def _found(half: Watch, rows: list[Row], lie: Lie) -> tuple[float, str]:
 def voyage_rows(hull: str, weather: str | Weather, manoeuvre: str, duration_s: float) -> list[Row]:
     """What the instruments say on one voyage of the reference sea, row by row."""
     (recording,) = simulate([Case(hull, manoeuvre, weather, seed=17, duration_s=duration_s)])
-    return list(_rows(recording))
+    return list(rows_of(recording))
 
 
-def _rows(recording: Recording) -> Iterator[Row]:
+def rows_of(recording: Recording) -> Iterator[Row]:
     names = list(recording.columns)
     for values in np.column_stack([recording.columns[name] for name in names]).tolist():
         yield dict(zip(names, values, strict=True))

@@ -115,9 +115,12 @@ class Browser:
             time.sleep(0.05)
         return found
 
-    def press(self, name, code):
-        for kind in ("rawKeyDown", "keyUp"):
-            self.ask("Input.dispatchKeyEvent", type=kind, key=name, code=name, windowsVirtualKeyCode=code)
+    def press(self, name, code, text="", shift=False):
+        """`text`: what the key types, without which Enter and the space bar press no button."""
+        with_text = {"text": text} if text else {}
+        for kind, more in (("keyDown" if text else "rawKeyDown", with_text), ("keyUp", {})):
+            held = {"modifiers": 8 * shift, "windowsVirtualKeyCode": code}
+            self.ask("Input.dispatchKeyEvent", type=kind, key=name, code=name, **held, **more)
 
     def picture(self, path, whole=False):
         data = self.ask("Page.captureScreenshot", format="png", captureBeyondViewport=whole)["data"]

@@ -13,6 +13,7 @@ from twin.errors import SettingsError, TwinError
 
 # in what was asked: option
 OUTPUTS = {"output": "-o", "json": "--json", "report": "--report", "markdown": "--markdown", "page": ""}
+ASIDE = r"\.{name}\.[0-9a-f]{{12}}"  # pattern of the name that a file has while it is written
 
 
 def promised(args: argparse.Namespace) -> None:
@@ -64,7 +65,7 @@ def write(path: str | os.PathLike[str], text: str, option: str = "-o") -> None:
     if path.exists() and not path.is_file():  # a device or a pipe: a rename would put a file in its place
         _into(path, text, option)
         return
-    aside = path.parent / f".{path.name}.{os.urandom(6).hex()}"
+    aside = path.parent / f".{path.name}.{os.urandom(6).hex()}"  # ASIDE
     try:
         with open(aside, "x", encoding="utf-8") as file:
             file.write(text)

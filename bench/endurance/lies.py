@@ -10,7 +10,7 @@ import numpy as np
 
 from bench import bench_output
 from bench.assumptions import BEGIN_S, STEP_S, WALL
-from bench.instrument_lies import _rows
+from bench.instrument_lies import rows_of
 from bench.lies_told import LIES, Lie, Row
 from bench.reference import Case, simulate
 from bench.sea_disturbance import sailed
@@ -70,7 +70,7 @@ class Told(NamedTuple):
 def lies(hull: str, weather: str, only: Sequence[Lie] = (*LIES, *OTHERS)) -> list[Told]:
     """Every lie on one voyage of the reference sea; the first part of it is sailed once."""
     (recording,) = simulate([Case(hull, "zigzag_10", weather, seed=23, duration_s=SECONDS)], STEP_S)
-    rows, voyage = list(_rows(recording)), sailed(recording)
+    rows, voyage = list(rows_of(recording)), sailed(recording)
     n = window(voyage.T_p, STEP_S)
     truth, first = low_frequency(voyage.nu, n), round(LIE_AT_S / STEP_S)
     loop = loop_of(Settings({"ship.file": hull}), Played([]), Outbox(Publisher(), "twin", "ship"), None)

@@ -3,13 +3,20 @@
 import hashlib
 import json
 from importlib import resources
+from pathlib import Path
 
 import pytest
 
-from twin.live.build import certificate_file, stabilizer_of
+from twin.live.build import certificate_file, loop_of, residual_of, stabilizer_of
 from twin.live.certificate.certificate import Certificate
+from twin.live.clock import Instant
+from twin.live.inbox import Played
+from twin.live.outbox import Outbox
+from twin.live.publish import Publisher
 from twin.live.signals.config import Settings
 from twin.physics.ship import load
+
+TANKER = Path(str(resources.files("twin.voyages"))) / "tanker.toml"
 
 
 @pytest.fixture
@@ -98,3 +105,24 @@ def test_a_certificate_whose_file_was_changed_is_worked_out_again(at_home):
         stabilizer_of(settings, ship, None).tube.certificate == good
         and (at_home / "c.json").read_text() == text
     )
+
+
+def test_a_network_of_another_model_is_a_short_alarm_and_its_file_stands_in_the_log_alone():
+    """Test: the bundled tanker, calibrated from the ship whose network comes with the twin. Expected: the alarm is
+    one short sentence without a path or a hash; the log says which file and what to do."""
+    tanker = load(TANKER)
+    residual, alarm, logged = residual_of(Settings({"ship.file": str(TANKER)}), tanker)
+    assert residual is None and len(alarm) < 70 and not set('/\\()"') & set(alarm) and ".onnx" not in alarm
+    assert "kvlcc2.residual.onnx" in logged and "twin train" in logged
+    loop = loop_of(Settings({"ship.file": str(TANKER)}), Played([]), Outbox(Publisher(), "twin", "ship"), 0.0)
+    said = loop.tick(Instant(0, 0.0, 1.7e9)).reasons
+    assert not [text for text in [*said, *loop.notes] if ".onnx" in text]
+    assert loop.logged == [logged]
+
+
+def test_a_ship_without_a_network_says_so_in_a_short_alarm(at_home):
+    path = ship_file(at_home, "320415000.0")
+    other = Path(path).with_name("other.toml")
+    other.write_text(Path(path).read_text().replace("KVLCC2", "Alma"))
+    _, alarm, logged = residual_of(Settings({"ship.file": str(other)}), load(other))
+    assert alarm == "no network has been trained for this ship" and "twin train" in logged

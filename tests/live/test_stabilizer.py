@@ -149,3 +149,33 @@ def test_a_sample_that_pulls_by_less_than_the_certified_gain_is_no_measurement_o
     slow = lambda readings, b: [r for r in readings if "velocity" not in r.channel or b.number % 30 == 0]
     before = bridge.ticks[-1].certificate.bound
     assert bridge.run(120.0, slow)[-1].certificate.bound > before
+
+
+def test_of_a_speed_that_was_never_measured_it_is_said_so_and_no_number(kvlcc2, make_bridge):
+    """Test: a ship that begins without a speed log. Expected: the reason says that it is not measured yet; once
+    it has been, and is lost again, the reason is another one."""
+    bridge = stabilized(kvlcc2, make_bridge)
+    said = set()
+    for _ in range(20):
+        bridge.run(0.1, lambda readings, b: [r for r in readings if "surge" not in r.channel])
+        said.add(bridge.loop.stabilizer.outside)
+    assert said == {"surge speed through water is not measured yet"}
+    bridge.run(30.0)
+    assert bridge.loop.stabilizer.outside is None or "yet" not in bridge.loop.stabilizer.outside
+
+
+def test_a_speed_that_comes_too_seldom_is_said_to_and_no_bound_wider_than_any_ship(kvlcc2, make_bridge):
+    """Test: each instrument speaks once a second where the certificate allows an age of 0.5 s, and a propeller rate
+    out of the operating set ends the promise. Expected: the reasons name the age; none has a number that is only
+    what no ship exceeds."""
+    bridge, said = stabilized(kvlcc2, make_bridge), []
+
+    def seldom(readings, b):
+        fast = [r._replace(value=150.0) if r.channel == "propeller_rate_rpm" else r for r in readings]
+        return [] if b.number % 10 else fast if b.number < 150 else readings
+
+    for _ in range(300):
+        bridge.run(0.1, seldom)
+        said.append(bridge.loop.stabilizer.outside or "")
+    assert any("is not measured often enough, age = " in text for text in said)
+    assert not [text for text in said if "±" in text and float(text.split("± ")[1].split()[0]) > 40.0]

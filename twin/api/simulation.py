@@ -55,13 +55,17 @@ class Simulation(Result):
 
     def page(self) -> str:
         """The track as numbers: a small table of every tenth of the way."""
+        from twin.report.result_page import PageTable, result_page
+
         rows = self._rows()
-        some = rows[:: max(1, len(rows) // 10)]
-        head = "".join(f"<th>{name}</th>" for name in COLUMNS)
-        body = "".join(
-            f"<tr>{''.join(f'<td>{as_given(v, 5)}</td>' for v in row.values())}</tr>" for row in some
+        some = [{k: as_given(v, 5) for k, v in row.items()} for row in rows[:: max(1, len(rows) // 10)]]
+        manoeuvre = str(self.data["manoeuvre"])
+        said = f"{manoeuvre.replace('_', ' ')}, {as_given(rows[-1]['time_s'])} s."
+        return result_page(
+            f"{self.ship.name}: simulated",
+            said,
+            parts=(PageTable("Every tenth of the way", {name: name for name in COLUMNS}, some),),
         )
-        return f"<!doctype html><meta charset=utf-8><table><tr>{head}</tr>{body}</table>"
 
 
 def simulate(

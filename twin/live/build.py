@@ -14,7 +14,7 @@ from twin.live.guard import Guard
 from twin.live.learning import network
 from twin.live.learning import residual as residuals
 from twin.live.learning.learned_force import LearnedForce
-from twin.live.learning.residual import Residual, ResidualError, WrongShip
+from twin.live.learning.residual import NoResidual, Residual, ResidualError, WrongShip
 from twin.live.loop import Ears, Loop
 from twin.live.observer.dynamics import first_current
 from twin.live.observer.observer import Observer
@@ -49,7 +49,7 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
     notes: list[str] = []
     if settings["residual.file"] != "none":
         network.open_library(breathe)
-    residual, why_not = residual_of(settings, ship)
+    residual, why_not, logged = residual_of(settings, ship)
     breathe()
     if residual and residual.note:
         notes.append(residual.note)
@@ -80,31 +80,31 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
         notes.append(f"certificate: {said}")
     if said := loop.tube.why_not:
         notes.append(f"prediction tube: {said}")
-    loop.notes = notes
+    loop.notes, loop.logged = notes, [logged] if logged else []
     return loop
 
 
-def residual_of(settings: Settings, ship: Ship) -> tuple[Residual | None, str]:
-    """The residual, or None and why there is none. One made for another ship is passed over only if nobody
-    asked for it. ResidualError: one is required and cannot be used, or the one asked for is not for this
-    ship."""
+def residual_of(settings: Settings, ship: Ship) -> tuple[Residual | None, str, str]:
+    """The residual, or None and why there is none: for the bridge, and with file and hashes for the log. One
+    made for another ship is passed over only if nobody asked for it. ResidualError: one is required and
+    cannot be used, or the one asked for is not for this ship."""
     asked = settings["residual.file"]
     if asked == "none":
-        return None, "the settings want none"
+        return None, "the settings want none", ""
     if ship.actuators:
         why = "a network looks at one rudder and one shaft, and this ship lists [[actuators]]"
         if asked or settings["residual.required"]:
             raise ResidualError(f'residual.file: {why}. Set it to "none"')
-        return None, why
+        return None, why, ""
     path = Path(asked) if asked else residuals.bundled(ship)
     try:
         if path is None:
-            raise ResidualError(f"no residual comes with the ship {ship.name!r}. `twin train` makes one")
-        return residuals.load(path, ship), ""
+            raise NoResidual(f"no residual comes with the ship {ship.name!r}. `twin train` makes one")
+        return residuals.load(path, ship), "", ""
     except ResidualError as error:
         if settings["residual.required"] or (asked and isinstance(error, WrongShip)):
             raise
-        return None, str(error)
+        return None, error.alarm, str(error)
 
 
 def mark_of(learned: LearnedForce) -> str:

@@ -118,7 +118,7 @@ def _sailed(
         loop.sensors.rejected,
         loop.publisher.withheld,
         foresight.judged(),
-        [*played.notes, *loop.notes],
+        [*played.notes, *loop.notes, *loop.logged],
         kept.judged(),
     )
 

@@ -79,6 +79,7 @@ class Loop:
         self.pace = Pace(rate_hz)
         self.overruns = 0
         self.notes: list[str] = []  # said once, at the start: files left out, rights not granted
+        self.logged: list[str] = []  # the same with paths and hashes, for the log and nobody's alarm
         self.watched: Callable[[], list[str]] = list
         self.dropped: Callable[[], int] = int
         self.last: Seen | None = None

@@ -175,7 +175,7 @@ class Service:
 
     def _greeting(self) -> str:
         learned = "hybrid" if self.loop.learned.residual else f"physics only ({self.loop.learned.why_not})"
-        notes = [*self.loop.notes, *filter(None, [self.bus.state.alarm])]
+        notes = [*self.loop.notes, *self.loop.logged, *filter(None, [self.bus.state.alarm])]
         return f"{self.loop.ship.name}: {as_given(self.loop.rate_hz)} Hz, {learned}. " + " ".join(
             f"[{note}]" for note in notes
         )

@@ -9,6 +9,7 @@ from twin.live.certificate.periods import TOO_LONG
 from twin.live.certificate.rolled_tube import RolledTube
 from twin.live.guard import CONTROLS
 from twin.live.observer.observer import Observer
+from twin.live.observer.operating import WORDS
 from twin.live.observer.rollback import RollBack
 from twin.live.parity import Parity
 from twin.live.seen import Certified
@@ -44,6 +45,8 @@ class Stabilizer:
         self._inside = 0  # ticks that it has surely been in the set
         self._since_late_s = float("inf")  # seconds for which every tick came in time
         self._surprised = dict.fromkeys(NU, 0.0)
+        self._heard: set[str] = set()  # which of u, v, r an instrument of its own has measured so far
+        self._guessed: tuple[str, ...] = NU  # whose bound rests on no measurement, but on what a ship can do
         self.outside: str | None = why_not
 
     @property
@@ -78,7 +81,10 @@ class Stabilizer:
         certificate, first = tube.certificate, self._first(observer, measured, tube)
         within = min(tube.beta[0], first[0]), min(tube.beta[1], first[1]), min(tube.beta[2], first[2])
         apart = self._apart(observer, measured, tube, dt)
-        self.outside = late or doubt or apart or _unsure(measured) or tube.outside(s, within, dt)
+        left = tube.outside(s, within, dt)
+        self.outside = (
+            late or doubt or apart or _unsure(measured) or (left and self._unknown(measured, tube)) or left
+        )
         self._inside = self._inside + 1 if self.outside is None else 0
         if proven := self._inside >= tube.window:
             self.outside = (
@@ -86,6 +92,7 @@ class Stabilizer:
             )
         else:
             tube.reset(first, self._heading(observer, measured, tube))
+            self._guessed = tuple(a for a in NU if not self._in_time(a, measured, tube))
         if tube.says_nothing():  # with measurements it comes back by itself
             return Certified(
                 certificate.margin, USELESS, False, degrees(pi), self._step_margin, self._authority
@@ -128,6 +135,8 @@ class Stabilizer:
     def _steps(self, observer: Observer, measured: Measured, tube: Tube, dt: float, acts: bool) -> None:
         got = tuple([observer.received[a] and self._in_time(a, measured, tube) for a in NU])
         self._watch(observer, got, tube)
+        self._heard |= {a for a in NU if a in measured.si and a not in measured.derived}
+        self._guessed = tuple(a for a in self._guessed if not self._in_time(a, measured, tube))
         sea = measured.si.get("H_s", 0.0)
         if isinstance(tube, RolledTube) and isinstance(observer, RollBack):
             tube.follow(observer.path, sea, acts)
@@ -174,6 +183,22 @@ class Stabilizer:
             return pi
         off = abs(turn(measured.si["psi"] - observer.estimate.psi))
         return off + tube.heading_noise + measured.age_s("psi") * observer.most[2]
+
+    def _unknown(self, measured: Measured, tube: Tube) -> str:
+        """Which speed or rate of turn the observer's bound knows nothing of, and why; "" when each has been
+        measured since the bound began."""
+        if not self._guessed:
+            return ""
+        a = self._guessed[0]
+        name, old_s = WORDS[a], min(tube.oldest_s, self._since_late_s)
+        if a not in self._heard:
+            return f"{name} is not measured yet"
+        if a not in measured.si or a in measured.derived:
+            return f"{name} is not measured"
+        return (
+            f"{name} is not measured often enough, age = {num(measured.age_s(a), 2)} s where at most "
+            f"{num(old_s, 2)} s are certified"
+        )
 
     def _in_time(self, attribute: str, measured: Measured, tube: Tube) -> bool:
         """Measured by its own instrument, not older than the certificate allows, and not from before a late

@@ -6,10 +6,7 @@ lost without a word. A ship file of an earlier version has its arrays in itself;
 line of the log says so."""
 
 import json
-import os
-import re
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +14,10 @@ from twin import whole
 from twin.checksum import sha256_hex
 from twin.errors import SettingsError
 
+from .ship_pair import MAX_BYTES
+
 SECTION = "arrays"
 LONG = 24  # entries from which a list or table is no reading for a person
-MAX_BYTES = 32_000_000
 
 
 def divided(table: Mapping[str, Any], people: Sequence[str]) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -84,16 +82,6 @@ def said_of_old(table: Mapping[str, Any], people: Sequence[str], path: Path) -> 
         "`twin calibrate` or `twin add` writes has them in a file beside it.",
         path,
     )
-
-
-def forget(path: Path, text: str) -> None:
-    """Removes the arrays of a ship file that was written over: `text` is what stood there before."""
-    found = re.search(
-        rf"^\[{SECTION}\]\n(?:.*\n)*?file = \"({re.escape(path.stem)}\.[0-9a-f]{{8}}\.json)\"", text, re.M
-    )
-    if found:
-        with suppress(OSError):
-            os.unlink(path.with_name(found[1]))
 
 
 def _name(told: Any, path: Path) -> str:

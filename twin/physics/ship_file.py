@@ -21,10 +21,10 @@ from .actuators.file import read as read_actuators
 from .effect import Effect
 from .effects import find
 from .particulars import DERIVATIVES, ONE_SCREW, PARTICULARS, Derivatives, ShipNumbers
+from .ship_pair import MAX_BYTES
 from .ship_text import SCHEMA_VERSION, SECTIONS
 
 S = TypeVar("S", bound=ShipNumbers)
-MAX_BYTES = 32_000_000  # of a ship file; what calibration keeps in one takes less than 1 MB
 
 
 def load(kind: type[S], path: str | os.PathLike[str], arrays: bool) -> S:

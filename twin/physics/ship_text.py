@@ -11,7 +11,7 @@ from typing import Any
 from twin import whole
 from twin.num import as_given
 
-from . import ship_arrays
+from . import ship_arrays, ship_pair
 from .actuators.file import tables as actuator_tables
 from .particulars import DERIVATIVES, PARTICULARS, ShipNumbers
 
@@ -126,12 +126,14 @@ def save(
     ship: ShipNumbers, path: str | os.PathLike[str], said: Callable[[Mapping[str, Any]], str] = text
 ) -> None:
     """Write the ship file aside and rename it into place, so that no half file is ever seen; its long arrays
-    go to a file beside it (`ship_arrays`), which is written first. `said`: how the rest is told."""
-    place, (table, long) = Path(path), ship_arrays.divided(to_table(ship), SECTIONS)
-    before = place.read_text(errors="replace") if place.is_file() else ""
-    if long:
-        table[ship_arrays.SECTION] = ship_arrays.write(place, long)
-    now = said(table)
-    whole.write(place, now)
-    if not long or table[ship_arrays.SECTION]["file"] not in before:
-        ship_arrays.forget(place, before)
+    go to a file beside it (`ship_arrays`), which is written first (`ship_pair`). `said`: how the rest is
+    told."""
+    place, table = Path(path), to_table(ship)
+    if place.exists() and not place.is_file():  # a device or a pipe, which has nothing beside it
+        whole.write(place, said(table))
+        return
+    table, long = ship_arrays.divided(table, SECTIONS)
+    with ship_pair.writing(place):
+        if long:
+            table[ship_arrays.SECTION] = ship_arrays.write(place, long)
+        whole.write(place, said(table))

@@ -43,7 +43,7 @@ function momentsSection() {
   const list = RESULT.moments || [];
   if (!list.length) return null;
   const rows = list.map((m) => stretchRow(m, el("td.n", null, si(m.X_N, "N")), el("td.n", null, si(m.Y_N, "N")), el("td.n", null, si(m.N_Nm, "N m"))));
-  return section("Transient disturbances", "a force pushed the ship then, and not before or after; click one to see it in the plots", table([...(DATA.voyages.length > 1 ? ["voyage"] : []), "when", ">ahead", ">to starboard", ">turning to starboard"], rows));
+  return section("Transient disturbances", "a force pushed the ship then, and not before or after; choose one to see it in the plots", table([...(DATA.voyages.length > 1 ? ["voyage"] : []), "when", ">ahead", ">to starboard", ">turning to starboard"], rows));
 }
 
 /** Many numbers that follow each other in time: a curve, with its 95 % band. */

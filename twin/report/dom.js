@@ -61,9 +61,17 @@ function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
+/** What is printed is printed for light paper. */
+function printedLight(redrawn) {
+  const theme = document.documentElement.dataset;
+  let shown = theme.theme;
+  addEventListener("beforeprint", () => { shown = theme.theme; theme.theme = "light"; redrawn(); });
+  addEventListener("afterprint", () => { theme.theme = shown; redrawn(); });
+}
+
 /** A command with a button that copies it. */
 function command(text) {
-  const button = el("button", { onclick: () => copy(text, button) }, "copy");
+  const button = el("button", { "aria-live": "polite", onclick: () => copy(text, button) }, "copy");
   return el(".command", null, el("code", null, text), button);
 }
 
@@ -74,6 +82,7 @@ function copy(text, button) {
   box.select();
   if (document.execCommand("copy")) done();
   box.remove();
+  button.focus(); // where the keyboard was
 }
 
 function table(heads, rows) {

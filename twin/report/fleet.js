@@ -44,14 +44,13 @@ function history(cause) {
   const all = list.flatMap((p) => [p.low95, p.high95, 0]), low = Math.min(...all), high = Math.max(...all);
   const X = (i) => left + 8 + at[i] * (wide - left - 16), Y = (v) => 6 + ((tall - foot - 12) * (high - v)) / (high - low || 1);
   const drawing = shape("svg", { viewBox: `0 0 ${wide} ${tall}`, width: wide, height: tall, role: "img", "aria-label": `${cause.effect}, ${list[0].name} over ${list.length} voyages, ${list.map((p) => num(p.value)).join(", ")}${unit(list[0])}` });
-  drawing.style.maxWidth = "100%";
   const word = (x, y, text, anchor) => { const node = shape("text", { x, y, "text-anchor": anchor, class: "mark" }); node.textContent = text; drawing.append(node); };
   for (const v of new Set([low, 0, high])) if (v === 0 || Math.abs(Y(v) - Y(0)) > 12) word(left - 4, Y(v) + 4, num(v, 2), "end");
   drawing.append(shape("path", { d: `M${left} ${Y(0)}H${wide}`, class: "nought" }), shape("polyline", { points: list.map((p, i) => `${X(i)},${Y(p.value)}`).join(" "), class: "way" }));
   list.forEach((p, i) => drawing.append(shape("path", { d: `M${X(i)} ${Y(p.low95)}V${Y(p.high95)}`, class: "middle" }), shape("circle", { cx: X(i), cy: Y(p.value), r: 4, class: p.named ? "named" : "weighed" })));
   word(list.length > 1 ? left + 8 : X(0), tall - 3, day(list[0]), list.length > 1 ? "start" : "middle");
   if (list.length > 1) word(wide - 8, tall - 3, day(list[list.length - 1]), "end");
-  return el("div", null, el("code", null, `${cause.effect}: ${list[0].name}${unit(list[0])}`), el("div", null, drawing), el("span.note", null, `named on ${cause.named_on} of ${cause.of_voyages} voyages, since ${day(cause.since)}; ${cause.trend ? slope(cause.trend) : "three sizes make a trend"}`));
+  return el("div", null, el("code", null, `${cause.effect}: ${list[0].name}${unit(list[0])}`), el(".scroll", { tabIndex: 0, role: "group", "aria-label": drawing.getAttribute("aria-label") }, drawing), el("span.note", null, `named on ${cause.named_on} of ${cause.of_voyages} voyages, since ${day(cause.since)}; ${cause.trend ? slope(cause.trend) : "three sizes make a trend"}`));
 }
 
 function ship(s) {
@@ -73,4 +72,5 @@ document.title = DATA.title;
 document.getElementById("page").className = "fleet";
 const months = section("Over the months", "many ships, many voyages, many tests", RESULT.months.map((text) => el("p.note", null, text)));
 document.getElementById("page").append(head(), ranking(), months, ...RESULT.ships.map(ship), el("footer", null, "shiptwin · this page is whole: it asks nothing of any network"));
+printedLight(() => {});
 document.documentElement.dataset.readyMs = "0";

@@ -39,8 +39,9 @@ function setTheme(name) {
 function pickVoyage(i) {
   if (i === view.voyage && view.panels.length) return;
   view.voyage = i;
-  const fresh = voyageParts();
-  document.getElementById("voyage").replaceWith(fresh);
+  const old = document.getElementById("voyage"), inside = old.contains(document.activeElement), fresh = voyageParts();
+  old.replaceWith(fresh);
+  if (inside) fresh.querySelector("[aria-pressed=true]").focus(); // whoever chose it by keyboard goes on from there
   whole();
 }
 
@@ -51,7 +52,7 @@ function voyageParts() {
   view.panels = []; view.watchers = [];
   [view.from, view.to] = [v.start_s, v.end_s];
   const tabs = DATA.voyages.length > 1 ? el(".bar", null, DATA.voyages.map((w, i) => el("button", { "aria-pressed": String(i === view.voyage), onclick: () => pickVoyage(i) }, w.name))) : null;
-  const heat = section("Channel by time", `errors up to ${v.heat.ahead_s} s ahead, by when they begin; click to see`, tabs, heatStrip(v));
+  const heat = section("Channel by time", `errors up to ${v.heat.ahead_s} s ahead, by when they begin; click, or arrows and Enter, to see`, tabs, heatStrip(v));
   heat.querySelector(".head").append(heatLegend());
   const map = section("Track", `the model starts anew every ${DATA.longest_s} s`, trackPlot(v, LINES));
   map.querySelector(".head").append(legend());
@@ -64,7 +65,7 @@ function legend() {
 }
 
 function plotsSection(v) {
-  const top = el(".sticky", null, el(".bar", null, el("button", { onclick: whole }, "whole voyage"), el("button", { onclick: () => setZoom(view.from - (view.to - view.from) / 2, view.to + (view.to - view.from) / 2) }, "wider"), el("span.note", null, "drag to choose a stretch, click to go nearer, double-click for all"), legend()), el(".panel", { style: { border: 0, padding: 0 } }, el("div"), timeAxis()));
+  const top = el(".sticky", null, el(".bar", null, el("button", { onclick: whole }, "whole voyage"), el("button", { onclick: () => setZoom(view.from - (view.to - view.from) / 2, view.to + (view.to - view.from) / 2) }, "wider"), el("button", { onclick: () => setZoom(view.from + (view.to - view.from) / 4, view.to - (view.to - view.from) / 4) }, "nearer"), el("span.note", null, "drag to choose a stretch, click to go nearer, double-click for all; by keyboard on the axis below: arrows, Enter, + and −"), legend()), el(".panel", { style: { border: 0, padding: 0 } }, el("div"), timeAxis()));
   const out = section("Measured, modelled, left over", null, top, v.channels.map((c) => channelPanel(v, c)), v.inputs.map((c) => inputPanel(c)));
   out.id = "plots";
   return out;
@@ -105,6 +106,7 @@ function build() {
   const stretch = location.hash.match(/t=([\d.]+),([\d.]+)/);
   stretch ? setZoom(+stretch[1], +stretch[2]) : redraw();
   addEventListener("resize", redraw);
+  printedLight(redraw);
   addEventListener("keydown", (e) => e.key === "Escape" && whole());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", (e) => setTheme(e.matches ? "dark" : "light"));
   document.documentElement.dataset.readyMs = String(Math.round(performance.now() - start));

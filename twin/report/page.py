@@ -19,7 +19,7 @@ from twin.study.reference.sailed import switched_off
 from twin.study.reference.structure import floor_of
 from twin.study.track.track import Track
 
-SCRIPTS = ("number.js", "dom.js", "plot.js", "track.js", "sections.js", "diagnosis.js", "main.js")
+SCRIPTS = ("number.js", "dom.js", "plot.js", "keys.js", "track.js", "sections.js", "diagnosis.js", "main.js")
 FLEET = ("number.js", "dom.js", "fleet.js")  # of many ships: a table, and a small plot of each
 
 

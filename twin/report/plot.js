@@ -26,7 +26,7 @@ function lower(t, x) {
 
 /** A canvas of this height that knows its size in pixels. */
 function sheet(height, label) {
-  const canvas = el("canvas", { role: "img", "aria-label": label || "times", style: { height: `${height}px` } });
+  const canvas = el("canvas", { role: "img", "aria-label": label, style: { height: `${height}px` } });
   const start = () => {
     const ratio = window.devicePixelRatio || 1, width = canvas.clientWidth;
     canvas.width = Math.round(width * ratio);
@@ -102,7 +102,7 @@ function plot(height, series, options = {}) {
   const [canvas, start] = sheet(height, options.label), cursor = el(".cursor"), picked = el(".picked");
   const box = el(".draw", null, canvas, cursor, picked);
   const seconds = (px) => view.from + ((px - LEFT) / Math.max(canvas.clientWidth - LEFT, 1)) * (view.to - view.from);
-  const panel = { cursor, seconds, draw() { paint(start, series, options); } };
+  const panel = { cursor, picked, seconds, draw() { paint(start, series, options); } };
   steer(box, canvas, picked, seconds);
   view.panels.push(panel);
   return box;
@@ -142,7 +142,7 @@ function grid(pen, X, Y, width, height, low, high, options) {
 
 /** The axis of times, above all plots. */
 function timeAxis() {
-  const [canvas, start] = sheet(20);
+  const [canvas, start] = sheet(20, "");
   const panel = { cursor: null, draw() {
     const [pen, width] = start();
     pen.font = "11.5px system-ui, sans-serif"; pen.fillStyle = colour("soft"); pen.textBaseline = "middle"; pen.textAlign = "center";
@@ -152,7 +152,10 @@ function timeAxis() {
     }
   } };
   view.panels.push(panel);
-  return canvas;
+  canvas.removeAttribute("role");
+  const strip = el(".strip", null, canvas);
+  axisKeys(strip);
+  return strip;
 }
 
 /** Drag to choose a stretch, click to go three times nearer, double-click to see all; the cursor shows on every plot. */

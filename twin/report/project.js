@@ -61,4 +61,5 @@ document.documentElement.dataset.theme = (location.hash.match(/theme=(dark|light
 document.title = DATA.title;
 const parts = [head(), ...errorSections(), comparisonsSection(), ...diagnosisSections(), ladderSection(), calibrationSection(), shipSection(), voyagesSection()];
 document.getElementById("page").append(...parts.filter(Boolean), el("footer", null, `shiptwin ${DATA.version} · this page is whole: it asks nothing of any network`));
+printedLight(() => {});
 document.documentElement.dataset.readyMs = "0";

@@ -59,7 +59,13 @@ def _table(table: PageTable) -> str:
     side = {k: " class=n" * (k in numeric) for k in names}
     heads = "".join(f"<th{side[k]}>{escape(v)}</th>" for k, v in names.items())
     cells = ["".join(f"<td{side[k]}>{_cell(row.get(k))}</td>" for k in names) for row in table.rows]
-    return f"<table><tr>{heads}</tr>{''.join(f'<tr>{row}</tr>' for row in cells)}</table>"
+    rows = "".join(f"<tr>{row}</tr>" for row in cells)
+    return _scrolled(f"Table: {', '.join(names.values())}", f"<table><tr>{heads}</tr>{rows}</table>")
+
+
+def _scrolled(name: str, inner: str) -> str:
+    """What may be wider than a phone, and is scrolled there by finger or arrow keys."""
+    return f'<div class="scroll" tabindex="0" role="group" aria-label="{escape(name)}">{inner}</div>'
 
 
 def _is_number(value: Any) -> bool:
@@ -88,4 +94,6 @@ def _bars(bars: Bars) -> str:
             out.append(f'<text x="{at}" y="{y + 15}" fill="var(--ink)">{escape(said)}</text>')
             y += HIGH
         y += HIGH // 3
-    return f'<svg viewBox="0 0 {WIDE} {y}" font-size="13" role="img">' + "".join(out) + "</svg>"
+    said = escape(f"{bars.caption} {bars.unit}: a bar for each row".replace("  ", " "))
+    begin = f'<svg class="bars" viewBox="0 0 {WIDE} {y}" font-size="13" role="img" aria-label="{said}">'
+    return _scrolled(bars.caption, f"{begin}{''.join(out)}</svg>")

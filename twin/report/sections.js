@@ -75,7 +75,7 @@ function stretchRow(w, ...cells) {
 function worstSection() {
   const many = DATA.voyages.length > 1;
   const rows = (RESULT.worst_windows || []).map((w) => stretchRow(w, el("td.n", null, w.position_m === undefined ? "" : num(w.position_m)), el("td.n", null, w.heading_deg === undefined ? "" : num(w.heading_deg, 2)), el("td.n", null, `×${num(w.error_ratio, 2)}`)));
-  return section("Worst windows", "click one to see it in the plots", table([...(many ? ["voyage"] : []), "when", ">off [m]", ">[deg]", ">of the mean"], rows));
+  return section("Worst windows", "choose one to see it in the plots", table([...(many ? ["voyage"] : []), "when", ">off [m]", ">[deg]", ">of the mean"], rows));
 }
 
 function channelsSection() {

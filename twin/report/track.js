@@ -57,6 +57,7 @@ function heatColour(x) {
 /** Channel by time: how many times its noise each channel is off. */
 function heatStrip(v) {
   const row = 19, names = 210, [canvas, start] = sheet(row * v.heat.rows.length + 20, `Errors of ${v.name} over time, by channel, in units of its noise`);
+  let moment = null; // that the keys have come to
   const draw = () => {
     const [pen, width] = start(), X = (t) => names + ((t - v.start_s) / (v.end_s - v.start_s)) * (width - names), t = v.heat.t;
     const shades = Array.from({ length: 61 }, (_, i) => `rgb(${heatColour(HEAT_TOP ** (i / 60)).join(",")})`);
@@ -75,12 +76,16 @@ function heatStrip(v) {
     for (const s of timeSteps(v.start_s, v.end_s, width - names)) if (X(s) < width - 16) pen.fillText(clock(s), X(s), bottom + 11);
     pen.strokeStyle = colour("ink"); pen.lineWidth = 1.2;
     if (view.to - view.from < 0.98 * (v.end_s - v.start_s)) pen.strokeRect(X(view.from), 0.6, X(view.to) - X(view.from), bottom);
+    if (moment !== null) { pen.beginPath(); pen.moveTo(X(moment), 0); pen.lineTo(X(moment), bottom); pen.stroke(); }
   };
   canvas.style.cursor = "pointer";
+  const go = (s) => { setZoom(s - DATA.longest_s / 2, s + DATA.longest_s * 1.5); document.getElementById("plots").scrollIntoView({ behavior: "smooth" }); };
   canvas.onclick = (e) => {
     const box = canvas.getBoundingClientRect(), s = v.start_s + ((e.clientX - box.left - names) / (box.width - names)) * (v.end_s - v.start_s);
-    if (s >= v.start_s) { setZoom(s - DATA.longest_s / 2, s + DATA.longest_s * 1.5); document.getElementById("plots").scrollIntoView({ behavior: "smooth" }); }
+    if (s >= v.start_s) go(s);
   };
+  const label = `${canvas.getAttribute("aria-label")}. Arrows move along the voyage, Enter shows that time in the plots`;
+  stripOfTimes(canvas, label, { over: () => [v.start_s, v.end_s], moved: (t) => { moment = t; draw(); }, chosen: go });
   view.watchers.push(draw);
   return canvas;
 }

@@ -24,6 +24,7 @@ from typing import Any
 
 from twin import whole
 from twin.errors import SettingsError
+from twin.physics.ship_pair import tidy
 from twin.studio.project import JOBS, Project
 from twin.studio.verbs import command_of
 
@@ -44,6 +45,7 @@ class Jobs:
         self.project = project
         self.folder = project.folder / JOBS
         self._ours: dict[str, subprocess.Popen[bytes]] = {}
+        self._tidied: set[str] = set()  # jobs that died, whose half of a ship is removed
         self._turning = threading.Lock()  # no job begins while one is cancelled
 
     def add(self, asked: Mapping[str, Any]) -> str:
@@ -72,9 +74,18 @@ class Jobs:
             if worker.poll() is not None:
                 del self._ours[name]
         states = {name: self.state(name) for name in self.names()}
+        for name in [n for n, state in states.items() if state == "died" and n not in self._tidied]:
+            self._tidy(name)
         free = AT_ONCE - sum(state == "running" for state in states.values())
         for name in [n for n, state in states.items() if state == "waiting"][: max(free, 0)]:
             self._start(name)
+
+    def _tidy(self, name: str) -> None:
+        """What the worker of a job that died left beside the ship file that it was writing."""
+        self._tidied.add(name)
+        output = (read(self.folder / name / JOB) or {}).get("asked", {}).get("output")
+        if output:
+            tidy(self.project.folder / Path(str(output)).name)
 
     def _start(self, name: str) -> None:
         folder = self.folder / name

@@ -57,12 +57,23 @@ ABSURD = 1e6  # a feature beyond this is no feature
 
 
 class ResidualError(SettingsError):
-    """A residual that must not be used; the twin goes on with physics only unless the settings forbid it."""
+    """A residual that must not be used; the twin goes on with physics only unless the settings forbid it.
+    `alarm`: the same for the bridge, in a few words and without a path."""
+
+    alarm = "the network's file cannot be used"
 
 
 class WrongShip(ResidualError):
     """A residual made for another ship, or for another state of its model: never used, and not passed over
     in silence."""
+
+    alarm = "the network was not trained for this model of the ship"
+
+
+class NoResidual(ResidualError):
+    """None was asked for, and none comes with the ship."""
+
+    alarm = "no network has been trained for this ship"
 
 
 class Features(NamedTuple):
