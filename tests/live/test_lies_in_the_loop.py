@@ -12,7 +12,7 @@ from bench.endurance.lies import LIE_AT_S, OTHERS, SECONDS, STEP_S, heard
 from bench.instrument_lies import rows_of
 from bench.lies_told import LIES
 from bench.reference import Case, simulate
-from bench.seaway import sailed
+from bench.sea_disturbance import sailed
 from twin.live.build import loop_of
 from twin.live.inbox import Played
 from twin.live.outbox import Outbox
