@@ -7,7 +7,7 @@ derivative; a fault of rudder, thruster or gear can then not be told from the co
 is put between, and the reference voyages say how much more probable they are with it (the core's freedom
 integrated out). Like actuators share one lag, unless the voyages clearly ask for one each."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -90,11 +90,14 @@ def with_or_without_gear(
             free = about(unknowns, begun) if model.ship.actuators else unknowns
             with_gear = _geared(begun, gears, tracks, free, known, temper)
             if with_gear is begun:
+                with_gear = _apart(begun, gears, tracks, free, known, temper)
+            if with_gear is begun or (better := fitted(with_gear)).cost >= found.cost - 2.0 * CLEAR:
                 continue
-            better = fitted(with_gear)
-            if better.cost < found.cost - 2.0 * CLEAR:
-                found = _each_its_own(better, fitted, gears, tracks, unknowns, known, temper)
-                break
+            found, free = better, about(unknowns, better.model)
+            own = _apart(found.model, gears, tracks, free, known, temper)
+            if own is not found.model and (better := fitted(own)).cost < found.cost - 2.0 * CLEAR:
+                found = better
+            break
     return found
 
 
@@ -144,35 +147,33 @@ def _times(gear: Effect, later: float, slower: float) -> Effect:
     return gear.but(**{n: (later if n == "delay" else slower) * v for n, v in gear.values().items()})
 
 
-def _each_its_own(
-    shared: Fit,
-    fitted: Callable[[Model], Fit],
+def _apart(
+    model: Model,
     gears: Gears,
     tracks: Sequence[Track],
     unknowns: Sequence[Unknown],
     known: Catalogue,
     temper: float,
-) -> Fit:
-    """The fit with a lag for each of these actuators, if the voyages clearly tell them apart; else with the
-    one for all."""
+) -> Model:
+    """The model with a lag for each of these actuators, if the voyages clearly tell them apart from the one
+    for all that it has, or from none; else as it is."""
     if len(gears) == 1:
-        return shared
-    model = shared.model
+        return model
     own = [u for g in gears for u in effect_unknowns(g, model)]
-    every = (*about(unknowns, model), *own)
+    every, first, size = (*unknowns, *own), len(unknowns), len(own) // len(gears)
     lines = [linearise(t, model.without_inputs(t.missing())[0], every, known) for t in tracks]
     normal, sd = innovate(lines, [NoiseModel()])[0], np.array([u.sd for u in every])
-    first = len(unknowns) + np.arange(len(own)) % (len(own) // len(gears))  # its place in the first's lag
-    alike = np.zeros((len(every), len(unknowns) + len(own) // len(gears)))
-    alike[np.arange(len(every)), np.append(np.arange(len(unknowns)), first)] = 1.0
-    apart, together = evidence(normal, sd), evidence(normal.in_terms_of(alike), sd[: alike.shape[1]])
-    if apart - together <= CLEAR * temper:
-        return shared
+    alike = np.eye(len(every), first + size)
+    if _there(gears, model):  # the same number of each is one
+        alike[first:, first:] = np.tile(np.eye(size), (len(gears), 1))
+    else:
+        alike[first:] = 0.0
+    together = evidence(normal.in_terms_of(alike), sd[: first + size])
+    if evidence(normal, sd) <= together + CLEAR * temper:
+        return model
     A, b, _ = normal.total()
-    moved = np.linalg.solve(A / temper + np.diag(sd**-2.0), b / temper)[len(unknowns) :]
-    begun = with_values(model, own, [u.centre + x for u, x in zip(own, moved, strict=True)], known)
-    better = fitted(begun)
-    return better if better.cost < shared.cost - 2.0 * CLEAR else shared
+    moved = np.linalg.solve(A / temper + np.diag(sd**-2.0), b / temper)[first:]
+    return with_values(model, own, [u.centre + x for u, x in zip(own, moved, strict=True)], known)
 
 
 def about(unknowns: Sequence[Unknown], model: Model) -> list[Unknown]:
