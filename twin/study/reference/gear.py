@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from twin.physics.actuators import Actuator
-from twin.physics.effect import Effect
-from twin.physics.effects import ActuatorLag, of, of_role
+from twin.physics.effect import Effect, Lag
+from twin.physics.effects import OfActuator, of_role, of_ship
 from twin.physics.model import Model
 from twin.physics.ship_like import ShipLike
 from twin.study.estimation.columns import Unknown, effect_unknowns, with_values
@@ -36,8 +36,9 @@ def gears_of(ship: ShipLike) -> tuple[Gears, ...]:
     if not ship.actuators:
         return ((of_role("gear"),),)
     alike: dict[object, list[type[Effect]]] = {}
-    for a in ship.actuators:
-        alike.setdefault(_make(a), []).append(of(ActuatorLag, a.name))
+    for effect in of_ship(ship).values():
+        if issubclass(effect, OfActuator) and issubclass(effect, Lag):
+            alike.setdefault(_make(ship.actuator(effect.actuator)), []).append(effect)
     return tuple(map(tuple, alike.values()))
 
 
