@@ -8,7 +8,7 @@ noise of their own, which the ship file does not know. Then each mistake of the 
 import argparse
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -74,12 +74,20 @@ def ship_of(kind: str) -> Ship:
     )
 
 
-def sailed(kind: str, seed: int, duration_s: float = 240.0, boat_seed: int | None = None) -> Voyage:
+def sailed(
+    kind: str,
+    seed: int,
+    duration_s: float = 240.0,
+    boat_seed: int | None = None,
+    lags_s: Mapping[str, float] | None = None,
+) -> Voyage:
     """One boat under orders that nobody planned: straight, turning, stopping. `boat_seed`: the same boat on
-    voyages of several seeds."""
+    voyages of several seeds; `lags_s`: by how much the thrust of each part is behind its order, if not as it
+    was drawn."""
     rng = np.random.default_rng([seed, KINDS.index(kind)])
     drawn = rng if boat_seed is None else np.random.default_rng([boat_seed, KINDS.index(kind), 7])
     boat, order = _Boat(kind, drawn, rng), _orders(kind, rng, round(duration_s / STEP_S))
+    boat.lag |= lags_s or {}
     rows = [boat.step({n: x[k] for n, x in order.items()}) for k in range(round(duration_s / STEP_S))]
     x, y, psi, u, v, r = np.array(rows)[::SAMPLE].T
     n = x.size
@@ -137,7 +145,8 @@ class _Boat:
         self.inertia = MASS_KG * (0.25 * LENGTH_M) ** 2 * k**5 * rng.uniform(1.2, 1.8)
         self.drag = np.array([25.0 * k**2, 90.0 * k**2, 60.0 * k**3]) * rng.uniform(0.6, 1.5, 3)
         self.linear = np.array([10.0 * k**2, 30.0 * k**2, 20.0 * k**3]) * rng.uniform(0.3, 1.5, 3)
-        self.curve, self.lag = rng.uniform(1.0, 2.0), rng.uniform(0.1, 0.6)
+        self.curve = rng.uniform(1.0, 2.0)
+        self.lag = dict.fromkeys((a.name for a in self.parts), rng.uniform(0.1, 0.6))
         self.strength = {a.name: rng.uniform(0.7, 1.2) for a in self.parts}
         self.push = dict.fromkeys(self.strength, 0.0)
         self.gust, self.wind = np.zeros(3), np.array([2.0, 4.0, k]) * k**2 * rng.uniform(0.0, 0.25)
@@ -162,7 +171,7 @@ class _Boat:
         c = (c - 1500.0) / 400.0 if "pwm" in a.attributes else c
         full = self.full * (1.0 if c > 0.0 else 0.6) * self.strength[a.name]
         self.push[a.name] += (
-            STEP_S / self.lag * (full * np.sign(c) * abs(c) ** self.curve - self.push[a.name])
+            STEP_S / self.lag[a.name] * (full * np.sign(c) * abs(c) ** self.curve - self.push[a.name])
         )
         T = self.push[a.name]
         angle = np.radians(order.get(f"{a.name}.angle_deg", 0.0))

@@ -186,6 +186,9 @@ CALIBRATE = (
     JsonKey("unexcited[]", "", "derivatives whose prior was kept", "there are some"),
     JsonKey("fitted_by", "", "paths (three ship lengths ahead) or steps (each next reading)"),
     JsonKey("gear.*", "", "steering gear behind a recorded order, if one was found", "found"),
+    JsonKey(
+        "actuator_lags.*", "", "lags behind what is recorded of actuators, by effect and number", "found"
+    ),
     JsonKey("antenna.*", "", "where position is measured, if clearly elsewhere", "found"),
     JsonKey("wind.*", "", "numbers of `Wind`, if it clearly pushed the ship", "found"),
     JsonKey("instruments.*", "", "what its instruments show on every voyage, by effect and number", "found"),

@@ -56,3 +56,26 @@ def test_a_model_that_runs_away_between_two_readings_is_refused_in_one_line():
             filters.correct(k)
             filters.advance(k)
     assert "\n" not in str(error.value)
+
+
+def test_of_faults_of_several_instruments_each_column_is_as_if_it_were_alone():
+    draw, P = np.random.default_rng(SEED), 4
+    turns = {j: draw.standard_normal((1, 2, 8, 8)).astype(np.float32) for j in (0, 3, 2)}
+    shown, told = draw.standard_normal((1, 2, 8, 1 + P)).astype(np.float32), unstable(1.0, 1, 1).told
+
+    def white(some):
+        two = {
+            name: np.repeat(getattr(told, name), 2, axis=1) for name in ("F", "H", "here", "pushed", "spread")
+        }
+        noise = NoiseVariances(np.full((1, 1, 2, 8), 1e-2), np.zeros((1, 1, 2, STATES)))
+        filters = Filters(
+            Stretches(shown=shown, turns=some, **two), noise, np.tile(np.eye(STATES), (1, 2, 1, 1))
+        )
+        filters.X[...] = 0.1
+        return filters.correct(0)[0]
+
+    none, every = white({}), white(turns)
+    for j, turn in turns.items():
+        assert every[..., 1 + j] == pytest.approx(white({j: turn})[..., 1 + j], rel=1e-5)
+        assert np.abs(every[..., 1 + j] - none[..., 1 + j]).max() > 0.1
+    assert np.array_equal(every[..., [0, 2]], none[..., [0, 2]])

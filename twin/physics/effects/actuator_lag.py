@@ -15,6 +15,7 @@ class ActuatorLag(OfActuator, Lag):
     """This actuator answers late and slowly: a dead time and a time constant stand between its order and what
     it does."""
 
+    with_core = "what was recorded of it is its order"
     source = "Fossen (2021) Handbook of Marine Craft Hydrodynamics, 2nd ed., ch. 9 (actuator dynamics)"
 
     delay: float = param(0.05, unit="s", lo=0.0, hi=0.5, sd=0.05, of="time", form=0.5, doc="dead time")

@@ -39,6 +39,11 @@ def told(result: dict[str, Any]) -> list[str]:
             "  rudder_angle_deg is the rudder order: the steering gear behind it is now part of the model "
             f"({PARTS['gear'].__name__}: {_sizes(gear)})"
         )
+    lines += [
+        f"  {name.partition('.')[2]} lags behind what was recorded of it, its order: that is now part of the "
+        f"model ({name}: {_sizes(numbers)})"
+        for name, numbers in result["actuator_lags"].items()
+    ]
     if antenna := result["antenna"]:
         lines.append(
             "  position is measured elsewhere than the ship file says: the place is now part of the model "

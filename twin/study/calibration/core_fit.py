@@ -31,7 +31,7 @@ from twin.study.reference.derivatives import (
 from twin.study.reference.nuisance import TEMPER, instruments, temper_of
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.seaway import levelled, swung
-from twin.study.reference.steering_gear import with_or_without_gear
+from twin.study.reference.steering_gear import gears_of, with_or_without_gear
 from twin.study.reference.structure import structural_floor
 from twin.study.reference.weather_baseline import FAINT
 from twin.study.track.track import Track
@@ -42,8 +42,12 @@ FITTED_BY = ("steps", "paths")
 BETTER = 0.05  # share by which paths must be better than steps: a diagnosis judges by steps
 # of the ship and not of the core, found with it; their numbers stand under these keys in --json
 PARTS = {role: of_role(role) for role in ("gear", "antenna", "wind")}
-# by the probability of the voyages; the antenna by predictions
-ASKED_FOR = tuple(PARTS[role].__name__ for role in ("gear", "wind"))
+
+
+def asked_for(ship: Ship) -> tuple[type[Effect], ...]:
+    """Of the ship and not of the core, and found by the probability of the voyages (the antenna: by
+    predictions): its steering gear or its actuators' lags, and wind."""
+    return (*(gear for gears in gears_of(ship) for gear in gears), PARTS["wind"])
 
 
 @dataclass(frozen=True)
@@ -67,9 +71,9 @@ class Core:
     tracks: list[Track]  # with what waves do to it taken for that
     model: Model
     derivatives: list[Derivative]
-    # of the ship file; a steering gear and wind among them if the voyages asked for these
+    # of the ship file; gears and wind among them if the voyages asked for these
     effects: tuple[Effect, ...]
-    # of the gear, the antenna and the wind, with their standard errors
+    # of the gears, the antenna and the wind, with their standard errors
     numbers: dict[str, dict[str, dict[str, Any]]]
     antenna: Effect | None  # where it was found, if not where the ship file has it
     floor: NoiseModel
@@ -130,7 +134,14 @@ def _with_antenna(
 def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) -> Core:
     model, known = Model.of(ship), of_ship(ship)
     unknowns = tuple(first_prior(u, ship) for u in (*core_unknowns(model), *instruments(model, known)))
-    progress("fitting the core, and testing whether the recorded rudder angle is the order")
+    progress(
+        "fitting the core, and testing whether "
+        + (
+            "actuators lag behind what was recorded of them"
+            if ship.actuators
+            else "the recorded rudder angle is the order"
+        )
+    )
     tracks = [levelled(t) for t in sailed]
     rough = with_or_without_gear(tracks, model, unknowns, known, TEMPER)
     progress("testing again whether waves move the ship")
@@ -145,9 +156,10 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     floor, temper = structural_floor(rough.lines, unknowns), temper_of(rough.normal, unknowns)
     progress("fitting again with this noise model")
     found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, smooth=True)
-    asked = tuple(e for e in found.model.effects if type(e).__name__ in ASKED_FOR)
+    asked = tuple(e for e in found.model.effects if type(e) in asked_for(ship))
     kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
-    numbers = {e.__name__: _numbers(found, e.__name__, e.with_core) for e in PARTS.values()}
+    parts = {e.__name__: e for e in (*asked_for(ship), *PARTS.values())}
+    numbers = {name: _numbers(found, name, e.with_core) for name, e in parts.items()}
     return Core(tracks, found.model, told_by(found), (*kept, *asked), numbers, clearly(found), floor, temper)
 
 
@@ -157,12 +169,12 @@ def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
     return {
         u.name: {"value": float(value), "unit": u.unit, "sd": float(sd), "source": source}
         for u, value, sd in zip(found.unknowns, found.value, found.sd, strict=True)
-        if u.owner == owner
+        if owner in (u.owner, *u.also)
     }
 
 
 def _beside(ship: Ship, core: Core) -> Ship:
-    """The ship with the fitted derivatives, and the steering gear and the wind if they were found."""
+    """The ship with the fitted derivatives, and the gears and the wind if they were found."""
     return replace(with_derivatives(ship, core.derivatives), effects=core.effects)
 
 
@@ -192,12 +204,15 @@ def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
 
 def _found_here(name: str, ship: Ship, core: Core) -> bool:
     """Whether a part of it is in the ship file as this calibration found it."""
-    return name in ASKED_FOR or (core.antenna is not None and core.antenna in ship.effects)
+    return name in (e.__name__ for e in asked_for(ship)) or (
+        core.antenna is not None and core.antenna in ship.effects
+    )
 
 
 def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str, float]]) -> dict[str, Any]:
     """What --json holds."""
     lasting_ones = after.notes["structural"]
+    lags = [e.__name__ for e in asked_for(ship) if e not in PARTS.values()]
     return {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,
@@ -205,6 +220,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "unexcited": [d.unknown.name for d in core.derivatives if not d.excited],
         "fitted_by": by,
         **{key: _said(owner.__name__, after, core) for key, owner in PARTS.items()},
+        "actuator_lags": {name: n for name in lags if (n := _said(name, after, core))},
         "waves": waves_on(core.tracks),
         "too_faint": [name for name, felt in lasting_ones["weather"].items() if felt > FAINT],
         "usual": clearly_there(after, lasting_ones),
@@ -221,7 +237,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
 
 def _said(owner: str, after: Ship, core: Core) -> dict[str, dict[str, Any]]:
     """The numbers of a part of it that this calibration put into the ship file."""
-    numbers = core.numbers[owner] if _found_here(owner, after, core) else {}
+    numbers = core.numbers.get(owner, {}) if _found_here(owner, after, core) else {}
     return {name: {k: v for k, v in number.items() if k != "source"} for name, number in numbers.items()}
 
 

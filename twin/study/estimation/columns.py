@@ -32,6 +32,7 @@ class Unknown:
     lo: float
     hi: float
     every_day: bool = False  # whether each day brings a little of it
+    also: tuple[str, ...] = ()  # other effects whose number of this name it is, too
 
     @property
     def label(self) -> str:
@@ -237,9 +238,10 @@ def changed(model: Model, unknown: Unknown, value: float, catalogue: dict[str, t
         return model
     if unknown.owner == "core":
         return Model(model.ship.with_derivatives(**{unknown.name: value}), model.effects)
-    present = next((e for e in model.effects if type(e).__name__ == unknown.owner), None)
-    effect = present or catalogue[unknown.owner].absent(model.ship)
-    return model.but(effect.but(**{unknown.name: value}))
+    of = {type(e).__name__: e for e in model.effects}
+    owners = (unknown.owner, *unknown.also)
+    effects = (of.get(name) or catalogue[name].absent(model.ship) for name in owners)
+    return model.but(*(e.but(**{unknown.name: value}) for e in effects))
 
 
 def with_values(

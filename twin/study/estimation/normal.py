@@ -1,6 +1,6 @@
 """Normal equations of whitened innovations: what is kept of a voyage once it has been filtered."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,6 +22,10 @@ class Normal:
     def total(self) -> tuple[np.ndarray, np.ndarray, float]:
         """A (P, P), b (P,) and ee of all segments together, per unit of the unknowns."""
         return self.A.sum(0), self.b.sum(0), float(self.ee.sum())
+
+    def in_terms_of(self, B: np.ndarray) -> "Normal":
+        """The same in other unknowns (Q,), of which these are B (P, Q) times them."""
+        return replace(self, A=B.T @ self.A @ B, b=self.b @ B)
 
     def only(self, keep: np.ndarray) -> "Normal":
         """Some of the segments. `keep` (S,): mask."""

@@ -1,84 +1,184 @@
-"""Whether what was recorded as the rudder is its order: then the steering gear stands between it and the
-ship, and belongs to its model.
+"""Whether what was recorded of the rudder, or of another actuator, is its order: then what lags behind the
+order stands between it and the ship, and belongs to its model.
 
 A rudder that is ordered at once arrives seconds later, and by then the ship has turned by less than the core
-would have it. Taken for the rudder, the order bends every derivative of sway and yaw; a fault of rudder or
-gear can then not be told from the core's. So each of a few gears is put between, and the reference voyages
-say how much more probable they are with it (the core's freedom integrated out)."""
+would have it; a thruster's turns follow its command likewise. Taken for what acts, the order bends every
+derivative; a fault of rudder, thruster or gear can then not be told from the core's. So each of a few gears
+is put between, and the reference voyages say how much more probable they are with it (the core's freedom
+integrated out). Like actuators share one lag, unless the voyages clearly ask for one each."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from twin.physics.effects import of_role
+from twin.physics.actuators import Actuator
+from twin.physics.effect import Effect, Lag
+from twin.physics.effects import OfActuator, of_role, of_ship
 from twin.physics.model import Model
-from twin.study.estimation.columns import Unknown, effect_unknowns
+from twin.physics.ship_like import ShipLike
+from twin.study.estimation.columns import Unknown, effect_unknowns, with_values
 from twin.study.estimation.fit import Catalogue, Fit, evidence, fit
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import linearise
 from twin.study.track.track import Track
 
-# L/U_0; the first is as fast as a large tanker's must be
-TRAVEL, DELAY = (0.35, 0.7, 1.4, 2.8), (0.05, 0.1, 0.2)
+# of the plausible gear's; the first is as fast as a large tanker's must be
+SLOWER, LATER = (0.5, 1.0, 2.0, 4.0), (1.0, 2.0, 4.0)
 # log evidence, tempered, that a gear must add: where the rudder itself was recorded it adds nothing at all
 CLEAR = 20.0
+Gears = tuple[type[Effect], ...]  # of like actuators
+
+
+def gears_of(ship: ShipLike) -> tuple[Gears, ...]:
+    """The lags that may stand between a ship's orders and what acts: its steering gear, or those of its
+    actuators, like ones together."""
+    if not ship.actuators:
+        return ((of_role("gear"),),)
+    alike: dict[object, list[type[Effect]]] = {}
+    for effect in of_ship(ship).values():
+        if issubclass(effect, OfActuator) and issubclass(effect, Lag):
+            alike.setdefault(_make(ship.actuator(effect.actuator)), []).append(effect)
+    return tuple(map(tuple, alike.values()))
+
+
+def _make(a: Actuator) -> tuple[object, ...]:
+    """What like actuators have in common, wherever they stand and however they have aged."""
+    return a.kind, a.channels, a.ahead, a.astern, a.D, a.A_R, a.U_half
 
 
 def gear_unknowns(model: Model) -> tuple[Unknown, ...]:
-    """The gear's numbers, about no gear."""
-    return tuple(effect_unknowns(of_role("gear"), Model(model.ship)))
+    """The numbers of the gears that the model has, about no gear: of like actuators whose lags are the same,
+    one for all; of a ship with one rudder its steering gear's, whichever lag it has."""
+    out: list[Unknown] = []
+    for gears in gears_of(model.ship) if model.lags else ():
+        there = [e for e in model.lags if type(e) in gears]
+        if len({tuple(e.values().values()) for e in there}) == 1 and len(there) == len(gears):
+            out += _shared(gears, Model(model.ship))
+        else:
+            some = [g for g in gears if not model.ship.actuators or g in map(type, there)]
+            out += [u for g in some for u in effect_unknowns(g, Model(model.ship))]
+    return tuple(out)
+
+
+def _shared(gears: Gears, model: Model) -> list[Unknown]:
+    first, *others = gears
+    also = tuple(g.__name__ for g in others)
+    return [replace(u, also=also) for u in effect_unknowns(first, model)]
 
 
 def with_or_without_gear(
     tracks: Sequence[Track], model: Model, unknowns: Sequence[Unknown], known: Catalogue, temper: float
 ) -> Fit:
-    """The core's fit (and these other unknowns') with the rudder as it was recorded or, if that makes the
-    voyages clearly more probable, with a steering gear before it. The gear is looked for beside the core as
-    it is at first and, if it is not found there, as it was fitted without
+    """The core's fit (and these other unknowns') with rudder or actuators as they were recorded or, if that
+    makes the voyages clearly more probable, with a gear before them. The gear is looked for beside the core
+    as it is at first and, if it is not found there, as it was fitted without
     one: a core that was fitted to an order has taken on a part of the gear, and the more so the slower that
         is."""
 
     def fitted(about: Model) -> Fit:
-        return fit(
-            tracks,
-            about,
-            (*unknowns, *(gear_unknowns(about) if about.lags and not about.ship.actuators else ())),
-            known,
-            NoiseModel(),
-            temper=temper,
-            smooth=True,
-        )
+        every = (*unknowns, *gear_unknowns(about))
+        return fit(tracks, about, every, known, NoiseModel(), temper=temper, smooth=True)
 
-    without = fitted(model)
-    if model.lags or model.ship.actuators:
-        return without
-    for begun in (model, without.model):
-        if (with_gear := geared(begun, tracks, unknowns, known, temper)).lags and (
-            found := fitted(with_gear)
-        ).cost < without.cost - 2.0 * CLEAR:
-            return found
-    return without
+    found = fitted(model)
+    if not model.ship.actuators and model.lags:
+        return found
+    for gears in gears_of(model.ship):
+        if _there(gears, found.model):
+            continue
+        for begun in (model.but(*found.model.lags), found.model):
+            # of a ship with one rudder what the core was believed to be, as ever
+            free = about(unknowns, begun) if model.ship.actuators else unknowns
+            with_gear = _geared(begun, gears, tracks, free, known, temper)
+            if with_gear is begun:
+                with_gear = _apart(begun, gears, tracks, free, known, temper)
+            if with_gear is begun or (better := fitted(with_gear)).cost >= found.cost - 2.0 * CLEAR:
+                continue
+            found, free = better, about(unknowns, better.model)
+            own = _apart(found.model, gears, tracks, free, known, temper)
+            if own is not found.model and (better := fitted(own)).cost < found.cost - 2.0 * CLEAR:
+                found = better
+            break
+    return found
 
 
 def geared(
     model: Model, tracks: Sequence[Track], unknowns: Sequence[Unknown], known: Catalogue, temper: float
 ) -> Model:
-    """The model with the most probable steering gear, if the voyages clearly ask for one; a gear that is
-    there already stays."""
-    if model.lags or model.ship.actuators:
+    """The model with the most probable gears, if the voyages clearly ask for them; a gear that is there
+    already stays."""
+    if not model.ship.actuators and model.lags:
         return model
-    sd, time = np.array([u.sd for u in unknowns]), float(model.ship.scale("time"))
+    for gears in gears_of(model.ship):
+        if not _there(gears, model):
+            model = _geared(model, gears, tracks, unknowns, known, temper)
+    return model
 
-    none_yet = of_role("gear").absent(model.ship)
 
-    def with_gear(delay: float, travel: float) -> Model:
-        return model.but(none_yet.but(delay=delay * time, travel_time=travel * time))
+def _there(gears: Gears, model: Model) -> bool:
+    return any(type(e) in gears for e in model.lags)
+
+
+def _geared(
+    model: Model,
+    gears: Gears,
+    tracks: Sequence[Track],
+    unknowns: Sequence[Unknown],
+    known: Catalogue,
+    temper: float,
+) -> Model:
+    """The model with the most probable of a few lags, the same for all these actuators, or as it is."""
+    sd = np.array([u.sd for u in unknowns])
+
+    def with_gear(later: float, slower: float) -> Model:
+        return model.but(*(_times(gear.plausible(model.ship), later, slower) for gear in gears))
 
     def probable(m: Model) -> float:
         lines = [linearise(t, m.without_inputs(t.missing())[0], unknowns, known) for t in tracks]
         return evidence(innovate(lines, [NoiseModel()])[0], sd) / temper
 
     none = (probable(model), 0.0, 0.0)
-    _, _, travel = slow = max(none, *((probable(with_gear(0.0, k)), 0.0, k) for k in TRAVEL))
-    score, delay, travel = max(slow, *((probable(with_gear(k, travel)), k, travel) for k in DELAY))
-    return with_gear(delay, travel) if score > none[0] + CLEAR else model
+    _, _, slower = slow = max(none, *((probable(with_gear(0.0, k)), 0.0, k) for k in SLOWER))
+    score, later, slower = max(slow, *((probable(with_gear(k, slower)), k, slower) for k in LATER))
+    return with_gear(later, slower) if score > none[0] + CLEAR else model
+
+
+def _times(gear: Effect, later: float, slower: float) -> Effect:
+    """A gear with its dead time, and all its other times, so many times as long."""
+    return gear.but(**{n: (later if n == "delay" else slower) * v for n, v in gear.values().items()})
+
+
+def _apart(
+    model: Model,
+    gears: Gears,
+    tracks: Sequence[Track],
+    unknowns: Sequence[Unknown],
+    known: Catalogue,
+    temper: float,
+) -> Model:
+    """The model with a lag for each of these actuators, if the voyages clearly tell them apart from the one
+    for all that it has, or from none; else as it is."""
+    if len(gears) == 1:
+        return model
+    own = [u for g in gears for u in effect_unknowns(g, model)]
+    every, first, size = (*unknowns, *own), len(unknowns), len(own) // len(gears)
+    lines = [linearise(t, model.without_inputs(t.missing())[0], every, known) for t in tracks]
+    normal, sd = innovate(lines, [NoiseModel()])[0], np.array([u.sd for u in every])
+    alike = np.eye(len(every), first + size)
+    if _there(gears, model):  # the same number of each is one
+        alike[first:, first:] = np.tile(np.eye(size), (len(gears), 1))
+    else:
+        alike[first:] = 0.0
+    together = evidence(normal.in_terms_of(alike), sd[: first + size])
+    if evidence(normal, sd) <= together + CLEAR * temper:
+        return model
+    A, b, _ = normal.total()
+    moved = np.linalg.solve(A / temper + np.diag(sd**-2.0), b / temper)[first:]
+    return with_values(model, own, [u.centre + x for u, x in zip(own, moved, strict=True)], known)
+
+
+def about(unknowns: Sequence[Unknown], model: Model) -> list[Unknown]:
+    """The same numbers, those of the core where the model has them."""
+    return [
+        replace(u, centre=float(model.ship.derivative(u.name))) if u.owner == "core" else u for u in unknowns
+    ]

@@ -1,0 +1,99 @@
+"""What is recorded of a thruster is its order: the lag between that and its thrust is found on the references
+and becomes a part of the boat's model. The boats sail by equations that share no line with the twin."""
+
+import json
+
+import pytest
+
+from bench.small_boats import sailed, ship_of
+from twin import cli
+from twin.physics.effects import of_ship
+from twin.physics.model import Model
+from twin.physics.ship import load, save
+from twin.recording.write import write_voyage
+from twin.study.estimation.columns import core_unknowns
+from twin.study.reference.gear import LATER, SLOWER, gear_unknowns, gears_of, with_or_without_gear
+from twin.study.reference.nuisance import TEMPER
+from twin.study.track.track import track
+
+BOAT, BOAT_SEED, SECONDS = "thrusters", 3, 60.0
+BOTH = {"port": 0.4, "starboard": 0.4}
+
+
+def voyages(lags_s):
+    """Two of the same boat, whose thrusters are so many seconds behind their orders."""
+    return [sailed(BOAT, seed, SECONDS, BOAT_SEED, lags_s) for seed in (1, 2)]
+
+
+def found(lags_s):
+    """The lags that the voyages ask for, by name."""
+    ship = ship_of(BOAT)
+    model = Model.of(ship)
+    tracks = [track(v, ship) for v in voyages(lags_s)]
+    fit = with_or_without_gear(tracks, model, core_unknowns(model), of_ship(ship), TEMPER)
+    return {type(e).__name__: e.values() for e in fit.model.lags}
+
+
+def test_thrusters_that_lag_alike_share_one_lag():
+    lags = found(BOTH)
+    assert list(lags) == ["ActuatorLag.port", "ActuatorLag.starboard"]
+    port, starboard = lags.values()
+    assert port == starboard
+    # believed to be 0.09 s or so before the voyages
+    assert 0.2 < port["delay"] + port["ease"] < 0.5
+
+
+def test_thrusters_that_lag_otherwise_have_a_lag_each():
+    port, starboard = found({"port": 0.1, "starboard": 0.7}).values()
+    assert starboard["delay"] + starboard["ease"] > 0.3 > 0.2 > port["delay"] + port["ease"]
+
+
+def test_of_thrusters_that_hardly_lag_nothing_is_believed():
+    assert not found({"port": 0.05, "starboard": 0.05})
+
+
+def test_like_actuators_stand_together_and_others_alone():
+    assert [len(g) for g in gears_of(ship_of("screws and bow thruster"))] == [2, 1]
+    assert [[e.__name__ for e in g] for g in gears_of(load("kvlcc2"))] == [["SteeringLag"]]
+
+
+def test_the_numbers_of_a_shared_lag_are_asked_once_and_of_lags_that_differ_each():
+    ship = ship_of(BOAT)
+    port, starboard = (e.absent(ship).but(ease=0.2) for e in gears_of(ship)[0])
+    assert not gear_unknowns(Model.of(ship))
+    shared = gear_unknowns(Model.of(ship).but(port, starboard))
+    assert [u.label for u in shared] == ["ActuatorLag.port.delay", "ActuatorLag.port.ease"]
+    assert all(u.also == ("ActuatorLag.starboard",) for u in shared)
+    assert len(gear_unknowns(Model.of(ship).but(port, starboard.but(ease=0.3)))) == 4
+
+
+@pytest.fixture(scope="module")
+def calibrated(tmp_path_factory):
+    """A boat calibrated on two voyages: (what was told, JSON, ship file)."""
+    folder = tmp_path_factory.mktemp("lag")
+    for v in (paths := {f"{i}.mcap": v for i, v in enumerate(voyages(BOTH))}):
+        write_voyage(paths[v], folder / v)
+    save(ship_of(BOAT), folder / "start.toml")
+    words = ["calibrate", *(str(folder / v) for v in paths), "--ship", str(folder / "start.toml")]
+    out, said = folder / "boat.toml", folder / "said.json"
+    assert cli.main([*words, "-o", str(out), "--json", str(said), "--force"]) == 0
+    return json.loads(said.read_text()), load(out)
+
+
+def test_the_lag_stands_in_the_ship_file_and_in_what_calibrate_says(calibrated, capsys):
+    said, boat = calibrated
+    lags = {type(e).__name__: e for e in boat.effects}
+    assert set(lags) == set(said["actuator_lags"]) == {"ActuatorLag.port", "ActuatorLag.starboard"}
+    for name, numbers in said["actuator_lags"].items():
+        assert numbers["ease"]["value"] == lags[name].ease > 0.0 and numbers["ease"]["sd"] > 0.0
+    assert set(lags) <= set(boat.notes["structural"]["beside_effects"])
+
+
+@pytest.mark.parametrize("name", ["kvlcc2", "container", "usv"])
+def test_the_gears_that_are_tried_before_a_rudder_are_to_the_last_digit_as_they_were(name):
+    """Expected: what was tried when no other actuator was asked, in L/U_0."""
+    ship = load(name)
+    time, gear = float(ship.scale("time")), gears_of(ship)[0][0].plausible(ship)
+    assert [k * gear.travel_time for k in SLOWER] == [k * time for k in (0.35, 0.7, 1.4, 2.8)]
+    assert [k * gear.delay for k in LATER] == [k * time for k in (0.05, 0.1, 0.2)]
+    assert gear.ease == 0.0
