@@ -177,6 +177,11 @@ def test_the_keys_do_on_the_plots_what_the_mouse_does(page, every, kind):
     key(page, "-")
     key(page, "Escape")
     assert span(page) == whole
+    key(page, "Enter")
+    page.size(700, 800)
+    page.wait(f"{cursors}.every((shown) => shown.startsWith('none'))")
+    assert page.value("document.documentElement.scrollWidth") <= 700
+    page.size(1200, 800)
     focus(page, "canvas[role=slider]")
     key(page, "End")
     key(page, "ArrowLeft")

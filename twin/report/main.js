@@ -105,7 +105,7 @@ function build() {
   document.getElementById("page").append(...parts.filter(Boolean), el("footer", null, "shiptwin · this page is whole: it asks nothing of any network"));
   const stretch = location.hash.match(/t=([\d.]+),([\d.]+)/);
   stretch ? setZoom(+stretch[1], +stretch[2]) : redraw();
-  addEventListener("resize", redraw);
+  addEventListener("resize", () => { redraw(); point(null); stretch(null, null); });
   printedLight(redraw);
   addEventListener("keydown", (e) => e.key === "Escape" && whole());
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", (e) => setTheme(e.matches ? "dark" : "light"));
