@@ -12,8 +12,8 @@ from twin.physics.model import Model
 from twin.physics.ship import load, save
 from twin.recording.write import write_voyage
 from twin.study.estimation.columns import core_unknowns
-from twin.study.reference.gear import LATER, SLOWER, gear_unknowns, gears_of, with_or_without_gear
 from twin.study.reference.nuisance import TEMPER
+from twin.study.reference.steering_gear import LATER, SLOWER, gear_unknowns, gears_of, with_or_without_gear
 from twin.study.track.track import track
 
 BOAT, BOAT_SEED, SECONDS = "thrusters", 3, 60.0
