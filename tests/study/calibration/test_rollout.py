@@ -9,7 +9,7 @@ from twin.physics.ship import load
 from twin.physics.state import Situation
 from twin.study.calibration.rollout import HORIZON, rolled_out
 from twin.study.estimation.columns import core_unknowns
-from twin.study.prediction.openloop import coarse
+from twin.study.prediction.openloop import coarse, coarse_each
 from twin.study.prediction.trial import shaft_speed
 from twin.study.track.track import READINGS, Track
 
@@ -89,3 +89,16 @@ def test_windows_begin_only_where_they_may_and_perhaps_nowhere():
         and none.start.size == 0
     )
     np.testing.assert_array_equal(some.promised[0], every.promised[0][:, late[every.start]])
+
+
+def test_predictions_of_many_cores_side_by_side_are_those_one_at_a_time():
+    model, names = Model.of(load("kvlcc2")), NAMES[:3]
+    track, time = sailed(model), float(model.ship.scale("time"))
+    numbers = {n: np.linspace(0.8, 1.2, 4) * float(model.ship.derivative(n)) for n in names}
+    together = Model(model.ship.with_derivatives(**{n: x[:, None] for n, x in numbers.items()}))
+    found = coarse_each(track, together, 4, HORIZON * time, 3, time)
+    for i, windows in enumerate(found):
+        alone = Model(model.ship.with_derivatives(**{n: float(x[i]) for n, x in numbers.items()}))
+        expected = coarse(track, alone, HORIZON * time, 3, time).off()
+        np.testing.assert_allclose(windows.off(), expected, rtol=1e-9, atol=1e-12)
+    assert np.nanmax(np.abs(found[0].off() - found[3].off())) > 1.0

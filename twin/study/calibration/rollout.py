@@ -18,7 +18,7 @@ from twin.study.estimation.box import within
 from twin.study.estimation.columns import Unknown, with_values
 from twin.study.estimation.dissipation import half_spaces
 from twin.study.estimation.fit import Catalogue
-from twin.study.prediction.openloop import HORIZONS_S, coarse
+from twin.study.prediction.openloop import HORIZONS_S, coarse_each
 from twin.study.track.track import Track
 
 HORIZON, LEADS = 3.0, 3  # ship lengths ahead, looked at so often on the way
@@ -44,6 +44,7 @@ class _PathProblem:
             np.array([u.centre for u in self.unknowns]),
             np.array([u.sd for u in self.unknowns]),
         )
+        self.lo, self.hi = np.array([[u.lo, u.hi] for u in self.unknowns]).T
         self.box = (np.array([[u.lo, u.hi] for u in self.unknowns]).T - self.centre) / self.sd
         self.hull = half_spaces(self.model.ship, self.unknowns)
         self.scale = np.ones(1)
@@ -53,13 +54,25 @@ class _PathProblem:
 
     def off(self, z: np.ndarray) -> np.ndarray:
         """(W, K, 4) errors of all predictions, zero where nothing was measured."""
+        return self.off_each(z[None])[0]
+
+    def off_each(self, Z: np.ndarray) -> np.ndarray:
+        """(Q, W, K, 4) the same at each of these places Z (Q, P), all in one pass."""
         ahead = max(HORIZON * float(self.model.ship.scale("time")), SHORTEST_S)
-        model = with_values(self.model, self.unknowns, self.values(z), self.catalogue)
-        parts = []
+        numbers = np.clip(self.centre + self.sd * Z, self.lo, self.hi).T
+        names = [u.name for u in self.unknowns]
+        ship = self.model.ship.with_derivatives(
+            **{
+                name: float(x[0]) if np.all(x == x[0]) else x[:, None]
+                for name, x in zip(names, numbers, strict=True)
+            }
+        )
+        model, parts = Model(ship, self.model.effects), []
         for t in self.tracks:
-            off = coarse(t, model.without_inputs(t.missing())[0], ahead, LEADS, ahead / OVERLAP).off()
-            parts.append(np.nan_to_num(off[..., SEEN]).transpose(1, 0, 2))
-        return np.concatenate(parts)
+            of_track = model.without_inputs(t.missing())[0]
+            each = coarse_each(t, of_track, len(Z), ahead, LEADS, ahead / OVERLAP)
+            parts.append([np.nan_to_num(w.off()[..., SEEN]).transpose(1, 0, 2) for w in each])
+        return np.concatenate(parts, axis=1)
 
     def weigh(self, z: np.ndarray) -> None:
         """Sets the usual size of an error, by lead and channel, as it is at z; neighbouring predictions share
@@ -69,7 +82,11 @@ class _PathProblem:
 
     def residual(self, z: np.ndarray) -> np.ndarray:
         """One error in units of its usual size; what is far off counts as eight times that, no more."""
-        return (self.off(z) / self.scale).clip(-8.0, 8.0).ravel()
+        return self.residual_each(z[None])[0]
+
+    def residual_each(self, Z: np.ndarray) -> np.ndarray:
+        """(Q, R) the same at each of these places (Q, P)."""
+        return (self.off_each(Z) / self.scale).clip(-8.0, 8.0).reshape(len(Z), -1)
 
     def cost(self, residual: np.ndarray, z: np.ndarray) -> float:
         return 0.5 * float(residual @ residual) + 0.5 * float(z @ z)
@@ -99,11 +116,8 @@ def _descend(problem: _PathProblem, z: np.ndarray) -> tuple[np.ndarray, float]:
     itself when no step is better."""
     r = problem.residual(z)
     best = problem.cost(r, z)
-    J = np.empty((r.size, z.size))
-    for j in range(z.size):
-        step = np.zeros_like(z)
-        step[j] = STEP if z[j] + STEP <= problem.box[1, j] else -STEP
-        J[:, j] = (problem.residual(z + step) - r) / step[j]
+    step = np.where(z + STEP <= problem.box[1], STEP, -STEP)
+    J = (problem.residual_each(z + np.diag(step)) - r).T / step
     JJ, pull = J.T @ J + np.eye(z.size), J.T @ r + z
     for damping in np.geomspace(0.01, 100.0, TRIES):
         H = np.linalg.inv(JJ + damping * np.diag(np.diag(JJ)))

@@ -52,11 +52,11 @@ def _nu_dot(s: Situation, model: Model) -> np.ndarray:
 
 def readings(s: Situation, model: Model) -> np.ndarray:
     """(N, 8), in SI: what the instruments say of situation s (whose u_r and v_r the model has set), faults
-    and all."""
+    and all; (K, N, 8) of K situations beside each other."""
+    out = np.empty((*np.shape(s.u_r + s.psi), len(READINGS)))
     s = _shown(replace(s), model)
-    out = np.empty((np.size(s.t), len(READINGS)))
     for i, name in enumerate(READINGS):
-        out[:, i] = getattr(s, name)
+        out[..., i] = getattr(s, name)
     return out
 
 

@@ -14,15 +14,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from twin.physics import core
 from twin.physics.effects import of_role
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.physics.state import Force, Situation
 from twin.study.estimation.innovations import NoiseModel
-from twin.study.estimation.linear import MEMORY_B, busy
-from twin.study.estimation.respond import readings, standard, steered
+from twin.study.estimation.respond import readings, steered
 from twin.study.estimation.start import noisy, seen, steadied, true_motion
+from twin.study.prediction.disturbances import SlowDisturbances, disturbances
 from twin.study.reference.structure import once_off
 from twin.study.track.track import READINGS, STATE, Track
 
@@ -97,12 +96,10 @@ def predict(
     state, wind_to = true_motion(steadied(track), model)
     fuzz = noisy(track, model, rng)[start]
     begin = np.concatenate([state[start], state[start] + fuzz, state[start] + fuzz]).T
-    run = _Run(track, model, start, wind_to, _slow(track, model, floor, start, rng))
-    with np.errstate(all="ignore"):  # a bad model may run away: it is then as wrong as can be written down
-        kept = np.nan_to_num(
-            run.through(tuple(begin), lead), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY
-        ).clip(-RUNAWAY, RUNAWAY)
-    promised = kept.reshape(len(lead), 3, start.size, len(READINGS)).transpose(1, 0, 2, 3)
+    run = _Run(track, model, start, wind_to, disturbances(track, model, floor, start, rng))
+    promised = (
+        run.through(tuple(begin), lead).reshape(len(lead), 3, start.size, len(READINGS)).transpose(1, 0, 2, 3)
+    )
     promised[1:] += track.sd * rng.standard_normal(promised[1].shape)
     windows = Windows(track, start, lead, promised, _valid(track, measured, start, lead), measured)
     return windows if floor is None else _no_better(windows, model.ship)
@@ -140,6 +137,20 @@ def coarse(
 ) -> Windows:
     """Run the model alone: `predict` without its noise floors, and in steps of L/U_0 over COARSE, as a fit
     asks for thousands. `begins` (N,): mask of the steps at which windows may begin, if not at all."""
+    return coarse_each(track, model, 1, horizon_s, leads, stride_s, begins)[0]
+
+
+def coarse_each(
+    track: Track,
+    model: Model,
+    count: int,
+    horizon_s: float,
+    leads: int,
+    stride_s: float = STRIDE_S,
+    begins: np.ndarray | None = None,
+) -> list[Windows]:
+    """The same of so many models side by side, whose numbers of the core differ: `model` holds each that does
+    as (count, 1)."""
     steps = max(1, int(float(model.ship.scale("time")) / COARSE / track.h))
     lead = steps * np.unique(
         np.linspace(0.0, horizon_s / track.h / steps, leads + 1)[1:].round().clip(1).astype(int)
@@ -148,21 +159,20 @@ def coarse(
     start = _starts(track, np.isfinite(measured[:, :3]).all(1), int(lead[-1]), stride_s)
     start = start if begins is None else start[begins[start]]
     state, wind_to = true_motion(steadied(track), model)
-    with np.errstate(all="ignore"):
-        kept = _Run(track, model, start, wind_to, None).through(tuple(state[start].T), lead, steps)
-    promised = np.nan_to_num(kept, nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)
-    return Windows(track, start, lead, promised[None], _valid(track, measured, start, lead), measured)
+    kept = _Run(track, model, start, wind_to, None).through(tuple(state[start].T), lead, steps)
+    each = np.broadcast_to(
+        kept if kept.ndim == 4 else kept[:, None], (len(lead), count, start.size, len(READINGS))
+    )
+    valid = _valid(track, measured, start, lead)
+    return [Windows(track, start, lead, each[None, :, i], valid, measured) for i in range(count)]
 
 
 def again(windows: Windows, model: Model) -> np.ndarray:
     """(K, W, 8) in SI, what another model promises over the same windows, without any noise floor."""
     track = windows.track
     state, wind_to = true_motion(steadied(track), model)
-    with np.errstate(all="ignore"):
-        kept = _Run(track, model, windows.start, wind_to, None).through(
-            tuple(state[windows.start].T), windows.lead
-        )
-    return np.nan_to_num(kept, nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(-RUNAWAY, RUNAWAY)
+    run = _Run(track, model, windows.start, wind_to, None)
+    return run.through(tuple(state[windows.start].T), windows.lead)
 
 
 def _leads(track: Track, horizons_s: Sequence[float], count: int) -> np.ndarray:
@@ -193,41 +203,16 @@ def _valid(track: Track, measured: np.ndarray, start: np.ndarray, lead: np.ndarr
     return inside & (broken[end + 1] == broken[start]) & placed[end] & placed[start]
 
 
-@dataclass
-class _Slow:
-    """Slow disturbances of the third run: an acceleration that wanders (b), and water that moves (c)."""
-
-    size: np.ndarray  # (N, 3) how large b usually is at each step of the track
-    b: np.ndarray  # (3, W) in units of it
-    keep: float  # what is left of b after a step
-    water: tuple[np.ndarray, np.ndarray]  # (3 W,) toward north and east [m/s]
-    rng: np.random.Generator
-
-    def force(self, model: Model, step: np.ndarray) -> Force:
-        """(3 W,) the force that gives this acceleration; none on the first two runs."""
-        self.b = self.keep * self.b + np.sqrt(1.0 - self.keep**2) * self.rng.standard_normal(self.b.shape)
-        none, (u, v, r) = np.zeros(2 * step.size), self.b * self.size[step].T
-        return Force(*(np.append(none, f) for f in core.force_for(u, v, r, model.c)))
-
-
-def _slow(
-    track: Track, model: Model, floor: NoiseModel | None, start: np.ndarray, rng: np.random.Generator
-) -> _Slow | None:
-    """The disturbances that a floor describes (see innovations.py), drawn for every window."""
-    if floor is None:
-        return None
-    size = np.array(floor.share) * np.hypot(busy(track, model), floor.calm * standard(model))
-    flow = floor.flow * float(model.ship.scale("speed"))
-    water = [np.append(np.zeros(2 * start.size), flow * rng.standard_normal(start.size)) for _ in "ne"]
-    keep = float(np.exp(-track.h / (MEMORY_B * float(model.ship.scale("time")))))
-    return _Slow(size, rng.standard_normal((3, start.size)), keep, (water[0], water[1]), rng)
-
-
 class _Run:
     """All windows of a track, once or three times each, stepped together."""
 
     def __init__(
-        self, track: Track, model: Model, start: np.ndarray, wind_to: np.ndarray | None, slow: _Slow | None
+        self,
+        track: Track,
+        model: Model,
+        start: np.ndarray,
+        wind_to: np.ndarray | None,
+        slow: SlowDisturbances | None,
     ):
         self.track, self.start, self.slow = track, start, slow
         self.runs = 1  # of every window, side by side
@@ -243,31 +228,38 @@ class _Run:
             self.known = replace(self.known, effects=(*model.effects, stream))
 
     def through(self, state: tuple, lead: np.ndarray, steps: int = 1) -> np.ndarray:
-        """(K, runs W, 8) readings at each lead, a multiple of `steps`: grid steps that are taken at once."""
-        self.runs = state[0].size // max(1, self.start.size)
-        kept = []
-        for k in range(0, int(lead[-1]) + 1, steps):
-            if k:
-                middle = self._situation(k - steps + steps // 2, 0.5 * (steps % 2))
-                state = self._model(k - steps, state).step(state, middle, steps * self.track.h)
-            if k in lead:
-                kept.append(self._read(k, state))
-        return np.stack(kept)
+        """(K, runs W, 8) readings at each lead, a multiple of `steps`: grid steps that are taken at once. A
+        bad model may run away: it is then as wrong as can be written down."""
+        self.runs, kept = state[0].size // max(1, self.start.size), []
+        with np.errstate(all="ignore"):
+            for k in range(0, int(lead[-1]) + 1, steps):
+                if k:
+                    middle = self._situation(k - steps + steps // 2, 0.5 * (steps % 2))
+                    state = self._model(k - steps, state).step(state, middle, steps * self.track.h)
+                if k in lead:
+                    kept.append(self._read(k, state))
+        return np.nan_to_num(np.stack(kept), nan=RUNAWAY, posinf=RUNAWAY, neginf=-RUNAWAY).clip(
+            -RUNAWAY, RUNAWAY
+        )
 
     def _situation(self, k: int, ahead: float = 0.0) -> Situation:
         """Inputs of every window k steps on; controls `ahead` of a step later."""
         step = np.minimum(self.start + k, len(self.track) - 1)
         after = np.minimum(step + 1, len(self.track) - 1)
-        values = {name: np.tile(w[step], self.runs) for name, w in self.inputs.items()}
+        values = {name: self._of_each(w[step]) for name, w in self.inputs.items()}
         for name in ("delta", "n"):
-            then = np.tile(self.inputs[name][after], self.runs)
+            then = self._of_each(self.inputs[name][after])
             values[name] = values[name] + ahead * (then - values[name])
         told = {name: self._between(x, step, after, ahead) for name, x in self.told.items()} or None
-        return Situation(**values, told=told, t=np.tile(self.track.t[step], self.runs) + ahead * self.track.h)
+        return Situation(**values, told=told, t=self._of_each(self.track.t[step]) + ahead * self.track.h)
+
+    def _of_each(self, x: np.ndarray) -> np.ndarray:
+        """What is the same on all runs of a window."""
+        return x if self.runs == 1 else np.tile(x, self.runs)
 
     def _between(self, x: np.ndarray, step: np.ndarray, after: np.ndarray, ahead: float) -> np.ndarray:
         """A control of every window, `ahead` of a step after `step`."""
-        return np.tile(x[step] + ahead * (x[after] - x[step]), self.runs)
+        return self._of_each(x[step] + ahead * (x[after] - x[step]))
 
     def _model(self, k: int, state: tuple) -> Model:
         """The model with what is learned and what is slow held for one step."""

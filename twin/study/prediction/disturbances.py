@@ -1,0 +1,46 @@
+"""The slow disturbances that a calibrated model of a ship is known to miss, drawn for every window of an
+open-loop prediction."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.physics import core
+from twin.physics.model import Model
+from twin.physics.state import Force
+from twin.study.estimation.innovations import NoiseModel
+from twin.study.estimation.linear import MEMORY_B, busy
+from twin.study.estimation.respond import standard
+from twin.study.track.track import Track
+
+
+@dataclass
+class SlowDisturbances:
+    """Of the third run of each window: an acceleration that wanders (b), and water that moves (c)."""
+
+    size: np.ndarray  # (N, 3) how large b usually is at each step of the track
+    b: np.ndarray  # (3, W) in units of it
+    keep: float  # what is left of b after a step
+    water: tuple[np.ndarray, np.ndarray]  # (3 W,) toward north and east [m/s]
+    rng: np.random.Generator
+
+    def force(self, model: Model, step: np.ndarray) -> Force:
+        """(3 W,) the force [N, N, N m] that gives this acceleration at these grid steps (W,) of each window;
+        none on the first two runs. Each call goes on by a step."""
+        self.b = self.keep * self.b + np.sqrt(1.0 - self.keep**2) * self.rng.standard_normal(self.b.shape)
+        none, (u, v, r) = np.zeros(2 * step.size), self.b * self.size[step].T
+        return Force(*(np.append(none, f) for f in core.force_for(u, v, r, model.c)))
+
+
+def disturbances(
+    track: Track, model: Model, floor: NoiseModel | None, start: np.ndarray, rng: np.random.Generator
+) -> SlowDisturbances | None:
+    """Those that a floor describes (see innovations.py), drawn by `rng` for every window; `start` (W,): grid
+    step at which each begins. None where no floor is known."""
+    if floor is None:
+        return None
+    size = np.array(floor.share) * np.hypot(busy(track, model), floor.calm * standard(model))
+    flow = floor.flow * float(model.ship.scale("speed"))
+    water = [np.append(np.zeros(2 * start.size), flow * rng.standard_normal(start.size)) for _ in "ne"]
+    keep = float(np.exp(-track.h / (MEMORY_B * float(model.ship.scale("time")))))
+    return SlowDisturbances(size, rng.standard_normal((3, start.size)), keep, (water[0], water[1]), rng)
