@@ -39,7 +39,7 @@ def _basin(b: dict[str, Any]) -> str:
         *(_diagnosis(d) for d in b["diagnoses"]),
         _asked(b["asked"]),
         "### Known faults put into the readings of the runs that it was not fitted "
-        "to\n\n" + planted_faults.told(b["faults"]),
+        "to\n\n" + planted_faults.table(b["faults"]),
     ]
     return "\n\n".join(parts)
 

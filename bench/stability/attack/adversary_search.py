@@ -9,7 +9,7 @@ import numpy as np
 from bench.stability.attack.bounds import bounds
 from bench.stability.attack.cases import FULL, GROUPS, AttackCase, Group, certified_for
 from bench.stability.attack.orders import Orders, random_orders
-from bench.stability.attack.run_batch import Sailed, sail
+from bench.stability.attack.run_batch import RunBatch, sail
 from bench.stability.attack.steepest import worse
 from bench.stability.attack.waters import Waters
 from twin.live.certificate.certificate import Certificate
@@ -119,7 +119,7 @@ def _batch(w: Waters, rng: np.random.Generator, passes: tuple[str, ...], name: s
     tube = bounds(w)
     orders = random_orders(w.c, w.groups, w.runs, w.ticks, rng)
     found: list[Attacked] = []
-    was: Sailed | None = None
+    was: RunBatch | None = None
     for k, way in enumerate(passes):
         if way == RANDOM:
             orders = random_orders(w.c, w.groups, w.runs, w.ticks, rng) if k else orders
@@ -133,7 +133,7 @@ def _batch(w: Waters, rng: np.random.Generator, passes: tuple[str, ...], name: s
     return found
 
 
-def _moved(w: Waters, was: Sailed, tube: np.ndarray, rng: np.random.Generator) -> Orders:
+def _moved(w: Waters, was: RunBatch, tube: np.ndarray, rng: np.random.Generator) -> Orders:
     """The better half of the runs of each group and aim, and beside them the same from places near theirs."""
     late = w.ticks // 2
     over = np.where(was.inside[late:, None], np.abs(was.error[late:]) / tube[late:], 0.0).max(axis=0)
@@ -150,7 +150,7 @@ def _moved(w: Waters, was: Sailed, tube: np.ndarray, rng: np.random.Generator) -
     return was.orders.of(chosen).moved(rng, STEP, children)
 
 
-def _judged(w: Waters, was: Sailed, tube: np.ndarray, i: int, way: str, name: str) -> Attacked:
+def _judged(w: Waters, was: RunBatch, tube: np.ndarray, i: int, way: str, name: str) -> Attacked:
     of = slice(i * w.runs, (i + 1) * w.runs)
     group, inside = w.groups[i], was.inside[1:, of]
     error = np.abs(was.error[1:, :, of])

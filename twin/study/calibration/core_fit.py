@@ -23,8 +23,8 @@ from twin.study.estimation.start import waves_on
 from twin.study.reference.derivatives import (
     Derivative,
     first_prior,
+    informed_by,
     noted,
-    told_by,
     with_core_of,
     with_derivatives,
 )
@@ -32,7 +32,7 @@ from twin.study.reference.nuisance import TEMPER, instruments, temper_of
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.seaway import levelled, swung
 from twin.study.reference.steering_gear import with_or_without_gear
-from twin.study.reference.structure import structural_floor
+from twin.study.reference.structure import structural_noise
 from twin.study.reference.weather_baseline import FAINT
 from twin.study.track.track import Track
 
@@ -43,7 +43,7 @@ BETTER = 0.05  # share by which paths must be better than steps: a diagnosis jud
 # of the ship and not of the core, found with it; their numbers stand under these keys in --json
 PARTS = {role: of_role(role) for role in ("gear", "antenna", "wind")}
 # by the probability of the voyages; the antenna by predictions
-ASKED_FOR = tuple(PARTS[role].__name__ for role in ("gear", "wind"))
+NAMED_PARTS = tuple(PARTS[role].__name__ for role in ("gear", "wind"))
 
 
 @dataclass(frozen=True)
@@ -142,13 +142,15 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     rough = with_or_without_wind(tracks, rough, known, TEMPER)
     unknowns = rough.unknowns
     progress("estimating the noise model")
-    floor, temper = structural_floor(rough.lines, unknowns), temper_of(rough.normal, unknowns)
+    floor, temper = structural_noise(rough.lines, unknowns), temper_of(rough.normal, unknowns)
     progress("fitting again with this noise model")
     found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, smooth=True)
-    asked = tuple(e for e in found.model.effects if type(e).__name__ in ASKED_FOR)
+    asked = tuple(e for e in found.model.effects if type(e).__name__ in NAMED_PARTS)
     kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
     numbers = {e.__name__: _numbers(found, e.__name__, e.with_core) for e in PARTS.values()}
-    return Core(tracks, found.model, told_by(found), (*kept, *asked), numbers, clearly(found), floor, temper)
+    return Core(
+        tracks, found.model, informed_by(found), (*kept, *asked), numbers, clearly(found), floor, temper
+    )
 
 
 def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
@@ -192,7 +194,7 @@ def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
 
 def _found_here(name: str, ship: Ship, core: Core) -> bool:
     """Whether a part of it is in the ship file as this calibration found it."""
-    return name in ASKED_FOR or (core.antenna is not None and core.antenna in ship.effects)
+    return name in NAMED_PARTS or (core.antenna is not None and core.antenna in ship.effects)
 
 
 def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str, float]]) -> dict[str, Any]:

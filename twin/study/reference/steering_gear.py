@@ -21,7 +21,7 @@ from twin.study.track.track import Track
 # L/U_0; the first is as fast as a large tanker's must be
 TRAVEL, DELAY = (0.35, 0.7, 1.4, 2.8), (0.05, 0.1, 0.2)
 # log evidence, tempered, that a gear must add: where the rudder itself was recorded it adds nothing at all
-CLEAR = 20.0
+GEAR_LOG_BAYES = 20.0
 
 
 def gear_unknowns(model: Model) -> tuple[Unknown, ...]:
@@ -55,7 +55,7 @@ def with_or_without_gear(
     for begun in (model, without.model):
         if (with_gear := geared(begun, tracks, unknowns, known, temper)).lags and (
             found := fitted(with_gear)
-        ).cost < without.cost - 2.0 * CLEAR:
+        ).cost < without.cost - 2.0 * GEAR_LOG_BAYES:
             return found
     return without
 
@@ -81,4 +81,4 @@ def geared(
     none = (probable(model), 0.0, 0.0)
     _, _, travel = slow = max(none, *((probable(with_gear(0.0, k)), 0.0, k) for k in TRAVEL))
     score, delay, travel = max(slow, *((probable(with_gear(k, travel)), k, travel) for k in DELAY))
-    return with_gear(delay, travel) if score > none[0] + CLEAR else model
+    return with_gear(delay, travel) if score > none[0] + GEAR_LOG_BAYES else model

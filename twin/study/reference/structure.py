@@ -34,7 +34,7 @@ WANDER = 4e-3  # where the ascent begins, m/sqrt(s)
 BESIDE = 0.4
 
 
-def floor_of(ship: Ship, name: str = "floor") -> NoiseModel | None:
+def noise_model_of(ship: Ship, name: str = "floor") -> NoiseModel | None:
     """The floor that calibration left in the ship file, None when it was never calibrated: what the model
     alone leaves (`floor`), or what is left beside all that is usual on this ship (`beside`).
     SettingsError: its file does not hold it as it was written."""
@@ -81,7 +81,7 @@ def _by_axis(value: float | Sequence[float]) -> tuple[float, float, float]:
     return surge, sway, yaw
 
 
-def structural_floor(
+def structural_noise(
     lines: Sequence[Linear], unknowns: Sequence[Unknown], start: NoiseModel | None = None
 ) -> NoiseModel:
     """The most probable floor of these reference voyages (linearised about the fitted model): what the core
@@ -89,7 +89,9 @@ def structural_floor(
     return _ascended(lines, unknowns, start or NoiseModel(), 1.0, MOST_SEGMENTS)
 
 
-def floor_beside(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: NoiseModel) -> NoiseModel:
+def structural_noise_beside(
+    lines: Sequence[Linear], unknowns: Sequence[Unknown], start: NoiseModel
+) -> NoiseModel:
     """The same when the unknowns are all that a diagnosis keeps in mind: less is left beside them."""
     return _ascended(lines, unknowns, start, BESIDE, FEWER)
 

@@ -12,7 +12,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import short
 from twin.study.reference.sailed import Sailed
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 from twin.study.update.adding import UNTOUCHED, Fitted
 from twin.study.update.fall import Fall
 from twin.study.update.proof import HeldOutProof
@@ -79,7 +79,7 @@ def notes(
         "Only the added effect's numbers were fitted; the core and the effects already there stay as "
         "they were."
     ]
-    if floor_of(ship) is None:
+    if noise_model_of(ship) is None:
         notes.append(
             "careful: this ship was never calibrated, so its core is only roughly known and takes a share of "
             "what the effect does: the numbers are "
@@ -170,7 +170,7 @@ def written(ship: Ship, model: Model, result: dict[str, Any]) -> Ship:
     return replace(ship, effects=model.effects, notes=notes)
 
 
-def told(result: dict[str, Any]) -> list[str]:
+def terminal_lines(result: dict[str, Any]) -> list[str]:
     """The answer on a terminal."""
     out = [
         result["verdict"],

@@ -29,7 +29,7 @@ from twin.study.estimation.innovations import innovate
 from twin.study.prediction.openloop import Windows, predict
 from twin.study.reference.evidence import Posterior, boxed, given, posterior, reduce, weigh_with
 from twin.study.reference.sailed import fed
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
 
 UNTOUCHED = 0.1  # a number whose doubt shrank by less was not excited
@@ -98,7 +98,7 @@ class Fitted:
         return models
 
 
-def can_be_judged(effects: Sequence[type[Effect]], tracks: Sequence[Track]) -> None:
+def require_inputs(effects: Sequence[type[Effect]], tracks: Sequence[Track]) -> None:
     """DataError when an effect needs what a voyage did not record."""
     for effect in effects:
         for t in tracks:
@@ -282,5 +282,5 @@ def thirds(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:
 
 def ahead(tracks: Sequence[Track], model: Model, horizons_s: Sequence[float]) -> list[Windows]:
     """Open-loop predictions of every voyage."""
-    floor = floor_of(model.ship)
+    floor = noise_model_of(model.ship)
     return [predict(t, fed(model, t)[0], horizons_s, floor=floor, seed=i) for i, t in enumerate(tracks)]
