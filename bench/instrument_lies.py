@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.lies_told import LIES, RATE_HZ, Lie, Row
+from bench.lie_kinds import LIES, RATE_HZ, Lie, Row
 from bench.reference import Recording, SeaCase, Weather, simulate
 from twin import whole
 from twin.live.gates.crosscheck import CrossChecks

@@ -11,7 +11,7 @@ import numpy as np
 from bench import bench_output
 from bench.assumptions import BEGIN_S, STEP_S, WALL
 from bench.instrument_lies import _rows
-from bench.lies_told import LIES, Lie, Row
+from bench.lie_kinds import LIES, Lie, Row
 from bench.reference import SeaCase, simulate
 from bench.sea_disturbance import sailed
 from twin.live.build import loop_of

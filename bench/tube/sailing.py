@@ -104,7 +104,7 @@ def reckoned(e: Estimate, p: Prediction) -> Prediction:
 def on_file(folder: Path, hull: str, k: int) -> TubeVoyage:
     kept = json.loads(_path(folder, hull, k).read_text())
     model, reckoning = (
-        {float(h): [_judged(row) for row in rows[::APART]] for h, rows in kept[who].items()}
+        {float(h): [_verified(row) for row in rows[::APART]] for h, rows in kept[who].items()}
         for who in ("model", "reckoning")
     )
     return TubeVoyage(hull, k, kept["H_s"], model, reckoning)
@@ -116,7 +116,7 @@ def _row(j: VerifiedPrediction) -> list[Any]:
     return [f.known.helm, f.known.sea, *(round(float(x), 7) for x in numbers)]
 
 
-def _judged(row: Sequence[Any]) -> VerifiedPrediction:
+def _verified(row: Sequence[Any]) -> VerifiedPrediction:
     helm, sea, said_s, along, across, heading, *phi = row
     n = len(phi) // 2
     known = Regressors(tuple(phi[:n]), tuple(phi[n:]), helm, sea)

@@ -4,7 +4,7 @@ from bench.endurance.killed_service import Said, ServiceFolder, said_of
 from bench.endurance.lies import OTHERS, LieNoticed
 from bench.endurance.run import of_kills, of_lies, of_shocks
 from bench.endurance.shocks import Killed, Shocked, kills, whole
-from bench.lies_told import LIES
+from bench.lie_kinds import LIES
 
 
 def test_a_service_that_is_killed_loses_at_most_half_a_second_and_all_its_logs_are_whole(tmp_path):

@@ -128,7 +128,7 @@ def _batch(w: Waters, rng: np.random.Generator, passes: tuple[str, ...], name: s
         elif way == MOVED and was is not None:
             orders = _moved(w, was, tube, rng)
         was = sail(w, orders, greedy=way == GREEDY)
-        judged = [_judged(w, was, tube, i, way, f"{name} pass {k}") for i in range(len(w.groups))]
+        judged = [_verified(w, was, tube, i, way, f"{name} pass {k}") for i in range(len(w.groups))]
         found = [a.joined(b) for a, b in zip(found, judged, strict=True)] if found else judged
     return found
 
@@ -150,7 +150,7 @@ def _moved(w: Waters, was: RunBatch, tube: np.ndarray, rng: np.random.Generator)
     return was.orders.of(chosen).moved(rng, STEP, children)
 
 
-def _judged(w: Waters, was: RunBatch, tube: np.ndarray, i: int, way: str, name: str) -> Attacked:
+def _verified(w: Waters, was: RunBatch, tube: np.ndarray, i: int, way: str, name: str) -> Attacked:
     of = slice(i * w.runs, (i + 1) * w.runs)
     group, inside = w.groups[i], was.inside[1:, of]
     error = np.abs(was.error[1:, :, of])

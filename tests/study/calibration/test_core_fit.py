@@ -16,7 +16,7 @@ from twin.api.json_keys import KEYS
 from twin.physics.ship import load
 from twin.recording.write import write_voyage
 from twin.study.calibration.doubts import doubts
-from twin.study.calibration.usual import clearly_there
+from twin.study.calibration.usual import significantly_there
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def test_calibrating_again_starts_from_the_prior_and_not_from_its_own_answer(cal
 def test_what_no_ship_can_show_is_not_told_as_usual(calibrated):
     ship, _ = calibrated
     labels = ["SteeringLag.delay", "HeadingBias.bias"]
-    told = clearly_there(
+    told = significantly_there(
         ship, {"labels": labels, "offset": [-0.4, 0.02], "covariance": [[1e-4, 0.0], [0.0, 1e-6]]}
     )
     assert [t["name"] for t in told] == ["HeadingBias.bias"]

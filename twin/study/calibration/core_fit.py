@@ -13,9 +13,9 @@ from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.calibration.held_out import HeldOut, by_regime, errors, size
 from twin.study.calibration.own_instruments import own_instruments
-from twin.study.calibration.parts import clearly, placed, with_or_without_wind
+from twin.study.calibration.parts import placed, significant, with_or_without_wind
 from twin.study.calibration.rollout import rolled_out
-from twin.study.calibration.usual import clearly_there, usual
+from twin.study.calibration.usual import significantly_there, usual
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import NoiseModel
@@ -149,7 +149,7 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
     numbers = {e.__name__: _numbers(found, e.__name__, e.with_core) for e in PARTS.values()}
     return Core(
-        tracks, found.model, informed_by(found), (*kept, *asked), numbers, clearly(found), floor, temper
+        tracks, found.model, informed_by(found), (*kept, *asked), numbers, significant(found), floor, temper
     )
 
 
@@ -209,7 +209,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         **{key: _said(owner.__name__, after, core) for key, owner in PARTS.items()},
         "waves": waves_on(core.tracks),
         "too_faint": [name for name, felt in lasting_ones["weather"].items() if felt > FAINT],
-        "usual": clearly_there(after, lasting_ones),
+        "usual": significantly_there(after, lasting_ones),
         "between_voyages": lasting_ones["between_voyages"],
         "floor": asdict(core.floor),
         "temper": core.temper,

@@ -70,7 +70,7 @@ def established(asked: OnReferences) -> list[str]:
     """Faults that a ship file may hold as the ship's own: seen on all references together, told by three at
     least, and clear of none on the next voyage too, by the scatter between them."""
     clear = [f for f, far in asked.clear.items() if far > LASTING_SE and _of_kinematics(f)]
-    return [f for f in clear if _told(asked, f) >= FEWEST]
+    return [f for f in clear if _voyages_known(asked, f) >= FEWEST]
 
 
 def _of_kinematics(fault: str) -> bool:
@@ -79,7 +79,7 @@ def _of_kinematics(fault: str) -> bool:
     return name is not None and (fault == AGE or find(name).kinematic)
 
 
-def _told(asked: OnReferences, fault: str) -> int:
+def _voyages_known(asked: OnReferences, fault: str) -> int:
     """On how many voyages one of its numbers is known."""
     width = dict(zip((u.name for u in UNKNOWNS), asked.found.fit.prior(), strict=True))
     names = [UNKNOWNS[i].name for i in members(fault)]

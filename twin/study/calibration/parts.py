@@ -39,7 +39,7 @@ def with_or_without_wind(tracks: Sequence[Track], without: Fit, known: Catalogue
     return found if found.cost < without.cost - 2.0 * CLEARLY_BETTER else without
 
 
-def clearly(found: Fit) -> Effect | None:
+def significant(found: Fit) -> Effect | None:
     """Where the antenna was found, if that is clearly not where the fit began."""
     antenna = of_role("antenna")
     numbers = [

@@ -77,7 +77,7 @@ def path_errors(
     return found.entry() if found else {}
 
 
-def clearly_there(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
+def significantly_there(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
     """What this ship clearly shows of lasting effects: not wrong, but part of it. What no ship can show (a
     rudder ahead of its order) stands in for something else, and is allowed for without being told."""
     of = {u.label: u for u in nuisance_unknowns(Model.of(ship), of_ship(ship))}

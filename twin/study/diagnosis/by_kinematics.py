@@ -75,7 +75,7 @@ def kinematics(voyages: Sequence[Voyage], ship: Ship) -> AskedKinematics | None:
     return AskedKinematics(found, record)
 
 
-def asked_for(case: Case, asked: AskedKinematics) -> tuple[type[Effect], ...]:
+def suspected_instruments(case: Case, asked: AskedKinematics) -> tuple[type[Effect], ...]:
     """Effects of instruments that kinematics alone ask for on these voyages, and that are no candidates yet:
     clearly other than on the reference voyages, or where nothing is known of these, than is usual."""
     catalogue = of_ship(case.model.ship)

@@ -8,13 +8,13 @@ import numpy as np
 
 from twin.study.diagnosis.by_kinematics import AskedKinematics, reached
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.diagnosis.clear import change, significance
 from twin.study.diagnosis.criteria import CLEAR, SURE
 from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
 from twin.study.diagnosis.moments import Moment, moments
 from twin.study.diagnosis.open_loop_check import roughly
 from twin.study.diagnosis.refine import Found, Sets
+from twin.study.diagnosis.significance import change, significance
 from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import Hypothesis

@@ -77,7 +77,7 @@ def stretches(case: Case, found: Found) -> list[Moment]:
         normal, case.nuisance, case.unknowns, case.effects, case.temper, at, found.hypothesis.effects
     )
     known = [_in_one(line, theta) for line in lines]
-    return [m for lengths in LENGTHS for m in _asked(case, known, floor, lengths)]
+    return [m for lengths in LENGTHS for m in _tried(case, known, floor, lengths)]
 
 
 def _in_one(line: Linear, theta: np.ndarray) -> Linear:
@@ -86,7 +86,7 @@ def _in_one(line: Linear, theta: np.ndarray) -> Linear:
     return replace(line, A=line.A @ theta[:, None], R=line.R @ theta[:, None], turns=turns)
 
 
-def _asked(case: Case, lines: Sequence[Linear], floor: NoiseModel, lengths: float) -> list[Moment]:
+def _tried(case: Case, lines: Sequence[Linear], floor: NoiseModel, lengths: float) -> list[Moment]:
     time = float(case.model.ship.scale("time"))
     where = segments([line.track for line in lines], time, MOST_SEGMENTS)
     steps = [max(4, round(lengths * time / line.track.h)) for line in lines]

@@ -130,14 +130,14 @@ def _together(floor: NoiseModel, moves: Sequence[NoiseModel]) -> NoiseModel:
     start, out = _logs(floor), _logs(floor)
     for move in moves:
         out = out + (_logs(move) - start)
-    return _floor(out)
+    return _noise_model(out)
 
 
 def _logs(floor: NoiseModel) -> np.ndarray:
     return np.log([*floor.share, *floor.white, floor.calm, floor.flow, floor.sensor, floor.wander])
 
 
-def _floor(logs: np.ndarray) -> NoiseModel:
+def _noise_model(logs: np.ndarray) -> NoiseModel:
     a, b, c, d, e, f, calm, flow, sensor, wander = np.exp(logs).tolist()
     return NoiseModel((a, b, c), calm, (d, e, f), flow, sensor, wander)
 
@@ -165,7 +165,7 @@ def _change(i: int) -> Callable[[NoiseModel, float], NoiseModel]:
     def change(floor: NoiseModel, factor: float) -> NoiseModel:
         logs = _logs(floor)
         logs[i] += np.log(factor) * (0.5 if i == SENSOR else 1.0)
-        return _floor(logs)
+        return _noise_model(logs)
 
     return change
 

@@ -153,7 +153,7 @@ def of_hypothesis(case: Case, names: Sets, found: Found) -> Fitted:
 
 def _beside_the_voyage(case: Case, names: Sets, progress: Progress) -> Found:
     """The named effects, and of the voyage's own water and weather what makes the voyages likelier."""
-    best = _judged(case, names, None)
+    best = _relinearised(case, names, None)
     while True:
         more = [n for n in case.candidates if _may_stand_beside(case, n, best.hypothesis.effects)]
         if not more or best.reduced is None:
@@ -167,7 +167,7 @@ def _beside_the_voyage(case: Case, names: Sets, progress: Progress) -> Found:
         tried = []
         for name in sorted(likely, key=lambda n: -likely[n])[:2]:
             progress(f"testing whether {name} acted, too")
-            tried.append(_judged(case, _set(case, (*chosen, name)), best))
+            tried.append(_relinearised(case, _set(case, (*chosen, name)), best))
         better = max(tried, key=lambda f: f.hypothesis.log_weight, default=best)
         if better.hypothesis.log_weight <= best.hypothesis.log_weight:
             return best
@@ -192,7 +192,7 @@ def _may_stand_beside(case: Case, name: str, chosen: Sets) -> bool:
     )
 
 
-def _judged(case: Case, chosen: Sets, start: Found | None) -> Found:
+def _relinearised(case: Case, chosen: Sets, start: Found | None) -> Found:
     """A set of effects relinearised at its estimate, begun where a part of it was found to stand, or at its
     first-order guess in the likeliest noise scenario."""
     if start is not None and start.reduced is not None:
