@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bench import bench_output
-from bench.reference import Case, simulate
+from bench.reference import SeaCase, simulate
 from bench.sea_disturbance import sailed
 from bench.stability.adversary_loop import LoopCase, Loops
 from twin.live.build import loop_of
@@ -92,7 +92,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     rows = voyages(args.seconds) + [late(j, args.runs, 0.2 * args.seconds) for j in LATE]
-    bench_output.give(args, {"rows": [row._asdict() for row in rows]}, told(rows))
+    bench_output.give(args, {"rows": [row._asdict() for row in rows]}, table(rows))
     return 0
 
 
@@ -102,18 +102,18 @@ def voyages(seconds: float, scenarios: Sequence[BrokenAssumption] = SCENARIOS) -
     sailed = dict(
         zip(
             wanted,
-            simulate([Case(SHIP, m, w, seed=3, duration_s=seconds) for m, w in wanted], STEP_S),
+            simulate([SeaCase(SHIP, m, w, seed=3, duration_s=seconds) for m, w in wanted], STEP_S),
             strict=True,
         )
     )
     kept = []
     for scenario in scenarios:
         bench_output.tell(scenario.name)
-        kept.append(judged(scenario, sailed[scenario.manoeuvre, scenario.weather]))
+        kept.append(sailed_through(scenario, sailed[scenario.manoeuvre, scenario.weather]))
     return kept
 
 
-def judged(scenario: BrokenAssumption, recording) -> KeptPromise:
+def sailed_through(scenario: BrokenAssumption, recording) -> KeptPromise:
     """One voyage through the loop."""
     ears = Played([])
     loop = loop_of(Settings({"ship.file": SHIP}), ears, Outbox(Publisher(), "twin", "ship"), None)
@@ -173,7 +173,7 @@ class Score:
         )
 
 
-def told(rows: Sequence[KeptPromise]) -> str:
+def table(rows: Sequence[KeptPromise]) -> str:
     """The table."""
     lines = [
         "| scenario | promised | of these wrong | greatest error / bound | most often said |",

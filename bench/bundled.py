@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 import twin
-from bench.reference import Case, simulate
+from bench.reference import SeaCase, simulate
 from twin.physics.ship import load, save
 from twin.recording.voyage import Voyage
 from twin.recording.write import write_voyage
@@ -31,8 +31,8 @@ def recorded(name: str, columns: dict[str, np.ndarray], every: int = 1) -> Voyag
 
 
 def main() -> int:
-    cases = [Case("kvlcc2", m, seed=50 + i) for i, m in enumerate(REFERENCES)]
-    cases += [Case("kvlcc2", m, seed=seed, hidden=HIDDEN) for m, seed in KEPT.values()]
+    cases = [SeaCase("kvlcc2", m, seed=50 + i) for i, m in enumerate(REFERENCES)]
+    cases += [SeaCase("kvlcc2", m, seed=seed, hidden=HIDDEN) for m, seed in KEPT.values()]
     sailed = simulate(cases)
     ship = load("kvlcc2")
     calm = [recorded(f"calm-{c.manoeuvre}", r.columns) for c, r in zip(cases, sailed, strict=False)][

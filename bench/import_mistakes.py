@@ -14,8 +14,8 @@ from typing import Any
 import numpy as np
 
 from bench.import_forms import FORMS, Export, export, voyage_of
-from bench.import_plant import MISTAKES, Planted
-from bench.reference import Case, Recording, simulate
+from bench.import_plant import MISTAKES, PlantedMistake
+from bench.reference import Recording, SeaCase, simulate
 from twin import whole
 from twin.recording.checks import Check, run_checks
 from twin.recording.voyage import Voyage
@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         text = json.dumps(result, indent=2)
         print(text) if args.json == "-" else whole.write(args.json, text + "\n", "--json")
-    page = told(result)
+    page = mistakes_page(result)
     if args.out:
         whole.write(args.out, page, "--out")
     if args.json != "-":
@@ -53,10 +53,10 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def cases(seeds: int, first: int) -> list[Case]:
+def cases(seeds: int, first: int) -> list[SeaCase]:
     kinds = [(h, m, w) for h in HULLS for m in MANOEUVRES for w in WEATHERS]
     return [
-        Case(h, m, w, seed=first + seeds * i + k, duration_s=DURATION_S)
+        SeaCase(h, m, w, seed=first + seeds * i + k, duration_s=DURATION_S)
         for i, (h, m, w) in enumerate(kinds)
         for k in range(seeds)
     ]
@@ -97,7 +97,7 @@ def mistakes(sea: Sequence[Recording]) -> list[dict[str, Any]]:
     return [of_mistake(m, ten) for m in MISTAKES]
 
 
-def of_mistake(m: Planted, voyages: Sequence[Recording]) -> dict[str, Any]:
+def of_mistake(m: PlantedMistake, voyages: Sequence[Recording]) -> dict[str, Any]:
     out: dict[str, Any] = {
         "mistake": m.name,
         "voyages": 0,
@@ -153,7 +153,7 @@ def said(answers: Sequence[Check]) -> str:
     return "; ".join(f"{c.name}: {c.text[:120]}" for c in answers if not c.ok)
 
 
-def told(result: dict[str, Any]) -> str:
+def mistakes_page(result: dict[str, Any]) -> str:
     h, m = result["healthy"], result["mistakes"]
     lines = [
         "# Mistakes of a recording: named, and never proved where there are none",

@@ -14,7 +14,7 @@ from bench.import_forms import AHEAD, ASIDE, BODY, BRIDGE, HEADING, KNOT, RATE, 
 
 
 @dataclass(frozen=True)
-class Planted:
+class PlantedMistake:
     """A mistake: `plant(export)` makes it, `words` name it, `remedy` is put into the map (None: the file must
     be exported again)."""
 
@@ -65,82 +65,82 @@ def later(d: Export, seconds: float) -> np.ndarray:
     return np.r_[d["t"][:half], d["t"][half:] + seconds]
 
 
-MISTAKES: tuple[Planted, ...] = (
-    Planted(
+MISTAKES: tuple[PlantedMistake, ...] = (
+    PlantedMistake(
         "heading 180 deg off",
         changed(hdg=lambda d: d["hdg"] + 180.0),
         ("180 deg off",),
         {HEADING: entry("hdg", offset=180.0)},
     ),
-    Planted(
+    PlantedMistake(
         "heading from east, anticlockwise, rate to port (ROS)",
         changed(hdg=lambda d: 90.0 - d["hdg"], rot=lambda d: -d["rot"]),
         ("from east, anticlockwise", "rate of turn is positive to port"),
         {HEADING: entry("hdg", sign=-1, offset=90.0), RATE: entry("rot", unit="deg/min", sign=-1)},
     ),
-    Planted(
+    PlantedMistake(
         "heading from east, anticlockwise",
         changed(hdg=lambda d: 90.0 - d["hdg"]),
         ("from east, anticlockwise",),
         {HEADING: entry("hdg", sign=-1, offset=90.0)},
     ),
-    Planted(
+    PlantedMistake(
         "heading in radians",
         changed(hdg=lambda d: np.radians(d["hdg"])),
         ("radians",),
         {HEADING: entry("hdg", unit="rad")},
     ),
-    Planted(
+    PlantedMistake(
         "heading 90 deg too large",
         changed(hdg=lambda d: d["hdg"] + 90.0),
         ("90 deg too large",),
         {HEADING: entry("hdg", offset=-90.0)},
     ),
-    Planted("two headings in turn, 12 deg apart", changed(hdg=in_turn), ("two headings in turn, 12",)),
-    Planted("heading averaged across north", changed(hdg=averaged), ("across north",), north_up=True),
-    Planted("course used as heading", changed(hdg=lambda d: d["cog"]), ("the heading is the course",)),
-    Planted(
+    PlantedMistake("two headings in turn, 12 deg apart", changed(hdg=in_turn), ("two headings in turn, 12",)),
+    PlantedMistake("heading averaged across north", changed(hdg=averaged), ("across north",), north_up=True),
+    PlantedMistake("course used as heading", changed(hdg=lambda d: d["cog"]), ("the heading is the course",)),
+    PlantedMistake(
         "heading 3 s late",
         changed(hdg=lambda d: late(d["hdg"], 3)),
         ("s late",),
         {HEADING: entry("hdg", late_s=3.0)},
     ),
-    Planted(
+    PlantedMistake(
         "magnetic heading, 14 deg",
         changed(hdg=lambda d: d["hdg"] - 14.0),
         ("off the course over ground",),
         {HEADING: entry("hdg", offset=14.0)},
     ),
-    Planted(
+    PlantedMistake(
         "compass with a deviation",
         changed(hdg=compass_curve),
         ("deviation",),
         {HEADING: entry("hdg", deviation=[2.0, 8.0, -3.0])},
     ),
-    Planted(
+    PlantedMistake(
         "heading that jumps by 25 deg",
         changed(hdg=lambda d: d["hdg"] + np.where(d["t"] > d["t"].mean(), 25.0, 0.0)),
         ("jumps by",),
     ),
-    Planted(
+    PlantedMistake(
         "speed in m/s, read as knots",
         changed(sog=lambda d: d["sog"] * KNOT),
         ("in m/s, read as knots",),
         {AHEAD: entry("sog", unit="m/s", frame="course"), ASIDE: entry("cog", frame="course")},
     ),
-    Planted(
+    PlantedMistake(
         "west without its sign",
         changed(e=lambda d: -d["e"]),
         ("east is positive to the west",),
         {"east_m": entry("e", sign=-1)},
     ),
-    Planted(
+    PlantedMistake(
         "north and east swapped",
         changed(n=lambda d: d["e"], e=lambda d: d["n"]),
         ("north and east are swapped",),
         {"north_m": "e", "east_m": "n"},
     ),
-    Planted(
+    PlantedMistake(
         "earth-fixed velocities called surge and sway",
         changed(u=lambda d: d["vn"], v=lambda d: d["ve"]),
         ("earth-fixed",),
@@ -148,20 +148,20 @@ MISTAKES: tuple[Planted, ...] = (
         BODY,
         2.0,
     ),
-    Planted(
+    PlantedMistake(
         "rate in deg/s, read as deg/min",
         changed(rot=lambda d: d["rot"] / 60.0),
         ("in deg/s",),
         {RATE: entry("rot", unit="deg/s")},
     ),
-    Planted(
+    PlantedMistake(
         "rudder positive to port",
         changed(rud=lambda d: -d["rud"]),
         ("positive to port",),
         {RUDDER: entry("rud", sign=-1)},
     ),
-    Planted("clock set by an hour", changed(t=lambda d: later(d, 3600.0)), ("an hour",)),
-    Planted(
+    PlantedMistake("clock set by an hour", changed(t=lambda d: later(d, 3600.0)), ("an hour",)),
+    PlantedMistake(
         "log in knots",
         changed(stw=lambda d: d["stw"] / KNOT),
         ("in kn",),
@@ -169,7 +169,7 @@ MISTAKES: tuple[Planted, ...] = (
         BODY,
         2.0,
     ),
-    Planted(
+    PlantedMistake(
         "wind that blows to, for where it comes from",
         changed(twd=lambda d: d["twd"] + 180.0),
         ("blows to",),
@@ -178,7 +178,7 @@ MISTAKES: tuple[Planted, ...] = (
         2.0,
         shows=blows,
     ),
-    Planted(
+    PlantedMistake(
         "shaft in 1/s", changed(rpm=lambda d: d["rpm"] / 60.0), ("1/s",), {TURNS: entry("rpm", unit="1/s")}
     ),
 )

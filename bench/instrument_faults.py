@@ -16,7 +16,7 @@ from bench import bench_output, instruments_real
 from bench.instruments_plant import LATE, PAIRS, SIZES, planted
 from bench.options import positive
 from bench.reference.hulls import HULLS
-from bench.reference.sea_voyage import Case, Recording, simulate
+from bench.reference.sea_voyage import Recording, SeaCase, simulate
 from twin.recording.raw import Raw
 from twin.recording.voyage import Voyage
 from twin.study.instruments.instrument_estimate import Instruments, estimate
@@ -94,16 +94,16 @@ def run(args: argparse.Namespace) -> int:
         "bridge": args.bridge,
         "rows": [_plain(r) for r in rows],
     }
-    real = instruments_real.page(instruments_real.asked(args.data)) if args.data else []
+    real = instruments_real.page(instruments_real.findings(args.data)) if args.data else []
     bench_output.give(
         args, result, "\n".join([*page(rows, hulls, args), *real]), bench_output.kept(args.page)
     )
     return 0
 
 
-def _case(hull: str, seed: int, minutes: float) -> Case:
+def _case(hull: str, seed: int, minutes: float) -> SeaCase:
     """A boat does in a sixth of the time what a ship does."""
-    return Case(
+    return SeaCase(
         hull,
         "mixed",
         "calm",
@@ -117,7 +117,7 @@ def measured(voyages: Sequence[Recording], bridge: bool) -> list[ResultRow]:
     rows = [ResultRow((name,)) for name in SIZES] + [ResultRow(pair) for pair in PAIRS]
     for row in rows:
         for recording in voyages:
-            found, truth = asked(recording, row.faults, bridge)
+            found, truth = finding(recording, row.faults, bridge)
             row.enter(found, truth)
         bench_output.tell(
             f"{' + '.join(row.faults)}: {row.named} of {row.cases}; more: {row.more}; {row.ratio()}"
@@ -125,7 +125,7 @@ def measured(voyages: Sequence[Recording], bridge: bool) -> list[ResultRow]:
     return rows
 
 
-def asked(
+def finding(
     recording: Recording, faults: tuple[str, ...], bridge: bool
 ) -> tuple[Instruments, dict[str, float]]:
     """What is found of one voyage with these faults, and the truth."""

@@ -18,8 +18,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.lies_told import LIES, RATE_HZ, Lie, Row
-from bench.reference import Case, Recording, Weather, simulate
+from bench.lie_kinds import LIES, RATE_HZ, Lie, Row
+from bench.reference import Recording, SeaCase, Weather, simulate
 from twin import whole
 from twin.live.gates.crosscheck import CrossChecks
 from twin.live.gates.lacking import CorrectedTick
@@ -54,7 +54,7 @@ class Outcome(NamedTuple):
     refused: int
 
 
-class Watch:
+class LieWatch:
     """What watches the instruments in a loop, and the observer that it needs."""
 
     def __init__(self, ship: Ship):
@@ -119,7 +119,7 @@ def run(args: argparse.Namespace) -> int:
 def _sailed(task: tuple[str, str, str, float, bool]) -> list[Outcome]:
     hull, weather, manoeuvre, duration_s, lies = task
     rows = voyage_rows(hull, WEATHERS[weather][HULLS.index(hull)], manoeuvre, duration_s)
-    watch, words = Watch(load(hull)), Counter[str]()
+    watch, words = LieWatch(load(hull)), Counter[str]()
     half = watch
     for k, row in enumerate(rows):
         if k == len(rows) // 2:
@@ -138,7 +138,7 @@ def _sailed(task: tuple[str, str, str, float, bool]) -> list[Outcome]:
     return outcomes
 
 
-def _found(half: Watch, rows: list[Row], lie: Lie) -> tuple[float, str]:
+def _found(half: LieWatch, rows: list[Row], lie: Lie) -> tuple[float, str]:
     """Seconds until a word that was not said before the lie, and the word."""
     watch, memory, before = deepcopy(half), dict[str, float](), set[str]()
     begins_s = 0.0 if lie.since is None else math.nan
@@ -162,7 +162,7 @@ def _found(half: Watch, rows: list[Row], lie: Lie) -> tuple[float, str]:
 
 def voyage_rows(hull: str, weather: str | Weather, manoeuvre: str, duration_s: float) -> list[Row]:
     """What the instruments say on one voyage of the reference sea, row by row."""
-    (recording,) = simulate([Case(hull, manoeuvre, weather, seed=17, duration_s=duration_s)])
+    (recording,) = simulate([SeaCase(hull, manoeuvre, weather, seed=17, duration_s=duration_s)])
     return list(rows_of(recording))
 
 

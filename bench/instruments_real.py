@@ -9,7 +9,7 @@ from twin.live.signals.channels import BY_NAME
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.study.instruments.instrument_estimate import Instruments, estimate
-from twin.study.instruments.instrument_lines import told
+from twin.study.instruments.instrument_lines import terminal_lines
 
 YACHT = ("furuno-130842-figure8-fast.raw", "furuno-130842-wide-turn.raw")
 SOURCES = {"": "52", "yaw_rate_degps": "27"}  # the faster of two rate sensors
@@ -25,7 +25,7 @@ CHANNELS = {  # column -> channel
 }
 
 
-def asked(data: Path) -> dict[str, Instruments]:
+def findings(data: Path) -> dict[str, Instruments]:
     """What is found of each voyage that is there."""
     out = {}
     for name in YACHT:
@@ -58,7 +58,7 @@ def page(found: dict[str, Instruments]) -> list[str]:
         "",
     ]
     for name, instruments in found.items():
-        lines += [f"### {name}", "", "```text", *told(instruments), "```", ""]
+        lines += [f"### {name}", "", "```text", *terminal_lines(instruments), "```", ""]
     if all(name in found for name in YACHT):
         lines += _log([found[name] for name in YACHT])
     return lines

@@ -17,10 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from bench.league.league_ships import Fleet, calibrated
+from bench.league.league_ships import LeagueFleet, calibrated
 from bench.league.league_voyages import kept, sail
 from bench.league.plan import lasts
-from bench.reference import Case
+from bench.reference import SeaCase
 from twin.errors import DataError
 from twin.physics.effects import catalogue, find
 from twin.physics.model import Model
@@ -38,7 +38,7 @@ from twin.study.reference.evidence import Hypothesis, boxed, posterior
 from twin.study.reference.nuisance import usual_unknowns
 from twin.study.reference.sailed import fed, read_all
 from twin.study.reference.seaway import swung
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track, track
 from twin.study.update.adding import Fitted, fitted, lasting, of_hypothesis
 from twin.study.update.held_parts import predicted
@@ -121,7 +121,7 @@ def _left_out(path: str, *voyages: str) -> tuple[Ship, list[Track], list[Ship]]:
     model, unknowns = Model.of(ship), usual_unknowns(Model.of(ship), known)
     normal = innovate(
         [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks],
-        [floor_of(ship, "beside") or NoiseModel()],
+        [noise_model_of(ship, "beside") or NoiseModel()],
     )[0]
     pull = np.array([(first_prior(u, ship).centre - u.centre) / u.sd for u in unknowns])
     scatter = np.array([stored["between_voyages"].get(u.label, 0.0) ** 2 for u in unknowns])
@@ -144,7 +144,7 @@ def _ship(hull: str, folder: Path, references: int) -> Ship:
     path = folder / f"{hull}-{references}.ship"
     if not path.exists():
         print(f"calibrating {hull} ...", file=sys.stderr)
-        fleet = Fleet(hull, lasts(hull, 1200.0), references, weather=False)
+        fleet = LeagueFleet(hull, lasts(hull, 1200.0), references, weather=False)
         sail(fleet.cases(), folder)
         path.write_bytes(pickle.dumps(calibrated(fleet, folder)[""]))
     ship: Ship = pickle.loads(path.read_bytes())
@@ -154,7 +154,7 @@ def _ship(hull: str, folder: Path, references: int) -> Ship:
 def _trials(ship: Ship, hull: str, seed: int, folder: Path, full: bool) -> Iterator[dict[str, Any]]:
     """One for each lasting effect that the voyages can feed."""
     cases = [
-        Case(hull, m, seed=SEED + 2 * seed + i, duration_s=lasts(hull, 1200.0))
+        SeaCase(hull, m, seed=SEED + 2 * seed + i, duration_s=lasts(hull, 1200.0))
         for i, m in enumerate(PAIRS[seed % len(PAIRS)])
     ]
     sail(cases, folder)

@@ -14,7 +14,7 @@ import numpy as np
 
 from bench import bench_output
 from bench.options import positive
-from bench.reference import Case, Weather, simulate
+from bench.reference import SeaCase, Weather, simulate
 from bench.reference.hulls import HULLS
 from bench.reference.sea_voyage import Recording
 from bench.through_loop import through
@@ -31,7 +31,7 @@ MANOEUVRES = ("mixed", "zigzag_20", "zigzag_10")
 LEFT_OUT_S = 60.0
 
 
-class Kept(NamedTuple):
+class KeptVoyage(NamedTuple):
     """One voyage through the loop: share of ticks with a promise, of these wrong; the greatest error of the
     low-frequency motion in u, v, r and the greatest bound in ticks with a promise [m/s, m/s, rad/s]."""
 
@@ -65,16 +65,16 @@ def run(args: argparse.Namespace) -> int:
         ship = replace(ship, notes={**ship.notes, "seaway": table})
         ships.save(ship, Path(ships.__file__).parent.parent / "ships" / f"{args.ship}.toml")
     kept = [
-        judged(args.ship, r)
+        loop_errors(args.ship, r)
         for r in simulate([case(args.ship, k, args.tried, args.seconds, 5000) for k in range(args.tried)])
     ]
     bench_output.give(
-        args, plain({"seaway": table, "voyages": [k._asdict() for k in kept]}), told(table, kept)
+        args, plain({"seaway": table, "voyages": [k._asdict() for k in kept]}), sea_table(table, kept)
     )
     return 0
 
 
-def case(hull: str, k: int, count: int, seconds: float, first_seed: int) -> Case:
+def case(hull: str, k: int, count: int, seconds: float, first_seed: int) -> SeaCase:
     """Voyage k of a series in which the sea rises to the ship's highest; wind and current grow with it as in
     the test sailings TS-01 to TS-03."""
     rng = np.random.default_rng([first_seed, k])
@@ -90,7 +90,7 @@ def case(hull: str, k: int, count: int, seconds: float, first_seed: int) -> Case
         current_to_deg=rng.uniform(0.0, 360.0),
         current_spread_mps=0.05 * full * scale**0.5,
     )
-    return Case(hull, MANOEUVRES[k % 3], weather, seed=first_seed + k, duration_s=seconds)
+    return SeaCase(hull, MANOEUVRES[k % 3], weather, seed=first_seed + k, duration_s=seconds)
 
 
 def sailed(r: Recording) -> SplitVoyage:
@@ -114,7 +114,7 @@ def sailed(r: Recording) -> SplitVoyage:
     )
 
 
-def judged(hull: str, r: Recording) -> Kept:
+def loop_errors(hull: str, r: Recording) -> KeptVoyage:
     """A voyage through the loop, against its low-frequency motion."""
     voyage = sailed(r)
     n = window(voyage.T_p, STEP_S)
@@ -132,7 +132,7 @@ def judged(hull: str, r: Recording) -> Kept:
     off, bound, inside = (np.array(x)[used] for x in (off, bound, inside))
     wrong = np.any(off > bound, axis=1) & inside
     count = max(int(inside.sum()), 1)
-    return Kept(
+    return KeptVoyage(
         voyage.H_s,
         float(inside.mean()),
         float(wrong.sum() / count),
@@ -142,7 +142,7 @@ def judged(hull: str, r: Recording) -> Kept:
     )
 
 
-def told(table: dict[str, Any], kept: Sequence[Kept]) -> str:
+def sea_table(table: dict[str, Any], kept: Sequence[KeptVoyage]) -> str:
     """The table."""
     numbers = ", ".join(f"{k} {v['value']:g} {v['unit']}" for k, v in table.items() if isinstance(v, dict))
     lines = [

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import zenoh
 
-from bench.reference import HULLS, WEATHERS, Case, Sea, simulate
+from bench.reference import HULLS, WEATHERS, Sea, SeaCase, simulate
 from bench.reference.boats import CRAFT, BoatCase, BoatSea, builders_sheet, sail
 from bench.reference.boats.actuator_faults import USUAL, hidden_in
 from bench.reference.boats.boat_sea import write_csv
@@ -213,13 +213,13 @@ def _sized(text: str) -> tuple[str, float]:
         raise UsageError(f"--hidden {text}: {size!r} is no number.") from None
 
 
-def _case(args: argparse.Namespace) -> Case:
+def _case(args: argparse.Namespace) -> SeaCase:
     for what, known in (("hull", [*HULLS, *CRAFT]), ("manoeuvre", MANOEUVRES), ("weather", WEATHERS)):
         value = getattr(args, what)
         if value not in known:
             raise SettingsError(f"--{what} {value}: the reference sea has none.{did_you_mean(value, known)}")
     hidden = tuple((name, 1.0) for name in args.hidden)
-    return Case(args.hull, args.manoeuvre, args.weather, hidden, seed=args.seed, duration_s=None)
+    return SeaCase(args.hull, args.manoeuvre, args.weather, hidden, seed=args.seed, duration_s=None)
 
 
 def main() -> int:

@@ -31,6 +31,12 @@ NAMES = frozenset(
         "she",
     ]
 )
+GIVEN_ONCE = frozenset(["told", "asked", "judged", "floor", "floors", "clear", "clearly"])
+ONE_MEANING = {  # a name at the top of a file that may bear one of GIVEN_ONCE -> why
+    "CLEAR": "the one odds by which the decision calls something clear (criteria.py, docs/diagnosis.md)",
+    "CLEAR_SCREEN": "what a terminal is told",
+    "AskedKinematics": "in kept searches of `python -m bench.decisions`, which are read again by this name",
+}
 READ = re.compile(
     r"\b(she|her|hers|herself|nats|luxury|acquitted|accused|blamed|leftover|tossed|unrest|"
     r"about (?:its|their) own size|reckoned with)\b",
@@ -79,13 +85,34 @@ def test_no_page_of_the_documentation_says_one():
     assert read and not {page: words for page, words in wrong.items() if words}
 
 
-def test_a_class_of_the_twin_has_its_name_alone():
-    """Expected: within twin no class name twice, but for Force, the kind of effect, and Force, the vector it
-    returns: plug-ins import both."""
+def at_top(tree):
+    """Every function, class and constant of a module."""
+    for node in tree.body:
+        if isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            yield node.name
+        elif isinstance(node, (ast.Assign, ast.AnnAssign)):
+            yield from names(node)
+
+
+def test_no_module_gives_a_name_that_has_had_several_meanings():
+    """Expected: what a line, an order, a noise model, a result or a limit is says its name, not that somebody
+    told, asked or judged it; each constant says of what it is the limit."""
+    given = {}
+    for path in FILES:
+        for name in (path.stem, *at_top(ast.parse(path.read_text()))):
+            words = {word.lower() for word in re.findall(r"[A-Z][a-z]+|[a-z]+|[A-Z]+", name)}
+            if words & GIVEN_ONCE:
+                given.setdefault(name, []).append(str(path.relative_to(ROOT)))
+    assert {name: where for name, where in given.items() if name not in ONE_MEANING} == {}
+    assert all(len(given[name]) == 1 for name in ONE_MEANING)
+
+
+def test_a_class_has_its_name_alone():
+    """Expected: within twin, export, bench and deploy no class name twice, but for Force, the kind of effect,
+    and Force, the vector it returns: plug-ins import both."""
     places = {}
     for path in FILES:
-        if path.is_relative_to(ROOT / "twin"):
-            for node in ast.walk(ast.parse(path.read_text())):
-                if isinstance(node, ast.ClassDef):
-                    places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ClassDef):
+                places.setdefault(node.name, []).append(str(path.relative_to(ROOT)))
     assert not {name: where for name, where in places.items() if len(where) > 1 and name != "Force"}

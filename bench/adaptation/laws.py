@@ -28,7 +28,7 @@ Stream = list[tuple[Three, list[float], float, str]]
 LEAK, WALK = 60.0, 0.016  # in L/U_0; of what is usual, squared, per L/U_0
 
 
-class ToldLaw(Adaptation):
+class ForgettingLaw(Adaptation):
     """The law on board, were it told `at_s` after it began that the ship has changed: it forgets everything
     then."""
 

@@ -91,9 +91,9 @@ def compare(shop: Any, seeds: int) -> dict[str, Any]:
     clean, out = heard["as it is"], {"changed": {}, "lies": {}}
     for name, law in laws().items():
         shop.tell(f"law: {name}")
-        out["changed"][name] = {ship: judged(law, some) for ship, some in heard.items()}
+        out["changed"][name] = {ship: law_errors(law, some) for ship, some in heard.items()}
         out["lies"][name] = {
-            said: judged(law, replace(clean, streams=lie(clean.streams))) for said, lie in LIES.items()
+            said: law_errors(law, replace(clean, streams=lie(clean.streams))) for said, lie in LIES.items()
         }
     named = effect_growth.compare(shop, 2 * seeds)
     return out | {
@@ -120,7 +120,7 @@ def laws() -> dict[str, Any]:
 
 def midway_laws() -> dict[str, Any]:
     """Nothing, the law on board, and the same told of the change."""
-    return {"off": None, "on": Adaptation, "told": partial(peers.ToldLaw, at_s=CHANGE_S)}
+    return {"off": None, "on": Adaptation, "told": partial(peers.ForgettingLaw, at_s=CHANGE_S)}
 
 
 def ships(seeds: int) -> dict[str, list[Any]]:
@@ -168,7 +168,7 @@ def midway(hearing: Any, seeds: int) -> dict[str, Any]:
     return out
 
 
-def judged(law: Any, heard: Any) -> dict[str, Any]:
+def law_errors(law: Any, heard: Any) -> dict[str, Any]:
     """Heading deg and lateral m, early and late; and the greatest |A|."""
     heading, lateral, largest = errors(law, heard)
     return {

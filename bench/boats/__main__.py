@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from bench.boats.actuator_questions import ASKED, calibrated, diagnosed
+from bench.boats.actuator_questions import QUESTIONS, calibrated, diagnosed
 from bench.reference.boats import CRAFT
 
 
@@ -24,9 +24,9 @@ def main() -> int:
             row, text = calibrated(name)
             ship_file(path, name).write_text(text)
             _add(path, row)
-    for i in range(max(len(a) for a in ASKED.values())):
+    for i in range(max(len(a) for a in QUESTIONS.values())):
         for name in names:
-            asked = ASKED[name][i : i + 1]
+            asked = QUESTIONS[name][i : i + 1]
             if asked and (name, asked[0][0]) not in done:
                 _add(path, diagnosed(name, asked[0], ship_file(path, name)))
     return 0

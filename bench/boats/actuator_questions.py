@@ -17,11 +17,11 @@ from twin.study.first_model.first_estimate import OPTIONS, first_model
 
 FITTED, UNSEEN, FAULTY = (11, 12, 13), (21, 22), 31  # seeds
 LENGTHS, LEAST_S = 45.0, 90.0  # how long a voyage lasts: in L/U0, and at least
-Asked = tuple[
+Question = tuple[
     str, tuple[tuple[str, float], ...], str
 ]  # what is put in, as the sea has it, who should be named
 
-ASKED: dict[str, list[Asked]] = {
+QUESTIONS: dict[str, list[Question]] = {
     "catamaran": [
         ("worn", (("worn.port", 0.18),), "ThrusterWear.port"),
         ("late", (("late.port", 0.3),), "ActuatorLag.port"),
@@ -89,7 +89,7 @@ def calibrated(name: str) -> tuple[dict[str, Any], str]:
     return row, text(to_table(found.ship))
 
 
-def diagnosed(name: str, asked: Asked, ship_file: Path) -> dict[str, Any]:
+def diagnosed(name: str, asked: Question, ship_file: Path) -> dict[str, Any]:
     """What a diagnosis of one voyage says."""
     what, hidden, wanted = asked
     begin, ship = time.time(), load(ship_file)

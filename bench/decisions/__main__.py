@@ -15,8 +15,8 @@ import time
 from pathlib import Path
 from typing import Any
 
-from bench.decisions.question import Asked
-from bench.decisions.questions import asked
+from bench.decisions.question import KnownCase
+from bench.decisions.questions import known_cases
 from twin import whole
 from twin.study.diagnosis import effect_diagnosis
 from twin.study.diagnosis.consider import consider
@@ -49,7 +49,7 @@ def right(truth: dict[str, Any], answer: dict[str, Any]) -> bool:
     return wanted <= named <= hidden
 
 
-def kept_answer(folder: Path, question: Asked, tag: str, again: bool) -> dict[str, Any]:
+def kept_answer(folder: Path, question: KnownCase, tag: str, again: bool) -> dict[str, Any]:
     """The answer, with what the search found kept beside it for a decision that is asked again."""
     path = folder / tag / _file(question, "json")
     if path.exists() and not again:
@@ -86,7 +86,7 @@ def kept_answer(folder: Path, question: Asked, tag: str, again: bool) -> dict[st
     return answer
 
 
-def decided(folder: Path, question: Asked, tag: str) -> dict[str, Any]:
+def decided(folder: Path, question: KnownCase, tag: str) -> dict[str, Any]:
     """The facts and the decision again, of what a search of this tag found."""
     case, (weighed, found, seen) = pickle.loads(
         (folder / "searched" / tag / _file(question, "pickle")).read_bytes()
@@ -102,7 +102,7 @@ def decided(folder: Path, question: Asked, tag: str) -> dict[str, Any]:
     }
 
 
-def _file(question: Asked, kind: str) -> str:
+def _file(question: KnownCase, kind: str) -> str:
     return re.sub(r"[^A-Za-z0-9.]+", "_", question.name) + "." + kind
 
 
@@ -123,7 +123,7 @@ def main() -> int:
     )
     args = parser.parse_args()
     rows = {}
-    for question in asked(args.folder, args.others, args.esso):
+    for question in known_cases(args.folder, args.others, args.esso):
         if re.search(args.only, question.name):
             if args.decide:
                 if (args.folder / "searched" / args.tag / _file(question, "pickle")).exists():

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bench.decisions.question import Asked, begun, kept
+from bench.decisions.question import KnownCase, begun, kept
 from twin.physics.ship import Ship
 from twin.recording.voyage import Voyage
 from twin.study.calibration.core_fit import calibrate
@@ -31,7 +31,7 @@ CALMEST = ("13_04", "13_14", "13_29", "14_08_51", "14_17")
 WINDY = ("13_22", "13_42", "13_57", "14_10", "14_29", "14_39", "15_06", "15_21")
 
 
-def in_the_pond(folder: Path, runs: Path) -> Iterator[Asked]:
+def in_the_pond(folder: Path, runs: Path) -> Iterator[KnownCase]:
     """Runs of a tanker's model in an open pond with measured wind, which the model does not know, or does (as
     calibration found it)."""
     paths = {
@@ -52,7 +52,7 @@ def in_the_pond(folder: Path, runs: Path) -> Iterator[Asked]:
     for run in WINDY:
         for name, which in (("", without), (" knows Wind", lambda: kept(folder / "ships" / "esso", ship))):
             truth = {"hidden": {"Wind": 1.0}, "knows": "Wind" if name else ""}
-            yield Asked(
+            yield KnownCase(
                 f"esso {run}{name}", truth, lambda run=run, which=which: (which(), [_pond(paths[run])])
             )  # type: ignore[misc]
 

@@ -12,7 +12,7 @@ from twin.recording.voyage import Voyage
 
 
 @dataclass(frozen=True)
-class Asked:
+class KnownCase:
     """One question: its name, what is truly there, and how ship and voyages are got."""
 
     name: str

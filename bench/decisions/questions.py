@@ -7,8 +7,8 @@ from pathlib import Path
 
 from bench.bundled import recorded
 from bench.decisions.pond import in_the_pond
-from bench.decisions.question import Asked, begun, kept
-from bench.reference import Case, simulate
+from bench.decisions.question import KnownCase, begun, kept
+from bench.reference import SeaCase, simulate
 from twin.cli import main as main_of_twin
 from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.physics.effects import find
@@ -54,10 +54,12 @@ OTHERS = (
 )
 
 
-def asked(folder: Path, others: Path | None, esso: Path | None) -> Iterator[Asked]:
+def known_cases(folder: Path, others: Path | None, esso: Path | None) -> Iterator[KnownCase]:
     tanker = load(SHIP)
-    yield Asked("bundled monday", {"hidden": {"HullFouling": 1.0}}, lambda: (tanker, [read_voyage(MONDAY)]))
-    yield Asked(
+    yield KnownCase(
+        "bundled monday", {"hidden": {"HullFouling": 1.0}}, lambda: (tanker, [read_voyage(MONDAY)])
+    )
+    yield KnownCase(
         "bundled both",
         {"hidden": {"HullFouling": 1.0}},
         lambda: (tanker, [read_voyage(MONDAY), read_voyage(TUESDAY)]),
@@ -73,24 +75,24 @@ def asked(folder: Path, others: Path | None, esso: Path | None) -> Iterator[Aske
     for case in sorted(others.iterdir()) if others else ():
         if (case / "truth.json").exists():
             truth = json.loads((case / "truth.json").read_text())
-            yield Asked(f"others {case.name}", truth, lambda case=case: _other(folder, case))  # type: ignore[misc]
+            yield KnownCase(f"others {case.name}", truth, lambda case=case: _other(folder, case))  # type: ignore[misc]
     yield from in_the_pond(folder, esso) if esso else ()
 
 
 def _sea(
     folder: Path, hull: str, manoeuvre: str, hidden: tuple[tuple[str, float], ...], seed: int, knows: str = ""
-) -> Asked:
+) -> KnownCase:
     what = "+".join(f"{n}:{s:g}" for n, s in hidden) or "nothing"
     name = f"{hull} {what} {manoeuvre} {seed}" + (f" knows {knows}" if knows else "")
 
     def get() -> tuple[Ship, list[Voyage]]:
-        case = Case(hull, manoeuvre, hidden=hidden, seed=seed, duration_s=DURATION_S.get(hull, TWENTY_MIN))
+        case = SeaCase(hull, manoeuvre, hidden=hidden, seed=seed, duration_s=DURATION_S.get(hull, TWENTY_MIN))
         return ships(folder, hull, knows), [_voyage(case, folder)]
 
-    return Asked(name, {"hidden": dict(hidden), "knows": knows, "manoeuvre": manoeuvre}, get)
+    return KnownCase(name, {"hidden": dict(hidden), "knows": knows, "manoeuvre": manoeuvre}, get)
 
 
-def _voyage(case: Case, folder: Path) -> Voyage:
+def _voyage(case: SeaCase, folder: Path) -> Voyage:
     name = re.sub(r"[^A-Za-z0-9.]+", "_", f"{case.hull} {case.manoeuvre} {case.hidden} {case.seed}")
     columns = kept(folder / "voyages" / name, lambda: simulate([case])[0].columns)
     return recorded(name, columns, EVERY.get(str(case.hull), 10))
@@ -104,7 +106,7 @@ def ships(folder: Path, hull: str, knows: str = "") -> Ship:
 
     def calm() -> Ship:
         cases = [
-            Case(hull, m, seed=1300 + i, duration_s=DURATION_S.get(hull, TWENTY_MIN))
+            SeaCase(hull, m, seed=1300 + i, duration_s=DURATION_S.get(hull, TWENTY_MIN))
             for i, m in enumerate(CALM)
         ]
         voyages = [_voyage(c, folder) for c in cases]
@@ -115,7 +117,7 @@ def ships(folder: Path, hull: str, knows: str = "") -> Ship:
     def knowing() -> Ship:
         base = ships(folder, hull)
         cases = [
-            Case(hull, m, hidden=((knows, 1.0),), seed=1320 + i, duration_s=TWENTY_MIN)
+            SeaCase(hull, m, hidden=((knows, 1.0),), seed=1320 + i, duration_s=TWENTY_MIN)
             for i, m in enumerate(CALM[:2])
         ]
         tracks = [track(_voyage(c, folder), base) for c in cases]

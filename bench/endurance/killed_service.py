@@ -49,7 +49,7 @@ class Said(NamedTuple):
     reasons: str
 
 
-class Place:
+class ServiceFolder:
     """A folder with settings, logs and state; the sea sails until `close`."""
 
     def __init__(self, folder: Path, hull: str, rate_hz: float = 10.0):
@@ -82,7 +82,7 @@ class Place:
 class Running:
     """One process of the service."""
 
-    def __init__(self, place: Place, environment: dict[str, str]):
+    def __init__(self, place: ServiceFolder, environment: dict[str, str]):
         self.began_s = time.monotonic()
         self.errors = open(place.folder / "errors", "a+")  # noqa: SIM115  (closed with the process)
         self.process = subprocess.Popen(

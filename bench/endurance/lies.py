@@ -11,8 +11,8 @@ import numpy as np
 from bench import bench_output
 from bench.assumptions import BEGIN_S, STEP_S, WALL
 from bench.instrument_lies import rows_of
-from bench.lies_told import LIES, Lie, Row
-from bench.reference import Case, simulate
+from bench.lie_kinds import LIES, Lie, Row
+from bench.reference import SeaCase, simulate
 from bench.sea_disturbance import sailed
 from twin.live.build import loop_of
 from twin.live.clock import Instant
@@ -54,7 +54,7 @@ OTHERS = (
 )
 
 
-class Told(NamedTuple):
+class LieNoticed(NamedTuple):
     """One lie: seconds to the first new word (None: none came), the word, the share of the ticks since with a
     promise, the share of all ticks since with a promise that was wrong, the greatest error over its bound in
     a tick with a promise."""
@@ -67,9 +67,9 @@ class Told(NamedTuple):
     worst: float
 
 
-def lies(hull: str, weather: str, only: Sequence[Lie] = (*LIES, *OTHERS)) -> list[Told]:
+def lies(hull: str, weather: str, only: Sequence[Lie] = (*LIES, *OTHERS)) -> list[LieNoticed]:
     """Every lie on one voyage of the reference sea; the first part of it is sailed once."""
-    (recording,) = simulate([Case(hull, "zigzag_10", weather, seed=23, duration_s=SECONDS)], STEP_S)
+    (recording,) = simulate([SeaCase(hull, "zigzag_10", weather, seed=23, duration_s=SECONDS)], STEP_S)
     rows, voyage = list(rows_of(recording)), sailed(recording)
     n = window(voyage.T_p, STEP_S)
     truth, first = low_frequency(voyage.nu, n), round(LIE_AT_S / STEP_S)
@@ -96,7 +96,7 @@ def one(
     first: int,
     last: int,
     before: set[str],
-) -> Told:
+) -> LieNoticed:
     """The rest of the voyage under one lie."""
     memory, said_s, word = dict[str, float](), None, ""
     begins_s = 0.0 if not lie or lie.since is None else math.nan
@@ -121,7 +121,7 @@ def one(
             inside += 1
             wrong += bool(np.any(error > 1.0))
             worst = max(worst, float(np.max(error)))
-    return Told(lie.name if lie else "none", said_s, word, inside / ticks, wrong / ticks, worst)
+    return LieNoticed(lie.name if lie else "none", said_s, word, inside / ticks, wrong / ticks, worst)
 
 
 def _begun(lie: Lie, row: Row, true: Row) -> bool:

@@ -9,8 +9,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 
 from bench import bench_output
-from bench.endurance.killed_service import Place
-from bench.endurance.lies import LIE_AT_S, SECONDS, Told, lies
+from bench.endurance.killed_service import ServiceFolder
+from bench.endurance.lies import LIE_AT_S, SECONDS, LieNoticed, lies
 from bench.endurance.shocks import Killed, Shocked, clocks, kills, pauses
 
 
@@ -43,10 +43,10 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def shocked(hull: str, tried: Callable[[Place, int], Any], count: int) -> Any:
+def shocked(hull: str, tried: Callable[[ServiceFolder, int], Any], count: int) -> Any:
     """One kind of shock, in a folder of its own."""
     with TemporaryDirectory() as folder:
-        place = Place(Path(folder), hull)
+        place = ServiceFolder(Path(folder), hull)
         try:
             return tried(place, count)
         finally:
@@ -80,7 +80,7 @@ def of_shocks(name: str, made: list[Shocked], code: int) -> str:
     return "\n".join(lines)
 
 
-def of_lies(hull: str, weather: str, told: list[Told]) -> str:
+def of_lies(hull: str, weather: str, told: list[LieNoticed]) -> str:
     lines = [
         "## Lies",
         "",

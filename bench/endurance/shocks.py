@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from bench import bench_output
-from bench.endurance.killed_service import Place, Running, Shift
+from bench.endurance.killed_service import Running, ServiceFolder, Shift
 from twin.errors import TwinError
 from twin.live.keelson import messages
 from twin.live.log.mcap_read import McapReader
@@ -38,7 +38,7 @@ class Shocked(NamedTuple):
     not_hybrid: int
 
 
-def kills(place: Place, count: int) -> tuple[list[Killed], int, int]:
+def kills(place: ServiceFolder, count: int) -> tuple[list[Killed], int, int]:
     """Each process is killed at a random instant; (kills, log files that are whole, all log files)."""
     dice, made = random.Random(4), list[Killed]()
     running = place.start()
@@ -92,7 +92,7 @@ def whole(path: Path) -> bool:
     return all("repaired" in problem for problem in reader.problems)
 
 
-def pauses(place: Place, count: int) -> tuple[list[Shocked], int]:
+def pauses(place: ServiceFolder, count: int) -> tuple[list[Shocked], int]:
     """SIGSTOP and SIGCONT; (each pause, exit code at the end)."""
     running = ready(place.start())
     made = []
@@ -108,7 +108,7 @@ def pauses(place: Place, count: int) -> tuple[list[Shocked], int]:
     return made, running.stop()
 
 
-def clocks(place: Place, count: int) -> tuple[list[Shocked], int]:
+def clocks(place: ServiceFolder, count: int) -> tuple[list[Shocked], int]:
     """The wall clock is set and stays there; (each step, exit code at the end)."""
     shift = Shift(place.folder)
     running, offset_s, made = ready(place.start(**shift.environment)), 0.0, []

@@ -12,7 +12,7 @@ GAINS = 0.10  # share by which its oracle must bring the ship nearer, for a caus
 SAME = {"Current": {"Current", "VaryingCurrent"}, "VaryingCurrent": {"Current", "VaryingCurrent"}}
 # kinds that were outside the catalogue when the fleet was made -> the effect that is one by now
 BY_NOW = {"SlowCompass": {"HeadingLag"}}
-TOLD = 0.5  # probability from which weather is told as today's
+WEATHER_PROBABILITY = 0.5  # probability from which weather is told as today's
 
 
 @dataclass(frozen=True)
@@ -45,9 +45,9 @@ def causes(names: Sequence[str]) -> set[str]:
     return {n for n in names if n not in OF_THE_VOYAGE}
 
 
-def told_weather(row: Row) -> set[str]:
+def answered_weather(row: Row) -> set[str]:
     """Water and weather that an answer tells, as missing or as today's."""
-    today = {w["effect"] for w in row.get("weather", ()) if w["probability"] >= TOLD}
+    today = {w["effect"] for w in row.get("weather", ()) if w["probability"] >= WEATHER_PROBABILITY}
     return today | {n for n in row["missing"] if n in OF_THE_VOYAGE}
 
 
@@ -62,7 +62,7 @@ def right(row: Row, missing: Sequence[str] | None = None, verdict: str | None = 
         return named == known if named and known else not named and verdict in ("unknown", "undecided")
     if row["kind"] == "nothing":
         return not named and verdict != "unknown"
-    seen = told_weather(row) | set(missing)
+    seen = answered_weather(row) | set(missing)
     return named == causes(list(hidden)) and all(
         SAME.get(n, {n}) & seen for n in hidden if n in OF_THE_VOYAGE
     )
@@ -127,7 +127,7 @@ def intervals(row: Row) -> list[tuple[str, bool]]:
     return out
 
 
-def told_probabilities(row: Row) -> list[tuple[float, bool]]:
+def answered_probabilities(row: Row) -> list[tuple[float, bool]]:
     """Every probability that an answer tells of a cause, and whether the cause is there."""
     return [
         (c["probability"], c["effect"] in row["hidden"])

@@ -75,7 +75,7 @@ def by_table(row: Row) -> Answer:
 def worth(rows: Sequence[Row], decide: Decide) -> float:
     """What an answer is worth on average: right ones, less wrong names, less alarms beyond what may be."""
     said = [(r, *decide(r)) for r in rows]
-    right = [answer_score.right(r, m, v) for r, m, v in said if r["kind"] != "nothing" and asked(r)]
+    right = [answer_score.right(r, m, v) for r, m, v in said if r["kind"] != "nothing" and can_be_named(r)]
     wrong = [bool(answer_score.causes(m) - set(r["hidden"])) for r, m, _ in said if r["kind"] != "nothing"]
     alarm = [bool(answer_score.causes(m)) or v == "unknown" for r, m, v in said if r["kind"] == "nothing"]
     return _mean(right) - WRONG * _mean(wrong) - COST * max(0.0, _mean(alarm) - ALARMS)
@@ -85,7 +85,7 @@ def _mean(some: Sequence[bool]) -> float:
     return float(np.mean(some)) if some else 0.0
 
 
-def asked(row: Row) -> bool:
+def can_be_named(row: Row) -> bool:
     """Whether it can be asked that a cause is named at all: its oracle gains, or it has no oracle."""
     return row["kind"] == "outside" or answer_score.gains(row)
 
@@ -239,9 +239,9 @@ def run(args: argparse.Namespace) -> int:
         "curve": {str(t): added(each) for t, each in curve.items()},
         "of_all": {"thresholds": moved(rows), "limit": working_point(rows, w), "weights": _weights(w)},
     }
-    result["page"] = told(result)
+    result["page"] = fitted_lines(result)
     args.json.write_text(json.dumps(result, indent=1))
-    print("\n".join(told(result)))
+    print("\n".join(fitted_lines(result)))
     return 0
 
 
@@ -253,7 +253,7 @@ def _weights(w: np.ndarray) -> dict[str, float]:
     return dict(zip(["constant", *FACTS], [round(float(v), 3) for v in w], strict=True))
 
 
-def told(result: Mapping[str, Any]) -> list[str]:
+def fitted_lines(result: Mapping[str, Any]) -> list[str]:
     """What was fitted, for the page."""
     held: Mapping[str, Mapping[str, str]] = result["held_out"]
     body = [(figure, *(held[name][figure] for name in held)) for figure in held["before"]]

@@ -91,10 +91,10 @@ def rows(
             kept.write_bytes(pickle.dumps((model, facts)))
     for case in cases:
         if time.time() < until:
-            yield _asked(ship, case, model, facts)
+            yield _rows_of_voyage(ship, case, model, facts)
 
 
-def _asked(ship: RandomShip, case: FleetCase, model: Model, facts: dict[str, Any]) -> dict[str, Any]:
+def _rows_of_voyage(ship: RandomShip, case: FleetCase, model: Model, facts: dict[str, Any]) -> dict[str, Any]:
     one, began = sailed(ship, case), time.process_time()
     row: dict[str, Any] = {
         "key": case.key,

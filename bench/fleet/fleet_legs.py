@@ -99,7 +99,7 @@ PLANS = {
 }
 
 
-class Helmsman:
+class FleetHelmsman:
     """Orders of rudder [rad] and shaft (share of service) from heading and rate of turn."""
 
     def __init__(self, legs: list[FleetLeg], unit_s: float, heading: float, rng: np.random.Generator) -> None:

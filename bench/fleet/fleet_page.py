@@ -137,7 +137,7 @@ def _head(rows: Sequence[Row]) -> list[str]:
 
 
 def _figures(rows: Sequence[Row]) -> list[str]:
-    near = [there for r in rows for p, there in answer_score.told_probabilities(r) if 0.85 <= p < 0.95]
+    near = [there for r in rows for p, there in answer_score.answered_probabilities(r) if 0.85 <= p < 0.95]
     held = [inside for r in rows for _, inside in answer_score.intervals(r)]
     now = figures([decided(r) for r in rows])
     body: list[tuple[object, ...]] = [(n, FIGURES[n][0], s, now[n]) for n, s in figures(rows).items()]
@@ -208,7 +208,7 @@ def _said(r: Row) -> str:
 
 
 def _reliability(rows: Sequence[Row]) -> list[str]:
-    told, body = [x for r in rows for x in answer_score.told_probabilities(r)], []
+    told, body = [x for r in rows for x in answer_score.answered_probabilities(r)], []
     for lo, hi in pairwise(BINS):
         own = [(p, there) for p, there in told if lo <= p < hi]
         if own:

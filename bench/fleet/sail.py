@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.fleet.fleet_legs import FleetLeg, Helmsman
+from bench.fleet.fleet_legs import FleetHelmsman, FleetLeg
 from bench.fleet.fleet_weather import FleetWeather, Surroundings
 from bench.fleet.hidden_causes import Flaws
 from bench.fleet.random_particulars import RHO, Particulars
@@ -61,7 +61,7 @@ def sail(
     steps = int(duration_s / dt)
     around = Surroundings(weather, p, ship.windage, rng, dt, steps)
     psi = float(rng.uniform(0, 2 * pi)) if heading is None else heading
-    man = Helmsman(legs, p.unit_s, psi, rng)
+    man = FleetHelmsman(legs, p.unit_s, psi, rng)
     mass, x_G = p.mass * (1 + f.mass), p.x_G + f.x_G
     m_x, m_y, J = hull.inertia()
     deep = shallow(f.shallow)

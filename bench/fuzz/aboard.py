@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import gettempdir
 from typing import Any
 
-from bench.fuzz.stepped_voyage import CHANNELS, STEP_S, Sailed
+from bench.fuzz.stepped_voyage import CHANNELS, STEP_S, SteppedVoyage
 from bench.fuzz.take import Take
 from twin.live.build import loop_of
 from twin.live.clock import Instant
@@ -66,22 +66,22 @@ class LoopTarget:
         self.loop = loop_of(settings, Played([]), Outbox(Publisher(), "twin", "ship"), None)
         tube = self.loop.stabilizer.tube
         assert tube and tube.certificate.ok and self.loop.learned.residual and self.loop.learned.adaptation
-        self.sailed, self.shared = Sailed(self.loop.ship), (self.loop.ship, self.loop.learned.residual)
-        sailing = Sailing(self, self.loop)
+        self.sailed, self.shared = SteppedVoyage(self.loop.ship), (self.loop.ship, self.loop.learned.residual)
+        sailing = FuzzedVoyage(self, self.loop)
         for _ in range(WARM):
             sailing.tick()
         _demand(sailing.inside > 0, "nothing was promised on a healthy voyage")
 
     def one(self, data: bytes) -> None:
         loop = deepcopy(self.loop, {id(thing): thing for thing in self.shared})
-        sailing = Sailing(self, loop, WARM)
+        sailing = FuzzedVoyage(self, loop, WARM)
         take = Take(data)
         while take and sailing.ticks < TICKS:
             DECISIONS[take.byte() % len(DECISIONS)](sailing, take)
             sailing.tick()
 
 
-class Sailing:
+class FuzzedVoyage:
     """One voyage: the ship's step, the clocks, who is silent and who lies."""
 
     def __init__(self, target: LoopTarget, loop: Loop, k: int = 0):
@@ -126,39 +126,39 @@ class Sailing:
             _demand(kept or not self.honest, f"a promise that is not kept: {errors} {beta}")
 
 
-def _sail(sailing: Sailing, take: Take) -> None:
+def _sail(sailing: FuzzedVoyage, take: Take) -> None:
     for _ in range(min(take.byte() % 20, TICKS - sailing.ticks)):
         sailing.tick()
 
 
-def _pause(sailing: Sailing, take: Take) -> None:
+def _pause(sailing: FuzzedVoyage, take: Take) -> None:
     sailing.k += take.one_of(PAUSES)
 
 
-def _set_clock(sailing: Sailing, take: Take) -> None:
+def _set_clock(sailing: FuzzedVoyage, take: Take) -> None:
     sailing.wall += take.one_of(CLOCKS)
 
 
-def _sources_clock(sailing: Sailing, take: Take) -> None:
+def _sources_clock(sailing: FuzzedVoyage, take: Take) -> None:
     sailing.behind = take.one_of((0.0, *CLOCKS))
 
 
-def _silence(sailing: Sailing, take: Take) -> None:
+def _silence(sailing: FuzzedVoyage, take: Take) -> None:
     sailing.silent ^= {take.one_of(CHANNELS)}
 
 
-def _all_silent(sailing: Sailing, take: Take) -> None:
+def _all_silent(sailing: FuzzedVoyage, take: Take) -> None:
     sailing.silent = set() if sailing.silent else set(CHANNELS)
 
 
-def _lie(sailing: Sailing, take: Take) -> None:
+def _lie(sailing: FuzzedVoyage, take: Take) -> None:
     """One instrument is off by up to a quarter of its range."""
     channel = BY_NAME[take.one_of(CHANNELS)]
     sailing.honest = False
     sailing.off[channel.name] = (take.share() - 0.5) * 0.25 * min(channel.high - channel.low, 1e4)
 
 
-def _message(sailing: Sailing, take: Take) -> None:
+def _message(sailing: FuzzedVoyage, take: Take) -> None:
     """A made-up sample, or anything at all under a true key."""
     topic, source = take.one_of(SUBJECTS), take.one_of(("ship", "b", "twin", "x" * 300))
     stamp_ns = round(max(sailing.wall + sailing.now_s + take.one_of(STAMPS), 0.0) * 1e9)

@@ -54,7 +54,7 @@ def run(args: argparse.Namespace) -> int:
         seconds = max(round(args.seconds * SHARES.get(name, 1.0) / whole_share), 1)
         bench_output.tell(f"{name}, {seconds} s")
         rows.append(fuzzed(name, seconds, args.corpus))
-    bench_output.rows(args, rows, told(rows))
+    bench_output.rows(args, rows, page(rows))
     return 3 if any(row.broken for row in rows) else 0
 
 
@@ -98,7 +98,7 @@ def read(name: str, seconds: float, said: str, code: int) -> Fuzzing:
     )
 
 
-def told(rows: list[Fuzzing]) -> str:
+def page(rows: list[Fuzzing]) -> str:
     """The page."""
     lines = bench_output.begun(
         "Fuzzing with coverage", __doc__, "target", "s", "inputs", "edges reached", "kept", "broken"

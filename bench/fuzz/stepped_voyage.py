@@ -21,7 +21,7 @@ SIZES = {  # one standard deviation of what an instrument adds
 CHANNELS = tuple(SIZES)
 
 
-class Sailed:
+class SteppedVoyage:
     """The truth at step k, and what healthy instruments say of it: the same for the same k."""
 
     def __init__(self, ship: Ship):

@@ -11,7 +11,7 @@ from mcap.writer import CompressionType, Writer
 
 from bench.fuzz.aboard import LoopTarget, MessageTarget
 from bench.fuzz.ashore import CertificateTarget, LogTarget, ShipTarget, TableTarget
-from bench.fuzz.stepped_voyage import CHANNELS, STEP_S, Sailed
+from bench.fuzz.stepped_voyage import CHANNELS, STEP_S, SteppedVoyage
 from twin.live.keelson import messages, topics
 from twin.live.log.logfile import LogFile
 from twin.physics.ship import bundled, load
@@ -87,7 +87,7 @@ def log_seeds() -> Iterator[bytes]:
 
 
 def table_seeds() -> Iterator[bytes]:
-    sailed = Sailed(load("kvlcc2"))
+    sailed = SteppedVoyage(load("kvlcc2"))
     rows = [(STEP_S * k, *(sailed.said(k)[name] for name in CHANNELS)) for k in range(0, 120, 4)]
     names = ("time_s", *CHANNELS)
     table = "\n".join((",".join(names), *(",".join(f"{x:.4f}" for x in row) for row in rows))).encode()

@@ -47,7 +47,9 @@ def judge(question: Question, folder: Path) -> dict[str, Any]:
         answer = diagnose([voyage], ship).result
     except Exception as error:  # told in the table as a failure
         return row | {"verdict": "failed", "missing": [], "why": f"{type(error).__name__}: {error}"}
-    row |= {"seconds": time.perf_counter() - wall, "cpu_seconds": time.process_time() - cpu} | told(answer)
+    row |= {"seconds": time.perf_counter() - wall, "cpu_seconds": time.process_time() - cpu} | kept_answer(
+        answer
+    )
     by_name = {c["effect"]: c for c in answer["candidates"]}
     row["parameters"] = [
         p
@@ -64,7 +66,7 @@ def judge(question: Question, folder: Path) -> dict[str, Any]:
     return row
 
 
-def told(answer: dict[str, Any]) -> dict[str, Any]:
+def kept_answer(answer: dict[str, Any]) -> dict[str, Any]:
     """The part of a diagnosis that the league keeps."""
     first = next((c for c in answer["candidates"] if answer["missing"][:1] == [c["effect"]]), None)
     manoeuvre = answer["next_manoeuvre"]

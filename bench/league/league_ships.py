@@ -8,7 +8,7 @@ from typing import Any
 
 from bench.league.league_voyages import kept
 from bench.league.plan import WEATHERS, lasts
-from bench.reference import Case
+from bench.reference import SeaCase
 from twin.physics.effects import find
 from twin.physics.ship import Ship, load
 from twin.study.calibration.core_fit import calibrate
@@ -22,7 +22,7 @@ CALM_SEED, ROUGH_SEED = 100, 200
 
 
 @dataclass(frozen=True)
-class Fleet:
+class LeagueFleet:
     """One hull's ships: by how many calm voyages they are calibrated, and whether some know wind or waves."""
 
     hull: str
@@ -30,35 +30,35 @@ class Fleet:
     references: int = len(MANOEUVRES)
     weather: bool = True
 
-    def calm(self) -> list[Case]:
+    def calm(self) -> list[SeaCase]:
         """Reference voyages with nothing hidden; the last is the one held back."""
         sailed = (*MANOEUVRES[: self.references], HELD_BACK)
         return [self._case(m, CALM_SEED + i) for i, m in enumerate(sailed)]
 
-    def rough(self, effect: str) -> list[Case]:
+    def rough(self, effect: str) -> list[SeaCase]:
         """Voyages on which the ship that knows this effect has learned it."""
         return [self._case(m, ROUGH_SEED + i, ((effect, 1.0),)) for i, m in enumerate(("mixed", "zigzag_20"))]
 
-    def cases(self) -> list[Case]:
+    def cases(self) -> list[SeaCase]:
         return self.calm() + [c for n in self.known() for c in self.rough(n)]
 
     def known(self) -> tuple[str, ...]:
         return tuple(WEATHERS) if self.weather else ()
 
-    def _case(self, manoeuvre: str, seed: int, hidden: tuple[tuple[str, float], ...] = ()) -> Case:
-        return Case(
+    def _case(self, manoeuvre: str, seed: int, hidden: tuple[tuple[str, float], ...] = ()) -> SeaCase:
+        return SeaCase(
             self.hull, manoeuvre, hidden=hidden, seed=seed, duration_s=lasts(self.hull, self.duration_s)
         )
 
 
-def make(fleet: Fleet, folder: Path) -> None:
+def make(fleet: LeagueFleet, folder: Path) -> None:
     """Calibrate a hull's ships and keep them beside the voyages."""
     path = folder / f"{fleet.hull}.ship"
     if not path.exists():
         path.write_bytes(pickle.dumps(calibrated(fleet, folder)))
 
 
-def calibrated(fleet: Fleet, folder: Path) -> dict[str, Any]:
+def calibrated(fleet: LeagueFleet, folder: Path) -> dict[str, Any]:
     """{"": the calibrated ship, "Wind": the same with that effect fitted ..., "calibration": how well}."""
     start = load(fleet.hull)
     *sailed, last = [_sailed(c, folder, start) for c in fleet.calm()]
@@ -70,7 +70,7 @@ def calibrated(fleet: Fleet, folder: Path) -> dict[str, Any]:
     return out
 
 
-def _sailed(case: Case, folder: Path, ship: Ship) -> Sailed:
+def _sailed(case: SeaCase, folder: Path, ship: Ship) -> Sailed:
     voyage = kept(case, folder)[0]
     return Sailed(voyage, track(voyage, ship), voyage.name)
 

@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
-from bench.reference import Case, Recording, simulate
+from bench.reference import Recording, SeaCase, simulate
 from twin.recording.voyage import Voyage
 
 BATCH = 96  # ships that sail side by side
 
 
-def name_of(case: Case) -> str:
+def name_of(case: SeaCase) -> str:
     """A file name that no other voyage of the league has."""
     hidden = [f"{n}:{s:g}" for n, s in case.hidden]
     return "_".join(
@@ -28,7 +28,7 @@ def voyage(recording: Recording) -> Voyage:
     return Voyage(name_of(recording.case), columns.pop("time_s"), columns)
 
 
-def sail(cases: Sequence[Case], folder: Path) -> None:
+def sail(cases: Sequence[SeaCase], folder: Path) -> None:
     """Sail these voyages and keep them; those that are there already are not sailed again."""
     folder.mkdir(parents=True, exist_ok=True)
     cases = [c for c in dict.fromkeys(cases) if not (folder / f"{name_of(c)}.npz").exists()]
@@ -40,7 +40,7 @@ def sail(cases: Sequence[Case], folder: Path) -> None:
         os.replace(aside, path)
 
 
-def kept(case: Case, folder: Path) -> tuple[Voyage, dict[str, Any]]:
+def kept(case: SeaCase, folder: Path) -> tuple[Voyage, dict[str, Any]]:
     """A voyage that was sailed, and what was hidden in it."""
     with np.load(folder / f"{name_of(case)}.npz") as held:
         columns = {name: held[name].astype(float) for name in held.files if name != "truth"}
@@ -48,6 +48,6 @@ def kept(case: Case, folder: Path) -> tuple[Voyage, dict[str, Any]]:
     return Voyage(name_of(case), columns.pop("time_s"), columns), truth
 
 
-def forget(cases: Sequence[Case], folder: Path) -> None:
+def forget(cases: Sequence[SeaCase], folder: Path) -> None:
     for case in cases:
         (folder / f"{name_of(case)}.npz").unlink(missing_ok=True)

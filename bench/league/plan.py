@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.reference import Case
+from bench.reference import SeaCase
 from bench.reference.hidden_catalogue import CATALOGUE, OUTSIDE
 
 HULLS = ("kvlcc2", "usv", "container")
@@ -64,16 +64,18 @@ class Question:
         """Whether a fall of the held-out error can be asked for."""
         return bool(self.missing) and self.kind in ("effect", "pair")
 
-    def voyages(self) -> list[Case]:
+    def voyages(self) -> list[SeaCase]:
         return [self.case(), self.held_out()] if self.proves else [self.case()]
 
-    def case(self) -> Case:
-        return Case(self.hull, self.manoeuvre, "calm", self.hidden, self.decoys, self.seed, self.duration_s)
+    def case(self) -> SeaCase:
+        return SeaCase(
+            self.hull, self.manoeuvre, "calm", self.hidden, self.decoys, self.seed, self.duration_s
+        )
 
-    def held_out(self) -> Case:
+    def held_out(self) -> SeaCase:
         """The same ship with the same hidden effect in another manoeuvre."""
         other = MANOEUVRES[(MANOEUVRES.index(self.manoeuvre) + 1) % len(MANOEUVRES)]
-        return Case(self.hull, other, "calm", self.hidden, self.decoys, self.seed, self.duration_s)
+        return SeaCase(self.hull, other, "calm", self.hidden, self.decoys, self.seed, self.duration_s)
 
 
 def lasts(hull: str, duration_s: float | None) -> float:

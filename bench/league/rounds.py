@@ -12,7 +12,7 @@ from typing import Any
 
 from bench.league import league_score, plan
 from bench.league.examiner import judge
-from bench.league.league_ships import Fleet, make, ships_of
+from bench.league.league_ships import LeagueFleet, make, ships_of
 from bench.league.league_voyages import BATCH, forget, sail
 from bench.league.plan import Question
 
@@ -52,7 +52,7 @@ class League:
 
     def _ships(self, pool: ProcessPoolExecutor) -> None:
         """Calibrate the ships that are not there yet, then forget their voyages."""
-        fleets = [Fleet(h, *self.fleet) for h in self.hulls if not (self.folder / f"{h}.ship").exists()]
+        fleets = [LeagueFleet(h, *self.fleet) for h in self.hulls if not (self.folder / f"{h}.ship").exists()]
         cases = [c for f in fleets for c in f.cases()]
         self._sail(pool, cases)
         self._wait([pool.submit(make, f, self.folder) for f in fleets], f"{len(fleets)} ships calibrated")

@@ -27,7 +27,7 @@ ROOT = Path(__file__).parents[2]
 KILLED, SURVIVED, HUNG = "killed", "survived", "hung"
 
 
-class Tried(NamedTuple):
+class TriedMutant(NamedTuple):
     """One mutant and what became of it; `hung` counts as noticed."""
 
     file: str
@@ -36,7 +36,7 @@ class Tried(NamedTuple):
     fate: str
 
 
-class Planted(MetaPathFinder, Loader):
+class PlantedMutant(MetaPathFinder, Loader):
     """Loads one module from another source."""
 
     def __init__(self, path: Path, source: str):
@@ -70,14 +70,14 @@ def run(args: argparse.Namespace) -> int:
 
     ends = time.monotonic() + (args.seconds or 1e9)
     args.kept.mkdir(exist_ok=True)
-    rows: list[Tried] = []
+    rows: list[TriedMutant] = []
     for name in args.file or GUARDED:
         rows += of_file(name, args.most, args.kept, ends)
-    bench_output.rows(args, rows, told(rows))
+    bench_output.rows(args, rows, page(rows))
     return 0
 
 
-def of_file(name: str, most: int, kept: Path, ends: float) -> list[Tried]:
+def of_file(name: str, most: int, kept: Path, ends: float) -> list[TriedMutant]:
     """Every mutant of a file that is on file or can be tried in time."""
     guarded = GUARDED[name]
     source = (ROOT / guarded.source).read_text()
@@ -105,8 +105,8 @@ def of_file(name: str, most: int, kept: Path, ends: float) -> list[Tried]:
     return [_row(guarded.source, all_of[i], fates[str(i)]) for i in chosen if str(i) in fates]
 
 
-def _row(path: str, mutant: Mutant, fate: str) -> Tried:
-    return Tried(path, mutant.line, mutant.change, fate)
+def _row(path: str, mutant: Mutant, fate: str) -> TriedMutant:
+    return TriedMutant(path, mutant.line, mutant.change, fate)
 
 
 def tried(path: str, source: str, tests: Sequence[str], limit_s: float) -> str:
@@ -139,13 +139,13 @@ def _child(path: str, source: str, tests: Sequence[str]) -> int:
             del sys.modules[loaded]
         os.chdir(ROOT)
         sys.path.insert(0, str(ROOT))
-        sys.meta_path.insert(0, Planted(Path(path), source))
+        sys.meta_path.insert(0, PlantedMutant(Path(path), source))
         return int(pytest.main(["-x", "-q", "-p", "no:cacheprovider", *tests]))
     except BaseException:
         return 1
 
 
-def told(rows: Sequence[Tried]) -> str:
+def page(rows: Sequence[TriedMutant]) -> str:
     """The page."""
     lines = bench_output.begun(
         "Mutants of what guards", __doc__, "file", "mutants", "noticed", "of them by hanging", "survived"

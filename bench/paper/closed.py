@@ -16,7 +16,7 @@ import numpy as np
 import torch
 
 from bench.paper.paper_voyages import SCENARIOS
-from bench.reference import Case, Sea
+from bench.reference import Sea, SeaCase
 from export.residual_network import ResidualNetwork
 from twin.physics import core
 from twin.physics.model import Model
@@ -35,7 +35,7 @@ SPEEDS = ("surge_velocity_through_water_mps", "sway_velocity_through_water_mps")
 class Steered(Sea):
     """The reference sea with another helmsman, and a gust from starboard abeam."""
 
-    def __init__(self, cases: Sequence[Case], helm: "ClosedLoopHelm", tick_s: float):
+    def __init__(self, cases: Sequence[SeaCase], helm: "ClosedLoopHelm", tick_s: float):
         self.helm = helm
         super().__init__(list(cases), tick_s)
 
@@ -218,7 +218,7 @@ class Closed:
 def sail(model: Model, network: ResidualNetwork, seeds: int, tick_s: float = 0.1) -> Closed:
     """Every scenario, mode and seed side by side; a seed's sea is the same in all modes."""
     cases = [
-        Case("kvlcc2", "straight", ts, seed=70_000 + 10 * k + j, duration_s=None)
+        SeaCase("kvlcc2", "straight", ts, seed=70_000 + 10 * k + j, duration_s=None)
         for _ in MODES
         for j, ts in enumerate(SCENARIOS)
         for k in range(seeds)

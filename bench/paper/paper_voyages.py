@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from bench.reference import HULLS, Case, Recording, simulate
+from bench.reference import HULLS, Recording, SeaCase, simulate
 from twin.recording.voyage import Voyage
 
 SCENARIOS = ("TS-01", "TS-02", "TS-03")
@@ -64,14 +64,14 @@ class PaperVoyage:
     truth: np.ndarray
 
 
-def lessons(plan: PaperPlan) -> list[Case]:
+def lessons(plan: PaperPlan) -> list[SeaCase]:
     """What is learned from, in the order of time. Any 15 in a row hold the same manoeuvres in the same seas,
     so that training, validation and test are alike; speeds take turns with them. It is driven harder than
     its service speed and slower than half of
     it: what a network was never shown (a propeller that turns faster than U_0 needs) it must leave to the
         physics."""
     return [
-        Case(
+        SeaCase(
             "kvlcc2",
             MANOEUVRES[(i // 3) % len(MANOEUVRES)],
             SCENARIOS[i % 3],
@@ -89,11 +89,11 @@ def zigzags(
     scenarios: Sequence[str] = SCENARIOS,
     angles: Sequence[int] = (10, 20),
     **changes: Any,
-) -> list[Case]:
+) -> list[SeaCase]:
     """`count` zigzags of each of `angles` (10/10 and 20/20) in each scenario."""
     return [
         replace(
-            Case("kvlcc2", f"zigzag_{angle}", ts, seed=seed + 100 * i + 10 * j + 1, duration_s=RUN_S),
+            SeaCase("kvlcc2", f"zigzag_{angle}", ts, seed=seed + 100 * i + 10 * j + 1, duration_s=RUN_S),
             **changes,
         )
         for i in range(count)
@@ -102,12 +102,12 @@ def zigzags(
     ]
 
 
-def unseen(plan: PaperPlan) -> list[Case]:
+def unseen(plan: PaperPlan) -> list[SeaCase]:
     """The zigzags of Tables 3 to 6."""
     return zigzags(plan.zigzags, 9001, duration_s=plan.run_s)
 
 
-def changed(plan: PaperPlan) -> dict[str, list[Case]]:
+def changed(plan: PaperPlan) -> dict[str, list[SeaCase]]:
     """Table 7: the ship as the models know it, and two that are not."""
     hull = HULLS["kvlcc2"]
     heavy = replace(hull, name="kvlcc2", m=1.05 * hull.m)
@@ -138,7 +138,7 @@ def without_gnss_noise(sailed: PaperVoyage) -> PaperVoyage:
     return PaperVoyage(v.with_rows(v.time_s, dict(v.columns) | seen), sailed.truth)
 
 
-def by_speed(plan: PaperPlan) -> dict[str, list[Case]]:
+def by_speed(plan: PaperPlan) -> dict[str, list[SeaCase]]:
     """Table 8."""
     return {
         name: zigzags(plan.speeds, 60_000, angles=plan.angles, duration_s=plan.run_s, speed_fraction=share)
@@ -147,7 +147,7 @@ def by_speed(plan: PaperPlan) -> dict[str, list[Case]]:
 
 
 def sail(
-    cases: Sequence[Case], folder: Path, tell: Callable[[str], None], tick_s: float = 0.1
+    cases: Sequence[SeaCase], folder: Path, tell: Callable[[str], None], tick_s: float = 0.1
 ) -> list[PaperVoyage]:
     """These voyages, from the folder where they were sailed before."""
     folder.mkdir(parents=True, exist_ok=True)
@@ -162,7 +162,7 @@ def sail(
     return [_read(case, path) for case, path in zip(cases, paths, strict=True)]
 
 
-def _key(case: Case) -> str:
+def _key(case: SeaCase) -> str:
     # voyages sailed before there were changes keep their names
     told = repr(case).replace(", change=None", "")
     return f"{case.manoeuvre}-{case.weather}-{case.seed}-{hashlib.sha256(told.encode()).hexdigest()[:10]}"
@@ -175,7 +175,7 @@ def _write(recording: Recording, path: Path) -> None:
     os.replace(aside, path)
 
 
-def _read(case: Case, path: Path) -> PaperVoyage:
+def _read(case: SeaCase, path: Path) -> PaperVoyage:
     with np.load(path) as held:
         columns = {name: held[name].astype(float) for name in held.files}
     truth = columns.pop("truth")

@@ -110,7 +110,7 @@ def of_twin(voyage: Voyage, ship: Ship, horizon_s: float) -> tuple[list[float], 
     return place.tolist(), np.degrees(turn).tolist()
 
 
-def told(name: str, place: Sequence[float], turn: Sequence[float]) -> str:
+def run_medians(name: str, place: Sequence[float], turn: Sequence[float]) -> str:
     """Medians; a run that went beyond numbers counts as the farthest."""
     metres, degrees = (float(np.median(np.nan_to_num(x, nan=1e9))) for x in (place, turn))
     return f"{name} {metres:.3g} m {degrees:.3g} deg ({len(place)})"
@@ -131,7 +131,7 @@ def main() -> None:
                 off = {"least squares": errors(c, theta, horizon)}
             if args.ship:
                 off["twin"] = of_twin(voyage, load(args.ship), horizon)
-            medians = [told(name, *x) for name, x in off.items() if x[0]]
+            medians = [run_medians(name, *x) for name, x in off.items() if x[0]]
             print(f"{path}: {horizon:.0f} s  {'; '.join(medians) or 'too short'}", flush=True)
 
 

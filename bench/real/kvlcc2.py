@@ -81,12 +81,12 @@ def run(args: argparse.Namespace) -> int:
         raise SettingsError(
             f"{root}: the SIMMAN files are not there. Set SHIPTWIN_DATA to the folder above kvlcc2_simman."
         )
-    result = {"schema_version": 1, "basins": [judged(basin, root) for basin in BASINS]}
+    result = {"schema_version": 1, "basins": [basin_figures(basin, root) for basin in BASINS]}
     bench_output.give(args, result, page(result))
     return 0
 
 
-def judged(basin: Basin, root: Path) -> dict[str, Any]:
+def basin_figures(basin: Basin, root: Path) -> dict[str, Any]:
     """Everything about one basin's runs."""
     bench_output.tell(f"{basin.name}: reading")
     ship, runs = load(basin.ship), voyages(basin, root)
@@ -107,7 +107,7 @@ def judged(basin: Basin, root: Path) -> dict[str, Any]:
         "floor": after.result["floor"],
         "temper": after.result["temper"],
         "helm": [helm(s) for s in runs],
-        "asked": [asked(name, fitted, others, after.ship) for name in ASYMMETRIC],
+        "asked": [effect_gain(name, fitted, others, after.ship) for name in ASYMMETRIC],
         "diagnoses": [
             diagnosed("published coefficients, all runs", runs, ship),
             diagnosed("calibrated ship, the runs that it was not fitted to", others, after.ship),
@@ -151,7 +151,7 @@ def helm(s: Sailed) -> dict[str, Any]:
     }
 
 
-def asked(name: str, fitted: Sequence[Sailed], others: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
+def effect_gain(name: str, fitted: Sequence[Sailed], others: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
     """The effect as if it had been named: fitted on the calibration's runs, judged on the others at the
     longest horizon."""
     bench_output.tell(f"adding {name}")
@@ -167,7 +167,7 @@ def asked(name: str, fitted: Sequence[Sailed], others: Sequence[Sailed], ship: S
 
 def faulty(fault: planted_faults.PlantedFault, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:
     bench_output.tell(f"putting into the readings: {fault.words}")
-    return planted_faults.asked(fault, [s.voyage for s in runs], ship)
+    return planted_faults.answer(fault, [s.voyage for s in runs], ship)
 
 
 def diagnosed(words: str, runs: Sequence[Sailed], ship: Ship) -> dict[str, Any]:

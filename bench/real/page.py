@@ -34,12 +34,12 @@ def _basin(b: dict[str, Any]) -> str:
         _runs(b),
         f"### Calibrated on some, judged on the others\n\nFitted to {fitted}. "
         f"{OTHERS}:\n\n" + _before_after(b),
-        _floor(b),
+        _noise_lines(b),
         "### The rudder's asymmetry\n\n" + _helm(b["helm"]),
         *(_diagnosis(d) for d in b["diagnoses"]),
-        _asked(b["asked"]),
+        _gain_lines(b["asked"]),
         "### Known faults put into the readings of the runs that it was not fitted "
-        "to\n\n" + planted_faults.told(b["faults"]),
+        "to\n\n" + planted_faults.table(b["faults"]),
     ]
     return "\n\n".join(parts)
 
@@ -83,7 +83,7 @@ def _before_after(b: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _floor(b: dict[str, Any]) -> str:
+def _noise_lines(b: dict[str, Any]) -> str:
     shares = ", ".join(f"{100 * s:.2g} %" for s in b["floor"]["share"])
     return f"Unexplained of the forces at work in surge, sway, yaw: {shares}; temper {b['temper']:.1f}."
 
@@ -109,7 +109,7 @@ def _helm(helm: Sequence[dict[str, Any]]) -> str:
     )
 
 
-def _asked(asked: Sequence[dict[str, Any]]) -> str:
+def _gain_lines(asked: Sequence[dict[str, Any]]) -> str:
     """What `add` would make of each asymmetric effect, although the diagnosis did not ask for it."""
     lines = ["Asked directly: each effect fitted on the calibration's runs, judged on the others.", ""]
     lines += ["| effect | numbers (95 %) | position m | heading deg |", "|---|---|---|---|"]

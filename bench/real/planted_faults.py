@@ -152,7 +152,7 @@ FAULTS = (
 )
 
 
-def asked(fault: PlantedFault, voyages: Sequence[Voyage], ship: Ship) -> dict[str, Any]:
+def answer(fault: PlantedFault, voyages: Sequence[Voyage], ship: Ship) -> dict[str, Any]:
     """What the diagnosis of these voyages says when the fault is in their readings."""
     L, U = float(ship.L_pp), float(ship.scale("speed"))
     found = diagnose([fault.put(v, L, U) for v in voyages], ship).result
@@ -161,7 +161,7 @@ def asked(fault: PlantedFault, voyages: Sequence[Voyage], ship: Ship) -> dict[st
     return {"put": fault.words, "effects": fault.effects, "numbers": numbers} | keep
 
 
-def told(rows: Sequence[dict[str, Any]]) -> str:
+def table(rows: Sequence[dict[str, Any]]) -> str:
     """The answers as a table."""
     lines = [
         "| put into the readings | the catalogue's name | verdict | reason | named | numbers (95 %) |",

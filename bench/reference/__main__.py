@@ -7,7 +7,7 @@ from pathlib import Path
 from bench.reference import sea_trials
 from bench.reference.hidden_catalogue import CATALOGUE, DECOYS, OUTSIDE
 from bench.reference.hulls import HULLS
-from bench.reference.sea_voyage import Case, simulate
+from bench.reference.sea_voyage import SeaCase, simulate
 from bench.reference.trial_legs import MANOEUVRES
 from bench.reference.weather import WEATHERS
 
@@ -32,7 +32,7 @@ def effect(text):
 
 def run(args):
     cases = [
-        Case(
+        SeaCase(
             args.hull, args.manoeuvre, args.weather, tuple(args.hide), tuple(args.decoy), seed, args.duration
         )
         for seed in range(args.seed, args.seed + args.count)

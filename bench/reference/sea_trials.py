@@ -13,7 +13,7 @@ import numpy as np
 
 from bench.reference import trial_indices
 from bench.reference.sea import hull_of
-from bench.reference.sea_voyage import Case, simulate
+from bench.reference.sea_voyage import SeaCase, simulate
 from bench.reference.trial_legs import RUDDER, ZIGZAG, Leg
 from bench.reference.weather import Weather
 
@@ -33,7 +33,7 @@ IMO = {
 def sail(hull, plans, duration_s):
     """Calm, airless voyages due north with perfect instruments, one for each plan of legs."""
     cases = [
-        Case(hull, tuple(plan), Weather(), heading_deg=0.0, duration_s=duration_s, sensors="perfect")
+        SeaCase(hull, tuple(plan), Weather(), heading_deg=0.0, duration_s=duration_s, sensors="perfect")
         for plan in plans
     ]
     return simulate(cases)
@@ -61,7 +61,7 @@ def standard(hull):
     """Advance, tactical diameter and first two overshoots, by rudder angle."""
     turns, zigzags = (35, -35), (10, -10, 20, -20)
     plans = [[Leg(RUDDER, 99, a)] for a in turns] + [[Leg(ZIGZAG, 99, a, abs(a))] for a in zigzags]
-    ship = hull_of(Case(hull))
+    ship = hull_of(SeaCase(hull))
     voyages = sail(hull, plans, 15 * ship.L / ship.U0)
     turned = {a: measure_turn(v) for a, v in zip(turns, voyages, strict=False)}
     return turned, {a: measure_zigzag(v, a)[0][:2] for a, v in zip(zigzags, voyages[2:], strict=True)}

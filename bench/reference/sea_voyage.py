@@ -17,12 +17,12 @@ class Change:
     else goes on."""
 
     at_s: float
-    hull: object = None  # as in Case; None: hers
+    hull: object = None  # as in SeaCase; None: hers
     wind: float = 1.0
 
 
 @dataclass(frozen=True)
-class Case:
+class SeaCase:
     """One voyage to sail. `hidden`: pairs (effect, strength); `decoys`: strong weather that is no riddle.
 
     `weather` is relative to the first heading, which the seed draws unless `heading_deg` fixes it.
@@ -46,7 +46,7 @@ class Case:
 class Recording:
     """What was measured (`columns`), what was true (`truth`), what was hidden, and forces given as known."""
 
-    case: Case
+    case: SeaCase
     columns: dict = field(repr=False)
     truth: dict = field(repr=False)
     hidden: dict = field(default_factory=dict)

@@ -75,11 +75,15 @@ def run(args: argparse.Namespace) -> int:
             case.dropouts,
             bool(case.moving),
         )
-        rows.append((case, c, _told(f"{case.ship} {case.rate_hz:g} Hz", trial(fleet))))
+        rows.append((case, c, _result_line(f"{case.ship} {case.rate_hz:g} Hz", trial(fleet))))
     for i, of_loop in enumerate(LOOPS):
         sailed = Loops(of_loop, max(1, round(of_loop.runs * share)), args.seed + i)
         loops.append(
-            (of_loop, sailed.c, _told(f"the loop, {of_loop.ship} {of_loop.rate_hz:g} Hz", trial(sailed)))
+            (
+                of_loop,
+                sailed.c,
+                _result_line(f"the loop, {of_loop.ship} {of_loop.rate_hz:g} Hz", trial(sailed)),
+            )
         )
     cases, own = (
         [{**case._asdict(), **asdict(o), "bound": c.bound, "K": c.K} for case, c, o in some]
@@ -99,6 +103,6 @@ def run(args: argparse.Namespace) -> int:
     return 0
 
 
-def _told(what: str, o: AdversaryOutcome) -> AdversaryOutcome:
+def _result_line(what: str, o: AdversaryOutcome) -> AdversaryOutcome:
     bench_output.tell(f"{what}: {o.violations} violations in {o.runs} runs")
     return o

@@ -65,7 +65,7 @@ def measure(args: argparse.Namespace) -> dict[str, Any]:
     """Everything `--json` holds."""
     paced_steps = int(PACED_S * args.rate) if args.paced is None else args.paced
     with tempfile.TemporaryDirectory(prefix="twin-bench-") as folder:
-        place = Place(Path(folder), args)
+        place = LoopFolder(Path(folder), args)
         bench_output.tell(f"sailing the voyage that is fed ({place.seconds(args.steps):.0f} s at sea) ...")
         place.prepare(max(args.steps, paced_steps))
         bench_output.tell(f"the loop as fast as it can, {args.steps} steps ...")
@@ -82,10 +82,10 @@ def measure(args: argparse.Namespace) -> dict[str, Any]:
             bench_output.tell("counting instructions with valgrind ...")
             counted = instructions.counts()
         residual = place.residual
-    return judged(args, fast, paced, peers, counted, residual)
+    return against_budgets(args, fast, paced, peers, counted, residual)
 
 
-def judged(
+def against_budgets(
     args: argparse.Namespace, fast: Any, paced: Any, peers: Any, counted: dict[str, int], residual: str
 ) -> dict[str, Any]:
     """The measurements put together, and held against the budgets."""
@@ -135,7 +135,7 @@ def judged(
     }
 
 
-class Place:
+class LoopFolder:
     """A folder with settings, the voyage and the log, and a free port on loopback."""
 
     def __init__(self, folder: Path, args: argparse.Namespace):

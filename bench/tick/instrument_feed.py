@@ -35,13 +35,13 @@ class FedRow(NamedTuple):
 
 def prepare(path: Path, seconds: float, hull: str) -> None:
     """Sail the voyage that will be fed and keep it in a file."""
-    from bench.reference import Case, Sea
+    from bench.reference import Sea, SeaCase
     from bench.reference.boats import CRAFT, BoatCase, BoatSea
 
     sea = (
         BoatSea(BoatCase(hull, "mixed", seed=7), 1.0 / HZ)
         if hull in CRAFT
-        else Sea(Case(hull, "mixed", "TS-01", seed=7, duration_s=None), 1.0 / HZ)
+        else Sea(SeaCase(hull, "mixed", "TS-01", seed=7, duration_s=None), 1.0 / HZ)
     )
     rows = []
     for _ in range(int(seconds * HZ)):

@@ -10,12 +10,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bench.tube.sailing import HORIZONS_S, Sailed
+from bench.tube.sailing import HORIZONS_S, TubeVoyage
 from twin.live.observer.predict import usual_error
 from twin.live.prediction.calibrated import SECTION, RegionTable, calibrated_of
 from twin.live.prediction.circumstances import HELMS, SEAS
 from twin.live.prediction.coverage import score
-from twin.live.prediction.judge import Judged
+from twin.live.prediction.judge import VerifiedPrediction
 from twin.physics import ship as ships
 from twin.physics.ship import Ship
 from twin.study.reference.foretold import Errors
@@ -25,7 +25,7 @@ LEAST = 9  # voyages of which a row is made
 EVERY = "every"
 
 
-class Kept(NamedTuple):
+class TubeCoverage(NamedTuple):
     """One prediction: helm and sea, half widths and errors of place [m] and of heading [rad]."""
 
     helm: str
@@ -36,7 +36,7 @@ class Kept(NamedTuple):
     heading_error: float
 
 
-class Row(NamedTuple):
+class CoverageRow(NamedTuple):
     """One horizon, one group: `voyages` that were judged; shares inside, each voyage of weight one, and the
     standard deviation of such a share of places from voyage to voyage; means of half widths and scores."""
 
@@ -62,7 +62,9 @@ def table_of(ship: Ship, voyages: Sequence[Errors]) -> RegionTable:
     return made
 
 
-def judged(ship: Ship, table: RegionTable, h: float, voyage: Sequence[Judged]) -> list[Kept]:
+def verified(
+    ship: Ship, table: RegionTable, h: float, voyage: Sequence[VerifiedPrediction]
+) -> list[TubeCoverage]:
     """The predictions of one voyage inside or outside a tube."""
     usual, out = usual_error(ship, h), []
     for j in voyage:
@@ -72,38 +74,40 @@ def judged(ship: Ship, table: RegionTable, h: float, voyage: Sequence[Judged]) -
         q, q_psi = (table.quantile(of, table.level) for of in (cell.place, cell.heading))
         radius, size = q * sqrt(along * across), sqrt((j.along / along) ** 2 + (j.across / across) ** 2)
         out.append(
-            Kept(known.helm, known.sea, radius, size * sqrt(along * across), q_psi * heading, abs(j.heading))
+            TubeCoverage(
+                known.helm, known.sea, radius, size * sqrt(along * across), q_psi * heading, abs(j.heading)
+            )
         )
     return out
 
 
-def left_out(hull: str, voyages: Sequence[Sailed], who: str) -> list[Row]:
+def left_out(hull: str, voyages: Sequence[TubeVoyage], who: str) -> list[CoverageRow]:
     """Each voyage judged by a tube of all others; `who`: "model" or "reckoning"."""
     ship, errors = ships.load(hull), [getattr(v, who) for v in voyages]
-    found: dict[float, list[list[Kept]]] = {h: [] for h in HORIZONS_S}
+    found: dict[float, list[list[TubeCoverage]]] = {h: [] for h in HORIZONS_S}
     rests: dict[float, list[int]] = {h: [] for h in HORIZONS_S}
     for k, mine in enumerate(errors):
         others = table_of(ship, [*errors[:k], *errors[k + 1 :]])
         for h in others.horizons:
-            found[h].append(judged(ship, others, h, mine[h]))
+            found[h].append(verified(ship, others, h, mine[h]))
             rests[h].append(others.horizons[h].cells["all"].voyages)
     return [r for h in HORIZONS_S for r in _rows(h, found[h], rests[h])]
 
 
-def across(of: str, to: str, voyages: Mapping[str, Sequence[Sailed]]) -> list[Row]:
+def across(of: str, to: str, voyages: Mapping[str, Sequence[TubeVoyage]]) -> list[CoverageRow]:
     """Every voyage of hull `to` judged by the tube of all voyages of hull `of`."""
     table = table_of(ships.load(of), [v.model for v in voyages[of]])
     ship = ships.load(to)
-    out: list[Row] = []
+    out: list[CoverageRow] = []
     for h in table.horizons:
-        found = [judged(ship, table, h, v.model[h]) for v in voyages[to]]
+        found = [verified(ship, table, h, v.model[h]) for v in voyages[to]]
         out += _rows(h, found, [table.horizons[h].cells["all"].voyages], regimes=False)
     return out
 
 
 def _rows(
-    h: float, voyages: Sequence[list[Kept]], rests: Sequence[int], regimes: bool = True
-) -> Iterable[Row]:
+    h: float, voyages: Sequence[list[TubeCoverage]], rests: Sequence[int], regimes: bool = True
+) -> Iterable[CoverageRow]:
     groups = [(EVERY, voyages)]
     for of, names in (("helm", HELMS), ("sea", SEAS)) if regimes else ():
         groups += [(f"{of} {n}", [[k for k in v if getattr(k, of) == n] for v in voyages]) for n in names]
@@ -113,7 +117,7 @@ def _rows(
             yield _row(h, name, used, float(np.mean(rests)))
 
 
-def _row(h: float, name: str, voyages: Sequence[list[Kept]], rests: float) -> Row:
+def _row(h: float, name: str, voyages: Sequence[list[TubeCoverage]], rests: float) -> CoverageRow:
     place = [np.mean([k.error <= k.radius for k in v]) for v in voyages]
     heading = [np.mean([k.heading_error <= k.heading for k in v]) for v in voyages]
 
@@ -123,7 +127,7 @@ def _row(h: float, name: str, voyages: Sequence[list[Kept]], rests: float) -> Ro
         ]
         return float(np.mean([np.mean(v) for v in values]))
 
-    return Row(
+    return CoverageRow(
         h,
         name,
         len(voyages),

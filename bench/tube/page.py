@@ -2,13 +2,13 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from bench.tube.interval_score import EVERY, Row
+from bench.tube.interval_score import EVERY, CoverageRow
 
 
 def page(
     counts: Mapping[str, int],
-    own: Mapping[str, Mapping[str, Sequence[Row]]],
-    others: Mapping[str, Sequence[Row]],
+    own: Mapping[str, Mapping[str, Sequence[CoverageRow]]],
+    others: Mapping[str, Sequence[CoverageRow]],
 ) -> str:
     """The whole page."""
     ships = " ".join(f"{hull}={n}" for hull, n in counts.items())
@@ -81,7 +81,7 @@ OTHER = (
 DECISION = "0021-the-tube-around-a-prediction-is-split-conformal-with-the-voyage-as-unit.md"
 
 
-def _row(hull: str, r: Row) -> list[str]:
+def _row(hull: str, r: CoverageRow) -> list[str]:
     return [
         hull,
         f"{r.horizon_s:g}",
@@ -98,7 +98,7 @@ def _row(hull: str, r: Row) -> list[str]:
     ]
 
 
-def _beside(hull: str, by: Mapping[str, Sequence[Row]]) -> list[list[str]]:
+def _beside(hull: str, by: Mapping[str, Sequence[CoverageRow]]) -> list[list[str]]:
     other = {r.horizon_s: r for r in by["reckoning"] if r.group == EVERY}
     pairs = [(m, other[m.horizon_s]) for m in by["model"] if m.group == EVERY and m.horizon_s in other]
     return [
@@ -116,7 +116,7 @@ def _beside(hull: str, by: Mapping[str, Sequence[Row]]) -> list[list[str]]:
     ]
 
 
-def _other(pair: str, r: Row) -> list[str]:
+def _other(pair: str, r: CoverageRow) -> list[str]:
     return [
         pair,
         f"{r.horizon_s:g}",

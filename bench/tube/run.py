@@ -11,7 +11,7 @@ from pathlib import Path
 
 from bench import bench_output
 from bench.options import positive
-from bench.tube.interval_score import Row, across, left_out
+from bench.tube.interval_score import CoverageRow, across, left_out
 from bench.tube.page import page
 from bench.tube.sailing import voyages
 from twin.recording.jsonable import plain
@@ -49,7 +49,7 @@ def ship(text: str) -> tuple[str, int]:
 
 def run(args: argparse.Namespace) -> int:
     sailed = {hull: voyages(hull, count, args.work) for hull, count in args.ships}
-    own: dict[str, dict[str, list[Row]]] = {}
+    own: dict[str, dict[str, list[CoverageRow]]] = {}
     for hull, found in sailed.items():
         bench_output.tell(f"{hull}: each voyage by the tube of the others")
         own[hull] = {who: left_out(hull, found, who) for who in ("model", "reckoning")}

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from bench import bench_output
-from bench.reference import Case, Weather, simulate
+from bench.reference import SeaCase, Weather, simulate
 from bench.reference.hulls import HULLS
 from bench.reference.sea_voyage import Recording
 from bench.sea_disturbance import HIGHEST
@@ -22,7 +22,7 @@ from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction
 from twin.live.prediction.circumstances import Regressors
 from twin.live.prediction.due_predictions import Watch
-from twin.live.prediction.judge import Foretold, Judged
+from twin.live.prediction.judge import Foretold, VerifiedPrediction
 from twin.study.reference.foretold import Errors
 
 HORIZONS_S = (10.0, 60.0, 120.0)
@@ -33,7 +33,7 @@ APART = 3  # of the predictions on file, one in each round of 2 s, one in so man
 
 
 @dataclass(frozen=True)
-class Sailed:
+class TubeVoyage:
     """Errors of the twin's predictions and of dead reckoning, with the helm held, and the wave height [m]."""
 
     hull: str
@@ -43,7 +43,7 @@ class Sailed:
     reckoning: Errors
 
 
-def case(hull: str, k: int) -> Case:
+def case(hull: str, k: int) -> SeaCase:
     """Voyage k: any sea up to the ship's highest, wind and current grow with it; any manoeuvre."""
     rng = np.random.default_rng([9000, k])
     scale = HULLS[hull].scale
@@ -59,10 +59,10 @@ def case(hull: str, k: int) -> Case:
         current_to_deg=rng.uniform(0.0, 360.0),
         current_spread_mps=0.05 * full**0.5 * scale**0.5,
     )
-    return Case(hull, "mixed", weather, seed=9000 + k, duration_s=SECONDS[hull])
+    return SeaCase(hull, "mixed", weather, seed=9000 + k, duration_s=SECONDS[hull])
 
 
-def voyages(hull: str, count: int, folder: Path) -> list[Sailed]:
+def voyages(hull: str, count: int, folder: Path) -> list[TubeVoyage]:
     """The first `count` voyages of a hull, those that are on file already and the others."""
     folder.mkdir(parents=True, exist_ok=True)
     missing = [k for k in range(count) if not _path(folder, hull, k).exists()]
@@ -101,26 +101,26 @@ def reckoned(e: Estimate, p: Prediction) -> Prediction:
     return p._replace(state=(x, y, psi, e.u, e.v, e.r), age_s=0.0)
 
 
-def on_file(folder: Path, hull: str, k: int) -> Sailed:
+def on_file(folder: Path, hull: str, k: int) -> TubeVoyage:
     kept = json.loads(_path(folder, hull, k).read_text())
     model, reckoning = (
-        {float(h): [_judged(row) for row in rows[::APART]] for h, rows in kept[who].items()}
+        {float(h): [_verified(row) for row in rows[::APART]] for h, rows in kept[who].items()}
         for who in ("model", "reckoning")
     )
-    return Sailed(hull, k, kept["H_s"], model, reckoning)
+    return TubeVoyage(hull, k, kept["H_s"], model, reckoning)
 
 
-def _row(j: Judged) -> list[Any]:
+def _row(j: VerifiedPrediction) -> list[Any]:
     f = j.foretold
     numbers = [f.said_s, j.along, j.across, j.heading, *f.known.place, *f.known.heading]
     return [f.known.helm, f.known.sea, *(round(float(x), 7) for x in numbers)]
 
 
-def _judged(row: Sequence[Any]) -> Judged:
+def _verified(row: Sequence[Any]) -> VerifiedPrediction:
     helm, sea, said_s, along, across, heading, *phi = row
     n = len(phi) // 2
     known = Regressors(tuple(phi[:n]), tuple(phi[n:]), helm, sea)
-    return Judged(Foretold(said_s, said_s, said_s, (), known), along, across, heading, True)
+    return VerifiedPrediction(Foretold(said_s, said_s, said_s, (), known), along, across, heading, True)
 
 
 def _path(folder: Path, hull: str, k: int) -> Path:

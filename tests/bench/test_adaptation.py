@@ -131,7 +131,7 @@ def test_a_law_that_is_told_of_a_change_forgets_once_and_learns_on(ship):
     """Test: 0.2 off for twenty-five minutes, told at twenty. Expected: until then the law on board, then as
     one that began there."""
     told, board, fresh = (
-        laws.ToldLaw(ship, scale_of(ship), 2, at_s=1200.0),
+        laws.ForgettingLaw(ship, scale_of(ship), 2, at_s=1200.0),
         *(Adaptation(ship, scale_of(ship), 2) for _ in range(2)),
     )
     for k, step in enumerate(stream(0.2)):

@@ -9,11 +9,11 @@ import numpy as np
 import pytest
 
 import bench.reference.boats as boats
-from bench.boats.actuator_questions import ASKED, from_sheet
+from bench.boats.actuator_questions import QUESTIONS, from_sheet
 from bench.cli import main
 from bench.reference.boats import CRAFT, BoatCase, BoatSea, builders_sheet, sail
 from bench.reference.boats.drives import screw
-from bench.reference.boats.helmsman import Leg
+from bench.reference.boats.helmsman import BoatLeg
 from twin.live.log_replay import replay
 from twin.live.signals.config import Settings
 from twin.physics.ship import load, save
@@ -36,7 +36,7 @@ def test_left_alone_it_goes_straight_near_its_service_speed(name):
 
 def turned(name, helm):
     sea = BoatSea(BoatCase(name, "straight", noisy=False, wind=(0.0, 0.0)))
-    sea.helmsman.leg = Leg(1e9, 0.75, helm)
+    sea.helmsman.leg = BoatLeg(1e9, 0.75, helm)
     sea.helmsman._until = 1e9
     for _ in range(round(200.0 * sea.craft.L / sea.craft.U0)):
         sea.step()
@@ -127,7 +127,7 @@ def test_a_builders_sheet_makes_a_ship_that_the_loop_sails_with(name, tmp_path):
     settings = Settings({"ship.file": str(tmp_path / "ship.toml"), "prediction.horizons_s": [10.0]})
     summary = replay(tmp_path / "v.mcap", settings)
     assert summary.modes.get("physics only", 0) > 0.98 * summary.ticks
-    assert {a[2] for asked in ASKED.values() for a in asked} - {""}
+    assert {a[2] for asked in QUESTIONS.values() for a in asked} - {""}
 
 
 def test_a_hull_of_one_screw_has_no_sheet(tmp_path, capsys):

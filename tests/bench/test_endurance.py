@@ -1,15 +1,15 @@
 """The shocks of the service, once each and short: what is counted is what happened."""
 
-from bench.endurance.killed_service import Place, Said, said_of
-from bench.endurance.lies import OTHERS, Told
+from bench.endurance.killed_service import Said, ServiceFolder, said_of
+from bench.endurance.lies import OTHERS, LieNoticed
 from bench.endurance.run import of_kills, of_lies, of_shocks
 from bench.endurance.shocks import Killed, Shocked, kills, whole
-from bench.lies_told import LIES
+from bench.lie_kinds import LIES
 
 
 def test_a_service_that_is_killed_loses_at_most_half_a_second_and_all_its_logs_are_whole(tmp_path):
     """Test: two kills under way, everything on. Expected: as the page counts two hundred."""
-    place = Place(tmp_path, "kvlcc2")
+    place = ServiceFolder(tmp_path, "kvlcc2")
     try:
         made, good, files = kills(place, 2)
     finally:
@@ -42,5 +42,5 @@ def test_the_pages_say_what_was_counted():
     assert "2 of 2" in page and "0.300 at most" in page and "3 of 3" in page
     page = of_shocks("pauses", [Shocked("pause of 4 s", 0.1, None, True, 7)], 0)
     assert "| pause of 4 s | 0.1 | - | yes | 7 |" in page
-    page = of_lies("kvlcc2", "TS-01", [Told("none", None, "", 1.0, 0.0, 0.03)])
+    page = of_lies("kvlcc2", "TS-01", [LieNoticed("none", None, "", 1.0, 0.0, 0.03)])
     assert "| none | - |  | 100 % | 0.0 % | 0.03 |" in page

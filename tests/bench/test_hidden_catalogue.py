@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.reference import HULLS, Case, simulate
+from bench.reference import HULLS, SeaCase, simulate
 from bench.reference.hidden_catalogue import CATALOGUE, DECOYS, EFFECTS, OUTSIDE
 
 HULL = HULLS["usv"]
@@ -23,9 +23,9 @@ NOISE = {
 @pytest.fixture(scope="module")
 def voyages():
     """One voyage for each effect, and the same voyage with nothing hidden: same seed, same noise."""
-    cases = [Case("usv", "mixed", seed=11, duration_s=40.0)]
-    cases += [Case("usv", "mixed", hidden=((name, 1.0),), seed=11, duration_s=40.0) for name in EFFECTS]
-    cases += [Case("usv", "mixed", decoys=(name,), seed=11, duration_s=40.0) for name in DECOYS]
+    cases = [SeaCase("usv", "mixed", seed=11, duration_s=40.0)]
+    cases += [SeaCase("usv", "mixed", hidden=((name, 1.0),), seed=11, duration_s=40.0) for name in EFFECTS]
+    cases += [SeaCase("usv", "mixed", decoys=(name,), seed=11, duration_s=40.0) for name in DECOYS]
     reference, *others = simulate(cases)
     return reference, dict(zip([*EFFECTS, *DECOYS], others, strict=True))
 
@@ -137,14 +137,14 @@ def test_decoys_are_seen_and_either_known_or_powerless(voyages):
 
 def test_strength_scales_an_effect():
     cases = [
-        Case("usv", "straight", hidden=(("RudderOffset", s),), seed=2, duration_s=5.0) for s in (0.5, 1.0)
+        SeaCase("usv", "straight", hidden=(("RudderOffset", s),), seed=2, duration_s=5.0) for s in (0.5, 1.0)
     ]
     half, whole = (v.hidden["RudderOffset"]["offset_deg"] for v in simulate(cases))
     assert whole == pytest.approx(2 * half) and abs(whole) == pytest.approx(1.94)
 
 
 def test_two_effects_can_be_hidden_at_once():
-    case = Case("usv", "mixed", hidden=(("HullFouling", 1.0), ("Current", 0.5)), duration_s=5.0)
+    case = SeaCase("usv", "mixed", hidden=(("HullFouling", 1.0), ("Current", 0.5)), duration_s=5.0)
     assert set(simulate([case])[0].hidden) == {"HullFouling", "Current"}
 
 
@@ -152,7 +152,7 @@ def test_a_voyage_is_the_same_whoever_sails_beside_it(voyages):
     """All voyages are sailed side by side; a squall over one ship once let the wind blow on another that was
     to feel none."""
     for name in ("wind_no_force", "waves_no_force"):
-        alone = simulate([Case("usv", "mixed", decoys=(name,), seed=11, duration_s=40.0)])[0]
+        alone = simulate([SeaCase("usv", "mixed", decoys=(name,), seed=11, duration_s=40.0)])[0]
         assert np.array_equal(alone.truth["v"], voyages[1][name].truth["v"]), name
-    alone = simulate([Case("usv", "mixed", hidden=(("ExternalForce", 1.0),), seed=11, duration_s=40.0)])[0]
+    alone = simulate([SeaCase("usv", "mixed", hidden=(("ExternalForce", 1.0),), seed=11, duration_s=40.0)])[0]
     assert np.array_equal(alone.truth["v"], voyages[1]["ExternalForce"].truth["v"])

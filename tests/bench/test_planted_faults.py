@@ -8,8 +8,8 @@ from bench.real.kvlcc2 import BASINS, MAPS
 from bench.real.planted_faults import (
     FAULTS,
     PlantedReadings,
+    answer,
     antenna_elsewhere,
-    asked,
     early_rudder,
     in_a_stream,
     late_receiver,
@@ -95,6 +95,6 @@ def test_the_table_says_what_was_put_and_what_was_named():
     from twin.recording.read import read_voyage
 
     gyro = next(f for f in FAULTS if f.effects == ("GyroBias",))
-    row = asked(gyro, [read_voyage(TUESDAY)], ship)
-    line = real_faults.told([row]).splitlines()[-1]
+    row = answer(gyro, [read_voyage(TUESDAY)], ship)
+    line = real_faults.table([row]).splitlines()[-1]
     assert gyro.words in line and "GyroBias" in row["missing"] and f"`{row['verdict']}`" in line

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bench.reference import HULLS, Case, Weather, simulate
+from bench.reference import HULLS, SeaCase, Weather, simulate
 from bench.reference.isherwood import table
 from bench.reference.sensor_suite import COLUMNS
 from bench.reference.trial_legs import RUDDER, Leg
@@ -14,12 +14,12 @@ WINDY = Weather(8.0, 60.0, 0.0, 0.0, 8.0, 0.0, 0.3, 120.0)
 
 @pytest.fixture(scope="module")
 def turning():
-    return simulate([Case("usv", TURN, WINDY, heading_deg=30.0, duration_s=30.0, sensors="perfect")])[0]
+    return simulate([SeaCase("usv", TURN, WINDY, heading_deg=30.0, duration_s=30.0, sensors="perfect")])[0]
 
 
 @pytest.fixture(scope="module")
 def measured():
-    return simulate([Case("usv", TURN, WINDY, heading_deg=30.0, duration_s=30.0)])[0]
+    return simulate([SeaCase("usv", TURN, WINDY, heading_deg=30.0, duration_s=30.0)])[0]
 
 
 def test_the_columns_are_those_of_the_contract(measured):
@@ -41,7 +41,7 @@ def test_a_positive_rudder_turns_her_to_starboard_and_heels_her_out(turning):
     assert turning.columns["rudder_angle_deg"][50] == pytest.approx(15, abs=0.3)
     assert turning.columns["yaw_rate_degps"][-1] > 5
     assert turning.truth["v"][-1] < 0
-    calm = simulate([Case("usv", TURN, Weather(), heading_deg=0, duration_s=30.0, sensors="perfect")])[0]
+    calm = simulate([SeaCase("usv", TURN, Weather(), heading_deg=0, duration_s=30.0, sensors="perfect")])[0]
     assert calm.columns["roll_deg"][-1] < -0.3
 
 
@@ -70,7 +70,7 @@ def test_apparent_wind_is_true_wind_and_her_own(turning):
 def test_wind_on_the_starboard_beam_pushes_to_port_and_head_wind_slows(hull):
     weathers = [Weather(10.0, deg, 0.0) for deg in (90.0, 0.0, 180.0)]
     beam, head, astern = simulate(
-        [Case(hull, "straight", w, heading_deg=0, duration_s=1.0) for w in weathers]
+        [SeaCase(hull, "straight", w, heading_deg=0, duration_s=1.0) for w in weathers]
     )
     assert beam.truth["forces"]["wind"]["Y_N"][0] < 0 and beam.truth["v"][-1] < 0
     assert head.truth["forces"]["wind"]["X_N"][0] < 0 < astern.truth["forces"]["wind"]["X_N"][0]
@@ -80,7 +80,7 @@ def test_wind_on_the_starboard_beam_pushes_to_port_and_head_wind_slows(hull):
 
 def test_waves_from_starboard_drift_her_to_port():
     sea = Weather(wave_height_m=3.0, wave_period_s=8.0, wave_from_deg=90.0)
-    voyage = simulate([Case("container", "straight", sea, heading_deg=0, duration_s=120.0)], tick_s=0.4)[0]
+    voyage = simulate([SeaCase("container", "straight", sea, heading_deg=0, duration_s=120.0)], tick_s=0.4)[0]
     assert voyage.truth["forces"]["waves"]["Y_N"].mean() < 0
     assert np.ptp(voyage.truth["heave"]) > 0.3 and np.ptp(voyage.truth["pitch"]) > 0
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import bench.reference
-from bench.reference import HULLS, Case, Change, Sea, Weather, simulate
+from bench.reference import HULLS, Change, Sea, SeaCase, Weather, simulate
 from bench.reference.sensor_suite import COLUMNS
 from bench.reference.trial_legs import MANOEUVRES, RUDDER, ZIGZAG, Leg
 
@@ -28,14 +28,14 @@ def test_the_witness_imports_nothing_but_numpy_and_the_standard_library():
 
 def rough(seed, **more):
     hidden = (("Current", 1.0), ("SteeringLag", 0.5), ("SensorDelay", 1.0))
-    return Case("usv", "mixed", "TS-02", hidden, seed=seed, duration_s=20.0, **more)
+    return SeaCase("usv", "mixed", "TS-02", hidden, seed=seed, duration_s=20.0, **more)
 
 
 def test_a_ship_sails_the_same_voyage_alone_and_in_company():
     alone = simulate([rough(3)])[0]
     others = [
         rough(1),
-        Case("usv", "turning_circle", hidden=(("Wind", 1.0), ("Loading", 1.0)), duration_s=20.0),
+        SeaCase("usv", "turning_circle", hidden=(("Wind", 1.0), ("Loading", 1.0)), duration_s=20.0),
         rough(3),
     ]
     company = simulate(others)[2]
@@ -59,7 +59,7 @@ def test_a_stepped_sea_reads_what_a_recording_holds():
 
 
 def test_a_live_sea_sails_at_fifty_hertz_without_an_end():
-    sea = Sea(Case("kvlcc2", "mixed", duration_s=None), tick_s=0.02)
+    sea = Sea(SeaCase("kvlcc2", "mixed", duration_s=None), tick_s=0.02)
     for _ in range(30):
         sea.advance(0.02)
     assert sea.readings()["time_s"] == pytest.approx(0.6)
@@ -70,7 +70,7 @@ def test_a_live_sea_sails_at_fifty_hertz_without_an_end():
 def test_a_mirrored_manoeuvre_of_a_symmetric_hull_is_mirrored(hull):
     time = 7 * HULLS[hull].L / HULLS[hull].U0
     pair = [
-        Case(hull, (Leg(ZIGZAG, 99, a, 10),), STILL, heading_deg=0, duration_s=time, sensors="perfect")
+        SeaCase(hull, (Leg(ZIGZAG, 99, a, 10),), STILL, heading_deg=0, duration_s=time, sensors="perfect")
         for a in (10, -10)
     ]
     port, starboard = (v.truth for v in simulate(pair, tick_s=0.25 if hull == "container" else 0.1))
@@ -86,7 +86,7 @@ def test_a_model_at_froude_scale_sails_the_same_voyage_in_lengths():
     )
     ends = []
     for hull, tick in ((big, 0.5), (small, 0.5 * (7 / 320) ** 0.5)):
-        case = Case(
+        case = SeaCase(
             hull, (Leg(RUDDER, 99, 20),), STILL, heading_deg=0, duration_s=150 * tick / 0.5, sensors="perfect"
         )
         true = simulate([case], tick_s=tick)[0].truth
@@ -98,7 +98,9 @@ def test_a_model_at_froude_scale_sails_the_same_voyage_in_lengths():
 def test_every_manoeuvre_is_sailed_by_every_hull(hull):
     time = (18 if hull == "usv" else 9) * HULLS[hull].L / HULLS[hull].U0
     tick = 0.5 if HULLS[hull].L > 100 else 0.1
-    for voyage in simulate([Case(hull, name, seed=4, duration_s=time) for name in MANOEUVRES], tick_s=tick):
+    for voyage in simulate(
+        [SeaCase(hull, name, seed=4, duration_s=time) for name in MANOEUVRES], tick_s=tick
+    ):
         true = voyage.truth
         assert all(np.isfinite(true[name]).all() for name in true if name not in ("forces", "depth", "bank"))
         assert np.abs(true["u"]).max() < 1.2 * HULLS[hull].U0 and np.degrees(np.abs(true["phi"])).max() < 15
@@ -110,7 +112,7 @@ def test_every_manoeuvre_is_sailed_by_every_hull(hull):
 def test_a_crash_stop_stops_her_within_fifteen_lengths():
     """The limit of IMO MSC.137(76)."""
     hull = HULLS["container"]
-    case = Case("container", "crash_stop", STILL, heading_deg=0, duration_s=17 * hull.L / hull.U0)
+    case = SeaCase("container", "crash_stop", STILL, heading_deg=0, duration_s=17 * hull.L / hull.U0)
     true = simulate([case], tick_s=0.5)[0].truth
     stopped = np.argmax(true["u"] < 0.03 * hull.U0)
     assert stopped and 3 < true["north"][stopped] / hull.L - 4 < 15
@@ -119,11 +121,11 @@ def test_a_crash_stop_stops_her_within_fifteen_lengths():
 @pytest.mark.parametrize(
     ("case", "word"),
     [
-        (Case("kvlcc3"), "kvlcc2"),
-        (Case(manoeuvre="zig"), "zigzag_10"),
-        (Case(weather="storm"), "calm"),
-        (Case(hidden=(("Winds", 1.0),)), "Wind"),
-        (Case(decoys=("fog",)), "wind_no_force"),
+        (SeaCase("kvlcc3"), "kvlcc2"),
+        (SeaCase(manoeuvre="zig"), "zigzag_10"),
+        (SeaCase(weather="storm"), "calm"),
+        (SeaCase(hidden=(("Winds", 1.0),)), "Wind"),
+        (SeaCase(decoys=("fog",)), "wind_no_force"),
     ],
 )
 def test_a_wrong_name_is_answered_with_the_right_ones(case, word):
@@ -144,7 +146,7 @@ CHANGES = {
 @pytest.fixture(scope="module")
 def changed():
     """A zigzag as it is, and with each change in its middle."""
-    plain = Case("kvlcc2", "zigzag_20", "TS-02", seed=7, duration_s=120.0)
+    plain = SeaCase("kvlcc2", "zigzag_20", "TS-02", seed=7, duration_s=120.0)
     cases = [plain, *(replace(plain, change=Change(CHANGED_AT_S, **c)) for c in CHANGES.values())]
     return dict(zip(("as it is", *CHANGES), simulate(cases, TICK_S), strict=True))
 
@@ -181,8 +183,8 @@ def test_a_step_of_wind_leaves_waves_and_current_as_they_were(changed):
 def test_who_changes_at_once_sails_like_who_was_so_from_the_beginning():
     heavy = CHANGES["heavier"]["hull"]
     cases = [
-        Case(heavy, seed=7, duration_s=30.0),
-        Case("kvlcc2", seed=7, duration_s=30.0, change=Change(0.0, heavy)),
+        SeaCase(heavy, seed=7, duration_s=30.0),
+        SeaCase("kvlcc2", seed=7, duration_s=30.0, change=Change(0.0, heavy)),
     ]
     first, second = simulate(cases)
     assert first.truth["u"].tobytes() == second.truth["u"].tobytes()
@@ -190,4 +192,4 @@ def test_who_changes_at_once_sails_like_who_was_so_from_the_beginning():
 
 def test_a_ship_cannot_change_her_length():
     with pytest.raises(ValueError, match="of its length"):
-        simulate([Case("kvlcc2", duration_s=5.0, change=Change(1.0, "container"))])
+        simulate([SeaCase("kvlcc2", duration_s=5.0, change=Change(1.0, "container"))])

@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from bench.tick import terminal_table as tick_table
-from bench.tick.budget import judged
+from bench.tick.budget import against_budgets
 
 SHORT = ["--steps", "120", "--paced", "30", "--no-peers", "--no-instructions"]
 
@@ -92,7 +92,7 @@ def judge(target="here", **numbers):
 
     args = Namespace(steps=1000, rate=50.0, target=target, budget_ms=12.0, budget_mb=48.0)
     peers = {"hybrid": {"mean_us": 10.0}, "peers": {"ekf": {"median_us": 20.0}}, "look_ahead": {}}
-    return judged(args, measured(**numbers), None, peers, {}, "bundled")
+    return against_budgets(args, measured(**numbers), None, peers, {}, "bundled")
 
 
 def test_within_both_budgets_is_good():

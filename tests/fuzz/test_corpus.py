@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from bench.fuzz.aboard import LoopTarget, Sailing, Watched
+from bench.fuzz.aboard import FuzzedVoyage, LoopTarget, Watched
 from bench.fuzz.run import read
 from bench.fuzz.targets import TARGETS
 
@@ -39,18 +39,18 @@ def test_the_corpus_sails_through_pauses_set_clocks_and_silence_with_a_promise_i
     """Expected: taken together the loop's inputs come to every kind of decision, and the promise is given,
     taken back and given again: otherwise nothing would be tried."""
     target, fates = made("loop"), []
-    look = Sailing._look
+    look = FuzzedVoyage._look
 
     def noted(sailing, tick):
         fates.append((tick.certificate.inside, tick.mode))
         look(sailing, tick)
 
-    Sailing._look = noted
+    FuzzedVoyage._look = noted
     try:
         for path in sorted((CORPUS / "loop").glob("*"))[:AT_MOST]:
             target.one(path.read_bytes())
     finally:
-        Sailing._look = look
+        FuzzedVoyage._look = look
     assert {inside for inside, _ in fates} == {True, False}
     assert {"hybrid", "dead reckoning"} <= {mode for _, mode in fates}
 

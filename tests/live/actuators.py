@@ -16,7 +16,7 @@ from twin.live.publish import Publisher
 from twin.live.signals.channels import BY_NAME
 from twin.live.signals.config import Settings
 from twin.live.signals.readings import Reading
-from twin.physics.actuators.helm import told
+from twin.physics.actuators.helm import actuator_orders
 from twin.physics.model import Model
 from twin.physics.ship import Ship, from_table, load, to_table
 from twin.physics.state import Situation
@@ -74,7 +74,7 @@ class Afloat:
         self.channels = controls_of(self.ship)
 
     def orders(self) -> dict[str, float]:
-        return told(self.ship, radians(9.0) * sin(2.0 * pi * self.t / 40.0), 0.75)
+        return actuator_orders(self.ship, radians(9.0) * sin(2.0 * pi * self.t / 40.0), 0.75)
 
     def advance(self):
         self.state = self.model.step(self.state, Situation(told=self.orders()), STEP_S)

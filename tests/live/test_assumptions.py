@@ -166,7 +166,7 @@ def test_A4_what_the_instruments_contradict_each_other_in_takes_the_promise_back
     assert any("certificate: yaw_rate_degps against" in text for text in named[-1].reasons)
 
 
-def test_healthy_instruments_are_not_accused_by_the_positions_or_headings(make_service):
+def test_healthy_instruments_are_not_suspected_by_the_positions_or_headings(make_service):
     """Test: ten minutes of zigzag with a usual receiver's noise. Expected: a promise in every tick after the
     first minute."""
     bridge = make_service()

@@ -4,7 +4,7 @@ from collections import Counter
 
 import pytest
 
-from bench.instrument_lies import RATE_HZ, WEATHERS, Watch, voyage_rows
+from bench.instrument_lies import RATE_HZ, WEATHERS, LieWatch, voyage_rows
 from twin.physics.ship import load
 
 
@@ -12,7 +12,7 @@ from twin.physics.ship import load
 def test_R13_a_small_boat_in_waves_turns_as_its_gyro_says(manoeuvre):
     """Test: five minutes of a 2 m boat in waves. Expected: in no tick is heading held against the rate of
     turn, nor are there more texts than one can read."""
-    watch, words = Watch(load("usv")), Counter()
+    watch, words = LieWatch(load("usv")), Counter()
     for row in voyage_rows("usv", WEATHERS["waves"][2], manoeuvre, 300.0):
         words.update(watch.hear(row))
     assert watch.now_s > 750.0 and RATE_HZ == 10.0

@@ -115,5 +115,5 @@ def test_pages_are_drawn_four_times_a_second_and_lines_every_five():
         show = terminal.View(stream, "t", 10.0, "logs", pages).show
         for i in range(100):
             show(tick(i * 0.1))
-        drawn = stream.getvalue().count(terminal.CLEAR) if pages else stream.getvalue().count("\n")
+        drawn = stream.getvalue().count(terminal.CLEAR_SCREEN) if pages else stream.getvalue().count("\n")
         assert drawn == pytest.approx(expected, abs=7 if pages else 0)

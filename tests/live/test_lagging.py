@@ -21,6 +21,6 @@ def test_periods_that_the_start_itself_took_are_no_lag():
 
 def test_health_says_the_share_of_skipped_periods_and_what_was_not_logged():
     tick = messages.Tick(index=932, overruns=66, mode="physics only", rate_hz=10.0, log_dropped=5)
-    code, said = health_check.judged(tick)
+    code, said = health_check.health(tick)
     assert code == 0 and "66 periods skipped (6.6 %)" in said and "5 messages not logged" in said
-    assert "0 periods skipped," in health_check.judged(messages.Tick(mode="hybrid"))[1]
+    assert "0 periods skipped," in health_check.health(messages.Tick(mode="hybrid"))[1]

@@ -10,7 +10,7 @@ import pytest
 
 from bench.endurance.lies import LIE_AT_S, OTHERS, SECONDS, STEP_S, heard
 from bench.instrument_lies import rows_of
-from bench.lies_told import LIES
+from bench.lie_kinds import LIES
 from bench.reference import Case, simulate
 from bench.sea_disturbance import sailed
 from twin.live.build import loop_of

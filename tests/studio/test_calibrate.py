@@ -13,7 +13,7 @@ import pytest
 
 import twin
 from bench.bundled import recorded
-from bench.reference import Case, simulate
+from bench.reference import SeaCase, simulate
 from tests.studio.by_mouse import OVER, answer, ended, go, opened, press, shown, typed
 from twin.errors import SettingsError
 from twin.recording.write import write_voyage
@@ -31,7 +31,7 @@ def project(tmp_path_factory):
     folder = tmp_path_factory.mktemp("calibrate") / "voyages"
     folder.mkdir()
     shutil.copyfile(Path(twin.__file__).parent / "ships" / "kvlcc2.toml", folder / "kvlcc2.toml")
-    sailed = simulate([Case("kvlcc2", m, seed=960 + i, duration_s=600.0) for i, m in enumerate(TAGS)])
+    sailed = simulate([SeaCase("kvlcc2", m, seed=960 + i, duration_s=600.0) for i, m in enumerate(TAGS)])
     project = Project(folder)
     for (name, tag), r in zip(TAGS.items(), sailed, strict=True):
         write_voyage(recorded(name, r.columns, every=10), folder / f"{name}.mcap")

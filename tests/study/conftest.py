@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bench.bundled import recorded
-from bench.reference import Case, simulate
+from bench.reference import SeaCase, simulate
 from twin.cli import main
 from twin.commands.story import SHIP
 from twin.physics.model import Model
@@ -43,13 +43,13 @@ def voyages():
     """One 20 min voyage for each name in HIDDEN, a straight one, and three to calibrate on; every second
     a sample."""
     cases = {
-        name: Case("kvlcc2", "mixed", hidden=h, seed=900 + i, duration_s=1200.0)
+        name: SeaCase("kvlcc2", "mixed", hidden=h, seed=900 + i, duration_s=1200.0)
         for i, (name, h) in enumerate(HIDDEN.items())
     }
-    cases["straight"] = Case("kvlcc2", "straight", seed=950, duration_s=1200.0)
-    cases["calm"] = Case("kvlcc2", "zigzag_20", seed=960, duration_s=1200.0)
-    cases["calm too"] = Case("kvlcc2", "speed_changes", seed=961, duration_s=1200.0)
-    cases["calm again"] = Case("kvlcc2", "mixed", seed=962, duration_s=1200.0)
+    cases["straight"] = SeaCase("kvlcc2", "straight", seed=950, duration_s=1200.0)
+    cases["calm"] = SeaCase("kvlcc2", "zigzag_20", seed=960, duration_s=1200.0)
+    cases["calm too"] = SeaCase("kvlcc2", "speed_changes", seed=961, duration_s=1200.0)
+    cases["calm again"] = SeaCase("kvlcc2", "mixed", seed=962, duration_s=1200.0)
     sailed = simulate(list(cases.values()))
     return {name: recorded(name, r.columns, every=10) for name, r in zip(cases, sailed, strict=True)}
 

@@ -10,7 +10,7 @@ from twin.num import as_given, num
 from twin.physics.ship import Ship
 from twin.recording.checks import of_voyages
 from twin.recording.voyage import Voyage
-from twin.study.calibration.calibration_lines import told
+from twin.study.calibration.calibration_lines import terminal_lines
 from twin.study.calibration.core_fit import calibrate as fit_core
 from twin.study.calibration.doubts import doubts
 from twin.study.calibration.held_out import LAST, split
@@ -52,7 +52,7 @@ class Calibration(Result):
 
     def text(self) -> list[str]:
         """The lines of `twin calibrate`."""
-        return told(self.to_dict())
+        return terminal_lines(self.to_dict())
 
     def _rows(self) -> Any:
         return self.data["derivatives"]
@@ -72,7 +72,13 @@ class Calibration(Result):
 
         rows = [r | {"at": f"after {num(r['horizon_s'])} s"} for r in self.data["held_out"]]
         both = {"before_m": "before", "position_m": "now"}
-        shown = {"name": "derivative", "before": "before", "value": "now", "sd": "+- (sd)", "excited": "told"}
+        shown = {
+            "name": "derivative",
+            "before": "before",
+            "value": "now",
+            "sd": "+- (sd)",
+            "excited": "excited",
+        }
         regimes = {"regime": "while", "horizon_s": "horizon [s]", "position_m": "error [m]"}
         return result_page(
             f"{self.ship.name}: calibration",

@@ -13,7 +13,7 @@ from twin.recording.voyage import Voyage
 from twin.study.prediction.open_loop_comparison import ComparedVoyages
 from twin.study.prediction.open_loop_comparison import compare as judged
 from twin.study.prediction.openloop import HORIZONS_S
-from twin.study.prediction.tell import told
+from twin.study.prediction.tell import terminal_lines
 from twin.study.reference.sailed import Sailed, sailed
 
 if TYPE_CHECKING:
@@ -46,7 +46,7 @@ class Comparison(Result):
 
     def text(self) -> list[str]:
         """The lines of `twin compare`."""
-        return told(self.to_dict())
+        return terminal_lines(self.to_dict())
 
     def _rows(self) -> Any:
         return self.data["horizons"]

@@ -13,7 +13,7 @@ from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.case import Case
 from twin.study.diagnosis.effect_diagnosis import diagnose as judged
-from twin.study.diagnosis.tell_diagnosis import told
+from twin.study.diagnosis.tell_diagnosis import terminal_lines
 from twin.study.estimation import identifiability
 from twin.study.estimation.residual_arrays import features
 
@@ -57,7 +57,7 @@ class Diagnosis(Result):
 
     def text(self) -> list[str]:
         """The lines of `twin diagnose`."""
-        lines = told(self.to_dict()) + losses(self.data["data_checks"])
+        lines = terminal_lines(self.to_dict()) + losses(self.data["data_checks"])
         if "identifiability" in self.data:
             lines += ["", *identifiability.text(self.data["identifiability"])]
         return lines

@@ -6,7 +6,7 @@ from typing import Any
 from twin.api.result import PathLike, Progress, Result, quietly
 from twin.errors import DataError
 from twin.recording.jsonable import plain
-from twin.study.fleet.fleet_lines import months, told
+from twin.study.fleet.fleet_lines import months, terminal_lines
 from twin.study.fleet.fleet_run import run
 from twin.study.fleet.listing import read_fleet
 from twin.study.fleet.ranking import ranked
@@ -36,7 +36,7 @@ class Fleet(Result):
 
     def text(self) -> list[str]:
         """The lines of `twin fleet`."""
-        return told(self.data)
+        return terminal_lines(self.data)
 
     def _rows(self) -> Any:
         keys = ("rank", "ship", "file", "state", "verdict", "sentence", "over_months")

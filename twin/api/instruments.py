@@ -12,7 +12,7 @@ from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.instruments.corrections import as_map, corrected
 from twin.study.instruments.instrument_estimate import Instruments, estimate
-from twin.study.instruments.instrument_lines import amount, as_json, told
+from twin.study.instruments.instrument_lines import amount, as_json, terminal_lines
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -55,7 +55,7 @@ class InstrumentCheck(Result):
 
     def text(self) -> list[str]:
         """The lines of `twin instruments`."""
-        return told(self.found)
+        return terminal_lines(self.found)
 
     def _rows(self) -> Any:
         return self.data["numbers"]

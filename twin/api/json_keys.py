@@ -143,7 +143,7 @@ NUMBER = (
     JsonKey("high95", "of the number", "upper end"),
     JsonKey("at_box_end", "", "whether the end of its box stopped the number", PROOF),
 )
-JUDGED = (
+MEASURE_KEYS = (
     JsonKey("measure", "", "what was judged"),
     JsonKey("unit", "", "its unit"),
     JsonKey("before", "of the measure", "its mean on held-out voyages without the effects"),
@@ -160,7 +160,7 @@ ADD = (
     *under("parameters.*.*", NUMBER, "by effect and number: "),
     JsonKey("beside.*", "", "numbers of the voyage that stood beside the effect in the fit", PROOF),
     JsonKey("proof.*", "", "log likelihood ratio of the held-out measurements, with interval", PROOF),
-    *under("judged_by", JUDGED),
+    *under("judged_by", MEASURE_KEYS),
     JsonKey("horizons[].horizon_s", "s", "how far ahead"),
     JsonKey("horizons[].windows", "-", "how many predictions"),
     *under("horizons[].before", ERRORS, "without the effects: "),

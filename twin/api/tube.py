@@ -21,7 +21,7 @@ from twin.study.reference.foretold import errors_of
 from twin.study.reference.sailed import samples_hash
 from twin.study.reference.tube_calibration import section
 from twin.study.reference.tube_doubts import doubts
-from twin.study.reference.tube_told import rows, told
+from twin.study.reference.tube_lines import rows, terminal_lines
 
 if TYPE_CHECKING:
     import matplotlib.axes
@@ -73,7 +73,7 @@ class TubeCalibration(Result):
 
     def text(self) -> list[str]:
         """The lines of `twin tube`."""
-        return told(self.data)
+        return terminal_lines(self.data)
 
     def plot(self) -> "matplotlib.axes.Axes":
         """Within how many metres a prediction comes true, in the mean [m], over the horizon [s]."""

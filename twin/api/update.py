@@ -14,7 +14,7 @@ from twin.physics.ship import Ship
 from twin.recording.checks import losses
 from twin.recording.voyage import Voyage
 from twin.study.reference.sailed import Sailed, sailed
-from twin.study.update.added import refused, told
+from twin.study.update.added import refused, terminal_lines
 from twin.study.update.addition import Added
 from twin.study.update.addition import add as fitted
 from twin.study.update.removal import remove as taken_out
@@ -67,7 +67,7 @@ class Update(Result):
 
     def text(self) -> list[str]:
         """The lines of `twin add`."""
-        return [*told(self.to_dict()), *losses(self.data["data_checks"])]
+        return [*terminal_lines(self.to_dict()), *losses(self.data["data_checks"])]
 
     def _rows(self) -> Any:
         return [

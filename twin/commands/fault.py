@@ -10,9 +10,9 @@ from twin.cli import guarded
 from twin.commands import arguments
 from twin.errors import UsageError
 from twin.live import ending
-from twin.live.injection.faulty import asked
+from twin.live.injection.faulty import fault_of_words
 from twin.live.injection.in_log import in_a_log
-from twin.live.injection.inject import KINDS, check_times, kinds_told
+from twin.live.injection.inject import KINDS, check_times, kinds_in_words
 from twin.live.injection.of_process import OF_A_PROCESS, of_a_process
 from twin.num import as_given
 
@@ -21,7 +21,7 @@ WHAT = "a channel (rudder, heading, position, shaft, ... or its full name), bus,
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.description = f"{parser.description}\n\n{kinds_told()}"
+    parser.description = f"{parser.description}\n\n{kinds_in_words()}"
     add = parser.add_argument
     add("what", metavar="WHAT", help=WHAT)
     add("kind", nargs="?", metavar="KIND", help=f"for a channel: {', '.join(KINDS)}")
@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
         of_a_process(args.what, args.pid, args.start, args.seconds)
         print(f"process {args.pid}: {OF_A_PROCESS[args.what]} for {as_given(args.seconds)} s")
         return 0
-    fault = asked(args.what, args.kind, args.by, args.start, args.seconds, args.seed)
+    fault = fault_of_words(args.what, args.kind, args.by, args.start, args.seconds, args.seed)
     if args.log and args.output:
         changed, problems = in_a_log(args.log, args.output, args.what, fault)
         said = [f"{args.output}: {changed} messages with {args.what} {fault.kind}", *problems]

@@ -7,7 +7,7 @@ from twin.commands import arguments
 from twin.commands.verb_output import lines_to
 from twin.physics.ship import load
 from twin.recording.jsonable import plain
-from twin.study.update.ladder import SCHEMA_VERSION, ladder, told
+from twin.study.update.ladder import SCHEMA_VERSION, ladder, terminal_lines
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,6 +31,6 @@ def run(args: argparse.Namespace) -> int:
             args.json,
         )
     page = lines_to(args)
-    print("\n".join(told(ship)), file=page)
+    print("\n".join(terminal_lines(ship)), file=page)
     print(f"next: twin compare VOYAGE.mcap --ship {args.ship}", file=page)
     return 0

@@ -8,7 +8,7 @@ from twin import whole
 from twin.api.instruments import FRAMES, InstrumentCheck, instruments
 from twin.commands import arguments
 from twin.commands.next_command import after_instruments
-from twin.commands.verb_output import asked, lines_to, progress
+from twin.commands.verb_output import lines_to, progress, with_request
 from twin.errors import SettingsError
 from twin.physics.ship import Ship, load
 from twin.recording.map_file import read_map
@@ -45,7 +45,9 @@ def run(args: argparse.Namespace) -> int:
         print(f"\nwrote {args.output}", file=page)
     if args.json:
         command = f"twin instruments {' '.join(args.voyages)}{f' --ship {args.ship}' if ship else ''}"
-        whole.write_json(asked(done, command, ship=args.ship, voyages=args.voyages).to_dict(), args.json)
+        whole.write_json(
+            with_request(done, command, ship=args.ship, voyages=args.voyages).to_dict(), args.json
+        )
     print(f"\nnext: {after_instruments(args.voyages, args.ship, args.output)}", file=page)
     return 0
 

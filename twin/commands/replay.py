@@ -8,7 +8,7 @@ from twin.cli import guarded
 from twin.commands import arguments
 from twin.errors import UsageError
 from twin.live import ending
-from twin.live.log_replay import Summary, replay, told
+from twin.live.log_replay import Summary, replay, summary_lines
 from twin.live.signals import config
 from twin.live.signals.config import Settings
 
@@ -56,5 +56,5 @@ def _answer(summary: Summary, args: argparse.Namespace, settings: Settings) -> i
         whole.write_json(summary.as_json(), args.json)
     if args.json != "-":
         compare = f"twin compare {args.output or args.log} --ship {settings['ship.file']}"
-        print("\n".join([*told(summary), f"next: {compare}"]))
+        print("\n".join([*summary_lines(summary), f"next: {compare}"]))
     return 0

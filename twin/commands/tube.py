@@ -8,7 +8,7 @@ from twin.api.voyages import read_voyage
 from twin.commands import arguments
 from twin.commands.verb_output import lines_to, progress
 from twin.physics.ship import load, save
-from twin.study.reference.tube_told import told
+from twin.study.reference.tube_lines import terminal_lines
 
 EPILOG = """Voyages on which nothing was wrong and which the model was not calibrated to, in the seas and
 loadings it will meet. Each goes through the loop as it runs on board. How far the predictions for 10, 60 and
@@ -41,6 +41,6 @@ def run(args: argparse.Namespace) -> int:
     if args.json:
         whole.write_json(result, args.json)
     page = lines_to(args)
-    print("\n".join(told(result)), file=page)
+    print("\n".join(terminal_lines(result)), file=page)
     print(f"\nwrote {args.output}\nnext: twin replay VOYAGE.mcap --ship {args.output}", file=page)
     return 0

@@ -18,7 +18,7 @@ def lines_to(args: argparse.Namespace) -> TextIO:
     return sys.stderr if args.json == "-" else sys.stdout
 
 
-def asked(found: Result, command: str, **files: Any) -> Result:
+def with_request(found: Result, command: str, **files: Any) -> Result:
     """The result with what was typed and of which files it is."""
     return found.with_keys(command=command, files=files)
 

@@ -13,7 +13,7 @@ from math import ceil, degrees, hypot
 from typing import NamedTuple
 
 from twin.live.loop import Loop
-from twin.live.observer.controls import newly_told
+from twin.live.observer.controls import with_measured_controls
 from twin.live.observer.dynamics import INPUTS, KnownDynamics
 from twin.live.observer.predict import STEP, LearnedAt, Middle, carry
 from twin.live.observer.steering import Steering
@@ -99,7 +99,7 @@ class Foresight:
             for name in INPUTS:
                 if name in si:
                     setattr(s, name, si[name])
-            newly_told(s, si)
+            with_measured_controls(s, si)
             if steering:
                 steering.take(si)
             if t_next - t > 5.0:

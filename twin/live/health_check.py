@@ -24,7 +24,7 @@ def ask(args: argparse.Namespace) -> int:
     if not 0.0 < args.timeout <= 3600.0:
         raise UsageError(f"--timeout {as_given(args.timeout)}: more than 0 and at most 3600 s.")
     tick = hear(config.load(args.config), args.timeout)
-    code, said = judged(tick)
+    code, said = health(tick)
     _tell(said, tick, code, args.json)
     return code
 
@@ -54,7 +54,7 @@ def hear(settings: Settings, timeout_s: float) -> Any:
     return None
 
 
-def judged(tick: Any) -> tuple[int, str]:
+def health(tick: Any) -> tuple[int, str]:
     """(exit code, one line): 0 when the twin runs on measurements, 1 when it does not or is not heard."""
     if tick is None:
         return 1, "not heard: is it running, and does it use these settings? See: systemctl status shiptwin"

@@ -134,7 +134,7 @@ def _without_numbers(reason: str) -> str:
     return reason.partition(", for ")[0].partition(" = ")[0]
 
 
-def told(s: Summary) -> list[str]:
+def summary_lines(s: Summary) -> list[str]:
     """The summary for people."""
     lines = [
         f"{s.log}: {s.kind}, {s.duration_s:.0f} s, {s.ticks} ticks with {s.ship}; {s.rejected} samples "

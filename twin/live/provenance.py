@@ -24,7 +24,7 @@ def provenance(settings: Settings, ship: Ship) -> dict[str, str]:
         "ship_file": str(settings["ship.file"]),
         "length_m": f"{ship.L_pp:.9g}",
         "beam_m": f"{ship.B:.9g}",
-        "settings": json.dumps(_told(settings)),
+        "settings": json.dumps(_recorded(settings)),
     }
 
 
@@ -34,7 +34,7 @@ def identity(ship: Ship, origin: str = LIVE) -> str:
     return json.dumps(said | {"length_m": ship.L_pp, "beam_m": ship.B, "origin": origin})
 
 
-def _told(settings: Settings) -> dict[str, Any]:
+def _recorded(settings: Settings) -> dict[str, Any]:
     """Every setting by its key, the addresses without what stands behind them."""
     values = {key.name: settings[key.name] for key in KEYS}
     for name in PLACES:

@@ -8,7 +8,7 @@ from twin.physics.maths import total
 
 WIDTH = 78
 PAGE_S, LINE_S = 0.25, 5.0  # between two pages, between two lines
-CLEAR, BOLD, DIM, PLAIN = "\x1b[H\x1b[J", "\x1b[1m", "\x1b[2m", "\x1b[0m"
+CLEAR_SCREEN, BOLD, DIM, PLAIN = "\x1b[H\x1b[J", "\x1b[1m", "\x1b[2m", "\x1b[0m"
 STATES = (  # name on the page, field of Row and State, unit, decimals
     ("heading", "heading_true_north_deg", "deg", 1),
     ("turning", "yaw_rate_degps", "deg/s", 2),
@@ -41,7 +41,7 @@ class View:
         seconds = tick.time_s - self._start_s
         if self.pages:
             self.stream.write(
-                CLEAR + page(tick, self.title, seconds, self.total_s, self.log, self.ahead) + "\n"
+                CLEAR_SCREEN + page(tick, self.title, seconds, self.total_s, self.log, self.ahead) + "\n"
             )
         else:
             self.stream.write(line(tick, seconds) + "\n")

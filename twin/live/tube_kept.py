@@ -3,7 +3,7 @@ promise, against what the instruments measured when it came due."""
 
 from twin.live.guard import INVALID
 from twin.live.loop import Loop
-from twin.live.prediction.coverage import Coverage, JudgedRegion, coverage, entry
+from twin.live.prediction.coverage import Coverage, RegionError, coverage, entry
 from twin.live.prediction.due_predictions import Watch
 
 
@@ -15,7 +15,7 @@ class TubeKept:
         table = loop.tube.table
         horizons = [*table.horizons] if table else []
         self._watch = Watch(loop.ship, horizons)
-        self._entries: dict[float, list[JudgedRegion]] = {h: [] for h in horizons}
+        self._entries: dict[float, list[RegionError]] = {h: [] for h in horizons}
 
     def look(self, now_s: float) -> None:
         """Judge what came due."""

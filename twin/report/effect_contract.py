@@ -110,7 +110,7 @@ def check(effect: type[Effect], ship: Ship | None = None) -> list[Answer]:
         return [Answer("declared in full", False, str(why))]
     return [
         Answer("declared in full", True, ""),
-        *(_asked(words, question, effect, ship) for words, question in QUESTIONS.items()),
+        *(_answer_to(words, question, effect, ship) for words, question in QUESTIONS.items()),
     ]
 
 
@@ -119,7 +119,7 @@ def answers_as_json(effect: type[Effect], answers: Sequence[Answer]) -> dict[str
     return {"schema_version": 1, "effect": effect.__name__, "answers": [a._asdict() for a in answers]}
 
 
-def _asked(
+def _answer_to(
     words: str, question: Callable[[type[Effect], Ship], str | None], effect: type[Effect], ship: Ship
 ) -> Answer:
     try:

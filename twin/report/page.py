@@ -11,12 +11,12 @@ from twin.physics.model import Model
 from twin.recording.voyage import Voyage
 from twin.report.series import shown
 from twin.report.words import sentence, title
-from twin.study.estimation.start import told_of_waves, waves_on
+from twin.study.estimation.start import waves_in_words, waves_on
 from twin.study.prediction import locate, score
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.prediction.unexplained import energy
 from twin.study.reference.sailed import switched_off
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
 
 SCRIPTS = ("number.js", "dom.js", "plot.js", "keys.js", "track.js", "sections.js", "diagnosis.js", "main.js")
@@ -54,7 +54,7 @@ def content(
     from twin.recording.jsonable import plain
     from twin.study.update.adding import ahead
 
-    structural = floor_of(model.ship) is not None
+    structural = noise_model_of(model.ship) is not None
     asked = [h["horizon_s"] for h in result.get("horizons", [])] or list(HORIZONS_S)
     windows = ahead(tracks, model, asked)
     result = _whole(dict(result), tracks, model, windows, asked, structural)
@@ -95,7 +95,7 @@ def _whole(
     if "unexplained_force" not in result:
         result["unexplained_force"] = energy(tracks, [model] * len(tracks)).unexplained()
     result.setdefault("switched_off", switched_off(model, tracks))
-    result["told_of_waves"] = told_of_waves(waves_on(tracks))
+    result["told_of_waves"] = waves_in_words(waves_on(tracks))
     return result
 
 

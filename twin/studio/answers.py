@@ -27,19 +27,19 @@ from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.reference.sailed import Sailed, read_all
 from twin.study.track.track import Track
 
-Asked = dict[str, Any]
+Request = dict[str, Any]
 Tell = Callable[[str], None]
 LONGEST_LINE = 200  # of a ship file's difference: a covariance stands on one line
 
 
-def look(asked: Asked, job: Path, tell: Tell) -> None:
+def look(asked: Request, job: Path, tell: Tell) -> None:
     tell(f"reading {asked['file']}")
     write_result(
         job, "result.json", plain(looked(Path(), asked["file"], asked.get("map"), asked.get("ship"), job))
     )
 
 
-def import_(asked: Asked, job: Path, tell: Tell) -> None:
+def import_(asked: Request, job: Path, tell: Tell) -> None:
     tell(f"reading {asked['file']}")
     not_there(asked["output"])
     found = import_voyage(asked["file"], asked.get("map"), asked.get("ship"))
@@ -52,7 +52,7 @@ def import_(asked: Asked, job: Path, tell: Tell) -> None:
     write_voyage(found.voyage, asked["output"])
 
 
-def compare(asked: Asked, job: Path, tell: Tell) -> None:
+def compare(asked: Request, job: Path, tell: Tell) -> None:
     ship, sailed = load(asked["ship"]), _read(asked["voyages"], asked["ship"], tell)
     tell("predicting")
     found = comparison.of_sailed(ship, sailed, HORIZONS_S)
@@ -64,7 +64,7 @@ def compare(asked: Asked, job: Path, tell: Tell) -> None:
     _view("compare", result, job, tell, found.model, sailed)
 
 
-def diagnose(asked: Asked, job: Path, tell: Tell) -> None:
+def diagnose(asked: Request, job: Path, tell: Tell) -> None:
     from twin.study.diagnosis.effect_diagnosis import diagnose as judged
 
     ship = load(asked["ship"])
@@ -89,7 +89,7 @@ def diagnose(asked: Asked, job: Path, tell: Tell) -> None:
     write_view(job, drawn, {"causes": causes, "forces": [force_view(t, model) for t in tracks]})
 
 
-def calibrate(asked: Asked, job: Path, tell: Tell) -> str | None:
+def calibrate(asked: Request, job: Path, tell: Tell) -> str | None:
     not_there(asked["output"])
     ship = load(asked["ship"])
     every = _read([*asked["voyages"], *asked.get("held_outs", [])], asked["ship"], tell)
@@ -105,7 +105,7 @@ def calibrate(asked: Asked, job: Path, tell: Tell) -> str | None:
     return None if done.accepted else f"{done.refused} {asked['output']} was not written."
 
 
-def add(asked: Asked, job: Path, tell: Tell) -> str | None:
+def add(asked: Request, job: Path, tell: Tell) -> str | None:
     from twin.study.update.added import refused
     from twin.study.update.addition import add as fitted
 
@@ -139,7 +139,7 @@ def add(asked: Asked, job: Path, tell: Tell) -> str | None:
     return None if accepted else f"{refused(made.proof, made.fall)} {asked['output']} was not written."
 
 
-DO: dict[str, Callable[[Asked, Path, Tell], str | None]] = {
+DO: dict[str, Callable[[Request, Path, Tell], str | None]] = {
     "look": look,
     "import": import_,
     "compare": compare,
@@ -154,7 +154,7 @@ def _read(paths: list[str], ship: str, tell: Tell) -> list[Sailed]:
     return read_all(paths, load(ship))
 
 
-def _view(kind: str, result: Asked, job: Path, tell: Tell, model: Model, sailed: list[Sailed]) -> None:
+def _view(kind: str, result: Request, job: Path, tell: Tell, model: Model, sailed: list[Sailed]) -> None:
     tell("drawing")
     tracks: list[Track] = [s.track for s in sailed]
     drawn = content(kind, result, tracks, model, voyages=[s.voyage for s in sailed])

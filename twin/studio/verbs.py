@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 
 from twin.errors import UsageError
 
-Asked = Mapping[str, Any]
+Request = Mapping[str, Any]
 
 
 class StudioVerb(NamedTuple):
@@ -14,33 +14,33 @@ class StudioVerb(NamedTuple):
 
     needs: tuple[str, ...]
     may: tuple[str, ...]
-    typed: Callable[[Asked], list[str]]
+    typed: Callable[[Request], list[str]]
 
 
-def _look(a: Asked) -> list[str]:
+def _look(a: Request) -> list[str]:
     mapped = ["--map", a["map"]] if a.get("map") else []
     ship = ["--ship", a["ship"]] if a.get("ship") else []
     return ["import", a["file"], *mapped, *ship, "-o", a.get("output") or "VOYAGE.mcap"]
 
 
-def _import(a: Asked) -> list[str]:
+def _import(a: Request) -> list[str]:
     return _look(a) + [word for check in a.get("accept", []) for word in ("--accept", check)]
 
 
-def _compare(a: Asked) -> list[str]:
+def _compare(a: Request) -> list[str]:
     return ["compare", *a["voyages"], "--ship", a["ship"]]
 
 
-def _diagnose(a: Asked) -> list[str]:
+def _diagnose(a: Request) -> list[str]:
     return ["diagnose", *a["voyages"], "--ship", a["ship"], *_several("--reference", a.get("references"))]
 
 
-def _calibrate(a: Asked) -> list[str]:
+def _calibrate(a: Request) -> list[str]:
     held = _several("--held-out", a.get("held_outs"))
     return ["calibrate", *a["voyages"], "--ship", a["ship"], *held, "-o", a["output"]]
 
 
-def _add(a: Asked) -> list[str]:
+def _add(a: Request) -> list[str]:
     voyages = _several("--voyage", a["voyages"]) + _several("--held-out", a.get("held_outs"))
     return ["add", *a["effects"], "--ship", a["ship"], *voyages, "-o", a["output"]] + ["--force"] * bool(
         a.get("force")
@@ -87,11 +87,11 @@ def checked(asked: Any) -> dict[str, Any]:
     return {key: value for key, value in asked.items() if value not in (None, "", [])}
 
 
-def files_of(asked: Asked) -> list[str]:
+def files_of(asked: Request) -> list[str]:
     """Names of the files that a job reads."""
     return [n for key in READ if key in asked for n in (asked[key] if key in LISTS else [asked[key]])]
 
 
-def command_of(asked: Asked) -> str:
+def command_of(asked: Request) -> str:
     """The command line that does the same in the project's folder."""
     return shlex.join(["twin", *VERBS[asked["verb"]].typed(asked)])

@@ -12,8 +12,8 @@ import numpy as np
 from bench.reference.boats import drives
 from bench.reference.boats.actuator_faults import SILENT_FROM_S, hidden_in
 from bench.reference.boats.craft import CRAFT, Craft, Drive
-from bench.reference.boats.helmsman import Helmsman
-from bench.reference.boats.hull import Hull
+from bench.reference.boats.helmsman import BoatHelmsman
+from bench.reference.boats.hull import BoatHull
 
 AIR = 1.225
 STOP_US, SPAN_US = 1500.0, 400.0
@@ -51,9 +51,9 @@ class BoatSea:
     def __init__(self, case: BoatCase, tick_s: float = 0.1):
         self.case, self.dt, self.tick = case, tick_s, 0
         self.craft: Craft = CRAFT[case.craft]
-        self.hull = Hull(self.craft)
+        self.hull = BoatHull(self.craft)
         self.hidden = hidden_in(self.craft, case.hidden)
-        self.helmsman = Helmsman(self.craft, case.manoeuvre, case.seed)
+        self.helmsman = BoatHelmsman(self.craft, case.manoeuvre, case.seed)
         self.random = random.Random(case.seed * 7919 + 1)
         self.turning = [Turning(d) for d in self.craft.drives]
         psi = math.radians(self.random.uniform(0.0, 360.0))

@@ -10,7 +10,7 @@ PLANS = ("mixed", "zigzag_20", "turning_circle", "straight")
 
 
 @dataclass(frozen=True)
-class Leg:
+class BoatLeg:
     """`helm` -1 .. 1 to starboard, `power` a share of full, `own`: what single drives get beside that,
     `side`: what tunnel thrusters are told; `seconds` long. With `until_deg` helm is reversed whenever the
     heading has gone that far."""
@@ -23,35 +23,35 @@ class Leg:
     until_deg: float = 0.0
 
 
-def legs(plan: str, craft: Craft, rng: random.Random) -> list[Leg]:
+def legs(plan: str, craft: Craft, rng: random.Random) -> list[BoatLeg]:
     """A minute or more of legs, repeated by the caller."""
     unit = max(craft.L / craft.U0, 1.5)
     if plan == "straight":
-        return [Leg(30.0 * unit, 0.75)]
+        return [BoatLeg(30.0 * unit, 0.75)]
     if plan == "turning_circle":
         return [
-            Leg(6 * unit, 0.75),
-            Leg(40 * unit, 0.75, 0.6),
-            Leg(6 * unit, 0.75),
-            Leg(40 * unit, 0.75, -0.6),
+            BoatLeg(6 * unit, 0.75),
+            BoatLeg(40 * unit, 0.75, 0.6),
+            BoatLeg(6 * unit, 0.75),
+            BoatLeg(40 * unit, 0.75, -0.6),
         ]
     if plan == "zigzag_20":
-        return [Leg(4 * unit, 0.75), Leg(60 * unit, 0.75, 0.6, until_deg=20.0)]
+        return [BoatLeg(4 * unit, 0.75), BoatLeg(60 * unit, 0.75, 0.6, until_deg=20.0)]
     return [_drawn(craft, unit, rng) for _ in range(20)]
 
 
-def _drawn(craft: Craft, unit: float, rng: random.Random) -> Leg:
+def _drawn(craft: Craft, unit: float, rng: random.Random) -> BoatLeg:
     power, seconds = rng.choice((0.35, 0.5, 0.65, 0.8, 0.95)), rng.uniform(3.0, 7.0) * unit
     if rng.random() < 0.25:
-        return Leg(2.0 * seconds, power, rng.choice((-1, 1)) * rng.uniform(0.3, 0.7), until_deg=15.0)
+        return BoatLeg(2.0 * seconds, power, rng.choice((-1, 1)) * rng.uniform(0.3, 0.7), until_deg=15.0)
     own = {}
     if rng.random() < 0.5:
         own[rng.choice(craft.drives).name] = rng.uniform(-0.35, 0.2)
     side = rng.choice((-0.8, -0.5, 0.5, 0.8)) if power < 0.6 and rng.random() < 0.6 else 0.0
-    return Leg(seconds, power, rng.choice((0.0, 1.0)) * rng.uniform(-0.8, 0.8), side, own)
+    return BoatLeg(seconds, power, rng.choice((0.0, 1.0)) * rng.uniform(-0.8, 0.8), side, own)
 
 
-class Helmsman:
+class BoatHelmsman:
     """Asked each tick; gives each drive its order (share of full, angle)."""
 
     def __init__(self, craft: Craft, plan: str, seed: int):
@@ -59,7 +59,7 @@ class Helmsman:
             raise ValueError(f"a {craft.name} sails {', '.join(PLANS)}, not {plan!r}.")
         self.craft, self.plan = craft, plan
         self._rng = random.Random(seed)
-        self._legs: list[Leg] = []
+        self._legs: list[BoatLeg] = []
         self._until = 0.0
         self._side = 1.0
         self._from: float | None = None
@@ -79,7 +79,7 @@ class Helmsman:
         helm = leg.helm * self._side
         return {d.name: self._of(d, leg, helm) for d in self.craft.drives}
 
-    def _of(self, d: Drive, leg: Leg, helm: float) -> tuple[float, float]:
+    def _of(self, d: Drive, leg: BoatLeg, helm: float) -> tuple[float, float]:
         own = leg.own.get(d.name, 0.0)
         if d.kind == "tunnel":
             return leg.side, 0.0

@@ -11,7 +11,7 @@ MUNK = 0.35  # of a slender body's moment that friction leaves (Hoerner 1965)
 NU = 1.19e-6  # of sea water [m2/s]
 
 
-class Hull:
+class BoatHull:
     """One craft's hull or hulls; forces and inertias about midship."""
 
     def __init__(self, craft: Craft):

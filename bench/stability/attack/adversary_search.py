@@ -9,7 +9,7 @@ import numpy as np
 from bench.stability.attack.bounds import bounds
 from bench.stability.attack.cases import FULL, GROUPS, AttackCase, Group, certified_for
 from bench.stability.attack.orders import Orders, random_orders
-from bench.stability.attack.run_batch import Sailed, sail
+from bench.stability.attack.run_batch import RunBatch, sail
 from bench.stability.attack.steepest import worse
 from bench.stability.attack.waters import Waters
 from twin.live.certificate.certificate import Certificate
@@ -119,7 +119,7 @@ def _batch(w: Waters, rng: np.random.Generator, passes: tuple[str, ...], name: s
     tube = bounds(w)
     orders = random_orders(w.c, w.groups, w.runs, w.ticks, rng)
     found: list[Attacked] = []
-    was: Sailed | None = None
+    was: RunBatch | None = None
     for k, way in enumerate(passes):
         if way == RANDOM:
             orders = random_orders(w.c, w.groups, w.runs, w.ticks, rng) if k else orders
@@ -128,12 +128,12 @@ def _batch(w: Waters, rng: np.random.Generator, passes: tuple[str, ...], name: s
         elif way == MOVED and was is not None:
             orders = _moved(w, was, tube, rng)
         was = sail(w, orders, greedy=way == GREEDY)
-        judged = [_judged(w, was, tube, i, way, f"{name} pass {k}") for i in range(len(w.groups))]
+        judged = [_verified(w, was, tube, i, way, f"{name} pass {k}") for i in range(len(w.groups))]
         found = [a.joined(b) for a, b in zip(found, judged, strict=True)] if found else judged
     return found
 
 
-def _moved(w: Waters, was: Sailed, tube: np.ndarray, rng: np.random.Generator) -> Orders:
+def _moved(w: Waters, was: RunBatch, tube: np.ndarray, rng: np.random.Generator) -> Orders:
     """The better half of the runs of each group and aim, and beside them the same from places near theirs."""
     late = w.ticks // 2
     over = np.where(was.inside[late:, None], np.abs(was.error[late:]) / tube[late:], 0.0).max(axis=0)
@@ -150,7 +150,7 @@ def _moved(w: Waters, was: Sailed, tube: np.ndarray, rng: np.random.Generator) -
     return was.orders.of(chosen).moved(rng, STEP, children)
 
 
-def _judged(w: Waters, was: Sailed, tube: np.ndarray, i: int, way: str, name: str) -> Attacked:
+def _verified(w: Waters, was: RunBatch, tube: np.ndarray, i: int, way: str, name: str) -> Attacked:
     of = slice(i * w.runs, (i + 1) * w.runs)
     group, inside = w.groups[i], was.inside[1:, of]
     error = np.abs(was.error[1:, :, of])

@@ -18,7 +18,7 @@ def attacked(args: argparse.Namespace, runs: int) -> int:
     found = []
     for i, case in enumerate(CASES):
         found.append(attack(case, round(runs / len(CASES)), args.seed + i))
-        bench_output.tell(_told(found[-1]))
+        bench_output.tell(_result_line(found[-1]))
     text = section(found, f"twin-bench stability --attack --runs {runs} --seed {args.seed}")
     result = {"schema_version": 1, "seed": args.seed, "cases": [as_table(x) for x in found]}
     bench_output.give(argparse.Namespace(**{**vars(args), "page": None}), plain(result), text)
@@ -64,7 +64,7 @@ def _group(g: Attacked) -> dict[str, Any]:
     }
 
 
-def _told(x: CaseAttacked) -> str:
+def _result_line(x: CaseAttacked) -> str:
     inside, outside = (
         sum(g.violations for g in x.groups if g.group.inside is which) for which in (True, False)
     )

@@ -11,7 +11,7 @@ from bench.stability.attack.waters import Waters
 AXES = range(4)  # u, v, r, psi
 
 
-class Sailed(NamedTuple):
+class RunBatch(NamedTuple):
     """error (K + 1, 4, N) of the published estimate, [0] as it began; inside (K + 1, N): in the operating set
     until then; truth (K + 1, 4, N); orders: as they were carried out."""
 
@@ -21,7 +21,7 @@ class Sailed(NamedTuple):
     orders: Orders
 
 
-def sail(w: Waters, orders: Orders, greedy: bool = False) -> Sailed:
+def sail(w: Waters, orders: Orders, greedy: bool = False) -> RunBatch:
     """All ticks. `greedy`: each tick everything pushes the way that the error then has, and the sample that
     corrects it least is the one that comes; else as ordered."""
     follow = RolledObservers(w, orders) if w.c.inner > 1 else LateObservers(w, orders)
@@ -46,7 +46,7 @@ def sail(w: Waters, orders: Orders, greedy: bool = False) -> Sailed:
             orders.age[k] = follow.least(truth, k, side, error[k])
         error[k + 1] = follow.step(k, inputs, dt, truth, orders) - truth[2 * k + 2]
         inside[k + 1] = inside[k] & w.within(half, x)
-    return Sailed(error, inside, truth[::2], orders)
+    return RunBatch(error, inside, truth[::2], orders)
 
 
 def along(path: np.ndarray, at: np.ndarray, axis: int, last: int) -> np.ndarray:

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from bench.stability.attack.orders import Orders
-from bench.stability.attack.run_batch import AXES, Sailed, along, by_group
+from bench.stability.attack.run_batch import AXES, RunBatch, along, by_group
 from bench.stability.attack.waters import Waters
 from twin.physics.dual import Dual
 from twin.physics.state import Situation
@@ -19,7 +19,7 @@ from twin.physics.state import Situation
 NODES = 12  # places along a run at which the slopes are taken
 
 
-def worse(w: Waters, was: Sailed) -> Orders:
+def worse(w: Waters, was: RunBatch) -> Orders:
     """Orders that drive each run's error further, to first order."""
     return _rolled(w, was) if w.c.inner > 1 else _late(w, was)
 
@@ -31,9 +31,9 @@ def _target(orders: Orders) -> np.ndarray:
     return mu
 
 
-def _late(w: Waters, was: Sailed) -> Orders:
+def _late(w: Waters, was: RunBatch) -> Orders:
     o, run = was.orders, np.arange(was.orders.psi.size)
-    steep, gain = Slopes(w, was), np.array([*w.c.K, w.c.K[2]])
+    steep, gain = AttackSlopes(w, was), np.array([*w.c.K, w.c.K[2]])
     mu = np.zeros_like(was.error)
     mu[-1] = _target(o)
     force, noise, age = (np.empty_like(x) for x in (o.force, o.noise, o.age))
@@ -71,9 +71,9 @@ def _oldest(
     return age
 
 
-def _rolled(w: Waters, was: Sailed) -> Orders:
+def _rolled(w: Waters, was: RunBatch) -> Orders:
     """As above where a sample takes its share of the error of its own time; each run's ages stay."""
-    o, steep, share = was.orders, Slopes(w, was), w.c.K[0] * w.c.h
+    o, steep, share = was.orders, AttackSlopes(w, was), w.c.K[0] * w.c.h
     force, noise = np.zeros_like(o.force), np.empty_like(o.noise)
     age = np.minimum(o.age[0, 0], 1.0)
     mu = _target(o)
@@ -100,15 +100,15 @@ def _side(x: np.ndarray) -> np.ndarray:
     return np.where(x < 0.0, -1.0, 1.0)
 
 
-class Slopes:
+class AttackSlopes:
     """A of the physics along the runs that were sailed."""
 
-    def __init__(self, w: Waters, was: Sailed) -> None:
+    def __init__(self, w: Waters, was: RunBatch) -> None:
         self.w, self.inverse = w, w.inverse
         self.every = max(w.ticks // NODES, 1)
         self.at = [self._at(was, k) for k in range(0, w.ticks, self.every)]
 
-    def _at(self, was: Sailed, k: int) -> np.ndarray:
+    def _at(self, was: RunBatch, k: int) -> np.ndarray:
         """(4, 4, N), the fourth row that of the heading."""
         n = was.orders.psi.size
         seeds = (Dual(x, tuple(float(i == j) for j in AXES)) for i, x in enumerate(was.truth[k]))

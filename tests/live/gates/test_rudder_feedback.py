@@ -65,7 +65,7 @@ def test_a_feedback_that_moves_again_is_believed_after_a_while(kvlcc2, make_brid
 
 
 @pytest.mark.parametrize("wear", [0.0, 0.5])
-def test_a_zigzag_is_not_accused_even_where_half_of_the_rudder_is_worn_away(kvlcc2, make_bridge, wear):
+def test_a_zigzag_is_not_suspected_even_where_half_of_the_rudder_is_worn_away(kvlcc2, make_bridge, wear):
     """Expected: no word against the feedback, and learning goes on in every second."""
     worn = replace(kvlcc2, effects=(find("RudderWear").plausible(kvlcc2).but(loss=wear),))
     bridge, learned = learning(kvlcc2, make_bridge)
@@ -78,7 +78,7 @@ def test_a_zigzag_is_not_accused_even_where_half_of_the_rudder_is_worn_away(kvlc
 
 
 @pytest.mark.parametrize("held_deg", [0.0, 35.0], ids=["straight course", "turning circle"])
-def test_a_rudder_that_is_truly_held_is_not_accused(kvlcc2, make_bridge, held_deg):
+def test_a_rudder_that_is_truly_held_is_not_suspected(kvlcc2, make_bridge, held_deg):
     """Test: after some helm the rudder stays for eight minutes, feedback without noise. Expected: nothing is
     said against it; learning rests."""
     bridge, learned = learning(

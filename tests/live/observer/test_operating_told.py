@@ -5,7 +5,7 @@ from math import nan
 import pytest
 
 from twin.live.bridge.alarms import key_of
-from twin.live.observer.operating import TOLD_IN, WORDS, OperatingSet, told_outside
+from twin.live.observer.operating import BORDER_UNITS, WORDS, OperatingSet, outside_in_words
 from twin.physics.state import Situation
 
 RANGES = {"u": (0.0, 8.0), "v": (-2.0, 2.0), "r": (-0.015, 0.015), "n": (0.0, 1.5), "wind_speed": (0.0, 20.0)}
@@ -29,15 +29,15 @@ def test_it_is_told_with_its_unit_and_its_bound(words):
 
 
 def test_every_number_has_a_unit_and_a_name():
-    assert set(TOLD_IN) <= set(WORDS)
+    assert set(BORDER_UNITS) <= set(WORDS)
     for name in WORDS:
-        said = told_outside(name, 3.0, 0.5, 0.0, 1.0)
-        assert said.startswith(f"{WORDS[name]} = ") and said.endswith(f" {TOLD_IN.get(name, ('m',))[0]}")
-    assert "nan" in told_outside("u", nan, 0.0, 0.0, 1.0)
+        said = outside_in_words(name, 3.0, 0.5, 0.0, 1.0)
+        assert said.startswith(f"{WORDS[name]} = ") and said.endswith(f" {BORDER_UNITS.get(name, ('m',))[0]}")
+    assert "nan" in outside_in_words("u", nan, 0.0, 0.0, 1.0)
 
 
 def test_the_same_reason_with_other_numbers_is_counted_as_one():
-    said = [told_outside("r", value, 0.001, -0.015, 0.015) for value in (0.02, -0.3)]
+    said = [outside_in_words("r", value, 0.001, -0.015, 0.015) for value in (0.02, -0.3)]
     assert len(set(said)) == 2
     assert len({key_of(text) for text in said}) == 1
     assert {text.partition(" = ")[0] for text in said} == {"rate of turn"}

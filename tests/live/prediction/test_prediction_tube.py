@@ -13,7 +13,7 @@ from twin.live.observer.predict import Prediction, Region, usual_error
 from twin.live.prediction.calibrated import calibrated_of
 from twin.live.prediction.circumstances import NAMES, SEAS, Circumstances, Regressors, sea_of
 from twin.live.prediction.coverage import coverage, entry
-from twin.live.prediction.judge import Foretold, Judge, Judged, along_and_across
+from twin.live.prediction.judge import Foretold, Judge, VerifiedPrediction, along_and_across
 from twin.live.prediction.prediction_tube import GAIN, PredictionTube, inside
 from twin.live.signals.measured import Measured
 from twin.physics.ship import from_table, save, text, to_table
@@ -219,7 +219,7 @@ def test_a_tube_of_another_model_is_not_used_and_it_is_said(kvlcc2):
 
 
 def judged_at(along, heading, region):
-    return Judged(foretold(region=region), along, 0.0, heading, True)
+    return VerifiedPrediction(foretold(region=region), along, 0.0, heading, True)
 
 
 def region_of(along, across, heading):
@@ -228,7 +228,7 @@ def region_of(along, across, heading):
 
 def test_inside_is_inside_the_ellipse():
     region = region_of(4.0, 2.0, 0.1)
-    j = Judged(foretold(region=region), 2.0, 1.9, 0.05, True)
+    j = VerifiedPrediction(foretold(region=region), 2.0, 1.9, 0.05, True)
     assert inside(j) == (False, True) and inside(j._replace(across=1.7)) == (True, True)
 
 

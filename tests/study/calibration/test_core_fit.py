@@ -9,14 +9,14 @@ import pytest
 
 from bench.bundled import recorded
 from bench.real.planted_faults import PlantedReadings, antenna_elsewhere
-from bench.reference import Case, simulate
+from bench.reference import SeaCase, simulate
 from twin import cli
 from twin.api.json_key import absent_keys, unknown_paths
 from twin.api.json_keys import KEYS
 from twin.physics.ship import load
 from twin.recording.write import write_voyage
 from twin.study.calibration.doubts import doubts
-from twin.study.calibration.usual import clearly_there
+from twin.study.calibration.usual import significantly_there
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def test_calibrating_again_starts_from_the_prior_and_not_from_its_own_answer(cal
 def test_what_no_ship_can_show_is_not_told_as_usual(calibrated):
     ship, _ = calibrated
     labels = ["SteeringLag.delay", "HeadingBias.bias"]
-    told = clearly_there(
+    told = significantly_there(
         ship, {"labels": labels, "offset": [-0.4, 0.02], "covariance": [[1e-4, 0.0], [0.0, 1e-6]]}
     )
     assert [t["name"] for t in told] == ["HeadingBias.bias"]
@@ -187,7 +187,7 @@ def test_an_antenna_on_a_mast_that_heel_carries_aside_becomes_a_part_of_the_ship
         turns had been taken for sway)."""
     sailed = simulate(
         [
-            Case("container", m, seed=970 + i, duration_s=600.0)
+            SeaCase("container", m, seed=970 + i, duration_s=600.0)
             for i, m in enumerate(("zigzag_20", "turning_circle", "mixed"))
         ]
     )
@@ -230,7 +230,7 @@ def test_wind_that_blew_on_the_references_becomes_a_part_of_the_ship_and_none_do
     the tanker nothing."""
     sailed = simulate(
         [
-            Case("usv", m, hidden=(("Wind", 0.6),), seed=980 + i, duration_s=240.0)
+            SeaCase("usv", m, hidden=(("Wind", 0.6),), seed=980 + i, duration_s=240.0)
             for i, m in enumerate(("zigzag_20", "mixed", "speed_changes"))
         ]
     )

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from twin.recording.voyage import Voyage
-from twin.study.calibration.calibration_lines import told
+from twin.study.calibration.calibration_lines import terminal_lines
 from twin.study.calibration.core_fit import calibrate
 from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.reference.sailed import sailed
@@ -39,7 +39,7 @@ def test_the_smoothing_becomes_the_ships_own_and_is_said(calibrated):
     (own,) = (e for e in calibrated.ship.effects if type(e).__name__ == "ReceiverSmoothing")
     assert own.time == pytest.approx(TIME_S, rel=0.2)
     assert set(calibrated.result["instruments"]) == {"ReceiverSmoothing"}
-    said = told(calibrated.result | {"held_out_is": "", "doubts": [], "data_checks": []})
+    said = terminal_lines(calibrated.result | {"held_out_is": "", "doubts": [], "data_checks": []})
     assert sum("ReceiverSmoothing: time" in line for line in said) == 1
     kept = calibrated.ship.notes["instruments"]["numbers"]["smoothing"]["voyages"]
     assert [set(v) for v in kept] == 3 * [{"voyage", "value", "sd", "log_bayes_factor"}]

@@ -13,12 +13,12 @@ from twin.physics.effects.heading_lag import HeadingLag
 from twin.physics.model import Model
 from twin.study.diagnosis.assemble import of_tracks
 from twin.study.diagnosis.by_kinematics import (
-    asked_for,
     beyond_usual,
     instrument_suspected,
     kinematics,
     other_than_before,
     reached,
+    suspected_instruments,
 )
 from twin.study.first_model.first_estimate import OPTIONS, first_model
 from twin.study.instruments.on_references import KinematicOfVoyage, KinematicRecord, KinematicUsual
@@ -48,7 +48,7 @@ def asked_of(random_ship, key):
     hidden = next(c for c in plan(ship, 8) if c.key == key)
     asked = kinematics([voyage(sailed(ship, hidden))], model)
     case = SimpleNamespace(model=Model.of(model), candidates=("Current", "SensorDelay"))
-    return asked, asked_for(case, asked), set(hidden.hidden)
+    return asked, suspected_instruments(case, asked), set(hidden.hidden)
 
 
 def record(values, sd=0.05, name="heading_delay", clock="rate_delay"):

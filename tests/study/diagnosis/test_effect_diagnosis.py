@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from bench.bundled import recorded
-from bench.reference import Case, simulate
+from bench.reference import SeaCase, simulate
 from twin import cli
 from twin.commands.story import MONDAY, SHIP, TUESDAY
 from twin.physics.effects import catalogue
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.effect_diagnosis import diagnose
-from twin.study.diagnosis.tell_diagnosis import told
+from twin.study.diagnosis.tell_diagnosis import terminal_lines
 
 
 @pytest.fixture(scope="module")
@@ -72,12 +72,12 @@ def test_two_voyages_together_say_it_more_clearly_than_one(tanker, monday):
 def test_an_effect_hidden_in_the_reference_sea_is_named(tanker, voyages, name):
     result = diagnose([voyages[name]], tanker).result
     assert result["verdict"] == "missing"
-    assert result["missing"][0] == name, "\n".join(told(result))
+    assert result["missing"][0] == name, "\n".join(terminal_lines(result))
 
 
 def test_nothing_hidden_means_nothing_missing(tanker, voyages):
     result = diagnose([voyages["nothing"]], tanker).result
-    assert result["verdict"] == "nothing_missing", "\n".join(told(result))
+    assert result["verdict"] == "nothing_missing", "\n".join(terminal_lines(result))
     assert result["missing"] == []
 
 
@@ -93,7 +93,7 @@ def test_play_in_the_rudders_linkage_is_no_name_of_the_catalogue_but_what_it_res
     (gap,) = like["parameters"]
     assert gap["low95"] <= np.radians(2.5) <= gap["high95"] and gap["unit"] == "rad"
     assert ("resembles RudderPlay: The rudder hangs loose") in result["sentence"] and any(
-        "gap" in line for line in told(result)
+        "gap" in line for line in terminal_lines(result)
     )
 
 
@@ -101,7 +101,7 @@ def test_liquid_that_swings_in_a_slack_tank_is_no_load(tanker, voyages):
     """Test: a tank of an eighth of its mass, forward or aft, whose liquid swings aside. Expected: unknown, no
     name, and what it looks like."""
     result = diagnose([voyages["Sloshing"]], tanker).result
-    assert result["verdict"] == "unknown" and result["missing"] == [], "\n".join(told(result))
+    assert result["verdict"] == "unknown" and result["missing"] == [], "\n".join(terminal_lines(result))
     (like,) = result["resembles"]
     share, *_ = like["parameters"]
     assert like["effect"] == "SwayingMass" and share["name"] == "share" and 0.06 < share["value"] < 0.2
@@ -115,13 +115,13 @@ def test_what_stands_clear_of_what_calibration_left_unexplained_is_named_all_the
     result = diagnose(
         [voyages["Current"]], replace(tanker, notes={**tanker.notes, "structural": coarse})
     ).result
-    assert result["missing"] == ["Current"], "\n".join(told(result))
+    assert result["missing"] == ["Current"], "\n".join(terminal_lines(result))
 
 
 def test_a_straight_voyage_is_not_enough_to_acquit_a_ship(tanker, voyages):
     """Test: a calm, straight, steady voyage. Expected: undecided, and no name."""
     result = diagnose([voyages["straight"]], tanker).result
-    assert result["verdict"] == "undecided", "\n".join(told(result))
+    assert result["verdict"] == "undecided", "\n".join(terminal_lines(result))
     assert result["missing"] == []
 
 
@@ -132,7 +132,9 @@ def test_what_was_not_recorded_cannot_be_judged_and_the_answer_says_so(tanker, v
     assert {"effect": "Wind", "lacks": ["true_wind_speed_mps", "true_wind_direction_deg"]} in result[
         "not_judged"
     ]
-    assert any("Wind cannot be judged: no true_wind_speed_mps and no" in line for line in told(result))
+    assert any(
+        "Wind cannot be judged: no true_wind_speed_mps and no" in line for line in terminal_lines(result)
+    )
 
 
 def test_a_voyage_too_short_to_judge_exits_with_4_and_one_line(tanker, voyages, tmp_path, capsys):
@@ -146,17 +148,19 @@ def test_a_voyage_too_short_to_judge_exits_with_4_and_one_line(tanker, voyages, 
 
 def test_a_wind_is_news_unless_it_blew_as_hard_on_the_reference_voyages(tanker, voyages):
     news = diagnose([voyages["Wind"]], tanker).result
-    assert (news["missing"], news["as_on_references"]) == (["Wind"], []), "\n".join(told(news))
+    assert (news["missing"], news["as_on_references"]) == (["Wind"], []), "\n".join(terminal_lines(news))
     known = diagnose([voyages["Wind"]], tanker, [voyages["calm"], voyages["Wind again"]]).result
-    assert "Wind" not in known["missing"] and known["as_on_references"] == ["Wind"], "\n".join(told(known))
+    assert "Wind" not in known["missing"] and known["as_on_references"] == ["Wind"], "\n".join(
+        terminal_lines(known)
+    )
     assert (
         "Wind was no stronger than on the reference voyages: it is allowed for, and not called missing."
-    ) in told(known)
+    ) in terminal_lines(known)
 
 
 def test_references_given_on_the_command_count_like_a_calibration(tanker, voyages):
     result = diagnose([voyages["HeadingBias"]], tanker, [voyages["calm"], voyages["calm too"]]).result
-    assert result["missing"][:1] == ["HeadingBias"], "\n".join(told(result))
+    assert result["missing"][:1] == ["HeadingBias"], "\n".join(terminal_lines(result))
     assert np.isfinite(result["floor"]["temper"])
 
 
@@ -164,12 +168,14 @@ def test_a_cause_is_named_beside_the_weather_of_an_ordinary_day(tanker):
     """Test: wind and stream that the model does not know, and a fouled hull. Expected: the hull first, the
     weather in a part of its own; only what lasts is offered for the ship file."""
     hidden = (("Wind", 0.5), ("Current", 0.5), ("HullFouling", 1.0))
-    (sailed,) = simulate([Case("kvlcc2", "mixed", hidden=hidden, seed=909, duration_s=1200.0)])
+    (sailed,) = simulate([SeaCase("kvlcc2", "mixed", hidden=hidden, seed=909, duration_s=1200.0)])
     result = diagnose([recorded("june", sailed.columns, every=10)], tanker).result
     assert result["missing"][0] == "HullFouling" and result["answer"]["lasting"] == ["HullFouling"], (
-        "\n".join(told(result))
+        "\n".join(terminal_lines(result))
     )
     assert "Current" in {w["effect"] for w in result["weather"]}
-    assert "today's water and wind:" in told(result) and result["sentence"].startswith("Missing: HullFouling")
+    assert "today's water and wind:" in terminal_lines(result) and result["sentence"].startswith(
+        "Missing: HullFouling"
+    )
     assert all(0.0 < c["probability"] <= 0.99 for c in result["candidates"]) and result["reason"] == "named"
     assert result["rivals"][0]["log_bayes_factor"] == 0.0 and len(result["rivals"]) > 1

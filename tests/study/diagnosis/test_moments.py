@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from bench.bundled import recorded
-from bench.reference import Case, simulate
+from bench.reference import SeaCase, simulate
 from twin.study.diagnosis import moments as moment_of
 from twin.study.diagnosis.assemble import assemble
 from twin.study.diagnosis.effect_diagnosis import diagnose
-from twin.study.diagnosis.moments import CLEAR, Moment, moments, stretches
+from twin.study.diagnosis.moments import PUSH_LOG_BAYES, Moment, moments, stretches
 from twin.study.diagnosis.refine import Found, refine
-from twin.study.diagnosis.tell_diagnosis import told
+from twin.study.diagnosis.tell_diagnosis import terminal_lines
 from twin.study.estimation.columns import Unknown
 from twin.study.reference.evidence import Hypothesis, Nuisance, likeliest, posterior
 
@@ -26,7 +26,7 @@ def as_she_is(case):
 def test_a_ship_with_which_nothing_is_wrong_had_no_push_of_its_own(tanker, voyages):
     case = assemble([voyages["nothing"]], tanker)
     asked = stretches(case, as_she_is(case))
-    assert max(m.log_evidence for m in asked) < 0.5 * CLEAR and moments(case, as_she_is(case)) == []
+    assert max(m.log_evidence for m in asked) < 0.5 * PUSH_LOG_BAYES and moments(case, as_she_is(case)) == []
     assert (
         {m.voyage for m in asked} == {"nothing"}
         and min(m.start_s for m in asked) < 60.0
@@ -43,7 +43,7 @@ def test_what_lasts_all_voyage_is_no_moment_once_it_is_known(tanker, voyages):
 @pytest.fixture(scope="module")
 def passed():
     sailed = simulate(
-        [Case("kvlcc2", "zigzag_20", hidden=(("PassingShip", 1.0),), seed=909, duration_s=1200.0)]
+        [SeaCase("kvlcc2", "zigzag_20", hidden=(("PassingShip", 1.0),), seed=909, duration_s=1200.0)]
     )
     return recorded("passed", sailed[0].columns, every=10)
 
@@ -57,7 +57,7 @@ def test_ships_that_pass_are_seen_when_they_pass_and_nothing_is_said_to_be_in_or
     passes = np.array(seen) / (11.0 * float(tanker.scale("time")))
     assert abs(np.exp(2j * np.pi * passes).mean()) > 0.8 and np.unique(np.rint(passes - passes[0])).size >= 2
     assert result["probabilities"]["nothing_missing"] < 0.5
-    assert "a force pushed the ship" in "\n".join(told(result)) and "missing" in result["sentence"]
+    assert "a force pushed the ship" in "\n".join(terminal_lines(result)) and "missing" in result["sentence"]
 
 
 def test_where_waves_toss_her_more_is_asked_of_a_push(monkeypatch, tanker, voyages):

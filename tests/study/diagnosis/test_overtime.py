@@ -4,7 +4,7 @@ import numpy as np
 
 from twin.study.diagnosis.effect_diagnosis import diagnose
 from twin.study.diagnosis.overtime import changes
-from twin.study.diagnosis.tell_diagnosis import told
+from twin.study.diagnosis.tell_diagnosis import terminal_lines
 
 
 def parts(result, name):
@@ -16,7 +16,7 @@ def test_an_effect_that_is_always_there_is_as_strong_in_every_part(tanker, voyag
     found = parts(result, "RudderWear")
     assert len(found) > 1 and not changes(found)
     assert all(abs(p["share"] - 1.0) < 4.0 * p["sd"] + 0.25 for p in found)
-    assert not any("its size changes with time" in line for line in told(result))
+    assert not any("its size changes with time" in line for line in terminal_lines(result))
 
 
 def test_an_effect_that_came_between_two_voyages_is_told_by_voyage(tanker, voyages):
@@ -28,7 +28,7 @@ def test_an_effect_that_came_between_two_voyages_is_told_by_voyage(tanker, voyag
     }
     before, after = share[voyages["nothing"].name], share[voyages["RudderWear"].name]
     assert changes(found) and before < 0.5 < 1.0 < after
-    assert any("its size changes with time" in line for line in told(result))
+    assert any("its size changes with time" in line for line in terminal_lines(result))
 
 
 def test_parts_that_know_little_do_not_disagree():

@@ -10,7 +10,7 @@ from twin.physics.effects import catalogue
 from twin.study.estimation.columns import core_unknowns, effect_unknowns
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import linearise
-from twin.study.reference.structure import floor_of, structural_floor
+from twin.study.reference.structure import noise_model_of, structural_noise
 from twin.study.track.segments import read_parts, segments
 from twin.study.track.track import READINGS, track
 
@@ -28,7 +28,7 @@ def test_floors_side_by_side_are_floors_one_at_a_time(judged):
 
 def test_innovations_of_a_calibrated_ship_are_no_larger_than_promised(judged):
     t, model, unknowns = judged
-    normal = innovate([linearise(t, model, unknowns, catalogue())], [floor_of(model.ship)])[0]
+    normal = innovate([linearise(t, model, unknowns, catalogue())], [noise_model_of(model.ship)])[0]
     assert 0.5 < normal.ee.sum() / normal.count.sum() < 1.6
 
 
@@ -42,8 +42,8 @@ def test_how_far_the_position_that_satellites_show_strays_is_found(judged, wande
     shown = t.measured.copy()
     shown[:, :2] = t.state[:, :2] + 0.1 * rng.standard_normal((len(t), 2)) + np.cumsum(steps, axis=0)
     strayed = replace(t, measured=shown, sd=np.r_[0.1, 0.1, t.sd[2:]])
-    found = structural_floor(
-        [linearise(strayed, model, unknowns, catalogue())], unknowns, floor_of(model.ship)
+    found = structural_noise(
+        [linearise(strayed, model, unknowns, catalogue())], unknowns, noise_model_of(model.ship)
     ).wander
     assert found < 0.03 if wander == 0.0 else found == pytest.approx(wander, rel=0.35)
 
@@ -55,14 +55,14 @@ def test_a_damaged_floor_in_the_ship_file_is_one_line(tanker):
         match=r"\[structural\] floor in the ship file is damaged "
         r".*'far'.*Calibrate it again",
     ):
-        floor_of(replace(tanker, notes={**tanker.notes, "structural": table}))
+        noise_model_of(replace(tanker, notes={**tanker.notes, "structural": table}))
 
 
 def test_a_floor_of_one_fast_part_is_that_of_every_axis(tanker):
     """Test: ship files of before 2026-11-24 hold one number. Expected: the same floor as three alike."""
     stored = dict(tanker.notes["structural"]["floor"])
     one, three = (
-        floor_of(replace(tanker, notes={"structural": {"floor": stored | {"white": white}}}))
+        noise_model_of(replace(tanker, notes={"structural": {"floor": stored | {"white": white}}}))
         for white in (0.1, [0.1, 0.1, 0.1])
     )
     assert one == three and one.white == (0.1, 0.1, 0.1)
@@ -80,7 +80,7 @@ def test_each_axis_has_a_fast_part_of_its_own(judged):
         - np.column_stack([np.convolve(np.cumsum(s), np.ones(9) / 9, "same") for s in speed.T])
     )
     before, after = (
-        structural_floor([linearise(x, model, unknowns, catalogue())], unknowns)
+        structural_noise([linearise(x, model, unknowns, catalogue())], unknowns)
         for x in (t, replace(t, measured=shown))
     )
     assert min(after.white[:2]) > 3.0 * max(before.white[:2]) and after.white[2] <= 2.0 * before.white[2]

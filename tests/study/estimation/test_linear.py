@@ -11,7 +11,7 @@ from twin.study.estimation.fit import fit
 from twin.study.estimation.innovations import NoiseModel, innovate
 from twin.study.estimation.linear import linearise
 from twin.study.estimation.respond import later
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 from twin.study.track.smooth_motion import smooth_motion
 
 
@@ -63,7 +63,9 @@ def test_a_fit_that_is_begun_far_off_arrives_where_one_does_that_is_begun_near(j
         [u.centre + k * u.sd for u, k in zip(unknowns, (3.0, -3.0, 3.0, -3.0, 3.0), strict=True)],
         known,
     )
-    near_by, far_off = (fit([t], begun, unknowns, known, floor_of(model.ship)) for begun in (model, far))
+    near_by, far_off = (
+        fit([t], begun, unknowns, known, noise_model_of(model.ship)) for begun in (model, far)
+    )
     assert np.abs((far_off.value - near_by.value) / [u.sd for u in unknowns]).max() < 0.1
     assert np.abs((far_off.value - near_by.value) / near_by.sd).max() < 1.0
 
@@ -99,7 +101,7 @@ def test_how_late_positions_are_is_told_however_rough_the_path_through_them(judg
         catalogue(),
         {unknowns[0].label: late_s},
     )
-    A, b, _ = innovate([line], [floor_of(model.ship)])[0].total()
+    A, b, _ = innovate([line], [noise_model_of(model.ship)])[0].total()
     assert abs(float(b[0] / A[0, 0])) < 3.0 / float(A[0, 0]) ** 0.5
 
 
@@ -125,7 +127,7 @@ def test_to_call_a_receiver_late_that_is_not_explains_nothing(judged):
             catalogue(),
             {unknowns[0].label: steps * t.h},
         )
-        told = innovate([line], [floor_of(model.ship)])[0]
+        told = innovate([line], [noise_model_of(model.ship)])[0]
         A, b, ee = told.total()
         best.append(-0.5 * (ee + float(told.logdet.sum())) + 0.5 * float(b[0] ** 2 / A[0, 0]))
     assert max(best[1:]) < best[0] + 3.0

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from tests.study.fleet.rows import named, of, plainly, size
-from twin.study.fleet.fleet_lines import told
+from twin.study.fleet.fleet_lines import terminal_lines
 from twin.study.fleet.ranking import ranked
 from twin.study.fleet.trend import causes_of, trend, voyages_of
 
@@ -70,7 +70,7 @@ def test_ships_stand_by_what_is_wrong():
     assert order == ["large", "small", "stream", "odd", "open", "calm", "lost"]
     assert [s["rank"] for s in result["ships"]] == [1, 2, 3, 4, 5, 6, 7]
     assert result["voyages"] == {"listed": 7, "judged": 6, "references": 0, "failed": 1}
-    lines = "\n".join(told(result))
+    lines = "\n".join(terminal_lines(result))
     assert "80 %" in lines and "size 0.30 (0.20 to 0.40)" in lines and "lost: gone" in lines
 
 
@@ -84,11 +84,11 @@ def test_what_the_references_can_never_show_is_told():
     """Test: two ships whose files have the scores of three and of twelve references; one that has none."""
     few = of("few", plainly("a", None, score=9.0), scores=[0.1] * 3)
     result = ranked([few, of("many", plainly("a", None, score=9.0), scores=[0.1] * 12)])
-    lines = "\n".join(told(result))
+    lines = "\n".join(terminal_lines(result))
     assert result["over_months"] == {"level": 0.05, "ships": 2, "needed": 40.0, "alarms": []}
     assert "few: by 3 reference voyages a fault that stays as it is typically shows M = 4.7," in lines
     assert "7 references would do" in lines and "many:" not in lines
-    assert "not controlled" in "\n".join(told(ranked([of("old", plainly("a", None, score=9.0))])))
+    assert "not controlled" in "\n".join(terminal_lines(ranked([of("old", plainly("a", None, score=9.0))])))
 
 
 def test_a_lasting_fault_of_a_ship_with_many_references_is_an_alarm():
@@ -100,4 +100,4 @@ def test_a_lasting_fault_of_a_ship_with_many_references_is_an_alarm():
     good = of("good", *(plainly("v", d, score=0.15 * (i + 1)) for i, d in enumerate(days)), scores=healthy)
     result = ranked([good, bad])
     assert result["over_months"]["alarms"] == ["bad"] and result["ships"][0]["over_months"]["alarm"]
-    assert any("ALARM, M" in line for line in told(result))
+    assert any("ALARM, M" in line for line in terminal_lines(result))

@@ -17,7 +17,7 @@ from twin.recording.raw import Raw
 from twin.recording.voyage import Voyage
 from twin.study.instruments.arrow import Block, reduce
 from twin.study.instruments.instrument_estimate import estimate
-from twin.study.instruments.instrument_lines import as_json, told
+from twin.study.instruments.instrument_lines import as_json, terminal_lines
 from twin.study.instruments.spline import Spline
 
 HEADING, RATE, LOG = "heading_true_north_deg", "yaw_rate_degps", "surge_velocity_through_water_mps"
@@ -78,7 +78,7 @@ def test_a_healthy_ship_has_no_fault_and_its_stream_is_found(healthy):
     assert found.faults == ()
     for name, truth in (("current_north", 0.3), ("current_east", -0.4)):
         near(found, name, truth)
-    assert "No instrument disagrees" in told(found)[0]
+    assert "No instrument disagrees" in terminal_lines(found)[0]
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,7 @@ def test_a_straight_course_says_that_ages_cannot_be_known(healthy):
     assert all(
         (e := found.of(name)) is None or not e.known for name in ("heading_delay", "rate_delay", "A", "B")
     )
-    assert any("not known beside all others" in line for line in told(found))
+    assert any("not known beside all others" in line for line in terminal_lines(found))
 
 
 def test_without_heading_it_is_refused_in_one_line(healthy):

@@ -8,7 +8,7 @@ import pytest
 from twin.num import num
 from twin.physics.effects import find
 from twin.physics.model import Model
-from twin.study.estimation.start import steadied, told_of_waves, wave_period_s, waves_on
+from twin.study.estimation.start import steadied, wave_period_s, waves_in_words, waves_on
 from twin.study.prediction.openloop import coarse
 from twin.study.reference import seaway
 from twin.study.reference.seaway import at_sea, excited, levelled, swung
@@ -102,7 +102,7 @@ def test_a_model_that_no_filter_can_follow_says_nothing_of_waves(calm, tanker, m
 
 
 def test_waves_are_told_with_their_voyage_and_period(rough, calm):
-    (said,) = told_of_waves(waves_on([calm, rough]))
+    (said,) = waves_in_words(waves_on([calm, rough]))
     assert calm.name in said and f"{num(wave_period_s(rough))} s" in said
 
 

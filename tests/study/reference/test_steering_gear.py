@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bench.bundled import recorded
-from bench.reference import Case, simulate
+from bench.reference import SeaCase, simulate
 from twin import cli
 from twin.physics.effects import catalogue
 from twin.physics.effects.steering_lag import TRAVEL, SteeringLag
@@ -34,7 +34,7 @@ def ordered(tmp_path_factory):
         ("slower", "mixed", 2.0, 972),
     ):
         made = simulate(
-            [Case("kvlcc2", manoeuvre, hidden=(("SteeringLag", strength),), seed=seed, duration_s=1200.0)]
+            [SeaCase("kvlcc2", manoeuvre, hidden=(("SteeringLag", strength),), seed=seed, duration_s=1200.0)]
         )[0]
         paths[name], hidden[name] = folder / f"{name}.mcap", made.hidden["SteeringLag"]
         write_voyage(recorded(name, made.columns, every=10), paths[name])

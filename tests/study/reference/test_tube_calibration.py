@@ -11,12 +11,12 @@ from twin.errors import DataError
 from twin.live.observer.predict import usual_error
 from twin.live.prediction.calibrated import SECTION, calibrated_of
 from twin.live.prediction.circumstances import Regressors
-from twin.live.prediction.judge import Foretold, Judged
+from twin.live.prediction.judge import Foretold, VerifiedPrediction
 from twin.physics.ship import load
 from twin.recording.voyage import Voyage
 from twin.study.reference.tube_calibration import FEWEST_FIT, coefficients, needed, parted, section
 from twin.study.reference.tube_doubts import doubts
-from twin.study.reference.tube_told import half_widths, rows
+from twin.study.reference.tube_lines import half_widths, rows
 
 H = 60.0
 
@@ -38,7 +38,7 @@ def sailed(rng, count=60, H_s=None, steady=0.3):
         helm = "moving" if rng.random() < 0.5 else "still"
         known = Regressors(phi, phi, helm, sea)
         along, across, heading = size * rng.normal(), 2.0 * size * rng.normal(), 0.002 * size * rng.normal()
-        out.append(Judged(Foretold(0.0, 0.0, H, (), known), along, across, heading, True))
+        out.append(VerifiedPrediction(Foretold(0.0, 0.0, H, (), known), along, across, heading, True))
     return {H: out}
 
 

@@ -7,7 +7,7 @@ import pytest
 from twin.physics.effects import find
 from twin.physics.ship import load, save
 from twin.study.update.addition import add
-from twin.study.update.ladder import ladder, told
+from twin.study.update.ladder import ladder, terminal_lines
 
 
 @pytest.fixture
@@ -19,7 +19,7 @@ def better(sailed, make, kvlcc2, tmp_path):
 
 
 def test_the_ladder_shows_the_fall_and_where_it_was_judged(better):
-    text = "\n".join(told(load(better)))
+    text = "\n".join(terminal_lines(load(better)))
     assert "+ Current" in text and "120 s" in text and "last third" in text
 
 
@@ -55,4 +55,4 @@ def test_history_speaks_json(verb, better, capsys):
 
 
 def test_a_ship_without_history_says_so(kvlcc2):
-    assert "nothing was added" in told(kvlcc2)[0]
+    assert "nothing was added" in terminal_lines(kvlcc2)[0]

@@ -4,7 +4,7 @@ import time
 from textwrap import wrap
 from typing import Any, TextIO
 
-from twin.live.terminal import BOLD, CLEAR, DIM, LINE_S, PAGE_S, PLAIN, WIDTH
+from twin.live.terminal import BOLD, CLEAR_SCREEN, DIM, LINE_S, PAGE_S, PLAIN, WIDTH
 from twin.num import as_given
 
 OLD = "\x1b[7m"  # reversed
@@ -24,7 +24,7 @@ class Text:
         if self._next_s is not None and now_s < self._next_s:
             return
         self._next_s = now_s + (PAGE_S if self.pages else LINE_S)
-        self.stream.write(CLEAR + page(frame) + "\n" if self.pages else line(frame) + "\n")
+        self.stream.write(CLEAR_SCREEN + page(frame) + "\n" if self.pages else line(frame) + "\n")
         self.stream.flush()
 
 

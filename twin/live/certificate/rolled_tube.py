@@ -13,7 +13,7 @@ from twin.live.certificate.comparison_systems import add, scaled_row
 from twin.live.certificate.observer_tube import NOTHING, Three, Tube
 from twin.live.certificate.periods import of_certificate
 from twin.live.certificate.rolled import InnerStep, inner, way
-from twin.live.observer.operating import NU, told_outside
+from twin.live.observer.operating import NU, outside_in_words
 from twin.live.observer.rollback import KEPT_S, Path, State
 from twin.physics.state import Situation
 
@@ -109,7 +109,7 @@ class RolledTube(Tube):
         for name, value, b, w, (low, high) in zip(NU, motion, x, self.way, self._limits, strict=False):
             most = b + self._length * w
             if not low + most <= value <= high - most:
-                return told_outside(name, value, most, low, high)
+                return outside_in_words(name, value, most, low, high)
         return None
 
     def _on(self, x: Four) -> Four:

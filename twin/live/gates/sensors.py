@@ -43,7 +43,7 @@ class Sensors:
     """All channels of one ship; `rejected` counts the samples that were refused."""
 
     def __init__(self, ship: Ship, sources: dict[str, str] | None = None, max_delay_s: float = 2.0):
-        floors = noise_floors(ship)
+        floors = noise_allowances(ship)
         self._awaited = sources = dict(sources or {})  # channel: the source that should speak and has not yet
         self.gates = {
             c.name: Gate(c, floors.get(c.name, FAR), _frozen(c.name, floors), sources.get(c.name))
@@ -243,7 +243,7 @@ def motion_of(own: Estimate) -> dict[str, float]:
     return {"north_m": north, "east_m": east, "heading_true_north_deg": degrees(own.r)}
 
 
-def noise_floors(ship: Ship) -> dict[str, float]:
+def noise_allowances(ship: Ship) -> dict[str, float]:
     """What an instrument's noise may add to the change between two samples [border units], by the ship's
     own scale."""
     speed = max(0.15 * ship.U_0, 0.5)

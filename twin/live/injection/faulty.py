@@ -207,7 +207,7 @@ def _ns(stamp_s: float) -> int:
     return max(round(stamp_s * 1e9), 0)
 
 
-def asked(
+def fault_of_words(
     what: str, kind: str | None, by: float | None, start_s: float, seconds: float, seed: int
 ) -> InjectedFault:
     """The fault of these words, checked, its times counted from the start; UsageError where one does not

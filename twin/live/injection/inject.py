@@ -40,7 +40,7 @@ ELSE = (
 NEEDS_AMOUNT = tuple(name for name, kind in KINDS.items() if kind.unit.startswith("channel"))
 
 
-def kinds_told() -> str:
+def kinds_in_words() -> str:
     """A line for each kind of fault: what happens, and in which unit `by` is; and what else can be at
     fault."""
     lines = [

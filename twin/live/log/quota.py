@@ -57,7 +57,7 @@ def trim(folder: Path, name: str, quota: Quota, writing: Path | None = None) -> 
             "others",
             str(folder),
         )
-    return _told(gone)
+    return _in_words(gone)
 
 
 def own_files(folder: Path, name: str, writing: Path | None = None) -> list[Old]:
@@ -112,7 +112,7 @@ def _free(folder: Path) -> int:
     return about.f_bavail * about.f_frsize
 
 
-def _told(gone: list[tuple[Old, str]]) -> str:
+def _in_words(gone: list[tuple[Old, str]]) -> str:
     if not gone:
         return ""
     names = gone[0][0].path.name + (f" to {gone[-1][0].path.name}" if len(gone) > 1 else "")

@@ -4,7 +4,7 @@ where each stands until somebody has told."""
 from collections.abc import Mapping
 
 from twin.live.signals.channels import BY_NAME
-from twin.physics.actuators.helm import told
+from twin.physics.actuators.helm import actuator_orders
 from twin.physics.ship import Ship
 from twin.physics.state import Situation
 
@@ -25,10 +25,10 @@ def actuator_channels(ship: Ship) -> tuple[str, ...]:
 
 def at_rest(ship: Ship) -> dict[str, float]:
     """What actuators are told that give nothing, by `name.attribute` [SI]; of a ship without any {}."""
-    return {k: float(x) for k, x in told(ship, 0.0, 0.0).items()} if ship.actuators else {}
+    return {k: float(x) for k, x in actuator_orders(ship, 0.0, 0.0).items()} if ship.actuators else {}
 
 
-def newly_told(s: Situation, si: Mapping[str, float]) -> None:
+def with_measured_controls(s: Situation, si: Mapping[str, float]) -> None:
     """Puts what is measured of the actuators into a situation that had something else of them."""
     if s.told:
         s.told = {k: si.get(k, x) for k, x in s.told.items()}

@@ -6,7 +6,7 @@ where it is now, and without those effects whose inputs nobody measures.
 
 from collections.abc import Sequence
 
-from twin.live.observer.controls import at_rest, controls_of, newly_told
+from twin.live.observer.controls import at_rest, controls_of, with_measured_controls
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.steering import Gear, Steering, gears_of
 from twin.live.signals.measured import Measured
@@ -158,7 +158,7 @@ class Dynamics:
                 setattr(s, name, si[name])
         if self._rest:
             s.told = self._rest
-            newly_told(s, self._controls)
+            with_measured_controls(s, self._controls)
         else:
             for name, value in self.held.items():
                 setattr(s, name, value)

@@ -37,7 +37,7 @@ WORDS = {
     "phi": "roll",
 }
 KNOT = 1852.0 / 3600.0  # [m/s]
-TOLD_IN = {  # the unit in which a bridge reads it, and how much of it one in SI is; the others in metres
+BORDER_UNITS = {  # the unit in which a bridge reads it, and how much of it one in SI is; the others in metres
     "u": ("kn", 1.0 / KNOT),
     "v": ("kn", 1.0 / KNOT),
     "stream": ("kn", 1.0 / KNOT),
@@ -74,11 +74,11 @@ class OperatingSet:
         values = s.u_r, s.v_r, s.r, hypot(s.u - s.u_r, s.v - s.v_r)
         for (name, lo, hi), value, b in zip(self._motion, values, (*within, 0.0), strict=True):
             if not lo + b <= value <= hi - b:
-                return told_outside(name, value, b, lo, hi)
+                return outside_in_words(name, value, b, lo, hi)
         for name, lo, hi in self._inputs:
             value = getattr(s, name)
             if value is not None and not lo <= value <= hi:
-                return told_outside(name, value, 0.0, lo, hi)
+                return outside_in_words(name, value, 0.0, lo, hi)
         return None
 
     @cached_property
@@ -90,7 +90,7 @@ class OperatingSet:
         return [(name, *self.ranges[name]) for name in WORDS if name in self.ranges and name not in MOTION]
 
 
-def told_outside(name: str, value: float, bound: float, lo: float, hi: float) -> str:
+def outside_in_words(name: str, value: float, bound: float, lo: float, hi: float) -> str:
     """That a number [SI] lies outside, or may within its bound, in the bridge's units."""
     how = f" ± {in_unit(name, bound)}" if bound else ""
     ends = f"{in_unit(name, lo, False)} to {in_unit(name, hi)}"
@@ -99,7 +99,7 @@ def told_outside(name: str, value: float, bound: float, lo: float, hi: float) ->
 
 def in_unit(name: str, value: float, unit: bool = True) -> str:
     """A number [SI] in the bridge's unit, with it or without."""
-    words, factor = TOLD_IN.get(name, ("m", 1.0))
+    words, factor = BORDER_UNITS.get(name, ("m", 1.0))
     return num(factor * value, 3) + (f" {words}" if unit else "")
 
 

@@ -13,7 +13,7 @@ from math import degrees, hypot, sqrt
 from typing import NamedTuple
 
 from twin.live.observer.predict import Region
-from twin.live.prediction.judge import Judged
+from twin.live.prediction.judge import VerifiedPrediction
 from twin.physics.maths import total
 
 
@@ -33,7 +33,7 @@ class Coverage(NamedTuple):
     heading_score_deg: float
 
 
-class JudgedRegion(NamedTuple):
+class RegionError(NamedTuple):
     """One prediction: half width and error of place [m] and of heading [rad], and what was promised."""
 
     radius: float
@@ -44,14 +44,14 @@ class JudgedRegion(NamedTuple):
     voyages: int
 
 
-def entry(j: Judged, region: Region) -> JudgedRegion:
+def entry(j: VerifiedPrediction, region: Region) -> RegionError:
     """Of a prediction that was judged, and what was promised of it."""
     radius = sqrt(region.along_m * region.across_m)
     error = radius * hypot(j.along / region.along_m, j.across / region.across_m)
-    return JudgedRegion(radius, error, region.heading, abs(j.heading), region.level, region.voyages)
+    return RegionError(radius, error, region.heading, abs(j.heading), region.level, region.voyages)
 
 
-def coverage(horizon_s: float, entries: Sequence[JudgedRegion]) -> Coverage:
+def coverage(horizon_s: float, entries: Sequence[RegionError]) -> Coverage:
     """The summary of at least one."""
     n, a = len(entries), 1.0 - min(e.level for e in entries)
     return Coverage(

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction, usual_error
 from twin.live.prediction.circumstances import Circumstances
-from twin.live.prediction.judge import Foretold, Judge, Judged
+from twin.live.prediction.judge import Foretold, Judge, VerifiedPrediction
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
 
@@ -22,7 +22,7 @@ class Watch:
 
     def look(
         self, now_s: float, measured: Measured, e: Estimate, ahead: Sequence[Prediction], good: bool
-    ) -> list[tuple[float, Judged]]:
+    ) -> list[tuple[float, VerifiedPrediction]]:
         """Takes what a tick knew."""
         self.circumstances.step(now_s, measured, good)
         self._judge.hear(measured)
@@ -39,13 +39,15 @@ class Watch:
         start_s, due_s = now_s - p.age_s, now_s + p.horizon_s
         self._waiting[h].append(Foretold(start_s, now_s, due_s, p.state, known, p.region))
 
-    def _due(self, h: float, waiting: deque[Foretold], now_s: float) -> list[tuple[float, Judged]]:
+    def _due(
+        self, h: float, waiting: deque[Foretold], now_s: float
+    ) -> list[tuple[float, VerifiedPrediction]]:
         found = []
         while waiting:
             judged = self._judge.ask(waiting[0], now_s, self.circumstances.moved_s)
             if judged is False:
                 break
             waiting.popleft()
-            if isinstance(judged, Judged):
+            if isinstance(judged, VerifiedPrediction):
                 found.append((h, judged))
         return found

@@ -30,7 +30,7 @@ class Foretold(NamedTuple):
     region: Region | None = None
 
 
-class Judged(NamedTuple):
+class VerifiedPrediction(NamedTuple):
     """One that came due: its error along and across the predicted track [m] and in heading [rad], and whether
     helm and engine were held."""
 
@@ -85,7 +85,7 @@ class Judge:
         if "psi" in fresh and "psi" in si and "psi" not in measured.derived:
             self._heading.add(measured.time["psi"], (si["psi"],))
 
-    def ask(self, f: Foretold, now_s: float, moved_s: float) -> Judged | bool | None:
+    def ask(self, f: Foretold, now_s: float, moved_s: float) -> VerifiedPrediction | bool | None:
         """The judgement; False while it has to wait, None where no instrument showed that moment. `moved_s`:
         when helm or engine last moved."""
         if now_s < f.due_s:
@@ -96,7 +96,7 @@ class Judge:
         if place is None or heading is None:
             return None
         along, across = along_and_across(f.state, place)
-        return Judged(f, along, across, turn(f.state[2] - heading[0]), moved_s <= f.start_s)
+        return VerifiedPrediction(f, along, across, turn(f.state[2] - heading[0]), moved_s <= f.start_s)
 
 
 def course(state: tuple[float, ...]) -> float:

@@ -18,7 +18,7 @@ from twin.live.observer.estimate import Estimate
 from twin.live.observer.predict import Prediction, Region, usual_error
 from twin.live.prediction.calibrated import TARGETS, RegionTable, calibrated_of
 from twin.live.prediction.circumstances import Circumstances
-from twin.live.prediction.judge import Foretold, Judge, Judged, course
+from twin.live.prediction.judge import Foretold, Judge, VerifiedPrediction, course
 from twin.live.signals.measured import Measured
 from twin.physics.ship import Ship
 
@@ -105,7 +105,7 @@ class PredictionTube:
             if judged is False:
                 continue
             del self._waiting[h]
-            if isinstance(judged, Judged) and judged.held:
+            if isinstance(judged, VerifiedPrediction) and judged.held:
                 self._correct(h, inside(judged))
 
     def _correct(self, h: float, kept: tuple[bool, bool]) -> None:
@@ -117,7 +117,7 @@ class PredictionTube:
             self._a[h, target] = min(max(a, a_0 / 3.0), 2.0 * a_0)
 
 
-def inside(judged: Judged) -> tuple[bool, bool]:
+def inside(judged: VerifiedPrediction) -> tuple[bool, bool]:
     """Whether place and heading were inside the region that was said."""
     r = judged.foretold.region
     assert r is not None

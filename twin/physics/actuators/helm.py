@@ -12,7 +12,7 @@ from .kinds import SPAN_US, STOP_US
 FULL = 35.0 * pi / 180.0  # helm at which thrusters that cannot turn give all and nothing
 
 
-def told(ship: Ship, helm: Number, power: Number) -> dict[str, Number]:
+def actuator_orders(ship: Ship, helm: Number, power: Number) -> dict[str, Number]:
     """`name.attribute` -> value of every actuator. `helm` [rad] is positive to starboard; `power` is a share
     of full (of the turns that drive the ship at service speed where turns are recorded).
 

@@ -8,7 +8,7 @@ from twin.physics.maths import cos, positive, sin
 from twin.physics.ship_like import ShipLike
 from twin.physics.state import Number
 
-Told = Mapping[str, Number]
+Orders = Mapping[str, Number]
 STOP_US, SPAN_US = 1500.0, 400.0  # a controller's pulse at stop, and from there to full
 
 
@@ -94,13 +94,13 @@ class OneActuator(Protocol):
 class Kind(NamedTuple):
     """`needs`: attributes that must be recorded beside one that says how hard it pushes."""
 
-    force: Callable[[OneActuator, Told, Number, Number, Number, ShipLike], core.Tau]
+    force: Callable[[OneActuator, Orders, Number, Number, Number, ShipLike], core.Tau]
     needs: tuple[str, ...]
     may: tuple[str, ...]
     doc: str
 
 
-def push(a: OneActuator, told: Told, u_a: Number, ship: ShipLike) -> Number:
+def push(a: OneActuator, told: Orders, u_a: Number, ship: ShipLike) -> Number:
     """Thrust [N] along the actuator's own axis, with the water running along it at u_a [m/s]."""
     has = a.keys
     if "thrust" in has:
@@ -146,12 +146,12 @@ def _at(a: OneActuator, X: Number, Y: Number) -> core.Tau:
     return X, Y, a.x * Y - a.y * X
 
 
-def fixed(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+def fixed(a: OneActuator, told: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """Its thrust pushes ahead, wherever it stands."""
     return _at(a, push(a, told, u - a.y * r, ship), 0.0)
 
 
-def azimuth(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+def azimuth(a: OneActuator, told: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """Its angle is where the thrust pushes the ship to: 0 ahead, positive to starboard."""
     angle = told[a.keys["angle"]] + a.trim
     c, s = cos(angle), sin(angle)
@@ -159,7 +159,7 @@ def azimuth(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: S
     return _at(a, T * c, T * s)
 
 
-def steered(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+def steered(a: OneActuator, told: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """Its angle is counted like a rudder's: positive turns the ship to starboard when the jet is astern."""
     angle = told[a.keys["angle"]] + a.trim
     c, s = cos(angle), sin(angle)
@@ -167,13 +167,13 @@ def steered(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: S
     return _at(a, T * c, -T * s)
 
 
-def tunnel(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+def tunnel(a: OneActuator, told: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """Pushes to starboard when told to go ahead, the less the faster the ship: half of it at U_half."""
     share = 1.0 if a.U_half is None else 1.0 / (1.0 + (u / a.U_half) ** 2)
     return _at(a, 0.0, share * push(a, told, v + a.x * r, ship))
 
 
-def propeller(a: OneActuator, told: Told, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
+def propeller(a: OneActuator, told: Orders, u: Number, v: Number, r: Number, ship: ShipLike) -> core.Tau:
     """As the ship's own propeller and rudder, with the hull's wake and thrust deduction."""
     c, along = a.coefficients(ship), u - a.y * r
     T = push(a, told, c.wake_share * along, ship)

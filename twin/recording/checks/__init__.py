@@ -15,7 +15,7 @@ from twin.recording.checks.channel_samples import frozen, missing_samples, plaus
 from twin.recording.checks.check_result import Check
 from twin.recording.checks.compass import compass
 from twin.recording.checks.copies import copies
-from twin.recording.checks.joint_checks import judged
+from twin.recording.checks.joint_checks import joint_answers
 from twin.recording.checks.motion import velocity_frame
 from twin.recording.checks.propeller import propeller_rate
 from twin.recording.checks.rudder import rudder_sign, rudder_unit
@@ -78,4 +78,4 @@ def run_checks(voyage: Voyage, ship: Ship | None = None) -> list[Check]:
 
     When what disagrees has one explanation, it is the answer of the check that it belongs to, and the others
     are asked again on the voyage without that mistake."""
-    return judged(VoyageView(voyage, ship), CHECKS)
+    return joint_answers(VoyageView(voyage, ship), CHECKS)

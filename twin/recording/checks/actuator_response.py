@@ -17,7 +17,7 @@ from twin.physics.actuators.actuator_channels import DRIVES
 from twin.physics.ship import Ship
 from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good, wrong
 from twin.recording.checks.voyage_view import VoyageView
-from twin.recording.checks.wirings import RIGHT, Told, Wiring, stop, wirings
+from twin.recording.checks.wirings import RIGHT, OrderArrays, Wiring, stop, wirings
 
 AXES = ("surge", "sway", "yaw")
 LENGTHS = (3, 6, 12, 24, 48)  # of windows, in steps of STEP_S at least
@@ -63,10 +63,10 @@ def actuators(view: VoyageView) -> Check:
     best = max(tried, key=lambda t: t.total - RIVAL * max(t.wiring.mistakes - 1, 0))
     if best is as_is or best.total - as_is.total < RIVAL or not _better(best, as_is, HINT):
         return good(name, f"thrust explains {_shares(as_is)}, as the ship file has its actuators.")
-    return _judged(name, best, as_is, tried)
+    return _answer(name, best, as_is, tried)
 
 
-def _judged(name: str, best: TriedWiring, as_is: TriedWiring, tried: list[TriedWiring]) -> Check:
+def _answer(name: str, best: TriedWiring, as_is: TriedWiring, tried: list[TriedWiring]) -> Check:
     rivals = [t for t in tried if t.wiring.mistakes <= best.wiring.mistakes and not _alike(t, best)]
     rival = max(rivals, key=lambda t: t.total)
     saw = (
@@ -127,7 +127,7 @@ def _columns(view: VoyageView, ship: Ship, motion: np.ndarray, wiring: Wiring) -
     return np.stack(out, axis=2)
 
 
-def _ahead(a: Actuator, told: Told) -> np.ndarray:
+def _ahead(a: Actuator, told: OrderArrays) -> np.ndarray:
     """(N,) whether it is told to push ahead."""
     drive = next(n for n in a.attributes if n in DRIVES)
     return np.asarray(told[f"{a.name}.{drive}"] > stop(a, drive))

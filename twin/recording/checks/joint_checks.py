@@ -37,7 +37,7 @@ WITNESSES: dict[str, tuple[str, ...]] = {
 Checks = Sequence[Callable[[VoyageView], Check]]
 
 
-def judged(view: VoyageView, checks: Checks) -> list[Check]:
+def joint_answers(view: VoyageView, checks: Checks) -> list[Check]:
     """The answers in the table's order."""
     answers = {check.__name__: check(view) for check in checks}
     named, without = named_mistakes(view, answers)

@@ -15,7 +15,7 @@ from twin.physics.actuators.kinds import SPAN_US, STOP_US
 from twin.physics.ship import Ship
 from twin.recording.checks.check_result import Check, cannot_tell, doubtful, good
 from twin.recording.checks.voyage_view import VoyageView
-from twin.recording.checks.wirings import Told
+from twin.recording.checks.wirings import OrderArrays
 
 LONG_S = 8.0  # told the same for so long, and so many ship lengths at service speed
 LENGTHS = 10.0
@@ -47,7 +47,9 @@ def actuator_zero(view: VoyageView) -> Check:
     )
     if driven < DRIVEN * max(speed, STILL * float(ship.U_0) / DRIVEN):
         return good(name, f"{saw}, at which the ship file has it stand still.")
-    zeros = ", ".join(f"{num(_share_told(a, told[a.name]), 3)} for {a.name}" for a in parts if pushed[a.name])
+    zeros = ", ".join(
+        f"{num(_share_ordered(a, told[a.name]), 3)} for {a.name}" for a in parts if pushed[a.name]
+    )
     return doubtful(
         name,
         f"{saw}; by its ship file that would drive it at {num(driven, 2)} m/s or more: that is their stop. "
@@ -63,13 +65,13 @@ def _channel(a: Actuator) -> str:
     return dict(zip(a.attributes, a.columns(), strict=True))[_drive(a)]
 
 
-def _share_told(a: Actuator, told: float) -> float:
+def _share_ordered(a: Actuator, told: float) -> float:
     return (told - STOP_US) / SPAN_US if _drive(a) == "pwm" else told
 
 
 def _share(a: Actuator, told: float) -> float:
     """Share of its thrust ahead that it gives at rest, by its bollard curve; with the sign of its push."""
-    c = _share_told(a, told) - float(a.zero)
+    c = _share_ordered(a, told) - float(a.zero)
     e = max(abs(c) - float(a.dead), 0.0) / (1.0 - float(a.dead))
     full = 1.0 if c > 0.0 else float(a.astern) / float(a.ahead)
     return float(np.sign(c)) * full * float(a.linear + (1.0 - a.linear) * e) * e
@@ -77,7 +79,7 @@ def _share(a: Actuator, told: float) -> float:
 
 def _rests(view: VoyageView, ship: Ship, parts: tuple[Actuator, ...]) -> list[tuple[int, int]]:
     """From where to where it lay still, all of them told the same."""
-    told: Told = {a.name: view.si(_channel(a)) for a in parts}
+    told: OrderArrays = {a.name: view.si(_channel(a)) for a in parts}
     still = (np.abs(view.velocity) < STILL * float(ship.U_0)) & (
         np.abs(view.si("yaw_rate_degps")) < STILL * float(ship.U_0) / float(ship.L_pp)
     )

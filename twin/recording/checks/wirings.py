@@ -16,8 +16,8 @@ from twin.physics.actuators import Actuator
 from twin.physics.actuators.actuator_channels import DRIVES
 from twin.physics.actuators.kinds import SPAN_US, STOP_US
 
-Told = Mapping[str, np.ndarray]
-Undo = Callable[[Told], Told]
+OrderArrays = Mapping[str, np.ndarray]
+Undo = Callable[[OrderArrays], OrderArrays]
 RIGHT = "as recorded"
 # what an angle may be counted as: (words, true angle of the recorded one, what the map needs)
 ANGLES: tuple[tuple[str, Callable[[np.ndarray], np.ndarray], str], ...] = (
@@ -65,7 +65,7 @@ def _exchanged(actuators: Sequence[Actuator]) -> Iterator[Wiring]:
             other = dict(pairs) | {q: p for p, q in pairs}
             columns = ", ".join(f"{p} with {q}" for p, q in zip(a.columns(), b.columns(), strict=True))
 
-            def undo(told: Told, other: dict[str, str] = other) -> Told:
+            def undo(told: OrderArrays, other: dict[str, str] = other) -> OrderArrays:
                 return {name: told[other.get(name, name)] for name in told}
 
             yield Wiring(f"{a.name} and {b.name} are exchanged", undo, f"exchange the columns of {columns}")
@@ -81,7 +81,7 @@ def _reversed(actuators: Sequence[Actuator]) -> Iterator[Wiring]:
 def _reverse(parts: tuple[Actuator, ...], text: str) -> Wiring:
     drives = [(a, n, c) for a in parts for n, c in zip(a.attributes, a.channels, strict=True) if n in DRIVES]
 
-    def undo(told: Told) -> Told:
+    def undo(told: OrderArrays) -> OrderArrays:
         return dict(told) | {f"{a.name}.{n}": 2.0 * stop(a, n) - told[f"{a.name}.{n}"] for a, n, _ in drives}
 
     fixes = []
@@ -107,10 +107,10 @@ def _turned(actuators: Sequence[Actuator]) -> Iterator[Wiring]:
         for words, turn, fix in ANGLES:
 
             def undo(
-                told: Told,
+                told: OrderArrays,
                 parts: tuple[Actuator, ...] = parts,
                 turn: Callable[[np.ndarray], np.ndarray] = turn,
-            ) -> Told:
+            ) -> OrderArrays:
                 return dict(told) | {f"{a.name}.angle": turn(told[f"{a.name}.angle"]) for a in parts}
 
             yield Wiring(f"{who} {words}", undo, f"{fix} for {columns}")

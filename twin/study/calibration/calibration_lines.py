@@ -5,11 +5,11 @@ from typing import Any
 from twin.num import as_given, num
 from twin.recording.checks import losses
 from twin.study.calibration.core_fit import PARTS
-from twin.study.estimation.start import told_of_waves
+from twin.study.estimation.start import waves_in_words
 from twin.study.reference.weather_baseline import HARDER
 
 
-def told(result: dict[str, Any]) -> list[str]:
+def terminal_lines(result: dict[str, Any]) -> list[str]:
     """Lines for the terminal: the error first."""
     lines = [f"{result['ship']}: open-loop error on what was not used for the fit ({result['held_out_is']})"]
     for e in result["held_out"]:
@@ -59,7 +59,7 @@ def told(result: dict[str, Any]) -> list[str]:
         "is allowed for and not called missing"
         for name in result["too_faint"]
     ]
-    lines += [f"  {text}" for text in told_of_waves(result["waves"])]
+    lines += [f"  {text}" for text in waves_in_words(result["waves"])]
     share = ", ".join(f"{num(100 * s, 2)} %" for s in result["floor"]["share"])
     lines += ["", f"what remains unexplained of the forces at work, in surge, sway, yaw: {share}"]
     lines += [

@@ -13,9 +13,9 @@ from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.calibration.held_out import HeldOut, by_regime, errors, size
 from twin.study.calibration.own_instruments import own_instruments
-from twin.study.calibration.parts import clearly, placed, with_or_without_wind
+from twin.study.calibration.parts import placed, significant, with_or_without_wind
 from twin.study.calibration.rollout import rolled_out
-from twin.study.calibration.usual import clearly_there, usual
+from twin.study.calibration.usual import significantly_there, usual
 from twin.study.estimation.columns import core_unknowns
 from twin.study.estimation.fit import Fit, fit
 from twin.study.estimation.innovations import NoiseModel
@@ -23,8 +23,8 @@ from twin.study.estimation.start import waves_on
 from twin.study.reference.derivatives import (
     Derivative,
     first_prior,
+    informed_by,
     noted,
-    told_by,
     with_core_of,
     with_derivatives,
 )
@@ -32,7 +32,7 @@ from twin.study.reference.nuisance import TEMPER, instruments, temper_of
 from twin.study.reference.sailed import Sailed
 from twin.study.reference.seaway import levelled, swung
 from twin.study.reference.steering_gear import gears_of, with_or_without_gear
-from twin.study.reference.structure import structural_floor
+from twin.study.reference.structure import structural_noise
 from twin.study.reference.weather_baseline import FAINT
 from twin.study.track.track import Track
 
@@ -153,14 +153,16 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     rough = with_or_without_wind(tracks, rough, known, TEMPER)
     unknowns = rough.unknowns
     progress("estimating the noise model")
-    floor, temper = structural_floor(rough.lines, unknowns), temper_of(rough.normal, unknowns)
+    floor, temper = structural_noise(rough.lines, unknowns), temper_of(rough.normal, unknowns)
     progress("fitting again with this noise model")
     found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, smooth=True)
     asked = tuple(e for e in found.model.effects if type(e) in asked_for(ship))
     kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
     parts = {e.__name__: e for e in (*asked_for(ship), *PARTS.values())}
     numbers = {name: _numbers(found, name, e.with_core) for name, e in parts.items()}
-    return Core(tracks, found.model, told_by(found), (*kept, *asked), numbers, clearly(found), floor, temper)
+    return Core(
+        tracks, found.model, informed_by(found), (*kept, *asked), numbers, significant(found), floor, temper
+    )
 
 
 def _numbers(found: Fit, owner: str, why: str) -> dict[str, dict[str, Any]]:
@@ -223,7 +225,7 @@ def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str,
         "actuator_lags": {name: n for name in lags if (n := _said(name, after, core))},
         "waves": waves_on(core.tracks),
         "too_faint": [name for name, felt in lasting_ones["weather"].items() if felt > FAINT],
-        "usual": clearly_there(after, lasting_ones),
+        "usual": significantly_there(after, lasting_ones),
         "between_voyages": lasting_ones["between_voyages"],
         "floor": asdict(core.floor),
         "temper": core.temper,

@@ -14,7 +14,7 @@ LARGE = 0.25  # share of the forces at work that is much to leave unexplained
 # widths of its prior by which an effect's number may differ between healthy voyages and still be seen
 BLIND = 1.0
 STRAIGHTENS = {"gamma_v": 1.0, "gamma_r": -1.0}  # the sign that a hull gives them
-CLEARLY = 3.0  # standard errors
+WRONG_SIGN_SE = 3.0  # standard errors
 AXES = ("surge", "sway", "yaw")
 
 
@@ -60,7 +60,7 @@ def _backwards(derivatives: Sequence[Mapping[str, Any]]) -> list[str]:
     wrong = [
         f"{d['name']} {num(d['value'], 2)}"
         for d in flow
-        if STRAIGHTENS[d["name"]] * d["value"] < -CLEARLY * d["sd"]
+        if STRAIGHTENS[d["name"]] * d["value"] < -WRONG_SIGN_SE * d["sd"]
     ]
     if not wrong:
         return []

@@ -14,8 +14,8 @@ from twin.errors import DataError, SettingsError
 from twin.physics.effects import find
 from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
-from twin.study.calibration.usual import CLEAR
-from twin.study.instruments.corrections import told_by_readings, with_numbers
+from twin.study.calibration.usual import LASTING_SE
+from twin.study.instruments.corrections import effects_of_readings, with_numbers
 from twin.study.instruments.findings import UNINFORMATIVE
 from twin.study.instruments.instrument_samples import Readings, ReadingSamples, of_voyage
 from twin.study.instruments.on_references import NOTE, KinematicRecord, OnReferences, on_references
@@ -45,7 +45,7 @@ def own_instruments(
     except DataError:
         return OwnInstruments(_without_record(ship), None, {})
     written: dict[str, dict[str, dict[str, Any]]] = {}
-    known = told_by_readings()
+    known = effects_of_readings()
     for fault in established(asked):
         names = [UNKNOWNS[i].name for i in members(fault)]
         usual = {n: asked.record.numbers[n] for n in names if n in asked.record.numbers and n in known}
@@ -69,8 +69,8 @@ def own_instruments(
 def established(asked: OnReferences) -> list[str]:
     """Faults that a ship file may hold as the ship's own: seen on all references together, told by three at
     least, and clear of none on the next voyage too, by the scatter between them."""
-    clear = [f for f, far in asked.clear.items() if far > CLEAR and _of_kinematics(f)]
-    return [f for f in clear if _told(asked, f) >= FEWEST]
+    clear = [f for f, far in asked.clear.items() if far > LASTING_SE and _of_kinematics(f)]
+    return [f for f in clear if _voyages_known(asked, f) >= FEWEST]
 
 
 def _of_kinematics(fault: str) -> bool:
@@ -79,7 +79,7 @@ def _of_kinematics(fault: str) -> bool:
     return name is not None and (fault == AGE or find(name).kinematic)
 
 
-def _told(asked: OnReferences, fault: str) -> int:
+def _voyages_known(asked: OnReferences, fault: str) -> int:
     """On how many voyages one of its numbers is known."""
     width = dict(zip((u.name for u in UNKNOWNS), asked.found.fit.prior(), strict=True))
     names = [UNKNOWNS[i].name for i in members(fault)]

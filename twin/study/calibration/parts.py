@@ -16,11 +16,11 @@ from twin.study.calibration.held_out import HeldOut, errors, size
 from twin.study.estimation.columns import effect_unknowns
 from twin.study.estimation.fit import Catalogue, Fit, fit
 from twin.study.estimation.innovations import NoiseModel
-from twin.study.reference.steering_gear import CLEAR as CLEARLY_BETTER
+from twin.study.reference.steering_gear import GEAR_LOG_BAYES as CLEARLY_BETTER
 from twin.study.reference.weather_baseline import strengths
 from twin.study.track.track import Track
 
-CLEAR = 4.0  # standard errors
+MOVED_SE = 4.0  # standard errors
 BETTER = 0.05  # share by which predictions of what was not used for the fit must be better with it
 # of the standard acceleration, by a plausible wind: what a fainter one seems to do is its own way through the
 # air, and no wind's
@@ -39,7 +39,7 @@ def with_or_without_wind(tracks: Sequence[Track], without: Fit, known: Catalogue
     return found if found.cost < without.cost - 2.0 * CLEARLY_BETTER else without
 
 
-def clearly(found: Fit) -> Effect | None:
+def significant(found: Fit) -> Effect | None:
     """Where the antenna was found, if that is clearly not where the fit began."""
     antenna = of_role("antenna")
     numbers = [
@@ -47,7 +47,7 @@ def clearly(found: Fit) -> Effect | None:
         for u, v, sd in zip(found.unknowns, found.value, found.sd, strict=True)
         if u.owner == antenna.__name__
     ]
-    if not any(abs(v - u.centre) > CLEAR * sd for u, v, sd in numbers):
+    if not any(abs(v - u.centre) > MOVED_SE * sd for u, v, sd in numbers):
         return None
     return antenna(**{u.name: float(v) for u, v, _ in numbers})
 

@@ -19,11 +19,11 @@ from twin.study.reference.derivatives import first_prior
 from twin.study.reference.healthy import left_out_scores
 from twin.study.reference.nuisance import known_from, nuisance_unknowns, temper_of, usual_unknowns
 from twin.study.reference.sailed import fed
-from twin.study.reference.structure import floor_beside
+from twin.study.reference.structure import structural_noise_beside
 from twin.study.reference.weather_baseline import strengths
 from twin.study.track.track import Track
 
-CLEAR = 4.0  # standard errors
+LASTING_SE = 4.0  # standard errors
 
 
 def usual(ship: Ship, tracks: Sequence[Track], floor: NoiseModel) -> dict[str, Any]:
@@ -32,7 +32,7 @@ def usual(ship: Ship, tracks: Sequence[Track], floor: NoiseModel) -> dict[str, A
     model, known = Model.of(ship), of_ship(ship)
     unknowns = usual_unknowns(model, known)
     lines = [linearise(t, fed(model, t)[0], unknowns, known) for t in tracks]
-    beside = floor_beside(lines, unknowns, floor)
+    beside = structural_noise_beside(lines, unknowns, floor)
     temper = temper_of(innovate(lines, [beside])[0], unknowns)
     centres = np.array([first_prior(u, ship).centre for u in unknowns])
     references = known_from(lines, unknowns, beside, temper, centres)
@@ -77,7 +77,7 @@ def path_errors(
     return found.entry() if found else {}
 
 
-def clearly_there(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
+def significantly_there(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
     """What this ship clearly shows of lasting effects: not wrong, but part of it. What no ship can show (a
     rudder ahead of its order) stands in for something else, and is allowed for without being told."""
     of = {u.label: u for u in nuisance_unknowns(Model.of(ship), of_ship(ship))}
@@ -87,6 +87,6 @@ def clearly_there(ship: Ship, found: dict[str, Any]) -> list[dict[str, Any]]:
         {"name": label, "value": float(v), "sd": float(s), "unit": of[label].unit}
         for label, v, s in zip(found["labels"], found["offset"], sd, strict=True)
         if not label.startswith(("core.", "form."))
-        and abs(v) > CLEAR * s
+        and abs(v) > LASTING_SE * s
         and can[label][0] <= v <= can[label][1]
     ]

@@ -36,7 +36,7 @@ from twin.study.reference.nuisance import (
 )
 from twin.study.reference.reading import read_lines
 from twin.study.reference.seaway import swung
-from twin.study.reference.structure import floor_beside, floor_of, structural_floor
+from twin.study.reference.structure import noise_model_of, structural_noise, structural_noise_beside
 from twin.study.reference.weather_baseline import as_usual, strengths
 from twin.study.track.excitation import manoeuvred
 from twin.study.track.track import Track, track
@@ -79,16 +79,16 @@ def of_tracks(
     core = [u for u in (*nuisance, *rough) if u.owner in ("core", FORM, SEA, ROUGH)]
     extra = [u for u in lasting(model, catalogue) if u.owner not in candidates]
     unknowns = (*core, *effects, *extra, *lateness_unknowns())
-    path = floor_of(ship) or NoiseModel()
-    floor, temper = floor_of(ship, "beside") or path, _temper(ship)
+    path = noise_model_of(ship) or NoiseModel()
+    floor, temper = noise_model_of(ship, "beside") or path, _temper(ship)
     if references:
         progress("reading the reference voyages")
         usual = usual_unknowns(model, catalogue)
         lines = read_lines([swung(track(v, ship), model) for v in references], model, usual, catalogue)
-        if floor_of(ship) is None:
+        if noise_model_of(ship) is None:
             progress("estimating the noise model")
-            path = structural_floor(_of_core(lines, usual), core_unknowns(model))
-            floor = floor_beside(lines, usual, path)
+            path = structural_noise(_of_core(lines, usual), core_unknowns(model))
+            floor = structural_noise_beside(lines, usual, path)
         temper = temper_of(innovate(lines, [floor])[0], usual)
         known, _ = from_references(lines, usual, floor, temper)
     else:

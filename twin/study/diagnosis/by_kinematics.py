@@ -23,7 +23,7 @@ from twin.study.diagnosis.criteria import CLEAR, SIGNIFICANT
 from twin.study.diagnosis.refine import Found
 from twin.study.estimation.columns import lateness_unknowns
 from twin.study.instruments.by_voyage import equations
-from twin.study.instruments.corrections import told_by_readings
+from twin.study.instruments.corrections import effects_of_readings
 from twin.study.instruments.findings import CLOCKS, Instruments
 from twin.study.instruments.instrument_estimate import estimate
 from twin.study.instruments.on_references import KinematicRecord
@@ -75,7 +75,7 @@ def kinematics(voyages: Sequence[Voyage], ship: Ship) -> AskedKinematics | None:
     return AskedKinematics(found, record)
 
 
-def asked_for(case: Case, asked: AskedKinematics) -> tuple[type[Effect], ...]:
+def suspected_instruments(case: Case, asked: AskedKinematics) -> tuple[type[Effect], ...]:
     """Effects of instruments that kinematics alone ask for on these voyages, and that are no candidates yet:
     clearly other than on the reference voyages, or where nothing is known of these, than is usual."""
     catalogue = of_ship(case.model.ship)
@@ -121,7 +121,7 @@ def reached(case: Case, found: Found, name: str, asked: AskedKinematics) -> floa
     """
     if asked.record is None:
         return None
-    factor, mine, theirs, known = 0.0, 0.0, dict[str, float](), told_by_readings()
+    factor, mine, theirs, known = 0.0, 0.0, dict[str, float](), effects_of_readings()
     for number in asked.comparable:
         effect, usual = known.get(number), asked.record.numbers[number]
         if effect is None or effect.__name__ != name or len(usual.distances) < 2:

@@ -18,7 +18,7 @@ from twin.study.diagnosis.facts import Cause, Facts
 
 LEAST_ODDS = 1e-3  # probability that is as good as none, and that short of one
 MOST = 30.0  # standard deviations of a number from none, beyond which there is no more to say
-TOLD = (0.05, 0.95)  # what a few hundred answers can show
+PROBABILITY_LIMITS = (0.05, 0.95)  # what a few hundred answers can show
 
 
 def _log_odds(f: Facts, c: Cause) -> float:
@@ -48,5 +48,5 @@ def confidence(f: Facts, c: Cause) -> float | None:
     if not c.in_explanation:
         return None
     s = CONSTANT + sum(WEIGHTS[name] * fact(f, c) for name, fact in FACTS.items())
-    low, high = TOLD
+    low, high = PROBABILITY_LIMITS
     return min(max(1.0 / (1.0 + exp(-s)), low), high)

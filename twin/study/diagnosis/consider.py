@@ -8,19 +8,19 @@ import numpy as np
 
 from twin.study.diagnosis.by_kinematics import AskedKinematics, reached
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.diagnosis.clear import change, significance
 from twin.study.diagnosis.criteria import CLEAR, SURE
 from twin.study.diagnosis.decision import explained
 from twin.study.diagnosis.facts import Cause, Facts, Left
 from twin.study.diagnosis.moments import Moment, moments
 from twin.study.diagnosis.open_loop_check import roughly
 from twin.study.diagnosis.refine import Found, Sets
+from twin.study.diagnosis.significance import change, significance
 from twin.study.diagnosis.verdict import Weights, alike, group, of_the_sea, one_of, power
 from twin.study.estimation.start import wave_period_s
 from twin.study.reference.evidence import Hypothesis
 from twin.study.reference.healthy import Healthy, compared, score
 from twin.study.reference.seaway import at_sea
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 
 NO_GAP = 1e3  # log Bayes factor written where there is nothing to compare with
 
@@ -97,7 +97,7 @@ def against_healthy(case: Case) -> Healthy | None:
     """How rare these voyages would be on this ship in health, by its reference voyages
     (reference/healthy.py)."""
     scores = case.model.ship.notes.get("structural", {}).get("left_out_scores", [])
-    floor = floor_of(case.model.ship, "beside")
+    floor = noise_model_of(case.model.ship, "beside")
     if not scores or floor is None:
         return None
     causes = [n for n in case.causes(case.candidates) if n not in case.unnamed]

@@ -14,7 +14,7 @@ from twin.recording.jsonable import plain
 from twin.recording.voyage import Voyage
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.assemble import assemble, of_tracks, unjudged_because
-from twin.study.diagnosis.by_kinematics import asked_for, instrument_suspected, kinematics
+from twin.study.diagnosis.by_kinematics import instrument_suspected, kinematics, suspected_instruments
 from twin.study.diagnosis.case import SCENARIOS, Case
 from twin.study.diagnosis.confidence import confidence
 from twin.study.diagnosis.consider import Considered, consider
@@ -64,7 +64,7 @@ def diagnose(
     if instrument_suspected(case, w.best.effects):
         progress("checking the instruments against each other, without the ship model")
         asked = kinematics(voyages, ship)
-        if asked and (wanted := asked_for(case, asked)):
+        if asked and (wanted := suspected_instruments(case, asked)):
             case = of_tracks(case.tracks, ship, references, progress, wanted)
             weighed, found, seen = search(case, progress)
             w = weights(case, weighed, found)
@@ -115,7 +115,7 @@ def diagnose(
             "error_floor": base.expected_error_m,
         },
         "next_manoeuvre": _next(case, found, decision.verdict, decision.missing, listed, visible, progress),
-        "not_judged": _not_judged(case),
+        "not_judged": _not_possible(case),
         "weather": [
             _weather(case, weighed, found, name, share) for name, share in w.weather.items() if share >= SOME
         ],
@@ -259,7 +259,7 @@ def _next(
     return next_manoeuvre(case, case.model, *rivals, z)
 
 
-def _not_judged(case: Case) -> list[dict[str, Any]]:
+def _not_possible(case: Case) -> list[dict[str, Any]]:
     """Effects that could not be judged, and for want of which columns or particulars."""
     return [
         {

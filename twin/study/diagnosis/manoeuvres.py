@@ -121,11 +121,11 @@ def sail(case: Case, model: Model, order: Order) -> Track:
         measured,
         like.sd,
         np.ones(steps, bool),
-        told=_told(model, orders) if parts else None,
+        told=_orders(model, orders) if parts else None,
     )
 
 
-def _told(model: Model, orders: np.ndarray) -> dict[str, np.ndarray]:
+def _orders(model: Model, orders: np.ndarray) -> dict[str, np.ndarray]:
     """What the actuators were told, (N,) each."""
     each = controls(model, orders[:, 0], orders[:, 1])["told"]  # type: ignore[arg-type]
     return {name: np.broadcast_to(x, len(orders)).astype(float) for name, x in each.items()}

@@ -25,7 +25,7 @@ from twin.study.reference.evidence import likeliest
 from twin.study.track.segments import segments
 
 LENGTHS = (1.0, 2.0, 4.0)  # of a stretch, in ship lengths; each begins half-way through the one before
-CLEAR = 15.0  # log evidence, tempered, that a push of its own must add
+PUSH_LOG_BAYES = 15.0  # log evidence, tempered, that a push of its own must add
 IN_WAVES = 30.0  # and where waves toss it: a group of them pushes, too
 SWELL_S = 25.0  # the longest waves; what swings it more slowly may be what is asked for
 
@@ -59,7 +59,7 @@ def moments(case: Case, found: Found) -> list[Moment]:
     """The stretches that clearly had a push of their own under a hypothesis, the likeliest first; none that
     overlaps a likelier one."""
     out: list[Moment] = []
-    enough = {t.name: IN_WAVES if 0.0 < wave_period_s(t) < SWELL_S else CLEAR for t in case.tracks}
+    enough = {t.name: IN_WAVES if 0.0 < wave_period_s(t) < SWELL_S else PUSH_LOG_BAYES for t in case.tracks}
     for m in sorted(stretches(case, found), key=lambda m: -m.log_evidence):
         if m.log_evidence > enough[m.voyage] and not any(
             m.voyage == o.voyage and m.start_s < o.end_s and o.start_s < m.end_s for o in out
@@ -77,7 +77,7 @@ def stretches(case: Case, found: Found) -> list[Moment]:
         normal, case.nuisance, case.unknowns, case.effects, case.temper, at, found.hypothesis.effects
     )
     known = [_in_one(line, theta) for line in lines]
-    return [m for lengths in LENGTHS for m in _asked(case, known, floor, lengths)]
+    return [m for lengths in LENGTHS for m in _tried(case, known, floor, lengths)]
 
 
 def _in_one(line: Linear, theta: np.ndarray) -> Linear:
@@ -86,7 +86,7 @@ def _in_one(line: Linear, theta: np.ndarray) -> Linear:
     return replace(line, A=line.A @ theta[:, None], R=line.R @ theta[:, None], turns=turns)
 
 
-def _asked(case: Case, lines: Sequence[Linear], floor: NoiseModel, lengths: float) -> list[Moment]:
+def _tried(case: Case, lines: Sequence[Linear], floor: NoiseModel, lengths: float) -> list[Moment]:
     time = float(case.model.ship.scale("time"))
     where = segments([line.track for line in lines], time, MOST_SEGMENTS)
     steps = [max(4, round(lengths * time / line.track.h)) for line in lines]

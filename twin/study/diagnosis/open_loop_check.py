@@ -53,7 +53,7 @@ class OpenLoopCheck:
             self.found.get(h.effects),
             max(m for s, m in self.levered.items() if set(s) <= set(h.effects)),
         )
-        floor = _floor(h, self.floor, self.found[()].open_loop_error_m, self.irregular, levered)
+        floor = _expected_error(h, self.floor, self.found[()].open_loop_error_m, self.irregular, levered)
         error = (
             own.open_loop_error_m
             if own
@@ -118,7 +118,7 @@ def open_loop_check(
         for s, f in found.items()
         if not case.causes(s) or likely[s] > best - REACH
     }
-    floor = before.floor if before else _floors(case)
+    floor = before.floor if before else _expected_errors(case)
     # the floor has the others
     irregular = frozenset(
         name for name in case.candidates if case.catalogue[name].irregular and name not in case.present
@@ -129,13 +129,15 @@ def open_loop_check(
         else _levered(case, found[s].model, set(s) - case.present)
         for s in off
     }
-    ends = {s: _floor(plain(found[s].hypothesis), floor, off[()], irregular, levered[s]) for s in off}
+    ends = {
+        s: _expected_error(plain(found[s].hypothesis), floor, off[()], irregular, levered[s]) for s in off
+    }
     asked = {s: replace(found[s], open_loop_error_m=m, expected_error_m=ends[s]) for s, m in off.items()}
     windows = min(MOST, sum((len(t) - 1) * t.h / horizon_s(t, case.model) for t in case.tracks))
     return OpenLoopCheck(asked, floor, levered, windows, irregular, frozenset(case.weather))
 
 
-def _floors(case: Case) -> dict[str, float]:
+def _expected_errors(case: Case) -> dict[str, float]:
     """[m] by world: what noise and structure alone would make of the path."""
     steps = {
         name: _usual(case, floor)
@@ -161,7 +163,7 @@ def plain(h: Hypothesis) -> Hypothesis:
     )
 
 
-def _floor(
+def _expected_error(
     h: Hypothesis, floor: Mapping[str, float], nothing_m: float, irregular: frozenset[str], levered_m: float
 ) -> float:
     """How far off a true hypothesis may be [m]: nature writes an effect otherwise, so a part of what it does

@@ -18,7 +18,7 @@ from twin.study.reference.evidence import reduce
 
 PARTS = 4  # at most; a part holds whole segments of the filter
 FORM = 0.25  # a share that differs by so much is the form of the effect, not its time
-CLEAR = 4.0  # standard deviations by which two parts must differ
+DIFFERENT_SD = 4.0  # standard deviations by which two parts must differ
 
 
 def over_time(case: Case, found: Found, names: Sequence[str]) -> dict[str, list[dict[str, Any]]]:
@@ -54,4 +54,4 @@ def changes(parts: Sequence[dict[str, Any]]) -> bool:
         return False
     share, sd = (np.array([p[key] for p in parts]) for key in ("share", "sd"))
     apart = np.abs(share[:, None] - share) - FORM
-    return bool((apart > CLEAR * np.hypot(sd[:, None], sd)).any())
+    return bool((apart > DIFFERENT_SD * np.hypot(sd[:, None], sd)).any())

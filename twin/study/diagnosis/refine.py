@@ -74,7 +74,7 @@ def refine(
     whole, _ = case.along(lines)
     doubt = form_share(narrow, chosen, top)
     reduced = _everywhere(whole, chosen, whole.lines, at, doubt, top.near)
-    judged, own = _judged(case, chosen, reduced)
+    judged, own = _refined(case, chosen, reduced)
     best = max(judged, key=lambda h: h.log_weight)
     far = [h for scenario, h in top.judged.items() if scenario not in reduced]
     others = [*_beside(case, chosen, reduced, wider), *_any_day(case, chosen, reduced)]
@@ -147,7 +147,7 @@ class BestPlace:
             lines,
             {
                 h.scenario: h
-                for h in _judged(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0], names))[0]
+                for h in _refined(case, chosen, _everywhere(case, chosen, lines, at, DOUBTS[0], names))[0]
             },
         )
 
@@ -223,7 +223,7 @@ def _everywhere(
     return dict(zip(names, case.reduced(lines, case.scenarios(names, doubt), at), strict=True))
 
 
-def _judged(
+def _refined(
     case: Case, chosen: Sets, reduced: dict[str, Reduced]
 ) -> tuple[list[Hypothesis], dict[str, Posterior]]:
     own = {n: posterior(r, chosen) for n, r in reduced.items()}
@@ -256,7 +256,7 @@ def _any_day(case: Case, chosen: Sets, reduced: dict[str, Reduced]) -> list[Hypo
     today."""
     daily = {u.owner for u in case.effects if u.label in case.nuisance.daily}
     left = [tuple(n for n in chosen if n != name) for name in chosen if name in daily]
-    return [h for rest in left for h in _judged(case, rest, reduced)[0]]
+    return [h for rest in left for h in _refined(case, rest, reduced)[0]]
 
 
 def clipped(case: Case, z: np.ndarray) -> np.ndarray:

@@ -5,12 +5,12 @@ from typing import Any
 from twin.num import as_given, num, percent
 from twin.study.diagnosis import sentences as say
 from twin.study.diagnosis.overtime import changes
-from twin.study.estimation.start import told_of_waves
+from twin.study.estimation.start import waves_in_words
 
 PUSHED = 3  # moments that are told
 
 
-def told(result: dict[str, Any]) -> list[str]:
+def terminal_lines(result: dict[str, Any]) -> list[str]:
     """Lines for the terminal."""
     lines = [result["sentence"], ""]
     lines += [_moment(m) for m in result["moments"][:PUSHED]]
@@ -41,7 +41,7 @@ def told(result: dict[str, Any]) -> list[str]:
         f"{n} was no stronger than on the reference voyages: it is allowed for, and not called missing."
         for n in result["as_on_references"]
     ]
-    lines += told_of_waves(result["waves"])
+    lines += waves_in_words(result["waves"])
     if result["not_visible"]:
         lines.append(
             "Too small to be seen in these voyages, even at a plausible size: "

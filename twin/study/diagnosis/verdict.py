@@ -72,7 +72,7 @@ def weights(case: Case, weighed: Sequence[Hypothesis], found: Mapping[tuple[str,
     nothing = unknown = 0.0
     for h, share in zip(weighed, p, strict=True):
         nameless = _nameless(case, h, alone)
-        chosen = told(case, h.effects) if any(s <= set(h.effects) for s in still) else h.effects
+        chosen = with_steady_stream(case, h.effects) if any(s <= set(h.effects) for s in still) else h.effects
         for name in {*chosen, *restless_water(case, h)}:
             each[name] += float(share)
         unknown += float(share) * nameless
@@ -83,7 +83,7 @@ def weights(case: Case, weighed: Sequence[Hypothesis], found: Mapping[tuple[str,
     )
 
 
-def told(case: Case, effects: Sequence[str]) -> tuple[str, ...]:
+def with_steady_stream(case: Case, effects: Sequence[str]) -> tuple[str, ...]:
     """A set of effects with the steady stream in the place of one that may change."""
     parts = {n: case.catalogue[n].holds for n in effects if case.catalogue[n].is_weather()}
     kept = (n for n in effects if not parts.get(n))

@@ -81,7 +81,7 @@ def core_unknowns(model: Model) -> list[Unknown]:
     """The core's derivatives, with the ship file's own standard errors where it has them."""
     own = model.ship.notes.get("derivatives", {})
     out = []
-    for name, value, m in _told_by_voyages(model.ship):
+    for name, value, m in _learnable(model.ship):
         entry = own.get(name, {})
         sd = entry.get("prior_sd", None) if isinstance(entry, dict) else None
         sd = float(sd) if sd else max(m["sd"], 0.15 * abs(value) if "." not in name else 0.0)
@@ -94,7 +94,7 @@ OF_SCREW = ("K_T0", "K_T1")
 OF_RUDDER = ("kappa", "C_L", "t_R", "a_H", "x_H", "gamma_v", "gamma_r", "gamma_a")
 
 
-def _told_by_voyages(ship: Ship) -> Iterator[tuple[str, float, Mapping[str, Any]]]:
+def _learnable(ship: Ship) -> Iterator[tuple[str, float, Mapping[str, Any]]]:
     """(name, value, declaration) of every number of the core that voyages may tell."""
     rudders = any(a.A_R is not None for a in ship.actuators)
     off = (*OF_SCREW, *(() if rudders else OF_RUDDER)) if ship.actuators else ()

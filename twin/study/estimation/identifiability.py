@@ -59,7 +59,7 @@ def angles(t: Track, model: Model) -> dict[str, dict[str, Any]]:
         own = basis(span)
         rivals = {other: float(principal(own, basis(s))[0]) for other, s in spans.items() if other != name}
         nearest = min(rivals, key=lambda other: rivals[other]) if rivals else None
-        out[name] = _told(own, span, core) | {
+        out[name] = _information(own, span, core) | {
             "nearest": nearest,
             "nearest_deg": rivals[nearest] if nearest else None,
         }
@@ -84,13 +84,13 @@ def residual_angles(
     out = {}
     for i, axis in enumerate(("surge", "sway", "yaw")):
         core = basis(A[:, i])
-        out[axis] = _told(basis(phi), phi, core)
+        out[axis] = _information(basis(phi), phi, core)
         if W is not None:
             out[axis]["force_inside_core"] = _inside(phi @ W[i], core)
     return out
 
 
-def _told(own: np.ndarray, span: np.ndarray, core: np.ndarray) -> dict[str, Any]:
+def _information(own: np.ndarray, span: np.ndarray, core: np.ndarray) -> dict[str, Any]:
     found = principal(own, core)
     return {
         "smallest_deg": float(found[0]),

@@ -70,7 +70,7 @@ def waves_on(tracks: Sequence[Track]) -> list[dict[str, Any]]:
     return [{"voyage": t.name, "period_s": wave_period_s(t)} for t in tracks if t.swell is not None]
 
 
-def told_of_waves(waves: Sequence[dict[str, Any]]) -> list[str]:
+def waves_in_words(waves: Sequence[dict[str, Any]]) -> list[str]:
     """The same in words."""
     said = "predictions begin from the motion without them, and no effect is named for them"
     return [

@@ -57,7 +57,7 @@ def ask(job: Job) -> list[Row]:
     be asked is a row that says why."""
     began = time.process_time()
     try:
-        about, causes = _asked(job)
+        about, causes = _answered(job)
     except TwinError as error:
         return [failed(job, " ".join(str(error).split()), type(error).__name__)]
     about |= {"seconds": time.process_time() - began, "failed": None, "failed_as": None}
@@ -75,7 +75,7 @@ def _about(job: Job) -> Row:
     return {**vars(job), "asked_utc": now, "effect": None, "named": False}
 
 
-def _asked(job: Job) -> tuple[Row, list[Row]]:
+def _answered(job: Job) -> tuple[Row, list[Row]]:
     from twin.physics.model import Model
     from twin.physics.ship import load
     from twin.recording.map_file import read_map
@@ -100,14 +100,14 @@ def _asked(job: Job) -> tuple[Row, list[Row]]:
         return about | {"verdict": "reference", "sentence": "The ship was calibrated on it."}, []
     compared = compare([sailed(voyage, ship)], Model.of(ship)).result
     found = diagnose([voyage], ship).result
-    return about | _told(compared, found), [_cause(c, found) for c in found["candidates"]]
+    return about | _of_voyage(compared, found), [_cause(c, found) for c in found["candidates"]]
 
 
 def _references(ship: Any) -> set[str]:
     return {str(v.get("sha256")) for v in ship.notes["structural"].get("voyages", [])}
 
 
-def _told(compared: Mapping[str, Any], found: Mapping[str, Any]) -> Row:
+def _of_voyage(compared: Mapping[str, Any], found: Mapping[str, Any]) -> Row:
     """What holds for the whole voyage."""
     last = compared["horizons"][-1]
     return {

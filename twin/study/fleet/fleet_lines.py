@@ -13,7 +13,7 @@ WIDEST = 44
 FAILED = 10  # lines of voyages that could not be asked
 
 
-def told(result: Mapping[str, Any]) -> list[str]:
+def terminal_lines(result: Mapping[str, Any]) -> list[str]:
     """The lines of `twin fleet`."""
     v = result["voyages"]
     count = len(result["ships"])

@@ -12,7 +12,7 @@ Answers = list[tuple[FleetShip, list[list[Row]]]]
 
 
 @dataclass(frozen=True)
-class Asked:
+class FleetRows:
     """Rows of each voyage of each ship, and how many of the voyages were asked now."""
 
     answers: Answers
@@ -25,7 +25,7 @@ def run(
     workers: int,
     scheduler: str | None,
     progress: Callable[[str], None],
-) -> Asked:
+) -> FleetRows:
     """Ask what the store does not know, and give the rows of every voyage of the list."""
     jobs = [[job_of(ship, voyage) for voyage in ship.voyages] for ship in ships]
     twice = {job: why for of_ship in jobs for job, why in _twice(of_ship).items()}
@@ -40,7 +40,7 @@ def run(
             progress(f"{i} of {len(todo)}: {one.job.ship}, {rows[0]['voyage']}: {_word(rows)}")
     known = store.rows()
     of = lambda job: twice.get(job) or known.get(key_of(vars(job)), [])  # noqa: E731
-    return Asked([(s, [of(j) for j in js]) for s, js in zip(ships, jobs, strict=True)], len(todo))
+    return FleetRows([(s, [of(j) for j in js]) for s, js in zip(ships, jobs, strict=True)], len(todo))
 
 
 def _twice(jobs: Sequence[Job]) -> dict[Job, list[Row]]:

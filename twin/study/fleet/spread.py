@@ -70,7 +70,7 @@ def _cluster(
                 stack.enter_context(cluster)
             client = Client(cluster)
         stack.enter_context(client)
-        yield from _asked(client, ask, jobs, own=not scheduler)
+        yield from _answers(client, ask, jobs, own=not scheduler)
 
 
 def _client(scheduler: str) -> Any:
@@ -111,7 +111,7 @@ def _here(ask: Callable[[Any], Any], job: Any) -> Answered:
         return Answered(job, None, _line(error), type(error).__name__)
 
 
-def _asked(client: Any, ask: Callable[[Any], Any], jobs: Sequence[Any], own: bool) -> Iterator[Answered]:
+def _answers(client: Any, ask: Callable[[Any], Any], jobs: Sequence[Any], own: bool) -> Iterator[Answered]:
     """The answers of a cluster, until all are there, or until an own one has had no process for a minute (one
     that dies while it begins is not always begun again)."""
     from distributed import as_completed

@@ -12,7 +12,7 @@ from twin.study.fleet.ask import Row
 MONTH_S = 30.4375 * 86400.0
 LEAST = 3  # sizes that make a trend
 SD = 1.96  # half a 95 % interval
-NOT_ASKED = "not asked yet"
+UNANSWERED = "not asked yet"
 
 
 def voyages_of(asked: Sequence[tuple[str, Mapping[str, str], Sequence[Row]]]) -> list[dict[str, Any]]:
@@ -25,7 +25,7 @@ def voyages_of(asked: Sequence[tuple[str, Mapping[str, str], Sequence[Row]]]) ->
 
 
 def _voyage(file: str, tags: Mapping[str, str], rows: Sequence[Row]) -> dict[str, Any]:
-    first = rows[0] if rows else {"failed": NOT_ASKED}
+    first = rows[0] if rows else {"failed": UNANSWERED}
     keys = (
         "voyage", "start_time_utc", "duration_s", "verdict", "reason", "sentence", "failed", "p_value",
         "p_value_at_best", "references", "score", "horizon_s", "position_mae_m", "position_expected_m",

@@ -26,7 +26,7 @@ def corrected(ship: Ship, found: Instruments) -> tuple[Ship, list[InstrumentEsti
     """The ship with the faults that were seen as effects of its own; and the seen numbers that no effect of
     the catalogue holds."""
     seen = _seen(found)
-    known = told_by_readings()
+    known = effects_of_readings()
     told = {e.unknown.name: (e.value, e.sd) for e in seen if e.unknown.name in known}
     left = [e for e in seen if e.unknown.name not in known]
     return with_numbers(ship, told, all(found.own), [r.name for r in found.readings]), left
@@ -41,7 +41,7 @@ def with_numbers(
     effects: dict[str, Effect] = {type(e).__name__: e for e in ship.effects}
     entries: dict[str, Any] = {}
     source = f"kinematics of {', '.join(voyages)}, {datetime.date.today().isoformat()}"
-    known = told_by_readings()
+    known = effects_of_readings()
     for number, (value, sd) in told.items():
         name, parameter = known[number].__name__, known[number].by_readings[number]
         fault = cast(SensorFault, effects.get(name) or known[number].absent(ship))
@@ -56,7 +56,7 @@ def with_numbers(
     return noted(replace(ship, effects=tuple(effects.values())), "effects", entries)
 
 
-def told_by_readings() -> dict[str, type[SensorFault]]:
+def effects_of_readings() -> dict[str, type[SensorFault]]:
     """The instruments' effect of the catalogue that holds each number that the readings tell."""
     faults = [e for e in catalogue().values() if issubclass(e, SensorFault)]
     return {number: e for e in reversed(faults) for number in e.by_readings}

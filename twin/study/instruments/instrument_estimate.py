@@ -16,7 +16,7 @@ from twin.study.track.track import Track
 
 __all__ = ["InstrumentEstimate", "Instruments", "estimate", "evidence"]
 ROUNDS = 4  # selections, each about a new fit
-CLEARLY = 30.0  # log evidence from which a receiver is said to have turned its velocity itself
+OWN_TURN_LOG_BAYES = 30.0  # log evidence from which a receiver is said to have turned its velocity itself
 Progress = Callable[[str], None]
 
 
@@ -63,7 +63,7 @@ def _problems(
     untold = [r.own is None and "velocity" in r.by for r in readings]
     if own is None and any(untold):
         by = (_itself(r, length, progress) for (r, length), ask in zip(of_each, untold, strict=True) if ask)
-        own = sum(by) > CLEARLY
+        own = sum(by) > OWN_TURN_LOG_BAYES
     return [
         Problem(r, length, bool(own if ask else r.own))
         for (r, length), ask in zip(of_each, untold, strict=True)

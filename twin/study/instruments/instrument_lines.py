@@ -80,7 +80,7 @@ def _number(e: InstrumentEstimate) -> dict[str, Any]:
     }
 
 
-def told(found: Instruments) -> list[str]:
+def terminal_lines(found: Instruments) -> list[str]:
     """The whole answer, a line each."""
     out = []
     for fault in found.faults:

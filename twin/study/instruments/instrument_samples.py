@@ -10,7 +10,7 @@ from twin.errors import DataError
 from twin.recording.voyage import Voyage
 from twin.study.track.track import READINGS, Track
 
-CLEAR = 0.9  # a scatter that is smaller than another by this factor is the smaller one
+SMALLER_SCATTER = 0.9  # a scatter that is smaller than another by this factor is the smaller one
 FEWEST = 30  # samples of an instrument that can tell anything
 OWN = {"body": True, "course": False, "earth": False}  # by the frame in which the velocity was recorded
 PER_MOTION = 20  # samples kept in the time in which the ship's turning changes; more say nothing more of it
@@ -178,7 +178,7 @@ def _own(body: ReadingSamples) -> bool | None:
         np.hypot(_scatter(u), _scatter(v)),
         np.hypot(_scatter(u * c - v * s), _scatter(u * s + v * c)),
     )
-    return True if ship < CLEAR * earth else False if earth < CLEAR * ship else None
+    return True if ship < SMALLER_SCATTER * earth else False if earth < SMALLER_SCATTER * ship else None
 
 
 def _speed(by: Mapping[str, ReadingSamples]) -> float:

@@ -18,7 +18,7 @@ from twin.study.instruments.problem import Problem
 from twin.study.instruments.unknowns import INDEX, OWN, UNKNOWNS
 
 PAIRS = ("place", "velocity", "wind")  # readings of two components
-CLEAR_SHARE = 0.1  # an autocorrelation below this is taken for chance
+CORRELATED = 0.1  # an autocorrelation below this is taken for chance
 ROUNDS, CLOSE = 9, 0.03  # Gauss-Newton rounds at most; steps in scatters of the numbers at which it is done
 # readings that the usual size of a stream's changes, and of what drift does beside its formula, is worth
 BELIEVED = 20.0
@@ -182,7 +182,7 @@ def _lasting(r: np.ndarray, parts: int) -> float:
         total, power = 1.0, max(float(x @ x), 1e-30)
         for k in range(1, x.size // 8):
             share = float(x[k:] @ x[:-k]) / power
-            if share < CLEAR_SHARE:
+            if share < CORRELATED:
                 break
             total += 2.0 * share
         found.append(total)

@@ -16,7 +16,7 @@ from twin.study.instruments.kinematic_fit import MINE, SHARED, KinematicFit
 from twin.study.instruments.unknowns import ALWAYS, FAULTS, UNKNOWNS
 
 Sets = tuple[str, ...]
-TOLD = 1e-4  # of a prior width's information, below which the readings say nothing of a number
+LEAST_INFORMATION = 1e-4  # of a prior width's information, below which the readings say nothing of a number
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class WeighedSets:
         self.names = [u.name for u in order]
         self.fault = np.array([u.fault for u in order])
         self.late = np.array([u.late for u in order])
-        told = np.diag(found.A) * found.width**2 > TOLD
+        told = np.diag(found.A) * found.width**2 > LEAST_INFORMATION
         self.tellable = tuple(f for f in FAULTS if f not in (*ALWAYS, clock) and told[self.fault == f].any())
         self.always = np.isin(self.fault, ALWAYS)
         self.places = {f: self.fault == f for f in FAULTS}

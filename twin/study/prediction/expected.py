@@ -19,7 +19,7 @@ MEAN = {"position": "position_m", "lateral": "lateral_m", "heading": "heading_ra
 OF = "reference voyages"
 
 
-def told_by_references(
+def with_expected_errors(
     rows: list[dict[str, Any]], windows: Sequence[Windows], ship: Ship
 ) -> list[dict[str, Any]]:
     """The rows of score.horizons with `noise_floor` as the reference voyages have it: expected errors, no

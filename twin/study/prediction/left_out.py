@@ -19,7 +19,7 @@ from twin.study.prediction.own_water import LENGTHS, settled
 from twin.study.reference.between import ship_of, voyages
 from twin.study.reference.path_error import PRIOR, PathError, tail
 from twin.study.reference.sailed import fed
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
 
 AHEAD_LENGTHS = (1.0, 3.0, 10.0)  # beside HORIZONS_S
@@ -71,7 +71,7 @@ def path_error(model: Model, tracks: Sequence[Track], without: Sequence[Model]) 
     ahead = horizons(model, tracks)
     parts = _parts(tracks, without)
     raw = [
-        _of_part(predict(t, fed(m, t)[0], ahead, floor=floor_of(model.ship), seed=i), keep)
+        _of_part(predict(t, fed(m, t)[0], ahead, floor=noise_model_of(model.ship), seed=i), keep)
         for i, (t, m, keep) in enumerate(parts)
     ]
     usable = [h for h in ahead if sum(int(w.valid[w.at(h)].sum()) for w in raw) > 2]

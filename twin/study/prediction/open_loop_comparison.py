@@ -11,16 +11,16 @@ from twin.physics.ship import Ship
 from twin.recording.jsonable import plain
 from twin.study.estimation.start import waves_on
 from twin.study.prediction import locate, score
-from twin.study.prediction.expected import told_by_references
+from twin.study.prediction.expected import with_expected_errors
 from twin.study.prediction.openloop import HORIZONS_S, Windows, predict
 from twin.study.prediction.unexplained import Energy, energy
 from twin.study.reference.sailed import Sailed, fed, switched_off
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 
 SCHEMA_VERSION = 1
 # times its floor, from which an error is more than it may be, where no reference voyages told how they
 # scatter
-CLEARLY = 1.5
+UNUSUAL_RATIO = 1.5
 
 
 @dataclass(frozen=True)
@@ -38,13 +38,13 @@ def compare(
 ) -> ComparedVoyages:
     """Predict every voyage open loop and judge the errors together. DataError: no voyage is long enough
     for a horizon."""
-    ship, floor = model.ship, floor_of(model.ship)
+    ship, floor = model.ship, noise_model_of(model.ship)
     models = [fed(model, s.track)[0] for s in sailed]
     windows = [
         predict(s.track, m, horizons_s, floor=floor, seed=i)
         for i, (s, m) in enumerate(zip(sailed, models, strict=True))
     ]
-    rows = told_by_references(score.horizons(windows, horizons_s, floor is not None), windows, ship)
+    rows = with_expected_errors(score.horizons(windows, horizons_s, floor is not None), windows, ship)
     if not rows:
         raise DataError(
             f"{', '.join(s.track.name for s in sailed)}: no stretch of {as_given(min(horizons_s))} s with "
@@ -98,7 +98,7 @@ def verdict(result: dict[str, Any]) -> str:
     it may be, of the one that stands out most."""
     keys, rows = ("position_mae_m", "heading_mae_deg"), result["horizons"]
     most = [max(score.in_noise(row, k) for k in keys) for row in rows]
-    clearly = float(rows[-1]["noise_floor"].get("limit95", CLEARLY))
+    clearly = float(rows[-1]["noise_floor"].get("limit95", UNUSUAL_RATIO))
     row = rows[-1 if most[-1] >= clearly or max(most) < clearly else most.index(max(most))]
     floor, times = row["noise_floor"], [score.in_noise(row, k) for k in keys]
     of = "of the sensors alone" if floor["of"] == "sensors" else "for this calibrated ship"

@@ -13,7 +13,7 @@ from twin.study.prediction.left_out import ALIKE
 from twin.study.prediction.openloop import STRUCTURE, Windows, predict
 from twin.study.reference.path_error import SCATTER, PathError, of_ship, tail
 from twin.study.reference.sailed import fed
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
 
 # than simulated: one standard deviation of what healthy voyages scatter among themselves
@@ -35,7 +35,7 @@ def errors_of(ship: Ship, tracks: Sequence[Track], horizons_s: Sequence[float]) 
 def prior(model: Model, tracks: Sequence[Track], horizons_s: Sequence[float]) -> PathError:
     """Simulated on these tracks with the ship's structural error, or the usual one of ships that were never
     calibrated."""
-    floor = floor_of(model.ship) or NoiseModel()
+    floor = noise_model_of(model.ship) or NoiseModel()
     windows = [predict(t, fed(model, t)[0], horizons_s, floor=floor, seed=i) for i, t in enumerate(tracks)]
     usable = [h for h in horizons_s if any(w.valid[w.at(h)].any() for w in windows)] or [min(horizons_s)]
     covariance = np.array([WIDER**2 * _covariance(windows, h) for h in usable])

@@ -4,12 +4,12 @@ import textwrap
 from typing import Any
 
 from twin.num import as_given, num
-from twin.study.estimation.start import told_of_waves
+from twin.study.estimation.start import waves_in_words
 
 BAR = 24
 
 
-def told(result: dict[str, Any]) -> list[str]:
+def terminal_lines(result: dict[str, Any]) -> list[str]:
     """The whole answer, a line each."""
     return [
         *textwrap.wrap(result["verdict"], 100),
@@ -23,7 +23,7 @@ def told(result: dict[str, Any]) -> list[str]:
         *_where(result),
         *_worst(result["worst_windows"]),
         *_off(result["switched_off"]),
-        *told_of_waves(result["waves"]),
+        *waves_in_words(result["waves"]),
         *_checks(result["data_checks"]),
     ]
 

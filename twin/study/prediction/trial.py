@@ -10,7 +10,7 @@ from math import degrees, hypot, pi, radians
 from typing import Any
 
 from twin.physics import core
-from twin.physics.actuators.helm import told
+from twin.physics.actuators.helm import actuator_orders
 from twin.physics.model import Eta_nu, Model
 from twin.physics.state import Situation
 
@@ -43,7 +43,7 @@ def shaft_speed(model: Model, speed: float) -> float:
 def controls(model: Model, delta: float, n: float) -> dict[str, Any]:
     """Rudder and shaft, or what actuators are told for as much, as fields of Situation."""
     ship = model.ship
-    return {"told": told(ship, delta, n)} if ship.actuators else {"delta": delta, "n": n}
+    return {"told": actuator_orders(ship, delta, n)} if ship.actuators else {"delta": delta, "n": n}
 
 
 def _power(model: Model, speed: float) -> float:

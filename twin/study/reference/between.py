@@ -16,7 +16,7 @@ from twin.study.estimation.innovations import Normal
 
 SHARES = (0.1, 0.2, 0.4, 0.8, 1.6)
 FEW = 6  # numbers that are tried in each round
-CLEAR = 5.0  # log probability by which voyages must differ
+DIFFERENT_LOG_PROBABILITY = 5.0  # log probability by which voyages must differ
 
 
 @dataclass(frozen=True)
@@ -87,7 +87,7 @@ def scattered(told: Sequence[BetweenVoyages], pull: np.ndarray) -> np.ndarray:
     while True:
         trials = [_with(scatter, i, share**2) for i in _steepest(told, scatter, pull) for share in SHARES]
         scores = [_foretold(told, trial, pull) for trial in trials]
-        if max(scores) < best + CLEAR:
+        if max(scores) < best + DIFFERENT_LOG_PROBABILITY:
             return scatter
         best, scatter = max(scores), trials[int(np.argmax(scores))]
 

@@ -35,7 +35,7 @@ class Derivative(NamedTuple):
         return self.fitted if self.excited else self.unknown.centre
 
 
-def told_by(found: Fit) -> list[Derivative]:
+def informed_by(found: Fit) -> list[Derivative]:
     """Those among the fit's unknowns; where those that keep their priors would leave the others with a hull
     that does not dissipate, the others are the nearest with which it does."""
     rows = zip(found.unknowns, found.value.tolist(), found.sd.tolist(), found.gained.tolist(), strict=True)

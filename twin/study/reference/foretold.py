@@ -13,14 +13,14 @@ from twin.live.inbox import Played
 from twin.live.loop import Loop
 from twin.live.outbox import Outbox
 from twin.live.prediction.due_predictions import Watch
-from twin.live.prediction.judge import Judged
+from twin.live.prediction.judge import VerifiedPrediction
 from twin.live.publish import Publisher
 from twin.live.signals.config import Settings
 from twin.live.signals.readings import Reading
 from twin.recording.voyage import Voyage
 
 BEGIN_S, WALL = 1000.0, 1.7e9  # the loop's clock at the first tick, and the wall's at its zero
-Errors = dict[float, list[Judged]]  # by horizon
+Errors = dict[float, list[VerifiedPrediction]]  # by horizon
 
 
 def errors_of(voyage: Voyage, settings: Settings) -> Errors:

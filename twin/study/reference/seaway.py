@@ -23,7 +23,7 @@ from twin.study.estimation.respond import respond
 from twin.study.estimation.start import steadied, wave_period_s
 from twin.study.reference.nuisance import TEMPER, nuisance_unknowns
 from twin.study.reference.steering_gear import geared
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 from twin.study.track.segments import read_parts, segments
 from twin.study.track.smooth_motion import running_mean
 from twin.study.track.track import Track
@@ -35,7 +35,7 @@ SEA = 0.003  # wave height in ship lengths from which a measured sea may move it
 MOST_SEGMENTS = 12  # by which a sea is judged
 STRENGTHS = (1.0, 2.0, 4.0, 8.0)  # of the waves, in units of what the smooth path shows of them
 WHITES = (1.0, 8.0, 32.0)  # and of the noise that might be there instead
-CLEAR = 20.0  # log evidence, tempered, that waves must add where no sea was measured
+WAVES_LOG_BAYES = 20.0  # log evidence, tempered, that waves must add where no sea was measured
 # times as strong as is likeliest: one wave swings all axes and the rudder follows it, so that nothing is
 # believed in their band
 BEYOND = 3.0
@@ -50,7 +50,7 @@ def swung(track: Track, model: Model) -> Track:
     unknowns = nuisance_unknowns(usable, known)
     try:
         rough, sea, calm = likeliest_waves(track, usable, unknowns)
-        enough = TEMPER * (0.0 if at_sea(track, model) else CLEAR)
+        enough = TEMPER * (0.0 if at_sea(track, model) else WAVES_LOG_BAYES)
         if rough.swell is None or (sea <= calm + enough and not at_sea(track, model)):
             return track
         part = read_parts([track], float(model.ship.scale("time")), MOST_SEGMENTS)
@@ -67,7 +67,7 @@ def swung(track: Track, model: Model) -> Track:
 def likeliest_waves(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple[Track, float, float]:
     """The track in waves as strong as the readings ask for, if anything swings it; log evidence of that, and
     of no waves."""
-    floor, rough = floor_of(model.ship) or NoiseModel(), _swinging(track, model)
+    floor, rough = noise_model_of(model.ship) or NoiseModel(), _swinging(track, model)
     if rough.swell is None:
         return track, -np.inf, 0.0
     parts = [

@@ -26,7 +26,7 @@ from twin.study.track.track import Track
 # of the plausible gear's; the first is as fast as a large tanker's must be
 SLOWER, LATER = (0.5, 1.0, 2.0, 4.0), (1.0, 2.0, 4.0)
 # log evidence, tempered, that a gear must add: where the rudder itself was recorded it adds nothing at all
-CLEAR = 20.0
+GEAR_LOG_BAYES = 20.0
 Gears = tuple[type[Effect], ...]  # of like actuators
 
 
@@ -92,11 +92,11 @@ def with_or_without_gear(
             with_gear = _geared(begun, gears, tracks, free, known, temper)
             if with_gear is begun:
                 with_gear = _apart(begun, gears, tracks, free, known, temper)
-            if with_gear is begun or (better := fitted(with_gear)).cost >= found.cost - 2.0 * CLEAR:
+            if with_gear is begun or (better := fitted(with_gear)).cost >= found.cost - 2.0 * GEAR_LOG_BAYES:
                 continue
             found, free = better, about(unknowns, better.model)
             own = _apart(found.model, gears, tracks, free, known, temper)
-            if own is not found.model and (better := fitted(own)).cost < found.cost - 2.0 * CLEAR:
+            if own is not found.model and (better := fitted(own)).cost < found.cost - 2.0 * GEAR_LOG_BAYES:
                 found = better
             break
     return found
@@ -140,7 +140,7 @@ def _geared(
     none = (probable(model), 0.0, 0.0)
     _, _, slower = slow = max(none, *((probable(with_gear(0.0, k)), 0.0, k) for k in SLOWER))
     score, later, slower = max(slow, *((probable(with_gear(k, slower)), k, slower) for k in LATER))
-    return with_gear(later, slower) if score > none[0] + CLEAR else model
+    return with_gear(later, slower) if score > none[0] + GEAR_LOG_BAYES else model
 
 
 def _times(gear: Effect, later: float, slower: float) -> Effect:
@@ -170,7 +170,7 @@ def _apart(
     else:
         alike[first:] = 0.0
     together = evidence(normal.in_terms_of(alike), sd[: first + size])
-    if evidence(normal, sd) <= together + CLEAR * temper:
+    if evidence(normal, sd) <= together + GEAR_LOG_BAYES * temper:
         return model
     A, b, _ = normal.total()
     moved = np.linalg.solve(A / temper + np.diag(sd**-2.0), b / temper)[first:]

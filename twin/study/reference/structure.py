@@ -34,7 +34,7 @@ WANDER = 4e-3  # where the ascent begins, m/sqrt(s)
 BESIDE = 0.4
 
 
-def floor_of(ship: Ship, name: str = "floor") -> NoiseModel | None:
+def noise_model_of(ship: Ship, name: str = "floor") -> NoiseModel | None:
     """The floor that calibration left in the ship file, None when it was never calibrated: what the model
     alone leaves (`floor`), or what is left beside all that is usual on this ship (`beside`).
     SettingsError: its file does not hold it as it was written."""
@@ -81,7 +81,7 @@ def _by_axis(value: float | Sequence[float]) -> tuple[float, float, float]:
     return surge, sway, yaw
 
 
-def structural_floor(
+def structural_noise(
     lines: Sequence[Linear], unknowns: Sequence[Unknown], start: NoiseModel | None = None
 ) -> NoiseModel:
     """The most probable floor of these reference voyages (linearised about the fitted model): what the core
@@ -89,7 +89,9 @@ def structural_floor(
     return _ascended(lines, unknowns, start or NoiseModel(), 1.0, MOST_SEGMENTS)
 
 
-def floor_beside(lines: Sequence[Linear], unknowns: Sequence[Unknown], start: NoiseModel) -> NoiseModel:
+def structural_noise_beside(
+    lines: Sequence[Linear], unknowns: Sequence[Unknown], start: NoiseModel
+) -> NoiseModel:
     """The same when the unknowns are all that a diagnosis keeps in mind: less is left beside them."""
     return _ascended(lines, unknowns, start, BESIDE, FEWER)
 
@@ -128,14 +130,14 @@ def _together(floor: NoiseModel, moves: Sequence[NoiseModel]) -> NoiseModel:
     start, out = _logs(floor), _logs(floor)
     for move in moves:
         out = out + (_logs(move) - start)
-    return _floor(out)
+    return _noise_model(out)
 
 
 def _logs(floor: NoiseModel) -> np.ndarray:
     return np.log([*floor.share, *floor.white, floor.calm, floor.flow, floor.sensor, floor.wander])
 
 
-def _floor(logs: np.ndarray) -> NoiseModel:
+def _noise_model(logs: np.ndarray) -> NoiseModel:
     a, b, c, d, e, f, calm, flow, sensor, wander = np.exp(logs).tolist()
     return NoiseModel((a, b, c), calm, (d, e, f), flow, sensor, wander)
 
@@ -163,7 +165,7 @@ def _change(i: int) -> Callable[[NoiseModel, float], NoiseModel]:
     def change(floor: NoiseModel, factor: float) -> NoiseModel:
         logs = _logs(floor)
         logs[i] += np.log(factor) * (0.5 if i == SENSOR else 1.0)
-        return _floor(logs)
+        return _noise_model(logs)
 
     return change
 

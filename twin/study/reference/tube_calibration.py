@@ -22,7 +22,7 @@ from twin.errors import DataError
 from twin.live.observer.predict import usual_error
 from twin.live.prediction.calibrated import AXES, Horizon, RegionTable
 from twin.live.prediction.circumstances import HELMS, NAMES, SEAS
-from twin.live.prediction.judge import Judged
+from twin.live.prediction.judge import VerifiedPrediction
 from twin.physics.ship import Ship
 from twin.study.reference.foretold import Errors
 from twin.study.reference.hierarchical import hierarchical_quantile
@@ -82,7 +82,7 @@ def section(ship: Ship, model: str, voyages: Sequence[Errors], source: str) -> d
 
 
 def _horizon(
-    ship: Ship, h: float, voyages: Sequence[Sequence[Judged]], table: Mapping[str, Any]
+    ship: Ship, h: float, voyages: Sequence[Sequence[VerifiedPrediction]], table: Mapping[str, Any]
 ) -> dict[str, Any]:
     """Coefficients and cells of one horizon."""
     usual, chosen = usual_error(ship, h)[:2], parted(len(voyages))
@@ -107,13 +107,17 @@ def _horizon(
     return out
 
 
-def score(table: RegionTable, h: float, j: Judged, usual: tuple[float, ...]) -> tuple[float, float]:
+def score(
+    table: RegionTable, h: float, j: VerifiedPrediction, usual: tuple[float, ...]
+) -> tuple[float, float]:
     """Of place and of heading: the error over what is usual in these circumstances."""
     along, across, heading = table.sigmas(h, j.foretold.known, (usual[0], usual[1]))
     return hypot(j.along / along, j.across / across), abs(j.heading) / heading
 
 
-def coefficients(voyages: Sequence[Sequence[Judged]], usual: tuple[float, ...]) -> list[list[float]]:
+def coefficients(
+    voyages: Sequence[Sequence[VerifiedPrediction]], usual: tuple[float, ...]
+) -> list[list[float]]:
     """c of along, across and heading; all zero without voyages."""
     if not voyages:
         return [[0.0] * len(NAMES)] * len(AXES)
@@ -144,7 +148,7 @@ def ridge(phi: Array, errors: Array, weights: Array) -> Array:
     return c
 
 
-def _cells(voyages: Sequence[Sequence[tuple[Judged, float, float]]]) -> dict[str, dict[str, Any]]:
+def _cells(voyages: Sequence[Sequence[tuple[VerifiedPrediction, float, float]]]) -> dict[str, dict[str, Any]]:
     """The quantiles of all, and of each regime that enough voyages met."""
     names = ["all", *HELMS, *(f"{helm}_{sea}" for helm in HELMS for sea in SEAS)]
     out = {}
@@ -159,7 +163,7 @@ def _cells(voyages: Sequence[Sequence[tuple[Judged, float, float]]]) -> dict[str
     return out
 
 
-def regimes(j: Judged) -> tuple[str, str, str]:
+def regimes(j: VerifiedPrediction) -> tuple[str, str, str]:
     """The cells a prediction belongs to, the smallest last."""
     known = j.foretold.known
     return "all", known.helm, f"{known.helm}_{known.sea}"

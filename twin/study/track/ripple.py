@@ -16,7 +16,7 @@ from twin.study.track.track import Track
 
 SWIFT = 0.5  # L/U_0: what swings about the mean over so long a time no ship does by its rudder
 LATELY = 8.0  # L/U_0: on another course waves are met otherwise
-CLEAR = 1.5  # times its usual scatter, from which a reading scatters more
+RESTLESS_RATIO = 1.5  # times its usual scatter, from which a reading scatters more
 NORMAL = 1.4826  # standard deviations in a median of sizes; one wild reading is none
 
 
@@ -28,7 +28,11 @@ def shaken(track: Track, time: float) -> Track:
     swift, lately = (max(3, round(k * time / track.h)) for k in (SWIFT, LATELY))
     size = np.column_stack([_lately(np.abs(e - running_mean(e, swift)), lately) for e in beside.T])
     more = NORMAL * size / track.sd
-    return replace(track, ripple=np.where(more > CLEAR, more, 1.0)) if (more > CLEAR).any() else track
+    return (
+        replace(track, ripple=np.where(more > RESTLESS_RATIO, more, 1.0))
+        if (more > RESTLESS_RATIO).any()
+        else track
+    )
 
 
 def _lately(values: np.ndarray, steps: int) -> np.ndarray:

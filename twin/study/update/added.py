@@ -12,7 +12,7 @@ from twin.physics.model import Model
 from twin.physics.ship import Ship
 from twin.recording.jsonable import short
 from twin.study.reference.sailed import Sailed
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 from twin.study.update.adding import UNTOUCHED, Fitted
 from twin.study.update.fall import Fall
 from twin.study.update.proof import HeldOutProof
@@ -79,7 +79,7 @@ def notes(
         "Only the added effect's numbers were fitted; the core and the effects already there stay as "
         "they were."
     ]
-    if floor_of(ship) is None:
+    if noise_model_of(ship) is None:
         notes.append(
             "careful: this ship was never calibrated, so its core is only roughly known and takes a share of "
             "what the effect does: the numbers are "
@@ -170,7 +170,7 @@ def written(ship: Ship, model: Model, result: dict[str, Any]) -> Ship:
     return replace(ship, effects=model.effects, notes=notes)
 
 
-def told(result: dict[str, Any]) -> list[str]:
+def terminal_lines(result: dict[str, Any]) -> list[str]:
     """The answer on a terminal."""
     out = [
         result["verdict"],
@@ -191,27 +191,27 @@ def told(result: dict[str, Any]) -> list[str]:
         for r in result["proof"]["by_horizon"]
     ]
     out += [f"log likelihood ratio by horizon ({result['proof']['kind']}): {', '.join(at)}"]
-    out += ["", "what was fitted (95 %)", *_told_numbers(result["parameters"])]
+    out += ["", "what was fitted (95 %)", *_number_lines(result["parameters"])]
     if result["beside"]:
-        out += ["water and weather of these voyages, not written", *_told_beside(result["beside"])]
+        out += ["water and weather of these voyages, not written", *_effect_lines(result["beside"])]
     out += ["", "by regime: before, after [m]"] + [
         f"  {num(w['before_m'], 3):>8}{num(w['after_m'], 3):>9}  {w['condition']}" for w in result["where"]
     ]
     return [*out, "", *result["notes"]]
 
 
-def _told_beside(parameters: dict[str, dict[str, Any]]) -> list[str]:
+def _effect_lines(parameters: dict[str, dict[str, Any]]) -> list[str]:
     """An effect of few numbers in full; of a stream that varies how strong it was."""
     few = {effect: numbers for effect, numbers in parameters.items() if len(numbers) <= FEW}
     many = (effect for effect in parameters if effect not in few)
     sizes = {effect: sum(p["value"] ** 2 for p in parameters[effect].values()) ** 0.5 for effect in many}
-    return _told_numbers(few) + [
+    return _number_lines(few) + [
         f"  {effect}: {num(size, 2)} together, of {len(parameters[effect])} numbers"
         for effect, size in sizes.items()
     ]
 
 
-def _told_numbers(parameters: dict[str, dict[str, Any]]) -> list[str]:
+def _number_lines(parameters: dict[str, dict[str, Any]]) -> list[str]:
     return [
         f"  {effect}.{n} = {num(p['value'], 4)} {p['unit']}   {num(p['low95'], 3)} to "
         f"{num(p['high95'], 3)}" + "   (the end of its box)" * p["at_box_end"]

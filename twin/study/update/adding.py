@@ -29,7 +29,7 @@ from twin.study.estimation.innovations import innovate
 from twin.study.prediction.openloop import Windows, predict
 from twin.study.reference.evidence import Posterior, boxed, given, posterior, reduce, weigh_with
 from twin.study.reference.sailed import fed
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
 
 UNTOUCHED = 0.1  # a number whose doubt shrank by less was not excited
@@ -98,7 +98,7 @@ class Fitted:
         return models
 
 
-def can_be_judged(effects: Sequence[type[Effect]], tracks: Sequence[Track]) -> None:
+def require_inputs(effects: Sequence[type[Effect]], tracks: Sequence[Track]) -> None:
     """DataError when an effect needs what a voyage did not record."""
     for effect in effects:
         for t in tracks:
@@ -153,7 +153,7 @@ def of_hypothesis(case: Case, names: Sets, found: Found) -> Fitted:
 
 def _beside_the_voyage(case: Case, names: Sets, progress: Progress) -> Found:
     """The named effects, and of the voyage's own water and weather what makes the voyages likelier."""
-    best = _judged(case, names, None)
+    best = _relinearised(case, names, None)
     while True:
         more = [n for n in case.candidates if _may_stand_beside(case, n, best.hypothesis.effects)]
         if not more or best.reduced is None:
@@ -167,7 +167,7 @@ def _beside_the_voyage(case: Case, names: Sets, progress: Progress) -> Found:
         tried = []
         for name in sorted(likely, key=lambda n: -likely[n])[:2]:
             progress(f"testing whether {name} acted, too")
-            tried.append(_judged(case, _set(case, (*chosen, name)), best))
+            tried.append(_relinearised(case, _set(case, (*chosen, name)), best))
         better = max(tried, key=lambda f: f.hypothesis.log_weight, default=best)
         if better.hypothesis.log_weight <= best.hypothesis.log_weight:
             return best
@@ -192,7 +192,7 @@ def _may_stand_beside(case: Case, name: str, chosen: Sets) -> bool:
     )
 
 
-def _judged(case: Case, chosen: Sets, start: Found | None) -> Found:
+def _relinearised(case: Case, chosen: Sets, start: Found | None) -> Found:
     """A set of effects relinearised at its estimate, begun where a part of it was found to stand, or at its
     first-order guess in the likeliest noise scenario."""
     if start is not None and start.reduced is not None:
@@ -282,5 +282,5 @@ def thirds(tracks: Sequence[Track]) -> tuple[list[Track], list[Track]]:
 
 def ahead(tracks: Sequence[Track], model: Model, horizons_s: Sequence[float]) -> list[Windows]:
     """Open-loop predictions of every voyage."""
-    floor = floor_of(model.ship)
+    floor = noise_model_of(model.ship)
     return [predict(t, fed(model, t)[0], horizons_s, floor=floor, seed=i) for i, t in enumerate(tracks)]

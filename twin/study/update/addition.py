@@ -12,10 +12,10 @@ from twin.recording.checks import of_voyages
 from twin.recording.jsonable import plain
 from twin.study.prediction.openloop import HORIZONS_S
 from twin.study.reference.sailed import Sailed
-from twin.study.reference.structure import floor_of
+from twin.study.reference.structure import noise_model_of
 from twin.study.track.track import Track
 from twin.study.update.added import notes, verdict, written
-from twin.study.update.adding import can_be_judged, fitted, thirds
+from twin.study.update.adding import fitted, require_inputs, thirds
 from twin.study.update.fall import Fall, by_regime, fall, ladder
 from twin.study.update.held_parts import predicted
 from twin.study.update.proof import HeldOutProof, prove
@@ -51,7 +51,7 @@ def add(
     each, or (`cross_validated`) on every third in turn."""
     for effect in effects:
         effect.plausible(ship).check(ship)
-    can_be_judged(effects, [s.track for s in (*sailed, *held_out)])
+    require_inputs(effects, [s.track for s in (*sailed, *held_out)])
     used, held, kind = _divided([s.track for s in sailed], [s.track for s in held_out], cross_validated)
     made = fitted(ship, effects, used, progress)
     progress("predicting what was held out")
@@ -63,7 +63,7 @@ def add(
         windows.horizons_s,
         float(ship.scale("time")),
     )
-    structural = floor_of(ship) is not None
+    structural = noise_model_of(ship) is not None
     rows = ladder(windows.before, windows.after, HORIZONS_S, ship, structural)
     shown = fall(windows.before, windows.after, [row["horizon_s"] for row in rows])
     parts = (

@@ -10,7 +10,7 @@ import numpy as np
 from twin.num import as_given, num
 from twin.physics.ship import Ship
 from twin.study.prediction import locate, score
-from twin.study.prediction.expected import told_by_references
+from twin.study.prediction.expected import with_expected_errors
 from twin.study.prediction.openloop import MODEL, Windows
 from twin.study.track.track import MEASURED
 from twin.study.update.proof import block_interval, independent
@@ -95,7 +95,7 @@ def ladder(
 ) -> list[dict[str, Any]]:
     """One row for each horizon: errors before and after, and what a healthy ship would show."""
     rows = zip(
-        *(told_by_references(score.horizons(w, horizons_s, structural), w, ship) for w in (before, after)),
+        *(with_expected_errors(score.horizons(w, horizons_s, structural), w, ship) for w in (before, after)),
         strict=True,
     )
     keys = score.NAMES.values()

@@ -13,7 +13,7 @@ def ladder(ship: Ship) -> list[dict[str, Any]]:
     return [dict(step) for step in ship.notes.get("history", []) if isinstance(step, dict)]
 
 
-def told(ship: Ship) -> list[str]:
+def terminal_lines(ship: Ship) -> list[str]:
     """The ladder on a terminal."""
     steps = ladder(ship)
     if not steps:

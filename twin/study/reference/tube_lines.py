@@ -8,7 +8,7 @@ import numpy as np
 
 from twin.live.observer.predict import usual_error
 from twin.live.prediction.calibrated import RegionTable
-from twin.live.prediction.judge import Judged
+from twin.live.prediction.judge import VerifiedPrediction
 from twin.num import num
 from twin.physics.ship import Ship
 from twin.study.reference.foretold import Errors
@@ -35,7 +35,9 @@ def rows(ship: Ship, table: RegionTable, voyages: Sequence[Errors]) -> list[dict
     return out
 
 
-def half_widths(table: RegionTable, h: float, j: Judged, usual: tuple[float, float]) -> tuple[float, float]:
+def half_widths(
+    table: RegionTable, h: float, j: VerifiedPrediction, usual: tuple[float, float]
+) -> tuple[float, float]:
     """Radius of the place's circle of the same area [m] and half width of the heading [rad]."""
     along, across, heading = table.sigmas(h, j.foretold.known, usual)
     _, cell = table.cell(h, j.foretold.known)
@@ -43,12 +45,12 @@ def half_widths(table: RegionTable, h: float, j: Judged, usual: tuple[float, flo
     return place * sqrt(along * across), turning * heading
 
 
-def _mean(sizes: Sequence[tuple[Judged, float, float]]) -> dict[str, float | int]:
+def _mean(sizes: Sequence[tuple[VerifiedPrediction, float, float]]) -> dict[str, float | int]:
     place, heading = (float(np.mean([s[k] for s in sizes])) for k in (1, 2))
     return {"predictions": len(sizes), "place_m": place, "heading_deg": degrees(heading)}
 
 
-def told(result: Mapping[str, Any]) -> list[str]:
+def terminal_lines(result: Mapping[str, Any]) -> list[str]:
     """The lines of the terminal."""
     lines = [f"{result['ship']}: tube around its predictions, from {len(result['voyages'])} voyages"]
     for row in result["horizons"]:
