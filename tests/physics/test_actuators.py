@@ -253,6 +253,25 @@ def test_an_effect_is_of_one_named_actuator():
     assert pickle.loads(pickle.dumps(worn)) == worn
 
 
+def test_a_worn_rudder_leaves_the_thrust_of_the_screw_before_it():
+    own = {"diameter_m": 0.2, "rudder_area_m2": 0.02, "x_m": -1.0, "y_m": 0.3}
+    ship = ship_with(
+        {"name": "port", "kind": "propeller", "channels": ["rate_rev_s", "angle_deg"], **own},
+        PORT | {"name": "bow"},
+    )
+    worn, s = find("SteeringWear.port")(loss=0.25), Situation(**MOTION, told={"bow.command": 0.0})
+    told = {"bow.command": 0.0, "port.rate": 9.0}
+    for angle in (0.0, 0.3):
+        s.told = told | {"port.angle": angle}
+        forces = Model(ship, (worn,)).known(s)
+        straight = ship.actuator("port").but(A_R=0.0)
+        screw = straight.force(s.told, s.u_r, s.v_r, s.r, ship)
+        for axis, thrust in zip(("X", "Y", "N"), screw, strict=True):
+            rudder = getattr(forces["port"], axis) - thrust
+            assert getattr(forces["SteeringWear.port"], axis) == pytest.approx(-0.25 * rudder)
+    assert "SteeringWear.bow" not in of_ship(ship) and "SteeringWear.port" in of_ship(ship)
+
+
 def test_an_angle_offset_turns_what_the_azimuth_does():
     ship = ship_with(PORT | {"kind": "azimuth", "channels": ["thrust_n", "angle_deg"]})
     effect = find("AngleOffset.port")(offset=radians(6.0))
