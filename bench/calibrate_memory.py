@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 
 from bench.bundled import REFERENCES, recorded
-from bench.reference import Case, simulate
+from bench.reference import SeaCase, simulate
 from twin import whole
 from twin.errors import ThresholdError, TwinError
 from twin.recording.write import write_voyage
@@ -51,7 +51,7 @@ def run(args: argparse.Namespace) -> int:
 def sailed(folder: Path, count: int, seconds: float) -> list[Path]:
     """The voyages, every sample of them, as files."""
     manoeuvres = [REFERENCES[i % len(REFERENCES)] for i in range(count)]
-    cases = [Case("kvlcc2", m, seed=SEED + i, duration_s=seconds) for i, m in enumerate(manoeuvres)]
+    cases = [SeaCase("kvlcc2", m, seed=SEED + i, duration_s=seconds) for i, m in enumerate(manoeuvres)]
     paths = []
     for i, recording in enumerate(simulate(cases)):
         paths.append(folder / f"{i}-{manoeuvres[i]}.mcap")

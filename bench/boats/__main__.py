@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from bench.boats.actuator_questions import QUESTIONS, calibrated, diagnosed
+from bench.boats.actuator_questions import FAULTY, QUESTIONS, calibrated, diagnosed
 from bench.reference.boats import CRAFT
 
 
@@ -16,19 +16,21 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m bench.boats", description=__doc__)
     parser.add_argument("-o", "--output", default="boats.jsonl", metavar="FILE")
     parser.add_argument("--craft", action="append", choices=list(CRAFT), help="only these (repeat)")
+    parser.add_argument("--seed", action="append", type=int, help="of the voyages diagnosed (repeat)")
     args = parser.parse_args()
     path, names = Path(args.output), args.craft or list(CRAFT)
     done = _read(path)
     for name in names:
-        if (name, "calibrate") not in done:
+        if (name, "calibrate", 0) not in done:
             row, text = calibrated(name)
             ship_file(path, name).write_text(text)
             _add(path, row)
-    for i in range(max(len(a) for a in QUESTIONS.values())):
-        for name in names:
-            asked = QUESTIONS[name][i : i + 1]
-            if asked and (name, asked[0][0]) not in done:
-                _add(path, diagnosed(name, asked[0], ship_file(path, name)))
+    for seed in args.seed or FAULTY:
+        for i in range(max(len(a) for a in QUESTIONS.values())):
+            for name in names:
+                asked = QUESTIONS[name][i : i + 1]
+                if asked and (name, asked[0][0], seed) not in done:
+                    _add(path, diagnosed(name, asked[0], ship_file(path, name), seed))
     return 0
 
 
@@ -36,15 +38,22 @@ def ship_file(path: Path, name: str) -> Path:
     return path.with_name(f"{path.stem}-{name}.toml")
 
 
-def _read(path: Path) -> set[tuple[str, str]]:
+def _read(path: Path) -> set[tuple[str, str, int]]:
     lines = path.read_text().splitlines() if path.is_file() else []
-    return {(row["craft"], row["what"]) for row in map(json.loads, lines)}
+    return {(row["craft"], row["what"], row.get("seed", 0)) for row in map(json.loads, lines)}
 
 
 def _add(path: Path, row: dict[str, Any]) -> None:
     with open(path, "a") as out:
         out.write(json.dumps(row) + "\n")
-    print(row["craft"], row["what"], row.get("verdict", row.get("errors")), file=sys.stderr, flush=True)
+    print(
+        row["craft"],
+        row["what"],
+        row.get("seed", ""),
+        row.get("verdict", row.get("errors")),
+        file=sys.stderr,
+        flush=True,
+    )
 
 
 if __name__ == "__main__":

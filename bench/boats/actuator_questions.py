@@ -15,7 +15,7 @@ from twin.physics.ship_file import value_of
 from twin.recording.voyage import Voyage
 from twin.study.first_model.first_estimate import OPTIONS, first_model
 
-FITTED, UNSEEN, FAULTY = (11, 12, 13), (21, 22), 31  # seeds
+FITTED, UNSEEN, FAULTY = (11, 12, 13), (21, 22), (31, 32, 33)  # seeds
 LENGTHS, LEAST_S = 45.0, 90.0  # how long a voyage lasts: in L/U0, and at least
 Question = tuple[
     str, tuple[tuple[str, float], ...], str
@@ -35,6 +35,7 @@ QUESTIONS: dict[str, list[Question]] = {
         ("off", (("turned.port", 6.0),), "AngleOffset.port"),
         ("lost", (("lost.bow", 1.0),), "ThrusterWear.bow"),
         ("nothing", (), ""),
+        ("screw", (("screw.port", 0.18),), "ThrusterWear.port"),
     ],
     "ferry4": [
         ("worn", (("worn.aft_port", 0.18),), "ThrusterWear.aft_port"),
@@ -89,21 +90,26 @@ def calibrated(name: str) -> tuple[dict[str, Any], str]:
     return row, text(to_table(found.ship))
 
 
-def diagnosed(name: str, asked: Question, ship_file: Path) -> dict[str, Any]:
+def diagnosed(name: str, asked: Question, ship_file: Path, seed: int) -> dict[str, Any]:
     """What a diagnosis of one voyage says."""
     what, hidden, wanted = asked
     begin, ship = time.time(), load(ship_file)
-    found = twin.diagnose(ship, voyage(name, FAULTY, hidden), progress=say)
+    found = twin.diagnose(ship, voyage(name, seed, hidden), progress=say)
     shown = [dict(c) for c in found.data["candidates"][:4]]
     return {
         "craft": name,
         "what": what,
+        "seed": seed,
         "hidden": hidden,
         "wanted": wanted,
         "verdict": found.verdict,
+        "reason": found.reason,
         "named": found.effects,
         "sentence": found.sentence,
         "probabilities": found.data["probabilities"],
         "candidates": [{k: c.get(k) for k in ("effect", "probability", "parameters")} for c in shown],
+        "not_visible": found.data["not_visible"],
+        "error_ratios": [found.data["facts"][k] for k in ("error_nothing", "error_best")],
+        "next_manoeuvre": found.data["next_manoeuvre"],
         "seconds": round(time.time() - begin),
     }

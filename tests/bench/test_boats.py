@@ -12,7 +12,7 @@ import bench.reference.boats as boats
 from bench.boats.actuator_questions import QUESTIONS, from_sheet
 from bench.cli import main
 from bench.reference.boats import CRAFT, BoatCase, BoatSea, builders_sheet, sail
-from bench.reference.boats.drives import screw
+from bench.reference.boats.drives import KINDS, screw
 from bench.reference.boats.helmsman import BoatLeg
 from twin.live.log_replay import replay
 from twin.live.signals.config import Settings
@@ -77,6 +77,20 @@ def test_a_worn_or_lost_thruster_pulls_the_craft_to_its_side():
     )
     assert abs(whole[5]) < 1e-3 and lost[5] < worn[5] < -1e-3  # to port
     assert lost[3] < worn[3] < whole[3]
+
+
+def test_a_worn_screw_leaves_the_rudder_behind_it_what_does_not_come_from_its_race():
+    seas = (
+        BoatSea(BoatCase("ferry2", hidden=h, noisy=False))
+        for h in ((), (("screw.port", 0.18),), (("worn.port", 0.18),))
+    )
+    whole, blades, all_of_it = (
+        KINDS["shaft"](sea.turning[0].drive, 4.0, 0.2, 5.0, 0.0, 1025.0)[1] * (1.0 - sea.hidden["port"].worn)
+        for sea in seas
+    )
+    assert all_of_it == pytest.approx(0.82 * whole) and 0.88 < blades / whole < 0.99
+    with pytest.raises(ValueError, match="no screw"):
+        BoatSea(BoatCase("jet", hidden=(("screw.port", 0.18),)))
 
 
 def test_a_late_drive_is_behind_its_record_and_a_silent_one_has_none():

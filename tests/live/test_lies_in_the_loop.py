@@ -11,7 +11,7 @@ import pytest
 from bench.endurance.lies import LIE_AT_S, OTHERS, SECONDS, STEP_S, heard
 from bench.instrument_lies import rows_of
 from bench.lie_kinds import LIES
-from bench.reference import Case, simulate
+from bench.reference import SeaCase, simulate
 from bench.sea_disturbance import sailed
 from twin.live.build import loop_of
 from twin.live.inbox import Played
@@ -38,7 +38,7 @@ class Sea:
     """The voyage, what is true on it, and the loop after its healthy part."""
 
     def __init__(self, certificate_file):
-        (recording,) = simulate([Case("kvlcc2", "zigzag_10", "TS-01", seed=23, duration_s=SECONDS)], STEP_S)
+        (recording,) = simulate([SeaCase("kvlcc2", "zigzag_10", "TS-01", seed=23, duration_s=SECONDS)], STEP_S)
         self.rows, voyage = list(rows_of(recording)), sailed(recording)
         self.truth = low_frequency(voyage.nu, window(voyage.T_p, STEP_S))
         self.first = round(LIE_AT_S / STEP_S)

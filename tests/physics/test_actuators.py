@@ -130,7 +130,7 @@ def test_a_commanded_thruster_stalls_and_pushes_less_astern_by_hand():
 
 
 def test_a_thruster_as_ship_files_had_it_gives_the_same_to_the_last_digit():
-    """`reverse` and `stall` at their nulls, in all four quadrants, as the sum was written before them."""
+    """`reverse`, `stall`, `sag` and `drag` at their nulls, in all four quadrants, as the sum was written before them."""
     ship = ship_with(PORT | {"slow": 0.4, "linear": 0.3, "y_m": 0.0})
     a = ship.actuator("port")
     for c in (0.6, -0.6, 0.0):
@@ -142,11 +142,46 @@ def test_a_thruster_as_ship_files_had_it_gives_the_same_to_the_last_digit():
     assert "stall" not in text(to_table(ship)) and "reverse" not in text(to_table(ship))
 
 
+def test_thrust_over_speed_sags_below_its_line_by_hand():
+    thrust = screw(sag=0.5)
+    # J_0 = 0.4/0.4 = 1; at J = u/(n D) = 0.5 half of the line's half less 0.5 0.5 of it, 0.75
+    assert thrust(10.0, 1.0) == pytest.approx(100.0 * 0.4 * 0.5 * 0.75, rel=1e-4)
+    assert thrust(-10.0, -1.0) == pytest.approx(-100.0 * 0.4 * 0.5 * 0.75, rel=1e-4)
+    # KVLCC2's parabola [Yasukawa & Yoshimura 2015]: K_T = 0.2931 - 0.2753 J - 0.1385 J^2, none at J_0 = 0.769
+    J_0 = (-0.2753 + (0.2753**2 + 4.0 * 0.1385 * 0.2931) ** 0.5) / (2.0 * 0.1385)
+    kvlcc2 = screw(K_T0=0.2931, K_T1=-0.2931 / J_0, sag=-0.1385 * J_0**2 / 0.2931)
+    for J in (0.1, 0.3, 0.6):
+        assert kvlcc2(10.0, 2.0 * J) == pytest.approx(100.0 * (0.2931 - 0.2753 * J - 0.1385 * J**2), rel=1e-3)
+    steady = screw()
+    for n, u in ((10.0, 0.0), (10.0, -1.0), (-10.0, 1.0)):  # at rest, and where the water runs against it
+        assert thrust(n, u) == pytest.approx(steady(n, u), rel=1e-4)
+
+
+def test_a_screw_that_the_water_overruns_holds_against_the_motion_by_hand():
+    thrust, steady = screw(drag=0.2), screw()
+    # over rho D^4: 0.2 of the square of what the water is faster than J_0 n D = 1 n 0.2, over D^2 = 0.04
+    assert thrust(0.0, 3.0) == pytest.approx(-0.2 * 9.0 / 0.04, rel=1e-3)
+    assert thrust(0.0, -3.0) == pytest.approx(0.2 * 9.0 / 0.04, rel=1e-3)
+    assert thrust(5.0, 3.0) - steady(5.0, 3.0) == pytest.approx(-0.2 * 4.0 / 0.04, rel=1e-3)
+    assert thrust(20.0, 3.0) == pytest.approx(steady(20.0, 3.0), rel=1e-3)
+
+
+def test_a_commanded_thruster_sags_and_drags_by_hand():
+    ship = ship_with(PORT | {"slow": 0.5, "sag": 0.6, "drag": 0.3, "y_m": 0.0})
+    a, U = ship.actuator("port"), ship.U_0
+    still, half, full = (a.force({"port.command": c}, U, 0.0, 0.0, ship)[0] for c in (0.0, 0.5, 1.0))
+    # full at U_0: j = 0.5; half ahead: 0.5 0.5 is just what 0.5^2 gives; stopped: 0.3 of the 50 N ahead
+    assert full == pytest.approx(50.0 * 0.5 * (1.0 - 0.6 * 0.5), rel=1e-3)
+    assert half == pytest.approx(0.0, abs=0.02)
+    assert still == pytest.approx(-0.3 * 50.0, rel=1e-3)
+
+
 def test_a_stalling_thruster_has_a_finite_slope_everywhere():
     torch = pytest.importorskip("torch")
+    bent = {"reverse": 0.8, "stall": 4.0, "sag": 0.5, "drag": 0.3}
     tables = (
-        PORT | {"reverse": 0.8, "stall": 4.0},
-        PORT | {"channels": ["rate_rpm"], "diameter_m": 0.2, "reverse": 0.8, "stall": 4.0},
+        PORT | bent,
+        PORT | {"channels": ["rate_rpm"], "diameter_m": 0.2} | bent,
     )
     for table in tables:
         ship = ship_with(table)
@@ -216,6 +251,25 @@ def test_an_effect_is_of_one_named_actuator():
     assert pytest.approx(-0.18 * forces["port"].N) == forces["ThrusterWear.port"].N
     assert find("ThrusterWear.port") is type(worn) and find("ThrusterWear.starboard") is not type(worn)
     assert pickle.loads(pickle.dumps(worn)) == worn
+
+
+def test_a_worn_rudder_leaves_the_thrust_of_the_screw_before_it():
+    own = {"diameter_m": 0.2, "rudder_area_m2": 0.02, "x_m": -1.0, "y_m": 0.3}
+    ship = ship_with(
+        {"name": "port", "kind": "propeller", "channels": ["rate_rev_s", "angle_deg"], **own},
+        PORT | {"name": "bow"},
+    )
+    worn, s = find("SteeringWear.port")(loss=0.25), Situation(**MOTION, told={"bow.command": 0.0})
+    told = {"bow.command": 0.0, "port.rate": 9.0}
+    for angle in (0.0, 0.3):
+        s.told = told | {"port.angle": angle}
+        forces = Model(ship, (worn,)).known(s)
+        straight = ship.actuator("port").but(A_R=0.0)
+        screw = straight.force(s.told, s.u_r, s.v_r, s.r, ship)
+        for axis, thrust in zip(("X", "Y", "N"), screw, strict=True):
+            rudder = getattr(forces["port"], axis) - thrust
+            assert getattr(forces["SteeringWear.port"], axis) == pytest.approx(-0.25 * rudder)
+    assert "SteeringWear.bow" not in of_ship(ship) and "SteeringWear.port" in of_ship(ship)
 
 
 def test_an_angle_offset_turns_what_the_azimuth_does():

@@ -4,7 +4,7 @@
 import math
 import random
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -55,7 +55,10 @@ class BoatSea:
         self.hidden = hidden_in(self.craft, case.hidden)
         self.helmsman = BoatHelmsman(self.craft, case.manoeuvre, case.seed)
         self.random = random.Random(case.seed * 7919 + 1)
-        self.turning = [Turning(d) for d in self.craft.drives]
+        grips = [d.grip * (1.0 - self.hidden[d.name].screw) for d in self.craft.drives]
+        self.turning = [
+            Turning(replace(d, grip=grip)) for d, grip in zip(self.craft.drives, grips, strict=True)
+        ]
         psi = math.radians(self.random.uniform(0.0, 360.0))
         self.state = (0.0, 0.0, psi, 0.6 * self.craft.U0, 0.0, 0.0)  # u, v, r through the water
         self.gust = 0.0

@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 
+from bench.boats.actuator_questions import from_sheet
 from twin.physics.effects import find
+from twin.physics.model import Model
 from twin.study.diagnosis.assemble import assemble
-from twin.study.diagnosis.manoeuvres import MANOEUVRES, next_manoeuvre, reason, sail
+from twin.study.diagnosis.manoeuvres import MANOEUVRES, HelmOrder, inputs, next_manoeuvre, reason, sail
+
+OF_ANY_SHIP = [name for name, m in MANOEUVRES.items() if m.alone is None and m.side is None]
 
 
 @pytest.fixture(scope="module")
@@ -13,18 +17,18 @@ def case(tanker, voyages):
     return assemble([voyages["straight"]], tanker)
 
 
-@pytest.mark.parametrize("name", MANOEUVRES)
+@pytest.mark.parametrize("name", OF_ANY_SHIP)
 def test_the_ship_sails_every_manoeuvre(case, name):
-    t = sail(case, case.model, MANOEUVRES[name][0])
+    t = sail(case, case.model, MANOEUVRES[name])
     assert np.isfinite(t.state).all()
     assert t.state[:, 3].max() < 2.0 * float(case.model.ship.U_0)
 
 
-@pytest.mark.parametrize("name", MANOEUVRES)
+@pytest.mark.parametrize("name", OF_ANY_SHIP)
 def test_a_model_that_runs_away_has_sailed_no_manoeuvre(case, name):
     """Test: a hull that pushes it on. Expected: a track that ends, and no advice that was made of it."""
     wild = case.model.but(find("TowForce").absent(case.model.ship).but(ahead=1e300))
-    assert np.isnan(sail(case, wild, MANOEUVRES[name][0]).state[-1]).any()
+    assert np.isnan(sail(case, wild, MANOEUVRES[name]).state[-1]).any()
     assert next_manoeuvre(case, wild, "HullFouling", "PropellerWear", np.ones(len(case.effects))) is None
 
 
@@ -42,3 +46,35 @@ def test_a_model_that_can_be_sailed_through_one_manoeuvre_alone_has_it_named_wit
     beside = reason({"zigzag 10/10": 3.0, "turning circles": 1.0}, "zigzag 10/10")
     assert "runs away" in alone and "next best" not in alone
     assert "next best: turning circles" in beside
+
+
+def told_at(model, name, lengths):
+    return inputs(model, MANOEUVRES[name], HelmOrder(lengths), 0.0, 0.5)["told"]
+
+
+def test_each_actuator_of_a_ship_with_two_screws_works_alone_in_turn():
+    ferry = Model.of(from_sheet("ferry2"))
+    early, late = (told_at(ferry, "one actuator at a time", s) for s in (5.0, 25.0))
+    assert early["port.rate"] > 0.0 == early["starboard.rate"]
+    assert late["starboard.rate"] == pytest.approx(early["port.rate"]) and late["port.rate"] == 0.0
+    uneven = told_at(ferry, "uneven thrust", 5.0)
+    assert uneven["starboard.rate"] == pytest.approx(0.6 * uneven["port.rate"])
+    both = told_at(ferry, "zigzag 10/10", 5.0)
+    assert both["port.rate"] == both["starboard.rate"] and both["bow.command"] == 0.0
+
+
+def test_a_tunnel_thruster_pushes_to_each_side_at_low_speed():
+    ferry = Model.of(from_sheet("ferry2"))
+    a, b = (told_at(ferry, "side thrust at low speed", s)["bow.command"] for s in (2.0, 7.0))
+    assert (a, b) == (-1.0, 1.0)
+
+
+def test_no_ship_is_asked_to_sail_with_what_it_has_not(tanker):
+    def asked(model):
+        return {name for name, m in MANOEUVRES.items() if m.suits(model)}
+
+    of_parts = {"one actuator at a time", "uneven thrust"}
+    tunnels = {"side thrust at low speed"}
+    assert asked(Model.of(tanker)) == set(MANOEUVRES) - of_parts - tunnels
+    assert asked(Model.of(from_sheet("catamaran"))) == set(MANOEUVRES) - tunnels
+    assert asked(Model.of(from_sheet("ferry2"))) == set(MANOEUVRES)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from twin.physics.actuators import Actuator
 from twin.physics.effects import find
 from twin.physics.model import Model
 from twin.study.estimation import form
@@ -108,3 +109,16 @@ def test_they_are_nuisance_and_change_no_model(sailed):
     assert mine == form_unknowns()
     A, R = columns(t, model, mine, {})
     assert A.shape == (len(t), 3, len(form.TERMS)) and R.shape == (len(t), 8, len(form.TERMS))
+
+
+def test_the_rudder_of_a_ship_of_actuators_has_the_same_terms(sailed):
+    """Test: the tanker's own propeller and rudder as an actuator. Expected: what they give as its own."""
+    t, own = sailed
+    d, ship = own.ship.derivatives, own.ship
+    numbers = {"D": ship.D_P, "K_T0": d.K_T0, "K_T1": d.K_T1, "A_R": ship.A_R, "x": d.x_R * ship.L_pp}
+    main = Actuator("main", "propeller", ("rate_rev_s", "angle_rad"), **numbers)
+    parts = Model(replace(ship, actuators=(main,)), own.effects)
+    told = replace(t, told={"main.rate": t.n, "main.angle": t.delta})
+    for name in form.RUDDER:
+        assert form.accelerations(told, parts, name) == pytest.approx(form.accelerations(t, own, name))
+        assert np.abs(form.accelerations(told, parts, name)).max() > 0.0

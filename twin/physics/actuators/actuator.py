@@ -12,7 +12,18 @@ Turns n give T = gain rho D^4 (K_T0 |n| n + K_T1 |n| u_a/D) [Fossen 2021, ch. 9]
 Of the thrust at rest astern `reverse` is there (blades are cambered for going ahead), and where the water
 runs against the thrust (second and fourth quadrant) the flow breaks down and 1/(1 + stall J^2) is left, with
 J = u_a/(n D), or of a command J^2 = (u_a/U_0)^2/g. That thrust differs by quadrant: Fossen (2021), ch. 9;
-the form of `stall` is this twin's own. reverse = 1 and stall = 0 change nothing.
+the form of `stall` is this twin's own.
+
+Between rest and the advance J_0 = -K_T0/K_T1 of no thrust (of a command: where `slow` leaves nothing) the
+curve of a propeller is no straight line:
+
+    K_T = K_T0 (1 - j) (1 - sag j),   j = J/J_0
+
+(the parabola of MMG, K_T2 = sag K_T1^2/K_T0: KVLCC2 has sag = -0.28 [Yasukawa & Yoshimura 2015]). Beyond
+J_0 the water overruns the blades, and a screw that stands still or is dragged along holds against the
+motion: less drag rho D^2 (|u_a| - J_0 |n| D)^2, of a command less drag T_ahead (|u_a|/U_0 - sqrt(g)/slow)^2
+[Carlton 2018, ch. 6, propellers in four quadrants: C_T at beta = 90 deg]. reverse = 1, stall = 0, sag = 0
+and drag = 0 change nothing.
 """
 
 from collections.abc import Mapping
@@ -49,15 +60,23 @@ class Actuator:
     ahead: Number = number(None, "N", 1e-3, 1e7, "greatest thrust ahead at rest", key="ahead_n")
     astern: Number = number(None, "N", 1e-3, 1e7, "greatest thrust astern at rest", key="astern_n")
     dead: Number = number(0.0, "-", 0.0, 0.5, "command up to which it stands still")
-    linear: Number = number(0.0, "-", 0.0, 1.0, "share of the bollard curve that is a straight line")
+    linear: Number = number(
+        0.0, "-", 0.0, 1.0, "share of the bollard curve that is a straight line", sd=0.3, of="command pwm"
+    )
     slow: Number = number(
-        0.2, "-", 0.0, 2.0, "thrust lost at service speed, of the greatest", sd=0.15, of="command pwm"
+        0.2, "-", 0.0, 2.0, "thrust lost at service speed, of the greatest", sd=0.3, of="command pwm"
     )
     reverse: Number = number(
         1.0, "-", 0.05, 2.0, "thrust astern over what its curve says", sd=0.2, of="command pwm rate"
     )
     stall: Number = number(
         0.0, "-", 0.0, 20.0, "thrust lost where the water runs against it", sd=1.0, of="command pwm rate"
+    )
+    sag: Number = number(
+        0.0, "-", -1.0, 1.2, "by how much thrust over speed sags below a line", sd=0.3, of="command pwm rate"
+    )
+    drag: Number = number(
+        0.0, "-", 0.0, 2.0, "drag where the water overruns the blades", sd=0.2, of="command pwm rate"
     )
     D: Number = number(None, "m", 0.005, 15.0, "propeller diameter", key="diameter_m")
     K_T0: Number = number(0.32, "-", 0.02, 1.5, "thrust coefficient at J = 0")

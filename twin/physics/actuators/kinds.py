@@ -4,12 +4,13 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple, Protocol
 
 from twin.physics import core
-from twin.physics.maths import cos, positive, sin
+from twin.physics.maths import cos, positive, sin, sqrt
 from twin.physics.ship_like import ShipLike
 from twin.physics.state import Number
 
 Orders = Mapping[str, Number]
 STOP_US, SPAN_US = 1500.0, 400.0  # a controller's pulse at stop, and from there to full
+TINY, NARROW = 1e-6, 1e-9  # nothing is divided by none
 
 
 class OneActuator(Protocol):
@@ -64,6 +65,14 @@ class OneActuator(Protocol):
         """How fast thrust is lost where the water runs against it [-]."""
 
     @property
+    def sag(self) -> Number:
+        """How far thrust over speed sags below its straight line [-]."""
+
+    @property
+    def drag(self) -> Number:
+        """Drag where the water overruns the blades [-]."""
+
+    @property
     def D(self) -> Number:
         """Propeller diameter [m]."""
 
@@ -115,9 +124,13 @@ def push(a: OneActuator, told: Orders, u_a: Number, ship: ShipLike) -> Number:
 def _by_turns(a: OneActuator, n: Number, pitch: Number, u_a: Number, ship: ShipLike) -> Number:
     drive = n * pitch  # negative where it pushes astern
     at_rest = a.K_T0 * n * pitch + a.K_T0 * (1.0 - a.reverse) * positive(-drive)
-    T = a.gain * (ship.rho * a.D**4) * abs(n) * (at_rest + a.K_T1 * u_a / a.D)
+    water = a.K_T1 * u_a / a.D
+    line = (at_rest + water) * (1.0 - a.sag * _nearing(-at_rest * water, at_rest * at_rest))
+    T = a.gain * (ship.rho * a.D**4) * abs(n) * line
     nD = n * a.D
-    return T * _left(a, positive(-drive * a.D * u_a) ** 2, nD**4)
+    T = T * _left(a, positive(-drive * a.D * u_a) ** 2, nD**4)
+    over = positive(abs(u_a) - a.K_T0 / (TINY - a.K_T1) * abs(drive) * a.D)
+    return T - a.gain * a.drag * (ship.rho * a.D**2) * _against(u_a, over)
 
 
 def _by_command(a: OneActuator, c: Number, u_a: Number, ship: ShipLike) -> Number:
@@ -127,7 +140,23 @@ def _by_command(a: OneActuator, c: Number, u_a: Number, ship: ShipLike) -> Numbe
     T_ahead = a.ahead * _left(a, positive(-w) ** 2, on)
     T_astern = a.reverse * a.astern * _left(a, positive(w) ** 2, off)
     at_rest = T_ahead * on - T_astern * off
-    return a.gain * (at_rest - a.slow * (T_ahead * ahead + T_astern * astern) * u_a / ship.U_0)
+    T = at_rest - a.slow * (T_ahead * ahead + T_astern * astern) * u_a / ship.U_0
+    less_on, less_off = a.slow * ahead * w, -a.slow * astern * w
+    sags = T_ahead * (on - less_on) * _nearing(less_on, on)
+    sags = sags - T_astern * (off - less_off) * _nearing(less_off, off)
+    over = positive(abs(w) - sqrt(on + off + 1e-9) / (a.slow + TINY))
+    return a.gain * (T - a.sag * sags - a.drag * a.ahead * _against(w, over))
+
+
+def _nearing(less: Number, at_rest: Number) -> Number:
+    """J/J_0, how near the speed is to that of no thrust, 0 to 1: `less` is what the water takes of the thrust
+    `at_rest`."""
+    return positive(less, NARROW) / (at_rest + positive(less - at_rest, NARROW))
+
+
+def _against(u_a: Number, over: Number) -> Number:
+    """over |over|, against the motion: the square of the speed by which the water overruns the blades."""
+    return over * over * u_a / (abs(u_a) + TINY)
 
 
 def _curve(a: OneActuator, e: Number) -> Number:

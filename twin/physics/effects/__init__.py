@@ -37,6 +37,7 @@ from .speed_log_bias import SpeedLogBias
 from .speed_log_misalignment import SpeedLogMisalignment
 from .speed_log_scale import SpeedLogScale
 from .steering_lag import SteeringLag
+from .steering_wear import SteeringWear
 from .swaying_mass import SwayingMass
 from .thruster_wear import ThrusterWear
 from .thruster_zero import ThrusterZero
@@ -77,7 +78,13 @@ BUILT_IN: tuple[type[Effect], ...] = (
 # known by their form, so that nothing of the catalogue is named in their place
 UNNAMED: tuple[type[Effect], ...] = (RudderPlay, SwayingMass)
 # families: each is an effect for every actuator that it suits (`ThrusterWear.port`)
-OF_ACTUATORS: tuple[type[OfActuator], ...] = (ThrusterWear, ThrusterZero, AngleOffset, ActuatorLag)
+OF_ACTUATORS: tuple[type[OfActuator], ...] = (
+    ThrusterWear,
+    ThrusterZero,
+    AngleOffset,
+    SteeringWear,
+    ActuatorLag,
+)
 
 
 def of_role(role: str) -> type[Effect]:

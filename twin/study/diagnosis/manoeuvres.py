@@ -6,18 +6,21 @@ The one to sail is the one after which the wrong effect would explain least of w
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from math import pi
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from twin.physics.actuators.helm import ACROSS, actuator_orders
 from twin.physics.model import Model
 from twin.physics.state import Situation
 from twin.study.diagnosis.case import Case
 from twin.study.estimation.linear import linearise
-from twin.study.prediction.trial import controls
+from twin.study.prediction.trial import shaft_speed
 from twin.study.track.track import READINGS, Track
 
 LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of its lengths
 STEPS_PER_LENGTH = 12
+SLOWEST = 0.3  # of U_0: at which a ship of actuators sails a manoeuvre
 DEG = pi / 180.0
 
 
@@ -32,6 +35,7 @@ class HelmOrder:
 
 
 Order = Callable[[HelmOrder], tuple[float, float]]  # rudder [rad], shaft speed as a share of the usual
+Alone = Callable[[float, int, int], float]  # lengths sailed, which actuator of how many -> factor on it
 
 
 def _zigzag(angle: float) -> Order:
@@ -53,57 +57,109 @@ def _steer(course: Callable[[float], float], power: Callable[[float], float]) ->
     return order
 
 
-MANOEUVRES: dict[str, tuple[Order, str]] = {
-    "zigzag 10/10": (
+def _in_turn(others: float) -> Alone:
+    """Each of the actuators in turn as usual, and the others at that share of it."""
+
+    def alone(lengths: float, which: int, count: int) -> float:
+        return 1.0 if int(lengths * count / LENGTHS) % count == which else others
+
+    return alone
+
+
+class Manoeuvre(NamedTuple):
+    """What the helmsman orders, in words what it is, and on a ship of actuators what single ones get beside:
+    `alone` those that drive it, `side` (of lengths sailed, a share of full) its tunnel thrusters."""
+
+    order: Order
+    doc: str
+    alone: Alone | None = None
+    side: Callable[[float], float] | None = None
+
+    def suits(self, model: Model) -> bool:
+        """Whether the ship has what is to be sailed with."""
+        parts, drives = len(model.ship.actuators), len(_drives(model))
+        return (self.alone is None or drives > 1) and (self.side is None or parts > drives)
+
+
+def _drives(model: Model) -> list[str]:
+    """The actuators that drive the ship ahead."""
+    return [a.name for a in model.ship.actuators if a.kind != ACROSS]
+
+
+MANOEUVRES: dict[str, Manoeuvre] = {
+    "zigzag 10/10": Manoeuvre(
         _zigzag(10 * DEG),
         "10 deg of rudder to each side whenever the heading has changed by 10 deg, at constant power",
     ),
-    "zigzag 20/20": (
+    "zigzag 20/20": Manoeuvre(
         _zigzag(20 * DEG),
         "20 deg of rudder to each side whenever the heading has changed by 20 deg, at constant power",
     ),
-    "turning circles": (
+    "turning circles": Manoeuvre(
         lambda h: (25 * DEG if h.lengths < LENGTHS / 2 else -25 * DEG, 1.0),
         "a circle to each side at 25 deg",
     ),
-    "speed changes": (
+    "speed changes": Manoeuvre(
         _steer(lambda s: 0.0, lambda s: (1.0, 0.6, 1.0, 0.4)[int(s / 10) % 4]),
         "straight, at 100, 60, 100, 40 % of the shaft speed",
     ),
-    "reciprocal runs": (
+    "reciprocal runs": Manoeuvre(
         _steer(lambda s: pi * (s > LENGTHS / 2), lambda s: 1.0),
         "the same straight run there and back at constant power",
     ),
-    "square": (
+    "square": Manoeuvre(
         _steer(lambda s: 0.5 * pi * int(s / 10), lambda s: 1.0),
         "four straight legs at right angles at constant power",
     ),
-    "zigzag with speed changes": (
+    "zigzag with speed changes": Manoeuvre(
         lambda h: (_zigzag(20 * DEG)(h)[0], (1.0, 0.6, 1.0, 0.4)[int(h.lengths / 10) % 4]),
         "a 20/20 zigzag at 100, 60, 100 and 40 % of the usual shaft speed",
+    ),
+    "one actuator at a time": Manoeuvre(
+        _steer(lambda s: 0.0, lambda s: 1.0),
+        "each of those that drive the ship alone for a while, the others stopped, on a course as far as it "
+        "holds",
+        alone=_in_turn(0.0),
+    ),
+    "uneven thrust": Manoeuvre(
+        _steer(lambda s: 0.0, lambda s: 1.0),
+        "each of those that drive the ship in turn as usual, the others at 60 %, on a course as far as it "
+        "holds",
+        alone=_in_turn(0.6),
+    ),
+    "side thrust at low speed": Manoeuvre(
+        lambda h: (0.0, 0.3),
+        "at 30 % of the usual power, the tunnel thrusters full to each side in turn, for 5 lengths each",
+        side=lambda s: 1.0 if int(s / 5) % 2 else -1.0,
     ),
 }
 
 
-def sail(case: Case, model: Model, order: Order) -> Track:
+def sail(case: Case, model: Model, manoeuvre: Manoeuvre) -> Track:
     """The track of a manoeuvre that the model sails in the weather of the case's first track; NaN from where
     it runs away."""
     like = case.tracks[0]
+    parts, speed = bool(model.ship.actuators), float(np.median(like.state[:, 3]))
     h = float(model.ship.scale("time")) / STEPS_PER_LENGTH
+    if parts:  # what each gets in turn must fit into the lengths that are sailed
+        speed = max(speed, SLOWEST * float(model.ship.U_0))
+        h *= float(model.ship.U_0) / speed
     steps = LENGTHS * STEPS_PER_LENGTH
-    parts = bool(model.ship.actuators)
-    usual = 0.5 if parts else float(np.median(like.n[like.whole]))
+    usual = shaft_speed(model, speed) if parts else float(np.median(like.n[like.whole]))
     weather = {name: float(np.median(values)) for name, values in like.weather.items()}
-    state = (0.0, 0.0, 0.0, float(np.median(like.state[:, 3])), 0.0, 0.0)
+    state = (0.0, 0.0, 0.0, speed, 0.0, 0.0)
     helm, L = HelmOrder(), float(model.ship.L_pp)
     states, orders = np.full((steps, 6), np.nan), np.zeros((steps, 2))
+    parts_told: dict[str, np.ndarray] = {}
     for k in range(steps):
         if not np.isfinite(state).all():
             break
-        delta, power = order(helm)
+        delta, power = manoeuvre.order(helm)
         states[k], orders[k] = state, (delta, power * usual)
-        s = Situation(**controls(model, delta, power * usual), t=k * h, **weather)
-        state = model.step(state, s, h)
+        given = inputs(model, manoeuvre, helm, delta, power * usual)
+        for name, value in given.get("told", {}).items():
+            parts_told.setdefault(name, np.zeros(steps))[k] = value
+        state = model.step(state, Situation(**given, t=k * h, **weather), h)
         speed = max(abs(state[3]), 1e-3)
         helm.lengths, helm.turned, helm.rate = helm.lengths + speed * h / L, state[2], state[5] * L / speed
     measured = np.full((steps, len(READINGS)), np.nan)
@@ -121,14 +177,19 @@ def sail(case: Case, model: Model, order: Order) -> Track:
         measured,
         like.sd,
         np.ones(steps, bool),
-        told=_orders(model, orders) if parts else None,
+        told=parts_told if parts else None,
     )
 
 
-def _orders(model: Model, orders: np.ndarray) -> dict[str, np.ndarray]:
-    """What the actuators were told, (N,) each."""
-    each = controls(model, orders[:, 0], orders[:, 1])["told"]  # type: ignore[arg-type]
-    return {name: np.broadcast_to(x, len(orders)).astype(float) for name, x in each.items()}
+def inputs(model: Model, manoeuvre: Manoeuvre, helm: HelmOrder, delta: float, power: float) -> dict[str, Any]:
+    """Rudder and shaft, or what each actuator is told, as fields of Situation."""
+    if not model.ship.actuators:
+        return {"delta": delta, "n": power}
+    drives = _drives(model)
+    share = manoeuvre.alone or (lambda lengths, which, count: 1.0)
+    alone = {name: share(helm.lengths, i, len(drives)) for i, name in enumerate(drives)}
+    side = manoeuvre.side(helm.lengths) if manoeuvre.side else 0.0
+    return {"told": actuator_orders(model.ship, delta, power, side, alone)}
 
 
 def separation(case: Case, model: Model, track: Track, first: str, second: str, z: np.ndarray) -> float:
@@ -150,7 +211,7 @@ def reason(scores: Mapping[str, float], best: str) -> str:
     other = (
         f"next best: {rest[0]}, {_odds(scores[rest[0]])}" if rest else "in every other the model runs away"
     )
-    what = MANOEUVRES[best][1]
+    what = MANOEUVRES[best].doc
     return f"{what}: expected odds of {_odds(scores[best])} for the right one of the two ({other})"
 
 
@@ -159,8 +220,10 @@ def next_manoeuvre(
 ) -> dict[str, object] | None:
     """The manoeuvre that tells these two apart best, or None when none would. `z` (Q,) in prior widths."""
     scores = {}
-    for name, (order, _) in MANOEUVRES.items():
-        track = sail(case, model, order)
+    for name, manoeuvre in MANOEUVRES.items():
+        if not manoeuvre.suits(model):
+            continue
+        track = sail(case, model, manoeuvre)
         if np.isfinite(track.state).all():
             scores[name] = separation(case, model, track, first, second, z)
     best = max(scores, key=lambda name: scores[name], default="")

@@ -16,8 +16,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.physics import core
+from twin.physics.actuators.kinds import push
 from twin.physics.model import Model
-from twin.study.estimation.respond import lagged
+from twin.study.estimation.respond import steered
 from twin.study.track.track import Track
 
 SLOWEST = 0.01  # of U_0: a speed to divide by, however slow the ship
@@ -82,10 +83,24 @@ def accelerations(track: Track, model: Model, name: str) -> np.ndarray:
         force = 0.5 * ship.rho * ship.L_pp * ship.T * _speed(track, model) ** 2 * term(a)
         tau = {"X": (force, zero, zero), "Y": (zero, force, zero), "N": (zero, zero, force * ship.L_pp)}[axis]
     else:
-        u, delta = _through_water(track, model)[0], lagged(track, model)
-        alone = core.rudder(u, zero, zero, delta, core.thrust(u, track.n, model.c), model.c)
+        alone = _rudders(track, model)
         tau = tuple(part * RUDDER[name][1](a) for part in alone)  # type: ignore[assignment]
     return np.column_stack([np.broadcast_to(x, zero.shape) for x in core.accelerations(*tau, model.c)])
+
+
+def _rudders(track: Track, model: Model) -> core.Tau:
+    """What the ship's rudder gives by its angle alone, or the rudders of all its actuators together."""
+    u, zero, now = _through_water(track, model)[0], np.zeros(len(track)), steered(track, model)
+    if not model.ship.actuators:
+        return core.rudder(u, zero, zero, now["delta"], core.thrust(u, track.n, model.c), model.c)
+    X, Y, N = zero, zero, zero
+    for a in model.loaded.actuators:
+        if a.A_R is not None and "angle" in a.keys:
+            c = a.coefficients(model.loaded)
+            T = push(a, now["told"], c.wake_share * u, model.loaded)
+            x, y, n = core.rudder(u, zero, zero, now["told"][a.keys["angle"]] + a.trim, T, c)
+            X, Y, N = X + x, Y + y, N + n - a.y * x
+    return X, Y, N
 
 
 def _through_water(track: Track, model: Model) -> tuple[np.ndarray, np.ndarray]:

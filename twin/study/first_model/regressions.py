@@ -32,6 +32,8 @@ SOURCES = {
     "HAR83": "Harvald (1983) Resistance and Propulsion of Ships: t near 0.2 for single screws",
     "WAG": "Wageningen B-series, 4 blades: K_T = K_T0 (1 - J/(1.1 P/D)), K_T0 = 0.43 P/D - 0.02 (Oosterveld "
     "& van Oossanen 1975)",
+    "CAR18": "Carlton (2018) Marine Propellers and Propulsion, ch. 6: C_T of a screw that stands still near "
+    "-0.5 (four quadrants)",
     "ALEX": "Alexander's formula C_b = 1.08 - 1.68 Fr (Schneekluth & Bertram 1998)",
     "RULE": "rule of thumb from the bundled ships: expect +-30 %",
     "ROUGH": "a guess by size only: expect a factor of 2",
