@@ -87,7 +87,8 @@ def loop_of(settings: Settings, ears: Ears, voice: Outbox, patience_s: float | N
 def residual_of(settings: Settings, ship: Ship) -> tuple[Residual | None, str, str]:
     """The residual, or None and why there is none: for the bridge, and with file and hashes for the log. One
     made for another ship is passed over only if nobody asked for it. ResidualError: one is required and
-    cannot be used, or the one asked for is not for this ship."""
+    cannot be used, or the one asked for is not for this ship; NoResidual: one is required and none comes with
+    the ship."""
     asked = settings["residual.file"]
     if asked == "none":
         return None, "the settings want none", ""
