@@ -36,18 +36,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     ship, by = load(args.ship) if args.ship else None, read_map(Path(args.map)) if args.map else None
-    voyages = [read_voyage(path, by, controls=False) for path in args.voyages]
+    voyages, page = [read_voyage(path, by, controls=False) for path in args.voyages], lines_to(args)
     done = instruments(ship, voyages, velocity_by=args.velocity_by, progress=progress)
-    page = lines_to(args)
     print("\n".join(done.text()), file=page)
     if args.output:
         _write(args, ship, done)
         print(f"\nwrote {args.output}", file=page)
     if args.json:
         command = f"twin instruments {' '.join(args.voyages)}{f' --ship {args.ship}' if ship else ''}"
-        whole.write_json(
-            with_request(done, command, ship=args.ship, voyages=args.voyages).to_dict(), args.json
-        )
+        answer = with_request(done, command, ship=args.ship, voyages=args.voyages)
+        whole.write_json(answer.to_dict(), args.json)
     print(f"\nnext: {after_instruments(args.voyages, args.ship, args.output)}", file=page)
     return 0
 
