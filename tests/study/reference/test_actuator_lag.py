@@ -11,6 +11,7 @@ from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.physics.ship import load, save
 from twin.recording.write import write_voyage
+from twin.study.calibration.told import told
 from twin.study.estimation.columns import core_unknowns
 from twin.study.reference.nuisance import TEMPER
 from twin.study.reference.steering_gear import LATER, SLOWER, gear_unknowns, gears_of, with_or_without_gear
@@ -80,13 +81,15 @@ def calibrated(tmp_path_factory):
     return json.loads(said.read_text()), load(out)
 
 
-def test_the_lag_stands_in_the_ship_file_and_in_what_calibrate_says(calibrated, capsys):
+def test_the_lag_stands_in_the_ship_file_and_in_what_calibrate_says(calibrated):
     said, boat = calibrated
     lags = {type(e).__name__: e for e in boat.effects}
     assert set(lags) == set(said["actuator_lags"]) == {"ActuatorLag.port", "ActuatorLag.starboard"}
     for name, numbers in said["actuator_lags"].items():
         assert numbers["ease"]["value"] == lags[name].ease > 0.0 and numbers["ease"]["sd"] > 0.0
     assert set(lags) <= set(boat.notes["structural"]["beside_effects"])
+    for name in BOTH:
+        assert any(line.startswith(f"  {name} lags behind what was recorded of it") for line in told(said))
 
 
 @pytest.mark.parametrize("name", ["kvlcc2", "container", "usv"])
