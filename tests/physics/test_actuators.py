@@ -10,7 +10,6 @@ import pytest
 from twin.errors import SettingsError
 from twin.physics.actuators import KINDS, Actuator
 from twin.physics.effects import BUILT_IN, OF_ACTUATORS, find, of_ship
-from twin.physics.maths import positive
 from twin.physics.model import Model
 from twin.physics.ship import from_table, load, text, to_table
 from twin.physics.state import Situation
@@ -93,104 +92,6 @@ def test_the_blades_of_a_controllable_pitch_propeller_at_none_give_no_thrust_at_
         for p in (0.9, 0.0, 0.45)
     )
     assert none == 0.0 and full == pytest.approx(2.0 * half) and full > 0.0
-
-
-def screw(**numbers):
-    """A thruster of which turns are recorded: 0.2 m across."""
-    table = {"name": "port", "kind": "fixed_thruster", "channels": ["rate_rev_s"], "diameter_m": 0.2}
-    ship = ship_with(table | {"K_T0": 0.4, "K_T1": -0.4} | numbers)
-    a = ship.actuator("port")
-    return lambda n, u: a.force({"port.rate": n}, u, 0.0, 0.0, ship)[0] / (ship.rho * a.D**4)
-
-
-def test_astern_a_propeller_gives_its_own_share_of_what_it_gives_ahead_by_hand():
-    thrust = screw(reverse=0.7)
-    assert thrust(10.0, 0.0) == pytest.approx(0.4 * 100.0)
-    assert thrust(-10.0, 0.0) == pytest.approx(-0.7 * 0.4 * 100.0)
-    assert thrust(10.0, 1.0) == pytest.approx(100.0 * (0.4 - 0.4 * 0.5))  # J = 1/(10 0.2) = 0.5
-
-
-def test_where_the_water_runs_against_it_a_propeller_stalls_by_hand():
-    thrust, steady = screw(stall=4.0), screw()
-    # J = 0.5 against it: 1/(1 + 4 0.5^2) = half of 0.4 + 0.4 0.5 is left, in both of these quadrants
-    assert thrust(-10.0, 1.0) == pytest.approx(-0.5 * 60.0) and steady(-10.0, 1.0) == pytest.approx(-60.0)
-    assert thrust(10.0, -1.0) == pytest.approx(0.5 * 60.0)
-    for n, u in ((10.0, 1.0), (-10.0, -1.0), (10.0, 0.0)):
-        assert thrust(n, u) == pytest.approx(steady(n, u), rel=1e-6)
-
-
-def test_a_commanded_thruster_stalls_and_pushes_less_astern_by_hand():
-    table = PORT | {"reverse": 0.8, "stall": 4.0, "slow": 0.5, "y_m": 0.0}
-    ship = ship_with(table)
-    a, U = ship.actuator("port"), ship.U_0
-    # half astern: a quarter of 0.8 25 N at rest; at a quarter of U_0 ahead J^2 = 0.25^2/0.5^2
-    at_rest, moving = (a.force({"port.command": -0.5}, u, 0.0, 0.0, ship)[0] for u in (0.0, 0.25 * U))
-    assert at_rest == pytest.approx(-0.8 * 25.0 * 0.25, abs=1e-3)
-    assert moving == pytest.approx(-0.8 * 25.0 * (0.25 + 0.5 * 0.5 * 0.25) / (1.0 + 4.0 * 0.25), abs=1e-3)
-
-
-def test_a_thruster_as_ship_files_had_it_gives_the_same_to_the_last_digit():
-    """`reverse`, `stall`, `sag` and `drag` at their nulls, in all four quadrants, as the sum was written before them."""
-    ship = ship_with(PORT | {"slow": 0.4, "linear": 0.3, "y_m": 0.0})
-    a = ship.actuator("port")
-    for c in (0.6, -0.6, 0.0):
-        for u in (1.3, -1.3, 0.0):
-            ahead, astern = (positive(x, 1e-8) for x in (c, -c))
-            curve = [(0.3 + (1.0 - 0.3) * e) * e for e in (ahead, astern)]
-            before = 50.0 * curve[0] - 25.0 * curve[1] - 0.4 * (50.0 * ahead + 25.0 * astern) * u / ship.U_0
-            assert a.force({"port.command": c}, u, 0.0, 0.0, ship)[0] == before
-    assert "stall" not in text(to_table(ship)) and "reverse" not in text(to_table(ship))
-
-
-def test_thrust_over_speed_sags_below_its_line_by_hand():
-    thrust = screw(sag=0.5)
-    # J_0 = 0.4/0.4 = 1; at J = u/(n D) = 0.5 half of the line's half less 0.5 0.5 of it, 0.75
-    assert thrust(10.0, 1.0) == pytest.approx(100.0 * 0.4 * 0.5 * 0.75, rel=1e-4)
-    assert thrust(-10.0, -1.0) == pytest.approx(-100.0 * 0.4 * 0.5 * 0.75, rel=1e-4)
-    # KVLCC2's parabola [Yasukawa & Yoshimura 2015]: K_T = 0.2931 - 0.2753 J - 0.1385 J^2, none at J_0 = 0.769
-    J_0 = (-0.2753 + (0.2753**2 + 4.0 * 0.1385 * 0.2931) ** 0.5) / (2.0 * 0.1385)
-    kvlcc2 = screw(K_T0=0.2931, K_T1=-0.2931 / J_0, sag=-0.1385 * J_0**2 / 0.2931)
-    for J in (0.1, 0.3, 0.6):
-        assert kvlcc2(10.0, 2.0 * J) == pytest.approx(100.0 * (0.2931 - 0.2753 * J - 0.1385 * J**2), rel=1e-3)
-    steady = screw()
-    for n, u in ((10.0, 0.0), (10.0, -1.0), (-10.0, 1.0)):  # at rest, and where the water runs against it
-        assert thrust(n, u) == pytest.approx(steady(n, u), rel=1e-4)
-
-
-def test_a_screw_that_the_water_overruns_holds_against_the_motion_by_hand():
-    thrust, steady = screw(drag=0.2), screw()
-    # over rho D^4: 0.2 of the square of what the water is faster than J_0 n D = 1 n 0.2, over D^2 = 0.04
-    assert thrust(0.0, 3.0) == pytest.approx(-0.2 * 9.0 / 0.04, rel=1e-3)
-    assert thrust(0.0, -3.0) == pytest.approx(0.2 * 9.0 / 0.04, rel=1e-3)
-    assert thrust(5.0, 3.0) - steady(5.0, 3.0) == pytest.approx(-0.2 * 4.0 / 0.04, rel=1e-3)
-    assert thrust(20.0, 3.0) == pytest.approx(steady(20.0, 3.0), rel=1e-3)
-
-
-def test_a_commanded_thruster_sags_and_drags_by_hand():
-    ship = ship_with(PORT | {"slow": 0.5, "sag": 0.6, "drag": 0.3, "y_m": 0.0})
-    a, U = ship.actuator("port"), ship.U_0
-    still, half, full = (a.force({"port.command": c}, U, 0.0, 0.0, ship)[0] for c in (0.0, 0.5, 1.0))
-    # full at U_0: j = 0.5; half ahead: 0.5 0.5 is just what 0.5^2 gives; stopped: 0.3 of the 50 N ahead
-    assert full == pytest.approx(50.0 * 0.5 * (1.0 - 0.6 * 0.5), rel=1e-3)
-    assert half == pytest.approx(0.0, abs=0.02)
-    assert still == pytest.approx(-0.3 * 50.0, rel=1e-3)
-
-
-def test_a_stalling_thruster_has_a_finite_slope_everywhere():
-    torch = pytest.importorskip("torch")
-    bent = {"reverse": 0.8, "stall": 4.0, "sag": 0.5, "drag": 0.3}
-    tables = (
-        PORT | bent,
-        PORT | {"channels": ["rate_rpm"], "diameter_m": 0.2} | bent,
-    )
-    for table in tables:
-        ship = ship_with(table)
-        a = ship.actuator("port")
-        for push in (0.0, 0.5, -0.5):
-            for u in (0.0, 1.0, -1.0):
-                x = torch.tensor([push, u], dtype=torch.float64, requires_grad=True)
-                a.force({f"port.{a.attributes[0]}": x[0]}, x[1], 0.0, 0.0, ship)[0].backward()
-                assert bool(torch.isfinite(x.grad).all()), (table["channels"], push, u)
 
 
 def told_of(a: Actuator, k=1.0):

@@ -20,6 +20,7 @@ from twin.study.track.track import READINGS, Track
 
 LENGTHS = 40  # a manoeuvre lasts while the ship sails so many of its lengths
 STEPS_PER_LENGTH = 12
+TURN = 5.0  # lengths for which one actuator works unlike the others
 SLOWEST = 0.3  # of U_0: at which a ship of actuators sails a manoeuvre
 DEG = pi / 180.0
 
@@ -58,10 +59,11 @@ def _steer(course: Callable[[float], float], power: Callable[[float], float]) ->
 
 
 def _in_turn(others: float) -> Alone:
-    """Each of the actuators in turn as usual, and the others at that share of it."""
+    """Each of the actuators in turn as usual for a few lengths, and the others at that share of it, until
+    the manoeuvre ends."""
 
     def alone(lengths: float, which: int, count: int) -> float:
-        return 1.0 if int(lengths * count / LENGTHS) % count == which else others
+        return 1.0 if int(lengths / min(TURN, LENGTHS / count)) % count == which else others
 
     return alone
 
@@ -117,14 +119,14 @@ MANOEUVRES: dict[str, Manoeuvre] = {
     ),
     "one actuator at a time": Manoeuvre(
         _steer(lambda s: 0.0, lambda s: 1.0),
-        "each of those that drive the ship alone for a while, the others stopped, on a course as far as it "
-        "holds",
+        "each of those that drive the ship alone in turn for 5 lengths or less, the others stopped, on a "
+        "course as far as it holds",
         alone=_in_turn(0.0),
     ),
     "uneven thrust": Manoeuvre(
         _steer(lambda s: 0.0, lambda s: 1.0),
-        "each of those that drive the ship in turn as usual, the others at 60 %, on a course as far as it "
-        "holds",
+        "each of those that drive the ship in turn as usual for 5 lengths or less, the others at 60 %, on a "
+        "course as far as it holds",
         alone=_in_turn(0.6),
     ),
     "side thrust at low speed": Manoeuvre(
