@@ -11,7 +11,7 @@ from twin.physics.effects import of_ship
 from twin.physics.model import Model
 from twin.physics.ship import load, save
 from twin.recording.write import write_voyage
-from twin.study.calibration.told import told
+from twin.study.calibration.calibration_lines import terminal_lines
 from twin.study.estimation.columns import core_unknowns
 from twin.study.reference.nuisance import TEMPER
 from twin.study.reference.steering_gear import LATER, SLOWER, gear_unknowns, gears_of, with_or_without_gear
@@ -89,7 +89,7 @@ def test_the_lag_stands_in_the_ship_file_and_in_what_calibrate_says(calibrated):
         assert numbers["ease"]["value"] == lags[name].ease > 0.0 and numbers["ease"]["sd"] > 0.0
     assert set(lags) <= set(boat.notes["structural"]["beside_effects"])
     for name in BOTH:
-        assert any(line.startswith(f"  {name} lags behind what was recorded of it") for line in told(said))
+        assert any(line.startswith(f"  {name} lags behind what was recorded of it") for line in terminal_lines(said))
 
 
 @pytest.mark.parametrize("name", ["kvlcc2", "container", "usv"])
