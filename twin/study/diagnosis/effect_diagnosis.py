@@ -114,7 +114,15 @@ def diagnose(
             "error_without": base.open_loop_error_m,
             "error_floor": base.expected_error_m,
         },
-        "next_manoeuvre": _next(case, found, decision.verdict, decision.missing, listed, visible, progress),
+        "next_manoeuvre": _next(
+            case,
+            found,
+            decision.verdict,
+            decision.missing,
+            listed,
+            {n: w.effects[n] for n in facts.one_of} if decision.reason == "one_of" else visible,
+            progress,
+        ),
         "not_judged": _not_possible(case),
         "weather": [
             _weather(case, weighed, found, name, share) for name, share in w.weather.items() if share >= SOME
