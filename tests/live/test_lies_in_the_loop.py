@@ -38,7 +38,9 @@ class Sea:
     """The voyage, what is true on it, and the loop after its healthy part."""
 
     def __init__(self, certificate_file):
-        (recording,) = simulate([SeaCase("kvlcc2", "zigzag_10", "TS-01", seed=23, duration_s=SECONDS)], STEP_S)
+        (recording,) = simulate(
+            [SeaCase("kvlcc2", "zigzag_10", "TS-01", seed=23, duration_s=SECONDS)], STEP_S
+        )
         self.rows, voyage = list(rows_of(recording)), sailed(recording)
         self.truth = low_frequency(voyage.nu, window(voyage.T_p, STEP_S))
         self.first = round(LIE_AT_S / STEP_S)

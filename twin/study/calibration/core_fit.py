@@ -44,7 +44,7 @@ BETTER = 0.05  # share by which paths must be better than steps: a diagnosis jud
 PARTS = {role: of_role(role) for role in ("gear", "antenna", "wind")}
 
 
-def asked_for(ship: Ship) -> tuple[type[Effect], ...]:
+def searched_parts(ship: Ship) -> tuple[type[Effect], ...]:
     """Of the ship and not of the core, and found by the probability of the voyages (the antenna: by
     predictions): its steering gear or its actuators' lags, and wind."""
     return (*(gear for gears in gears_of(ship) for gear in gears), PARTS["wind"])
@@ -156,9 +156,9 @@ def _core(sailed: Sequence[Track], ship: Ship, progress: Callable[[str], None]) 
     floor, temper = structural_noise(rough.lines, unknowns), temper_of(rough.normal, unknowns)
     progress("fitting again with this noise model")
     found = fit(tracks, rough.model, unknowns, known, floor, temper=temper, smooth=True)
-    asked = tuple(e for e in found.model.effects if type(e) in asked_for(ship))
+    asked = tuple(e for e in found.model.effects if type(e) in searched_parts(ship))
     kept = tuple(e for e in ship.effects if type(e) not in map(type, asked))
-    parts = {e.__name__: e for e in (*asked_for(ship), *PARTS.values())}
+    parts = {e.__name__: e for e in (*searched_parts(ship), *PARTS.values())}
     numbers = {name: _numbers(found, name, e.with_core) for name, e in parts.items()}
     return Core(
         tracks, found.model, informed_by(found), (*kept, *asked), numbers, significant(found), floor, temper
@@ -206,7 +206,7 @@ def _remembering(ship: Ship, core: Core, fitted: Sequence[Sailed]) -> Ship:
 
 def _found_here(name: str, ship: Ship, core: Core) -> bool:
     """Whether a part of it is in the ship file as this calibration found it."""
-    return name in (e.__name__ for e in asked_for(ship)) or (
+    return name in (e.__name__ for e in searched_parts(ship)) or (
         core.antenna is not None and core.antenna in ship.effects
     )
 
@@ -214,7 +214,7 @@ def _found_here(name: str, ship: Ship, core: Core) -> bool:
 def _result(ship: Ship, after: Ship, core: Core, by: str, before: list[dict[str, float]]) -> dict[str, Any]:
     """What --json holds."""
     lasting_ones = after.notes["structural"]
-    lags = [e.__name__ for e in asked_for(ship) if e not in PARTS.values()]
+    lags = [e.__name__ for e in searched_parts(ship) if e not in PARTS.values()]
     return {
         "schema_version": SCHEMA_VERSION,
         "ship": ship.name,

@@ -24,7 +24,7 @@ class Normal:
         return self.A.sum(0), self.b.sum(0), float(self.ee.sum())
 
     def in_terms_of(self, B: np.ndarray) -> "Normal":
-        """The same in other unknowns (Q,), of which these are B (P, Q) times them."""
+        """The same in other unknowns (Q,), in prior widths, of which these are B (P, Q) times them."""
         return replace(self, A=B.T @ self.A @ B, b=self.b @ B)
 
     def only(self, keep: np.ndarray) -> "Normal":

@@ -191,8 +191,8 @@ def _abreast(s: Situation, model: Model, shape: tuple[int, int]) -> np.ndarray:
 
 
 def by_stream(track: Track, still: Model) -> np.ndarray:
-    """(N, 3, 2) acceleration per m/s of a stream to the north and to the east, of a model without one, as a
-    secant over a fiftieth of the usual speed."""
+    """(N, 3, 2) acceleration [m/s2, rad/s2] per m/s of a stream to the north and to the east, of a model
+    without one, as a secant over a fiftieth of the usual speed."""
     step = 0.02 * float(still.ship.scale("speed"))
     of = np.array([[0.0, 0.0], [step, 0.0], [0.0, step]])[:, :, None]
     stream = of_role("stream").absent(still.ship).but(north=of[:, 0], east=of[:, 1])

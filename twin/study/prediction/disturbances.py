@@ -35,8 +35,8 @@ class SlowDisturbances:
 def disturbances(
     track: Track, model: Model, floor: NoiseModel | None, start: np.ndarray, rng: np.random.Generator
 ) -> SlowDisturbances | None:
-    """Those that a floor describes (see innovations.py), drawn by `rng` for every window; `start` (W,): grid
-    step at which each begins. None where no floor is known."""
+    """Those that a noise model describes (see innovations.py), drawn by `rng` for every window, in SI;
+    `start` (W,): grid steps at which they begin [-]. None where no noise model is known."""
     if floor is None:
         return None
     size = np.array(floor.share) * np.hypot(busy(track, model), floor.calm * standard(model))

@@ -149,8 +149,9 @@ def coarse_each(
     stride_s: float = STRIDE_S,
     begins: np.ndarray | None = None,
 ) -> list[Windows]:
-    """The same of so many models side by side, whose numbers of the core differ: `model` holds each that does
-    as (count, 1)."""
+    """The same of so many models (M,) side by side, whose numbers of the core differ: `model` holds each that
+    does as a column of shape (M, 1). `begins` (N,): the grid steps
+    at which windows may begin."""
     steps = max(1, int(float(model.ship.scale("time")) / COARSE / track.h))
     lead = steps * np.unique(
         np.linspace(0.0, horizon_s / track.h / steps, leads + 1)[1:].round().clip(1).astype(int)
