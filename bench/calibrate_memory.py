@@ -11,6 +11,7 @@ import tempfile
 from pathlib import Path
 
 from bench.bundled import REFERENCES, recorded
+from bench.options import positive
 from bench.reference import SeaCase, simulate
 from twin import whole
 from twin.errors import ThresholdError, TwinError
@@ -29,7 +30,7 @@ sys.exit(code)"""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--voyages", type=int, default=6, help="how many (default: 6)")
+    parser.add_argument("--voyages", type=positive, default=6, help="how many (default: 6)")
     parser.add_argument("--minutes", type=float, default=20.0, help="of each (default: 20), at 10 Hz")
     parser.add_argument(
         "--most-mb", type=float, default=WANTED_MB, metavar="MB", help="wanted (default: 500)"
