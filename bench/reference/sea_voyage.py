@@ -17,7 +17,7 @@ class Change:
     else goes on."""
 
     at_s: float
-    hull: object = None  # as in SeaCase; None: hers
+    hull: object = None  # as in SeaCase; None: the usual one
     wind: float = 1.0
 
 

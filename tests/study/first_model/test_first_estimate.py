@@ -10,7 +10,7 @@ from bench.reference.hulls import HULLS
 from twin.cli import main
 from twin.physics.model import Model
 from twin.physics.ship import load
-from twin.study.first_model.first_estimate import OPTIONS, STILL, first_model
+from twin.study.first_model.first_estimate import OPTIONS, OVERRUN_DRAG, first_model
 from twin.study.prediction.trial import turning_circle, zigzag
 
 HULL = {  # length, beam, draught, and what else is known
@@ -245,6 +245,6 @@ def test_what_is_given_and_is_no_particular_is_told_as_given(tmp_path, capsys):
 
 def test_a_screw_that_stands_still_holds_against_the_motion_and_a_jet_does_not():
     ferry, jet = from_sheet("ferry2"), from_sheet("jet")
-    assert [a.drag for a in ferry.actuators] == [STILL, STILL, 0.0]  # the third is in a tunnel
+    assert [a.drag for a in ferry.actuators] == [OVERRUN_DRAG, OVERRUN_DRAG, 0.0]  # the third is in a tunnel
     assert [a.drag for a in jet.actuators] == [0.0, 0.0]
     assert "Carlton" in ferry.notes["sources"]["CAR18"] and "CAR18" not in jet.notes["sources"]

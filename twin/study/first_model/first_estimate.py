@@ -52,7 +52,7 @@ REQUIRED = ("length-pp-m", "beam-m", "draught-m")
 LEAST_FULL = 0.05  # of length x beam x draught, of two slender hulls with much water between them
 # drag of a screw that stands still, over rho D^2 u^2: a plate of half its disc; a jet has no blades in the
 # stream, and none runs along a tunnel
-STILL = 0.2
+OVERRUN_DRAG = 0.2  # of rho D^2 u^2 [-]
 BLADES = ("propeller", "controllable_pitch", "fixed_thruster", "azimuth", "outboard")
 Given = Mapping[str, float | None]
 Numbers = dict[str, tuple[float, str]]  # name -> value, source
@@ -73,8 +73,8 @@ def first_model(name: str, given: Given, actuators: tuple[Actuator, ...] = ()) -
     }
     used = {part for _, source in (*p.values(), *d.values()) for part in source.split("; ")}
     screws = [a.name for a in actuators if a.kind in BLADES and not a.drag and "drag" in a.told()]
-    actuators = tuple(a.but(drag=STILL) if a.name in screws else a for a in actuators)
-    notes["derivatives"] |= {f"{name}.drag": {"value": STILL, "source": "CAR18"} for name in screws}
+    actuators = tuple(a.but(drag=OVERRUN_DRAG) if a.name in screws else a for a in actuators)
+    notes["derivatives"] |= {f"{name}.drag": {"value": OVERRUN_DRAG, "source": "CAR18"} for name in screws}
     used |= {"CAR18"} if screws else set()
     notes["sources"] = {key: text for key, text in reg.SOURCES.items() if key in used}
     ship = replace(_ship(name.strip(), p, d), notes=notes, actuators=actuators)
