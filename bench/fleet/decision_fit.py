@@ -9,18 +9,17 @@ import argparse
 import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.optimize import minimize
 
-from bench.fleet import answer_score
+from bench.fleet import answer_score, probability_fit
 from bench.fleet.answer_score import Row, Share, share
 from bench.fleet.fleet_page import lines, read_facts, rows_of
+from bench.fleet.probability_fit import logistic
 from twin.study.diagnosis import criteria, decision, naming
-from twin.study.diagnosis.confidence import FACTS
+from twin.study.diagnosis.calibrated_probability import FACTS
 from twin.study.diagnosis.facts import Cause, Facts
 
 GRID = {  # what is tried of each threshold that acts on facts alone (others steer the search as well)
@@ -41,13 +40,18 @@ BEFORE = {
 ALARMS = 0.04  # share of healthy voyages on which an alarm may be raised, at the working point
 COST = 5.0  # of a false alarm beyond that, in hidden causes that are named
 WRONG = 0.5  # of a wrong name
-RIDGE = 1.0
-BINS = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 1.0)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("folder", type=Path, nargs="+", help="folders with rows.jsonl")
     parser.add_argument("--json", type=Path, metavar="FILE.json", default=Path("fit.json"))
+    parser.add_argument(
+        "--examples",
+        type=Path,
+        metavar="FILE.csv",
+        default=Path("probability-examples.csv"),
+        help="table of what the probabilities were fitted to",
+    )
 
 
 @contextmanager
@@ -107,36 +111,12 @@ def moved(rows: Sequence[Row]) -> dict[str, float]:
 
 def examples(rows: Sequence[Row]) -> tuple[np.ndarray, np.ndarray]:
     """(M, F) facts and (M,) truth of every cause of every explanation."""
-    x, y = [], []
-    for row in rows:
-        for c in row["read"].causes:
-            if c.in_explanation:
-                x.append(values(row["read"], c))
-                y.append(c.effect in row["hidden"])
-    return np.array(x).reshape(-1, len(FACTS)), np.array(y, float)
-
-
-def values(f: Facts, c: Cause) -> list[float]:
-    return [feature(f, c) for feature in FACTS.values()]
-
-
-def logistic(x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Weights of a constant and of each fact, none below zero, by penalised likelihood."""
-    X = np.column_stack([np.ones(len(x)), x])
-
-    def loss(w: np.ndarray) -> tuple[float, np.ndarray]:
-        s = X @ w
-        p = 1 / (1 + np.exp(-s))
-        value = float(np.sum(np.logaddexp(0, s) - y * s) + 0.5 * RIDGE * w[1:] @ w[1:])
-        return value, X.T @ (p - y) + RIDGE * np.concatenate([[0], w[1:]])
-
-    start = np.concatenate([[-1.0], np.full(x.shape[1], 0.2)])
-    bounds = [(None, None), *((0.0, None) for _ in range(x.shape[1]))]
-    return np.asarray(minimize(loss, start, jac=True, bounds=bounds, method="L-BFGS-B").x)
+    found = [e for row in rows for e in probability_fit.of_causes(row)]
+    return np.array([x for x, _ in found]).reshape(-1, len(FACTS)), np.array([so for _, so in found], float)
 
 
 def probability(w: np.ndarray, f: Facts, c: Cause) -> float:
-    return float(1 / (1 + np.exp(-(w[0] + np.dot(w[1:], values(f, c))))))
+    return float(1 / (1 + np.exp(-(w[0] + np.dot(w[1:], probability_fit.values(f, c, decision.decide(f)))))))
 
 
 def by_logistic(w: np.ndarray, limit: float) -> Decide:
@@ -154,19 +134,6 @@ def by_logistic(w: np.ndarray, limit: float) -> Decide:
         return d.missing, d.verdict
 
     return decide
-
-
-def foretold(rows: Sequence[Row], family: str) -> list[tuple[float, bool]]:
-    """What ships of the other families say of each cause of this family's explanations, and whether it is
-    there."""
-    w = logistic(*examples([r for r in rows if r["family"] != family]))
-    return [
-        (probability(w, r["read"], c), c.effect in r["hidden"])
-        for r in rows
-        if r["family"] == family
-        for c in r["read"].causes
-        if c.in_explanation
-    ]
 
 
 def working_point(rows: Sequence[Row], w: np.ndarray) -> float:
@@ -227,15 +194,13 @@ def run(args: argparse.Namespace) -> int:
         chosen[family] = {"thresholds": _changed(best), "limit": limit, "weights": _weights(w)}
         for t in np.round(np.arange(0.2, 0.99, 0.05), 2).tolist():
             curve.setdefault(t, []).append(outcome(own, by_logistic(w, t)))
-    w = logistic(*examples(rows))
-    told_of = [x for f in families for x in foretold(rows, f)]
+    w, asked = logistic(*examples(rows)), probability_fit.examples(rows)
+    probability_fit.write(asked, args.examples)
     result = {
         "voyages": len(rows),
         "held_out": {name: added(each) for name, each in held.items()},
         "chosen_by_family_held_out": chosen,
-        "reliability": [
-            [lo, hi, str(share([there for p, there in told_of if lo <= p < hi]))] for lo, hi in pairwise(BINS)
-        ],
+        "probabilities": probability_fit.fitted(asked),
         "curve": {str(t): added(each) for t, each in curve.items()},
         "of_all": {"thresholds": moved(rows), "limit": working_point(rows, w), "weights": _weights(w)},
     }
@@ -262,9 +227,4 @@ def fitted_lines(result: Mapping[str, Any]) -> list[str]:
     text = "Of the logistic model with each family held out, by the probability from which a cause is named."
     curve = [(t, *(c[k] for k in keys)) for t, c in result["curve"].items()]
     out += lines("Names against false alarms", text, ("from", *keys), curve)
-    text = (
-        "What the fit to the other families says of each cause of an explanation (`confidence` in the "
-        "answer), and how often it is there."
-    )
-    body = [(f"{lo:g} to {hi:g}", there) for lo, hi, there in result["reliability"]]
-    return out + lines("Confidence, each family held out in turn", text, ("said", "there"), body)
+    return out + probability_fit.page_lines(result["probabilities"])

@@ -128,7 +128,7 @@ def _rows_of_voyage(ship: RandomShip, case: FleetCase, model: Model, facts: dict
             for k in (
                 "effect",
                 "probability",
-                "confidence",
+                "posterior",
                 "parameters",
                 "typical_force",
                 "error_without",

@@ -185,13 +185,13 @@ def test_in_a_sea_a_force_is_named_only_where_the_model_alone_leads_astray():
 
 
 def test_every_reason_for_not_naming_has_words_of_its_own():
-    c = {"parameters": [], "error_with": 1.0, "error_without": 2.0, "probability": 0.85}
+    c = {"parameters": [], "error_with": 1.0, "error_without": 2.0, "posterior": 0.85}
     reasons = [*(rule.reason for rule in CAUSE_RULES), SECOND_NOT_SURE]
     said = {reason: words(c, reason) for reason in reasons}
     both = said.pop("change_within_form")
     assert both == said["not_significant"]
     assert len(set(said.values())) == len(said)
-    assert said["unlikely"] == "its probability, 85 %, is below the 90 % needed to name it"
+    assert said["unlikely"] == "its posterior probability, 85 %, is below the 90 % needed to name it"
 
 
 def test_a_cause_of_the_explanation_that_is_not_likely_enough_is_told_so():
@@ -201,14 +201,15 @@ def test_a_cause_of_the_explanation_that_is_not_likely_enough_is_told_so():
     c = {
         "effect": "HullFouling",
         "parameters": [],
-        "probability": 0.85,
+        "probability": 0.42,
+        "posterior": 0.85,
         "error_with": 1.0,
         "error_without": 2.0,
     }
     said = answer.sentence({"candidates": [c], "answer": {"not_named": answer.not_named}})
     assert said == (
-        "Undecided: the readings ask for HullFouling (85 %), but its probability, 85 %, is below the 90 % needed "
-        "to name it."
+        "Undecided: the readings ask for HullFouling (42 %), but its posterior probability, 85 %, is below the "
+        "90 % needed to name it."
     )
 
 

@@ -11,7 +11,7 @@ from twin.study.fleet.listing import FleetShip, FleetVoyage
 SHARED = {
     "failed": None, "reason": "", "sentence": "", "duration_s": 600.0, "p_value": None, "p_value_at_best": None,
     "references": 0, "score": None, "horizon_s": 120.0, "position_mae_m": 9.0, "position_expected_m": 5.0,
-    "data_checks": [], "lasting": True, "probability": 0.9, "confidence": None, "says": "", "X_N": 0.0,
+    "data_checks": [], "lasting": True, "probability": 0.9, "posterior": 0.95, "says": "", "X_N": 0.0,
     "Y_N": 0.0, "N_Nm": 0.0, "cannot_be_told_from": [], "belongs_to": "ship",
 }  # fmt: skip
 

@@ -15,10 +15,10 @@ from twin.recording.voyage import Voyage
 from twin.study.diagnosis.altered import sized
 from twin.study.diagnosis.assemble import assemble, of_tracks, unjudged_because
 from twin.study.diagnosis.by_kinematics import instrument_suspected, kinematics, suspected_instruments
+from twin.study.diagnosis.calibrated_probability import of_cause, of_nothing, of_unknown
 from twin.study.diagnosis.case import SCENARIOS, Case
-from twin.study.diagnosis.confidence import confidence
 from twin.study.diagnosis.consider import Considered, consider
-from twin.study.diagnosis.decision import decide
+from twin.study.diagnosis.decision import Decision, decide
 from twin.study.diagnosis.manoeuvres import next_manoeuvre
 from twin.study.diagnosis.open_loop_check import held_out_error, horizon_s
 from twin.study.diagnosis.overtime import over_time
@@ -71,15 +71,12 @@ def diagnose(
     progress("computing the facts")
     considered = consider(case, weighed, found, seen, w, asked)
     facts, decision = considered.facts, decide(considered.facts)
-    nothing = 0.0 if decision.reason == "pushed" else facts.nothing
-    unknown = 1.0 - nothing if decision.verdict == "unknown" else facts.unknown
+    nothing = of_nothing(0.0 if decision.reason == "pushed" else facts.nothing)
     p = w.effects | {name: w.weather[name] for name in decision.missing if name in w.weather}
     likely = [n for n in sorted(p, key=lambda n: -p[n]) if p[n] >= LEAST][:SHOWN]
     likely = [*decision.missing, *(n for n in likely if n not in decision.missing)]
     progress("predicting held-out parts")
-    candidates = [
-        _candidate(case, weighed, found, considered, decision.missing, name, p[name]) for name in likely
-    ]
+    candidates = [_candidate(case, weighed, found, considered, decision, name, p[name]) for name in likely]
     listed = [c for c in candidates if c]
     if w.best.effects:
         progress("estimating each part of the voyages by itself")
@@ -98,11 +95,11 @@ def diagnose(
         "more": decision.more,
         "one_of": list(facts.one_of) if decision.reason == "one_of" else [],
         **_healthy(considered.healthy),
-        "probabilities": {"nothing_missing": capped(nothing), "unknown": capped(unknown)},
+        "probabilities": {"nothing_missing": nothing, "unknown": of_unknown(facts, decision)},
         "candidates": listed,
         "rivals": rivals(weighed, found),
         "resembles": [
-            _candidate(case, weighed, found, considered, (), n, w.unnamed[n]) for n in facts.resembles
+            _candidate(case, weighed, found, considered, decision, n, w.unnamed[n]) for n in facts.resembles
         ],
         "answer": {
             "not_named": decision.not_named,
@@ -163,22 +160,24 @@ def _candidate(
     weighed: Sequence[Any],
     found: dict[tuple[str, ...], Found],
     considered: Considered,
-    missing: Sequence[str],
+    decision: Decision,
     name: str,
-    probability: float,
+    posterior: float,
 ) -> dict[str, Any]:
     """One effect with its numbers: what is named as it stands in the answer, the others as they stand in the
     best set that holds them."""
     sets = [h.effects for h in weighed if name in h.effects and h.effects in found]
-    sets.sort(key=lambda s: name not in missing or set(s) != set(missing))
+    sets.sort(key=lambda s: name not in decision.missing or set(s) != set(decision.missing))
     if not sets:
         return {}
     best = found[sets[0]]
     return {
         "effect": name,
         "belongs_to": case.catalogue[name].belongs_to,
-        "probability": capped(probability),
-        "confidence": _confidence(considered, name),
+        "probability": capped(posterior)
+        if name in case.weather
+        else of_cause(considered.facts, decision, name, posterior),
+        "posterior": capped(posterior),
         "on_references": _on_references(considered, name),
         "parameters": parameters(case, sized(case, best), name),
         "typical_force": typical_force(case, best.model, name),
@@ -192,12 +191,6 @@ def _candidate(
         "cannot_be_told_from": list(considered.like.get(name) or alike(case, weighed, name)),
         "says": (case.catalogue[name].__doc__ or "").strip().splitlines()[0],
     }
-
-
-def _confidence(considered: Considered, name: str) -> float | None:
-    """How often such a cause was there on other ships; None where that was not measured."""
-    cause = next((c for c in considered.facts.causes if c.effect == name), None)
-    return confidence(considered.facts, cause) if cause else None
 
 
 def _on_references(considered: Considered, name: str) -> float | None:

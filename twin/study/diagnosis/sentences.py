@@ -159,8 +159,8 @@ def why_not(c: Result, reason: str) -> str:
         "as_on_references": "single causes explained as much of healthy reference voyages of this ship"
         if c.get("on_references") is None
         else "position, velocity, heading and rate of turn go together as on the reference voyages",
-        "unlikely": f"its probability, {int(100.0 * c['probability'])} %, is below the {100.0 * NAMED:.0f} % "
-        "needed to name it",
+        "unlikely": f"its posterior probability, {int(100.0 * c['posterior'])} %, is below the "
+        f"{100.0 * NAMED:.0f} % needed to name it",
         "not_significant": f"not one of its numbers is clearly other than {none}",
         "change_within_form": f"not one of its numbers is clearly other than {none}",
         "no_nearer": f"adding it does not reduce the open-loop error ({with_it})",

@@ -24,7 +24,7 @@ def terminal_lines(result: dict[str, Any]) -> list[str]:
     chances = result["probabilities"]
     lines.append(
         f"nothing missing: {percent(chances['nothing_missing'])}   something unknown: "
-        f"{percent(chances['unknown'])}"
+        f"{percent(chances['unknown'])}   (each as often as on random ships with such an answer)"
     )
     lines.append(_healthy(result))
     if result["next_manoeuvre"]:
@@ -113,10 +113,6 @@ def _candidate(c: dict[str, Any]) -> list[str]:
     if changes(c.get("over_time", ())):
         lines.append("          its size changes with time (1 = the size above):")
         lines += [_part(p) for p in c["over_time"]]
-    if c.get("confidence") is not None:
-        lines.append(
-            f"          on other ships {percent(c['confidence'])} of causes with such facts were really there"
-        )
     if c["cannot_be_told_from"]:
         lines.append(f"          cannot be told apart from {', '.join(c['cannot_be_told_from'])}")
     return lines

@@ -18,7 +18,7 @@ Row = dict[str, Any]
 Key = tuple[Any, ...]
 CHANGED = "changed while the fleet was asked, or is another file for this worker. Ask again."
 OF_DIAGNOSIS = ("verdict", "reason", "sentence", "more", "one_of", "p_value", "p_value_at_best")
-OF_CAUSE = ("belongs_to", "probability", "confidence", "parameters", "cannot_be_told_from", "says")
+OF_CAUSE = ("belongs_to", "probability", "posterior", "parameters", "cannot_be_told_from", "says")
 AS_JSON = ("facts", "rivals", "weather", "moments", "next_manoeuvre")  # too various for columns
 
 

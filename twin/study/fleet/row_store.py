@@ -30,7 +30,7 @@ KINDS: Mapping[pa.DataType, str] = {
     "start_time_utc failed failed_as verdict reason sentence facts rivals weather moments next_manoeuvre "
     "compare_verdict effect belongs_to says",
     NUMBER: "seconds duration_s horizon_s position_mae_m position_expected_m heading_mae_deg "
-    "heading_expected_deg p_value p_value_at_best score probability confidence error_horizon_s "
+    "heading_expected_deg p_value p_value_at_best score probability posterior error_horizon_s "
     "error_without_m error_with_m error_expected_m X_N Y_N N_Nm",
     COUNT: "references",
     YES: "more named lasting",
@@ -102,7 +102,7 @@ def lasting(rows: Sequence[Row]) -> bool:
 
 def _read(path: Path) -> list[Row]:
     try:
-        return pq.read_table(path).to_pylist()
+        return [dict.fromkeys(SCHEMA.names) | row for row in pq.read_table(path).to_pylist()]
     except (pa.ArrowException, OSError) as error:
         raise DataError(
             f"{path}: cannot be read as Parquet ({' '.join(str(error).split())[:120]}). Move it away, and "

@@ -36,7 +36,7 @@ def _voyage(file: str, tags: Mapping[str, str], rows: Sequence[Row]) -> dict[str
 
 
 def _cause(row: Row) -> dict[str, Any]:
-    keys = ("effect", "named", "lasting", "belongs_to", "probability", "confidence", "says")
+    keys = ("effect", "named", "lasting", "belongs_to", "probability", "posterior", "says")
     without, with_it = row["error_without_m"], row["error_with_m"]
     share = None if with_it is None or not without else 1.0 - with_it / without
     return {k: row[k] for k in keys} | {

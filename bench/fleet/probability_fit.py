@@ -1,0 +1,180 @@
+"""The probabilities that are told, fitted to the answers on random ships, each family held out in turn.
+
+Four questions (twin/study/diagnosis/calibrated_probability.py), each with a logistic model that is monotone
+in its facts: whether a cause of the explanation is there, one that the explanation does without, none at
+all, one without a name. An answer is held against what was hidden."""
+
+import csv
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import minimize
+
+from bench.fleet.answer_score import BY_NOW, Row, causes, share
+from bench.fleet.fleet_page import lines
+from twin.study.diagnosis.calibrated_probability import FACTS, log_odds
+from twin.study.diagnosis.decision import Decision, decide
+from twin.study.diagnosis.facts import Cause, Facts
+
+RIDGE = 1.0
+BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.8, 0.85, 0.95, 1.0)
+
+
+@dataclass(frozen=True)
+class Example:
+    """One question of one answer: the facts that the model is asked with, and whether it is so."""
+
+    question: str
+    family: str
+    facts: list[float]
+    so: bool
+
+
+Asked = tuple[list[float], bool]  # facts, and whether it is so
+
+
+def _hidden(row: Row) -> set[str]:
+    return set(row["hidden"]).union(*(BY_NOW.get(n, ()) for n in row["hidden"]))
+
+
+def values(f: Facts, c: Cause, d: Decision) -> list[float]:
+    """What the model of a cause of the explanation is asked with."""
+    return [fact(f, c, d) for fact in FACTS.values()]
+
+
+def of_causes(row: Row) -> list[Asked]:
+    """Each cause of the explanation."""
+    f: Facts = row["read"]
+    d = decide(f)
+    return [(values(f, c, d), c.effect in _hidden(row)) for c in f.causes if c.in_explanation]
+
+
+def _of_causes_beside(row: Row) -> list[Asked]:
+    within = {c.effect for c in row["read"].causes if c.in_explanation}
+    return [
+        ([log_odds(c.get("posterior", c["probability"]))], c["effect"] in _hidden(row))
+        for c in row["candidates"]
+        if c and c["effect"] not in within and causes([c["effect"]])
+    ]
+
+
+def _of_nothing(row: Row) -> list[Asked]:
+    return [([log_odds(row["read"].nothing)], not causes(list(row["hidden"])))]
+
+
+def _of_unknown(row: Row) -> list[Asked]:
+    verdict = decide(row["read"]).verdict
+    return [([log_odds(row["read"].unknown), float(verdict == "unknown")], row["kind"] == "outside")]
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question, its facts by name, and what a row has to say of it."""
+
+    asks: str
+    facts: tuple[str, ...]
+    of: Callable[[Row], list[Asked]]
+
+
+QUESTIONS = {  # weights in calibrated_probability.py -> what they answer
+    "OF_CAUSE": Question("a cause of the explanation is there", tuple(FACTS), of_causes),
+    "OF_CAUSE_BESIDE": Question("a cause beside the explanation is there", ("log_odds",), _of_causes_beside),
+    "OF_NOTHING": Question("no cause of ship and instruments is there", ("log_odds",), _of_nothing),
+    "OF_UNKNOWN": Question("what is there has no name", ("log_odds", "verdict"), _of_unknown),
+}
+
+
+def logistic(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Weights of a constant and of each fact, none below zero, by penalised likelihood."""
+    X = np.column_stack([np.ones(len(x)), x])
+
+    def loss(w: np.ndarray) -> tuple[float, np.ndarray]:
+        s = X @ w
+        p = 1 / (1 + np.exp(-s))
+        value = float(np.sum(np.logaddexp(0, s) - y * s) + 0.5 * RIDGE * w[1:] @ w[1:])
+        return value, X.T @ (p - y) + RIDGE * np.concatenate([[0], w[1:]])
+
+    start = np.concatenate([[-1.0], np.full(x.shape[1], 0.2)])
+    bounds = [(None, None), *((0.0, None) for _ in range(x.shape[1]))]
+    return np.asarray(minimize(loss, start, jac=True, bounds=bounds, method="L-BFGS-B").x)
+
+
+def examples(rows: Sequence[Row]) -> list[Example]:
+    """Every question of every row."""
+    return [
+        Example(name, row["family"], facts, so)
+        for row in rows
+        for name, question in QUESTIONS.items()
+        for facts, so in question.of(row)
+    ]
+
+
+def write(found: Sequence[Example], path: Path) -> None:
+    """The examples as a table, from which the weights can be fitted again."""
+    with path.open("w", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(("question", "family", "so", "facts"))
+        for e in found:
+            table.writerow((e.question, e.family, int(e.so), " ".join(f"{x:.4g}" for x in e.facts)))
+
+
+def read(path: Path) -> list[Example]:
+    """The examples of such a table."""
+    with path.open(newline="") as file:
+        return [
+            Example(r["question"], r["family"], [float(x) for x in r["facts"].split()], r["so"] == "1")
+            for r in csv.DictReader(file)
+        ]
+
+
+def _arrays(found: Sequence[Example]) -> tuple[np.ndarray, np.ndarray]:
+    return np.array([e.facts for e in found], float), np.array([e.so for e in found], float)
+
+
+def _held_out(found: Sequence[Example]) -> tuple[np.ndarray, np.ndarray]:
+    """What the fit to the other families says of each example, and whether it is so."""
+    told, so = [], []
+    for family in sorted({e.family for e in found}):
+        w = logistic(*_arrays([e for e in found if e.family != family]))
+        x, y = _arrays([e for e in found if e.family == family])
+        told.append(1 / (1 + np.exp(-(w[0] + x @ w[1:]))))
+        so.append(y)
+    return np.concatenate(told), np.concatenate(so)
+
+
+def fitted(found: Sequence[Example]) -> dict[str, Any]:
+    """Of each question: the weights fitted to all, and the reliability with each family held out."""
+    out = {}
+    for name, question in QUESTIONS.items():
+        own = [e for e in found if e.question == name]
+        (p, y), w = _held_out(own), logistic(*_arrays(own))
+        bins = [(lo, hi, (p >= lo) & (p < hi)) for lo, hi in pairwise(BINS)]
+        out[name] = {
+            "weights": dict(zip(("constant", *question.facts), [round(float(v), 2) for v in w], strict=True)),
+            "log_likelihood": float(np.mean(np.log(np.where(y > 0.5, p, 1 - p)))),
+            "reliability": [
+                [lo, hi, float(p[i].mean()), str(share((y[i] > 0.5).tolist()))]
+                for lo, hi, i in bins
+                if i.any()
+            ],
+        }
+    return out
+
+
+def page_lines(found: Mapping[str, Any]) -> list[str]:
+    """The reliability of each probability, for the page."""
+    out: list[str] = []
+    for name, one in found.items():
+        weights = ", ".join(f"{k} {v:g}" for k, v in one["weights"].items())
+        text = (
+            f"What the fit to the other families says, and how often it is so. Fitted to all: {weights}. "
+            f"Mean log likelihood with the family left out: {one['log_likelihood']:.3f}."
+        )
+        body = [(f"{lo:g} to {hi:g}", f"{mean:.2f}", there) for lo, hi, mean, there in one["reliability"]]
+        title = f"Told that {QUESTIONS[name].asks}: each family held out in turn"
+        out += lines(title, text, ("told", "mean told", "so"), body)
+    return out

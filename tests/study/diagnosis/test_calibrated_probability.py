@@ -1,0 +1,70 @@
+"""The probabilities that are told: what moves them, and that the fit to the recorded answers gives them."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from bench.fleet import probability_fit
+from tests.study.diagnosis.test_decision import cause, facts
+from twin.study.diagnosis import calibrated_probability as told
+from twin.study.diagnosis.decision import decide
+
+EXAMPLES = Path(__file__).parents[3] / "docs/results/probability-examples.csv"
+
+
+def said(f, posterior=0.97):
+    return told.of_cause(f, decide(f), f.causes[0].effect, posterior)
+
+
+@pytest.fixture(scope="module")
+def fitted():
+    return probability_fit.fitted(probability_fit.read(EXAMPLES))
+
+
+def test_a_clearer_cause_that_leaves_little_is_likelier_there():
+    weak = facts(cause(probability=0.9, significance=2.0), cause("RudderWear", significance=2.0))
+    clear = facts(cause(probability=0.99, significance=20.0))
+    much = replace(clear, left=replace(clear.left, error=1.3))
+    assert said(weak) < said(much) < said(clear)
+
+
+def test_it_by_hand():
+    """p 0.97, significance 20, leaves what is expected, named, nothing nameless: -4.83 + 0.26 (3.476 / 3) +
+    0.86 (3.045) + 1.35 + 1.84 = 1.280."""
+    f = facts(cause(probability=0.97, significance=20.0))
+    assert decide(f).missing == (f.causes[0].effect,)
+    assert said(replace(f, left=replace(f.left, error=1.0))) == pytest.approx(0.782, abs=1e-3)
+
+
+def test_a_cause_that_the_explanation_does_without_is_told_by_its_posterior_alone():
+    beside = facts(cause(in_explanation=False))
+    assert said(beside, 0.3) < said(beside, 0.9) < 0.7
+
+
+def test_nothing_is_told_beyond_what_so_many_answers_can_show():
+    f = facts(cause(probability=1.0, significance=1e9))
+    low, high = told.PROBABILITY_LIMITS
+    assert said(f, 1.0) <= high and told.of_nothing(1.0) <= high and told.of_nothing(0.0) >= low
+
+
+def test_something_without_a_name_is_likelier_where_the_verdict_says_so():
+    f = facts(cause(in_explanation=False))
+    d = decide(f)
+    assert told.of_unknown(f, replace(d, verdict="unknown")) > told.of_unknown(
+        f, replace(d, verdict="undecided")
+    )
+
+
+def test_the_weights_are_those_that_the_fit_to_the_recorded_answers_gives(fitted):
+    for name, one in fitted.items():
+        assert getattr(told, name) == pytest.approx(one["weights"], abs=0.011), name
+
+
+def test_what_is_told_of_families_left_out_of_the_fit_is_what_was_there(fitted):
+    """Within the 95 % interval of a share, or five in a hundred, in each bin of twenty and more."""
+    for name, one in fitted.items():
+        for low, high, mean, share in one["reliability"]:
+            k, n = (int(x) for x in share.split(",")[0].split(" of "))
+            spread = 1.96 * (mean * (1 - mean) / n) ** 0.5 + 0.05
+            assert n < 20 or abs(k / n - mean) < spread, (name, low, high, mean, share)
