@@ -25,7 +25,7 @@ BINS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.8, 0.85, 0.95, 1.0)
 
 
 @dataclass(frozen=True)
-class Example:
+class AnswerExample:
     """One question of one answer: the facts that the model is asked with, and whether it is so."""
 
     question: str
@@ -34,7 +34,7 @@ class Example:
     so: bool
 
 
-Asked = tuple[list[float], bool]  # facts, and whether it is so
+FactsAndTruth = tuple[list[float], bool]  # facts, and whether it is so
 
 
 def _hidden(row: Row) -> set[str]:
@@ -46,14 +46,14 @@ def values(f: Facts, c: Cause, d: Decision) -> list[float]:
     return [fact(f, c, d) for fact in FACTS.values()]
 
 
-def of_causes(row: Row) -> list[Asked]:
+def of_causes(row: Row) -> list[FactsAndTruth]:
     """Each cause of the explanation."""
     f: Facts = row["read"]
     d = decide(f)
     return [(values(f, c, d), c.effect in _hidden(row)) for c in f.causes if c.in_explanation]
 
 
-def _of_causes_beside(row: Row) -> list[Asked]:
+def _of_causes_beside(row: Row) -> list[FactsAndTruth]:
     within = {c.effect for c in row["read"].causes if c.in_explanation}
     return [
         ([log_odds(c.get("posterior", c["probability"]))], c["effect"] in _hidden(row))
@@ -62,29 +62,31 @@ def _of_causes_beside(row: Row) -> list[Asked]:
     ]
 
 
-def _of_nothing(row: Row) -> list[Asked]:
+def _of_nothing(row: Row) -> list[FactsAndTruth]:
     return [([log_odds(row["read"].nothing)], not causes(list(row["hidden"])))]
 
 
-def _of_unknown(row: Row) -> list[Asked]:
+def _of_unknown(row: Row) -> list[FactsAndTruth]:
     verdict = decide(row["read"]).verdict
     return [([log_odds(row["read"].unknown), float(verdict == "unknown")], row["kind"] == "outside")]
 
 
 @dataclass(frozen=True)
-class Question:
+class ProbabilityModel:
     """A question, its facts by name, and what a row has to say of it."""
 
     asks: str
     facts: tuple[str, ...]
-    of: Callable[[Row], list[Asked]]
+    of: Callable[[Row], list[FactsAndTruth]]
 
 
 QUESTIONS = {  # weights in calibrated_probability.py -> what they answer
-    "OF_CAUSE": Question("a cause of the explanation is there", tuple(FACTS), of_causes),
-    "OF_CAUSE_BESIDE": Question("a cause beside the explanation is there", ("log_odds",), _of_causes_beside),
-    "OF_NOTHING": Question("no cause of ship and instruments is there", ("log_odds",), _of_nothing),
-    "OF_UNKNOWN": Question("what is there has no name", ("log_odds", "verdict"), _of_unknown),
+    "OF_CAUSE": ProbabilityModel("a cause of the explanation is there", tuple(FACTS), of_causes),
+    "OF_CAUSE_BESIDE": ProbabilityModel(
+        "a cause beside the explanation is there", ("log_odds",), _of_causes_beside
+    ),
+    "OF_NOTHING": ProbabilityModel("no cause of ship and instruments is there", ("log_odds",), _of_nothing),
+    "OF_UNKNOWN": ProbabilityModel("what is there has no name", ("log_odds", "verdict"), _of_unknown),
 }
 
 
@@ -103,17 +105,17 @@ def logistic(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.asarray(minimize(loss, start, jac=True, bounds=bounds, method="L-BFGS-B").x)
 
 
-def examples(rows: Sequence[Row]) -> list[Example]:
+def examples(rows: Sequence[Row]) -> list[AnswerExample]:
     """Every question of every row."""
     return [
-        Example(name, row["family"], facts, so)
+        AnswerExample(name, row["family"], facts, so)
         for row in rows
         for name, question in QUESTIONS.items()
         for facts, so in question.of(row)
     ]
 
 
-def write(found: Sequence[Example], path: Path) -> None:
+def write(found: Sequence[AnswerExample], path: Path) -> None:
     """The examples as a table, from which the weights can be fitted again."""
     with path.open("w", newline="") as file:
         table = csv.writer(file, lineterminator="\n")
@@ -122,20 +124,20 @@ def write(found: Sequence[Example], path: Path) -> None:
             table.writerow((e.question, e.family, int(e.so), " ".join(f"{x:.4g}" for x in e.facts)))
 
 
-def read(path: Path) -> list[Example]:
+def read(path: Path) -> list[AnswerExample]:
     """The examples of such a table."""
     with path.open(newline="") as file:
         return [
-            Example(r["question"], r["family"], [float(x) for x in r["facts"].split()], r["so"] == "1")
+            AnswerExample(r["question"], r["family"], [float(x) for x in r["facts"].split()], r["so"] == "1")
             for r in csv.DictReader(file)
         ]
 
 
-def _arrays(found: Sequence[Example]) -> tuple[np.ndarray, np.ndarray]:
+def _arrays(found: Sequence[AnswerExample]) -> tuple[np.ndarray, np.ndarray]:
     return np.array([e.facts for e in found], float), np.array([e.so for e in found], float)
 
 
-def _held_out(found: Sequence[Example]) -> tuple[np.ndarray, np.ndarray]:
+def _held_out(found: Sequence[AnswerExample]) -> tuple[np.ndarray, np.ndarray]:
     """What the fit to the other families says of each example, and whether it is so."""
     told, so = [], []
     for family in sorted({e.family for e in found}):
@@ -146,7 +148,7 @@ def _held_out(found: Sequence[Example]) -> tuple[np.ndarray, np.ndarray]:
     return np.concatenate(told), np.concatenate(so)
 
 
-def fitted(found: Sequence[Example]) -> dict[str, Any]:
+def fitted(found: Sequence[AnswerExample]) -> dict[str, Any]:
     """Of each question: the weights fitted to all, and the reliability with each family held out."""
     out = {}
     for name, question in QUESTIONS.items():
