@@ -4,15 +4,16 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
-
 from bench.decisions.question import KnownCase, begun, kept
 from twin.physics.ship import Ship
+from twin.recording.map_file import read_map
+from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
 from twin.study.calibration.core_fit import calibrate
 from twin.study.reference.sailed import Sailed
 from twin.study.track.track import track
 
+MAP = Path(__file__).parents[2] / "docs" / "maps" / "esso_osaka.toml"
 ESSO = {  # the model of FRT-DS-ESSO, 1/108.33
     "length_pp_m": 3.0,
     "beam_m": 0.489,
@@ -40,8 +41,8 @@ def in_the_pond(folder: Path, runs: Path) -> Iterator[KnownCase]:
     }
 
     def ship() -> Ship:
-        voyages = [_pond(paths[run]) for run in CALMEST]
-        start = begun("Esso Osaka", ESSO, folder / "ships" / "esso.start.toml")
+        voyages = [pond_voyage(paths[run]) for run in CALMEST]
+        start = begun_esso(folder / "ships" / "esso.start.toml")
         sailed = [Sailed(v, track(v, start), v.name) for v in voyages]
         return calibrate(sailed, [(sailed[-1].track, 0)], start).ship
 
@@ -53,23 +54,15 @@ def in_the_pond(folder: Path, runs: Path) -> Iterator[KnownCase]:
         for name, which in (("", without), (" knows Wind", lambda: kept(folder / "ships" / "esso", ship))):
             truth = {"hidden": {"Wind": 1.0}, "knows": "Wind" if name else ""}
             yield KnownCase(
-                f"esso {run}{name}", truth, lambda run=run, which=which: (which(), [_pond(paths[run])])
+                f"esso {run}{name}", truth, lambda run=run, which=which: (which(), [pond_voyage(paths[run])])
             )  # type: ignore[misc]
 
 
-def _pond(path: Path) -> Voyage:
-    head = [name.split(" ")[0] for name in path.read_text().split("\n", 1)[0].split(",")]
-    c = dict(zip(head, np.genfromtxt(path, delimiter=",", skip_header=1).T, strict=True))
-    columns = {
-        "north_m": c["x_position_mid"],
-        "east_m": c["y_position_mid"],
-        "heading_true_north_deg": np.degrees(c["psi_hat"]) % 360.0,
-        "surge_velocity_mps": c["u_velo"],
-        "sway_velocity_mps": c["vm_velo"],
-        "yaw_rate_degps": np.degrees(c["r_angvelo"]),
-        "rudder_angle_deg": np.degrees(c["delta_rudder"]),
-        "propeller_rate_rpm": 60.0 * c["n_prop"],
-        "true_wind_speed_mps": c["wind_velo_true"],
-        "true_wind_direction_deg": np.degrees(c["wind_dir_true"]) % 360.0,
-    }
-    return Voyage(path.stem, c["t"], columns, {"source": "FRT-DS-ESSO"})
+def pond_voyage(path: Path) -> Voyage:
+    """One run, read through its map."""
+    return read_voyage(path, read_map(MAP))
+
+
+def begun_esso(path: Path) -> Ship:
+    """The model as its main particulars have it, before any calibration."""
+    return begun("Esso Osaka", ESSO, path)
