@@ -42,7 +42,7 @@ def _figures(rows: Sequence[Row]) -> list[str]:
         "| single runs | goal | |",
         "|---|---|---|",
         f"| wind hidden: `Wind` named | >= 80 % | {share(['Wind' in r['missing'] for r in hidden])} |",
-        f"| wind hidden: ship or instruments accused | | {share([_accused(r) for r in hidden])} |",
+        f"| wind hidden: a cause of ship or instruments named | | {share([_cause_named(r) for r in hidden])} |",
         f"| wind given: a cause named, or `unknown` | <= 5 % | {share([_alarm(r) for r in given])} |",
         f"| wind given: a stream named, which a pond has not | | {share([_stream(r) for r in given])} |",
         f"| wind given: nothing missing | >= 70 % | {share([_nothing(r) for r in given])} |",
@@ -79,12 +79,12 @@ def _nothing(r: Row) -> bool:
     return bool(r["verdict"] == "nothing_missing")
 
 
-def _accused(r: Row) -> bool:
+def _cause_named(r: Row) -> bool:
     return bool(causes(r["missing"]))
 
 
 def _alarm(r: Row) -> bool:
-    return _accused(r) or r["verdict"] == "unknown"
+    return _cause_named(r) or r["verdict"] == "unknown"
 
 
 def _stream(r: Row) -> bool:
