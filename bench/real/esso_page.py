@@ -42,7 +42,7 @@ def _figures(rows: Sequence[Row]) -> list[str]:
         "| single runs | goal | |",
         "|---|---|---|",
         f"| wind hidden: `Wind` named | >= 80 % | {share(['Wind' in r['missing'] for r in hidden])} |",
-        f"| wind hidden: a cause of ship or instruments named | | {share([_cause_named(r) for r in hidden])} |",
+        f"| wind hidden: a cause named | | {share([_cause_named(r) for r in hidden])} |",
         f"| wind given: a cause named, or `unknown` | <= 5 % | {share([_alarm(r) for r in given])} |",
         f"| wind given: a stream named, which a pond has not | | {share([_stream(r) for r in given])} |",
         f"| wind given: nothing missing | >= 70 % | {share([_nothing(r) for r in given])} |",
