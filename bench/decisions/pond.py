@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from bench.decisions.question import KnownCase, begun, kept
-from twin.physics.ship import Ship
+from twin.physics.ship import Ship, load
 from twin.recording.map_file import read_map
 from twin.recording.read import read_voyage
 from twin.recording.voyage import Voyage
@@ -65,4 +65,4 @@ def pond_voyage(path: Path) -> Voyage:
 
 def begun_esso(path: Path) -> Ship:
     """The model as its main particulars have it, before any calibration."""
-    return begun("Esso Osaka", ESSO, path)
+    return load(path) if path.exists() else begun("Esso Osaka", ESSO, path)
