@@ -61,12 +61,8 @@ COMPARE = (
 CANDIDATE = (
     JsonKey("effect", "", "name of the effect", "one is likely"),
     JsonKey("belongs_to", "", "ship, instrument or voyage", FACTS),
-    JsonKey(
-        "probability", "1", "how often such a cause was there on random ships", "one is likely"
-    ),
-    JsonKey(
-        "posterior", "1", "that it is there, if the noise model is true", FACTS
-    ),
+    JsonKey("probability", "1", "how often such a cause was there on random ships", "one is likely"),
+    JsonKey("posterior", "1", "that it is there, if the noise model is true", FACTS),
     JsonKey("on_references", "1", "share of the references with as much of it by kinematics, or null", FACTS),
     JsonKey("parameters[].name", "", "one of its numbers", "one is likely"),
     *when("one is likely", under("parameters[]", ESTIMATE)),
@@ -95,9 +91,7 @@ DIAGNOSE = (
     JsonKey("missing[]", "", "effects that are named, lasting causes first", NAMED),
     JsonKey("more", "", "whether something is left beside what is named", FACTS),
     JsonKey("one_of[]", "", "the fewest effects of which one is surely there", "the verdict is undecided"),
-    JsonKey(
-        "probabilities.nothing_missing", "1", "how often no cause was there on random ships so answered"
-    ),
+    JsonKey("probabilities.nothing_missing", "1", "how often no cause was there on random ships so answered"),
     JsonKey("probabilities.unknown", "1", "how often something without a name was there"),
     *under("candidates[]", CANDIDATE),
     *under("resembles[]", CANDIDATE, "known by its form alone: "),

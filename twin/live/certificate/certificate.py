@@ -201,27 +201,32 @@ def certify(
     estimated_heading: the physics is evaluated at the observer's heading, so its error is a fourth state.
     inner: steps into which a period is cut by an observer that corrects at a sample's own time (`RollBack`).
     """
-    m: Ages = (delay_samples,) * 3 if isinstance(delay_samples, int) else tuple(delay_samples)  # type: ignore[assignment]
-    _check((1.0, 1.0, 1.0) if K is None else _row(K), h, m, noise)
+    delays = [delay_samples] * 3 if isinstance(delay_samples, int) else [*delay_samples]
+    _check(_three(1.0 if K is None else K), h, delays, noise)
+    m: Ages = (delays[0], delays[1], delays[2])
     d = _bound_of(disturbance) or usual_disturbance(model)
     d = replace(d, calm=c3.add(d.calm, saturation))
     numbers = movable(model.effects, model.ship) if adapted else ()
-    plant, noise = plant_of(model, operating_set or of_ship(model), h, numbers), tuple(noise)
+    plant, noise = plant_of(model, operating_set or of_ship(model), h, numbers), c3.row(noise)
     if inner > 1:
-        K = _row(FULL / h)
+        K = c3.row(_three(FULL / h))
     else:
-        K = suited_gain(plant, m, gain_for(model.ship), fastest_gain(h, max(m))) if K is None else _row(K)
-    promise = _promised(plant, K, m, noise, d, heading_noise, extra_growth, estimated_heading, inner)  # type: ignore[arg-type]
+        K = (
+            suited_gain(plant, m, gain_for(model.ship), fastest_gain(h, max(m)))
+            if K is None
+            else c3.row(_three(K))
+        )
+    promise = _promised(plant, K, m, noise, d, heading_noise, extra_growth, estimated_heading, inner)
     parts = {name: getattr(promise, name) for name in Promise.__dataclass_fields__}
     return Certificate(
         **parts,
         K=K,
         delays=m,
-        noise=noise,  # type: ignore[arg-type]
+        noise=noise,
         disturbance=d,
         plant=plant,
         heading_noise=heading_noise,
-        saturation=saturation,  # type: ignore[arg-type]
+        saturation=c3.row(saturation),
         extra_growth=extra_growth,
         estimated_heading=estimated_heading,
         inner=inner,
@@ -262,8 +267,8 @@ def on_board(
     }
 
 
-def _row(K: float | Sequence[float]) -> Row:
-    return (K, K, K) if isinstance(K, (int, float)) else tuple(K)  # type: ignore[return-value]
+def _three(K: float | Sequence[float]) -> list[float]:
+    return [K] * 3 if isinstance(K, (int, float)) else [*K]
 
 
 def _bound_of(disturbance: Sequence[float] | Disturbance | None) -> Disturbance | None:

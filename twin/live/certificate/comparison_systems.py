@@ -5,7 +5,7 @@ G is below one. Source: Berman & Plemmons (1994) Nonnegative Matrices in the Mat
 (M-matrices).
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from twin.physics.maths import total
 
@@ -16,9 +16,16 @@ AXES = (0, 1, 2)
 IDENTITY: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 
 
+def row(entries: Iterable[float]) -> Row:
+    """Three numbers as a row."""
+    first, second, third = entries
+    return first, second, third
+
+
 def matrix(entry: Callable[[int, int], float]) -> Matrix:
     """The matrix of entry(i, j)."""
-    return tuple(tuple(float(entry(i, j)) for j in AXES) for i in AXES)  # type: ignore[return-value]
+    first, second, third = (row(float(entry(i, j)) for j in AXES) for i in AXES)
+    return first, second, third
 
 
 def diagonal(d: Row) -> Matrix:
@@ -48,12 +55,12 @@ def product(a: Matrix, b: Matrix) -> Matrix:
 
 def apply(a: Matrix, x: Row) -> Row:
     """The matrix times a column, A x."""
-    return tuple(a[i][0] * x[0] + a[i][1] * x[1] + a[i][2] * x[2] for i in AXES)  # type: ignore[return-value]
+    return row(a[i][0] * x[0] + a[i][1] * x[1] + a[i][2] * x[2] for i in AXES)
 
 
 def add(*rows: Row) -> Row:
     """Sum of rows."""
-    return tuple(total(r[i] for r in rows) for i in AXES)  # type: ignore[return-value]
+    return row(total(r[i] for r in rows) for i in AXES)
 
 
 def inverse(a: Matrix) -> Matrix | None:

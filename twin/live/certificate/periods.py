@@ -10,7 +10,7 @@ from math import ceil
 from typing import NamedTuple
 
 from twin.live.certificate.certificate import Certificate
-from twin.live.certificate.comparison_systems import AXES, Matrix, Row, apply
+from twin.live.certificate.comparison_systems import AXES, Matrix, Row, apply, row
 from twin.live.certificate.plant import Plant
 from twin.live.certificate.recursion import CURVE, pushed, recursion
 
@@ -59,5 +59,5 @@ def of_certificate(c: Certificate) -> Periods:
 
 def _step(plant: Plant, c: Certificate, curve: float) -> Step:
     push, calm = pushed(plant, 0.0, curve)
-    turned: Row = tuple(plant.h * plant.heading[i] + plant.bend[i][3] for i in AXES)  # type: ignore[assignment]
+    turned = row(plant.h * plant.heading[i] + plant.bend[i][3] for i in AXES)
     return Step(recursion(plant, c.K, c.delays, c.extra_growth).V, push, calm, turned)

@@ -78,11 +78,11 @@ class Disturbance:
 
     def at(self, H_s: float) -> Row:
         """The bound in a sea of that significant wave height [N, N, N m]."""
-        return tuple(a + b * H_s for a, b in zip(self.calm, self.per_metre, strict=True))  # type: ignore[return-value]
+        return c3.row(a + b * H_s for a, b in zip(self.calm, self.per_metre, strict=True))
 
     def noise(self, noise: Row, H_s: float) -> Row:
         """What an instrument may be off from the low-frequency motion in that sea."""
-        return tuple(n + a * H_s for n, a in zip(noise, self.motion, strict=False))  # type: ignore[return-value]
+        return c3.row(n + a * H_s for n, a in zip(noise, self.motion, strict=False))
 
     def heading_noise(self, noise: float, H_s: float) -> float:
         """What the compass may be off from the low-frequency heading in that sea [rad]."""
@@ -100,12 +100,12 @@ def plant_of(model: Model, operating: OperatingSet, h: float, numbers: Sequence[
     made = Plant(
         lo=c3.matrix(lambda i, j: steep.lo[i][j]),
         hi=c3.matrix(lambda i, j: steep.hi[i][j]),
-        heading=tuple(max(-steep.lo[i][3], steep.hi[i][3]) for i in AXES),  # type: ignore[arg-type]
-        most=steep.most,  # type: ignore[arg-type]
+        heading=c3.row(max(-steep.lo[i][3], steep.hi[i][3]) for i in AXES),
+        most=c3.row(steep.most),
         inertia=c3.matrix(lambda i, j: _size(unit[j][i])),
         h=h,
         operating=operating,
-        moved=steep.moved,  # type: ignore[arg-type]
+        moved=c3.row(steep.moved),
     )
     return made.at_period(h)
 

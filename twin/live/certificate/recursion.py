@@ -42,37 +42,37 @@ class Recursion:
     @property
     def before(self) -> Row:
         """Whole samples that the oldest measurement looks back beyond the last one."""
-        return tuple(float(max(m - 1, 0)) for m in self.m)  # type: ignore[return-value]
+        return c3.row(float(max(m - 1, 0)) for m in self.m)
 
     @property
     def pushed(self) -> Row:
         """How much of the push of one sample reaches p with a measurement: by itself, by way of older
         samples, and by what its path between two samples leaves the line."""
-        return tuple(
+        return c3.row(
             1.0 + (b + 0.5) * pull if m else keep
             for m, b, pull, keep in zip(self.m, self.before, self.pull, self.keep, strict=True)
-        )  # type: ignore[return-value]
+        )
 
     @property
     def heard(self) -> Row:
         """How much of the noise reaches p."""
-        return tuple(pull * (1.0 + b * pull) for b, pull in zip(self.before, self.pull, strict=True))  # type: ignore[return-value]
+        return c3.row(pull * (1.0 + b * pull) for b, pull in zip(self.before, self.pull, strict=True))
 
     def told(self, d: Row, noise: Row) -> Row:
         """What a measurement leaves in p, for one push d in each sample and this noise."""
-        return tuple(a * x + b * n for a, x, b, n in zip(self.pushed, d, self.heard, noise, strict=True))  # type: ignore[return-value]
+        return c3.row(a * x + b * n for a, x, b, n in zip(self.pushed, d, self.heard, noise, strict=True))
 
     def share(self) -> Matrix:
         """How much of a push d in each sample reaches p, seen-again pulls included."""
-        return c3.diagonal(tuple(a + b for a, b in zip(self.pushed, self.again, strict=True)))  # type: ignore[arg-type]
+        return c3.diagonal(c3.add(self.pushed, self.again))
 
 
 def recursion(plant: Plant, K: Row, m: Ages, extra: Matrix | None = None) -> Recursion:
     """The matrices of one sample for one gain; `extra`: see self_regressor."""
     h, bend, more = plant.h, plant.bend, extra or c3.scaled(0.0, c3.IDENTITY)
     size, growth = c3.plus(plant.magnitude(), more), c3.plus(plant.growth(), more)
-    pull: Row = tuple(h * k for k in K)  # type: ignore[assignment]
-    keep: Row = tuple(abs(1.0 - p) for p in pull)  # type: ignore[assignment]
+    pull = c3.scaled_row(h, K)
+    keep = c3.row(abs(1.0 - p) for p in pull)
     change = c3.matrix(lambda i, j: h * size[i][j] + bend[i][j])
 
     def ends(i: int, less: float) -> float:
@@ -86,12 +86,12 @@ def recursion(plant: Plant, K: Row, m: Ages, extra: Matrix | None = None) -> Rec
             return keep[i] * V[i][j]
         return V[i][j] if i != j else max(ends(i, pull[i]), keep[i] * V[i][i])
 
-    late: Row = tuple(float(max(x - 1, 0)) for x in m)  # type: ignore[assignment]
+    late = c3.row(float(max(x - 1, 0)) for x in m)
     return Recursion(
         V=V,
         now=c3.matrix(answered),
         keep=keep,
-        again=tuple(n * p * p for n, p in zip(late, pull, strict=True)),  # type: ignore[arg-type]
+        again=c3.row(n * p * p for n, p in zip(late, pull, strict=True)),
         drift=c3.matrix(lambda i, j: late[i] * pull[i] * change[i][j]),
         pull=pull,
         m=m,
@@ -106,8 +106,8 @@ def pushed(plant: Plant, heading_noise: float, part: float = CURVE) -> tuple[Mat
     rates = (*plant.most, max(abs(x) for x in plant.operating.ranges["r"]))
     curve = [part * h * h * total(a * b for a, b in zip(row, rates, strict=True)) for row in swing]
     moved = c3.apply(along, plant.moved)
-    calm = tuple(
+    calm = c3.row(
         (h * p + plant.bend[i][3]) * heading_noise + curve[i] + h * moved[i]
         for i, p in enumerate(plant.heading)
     )
-    return c3.scaled(h, c3.product(along, plant.inertia)), calm  # type: ignore[return-value]
+    return c3.scaled(h, c3.product(along, plant.inertia)), calm
