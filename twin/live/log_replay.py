@@ -93,8 +93,9 @@ def _sailed(
     first_s = last_s = None
     while (instant := clock.wait()) is not None:
         batch = waiting.pop()
-        for message in batch.raw if file else ():
-            file.add(message.topic, message.type_name, message.data, round(batch.wall_s * 1e9))  # type: ignore[union-attr]
+        if file:
+            for message in batch.raw:
+                file.add(message.topic, message.type_name, message.data, round(batch.wall_s * 1e9))
         ears.next = batch.results
         ears.datum = played.decoder.datum
         tick = loop.tick(instant)

@@ -7,6 +7,7 @@ arrow matrix).
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve, cho_solve_banded, cholesky_banded
@@ -83,18 +84,18 @@ def _solver(H: csr_array, fast: int) -> tuple[Callable[[np.ndarray], np.ndarray]
     return solve, 2.0 * float(np.log(band[0]).sum() + np.log(np.diag(factor[0])).sum())
 
 
-def _cholesky(H: object) -> np.ndarray:
-    row, col, data = H.row, H.col, H.data  # type: ignore[attr-defined]
+def _cholesky(H: Any) -> np.ndarray:
+    row, col, data = H.row, H.col, H.data
     low = row >= col
     row, col, data = row[low], col[low], data[low]
     width = int((row - col).max()) + 1
-    band = np.zeros((width, H.shape[0]))  # type: ignore[attr-defined]
+    band = np.zeros((width, H.shape[0]))
     np.add.at(band, (row - col, col), data)
     try:
-        return cholesky_banded(band, lower=True, check_finite=False)  # type: ignore[no-any-return]
+        return np.asarray(cholesky_banded(band, lower=True, check_finite=False))
     except LinAlgError:
         band[0] *= 1.0 + RIDGE
-        return cholesky_banded(band, lower=True, check_finite=False)  # type: ignore[no-any-return]
+        return np.asarray(cholesky_banded(band, lower=True, check_finite=False))
 
 
 def freedom(

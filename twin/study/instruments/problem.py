@@ -43,7 +43,10 @@ class Rows:
     """Rows of a sparse matrix, gathered piece by piece."""
 
     def __init__(self, n: int) -> None:
-        self.n, self.row, self.col, self.data = n, [], [], []  # type: ignore[var-annotated]
+        self.n = n
+        self.row: list[np.ndarray] = []
+        self.col: list[np.ndarray] = []
+        self.data: list[np.ndarray] = []
 
     def add(self, first_row: int, columns: np.ndarray, w: Weights, factor: np.ndarray | float = 1.0) -> None:
         """From `first_row` on, n rows: weights w, (n,) and (n, m), of the coefficients whose columns (K,)
@@ -54,7 +57,7 @@ class Rows:
         self.col.append(columns[first[:, None] + np.arange(m)].ravel())
         self.data.append((share * np.broadcast_to(np.asarray(factor, float), n)[:, None]).ravel())
 
-    def matrix(self, size: int):  # type: ignore[no-untyped-def]
+    def matrix(self, size: int) -> Any:
         """All that was added, as a sparse matrix (N, S) of S = `size` columns, by rows; what fell on one
         place adds up."""
         at = (np.concatenate(self.row), np.concatenate(self.col))
