@@ -5,7 +5,7 @@ docs/results/judgement.md); the others are conventions that no family asked to m
 docs/diagnosis.md is made of these lines (docs/decision_page.py).
 """
 
-# probabilities [1]
+# posterior probabilities [1]
 NAMED = 0.9  # probability from which a cause is named (fitted)
 SURE = 0.8  # from which weather is named, a likely cause is asked about, or nothing said to be missing
 CERTAIN = 0.9  # of a second cause, or that one of a group is there: of two rough forms one may mend the other
