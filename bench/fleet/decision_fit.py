@@ -208,41 +208,64 @@ def added(all_of: Sequence[dict[str, tuple[int, int]]]) -> dict[str, str]:
     return {k: str(Share(sum(o[k][0] for o in all_of), sum(o[k][1] for o in all_of))) for k in all_of[0]}
 
 
-def run(args: argparse.Namespace) -> int:
-    rows = [r | {"read": read_facts(r)} for r in rows_of(args.folder)]
-    families = sorted({r["family"] for r in rows})
+def chosen(rows: Sequence[Row]) -> dict[str, dict[str, Any]]:
+    """What the ships of the other families ask for, a family: thresholds that differ from those of before,
+    and the probability from which the logistic model names a cause. (Minutes.)"""
+    out = {}
+    for family in _families(rows):
+        others = [r for r in rows if r["family"] != family]
+        limit = working_point(others, logistic(*examples(others)))
+        out[family] = {"thresholds": _changed(moved(others)), "limit": limit}
+    return out
+
+
+def held_out(rows: Sequence[Row], asked_for: Mapping[str, Mapping[str, Any]]) -> dict[str, Any]:
+    """What becomes of each family with what the others ask for (`chosen`): the figures of the table as it
+    was before, with its thresholds moved, and of the logistic model; the same of that by the probability from
+    which it names a cause; and how often a cause is there of which it says so much."""
     held: dict[str, list[dict[str, tuple[int, int]]]] = {"before": [], "thresholds moved": [], "logistic": []}
-    chosen: dict[str, Any] = {}
     curve: dict[float, list[dict[str, tuple[int, int]]]] = {}
-    for family in families:
+    for family, of in asked_for.items():
         own, others = [r for r in rows if r["family"] == family], [r for r in rows if r["family"] != family]
-        with thresholds(BEFORE):
-            held["before"].append(outcome(own, by_table))
-        best = moved(others)
-        with thresholds(best):
-            held["thresholds moved"].append(outcome(own, by_table))
+        for name, moves in (("before", {}), ("thresholds moved", of["thresholds"])):
+            with thresholds(BEFORE | moves):
+                held[name].append(outcome(own, by_table))
         w = logistic(*examples(others))
-        limit = working_point(others, w)
-        held["logistic"].append(outcome(own, by_logistic(w, limit)))
-        chosen[family] = {"thresholds": _changed(best), "limit": limit, "weights": _weights(w)}
+        held["logistic"].append(outcome(own, by_logistic(w, of["limit"])))
         for t in np.round(np.arange(0.2, 0.99, 0.05), 2).tolist():
             curve.setdefault(t, []).append(outcome(own, by_logistic(w, t)))
-    w = logistic(*examples(rows))
-    told_of = [x for f in families for x in foretold(rows, f)]
-    result = {
-        "voyages": len(rows),
+    there = [x for family in asked_for for x in foretold(rows, family)]
+    return {
         "held_out": {name: added(each) for name, each in held.items()},
-        "chosen_by_family_held_out": chosen,
         "reliability": [
-            [lo, hi, str(share([there for p, there in told_of if lo <= p < hi]))] for lo, hi in pairwise(BINS)
+            [lo, hi, str(share([is_there for p, is_there in there if lo <= p < hi]))]
+            for lo, hi in pairwise(BINS)
         ],
         "curve": {str(t): added(each) for t, each in curve.items()},
+    }
+
+
+def with_facts(rows: Sequence[Row]) -> list[dict[str, Any]]:
+    """The rows with their facts read, as all here asks for them."""
+    return [{**r, "read": read_facts(r)} for r in rows]
+
+
+def run(args: argparse.Namespace) -> int:
+    rows = with_facts(rows_of(args.folder))
+    asked_for, w = chosen(rows), logistic(*examples(rows))
+    result = held_out(rows, asked_for) | {
+        "voyages": len(rows),
+        "chosen_by_family_held_out": asked_for,
         "of_all": {"thresholds": moved(rows), "limit": working_point(rows, w), "weights": _weights(w)},
     }
     result["page"] = fitted_lines(result)
     args.json.write_text(json.dumps(result, indent=1))
     print("\n".join(fitted_lines(result)))
     return 0
+
+
+def _families(rows: Sequence[Row]) -> list[str]:
+    return sorted({r["family"] for r in rows})
 
 
 def _changed(best: Mapping[str, float]) -> dict[str, float]:
@@ -254,7 +277,7 @@ def _weights(w: np.ndarray) -> dict[str, float]:
 
 
 def fitted_lines(result: Mapping[str, Any]) -> list[str]:
-    """What was fitted, for the page."""
+    """What was fitted, for the page, in three sections."""
     held: Mapping[str, Mapping[str, str]] = result["held_out"]
     body = [(figure, *(held[name][figure] for name in held)) for figure in held["before"]]
     out = lines("The decision fitted, each family held out in turn", "", ("", *held), body)

@@ -119,7 +119,9 @@ def _head(rows: Sequence[Row]) -> list[str]:
         f"{len(rows)} voyages of {ships} random ships of {families} families (`bench/fleet`). Wind, stream "
         "and swell on every voyage, a third of it not recorded; instruments with faults of their own; two "
         "to six reference voyages; no force in the twin's form. Weather that is named or told as today's "
-        "never counts against an answer. Intervals: 95 % (Wilson). Made from the rows of the first command:"
+        "never counts against an answer. Intervals: 95 % (Wilson). The rows, an answer each, are in "
+        "[fleet.csv](fleet.csv), with the facts of each in `fleet_facts.jsonl`; the last command makes the "
+        "page of them:"
     )
     return [
         "# The decision on ships of many forms",
@@ -128,8 +130,8 @@ def _head(rows: Sequence[Row]) -> list[str]:
         "",
         "```sh",
         "python -m bench.fleet run FOLDER --seeds 0-7 --voyages 8 --workers 16",
-        "python -m bench.fleet fit FOLDER --json fit.json",
-        "python -m bench.fleet table FOLDER --fit fit.json --page docs/results/judgement.md",
+        "python -m bench.fleet keep --first FOLDER",
+        "python docs/results_page.py",
         "```",
         "",
         *wrap(RIGHT, 108),
