@@ -105,7 +105,7 @@ def reproduce(
         "quick": quick,
         "tables": tables,
         "ratios": paper_tables.ratios(tables["3"]),
-        "models": models.told,
+        "models": models.about,
         "counts": {name: len(some) for name, some in courses.items()},
         "scenarios": list(paper_voyages.SCENARIOS),
         "cpu_seconds": round(time.process_time() - began, 1),

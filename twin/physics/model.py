@@ -98,7 +98,7 @@ class Model:
                 turning,
                 NONE,
                 NONE,
-                *[a.force(s.told, u, v, r, ship) for a in ship.actuators],  # type: ignore[arg-type]
+                *[a.force(s.orders, u, v, r, ship) for a in ship.actuators],  # type: ignore[arg-type]
                 *[push.force(s, ship) for push in self.pushes],
             ]
         return [

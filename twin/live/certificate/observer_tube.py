@@ -188,7 +188,7 @@ class Tube:
         self.heading_noise = c.disturbance.heading_noise(c.heading_noise, H_s)
         if not c.estimated_heading:
             self.psi = self.heading_noise
-        told = step.told(d, self.noise)
+        told = step.left_by(d, self.noise)
         self._table: Rows = tuple(
             (*one.V[i], d[i], one.turned[i], *step.now[i], step.again[i], *step.drift[i], told[i])
             for i in (0, 1, 2)

@@ -77,8 +77,8 @@ def consider(
         manoeuvre=case.excited,
         power=power(case, seen),
         structural=case.path.share,
-        noise=_by_axis(np.array(case.floor.white) / case.white),
-        scatter=case.floor.sensor / case.scatter,
+        noise=_by_axis(np.array(case.noise_model.white) / case.white),
+        scatter=case.noise_model.sensor / case.scatter,
         sea=any(at_sea(t, case.model) for t in case.tracks),
         rough=roughly(case) / nothing.expected_error_m,
         transient=strongest.log_evidence if strongest else 0.0,
@@ -97,11 +97,11 @@ def against_healthy(case: Case) -> Healthy | None:
     """How rare these voyages would be on this ship in health, by its reference voyages
     (reference/healthy.py)."""
     scores = case.model.ship.notes.get("structural", {}).get("left_out_scores", [])
-    floor = noise_model_of(case.model.ship, "beside")
-    if not scores or floor is None:
+    noise_model = noise_model_of(case.model.ship, "beside")
+    if not scores or noise_model is None:
         return None
     causes = [n for n in case.causes(case.candidates) if n not in case.unnamed]
-    own = [score(case.reduced([line], [floor])[0], causes, case.weather) for line in case.lines]
+    own = [score(case.reduced([line], [noise_model])[0], causes, case.weather) for line in case.lines]
     return compared(own, scores)
 
 

@@ -108,7 +108,7 @@ def diagnose(
             "not_named": decision.not_named,
             "lasting": [n for n in decision.missing if case.catalogue[n].lasts()],
         },
-        "moments": [m.told(case.model) for m in considered.pushes],
+        "moments": [m.as_json(case.model) for m in considered.pushes],
         "path": {
             "horizon_s": horizon_s(case.tracks[0], case.model),
             "error_without": base.open_loop_error_m,
@@ -134,15 +134,15 @@ def diagnose(
             if not can and n not in [*decision.missing, *case.as_before, *case.present]
         ],
         "floor": {
-            "share_surge_sway_yaw": case.floor.share,
-            "sensor_factor": case.floor.sensor,
+            "share_surge_sway_yaw": case.noise_model.share,
+            "sensor_factor": case.noise_model.sensor,
             "temper": case.temper,
         },
         "voyages": [v.name for v in voyages],
         "waves": waves_on(case.tracks),
         "references": [v.name for v in references],
         "data_checks": of_voyages([*voyages, *references], ship),
-        "facts": facts.told(),
+        "facts": facts.as_json(),
     }
     result["sentence"] = decision.sentence(result)
     return Diagnosed(plain(result), case, found)
@@ -224,7 +224,7 @@ def _weather(
     )
     out = {"effect": name, "belongs_to": case.catalogue[name].belongs_to, "probability": capped(probability)}
     if best is None:
-        flow = SCENARIOS[weighed[0].scenario].flow * case.floor.flow * float(case.model.ship.U_0)
+        flow = SCENARIOS[weighed[0].scenario].flow * case.noise_model.flow * float(case.model.ship.U_0)
         return out | {
             "parameters": [{"name": "scatter", "value": flow, "unit": "m/s"}],
             "typical_force": None,

@@ -97,8 +97,8 @@ def _rudders(track: Track, model: Model) -> core.Tau:
     for a in model.loaded.actuators:
         if a.A_R is not None and "angle" in a.keys:
             c = a.coefficients(model.loaded)
-            T = push(a, now["told"], c.wake_share * u, model.loaded)
-            x, y, n = core.rudder(u, zero, zero, now["told"][a.keys["angle"]] + a.trim, T, c)
+            T = push(a, now["orders"], c.wake_share * u, model.loaded)
+            x, y, n = core.rudder(u, zero, zero, now["orders"][a.keys["angle"]] + a.trim, T, c)
             X, Y, N = X + x, Y + y, N + n - a.y * x
     return X, Y, N
 

@@ -82,7 +82,7 @@ def usual_unknowns(model: Model, catalogue: dict[str, type[Effect]]) -> tuple[Un
 def from_references(
     lines: Sequence[Linear],
     unknowns: tuple[Unknown, ...],
-    floor: NoiseModel,
+    noise_model: NoiseModel,
     temper: float,
     prior: np.ndarray | None = None,
 ) -> tuple[Nuisance, dict[str, float]]:
@@ -92,7 +92,7 @@ def from_references(
 
     `prior` (C,): prior means where they are not the unknowns' centres.
     """
-    known = known_from(lines, unknowns, floor, temper, prior)
+    known = known_from(lines, unknowns, noise_model, temper, prior)
     return known.nuisance(), known.between
 
 
@@ -102,7 +102,7 @@ class Known:
     variances) numbers differ from one to another; `pull` (C,): of the priors' means."""
 
     unknowns: tuple[Unknown, ...]
-    told: tuple[BetweenVoyages, ...]
+    voyages: tuple[BetweenVoyages, ...]
     scatter: np.ndarray
     pull: np.ndarray
 
@@ -113,7 +113,7 @@ class Known:
 
     def nuisance(self, without: int | None = None) -> Nuisance:
         """As they concern the next voyage; `without` one of them, as that one would have been foretold."""
-        told = [t for i, t in enumerate(self.told) if i != without]
+        told = [t for i, t in enumerate(self.voyages) if i != without]
         mean, covariance = ship_of(told, self.scatter, self.pull)
         covariance = covariance + np.diag(self.scatter)
         lasting_ones = [i for i, u in enumerate(self.unknowns) if not u.every_day]
@@ -133,14 +133,14 @@ class Known:
 def known_from(
     lines: Sequence[Linear],
     unknowns: tuple[Unknown, ...],
-    floor: NoiseModel,
+    noise_model: NoiseModel,
     temper: float,
     prior: np.ndarray | None = None,
 ) -> Known:
     """The same, voyage by voyage. `prior` (P,): their means, in the unknowns' own units."""
     sd = np.array([u.sd for u in unknowns])
     pull = np.zeros(sd.size) if prior is None else (prior - np.array([u.centre for u in unknowns])) / sd
-    told = voyages(innovate(lines, [floor])[0], sd, temper)
+    told = voyages(innovate(lines, [noise_model])[0], sd, temper)
     return Known(unknowns, tuple(told), scattered(told, pull), pull)
 
 

@@ -67,7 +67,7 @@ def swung(track: Track, model: Model) -> Track:
 def likeliest_waves(track: Track, model: Model, unknowns: Sequence[Unknown]) -> tuple[Track, float, float]:
     """The track in waves as strong as the readings ask for, if anything swings it; log evidence of that, and
     of no waves."""
-    floor, rough = noise_model_of(model.ship) or NoiseModel(), _swinging(track, model)
+    noise_model, rough = noise_model_of(model.ship) or NoiseModel(), _swinging(track, model)
     if rough.swell is None:
         return track, -np.inf, 0.0
     parts = [
@@ -79,7 +79,7 @@ def likeliest_waves(track: Track, model: Model, unknowns: Sequence[Unknown]) -> 
     )
 
     def likely(line: Linear) -> float:
-        return max(evidence(n, sd) for n in innovate([line], [floor.scaled(white=k) for k in WHITES]))
+        return max(evidence(n, sd) for n in innovate([line], [noise_model.scaled(white=k) for k in WHITES]))
 
     as_strong = {k: likely(replace(lines[1], track=_times(lines[1].track, k))) for k in STRENGTHS}
     best = max(as_strong, key=lambda k: as_strong[k])
