@@ -45,7 +45,7 @@ def run(args: argparse.Namespace) -> int:
     with tempfile.TemporaryDirectory() as nowhere:
         work = args.work or (Path(".paper") if args.full else Path(nowhere))
         result = reproduce(
-            paper_voyages.FULL if args.full else paper_voyages.QUICK, work, not args.full, args.figures
+            paper_voyages.FULL_PLAN if args.full else paper_voyages.QUICK, work, not args.full, args.figures
         )
     if tick:
         result["tables"]["9"] = tick

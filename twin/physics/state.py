@@ -43,7 +43,7 @@ class Water(NamedTuple):
     k_t: Number = 0.0
 
 
-STILL = Water()
+STILL_WATER = Water()
 
 
 class Rates(NamedTuple):

@@ -34,7 +34,7 @@ from twin.live.certificate.theorem import Promise, assess
 from twin.live.learning.movable import movable
 from twin.live.observer.estimate import fastest_gain, gain_for
 from twin.live.observer.operating import Confined, OperatingSet, of_ship
-from twin.live.observer.rollback import FULL
+from twin.live.observer.rollback import FULL_GAIN
 from twin.physics.model import Model
 from twin.physics.ship import Ship
 
@@ -208,7 +208,7 @@ def certify(
     numbers = movable(model.effects, model.ship) if adapted else ()
     plant, noise = plant_of(model, operating_set or of_ship(model), h, numbers), tuple(noise)
     if inner > 1:
-        K = _row(FULL / h)
+        K = _row(FULL_GAIN / h)
     else:
         K = suited_gain(plant, m, gain_for(model.ship), fastest_gain(h, max(m))) if K is None else _row(K)
     promise = _promised(plant, K, m, noise, d, heading_noise, extra_growth, estimated_heading, inner)  # type: ignore[arg-type]

@@ -17,7 +17,7 @@ from math import exp, log
 from twin.study.diagnosis.facts import Cause, Facts
 
 LEAST_ODDS = 1e-3  # probability that is as good as none, and that short of one
-MOST = 30.0  # standard deviations of a number from none, beyond which there is no more to say
+SIGNIFICANCE_LIMIT = 30.0  # standard deviations of a number from none, beyond which there is no more to say
 PROBABILITY_LIMITS = (0.05, 0.95)  # what a few hundred answers can show
 
 
@@ -27,7 +27,7 @@ def _log_odds(f: Facts, c: Cause) -> float:
 
 
 def _clearness(f: Facts, c: Cause) -> float:
-    return log(1.0 + min(c.significance, MOST))
+    return log(1.0 + min(c.significance, SIGNIFICANCE_LIMIT))
 
 
 def _left_little(f: Facts, c: Cause) -> float:

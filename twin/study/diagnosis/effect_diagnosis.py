@@ -37,8 +37,8 @@ from twin.study.estimation.start import waves_on
 from twin.study.reference.healthy import Healthy
 
 SCHEMA_VERSION = 1
-SHOWN = 8  # candidates in the answer: all that are at least LEAST likely, and no more than this
-LEAST = 0.05
+SHOWN = 8  # candidates in the answer: all that are at least LEAST_PROBABILITY likely, and no more than this
+LEAST_PROBABILITY = 0.05
 SOME = 0.5  # probability from which a kind of weather is told
 
 
@@ -74,7 +74,7 @@ def diagnose(
     nothing = 0.0 if decision.reason == "pushed" else facts.nothing
     unknown = 1.0 - nothing if decision.verdict == "unknown" else facts.unknown
     p = w.effects | {name: w.weather[name] for name in decision.missing if name in w.weather}
-    likely = [n for n in sorted(p, key=lambda n: -p[n]) if p[n] >= LEAST][:SHOWN]
+    likely = [n for n in sorted(p, key=lambda n: -p[n]) if p[n] >= LEAST_PROBABILITY][:SHOWN]
     likely = [*decision.missing, *(n for n in likely if n not in decision.missing)]
     progress("predicting held-out parts")
     candidates = [

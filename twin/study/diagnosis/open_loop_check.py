@@ -27,7 +27,7 @@ HORIZON_S, HORIZON_LENGTHS = 120.0, 10.0  # how far ahead held-out parts are pre
 # one mends the other
 COMPLEXITY = 10.0
 # windows that count: what the core misses is the same in all of them, and more of the same tells no more
-MOST = 40.0
+MAX_WINDOWS = 40.0
 FORM = 0.1  # share of what an effect does to the path that its form may miss
 ANY_DAY = 2.0  # standard deviations of what any day brings, that nobody need name
 DEGRADED = 0.05  # share by which two effects lead it farther off than one of them, so that the other is none
@@ -42,7 +42,7 @@ class OpenLoopCheck:
     found: Mapping[Sets, Found]  # with `open_loop_error_m`; "nothing" is among them
     expected_m: Mapping[str, float]  # [m], by noise scenario
     levered: Mapping[Sets, float]  # [m] and what each may leave whose side force attacks elsewhere along it
-    windows: float  # that do not overlap, and no more than MOST
+    windows: float  # that do not overlap, and no more than MAX_WINDOWS
     irregular: frozenset[str]  # effects that come and go
     weather: frozenset[str]  # effects that are no cause, and bear no penalty
 
@@ -136,7 +136,7 @@ def open_loop_check(
         for s in off
     }
     asked = {s: replace(found[s], open_loop_error_m=m, expected_error_m=ends[s]) for s, m in off.items()}
-    windows = min(MOST, sum((len(t) - 1) * t.h / horizon_s(t, case.model) for t in case.tracks))
+    windows = min(MAX_WINDOWS, sum((len(t) - 1) * t.h / horizon_s(t, case.model) for t in case.tracks))
     return OpenLoopCheck(asked, expected_m, levered, windows, irregular, frozenset(case.weather))
 
 

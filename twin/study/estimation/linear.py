@@ -79,8 +79,8 @@ def linearise(
 ) -> Linear:
     """Everything about one track that does not depend on the noise model (`at`: values of unknowns that the
     model already holds), about the motion as it was if the model's sensor faults are there. `smooth`: these
-    are judged along that motion alone. `exact`: what unknowns push is known beside that motion, too, where the
-    filter believes it to be."""
+    are judged along that motion alone. `exact`: what unknowns push is known beside that motion, too, where
+    the filter believes it to be."""
     shown, track = track, undone(track, model)
     # what is late shows another moment: no slope of this one says a wave two seconds ago
     late_s, prompt = model.prompt()
