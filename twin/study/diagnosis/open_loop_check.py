@@ -1,4 +1,4 @@
-"""Whether a hypothesis would also have led the ship where it went: a second test beside the readings one
+"""Whether a hypothesis would also have brought the model where the ship went: a second test beside the readings one
 step ahead.
 
 One step ahead, a hypothesis is judged by what is fast; a little misfit of the core, repeated at every step,
