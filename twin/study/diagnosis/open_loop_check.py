@@ -1,5 +1,5 @@
-"""Whether a hypothesis would also have brought the model where the ship went: a second test beside the readings one
-step ahead.
+"""Whether a hypothesis would also have brought the model where the ship went: a second test beside the
+readings one step ahead.
 
 One step ahead, a hypothesis is judged by what is fast; a little misfit of the core, repeated at every step,
 may then decide between two causes that explain the voyages nearly alike. Run free from measured states over
